@@ -1,0 +1,67 @@
+"""A periodic mesh stiffness as a Fourier series."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class Harmonics:
+    """k(t) = sum_j a[j] sin(j w t) + b[j] cos(j w t), equation (8) of the paper; w is the mesh frequency.
+
+    `a` and `b` have shape (H+1,) and the unit N/m. a[0] is zero and b[0] is the mean.
+    """
+
+    a: NDArray[np.float64]
+    b: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        a = np.array(self.a, dtype=float)
+        b = np.array(self.b, dtype=float)
+        if a.ndim != 1 or a.shape != b.shape or a.size == 0:
+            raise ValueError(f"a and b must have one shape (H+1,), not {a.shape} and {b.shape}")
+        if not (np.isfinite(a).all() and np.isfinite(b).all()):
+            raise ValueError("harmonics must be finite")
+        if a[0] != 0.0:
+            raise ValueError(f"a[0] multiplies sin(0) and must be 0, not {a[0]}")
+        a.flags.writeable = False
+        b.flags.writeable = False
+        object.__setattr__(self, "a", a)
+        object.__setattr__(self, "b", b)
+
+    @property
+    def order(self) -> int:
+        """Highest harmonic H."""
+        return self.a.size - 1
+
+    @property
+    def mean(self) -> float:
+        """Mean stiffness b[0], N/m."""
+        return float(self.b[0])
+
+    @property
+    def amplitudes(self) -> NDArray[np.float64]:
+        """Amplitude of each order, shape (H+1,), N/m; the first entry is the mean."""
+        return np.hypot(self.a, self.b)
+
+    def __call__(self, cycles: ArrayLike) -> NDArray[np.float64]:
+        """Stiffness at `cycles` = w t / 2 pi (mesh periods since the start), any shape, N/m."""
+        angle = 2.0 * np.pi * np.multiply.outer(np.asarray(cycles, dtype=float), np.arange(self.order + 1))
+        return np.sin(angle) @ self.a + np.cos(angle) @ self.b
+
+    def shifted(self, cycles: float) -> "Harmonics":
+        """The series of k(t - cycles T)."""
+        angle = 2.0 * np.pi * cycles * np.arange(self.order + 1)
+        cos, sin = np.cos(angle), np.sin(angle)
+        a = self.a * cos + self.b * sin
+        a[0] = 0.0
+        return Harmonics(a, self.b * cos - self.a * sin)
+
+    def kept(self, order: int) -> "Harmonics":
+        """The series cut after `order`."""
+        return Harmonics(self.a[: order + 1], self.b[: order + 1])
+
+    def scaled(self, factor: float) -> "Harmonics":
+        """The series times `factor`."""
+        return Harmonics(self.a * factor, self.b * factor)
