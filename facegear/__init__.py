@@ -1,0 +1,1 @@
+"""Face gear transmissions from tooth geometry to dynamic load sharing."""

@@ -1,0 +1,1 @@
+"""The only place that validates a config and converts it to SI."""

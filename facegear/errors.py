@@ -1,0 +1,45 @@
+"""Errors a user may meet. Each one's text is one clear line."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+
+class FacegearError(Exception):
+    """Base of all errors whose text is meant for the user."""
+
+
+class ConfigError(FacegearError):
+    """A config value that cannot be used: names the key, the value and what is allowed."""
+
+    def __init__(self, key: str, value: object, allowed: str) -> None:
+        super().__init__(f"{key} = {value!r}: {allowed}")
+        self.key, self.value, self.allowed = key, value, allowed
+
+
+class ConfigErrors(FacegearError):
+    """All mistakes of one config file, one line each."""
+
+    def __init__(self, source: str, lines: Sequence[str]) -> None:
+        super().__init__("\n".join(f"{source}: {line}" for line in lines))
+        self.lines = tuple(lines)
+
+
+class GeometryError(ConfigError):
+    """A tooth design that cannot exist: names the key, the value and the limit it breaks."""
+
+
+class NotConverged(FacegearError):
+    """A solver that did not reach its tolerance: names the stage, where, and what was tried."""
+
+    def __init__(self, stage: str, where: str, tried: str) -> None:
+        super().__init__(f"{stage} did not converge at {where}: {tried}")
+        self.stage, self.where, self.tried = stage, where, tried
+
+
+class CorruptFile(FacegearError):
+    """A stored file that is truncated, altered or not what its reader expects."""
+
+    def __init__(self, path: str | Path, what: str, rebuild: str | None = None) -> None:
+        rebuild = rebuild or f"snakemake --cores 2 --force {path}"
+        super().__init__(f"{path}: {what}; rebuild it with: {rebuild}")
+        self.path, self.what = Path(path), what

@@ -1,0 +1,42 @@
+"""Read and write named arrays (npz, never pickle)."""
+
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from facegear.errors import CorruptFile
+from facegear.io.atomic import atomic_path
+from facegear.io.checksums import verify
+
+
+def write(path: str | Path, **arrays: np.ndarray) -> None:
+    """Write arrays under their names, uncompressed."""
+    if any(np.asarray(array).dtype.hasobject for array in arrays.values()):
+        raise TypeError("arrays of Python objects are not stored")
+    with atomic_path(path) as temporary, open(temporary, "wb") as stream:
+        np.savez(stream, **arrays)
+
+
+def read(path: str | Path, shapes: Mapping[str, tuple[int | None, ...]]) -> dict[str, np.ndarray]:
+    """Read all arrays of a file; those in `shapes` must exist with that shape (None: any length).
+
+    Raises CorruptFile if it is missing, altered, truncated, lacks an array, or a number is not finite.
+    """
+    verify(path)
+    try:
+        with np.load(path, allow_pickle=False) as stored:
+            arrays = {name: stored[name] for name in stored.files}
+    except (ValueError, OSError, EOFError, zipfile.BadZipFile, KeyError):
+        raise CorruptFile(path, "not a readable array file") from None
+    for name, shape in shapes.items():
+        if name not in arrays:
+            raise CorruptFile(path, f"array {name!r} is missing")
+        found = arrays[name].shape
+        if len(found) != len(shape) or any(n not in (None, m) for n, m in zip(shape, found, strict=True)):
+            raise CorruptFile(path, f"array {name!r} has shape {found}, expected {shape}")
+    for name, array in arrays.items():
+        if array.dtype.kind == "f" and not np.isfinite(array).all():
+            raise CorruptFile(path, f"array {name!r} holds a value that is not finite")
+    return arrays

@@ -1,0 +1,36 @@
+"""Detect stored files that changed since the stage that made them wrote them."""
+
+import hashlib
+import json
+from pathlib import Path
+
+from facegear.errors import CorruptFile
+
+MANIFEST_SUFFIX = ".provenance.json"
+
+
+def sha256(path: str | Path) -> str:
+    """SHA-256 of a file's bytes, as hex."""
+    with open(path, "rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def verify(path: str | Path) -> None:
+    """Compare `path` with the manifest of the stage that wrote it, if one lies beside it.
+
+    Raises CorruptFile where size or checksum differ, or the file is missing.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise CorruptFile(path, "the file is missing")
+    for manifest in sorted(path.parent.glob(f"*{MANIFEST_SUFFIX}")):
+        try:
+            document = json.loads(manifest.read_text(encoding="utf-8"))
+            recorded = document["files"].get(path.name)
+            rebuild = document["rebuild"]
+        except (ValueError, KeyError, TypeError, AttributeError):
+            raise CorruptFile(manifest, "the manifest is not readable") from None
+        if recorded is None:
+            continue
+        if path.stat().st_size != recorded["bytes"] or sha256(path) != recorded["sha256"]:
+            raise CorruptFile(path, "the content differs from what its stage wrote", f"{rebuild} {path}")

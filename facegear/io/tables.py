@@ -1,0 +1,39 @@
+"""Read and write csv tables; units stand in the column names."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from facegear.errors import CorruptFile
+from facegear.io.atomic import atomic_path
+from facegear.io.checksums import verify
+
+
+def write(path: str | Path, frame: pd.DataFrame) -> None:
+    """Write a table with full double precision."""
+    with atomic_path(path) as temporary:
+        frame.to_csv(temporary, index=False)
+
+
+def read(path: str | Path, columns: Sequence[str] = (), allow_empty: bool = False) -> pd.DataFrame:
+    """Read a table that must hold `columns`, whose numbers there must be finite.
+
+    Raises CorruptFile if it is missing, altered, truncated, lacks a column or holds a number that is not finite.
+    """
+    verify(path)
+    try:
+        frame = pd.read_csv(path, float_precision="round_trip")
+    except (ValueError, UnicodeDecodeError) as error:
+        raise CorruptFile(path, f"not a readable table ({str(error).splitlines()[0]})") from None
+    missing = [name for name in columns if name not in frame.columns]
+    if missing:
+        raise CorruptFile(path, f"column {missing[0]!r} is missing")
+    if frame.empty and not allow_empty:
+        raise CorruptFile(path, "the table is empty")
+    numbers = frame[list(columns)].select_dtypes("number")
+    bad = [name for name in numbers.columns if not np.isfinite(numbers[name].to_numpy(float)).all()]
+    if bad:
+        raise CorruptFile(path, f"column {bad[0]!r} holds a value that is not finite")
+    return frame

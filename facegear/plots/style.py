@@ -1,0 +1,44 @@
+"""One look for all figures, and the one place that writes them."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+from matplotlib.figure import Figure
+
+from facegear.io.atomic import atomic_path
+
+STYLE = {
+    "figure.dpi": 110,
+    "savefig.dpi": 160,
+    "figure.constrained_layout.use": True,
+    "font.size": 9,
+    "axes.grid": True,
+    "grid.alpha": 0.3,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.frameon": False,
+    "svg.hashsalt": "facegear",
+    "svg.fonttype": "path",
+}
+
+
+@contextmanager
+def styled() -> Iterator[None]:
+    """Apply the project's matplotlib style."""
+    with plt.rc_context(STYLE):
+        yield
+
+
+def save(figure: Figure, *paths: str | Path) -> None:
+    """Write a figure to each path (the suffix names the format) and close it."""
+    for path in paths:
+        dates = {"Date": None} if str(path).endswith(".svg") else None
+        with atomic_path(path) as temporary:
+            figure.savefig(temporary, metadata=dates)
+    plt.close(figure)

@@ -1,0 +1,1 @@
+"""What made an output: versions, config slice, module fingerprint, machine, time, seed."""
