@@ -1,0 +1,57 @@
+"""The record that lies beside a stage's outputs and says what made them."""
+
+import os
+import platform
+import sys
+from collections.abc import Iterable, Mapping
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from facegear.io import documents
+from facegear.io.checksums import sha256
+
+LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pypardiso", "numba", "pandas", "snakemake")
+
+
+def write_manifest(
+    path: str | Path,
+    outputs: Iterable[str | Path],
+    params: Mapping[str, Any],
+    rule: str,
+    seconds: float,
+    summary: str,
+    rebuild: str,
+) -> None:
+    """Write versions, config slice, fingerprint, machine, time and the checksum of every output."""
+    documents.write(
+        path,
+        {
+            "rule": rule,
+            "summary": summary,
+            "made_at": datetime.now(UTC).isoformat(timespec="seconds"),
+            "seconds": round(seconds, 3),
+            "versions": {"python": platform.python_version(), **_versions()},
+            "machine": {"system": platform.platform(), "cpu": platform.machine(), "cores": os.cpu_count()},
+            "params": {key: value for key, value in params.items() if key != "code"},
+            "code": params.get("code"),
+            "rebuild": rebuild,
+            "files": {
+                Path(output).name: {"sha256": sha256(output), "bytes": Path(output).stat().st_size}
+                for output in outputs
+            },
+        },
+    )
+
+
+def _versions() -> dict[str, str]:
+    found = {}
+    for name in LIBRARIES:
+        module = name.replace("scikit-fem", "skfem")
+        if module in sys.modules or name == "numpy":
+            try:
+                found[name] = version(name)
+            except PackageNotFoundError:
+                continue
+    return found
