@@ -20,7 +20,7 @@ def write(path: str | Path, frame: pd.DataFrame) -> None:
 def read(path: str | Path, columns: Sequence[str] = (), allow_empty: bool = False) -> pd.DataFrame:
     """Read a table that must hold `columns`, whose numbers there must be finite.
 
-    Raises CorruptFile if it is missing, altered, truncated, lacks a column or holds a number that is not finite.
+    Raises CorruptFile if it is missing, altered, truncated, lacks a column or holds a number not finite.
     """
     verify(path)
     try:

@@ -1,0 +1,47 @@
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.locked
+CORES ?= 2
+
+.PHONY: all env check test lint benchmarks peers identify report lock clean
+
+all: check
+	$(BIN)/snakemake --cores $(CORES)
+
+env: $(READY)
+
+$(READY): requirements.lock
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
+	touch $@
+
+check: env
+	@$(BIN)/python -m facegear.system_check
+
+test: check
+	$(BIN)/python -m pytest -n $(CORES) --dist loadgroup
+
+lint: env
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/snakefmt --check Snakefile workflow
+
+benchmarks: check
+	$(BIN)/snakemake --cores $(CORES) benchmarks
+
+peers: check
+	$(BIN)/snakemake --cores $(CORES) peers
+
+identify: check
+	$(BIN)/snakemake --cores $(CORES) identify
+
+report: check
+	$(BIN)/snakemake --cores $(CORES) report
+
+lock: env
+	$(BIN)/python -m pip install --quiet uv
+	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --extra dev --extra benchmark pyproject.toml -o requirements.lock
+
+clean:
+	rm -rf results/*/ .snakemake

@@ -1,0 +1,14 @@
+include: "workflow/rules/common.smk"
+include: "workflow/rules/geometry.smk"
+include: "workflow/rules/mesh.smk"
+include: "workflow/rules/contact.smk"
+include: "workflow/rules/stiffness.smk"
+include: "workflow/rules/modal.smk"
+include: "workflow/rules/dynamics.smk"
+include: "workflow/rules/load_sharing.smk"
+
+
+rule all:
+    default_target: True
+    input:
+        targets(CASE),

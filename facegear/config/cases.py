@@ -1,0 +1,82 @@
+"""The cases of a config: the machine itself, and one case for every point of every study."""
+
+import itertools
+import re
+from collections.abc import Mapping
+from copy import deepcopy
+from typing import Any
+
+from facegear.config.base import parse
+from facegear.config.model import Config
+from facegear.config.studies import Study
+from facegear.errors import ConfigError, ConfigErrors
+
+STAGE_KEYS: dict[str, tuple[str, ...]] = {
+    "geometry": ("tooth_pair",),
+    "mesh": ("tooth_pair", "mesh"),
+    "contact": ("tooth_pair", "mesh", "contact"),
+    "stiffness": ("tooth_pair", "mesh", "contact", "mesh_stiffness"),
+}
+"""Config keys that each stage's results depend on, those of the stages before it included."""
+
+
+def expand_cases(values: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """Case id -> validated plain config values; the first is the config's own case.
+
+    A study's case has the id `<case>/studies/<study>/<point>`. Raises ConfigErrors naming study and point.
+    """
+    base = dict(values)
+    cases = {base["case"]: base}
+    plain = {**base, "studies": []}
+    for study in base["studies"]:
+        for point, changes in study_points(parse(Study, study)).items():
+            changed = deepcopy(plain)
+            try:
+                for key, value in changes.items():
+                    set_key(changed, key, value)
+            except ConfigError as error:
+                raise ConfigErrors(f"studies.{study['name']}.{point}", [str(error)]) from None
+            case = f"{base['case']}/studies/{study['name']}/{point}"
+            checked = parse(Config, changed, source=f"studies.{study['name']}.{point}")
+            cases[case] = {**checked.model_dump(mode="json"), "case": case}
+    return cases
+
+
+def study_points(study: Study) -> dict[str, dict[str, Any]]:
+    """Point id (usable as a folder name) -> the keys it sets; the product of the study's axes."""
+    points: dict[str, dict[str, Any]] = {}
+    for combination in itertools.product(*(axis.resolved() for axis in study.axes)):
+        name = "__".join(_folder_name(point.label) for point in combination)
+        if name in points:
+            raise ConfigErrors("studies", [f"{study.name}: two points are both called {name!r}"])
+        points[name] = {key: value for point in combination for key, value in point.set.items()}
+    return points
+
+
+def set_key(values: dict[str, Any], key: str, value: Any) -> None:
+    """Set a dotted key (list positions as numbers) that exists in `values`. Raises ConfigError if it does not."""
+    parts = key.split(".")
+    inside: Any = values
+    for part in parts[:-1]:
+        inside = inside[_position(inside, part, key, value)]
+    inside[_position(inside, parts[-1], key, value)] = value
+
+
+def shared_source(cases: Mapping[str, Mapping[str, Any]], case: str, stage: str) -> str:
+    """The first case whose config agrees with that of `case` in everything `stage` depends on."""
+    wanted = [cases[case][key] for key in STAGE_KEYS[stage]]
+    return next(
+        other for other, values in cases.items() if [values[key] for key in STAGE_KEYS[stage]] == wanted
+    )
+
+
+def _position(inside: Any, part: str, key: str, value: Any) -> str | int:
+    if isinstance(inside, dict) and part in inside and part not in ("case", "studies"):
+        return part
+    if isinstance(inside, list) and part.isdecimal() and int(part) < len(inside):
+        return int(part)
+    raise ConfigError(key, value, "a study may only set keys that stand in the config")
+
+
+def _folder_name(label: str) -> str:
+    return re.sub(r"[^a-z0-9]+", "_", label.lower().replace(".", "p")).strip("_") or "point"

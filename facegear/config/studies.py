@@ -1,0 +1,50 @@
+"""Config section `studies`: the same machine with some keys changed, in one or two dimensions."""
+
+from typing import Any
+
+from pydantic import Field, model_validator
+
+from facegear.config.base import Section, refuse
+
+NAME = r"^[a-z][a-z0-9_]{0,39}$"
+
+
+class Point(Section):
+    """One value of an axis: a label for the figures and the keys it sets."""
+
+    label: str = Field(min_length=1, max_length=60)
+    set: dict[str, Any] = Field(min_length=1, description="dotted config keys and their values")
+
+
+class Axis(Section):
+    """One dimension of a study: either one `key` with its `values`, or `points` that set several keys."""
+
+    label: str = Field(min_length=1, max_length=60)
+    key: str | None = Field(None, description="dotted config key, such as transmission.backlash_um")
+    values: tuple[Any, ...] = ()
+    points: tuple[Point, ...] = ()
+
+    @model_validator(mode="after")
+    def _one_form(self) -> "Axis":
+        if bool(self.points) == bool(self.key):
+            refuse("points", len(self.points), "an axis has either a key with values, or points")
+        if self.key and not self.values:
+            refuse("values", list(self.values), "an axis with a key needs at least one value")
+        labels = [point.label for point in self.resolved()]
+        if len(set(labels)) < len(labels):
+            refuse("points", labels, "each point of an axis needs its own label")
+        return self
+
+    def resolved(self) -> tuple[Point, ...]:
+        """The axis as labelled points."""
+        if self.key:
+            return tuple(Point(label=f"{value}", set={self.key: value}) for value in self.values)
+        return self.points
+
+
+class Study(Section):
+    """Cases over one axis, or over the product of two."""
+
+    name: str = Field(pattern=NAME)
+    title: str = Field(min_length=1, max_length=120)
+    axes: tuple[Axis, ...] = Field(min_length=1, max_length=2)

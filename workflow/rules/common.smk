@@ -1,0 +1,77 @@
+import os
+import re
+import shutil
+import sys
+from pathlib import Path
+
+ROOT = Path(workflow.basedir)
+sys.path.insert(0, str(ROOT))
+os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
+
+from facegear.config.cases import expand_cases, shared_source
+from facegear.config.load import load_values
+from facegear.errors import FacegearError
+from facegear.io.run_lock import hold
+from facegear.provenance.fingerprint import fingerprint as _fingerprint
+
+DEFAULT_CONFIGFILE = ROOT / "config" / "paper.yaml"
+CONFIGFILES = [Path(file) for file in workflow.configfiles] or [DEFAULT_CONFIGFILE]
+
+
+def stop(message):
+    """End before any work with the message alone, without a traceback."""
+    print(message, file=sys.stderr, flush=True)
+    os._exit(1)
+
+
+try:
+    CONFIG = load_values(CONFIGFILES, workflow.config_settings.config)
+    CASES = expand_cases(CONFIG)
+except FacegearError as error:
+    stop(str(error))
+
+CASE = CONFIG["case"]
+config["rebuild_command"] = "snakemake --cores 2" + "".join(
+    f" --configfile {os.path.relpath(file)}" for file in workflow.configfiles
+) + " --force"
+
+
+wildcard_constraints:
+    case="|".join(re.escape(case) for case in CASES),
+
+
+# A killed run leaves Snakemake's own lock and half-made jobs behind; both are cleared at the next start,
+# because the kernel's lock below proves that nobody is working here.
+if workflow.exec_mode.name == "DEFAULT":
+    RUN_LOCK = hold(".snakemake/facegear.lock")
+    if RUN_LOCK is not None:
+        shutil.rmtree(".snakemake/locks", ignore_errors=True)
+        Path(".snakemake/locks").mkdir(parents=True, exist_ok=True)
+    elif not {"-n", "--dry-run", "--dryrun"} & set(sys.argv):
+        stop(f"another run is working in {os.getcwd()}; wait for it or stop it first")
+    workflow.dag_settings.force_incomplete = True
+
+
+def fingerprint(script):
+    """Hash of the code a script reaches; a rule reruns when it changes."""
+    return _fingerprint(ROOT / "workflow" / "scripts" / script, ROOT)
+
+
+def config_slice(*keys):
+    """Function of the wildcards giving the named config values of a case (dotted keys reach inside)."""
+
+    def values(wildcards):
+        found = {}
+        for key in keys:
+            value = CASES[wildcards.case]
+            for part in key.split("."):
+                value = value[part] if value is not None else None
+            found[key] = value
+        return found[keys[0]] if len(keys) == 1 else found
+
+    return values
+
+
+def upstream(stage, path):
+    """Function of the wildcards giving a file of an earlier stage, shared by all cases alike up to it."""
+    return lambda wildcards: f"results/{shared_source(CASES, wildcards.case, stage)}/{path}"
