@@ -54,7 +54,7 @@ def study_points(study: Study) -> dict[str, dict[str, Any]]:
 
 
 def set_key(values: dict[str, Any], key: str, value: Any) -> None:
-    """Set a dotted key (list positions as numbers) that exists in `values`. Raises ConfigError if it does not."""
+    """Set a dotted key (list positions as numbers). Raises ConfigError if it does not stand in `values`."""
     parts = key.split(".")
     inside: Any = values
     for part in parts[:-1]:

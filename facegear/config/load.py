@@ -15,7 +15,7 @@ def load_config(path: str | Path, overrides: Mapping[str, Any] | None = None) ->
 
 
 def load_values(paths: Sequence[str | Path], overrides: Mapping[str, Any]) -> dict[str, Any]:
-    """Validated plain values of config files laid over one another, defaults filled in (as rules pass them)."""
+    """Validated plain values of config files laid over one another, with defaults filled in."""
     values: dict[str, Any] = {}
     for path in paths:
         values = merged(values, read_yaml(path))

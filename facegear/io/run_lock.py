@@ -14,7 +14,7 @@ def hold(path: str | Path) -> TextIO | None:
     """Take the lock for as long as the returned stream lives; None if another live process holds it."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    stream = open(path, "a+", encoding="utf-8")
+    stream = open(path, "a+", encoding="utf-8")  # noqa: SIM115 - open as long as the lock is held
     if fcntl is not None:
         try:
             fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
