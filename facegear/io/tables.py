@@ -24,7 +24,7 @@ def read(path: str | Path, columns: Sequence[str] = (), allow_empty: bool = Fals
     """
     verify(path)
     try:
-        frame = pd.read_csv(path, float_precision="round_trip")
+        frame = pd.read_csv(path)
     except (ValueError, UnicodeDecodeError) as error:
         raise CorruptFile(path, f"not a readable table ({str(error).splitlines()[0]})") from None
     missing = [name for name in columns if name not in frame.columns]
