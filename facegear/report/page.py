@@ -1,0 +1,73 @@
+"""A self-contained HTML page from chapters of text, tables and pictures."""
+
+import base64
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import jinja2
+import pandas as pd
+
+TEMPLATE = "page.html.j2"
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A stored svg or png with its caption."""
+
+    path: Path
+    caption: str
+
+    def data_uri(self) -> str:
+        """The picture's bytes as a data URI."""
+        kind = {".svg": "image/svg+xml", ".png": "image/png"}[self.path.suffix]
+        return f"data:{kind};base64,{base64.b64encode(self.path.read_bytes()).decode()}"
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows under a caption; numbers are shown with `digits` significant digits."""
+
+    caption: str
+    frame: pd.DataFrame
+    digits: int = 5
+
+    def header(self) -> list[str]:
+        """Column names as words."""
+        return [str(name).replace("_", " ") for name in self.frame.columns]
+
+    def rows(self) -> list[list[str]]:
+        """Cells as text."""
+        return [[self._cell(value) for value in row] for row in self.frame.itertuples(index=False)]
+
+    def _cell(self, value: object) -> str:
+        if isinstance(value, float):
+            return "" if value != value else f"{value:.{self.digits}g}"
+        return str(value)
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """One part of the page."""
+
+    title: str
+    text: str
+    pictures: Sequence[Picture] = ()
+    tables: Sequence[Table] = ()
+
+    @property
+    def anchor(self) -> str:
+        """Name for links inside the page."""
+        return "".join(letter if letter.isalnum() else "-" for letter in self.title.lower())
+
+
+def render(title: str, lead: str, chapters: Sequence[Chapter]) -> str:
+    """The page as HTML text that needs no other file."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(Path(__file__).parent),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template(TEMPLATE).render(title=title, lead=lead, chapters=chapters)
