@@ -1,0 +1,1 @@
+"""Exact tooth surfaces of the pair: flanks, fillets, limits, unloaded contact."""

@@ -1,0 +1,208 @@
+"""The tooth pair in SI units, and the frames every geometry and mesh module uses.
+
+Frames
+------
+Mesh frame (fixed): origin where the nominal axes cross, z the gear's axis (gear teeth point to +z, the pinion
+lies above the gear), y the pinion's axis (radially outward), x tangential. The pinion axis is at z = 0, the
+gear's datum (pitch) plane at z = -(pitch radius + profile shift) of the pinion.
+
+Gear body frame: the mesh frame at gear angle 0; reference tooth 0 is centred on the half plane x = 0, y > 0.
+Pinion body frame: reference tooth 0 is centred on the half plane x = 0, z < 0; y along the axis as above.
+
+Rotations are positive when the teeth in mesh move towards +x (about -y for the pinion, -z for the gear).
+Tooth j of the pinion stands at phi1 + (j - 1/2) 2 pi / N1, tooth j of the gear at phi2 + j 2 pi / N2, so at
+phi1 = phi2 = 0 gear tooth 0 fills the space between pinion teeth 0 and 1. The conjugate motion is
+phi2 = phi1 N1 / N2. "Right" is the +x side of a tooth in the mesh zone, "left" the -x side.
+The drive side is pinion right against gear left, pair j being tooth j of both; it carries load when the
+pinion drives towards +x. The back side (pinion tooth j left, gear tooth j - 1 right) is its mirror image x -> -x.
+"""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import cos, pi, sqrt, tan
+
+
+def involute(angle: float) -> float:
+    """inv a = tan a - a (rad)."""
+    return tan(angle) - angle
+
+
+@dataclass(frozen=True)
+class Relief:
+    """A flank modification removed along the normal: `amount` (m) over `length` (m) beyond `start` (m).
+
+    Tip and root relief measure roll length along the line of action from the flank's tip or root end inwards:
+    the full amount holds within `start` of the end and falls linearly to zero over the next `length`.
+    Lead crowning measures from the middle of the face: nothing within `start`, then a parabola reaching
+    `amount` after `length`.
+    """
+
+    amount: float = 0.0
+    start: float = 0.0
+    length: float = 0.0
+
+
+@dataclass(frozen=True)
+class Pinion:
+    """Spur pinion cut by a rack (lengths in m)."""
+
+    teeth: int
+    width: float
+    addendum: float
+    dedendum: float
+    rack_tip_radius: float
+    bore_radius: float
+    profile_shift: float = 0.0
+    thinning: float = 0.0
+    """Normal thickness taken off the tooth, both flanks together: the pair's nominal normal backlash."""
+    tip_chamfer: float = 0.0
+    tip_relief: Relief = field(default_factory=Relief)
+    root_relief: Relief = field(default_factory=Relief)
+    lead_crowning: Relief = field(default_factory=Relief)
+
+
+@dataclass(frozen=True)
+class FaceGear:
+    """Face gear blank (m): ends are coaxial cylinders, tip and root lands are planes."""
+
+    teeth: int
+    inner_radius: float
+    outer_radius: float
+    addendum: float
+    rim_thickness: float
+
+
+@dataclass(frozen=True)
+class Shaper:
+    """The tool that generates the face gear; it carries the pinion's profile shift (lengths in m)."""
+
+    teeth: int
+    addendum: float
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """Errors of assembly: where the pinion stands against its nominal place in the gear's frame.
+
+    offset dE moves the pinion along +x (m); shaft_angle_error dgamma tilts it about x through the point of
+    its axis at the middle of the face, outer end away from the gear if positive (rad); axial_shift dq moves
+    the gear away from the pinion along its axis (m).
+    """
+
+    offset: float = 0.0
+    shaft_angle_error: float = 0.0
+    axial_shift: float = 0.0
+
+
+@dataclass(frozen=True)
+class PairDesign:
+    """A spur pinion and the face gear generated for it."""
+
+    module: float
+    pressure_angle: float
+    pinion: Pinion
+    face_gear: FaceGear
+    shaper: Shaper
+    assembly: Assembly = field(default_factory=Assembly)
+
+    @cached_property
+    def pinion_pitch_radius(self) -> float:
+        return self.module * self.pinion.teeth / 2
+
+    @cached_property
+    def pinion_base_radius(self) -> float:
+        return self.pinion_pitch_radius * cos(self.pressure_angle)
+
+    @cached_property
+    def pinion_tip_radius(self) -> float:
+        return self.pinion_pitch_radius + self.pinion.addendum + self.pinion.profile_shift
+
+    @cached_property
+    def pinion_root_radius(self) -> float:
+        return self.pinion_pitch_radius - self.pinion.dedendum + self.pinion.profile_shift
+
+    @cached_property
+    def pinion_half_base_angle(self) -> float:
+        """Half the pinion's tooth angle on the base circle (rad), thinning included."""
+        teeth, shift = self.pinion.teeth, self.pinion.profile_shift / self.module
+        nominal = pi / (2 * teeth) + 2 * shift * tan(self.pressure_angle) / teeth
+        return nominal + involute(self.pressure_angle) - self.pinion.thinning / (2 * self.pinion_base_radius)
+
+    @cached_property
+    def pinion_tip_roll(self) -> float:
+        """Roll angle (rad) where the involute ends: at the tip circle or at the chamfer."""
+        ratio = (self.pinion_tip_radius - self.pinion.tip_chamfer) / self.pinion_base_radius
+        return sqrt(max(ratio**2 - 1, 0.0))
+
+    @cached_property
+    def shaper_pitch_radius(self) -> float:
+        return self.module * self.shaper.teeth / 2
+
+    @cached_property
+    def shaper_base_radius(self) -> float:
+        return self.shaper_pitch_radius * cos(self.pressure_angle)
+
+    @cached_property
+    def shaper_tip_radius(self) -> float:
+        return self.shaper_pitch_radius + self.shaper.addendum + self.pinion.profile_shift
+
+    @cached_property
+    def shaper_tip_roll(self) -> float:
+        """Roll angle th* (rad) of the shaper's involute at its tip circle."""
+        return sqrt((self.shaper_tip_radius / self.shaper_base_radius) ** 2 - 1)
+
+    @cached_property
+    def shaper_half_space_angle(self) -> float:
+        """th_os (rad): half the shaper's space angle on its base circle."""
+        teeth, shift = self.shaper.teeth, self.pinion.profile_shift / self.module
+        return (pi / 2 - 2 * shift * tan(self.pressure_angle)) / teeth - involute(self.pressure_angle)
+
+    @cached_property
+    def shaper_ratio(self) -> float:
+        """m2s = N_s / N2, gear angle per shaper angle."""
+        return self.shaper.teeth / self.face_gear.teeth
+
+    @cached_property
+    def shaper_lift(self) -> float:
+        """Height (m) of the shaper's axis above the pinion's nominal axis."""
+        return self.shaper_pitch_radius - self.pinion_pitch_radius
+
+    @cached_property
+    def pitch_plane(self) -> float:
+        """z (m) of the datum plane, where the gear tooth is as thick as its space."""
+        return -self.pinion_pitch_radius - self.pinion.profile_shift
+
+    @cached_property
+    def gear_tip_plane(self) -> float:
+        return self.pitch_plane + self.face_gear.addendum
+
+    @cached_property
+    def gear_root_plane(self) -> float:
+        return self.shaper_lift - self.shaper_tip_radius
+
+    @cached_property
+    def gear_back_plane(self) -> float:
+        return self.gear_root_plane - self.face_gear.rim_thickness
+
+    @cached_property
+    def gear_base_radius(self) -> float:
+        """r_b2 = m N2 cos a0 / 2 (m): the radius where the local pressure angle vanishes."""
+        return self.module * self.face_gear.teeth * cos(self.pressure_angle) / 2
+
+    @cached_property
+    def gear_pitch_radius(self) -> float:
+        """m N2 / 2 (m): the radius of the point contact path of the nominal assembly."""
+        return self.module * self.face_gear.teeth / 2
+
+    @cached_property
+    def mean_radius(self) -> float:
+        """Middle of the face (m): where the pinion's face is centred."""
+        return (self.face_gear.inner_radius + self.face_gear.outer_radius) / 2
+
+
+@dataclass(frozen=True)
+class Material:
+    """Linear elastic material: Young's modulus (Pa) and Poisson's ratio."""
+
+    young_modulus: float
+    poisson_ratio: float

@@ -1,0 +1,1 @@
+"""Structured hexahedral meshes of both bodies on the exact surfaces."""

@@ -1,0 +1,40 @@
+"""The paper's pair as a factory: what a test does not name has the paper's value."""
+
+from collections.abc import Callable
+from math import radians
+
+import pytest
+
+from facegear.geometry.design import Assembly, FaceGear, PairDesign, Pinion, Relief, Shaper
+
+
+def paper_pair(
+    shaper_teeth: int = 26,
+    shaper_addendum: float = 1.25,
+    rack_tip_radius: float = 0.1,
+    shift: float = 0.0,
+    thinning: float = 0.0,
+    tip_relief: Relief | None = None,
+    **assembly: float,
+) -> PairDesign:
+    m = 3.75e-3
+    pinion = Pinion(
+        teeth=23,
+        width=0.030,
+        addendum=m,
+        dedendum=1.25 * m,
+        rack_tip_radius=rack_tip_radius * m,
+        bore_radius=0.025,
+        profile_shift=shift * m,
+        thinning=thinning,
+        tip_relief=tip_relief or Relief(),
+    )
+    gear = FaceGear(teeth=143, inner_radius=0.250, outer_radius=0.275, addendum=m, rim_thickness=0.012)
+    return PairDesign(
+        m, radians(25), pinion, gear, Shaper(shaper_teeth, shaper_addendum * m), Assembly(**assembly)
+    )
+
+
+@pytest.fixture(scope="session")
+def pair() -> Callable[..., PairDesign]:
+    return paper_pair

@@ -1,0 +1,66 @@
+"""The pinion's section: involute and trochoid meet smoothly, and both are what the rack leaves."""
+
+import numpy as np
+import pytest
+
+from facegear.geometry import pinion
+
+
+@pytest.mark.parametrize(("shift", "thinning"), [(0.0, 0.0), (0.3, 0.0), (-0.1, 1e-4)])
+def test_involute_and_trochoid_share_point_and_normal(pair, shift, thinning):
+    design = pair(shift=shift, thinning=thinning)
+    roll, gamma = pinion.junction_roll(design), design.pressure_angle
+    np.testing.assert_allclose(
+        pinion.involute_point(design, roll), pinion.trochoid_point(design, gamma), atol=1e-15
+    )
+    np.testing.assert_allclose(
+        pinion.involute_normal(design, roll), pinion.trochoid_normal(design, gamma), atol=1e-14
+    )
+
+
+def test_normals_are_orthogonal_to_the_section(pair):
+    design = pair(rack_tip_radius=0.25)
+    step = 1e-6
+    for point, normal, at in (
+        (pinion.involute_point, pinion.involute_normal, np.linspace(0.25, 0.7, 11)),
+        (pinion.trochoid_point, pinion.trochoid_normal, np.linspace(0.45, 1.55, 11)),
+    ):
+        after = pinion.cartesian(*point(design, at + step), 0.0)
+        tangent = after - pinion.cartesian(*point(design, at - step), 0.0)
+        tangent /= np.linalg.norm(tangent, axis=-1, keepdims=True)
+        nx, nz = normal(design, at)
+        assert np.max(np.abs(tangent[:, 0] * nx + tangent[:, 2] * nz)) < 1e-8
+        np.testing.assert_allclose(nx**2 + nz**2, 1, atol=1e-14)
+
+
+def test_trochoid_ends_on_the_root_circle_where_the_root_land_begins(pair):
+    design = pair()
+    radius, angle = pinion.trochoid_point(design, np.pi / 2)
+    assert radius == pytest.approx(design.pinion_root_radius, abs=1e-16)
+    assert np.pi / 23 - angle == pytest.approx(pinion.root_half_angle(design), abs=1e-15)
+    np.testing.assert_allclose(
+        np.array(pinion.trochoid_normal(design, np.pi / 2)), [np.sin(angle), -np.cos(angle)], atol=1e-15
+    )
+
+
+def test_thickness_on_the_pitch_circle(pair):
+    design = pair(shift=0.2, thinning=1e-4)
+    _, angle = pinion.involute_point(design, np.tan(design.pressure_angle))
+    expected = np.pi * design.module / 2 + 2 * 0.2 * design.module * np.tan(design.pressure_angle)
+    expected -= 1e-4 / np.cos(design.pressure_angle)
+    assert 2 * angle * design.pinion_pitch_radius == pytest.approx(expected, abs=1e-15)
+
+
+def test_rack_tip_circle_never_cuts_into_the_trochoid(pair):
+    """Envelope property: over the rolling motion the tip circle touches each fillet point from outside."""
+    design = pair(rack_tip_radius=0.25)
+    lateral, depth = pinion.rack_tip_centre(design)
+    radius, angle = pinion.trochoid_point(design, np.linspace(design.pressure_angle, np.pi / 2, 41))
+    from_space = np.pi / 23 - angle
+    shifts = np.linspace(-6e-3, 12e-3, 4001)[:, None]
+    turned = from_space + shifts / design.pinion_pitch_radius
+    x, y = radius * np.sin(turned), design.pinion_pitch_radius - radius * np.cos(turned)
+    clearance = np.hypot(x - lateral - shifts, y - depth) - design.pinion.rack_tip_radius
+    closest = clearance.min(axis=0)
+    assert np.all(closest > -1e-12)
+    assert np.all(closest < 1e-8)
