@@ -31,25 +31,32 @@ except FacegearError as error:
     stop(str(error))
 
 CASE = CONFIG["case"]
-config["rebuild_command"] = "snakemake --cores 2" + "".join(
-    f" --configfile {os.path.relpath(file)}" for file in workflow.configfiles
-) + " --force"
+DRY_RUN = bool({"-n", "--dry-run", "--dryrun"} & set(sys.argv))
+config["rebuild_command"] = (
+    "snakemake --cores 2"
+    + "".join(f" --configfile {os.path.relpath(file)}" for file in workflow.configfiles)
+    + " --force"
+)
 
 
 wildcard_constraints:
     case="|".join(re.escape(case) for case in CASES),
 
 
-# A killed run leaves Snakemake's own lock and half-made jobs behind; both are cleared at the next start,
-# because the kernel's lock below proves that nobody is working here.
+# A killed run leaves Snakemake's own lock and marks of half-made jobs behind. Both can go at the next start: the
+# kernel's lock below proves that nobody is working here, and a half-made job lacks its manifest, so it is made again.
 if workflow.exec_mode.name == "DEFAULT":
     RUN_LOCK = hold(".snakemake/facegear.lock")
     if RUN_LOCK is not None:
         shutil.rmtree(".snakemake/locks", ignore_errors=True)
         Path(".snakemake/locks").mkdir(parents=True, exist_ok=True)
-    elif not {"-n", "--dry-run", "--dryrun"} & set(sys.argv):
+        unfinished = [path for path in Path(".snakemake/incomplete").rglob("*") if path.is_file()]
+        if unfinished and not DRY_RUN:
+            print("resuming a run that was stopped: its unfinished jobs are made again", file=sys.stderr)
+        for marker in unfinished:
+            marker.unlink()
+    elif not DRY_RUN:
         stop(f"another run is working in {os.getcwd()}; wait for it or stop it first")
-    workflow.dag_settings.force_incomplete = True
 
 
 def fingerprint(script):
