@@ -1,0 +1,72 @@
+"""No config, however broken, ends in a traceback."""
+
+import copy
+import random
+from pathlib import Path
+
+import pytest
+import yaml
+
+from facegear.config.cases import expand_cases
+from facegear.config.load import load_values
+from facegear.errors import FacegearError
+
+CONFIGS = sorted((Path(__file__).parents[2] / "config").glob("*.yaml"))
+STRANGE = [
+    *(None, True, "", "soft", "1e400", -1, 0, 1e-300, 1e300, float("nan"), float("inf"), -0.0, 3.5, 10**30),
+    *([], {}, [1, "a", None], {"a": {"b": []}}, "../../etc/passwd", "/tmp/x", "é\u0000", "x" * 300, [[[]]]),
+]
+
+
+def places(value, path=()):
+    """Paths of all values inside a config."""
+    yield path
+    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, item in items:
+        yield from places(item, (*path, key))
+
+
+def mutate(values, chance):
+    """The config with one to three values changed, removed, renamed, doubled or added."""
+    changed = copy.deepcopy(values)
+    for _ in range(chance.randint(1, 3)):
+        path = chance.choice([place for place in places(changed) if place])
+        inside = changed
+        for key in path[:-1]:
+            inside = inside[key]
+        key = path[-1]
+        action = chance.choice(["strange", "remove", "rename", "add", "scale"])
+        if action == "strange":
+            inside[key] = copy.deepcopy(chance.choice(STRANGE))
+        elif action == "remove":
+            del inside[key]
+        elif action == "rename" and isinstance(inside, dict):
+            inside[f"{key}x"] = inside.pop(key)
+        elif action == "add" and isinstance(inside, dict):
+            inside[chance.choice(["teth", "case", "unknown"])] = chance.choice(STRANGE)
+        elif action == "scale" and isinstance(inside[key], int | float):
+            inside[key] = inside[key] * chance.choice([-1, 0, 1e-6, 0.5, 2, 1e6])
+    return changed
+
+
+@pytest.mark.parametrize("config", CONFIGS, ids=lambda path: path.stem)
+def test_every_config_in_the_project_is_accepted(config):
+    assert expand_cases(load_values([config], {}))
+
+
+@pytest.mark.parametrize("config", CONFIGS, ids=lambda path: path.stem)
+def test_mutated_configs_are_accepted_or_refused_in_clear_lines(config, tmp_path):
+    chance = random.Random(f"facegear {config.stem}")
+    original = yaml.safe_load(config.read_text())
+    refused = 0
+    for number in range(250):
+        path = tmp_path / f"m{number}.yaml"
+        path.write_text(yaml.safe_dump(mutate(original, chance), allow_unicode=True))
+        try:
+            expand_cases(load_values([path], {}))
+        except FacegearError as error:
+            refused += 1
+            for line in str(error).splitlines():
+                assert len(line) < 600, line
+                assert " = " in line or "line " in line or "mapping" in line or "studies" in line, line
+    assert refused > 100
