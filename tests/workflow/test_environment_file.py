@@ -1,0 +1,17 @@
+"""The conda file that rules name and the lock agree."""
+
+import re
+from pathlib import Path
+
+import yaml
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_conda_file_holds_the_locked_versions():
+    environment = yaml.safe_load((ROOT / "workflow" / "envs" / "facegear.yaml").read_text())
+    pinned = environment["dependencies"][-1]["pip"]
+    lock = (ROOT / "requirements.lock").read_text()
+    assert len(pinned) > 10
+    for requirement in pinned:
+        assert re.search(rf"^{re.escape(requirement)}( |$)", lock, re.M), requirement
