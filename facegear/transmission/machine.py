@@ -1,0 +1,102 @@
+"""The lumped model with everything that drives it."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.errors import ConfigError
+from facegear.harmonics.series import Harmonics
+from facegear.transmission.layout import Layout, Role, Side
+from facegear.transmission.phases import PhaseConvention, mesh_phases
+
+TORQUE_BALANCE = 1e-9
+
+
+class OpenFlanks(StrEnum):
+    """Mesh damping where flanks are apart: `always` acting as in equation (20), or `contact_only`."""
+
+    ALWAYS = "always"
+    CONTACT_ONLY = "contact_only"
+
+
+@dataclass(frozen=True)
+class Damping:
+    """Mesh damping (N s/m), mass damping lambda (1/s) and bearing damping beta (s) of equation (21)."""
+
+    mesh: float
+    mass: float
+    bearing: float
+    open_flanks: OpenFlanks = OpenFlanks.ALWAYS
+
+
+@dataclass(frozen=True, eq=False)
+class Machine:
+    """Layout, torques on the bodies (N m), reference mesh stiffness and error, half backlash (m).
+
+    `error` is a Fourier series in m on the reference mesh; each mesh lags by its stiffness phase, or all
+    move together if `error_in_step`.
+    """
+
+    layout: Layout
+    torques: NDArray[np.float64]
+    stiffness: Harmonics
+    error: Harmonics
+    half_backlash: float
+    damping: Damping
+    phase_convention: PhaseConvention = PhaseConvention.GEOMETRIC
+    error_in_step: bool = False
+
+    def __post_init__(self) -> None:
+        require_balance(self.layout, self.torques)
+        lowest = float(self.stiffness(np.linspace(0.0, 1.0, 64 * (self.stiffness.order + 1))).min())
+        if lowest <= 0.0:
+            raise ConfigError("mesh_stiffness", f"{lowest:.3g} N/m", "positive everywhere in the mesh cycle")
+
+    @property
+    def phases(self) -> NDArray[np.float64]:
+        """Stiffness phase of each mesh in mesh periods, shape (meshes,)."""
+        return mesh_phases(self.layout, self.phase_convention)
+
+    @property
+    def error_phases(self) -> NDArray[np.float64]:
+        """Transmission error phase of each mesh in mesh periods, shape (meshes,)."""
+        return np.zeros(len(self.layout.meshes)) if self.error_in_step else self.phases
+
+
+def mesh_frequency(layout: Layout, speed_rpm: float) -> float:
+    """Mesh frequency in Hz at a pinion speed in rpm."""
+    return layout.pinion_teeth * speed_rpm / 60.0
+
+
+def pinion_torques(layout: Layout, per_input: float, tail_share: float) -> NDArray[np.float64]:
+    """Torque on each pinion: inputs drive, tail pinions take a share of the sum, idlers none; N m."""
+    roles = [pinion.role for pinion in layout.pinions]
+    inputs, tails = roles.count(Role.INPUT), roles.count(Role.TAIL)
+    share = -tail_share * inputs * per_input / tails if tails else 0.0
+    value = {Role.INPUT: per_input, Role.TAIL: share, Role.IDLER: 0.0}
+    return np.array([value[role] for role in roles])
+
+
+def balanced_torques(layout: Layout, on_pinions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Torques on all bodies with the output face gear (upper, else the only one) in static balance, N m."""
+    sides = [gear.side for gear in layout.gears]
+    output = sides.index(Side.UPPER) if Side.UPPER in sides else 0
+    on_gears = np.zeros(len(layout.gears))
+    on_gears[output] = -on_pinions.sum() * layout.gear_radius / layout.pinion_radius
+    return np.concatenate([on_pinions, on_gears])
+
+
+def require_balance(layout: Layout, torques: NDArray[np.float64]) -> None:
+    """Raise ConfigError unless the torques hold the rigid rotation in balance."""
+    pinions = len(layout.pinions)
+    tangential = np.concatenate(
+        [torques[:pinions] / layout.pinion_radius, torques[pinions:] / layout.gear_radius]
+    )
+    excess = float(tangential.sum())
+    if abs(excess) > TORQUE_BALANCE * np.abs(tangential).sum():
+        allowed = (
+            "torques must balance: (sum of pinion torques) / r_pinion + (sum of gear torques) / r_gear = 0"
+        )
+        raise ConfigError("transmission.torque", f"{excess:.6g} N in excess at the mesh", allowed)

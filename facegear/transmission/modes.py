@@ -1,0 +1,45 @@
+"""Natural frequencies and mode shapes with the mean mesh stiffness, equations (23) and (24)."""
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from facegear.transmission.layout import Layout
+from facegear.transmission.matrices import bearing_diagonal, mass_diagonal, mesh_directions
+
+EQUAL = 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """Frequencies in Hz, shape (n,), ascending; shapes (n, n) by column with unit modal mass.
+
+    `groups` holds runs of equal frequencies as (start, stop); shapes within a run are one basis of many.
+    """
+
+    frequencies: NDArray[np.float64]
+    shapes: NDArray[np.float64]
+    groups: tuple[tuple[int, int], ...]
+
+
+def natural_modes(layout: Layout, mesh_stiffness: float) -> Modes:
+    """All modes of the free, undamped, time-averaged system; rigid body modes come out as 0 Hz exactly."""
+    mass = mass_diagonal(layout)
+    directions = mesh_directions(layout)
+    stiffness = np.diag(bearing_diagonal(layout)) + mesh_stiffness * directions.T @ directions
+    root = np.sqrt(mass)
+    squares, vectors = scipy.linalg.eigh(stiffness / np.outer(root, root))
+    noise = squares.size * np.finfo(float).eps * squares[-1]
+    squares[np.abs(squares) < 10.0 * noise] = 0.0
+    frequencies = np.sqrt(squares) / (2.0 * np.pi)
+    return Modes(frequencies, vectors / root[:, None], _equal_runs(frequencies))
+
+
+def _equal_runs(frequencies: NDArray[np.float64]) -> tuple[tuple[int, int], ...]:
+    """Split ascending frequencies into runs that agree to rounding."""
+    gaps = np.diff(frequencies) > EQUAL * frequencies[-1]
+    edges = [0, *(np.flatnonzero(gaps) + 1).tolist(), frequencies.size]
+    return tuple(itertools.pairwise(edges))

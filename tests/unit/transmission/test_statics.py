@@ -1,0 +1,73 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from facegear.errors import ConfigError
+from facegear.transmission.layout import Role, Side
+from facegear.transmission.machine import Machine, balanced_torques
+from facegear.transmission.phases import PhaseConvention, mesh_phases
+from facegear.transmission.statics import static_equilibrium
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    torque=st.floats(-3000, 3000).filter(lambda t: t == 0.0 or abs(t) > 1e-6),
+    share=st.floats(0, 0.5),
+    backlash=st.floats(0, 1e-3),
+    cycles=st.one_of(st.none(), st.floats(0, 1)),
+)
+def test_static_mesh_forces_balance_the_torques_on_every_pinion(torque, share, backlash, cycles):
+    from conftest import make_machine
+
+    machine = make_machine(torque=torque, tail_share=share, backlash=backlash)
+    state = static_equilibrium(machine, cycles)
+    layout = machine.layout
+    lever = layout.pinion_radius * np.cos(layout.pressure_angle)
+    on_pinions = state.forces.reshape(2, 5).sum(axis=0) * lever
+    np.testing.assert_allclose(on_pinions, machine.torques[:5], atol=1e-7 * max(abs(torque), 1.0))
+
+
+def test_without_backlash_statics_is_the_linear_solution(machine_of):
+    from facegear.transmission.matrices import bearing_diagonal, mesh_directions
+
+    machine = machine_of(backlash=0.0)
+    directions = mesh_directions(machine.layout)
+    stiffness = np.diag(bearing_diagonal(machine.layout)) + 4.1e8 * directions.T @ directions
+    applied = np.zeros(28)
+    applied[3::4] = machine.torques
+    linear = directions @ np.linalg.lstsq(stiffness, applied, rcond=1e-14)[0] * 4.1e8
+    np.testing.assert_allclose(static_equilibrium(machine).forces, linear, rtol=1e-7, atol=1e-3)
+
+
+def test_idlers_carry_load_on_the_opposite_flank_of_the_lower_gear(machine_of):
+    forces = static_equilibrium(machine_of(backlash=0.0)).forces
+    assert (forces[[0, 1, 4]] < 0).all()
+    assert (forces[5:] > 0).all()
+
+
+def test_left_and_right_carry_the_same_where_the_machine_is_symmetric(machine_of):
+    forces = static_equilibrium(machine_of()).forces
+    np.testing.assert_allclose(forces[[1, 2, 6, 7]], forces[[4, 3, 9, 8]], rtol=1e-9, atol=1e-6)
+
+
+def test_torques_out_of_balance_are_refused_with_the_excess(machine_of):
+    machine = machine_of()
+    torques = machine.torques.copy()
+    torques[-1] *= 0.9
+    with pytest.raises(ConfigError, match=r"transmission\.torque.*must balance"):
+        Machine(machine.layout, torques, machine.stiffness, machine.error, 5e-5, machine.damping)
+
+
+def test_a_single_face_gear_takes_the_sum_of_its_pinions(layout_of):
+    layout = layout_of((("one", Role.INPUT, 0.0), ("two", Role.INPUT, 45.0)), (Side.UPPER,))
+    torques = balanced_torques(layout, np.array([100.0, 50.0]))
+    assert torques[-1] == pytest.approx(-150.0 * layout.gear_radius / layout.pinion_radius)
+
+
+def test_phases_are_the_fractions_of_the_pitch_with_half_a_turn_for_the_lower_gear(layout_of):
+    layout = layout_of()
+    geometric = mesh_phases(layout, PhaseConvention.GEOMETRIC)
+    np.testing.assert_allclose(geometric, [0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 0.5, 0.5, 0.5])
+    printed = mesh_phases(layout, PhaseConvention.PRINTED)
+    np.testing.assert_allclose(printed, [0.5, 0.5, 0.5, 0.5, 0.5, 0.0, 0.5, 0.5, 0.5, 0.5])

@@ -1,0 +1,59 @@
+TEETH_KEYS = {
+    "pinion_teeth": "tooth_pair.pinion_teeth",
+    "face_gear_teeth": "tooth_pair.face_gear_teeth",
+    "module_mm": "tooth_pair.module_mm",
+    "pressure_angle_deg": "tooth_pair.pressure_angle_deg",
+}
+
+
+def teeth_slice(wildcards):
+    """The tooth pair's numbers that the lumped model needs; its other data must not rerun modes or dynamics."""
+    return {name: config_slice(key)(wildcards) for name, key in TEETH_KEYS.items()}
+
+
+rule modal:
+    output:
+        frequencies="results/{case}/modal/frequencies.csv",
+        shapes="results/{case}/modal/shapes.csv",
+        manifest="results/{case}/modal/modal.provenance.json",
+    log:
+        "results/{case}/logs/modal.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/modal.tsv"
+    threads: 1
+    resources:
+        mem_mb=500,
+        runtime=5,
+    params:
+        section=config_slice("transmission"),
+        teeth=teeth_slice,
+        mean_stiffness=config_slice("mesh_stiffness.mean_n_per_m"),
+        code=fingerprint("modal.py"),
+    message:
+        "natural frequencies and mode shapes of {wildcards.case}"
+    script:
+        "../scripts/modal.py"
+
+
+rule modal_figure:
+    input:
+        frequencies="results/{case}/modal/frequencies.csv",
+        shapes="results/{case}/modal/shapes.csv",
+    output:
+        svg="results/{case}/figures/fig06.svg",
+        png="results/{case}/figures/fig06.png",
+        manifest="results/{case}/figures/fig06.provenance.json",
+    log:
+        "results/{case}/logs/modal_figure.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/modal_figure.tsv"
+    threads: 1
+    resources:
+        mem_mb=700,
+        runtime=5,
+    params:
+        code=fingerprint("modal_figure.py"),
+    message:
+        "figure 6 of {wildcards.case}"
+    script:
+        "../scripts/modal_figure.py"
