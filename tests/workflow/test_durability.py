@@ -1,0 +1,122 @@
+"""Killed runs, corrupt files, bad configs and two runs at once."""
+
+import os
+import random
+import shutil
+import signal
+import subprocess
+import time
+
+import pytest
+from conftest import ROOT, Project, environment
+
+pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
+QUICK = ("--configfile", str(ROOT / "config" / "quick.yaml"))
+
+
+def data_files(project):
+    return {
+        str(path.relative_to(project.folder)): path.read_bytes()
+        for path in sorted((project.folder / "results").rglob("*.csv"))
+        if "benchmarks" not in path.parts and path.name != "quality.csv"
+    }
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_killed_run_started_again_gives_the_same_files(quick, tmp_path, seed):
+    project = Project(tmp_path)
+    targets = [
+        "results/quick/modal/frequencies.csv",
+        "results/quick/dynamics/response.csv",
+        "results/quick/load_sharing/nominal.csv",
+    ]
+    shutil.copytree(quick.folder / "results", tmp_path / "results")
+    shutil.copytree(quick.folder / ".snakemake", tmp_path / ".snakemake")
+    for stage in ("modal", "dynamics", "load_sharing"):
+        shutil.rmtree(tmp_path / "results" / "quick" / stage)
+    process = subprocess.Popen(
+        project.command(*QUICK, *targets),
+        env=environment(),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    time.sleep(random.Random(seed).uniform(2.0, 8.0))
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    project.run(*QUICK, *targets)
+    undisturbed, resumed = data_files(quick), data_files(project)
+    for target in targets:
+        assert resumed[target] == undisturbed[target], target
+    assert not list((tmp_path / "results").rglob(".[0-9]*")), "no temporary file is left behind"
+
+
+@pytest.mark.parametrize(
+    ("file", "target"),
+    [
+        ("stiffness/harmonics.csv", "dynamics/response.csv"),
+        ("contact/ltca.csv", "stiffness/tvms.csv"),
+        ("modal/shapes.csv", "figures/fig06.svg"),
+    ],
+)
+def test_an_altered_intermediate_is_named_with_the_command_that_rebuilds_it(quick, tmp_path, file, target):
+    project = Project(tmp_path)
+    shutil.copytree(quick.folder / "results", tmp_path / "results")
+    shutil.copytree(quick.folder / ".snakemake", tmp_path / ".snakemake")
+    path = tmp_path / "results" / "quick" / file
+    times = path.stat()
+    path.write_bytes(path.read_bytes()[:-20] + b"1" * 20)
+    os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
+    done = project.run(
+        *QUICK, "--force", "--rerun-triggers", "mtime", "--", f"results/quick/{target}", check=False
+    )
+    assert done.returncode != 0
+    (line,) = [line for line in done.stderr.splitlines() if line.startswith("error in ")]
+    assert f"results/quick/{file}" in line
+    assert "rebuild it with: snakemake --cores 2" in line
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ("module_mm: 3.75", "modul_mm: 3.75", "did you mean 'module_mm'?"),
+        ("mass_kg: 1.199", "mass_kg: -1.199", "transmission.pinion.mass_kg = -1.199"),
+        ("backlash_um: 100", "backlash_um: wide", "transmission.backlash_um"),
+        ("inner_radius_mm: 250", "inner_radius_mm: 200", "inner_radius_mm"),
+        ("outer_radius_mm: 275", "outer_radius_mm: 320", "outer_radius_mm"),
+    ],
+)
+def test_a_config_mistake_stops_before_any_work_in_one_line(tmp_path, old, new, line):
+    text = (ROOT / "config" / "quick.yaml").read_text()
+    assert old in text
+    config = tmp_path / "bad.yaml"
+    config.write_text(text.replace(old, new, 1))
+    project = Project(tmp_path / "run")
+    project.folder.mkdir()
+    done = project.run("--configfile", str(config), check=False)
+    assert done.returncode != 0
+    told = [told for told in done.stderr.splitlines() if told.strip()]
+    assert any(line in told_line for told_line in told), done.stderr
+    assert len(told) <= 2, done.stderr
+    assert "Traceback" not in done.stderr + done.stdout
+    assert not (project.folder / "results").exists()
+
+
+def test_two_runs_in_one_folder_do_not_meet(tmp_path):
+    project = Project(tmp_path)
+    target = "results/paper/modal/frequencies.csv"
+    first = subprocess.Popen(project.command(target), env=environment(), stderr=subprocess.DEVNULL)
+    deadline = time.monotonic() + 60
+    while not (tmp_path / ".snakemake" / "facegear.lock").exists() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    second = project.run(target, check=False)
+    assert first.wait() == 0
+    assert second.returncode == 0 or "another run is working in" in second.stderr
+    assert (tmp_path / target).exists()
+
+
+def test_no_config_writes_outside_results(tmp_path):
+    for case in ("../outside", "/tmp/outside", "a/b", ".", ""):
+        done = Project(tmp_path).run("-n", "--config", f"case={case}", check=False)
+        assert done.returncode != 0
+        assert "case = " in done.stderr

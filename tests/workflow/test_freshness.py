@@ -1,0 +1,96 @@
+"""What is computed again, and what is not, after an edit of code or config."""
+
+import os
+import re
+
+import pytest
+from conftest import ROOT, Project, copy_sources
+
+pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
+QUICK = ("--configfile", str(ROOT / "config" / "quick.yaml"))
+
+
+def test_second_run_does_nothing(quick):
+    assert "Nothing to be done" in quick.run(*QUICK).stderr
+
+
+@pytest.fixture(scope="session")
+def edited(tmp_path_factory, quick):
+    """Function: rules that would run after replacing text in one source file of a copy of the project."""
+    sources = copy_sources(tmp_path_factory.mktemp("sources"))
+    config = ("--configfile", str(sources / "config" / "quick.yaml"))
+
+    def planned(name, old, new):
+        path = sources / name
+        original, times = path.read_text(), path.stat()
+        assert old in original, f"{name} no longer holds {old!r}: choose another edit"
+        try:
+            path.write_text(original.replace(old, new, 1))
+            return Project(quick.folder, sources).planned(*config)
+        finally:
+            path.write_text(original)
+            os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
+
+    return planned
+
+
+def appended(edited, name):
+    """Rules that would run after a new function at the end of a module."""
+    last = (ROOT / name).read_text()[-40:]
+    return edited(name, last, f"{last}\n\ndef added() -> int:\n    return 1\n")
+
+
+def test_copy_of_the_sources_has_nothing_to_do(edited):
+    assert edited("facegear/errors.py", '"""Errors', '"""Errors') == set()
+
+
+@pytest.mark.parametrize(
+    ("module", "reruns", "spares"),
+    [
+        ("facegear/geometry/limits.py", {"geometry"}, {"modal"}),
+        ("facegear/contact/factor.py", {"compliance", "contact"}, {"geometry", "mesh", "modal"}),
+        (
+            "facegear/transmission/modes.py",
+            {"modal"},
+            {"geometry", "mesh", "compliance", "contact", "stiffness"},
+        ),
+        (
+            "facegear/load_sharing/coefficients.py",
+            {"load_sharing"},
+            {"contact", "stiffness", "response", "modal"},
+        ),
+        ("facegear/plots/modal.py", {"modal_figure"}, {"modal", "contact", "response", "load_sharing"}),
+    ],
+)
+def test_editing_a_module_reruns_its_stages_and_those_after_it(edited, module, reruns, spares):
+    planned = appended(edited, module)
+    assert reruns <= planned
+    assert not spares & planned
+
+
+@pytest.mark.parametrize("module", ["facegear/contact/factor.py", "facegear/geometry/design.py"])
+def test_a_comment_reruns_nothing(edited, module):
+    last = (ROOT / module).read_text()[-40:]
+    assert edited(module, last, f"{last}# only a comment\n") == set()
+
+
+@pytest.mark.parametrize(
+    ("pattern", "replacement"),
+    [
+        (r"backlash_um: \S+", "backlash_um: 101"),
+        (r"per_input_n_m: \S+", "per_input_n_m: 777"),
+        (r"mass_per_s: \S+", "mass_per_s: 801"),
+        (r"angle_pitches: 22.5", "angle_pitches: 23"),
+    ],
+)
+def test_a_change_of_the_transmission_recomputes_nothing_before_the_dynamics(edited, pattern, replacement):
+    old = re.search(pattern, (ROOT / "config" / "quick.yaml").read_text()).group()
+    planned = edited("config/quick.yaml", old, replacement)
+    assert "response" in planned
+    assert not {"geometry", "mesh", "compliance", "contact", "stiffness"} & planned
+
+
+def test_a_change_of_tooth_data_recomputes_everything_after_geometry(edited):
+    old = re.search(r"outer_radius_mm: \S+", (ROOT / "config" / "quick.yaml").read_text()).group()
+    planned = edited("config/quick.yaml", old, "outer_radius_mm: 274")
+    assert {"geometry", "mesh", "compliance", "contact", "stiffness", "response", "load_sharing"} <= planned
