@@ -14,7 +14,7 @@ Tooth j of the pinion stands at phi1 + (j - 1/2) 2 pi / N1, tooth j of the gear 
 phi1 = phi2 = 0 gear tooth 0 fills the space between pinion teeth 0 and 1. The conjugate motion is
 phi2 = phi1 N1 / N2. "Right" is the +x side of a tooth in the mesh zone, "left" the -x side.
 The drive side is pinion right against gear left, pair j being tooth j of both; it carries load when the
-pinion drives towards +x. The back side (pinion tooth j left, gear tooth j - 1 right) is its mirror image x -> -x.
+pinion drives towards +x. The back side (pinion tooth j left, gear tooth j - 1 right) is its mirror image.
 """
 
 from dataclasses import dataclass, field

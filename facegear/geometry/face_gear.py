@@ -1,9 +1,9 @@
 """The face gear's flank and fillet in closed form: envelope of the shaper, and locus of its tip edge.
 
-Everything is for the right flank of tooth 0 in the gear body frame (see `design`); the left flank is the mirror
+Everything is for the right flank of tooth 0 in the gear body frame (see `design`); the left flank its mirror
 image x -> -x. th is the roll angle of the shaper's involute, psi = phi_s + th + th_os the slope of the common
-normal. Source: shaper-generated face gears (Litvin and Fuentes, Gear Geometry and Applied Theory, ch. 18), with
-the contact condition solved for the axial coordinate: q = r_b / (m2s cos psi).
+normal. Source: shaper-generated face gears (Litvin and Fuentes, Gear Geometry and Applied Theory, ch. 18),
+with the contact condition solved for the axial coordinate: q = r_b / (m2s cos psi).
 The functions of plain numbers (`*_kernel`) take scalars or arrays and compile with numba.
 """
 
@@ -177,7 +177,7 @@ def fillet_normal(design: PairDesign, radius: ArrayLike, chi: ArrayLike) -> Arra
 
 
 def root_half_angle(design: PairDesign) -> float:
-    """Gear angle (rad) from the end of the fillet to the middle of the space; negative without a root land."""
+    """Gear angle (rad) from the end of the fillet to the middle of the space; negative if they overlap."""
     return np.pi / design.face_gear.teeth - design.shaper_ratio * edge_start(design)
 
 

@@ -35,7 +35,7 @@ def roll_at_radius(design: PairDesign, radius: ArrayLike) -> Array:
 
 
 def rack_tip_centre(design: PairDesign) -> tuple[float, float]:
-    """Centre of the rack's tip circle (m): distance from the rack tooth's middle, depth below the pitch line."""
+    """Centre of the rack's tip circle (m): distance from the rack tooth's middle, depth."""
     pinion, angle = design.pinion, design.pressure_angle
     depth = pinion.dedendum - pinion.rack_tip_radius
     half_thickness = pi * design.module / 4 + pinion.thinning / (2 * cos(angle))

@@ -1,0 +1,122 @@
+"""The outline of half a tooth section in (angle, height), on the exact surfaces of either body.
+
+Height is the radius for the pinion and z for the gear, so that both sections read tip at the top. The outline
+runs from the tip corner along chamfer, flank, fillet and root land to the cut.
+"""
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.geometry import face_gear, pinion
+from facegear.geometry.design import PairDesign
+
+Array = NDArray[np.float64]
+
+SEGMENTS = ("chamfer", "flank", "fillet", "root_land")
+
+
+@dataclass(frozen=True)
+class Outline:
+    """Points of an outline segment by segment, for every plane of the width.
+
+    For each segment: surface parameter of fractions 0..1 (see `parameter`), then angle and height.
+    """
+
+    design: PairDesign
+    body: str
+    planes: Array
+    """y (m) of the pinion's planes, gear radii (m) of the gear's."""
+
+    @property
+    def half_pitch(self) -> float:
+        teeth = self.design.pinion.teeth if self.body == "pinion" else self.design.face_gear.teeth
+        return pi / teeth
+
+    @property
+    def tip_height(self) -> float:
+        return self.design.pinion_tip_radius if self.body == "pinion" else self.design.gear_tip_plane
+
+    @property
+    def root_height(self) -> float:
+        return self.design.pinion_root_radius if self.body == "pinion" else self.design.gear_root_plane
+
+    @property
+    def back_height(self) -> float:
+        return self.design.pinion.bore_radius if self.body == "pinion" else self.design.gear_back_plane
+
+    @property
+    def has_chamfer(self) -> bool:
+        return self.body == "pinion" and self.design.pinion.tip_chamfer > 0
+
+    def flank_parameters(self, fraction: Array) -> tuple[Array, Array]:
+        """Surface parameters (len(fraction), planes): pinion roll and y, gear roll and psi."""
+        fraction = fraction[:, None]
+        if self.body == "pinion":
+            top, bottom = self.design.pinion_tip_roll, pinion.junction_roll(self.design)
+            roll = np.sqrt(top**2 + fraction * (bottom**2 - top**2))
+            return tuple(np.broadcast_arrays(roll, self.planes[None, :]))
+        radius = self.planes[None, :]
+        top, _ = face_gear.roll_and_psi_at_height(self.design, radius, self.design.gear_tip_plane)
+        roll = top + fraction * (self.design.shaper_tip_roll - top)
+        return roll, face_gear.psi_at(self.design, radius, roll)
+
+    def fillet_parameters(self, fraction: Array) -> tuple[Array, Array]:
+        """Surface parameters (len(fraction), planes): pinion gamma and y, gear chi and gear radius."""
+        if self.body == "pinion":
+            start = self.design.pressure_angle
+            gamma = start + self._even(fraction) * (pi / 2 - start)
+            return tuple(np.broadcast_arrays(gamma[:, None], self.planes[None, :]))
+        chi = face_gear.fillet_end(self.design, self.planes)[None, :] * (1 - self._even(fraction)[:, None])
+        return tuple(np.broadcast_arrays(chi, self.planes[None, :]))
+
+    def _even(self, fraction: Array) -> Array:
+        """Fractions of the fillet's parameter that are evenly spaced along it (in the middle plane)."""
+        grid = np.linspace(0, 1, 401)
+        if self.body == "pinion":
+            start = self.design.pressure_angle
+            radius, angle = pinion.trochoid_point(self.design, start + grid * (pi / 2 - start))
+            x, h = radius * angle, radius
+        else:
+            middle = self.planes[len(self.planes) // 2]
+            chi = face_gear.fillet_end(self.design, middle) * (1 - grid)
+            angle, h = face_gear.fillet_section(self.design, middle, chi)
+            x = middle * angle
+        length = np.concatenate([[0], np.cumsum(np.hypot(np.diff(x), np.diff(h)))])
+        return np.interp(fraction, length / length[-1], grid)
+
+    def points(self, segment: str, fraction: Array) -> tuple[Array, Array]:
+        """Angle (rad) and height (m), (len(fraction), planes), at fractions 0..1 of a segment."""
+        if segment == "flank":
+            return self._flank(fraction)
+        if segment == "fillet":
+            u, v = self.fillet_parameters(fraction)
+            if self.body == "pinion":
+                radius, angle = pinion.trochoid_point(self.design, u)
+                return angle, radius
+            return face_gear.fillet_section(self.design, v, u)
+        fraction = np.broadcast_to(fraction[:, None], (len(fraction), len(self.planes)))
+        if segment == "root_land":
+            half = pinion if self.body == "pinion" else face_gear
+            start = self.half_pitch - half.root_half_angle(self.design)
+            angle = start + fraction * (self.half_pitch - start)
+            return np.where(fraction == 1, self.half_pitch, angle), np.full_like(angle, self.root_height)
+        angle, height = self._flank(np.zeros(1))
+        tip = pinion.tip_half_angle(self.design)
+        return tip + fraction * (angle - tip), self.tip_height + fraction * (height - self.tip_height)
+
+    def _flank(self, fraction: Array) -> tuple[Array, Array]:
+        u, v = self.flank_parameters(fraction)
+        if self.body == "pinion":
+            radius, angle = pinion.involute_point(self.design, u)
+            return angle, radius
+        point = face_gear.flank_point(self.design, u, v)
+        return np.arctan2(point[..., 0], point[..., 1]), point[..., 2]
+
+    def cartesian(self, angle: Array, height: Array) -> Array:
+        """Points (..., planes, 3) of the body frame."""
+        if self.body == "pinion":
+            return pinion.cartesian(height, angle, self.planes)
+        return face_gear.cylindrical(self.planes, angle, height)

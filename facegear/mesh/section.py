@@ -1,0 +1,117 @@
+"""Nodes of a tooth section: the strip topology laid on a body's exact outline, plane by plane."""
+
+from dataclasses import dataclass
+from math import ceil
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+
+from facegear.mesh.outline import Outline
+from facegear.mesh.sizes import MeshSizes
+from facegear.mesh.strip import HalfSection, coarsening_levels, depth_rows, half_section
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SectionPlan:
+    """Where the outline's segments begin and end in sigma, and the topology."""
+
+    breaks: dict[str, tuple[float, float]]
+    half: HalfSection
+    floor_height: float
+
+
+def plan_section(outline: Outline, sizes: MeshSizes) -> SectionPlan:
+    """Choose columns, refinement levels and rows for the sizes; one plan serves all planes of the width."""
+    scale = outline.tip_height if outline.body == "pinion" else float(np.mean(outline.planes))
+    lengths = {name: _length(outline, name, scale) for name in ("flank", "fillet", "root_land")}
+    floor = _floor_height(outline)
+    depth = scale * float(np.mean(outline.points("flank", np.array([0.5]))[0]))
+    levels = coarsening_levels(sizes.profile, sizes.thickness, depth)
+
+    upper = max(1, round(lengths["fillet"] / 2 / sizes.profile))
+    chamfer = max(1, round(outline.design.pinion.tip_chamfer / sizes.profile)) if outline.has_chamfer else 0
+    fine = 3**levels
+    wall = max(2, ceil((round(lengths["flank"] / sizes.profile) + upper + chamfer) / fine))
+
+    lower = max(1, round(lengths["fillet"] / 2 / sizes.profile))
+    land = max(1, round(lengths["root_land"] / sizes.profile))
+    floor_columns = max(2, round(outline.half_pitch * scale / (1.5 * sizes.thickness)))
+    floor_levels = 0
+    while 3**floor_levels * floor_columns < lower + land and floor_levels < levels:
+        floor_levels += 1
+    floor_columns = max(floor_columns, ceil((lower + land) / 3**floor_levels))
+    total = 3**floor_levels * floor_columns
+    share = lengths["root_land"] / (lengths["root_land"] + lengths["fillet"] / 2)
+    land = min(max(1, round(total * share)), total - 1)
+
+    breaks = {
+        "chamfer": (0.0, chamfer / fine),
+        "flank": (chamfer / fine, wall - upper / fine),
+        "fillet_upper": (wall - upper / fine, float(wall)),
+        "fillet_lower": (float(wall), wall + floor_columns - land / 3**floor_levels),
+        "root_land": (wall + floor_columns - land / 3**floor_levels, float(wall + floor_columns)),
+    }
+    rows = depth_rows(sizes.profile, sizes.thickness, depth, levels)
+    below = floor - outline.back_height
+    block = max(1, round(below / (1.5 * sizes.thickness)))
+    column_levels = [levels] * wall + [floor_levels] * floor_columns
+    half = half_section(rows, column_levels, (wall, floor_columns), block)
+    return SectionPlan(breaks, half, floor)
+
+
+def _floor_height(outline: Outline) -> float:
+    below = outline.root_height - outline.back_height
+    return outline.root_height - min(0.6 * outline.design.module, 0.5 * below)
+
+
+def _length(outline: Outline, segment: str, scale: float) -> float:
+    angle, height = outline.points(segment, np.linspace(0, 1, 65))
+    return float(np.max(np.hypot(scale * np.diff(angle, axis=0), np.diff(height, axis=0)).sum(axis=0)))
+
+
+def segment_fractions(plan: SectionPlan, sigma: Array) -> dict[str, tuple[NDArray[np.bool_], Array]]:
+    """For each segment of the outline: which sigma lie on it (ends included) and their fractions 0..1."""
+    result = {}
+    for name in ("chamfer", "flank", "root_land"):
+        low, high = plan.breaks[name]
+        on = (sigma >= low) & (sigma <= high) if high > low else np.zeros(len(sigma), bool)
+        result[name] = (on, (sigma[on] - low) / (high - low) if high > low else sigma[on])
+    (start, corner), (_, end) = plan.breaks["fillet_upper"], plan.breaks["fillet_lower"]
+    on = (sigma >= start) & (sigma <= end)
+    at = sigma[on]
+    result["fillet"] = (on, np.interp(at, [start, corner, end], [0.0, 0.5, 1.0]))
+    return result
+
+
+def section_nodes(outline: Outline, plan: SectionPlan) -> tuple[Array, Array]:
+    """Angle (rad) and height (m) of the right half's nodes, (nodes, planes)."""
+    half = plan.half
+    sigma, index = np.unique(half.sigma, return_inverse=True)
+    shape = (len(sigma), len(outline.planes))
+    outer_angle, outer_height = np.empty(shape), np.empty(shape)
+    for name, (on, fraction) in segment_fractions(plan, sigma).items():
+        if on.any():
+            outer_angle[on], outer_height[on] = outline.points(name, fraction)
+    inner_angle, inner_height = _inner_line(outline, plan, sigma)
+
+    inward = np.minimum(half.t, 1.0)[:, None]
+    angle = (1 - inward) * outer_angle[index] + inward * inner_angle[index][:, None]
+    height = (1 - inward) * outer_height[index] + inward * inner_height[index]
+    below = half.t > 1
+    height[below] = plan.floor_height + (half.t[below, None] - 1) * (outline.back_height - plan.floor_height)
+    return angle, height
+
+
+def _inner_line(outline: Outline, plan: SectionPlan, sigma: Array) -> tuple[Array, Array]:
+    """The strip's inner edge: down the centre line, then along the floor to the cut."""
+    wall, floor_columns = plan.half.columns
+    junction = plan.breaks["flank"][1]
+    _, end_of_flank = outline.points("flank", np.ones(1))
+    under = end_of_flank[0] - 0.3 * (end_of_flank[0] - plan.floor_height)
+    tip, floor = np.full_like(under, outline.tip_height), np.full_like(under, plan.floor_height)
+    down = PchipInterpolator([0.0, junction, float(wall)], np.stack([tip, under, floor]), axis=0)
+    height = np.where((sigma < wall)[:, None], down(np.minimum(sigma, wall)), plan.floor_height)
+    return np.maximum(sigma - wall, 0.0) / floor_columns * outline.half_pitch, height

@@ -1,0 +1,130 @@
+"""Topology of half a tooth section: conforming quads that coarsen three to one away from the surface.
+
+The half section is a strip along its outer boundary (tip corner, flank, fillet, root land) and a block below.
+Coordinates: sigma runs along the boundary in units of coarse columns, t goes inwards, 0 at the surface and 1
+on the centre line and on the floor of the strip; from 1 to 2 it crosses the block below, whose columns continue
+those of the floor.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of the strip between depths t0 and t1; `level` of its outer side, coarsening inwards or not."""
+
+    t0: float
+    t1: float
+    level: int
+    coarsens: bool
+
+
+@dataclass(frozen=True)
+class HalfSection:
+    """Quads of nine nodes in (sigma, t), lexicographic with sigma first; nodes unique."""
+
+    sigma: NDArray[np.float64]
+    t: NDArray[np.float64]
+    quads: NDArray[np.int64]
+    columns: tuple[int, int]
+    """Coarse columns against the centre line, and against the floor."""
+
+
+def depth_rows(profile: float, thickness: float, depth: float, levels: int) -> list[Row]:
+    """Rows from the surface to the centre line for a reference depth; all lengths in one unit.
+
+    A plain row and a coarsening row per level, then plain coarse rows over what is left.
+    """
+    heights: list[tuple[float, int, bool]] = []
+    for level in range(levels, 0, -1):
+        size = profile * 3.0 ** (levels - level)
+        heights += [((1.0 if level == levels else 0.8) * size, level, False), (1.5 * size, level, True)]
+    left = depth - sum(height for height, _, _ in heights)
+    count = max(1, round(left / thickness))
+    heights += [(left / count, 0, False)] * count
+    ends = np.concatenate([[0.0], np.cumsum([height for height, _, _ in heights])]) / depth
+    ends[-1] = 1.0
+    return [
+        Row(float(ends[i]), float(ends[i + 1]), level, coarsens)
+        for i, (_, level, coarsens) in enumerate(heights)
+    ]
+
+
+def coarsening_levels(profile: float, thickness: float, depth: float) -> int:
+    """As many three-to-one steps as the inner size wants and three quarters of the depth can hold."""
+    levels = 0
+    while 3.0 ** (levels + 1) * profile <= 1.2 * thickness and _used(profile, levels + 1) <= 0.75 * depth:
+        levels += 1
+    return levels
+
+
+def _used(profile: float, levels: int) -> float:
+    return sum(2.5 * profile * 3.0**step for step in range(levels))
+
+
+def half_section(
+    rows: list[Row], column_levels: list[int], columns: tuple[int, int], block: int
+) -> HalfSection:
+    """Quads of the strip and of `block` rows below it.
+
+    column_levels: refinement of each coarse column at the surface; columns: how many stand against the centre
+    line and against the floor. Columns of different levels conform, as no row's sides are divided.
+    """
+    corners: list[NDArray[np.float64]] = []
+    for column, finest in enumerate(column_levels):
+        for row in rows:
+            corners.extend(_row_quads(column, min(row.level, finest), row, row.level <= finest))
+    block_ends = np.linspace(1.0, 2.0, block + 1)
+    for column in range(columns[0], sum(columns)):
+        for t0, t1 in pairwise(block_ends):
+            corners.append(_rectangle(column, column + 1, t0, t1))
+    return _nine_nodes(np.array(corners), columns)
+
+
+def _rectangle(s0: float, s1: float, t0: float, t1: float) -> NDArray[np.float64]:
+    return np.array([[s0, t0], [s1, t0], [s0, t1], [s1, t1]])
+
+
+def _row_quads(column: int, level: int, row: Row, active: bool) -> list[NDArray[np.float64]]:
+    """Corners (4, 2) ordered (0,0), (1,0), (0,1), (1,1) in local (sigma, t)."""
+    divisions = 3**level
+    if not (row.coarsens and active):
+        edges = column + np.arange(divisions + 1) / divisions
+        return [_rectangle(a, b, row.t0, row.t1) for a, b in pairwise(edges)]
+    quads = []
+    middle = (row.t0 + row.t1) / 2
+    for group in range(divisions // 3):
+        a, b, c, d = (column + (3 * group + step) / divisions for step in range(4))
+        quads += [
+            np.array([[a, row.t0], [b, row.t0], [a, row.t1], [b, middle]]),
+            _rectangle(b, c, row.t0, middle),
+            np.array([[c, row.t0], [d, row.t0], [c, middle], [d, row.t1]]),
+            np.array([[b, middle], [c, middle], [a, row.t1], [d, row.t1]]),
+        ]
+    return quads
+
+
+def _nine_nodes(corners: NDArray[np.float64], columns: tuple[int, int]) -> HalfSection:
+    c00, c10, c01, c11 = (corners[:, i] for i in range(4))
+    nine = np.stack(
+        [
+            c00,
+            (c00 + c10) / 2,
+            c10,
+            (c00 + c01) / 2,
+            (c00 + c10 + c01 + c11) / 4,
+            (c10 + c11) / 2,
+            c01,
+            (c01 + c11) / 2,
+            c11,
+        ],
+        axis=1,
+    )
+    keys = np.round(nine.reshape(-1, 2) * 1e9).astype(np.int64)
+    _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    points = nine.reshape(-1, 2)[first]
+    return HalfSection(points[:, 0], points[:, 1], inverse.reshape(-1, 9), columns)

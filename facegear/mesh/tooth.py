@@ -1,0 +1,194 @@
+"""One tooth of either body as 27-node hexahedra on the exact surface, to be repeated around the gear."""
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.geometry.design import PairDesign
+from facegear.mesh.outline import Outline
+from facegear.mesh.section import SectionPlan, plan_section, section_nodes, segment_fractions
+from facegear.mesh.sizes import MeshSizes
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class SurfaceGrid:
+    """Nodes of a flank or fillet, (n_profile, n_width), tip to root and along the width, mid nodes included.
+
+    u, v are the parameters of the right side's exact surface, the left being its mirror image: pinion flank:
+    roll angle (rad) and y (m); pinion fillet: gamma (rad) and y; gear flank: roll th and psi (rad); gear
+    fillet: chi (rad), gear radius (m). Every second node in each direction, from the first, is an element corner.
+    """
+
+    nodes: Indices
+    u: Array
+    v: Array
+
+
+@dataclass(frozen=True)
+class ToothMesh:
+    """Tooth 0 with its share of the body, from cut face to cut face, in the body frame of `geometry.design`.
+
+    nodes: (N, 3) in m. hexes: (M, 27), node i + 3 j + 9 k at local (i/2, j/2, k/2), right handed; the eight
+    corners are `hexes[:, CORNERS]`. faces: named (F, 9) boundary faces, node i + 3 j, normals outward:
+    flank_left/right, fillet_left/right, root_land_left/right, tip, end_inner, end_outer, cut_left/right and
+    bore or rim_back. surfaces: flank_left/right and fillet_left/right as grids.
+    cut_left[i] turned by one pitch is cut_right[i].
+    """
+
+    body: str
+    teeth: int
+    nodes: Array
+    hexes: Indices
+    faces: dict[str, Indices]
+    surfaces: dict[str, SurfaceGrid]
+    cut_left: Indices
+    cut_right: Indices
+
+    @property
+    def pitch(self) -> float:
+        """Angular pitch (rad)."""
+        return 2 * pi / self.teeth
+
+    def rotated(self, points: Array, angle: float) -> Array:
+        """Points (or vectors) (..., 3) turned about the body's axis, positive as in `geometry.design`."""
+        return points @ rotation(self.body, angle).T
+
+
+CORNERS = np.array([0, 2, 6, 8, 18, 20, 24, 26])
+"""Columns of `hexes` of the corners (i, j, k) = (0,0,0), (1,0,0), (0,1,0), (1,1,0), (0,0,1), ..."""
+
+
+def rotation(body: str, angle: float) -> Array:
+    """Matrix (3, 3) of a turn by `angle` (rad) that moves the teeth in mesh towards +x."""
+    c, s = np.cos(angle), np.sin(angle)
+    if body == "pinion":
+        return np.array([[c, 0, -s], [0, 1, 0], [s, 0, c]])
+    return np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+
+
+def pinion_tooth(design: PairDesign, sizes: MeshSizes) -> ToothMesh:
+    """Mesh of one pinion tooth; the face is centred on the gear's mean radius."""
+    half = design.pinion.width / 2
+    return _tooth(design, "pinion", sizes, design.mean_radius - half, design.mean_radius + half)
+
+
+def gear_tooth(design: PairDesign, sizes: MeshSizes) -> ToothMesh:
+    """Mesh of one face gear tooth from the inner to the outer cylinder."""
+    return _tooth(design, "face_gear", sizes, design.face_gear.inner_radius, design.face_gear.outer_radius)
+
+
+def _tooth(design: PairDesign, body: str, sizes: MeshSizes, start: float, end: float) -> ToothMesh:
+    layers = max(2, round((end - start) / sizes.width))
+    outline = Outline(design, body, np.linspace(start, end, 2 * layers + 1))
+    plan = plan_section(outline, sizes)
+    half = plan.half
+    angle, height = section_nodes(outline, plan)
+
+    wall, _ = half.columns
+    on_axis = ((half.t == 1) & (half.sigma <= wall)) | ((half.t > 1) & (half.sigma == wall))
+    mirror = np.arange(len(half.t))
+    mirror[~on_axis] = len(half.t) + np.arange(np.count_nonzero(~on_axis))
+    angle = np.concatenate([angle, -angle[~on_axis]])
+    height = np.concatenate([height, height[~on_axis]])
+    points = outline.cartesian(angle, height)
+
+    # sigma down the flank, t inwards, width along y: right handed for the gear's right half (x, z) only
+    right, left = half.quads, mirror[_transposed(half.quads)]
+    if body == "pinion":
+        right, left = _transposed(right), mirror[half.quads]
+    quads = np.concatenate([right, left])
+    count = len(angle)
+    hexes = _extruded(quads, layers, count)
+    nodes = points.transpose(1, 0, 2).reshape(-1, 3)
+
+    teeth = design.pinion.teeth if body == "pinion" else design.face_gear.teeth
+    edges = _boundary_edges(plan, mirror, "bore" if body == "pinion" else "rim_back")
+    centre = nodes[hexes[:, 13]]
+    faces = {name: _extruded_edges(edge, layers, count) for name, edge in edges.items()}
+    faces["end_inner"], faces["end_outer"] = quads.copy(), quads + 2 * layers * count
+    owners = {"end_inner": centre[: len(quads)], "end_outer": centre[-len(quads) :]}
+    faces = {name: _outward(nodes, face, owners.get(name), centre, hexes) for name, face in faces.items()}
+    cut = np.flatnonzero(half.sigma == half.sigma.max())
+    planes = count * np.arange(2 * layers + 1)
+    return ToothMesh(
+        body,
+        teeth,
+        nodes,
+        hexes,
+        faces,
+        _surfaces(outline, plan, mirror, planes),
+        (mirror[cut][:, None] + planes).ravel(),
+        (cut[:, None] + planes).ravel(),
+    )
+
+
+def _transposed(quads: Indices) -> Indices:
+    return quads.reshape(-1, 3, 3).transpose(0, 2, 1).reshape(-1, 9)
+
+
+def _extruded(quads: Indices, layers: int, count: int) -> Indices:
+    offsets = count * (2 * np.arange(layers)[:, None] + np.arange(3))
+    return (quads[None, :, None, :] + offsets[:, None, :, None]).reshape(-1, 27)
+
+
+def _extruded_edges(edges: Indices, layers: int, count: int) -> Indices:
+    offsets = count * (2 * np.arange(layers)[:, None] + np.arange(3))
+    return (edges[None, :, None, :] + offsets[:, None, :, None]).reshape(-1, 9)
+
+
+def _boundary_edges(plan: SectionPlan, mirror: Indices, back: str) -> dict[str, Indices]:
+    """Edges of three nodes of the whole section by group."""
+    half = plan.half
+    sides = half.quads[:, [[0, 1, 2], [0, 3, 6], [6, 7, 8], [2, 5, 8]]].reshape(-1, 3)
+    sigma, t = half.sigma[sides], half.t[sides]
+    last = half.sigma.max()
+
+    def between(name: str) -> NDArray[np.bool_]:
+        low, high = plan.breaks[name]
+        return (t == 0).all(axis=1) & (sigma >= low - 1e-12).all(axis=1) & (sigma <= high + 1e-12).all(axis=1)
+
+    halves = {
+        "flank": between("flank"),
+        "fillet": between("fillet_upper") | between("fillet_lower"),
+        "root_land": between("root_land"),
+        "cut": (sigma == last).all(axis=1),
+    }
+    groups = {f"{name}_right": sides[mask] for name, mask in halves.items()}
+    groups |= {f"{name}_left": mirror[sides[mask]] for name, mask in halves.items()}
+    both = {"tip": (sigma == 0).all(axis=1) | between("chamfer"), back: (t == 2).all(axis=1)}
+    return groups | {n: np.concatenate([sides[mask], mirror[sides[mask]]]) for n, mask in both.items()}
+
+
+def _outward(nodes: Array, faces: Indices, owner: Array | None, centre: Array, hexes: Indices) -> Indices:
+    """Faces with their normals pointing out of the element they belong to."""
+    if owner is None:
+        face_of = {int(node): i for i, node in enumerate(faces[:, 4])}
+        rows, columns = np.nonzero(np.isin(hexes[:, [4, 10, 12, 14, 16, 22]], faces[:, 4]))
+        owner = np.empty((len(faces), 3))
+        for row, column in zip(rows, columns, strict=True):
+            owner[face_of[int(hexes[row, [4, 10, 12, 14, 16, 22][column]])]] = centre[row]
+    along, across = nodes[faces[:, 5]] - nodes[faces[:, 3]], nodes[faces[:, 7]] - nodes[faces[:, 1]]
+    out = np.sum(np.cross(along, across) * (nodes[faces[:, 4]] - owner), axis=1) > 0
+    return np.where(out[:, None], faces, _transposed(faces))
+
+
+def _surfaces(
+    outline: Outline, plan: SectionPlan, mirror: Indices, planes: Indices
+) -> dict[str, SurfaceGrid]:
+    half = plan.half
+    surface = np.flatnonzero(half.t == 0)
+    surface = surface[np.argsort(half.sigma[surface])]
+    fractions = segment_fractions(plan, half.sigma[surface])
+    grids = {}
+    for name, parameters in (("flank", outline.flank_parameters), ("fillet", outline.fillet_parameters)):
+        on, fraction = fractions[name]
+        u, v = parameters(fraction)
+        section = surface[on]
+        grids[f"{name}_right"] = SurfaceGrid(section[:, None] + planes, u, v)
+        grids[f"{name}_left"] = SurfaceGrid(mirror[section][:, None] + planes, u, v)
+    return grids

@@ -1,0 +1,120 @@
+"""A tooth's mesh: on the exact surface, valid everywhere, mirror symmetric, matching across its cuts."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from facegear.geometry import face_gear, pinion
+from facegear.mesh.quality import jacobians, scaled_jacobians, volume
+from facegear.mesh.sizes import LADDER, named_sizes
+from facegear.mesh.tooth import CORNERS, gear_tooth, pinion_tooth
+
+
+def surface_points(design, body, name, grid):
+    if body == "pinion":
+        section = pinion.involute_point if name == "flank" else pinion.trochoid_point
+        return pinion.cartesian(*section(design, grid.u), grid.v)
+    if name == "flank":
+        return face_gear.flank_point(design, grid.u, grid.v)
+    return face_gear.cylindrical(grid.v, *face_gear.fillet_section(design, grid.v, grid.u))
+
+
+@pytest.mark.parametrize("rung", LADDER)
+@pytest.mark.parametrize("build", [pinion_tooth, gear_tooth])
+def test_flank_and_fillet_nodes_lie_on_the_analytic_surface_at_every_rung(design, build, rung):
+    mesh = build(design, named_sizes(rung, design.module))
+    for name in ("flank", "fillet"):
+        for side, sign in (("right", 1), ("left", -1)):
+            grid = mesh.surfaces[f"{name}_{side}"]
+            exact = surface_points(design, mesh.body, name, grid) * [sign, 1, 1]
+            assert np.max(np.abs(mesh.nodes[grid.nodes] - exact)) < 1e-12
+    assert scaled_jacobians(mesh.nodes, mesh.hexes).min() > 0
+
+
+def test_opposite_side_is_the_exact_mirror(tooth):
+    mirrored = tooth.nodes * [-1, 1, 1]
+    order = np.lexsort(np.round(tooth.nodes / 1e-10).T)
+    mirrored_order = np.lexsort(np.round(mirrored / 1e-10).T)
+    np.testing.assert_allclose(tooth.nodes[order], mirrored[mirrored_order], atol=1e-15)
+
+
+def test_one_cut_face_turned_by_a_pitch_is_the_other(tooth):
+    turned = tooth.rotated(tooth.nodes[tooth.cut_left], tooth.pitch)
+    assert np.max(np.abs(turned - tooth.nodes[tooth.cut_right])) < 1e-15
+    assert set(np.unique(tooth.faces["cut_left"])) == set(tooth.cut_left)
+    assert set(np.unique(tooth.faces["cut_right"])) == set(tooth.cut_right)
+
+
+def test_boundary_groups_close_the_tooth(tooth):
+    """Every boundary face belongs to exactly one group, and the outward area vectors of all cancel."""
+    faces = np.concatenate(list(tooth.faces.values()))
+    sides = tooth.hexes[:, [4, 10, 12, 14, 16, 22]].ravel()
+    middle, count = np.unique(sides, return_counts=True)
+    assert set(middle[count == 1]) == set(faces[:, 4])
+    assert len(np.unique(faces[:, 4])) == len(faces)
+    x = tooth.nodes[faces]
+    flux = np.zeros(3)
+    points, weights = np.polynomial.legendre.leggauss(3)
+    for a, wa in zip((points + 1) / 2, weights / 2, strict=True):
+        for b, wb in zip((points + 1) / 2, weights / 2, strict=True):
+            along = np.einsum("j,i->ji", quadratic(b), slopes(a)).ravel()
+            across = np.einsum("j,i->ji", slopes(b), quadratic(a)).ravel()
+            flux += (
+                wa * wb * np.cross(np.einsum("n,fnx->fx", along, x), np.einsum("n,fnx->fx", across, x)).sum(0)
+            )
+    assert np.linalg.norm(flux) < 1e-15
+
+
+def quadratic(x):
+    return np.array([(1 - x) * (1 - 2 * x), 4 * x * (1 - x), x * (2 * x - 1)])
+
+
+def slopes(x):
+    return np.array([4 * x - 3, 4 - 8 * x, 4 * x - 1])
+
+
+def test_elements_are_conforming(tooth):
+    """Two elements that share four corners share the nine nodes of the face between them."""
+    sides = [
+        np.array([i + 3 * j + 9 * k for i, j, k in np.ndindex(3, 3, 3) if (i, j, k)[axis] == end])
+        for axis in range(3)
+        for end in (0, 2)
+    ]
+    seen = {}
+    for side in sides:
+        for face in tooth.hexes[:, side]:
+            corners = tuple(sorted(face[[0, 2, 6, 8]]))
+            assert seen.setdefault(corners, sorted(face)) == sorted(face)
+
+
+def test_volume_converges_at_fourth_order_or_better(design):
+    """Halving the sizes without changing the topology's kind: the quadratic geometry errs by O(h^4)."""
+    for build in (pinion_tooth, gear_tooth):
+        found = [
+            volume(mesh.nodes, mesh.hexes)
+            for mesh in (
+                build(design, named_sizes(rung, design.module)) for rung in ("coarse", "medium", "fine")
+            )
+        ]
+        assert abs(found[2] - found[1]) < abs(found[1] - found[0]) / 8
+        assert found[2] == pytest.approx(found[1], rel=1e-6)
+
+
+def test_straight_corner_view_is_right_handed(tooth):
+    corners = tooth.nodes[tooth.hexes[:, CORNERS]]
+    edges = corners[:, [1, 2, 4]] - corners[:, [0]]
+    assert np.all(np.linalg.det(edges) > 0)
+    assert np.all(np.linalg.det(jacobians(tooth.nodes, tooth.hexes, (0.5,))) > 0)
+
+
+def test_tip_chamfer_is_part_of_the_outline(design):
+    chamfered = replace(design, pinion=replace(design.pinion, tip_chamfer=0.3e-3))
+    mesh, plain = (pinion_tooth(d, named_sizes("coarse", design.module)) for d in (chamfered, design))
+    assert scaled_jacobians(mesh.nodes, mesh.hexes).min() > 0
+    radius = np.linspace(chamfered.pinion_tip_radius - 0.3e-3, chamfered.pinion_tip_radius, 2001)
+    involute = pinion.involute_point(design, pinion.roll_at_radius(design, radius))[1]
+    chamfer = np.linspace(involute[0], pinion.tip_half_angle(chamfered), 2001)
+    expected = 2 * np.trapezoid((involute - chamfer) * radius, radius) * design.pinion.width
+    removed = volume(plain.nodes, plain.hexes) - volume(mesh.nodes, mesh.hexes)
+    assert removed == pytest.approx(expected, rel=1e-2)
