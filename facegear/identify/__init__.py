@@ -1,0 +1,1 @@
+"""Search for the inputs that the paper leaves out."""

@@ -1,0 +1,1 @@
+"""How evenly the meshes share the load: coefficients, studies, summaries."""

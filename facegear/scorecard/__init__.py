@@ -1,0 +1,1 @@
+"""The paper's claims held against computed results, one row each."""
