@@ -1,0 +1,37 @@
+"""One repeating piece of a gear (a tooth with its share of the rim), or any body with one contact surface."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.geometry.design import Material
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """Mesh of 27-node hexahedra (tensor node order) with its contact surface, supports and cut faces.
+
+    `flank` (2a+1, 2b+1) holds the nodes of the contact surface, axis 0 across the profile and axis 1 along the width;
+    `normals` (2a+1, 2b+1, 3) point out of the body there. `held` (n, 3) marks dof kept at zero.
+    `left` and `right` (s,) are the nodes of the two cut faces: the rotation `turn` (3, 3) by one pitch about the
+    gear's axis takes the left ones to the right ones, in this order. Both are empty for a body that does not repeat.
+    """
+
+    points: NDArray[np.float64]
+    hexes: NDArray[np.int64]
+    material: Material
+    flank: NDArray[np.int64]
+    normals: NDArray[np.float64]
+    held: NDArray[np.bool_]
+    left: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    right: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    turn: NDArray[np.float64] = field(default_factory=lambda: np.eye(3))
+
+    def __post_init__(self) -> None:
+        if self.flank.shape[0] % 2 == 0 or self.flank.shape[1] % 2 == 0:
+            raise ValueError("the flank grid of quadratic elements has an odd number of nodes both ways")
+        if self.left.size:
+            gap = np.abs(self.points[self.left] @ self.turn.T - self.points[self.right]).max()
+            if gap > 1e-9 * np.abs(self.points).max():
+                raise ValueError(f"the cut faces do not match after one pitch: {gap:.1e} m apart")

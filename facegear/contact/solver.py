@@ -1,0 +1,158 @@
+"""Frictionless unilateral contact of two condensed bodies turned against each other by a torque.
+
+Find forces f >= 0 and the rotation r with  gap + C f - r arm >= 0,  f . (gap + C f - r arm) = 0,  arm . f = torque:
+the optimality conditions of a convex quadratic programme, hence one solution for a positive definite C.
+A primal-dual active set (semismooth Newton; Hintermueller, Ito, Kunisch 2003) finishes in a few steps; should it
+cycle, a single-exchange active set, which lowers the energy at each step, finishes the work.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as sl
+from numpy.typing import NDArray
+
+from facegear.errors import NotConverged
+
+NEWTON_STEPS = 40
+TOLERANCE = 1e-11
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """A loaded contact.
+
+    `force` (n,) N; `rotation` rad (the approach in m where arms are 1); `slope` d rotation / d torque with the contact
+    area following the load, rad/(N m); `residual` largest violation of the conditions, relative.
+    """
+
+    force: NDArray[np.float64]
+    rotation: float
+    slope: float
+    residual: float
+    steps: int
+
+    @property
+    def active(self) -> NDArray[np.bool_]:
+        """Points in contact (n,)."""
+        return self.force > 0.0
+
+
+def solve(
+    compliance: NDArray[np.float64],
+    gap: NDArray[np.float64],
+    arm: NDArray[np.float64],
+    torque: float,
+    start: NDArray[np.bool_] | None = None,
+    where: str = "this position",
+) -> Contact:
+    """Solve for compliance (n, n) in m/N, gaps (n,) in m, arms (n,) in m and a torque > 0 in N m.
+
+    `start` (n,) is a guess of the points in contact. The result does not depend on it beyond rounding.
+    Raises NotConverged naming `where`.
+    """
+    if not torque > 0.0:
+        raise ValueError(f"torque = {torque}: must be positive")
+    if not (arm > 0.0).any():
+        raise NotConverged("contact", where, "no candidate point can carry the torque")
+    active = _first_guess(gap, arm) if start is None or not (start & (arm > 0)).any() else start.copy()
+    seen: set[bytes] = set()
+    for step in range(1, NEWTON_STEPS + 1):
+        force, rotation, slope = _bonded(compliance, gap, arm, torque, active)
+        distance = gap + compliance[:, active] @ force[active] - rotation * arm
+        scale = np.abs(rotation * arm).max() + np.abs(gap[active]).max()
+        next_active = np.where(active, force > 0.0, distance < -TOLERANCE * scale)
+        if np.array_equal(next_active, active):
+            return _checked(compliance, gap, arm, torque, force, rotation, slope, step, where)
+        key = np.packbits(next_active).tobytes()
+        if key in seen or not (next_active & (arm > 0)).any():
+            break
+        seen.add(key)
+        active = next_active
+    return _exchange(compliance, gap, arm, torque, where)
+
+
+def _first_guess(gap: NDArray[np.float64], arm: NDArray[np.float64]) -> NDArray[np.bool_]:
+    turns = np.where(arm > 0, gap / np.where(arm > 0, arm, 1.0), np.inf)
+    first = turns.min()
+    reach = np.quantile(turns[np.isfinite(turns)], 0.25) - first
+    return turns <= first + reach
+
+
+def _bonded(compliance, gap, arm, torque, active):  # type: ignore[no-untyped-def]
+    """Forces and rotation if exactly the active points touch."""
+    factor = sl.cho_factor(compliance[np.ix_(active, active)], lower=True, check_finite=False)
+    lever, offset = arm[active], gap[active]
+    both = sl.cho_solve(factor, np.stack([lever, offset], axis=1), check_finite=False)
+    stiffness = lever @ both[:, 0]
+    rotation = (torque + lever @ both[:, 1]) / stiffness
+    force = np.zeros_like(gap)
+    force[active] = rotation * both[:, 0] - both[:, 1]
+    return force, rotation, 1.0 / stiffness
+
+
+def _checked(compliance, gap, arm, torque, force, rotation, slope, steps, where):  # type: ignore[no-untyped-def]
+    active = force > 0.0
+    factor = sl.cho_factor(compliance[np.ix_(active, active)], lower=True, check_finite=False)
+    lever = sl.cho_solve(factor, arm[active], check_finite=False)
+    for _ in range(2):
+        distance = gap[active] + compliance[np.ix_(active, active)] @ force[active] - rotation * arm[active]
+        missing = torque - arm[active] @ force[active]
+        change = -sl.cho_solve(factor, distance, check_finite=False)
+        turn = (missing - arm[active] @ change) / (arm[active] @ lever)
+        force[active] += change + turn * lever
+        rotation += turn
+    residual = kkt_residual(compliance, gap, arm, torque, force, rotation)
+    if not residual < TOLERANCE * 10:
+        raise NotConverged("contact", where, f"KKT residual {residual:.1e} after {steps} steps")
+    return Contact(force, float(rotation), float(slope), residual, steps)
+
+
+def kkt_residual(
+    compliance: NDArray[np.float64],
+    gap: NDArray[np.float64],
+    arm: NDArray[np.float64],
+    torque: float,
+    force: NDArray[np.float64],
+    rotation: float,
+) -> float:
+    """Largest relative violation of balance, no tension, no penetration and complementarity."""
+    active = force != 0.0
+    distance = gap + compliance[:, active] @ force[active] - rotation * arm
+    scale = np.abs(rotation * arm).max() + np.abs(gap[active]).max()
+    return float(
+        max(
+            abs(arm @ force - torque) / torque,
+            -force.min() / force.max(),
+            -distance.min() / scale,
+            np.abs(distance[active]).max() / scale,
+        )
+    )
+
+
+def _exchange(compliance, gap, arm, torque, where):  # type: ignore[no-untyped-def]
+    """One point at a time, energy falling at every step, hence finite."""
+    turns = np.where(arm > 0, gap / np.where(arm > 0, arm, 1.0), np.inf)
+    first = int(np.argmin(turns))
+    force = np.zeros_like(gap)
+    force[first] = torque / arm[first]
+    active = force > 0.0
+    limit = 20 * gap.size + 100
+    for step in range(limit):
+        target, rotation, slope = _bonded(compliance, gap, arm, torque, active)
+        falling = active & (target <= 0.0)
+        if falling.any():
+            share = np.min(force[falling] / (force[falling] - target[falling]))
+            force = force + share * (target - force)
+            leaving = falling & (force <= 1e-14 * force.max())
+            force[leaving] = 0.0
+            active &= ~leaving
+            continue
+        force = target
+        distance = gap + compliance[:, active] @ force[active] - rotation * arm
+        scale = np.abs(rotation * arm).max() + np.abs(gap[active]).max()
+        worst = int(np.argmin(np.where(active, np.inf, distance)))
+        if active.all() or distance[worst] >= -TOLERANCE * scale:
+            return _checked(compliance, gap, arm, torque, force, rotation, slope, NEWTON_STEPS + step, where)
+        active[worst] = True
+    raise NotConverged("contact", where, f"{NEWTON_STEPS} Newton and {limit} exchange steps")

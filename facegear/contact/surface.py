@@ -1,0 +1,82 @@
+"""The refined contact surface: quadratic displacement, piecewise bilinear pressure, loads consistent with both.
+
+The displacement lives on a lattice of nodes (nu, nv), two nodes an element both ways. The pressure is a sum of
+bilinear hats, one a node, so that a hat's nodal loads, its mean gap and its mean displacement follow from one
+matrix. Lattice coordinates count nodes: 0..nu-1 across the profile, 0..nv-1 along the width.
+"""
+
+import numpy as np
+import scipy.sparse as sp
+from numba import njit
+from numpy.typing import NDArray
+
+GAUSS = 0.5 / np.sqrt(3.0)
+
+
+@njit(cache=True)
+def quadratic_weights(s, count, weights):  # type: ignore[no-untyped-def]
+    """Fill `weights` (3,) at lattice coordinate s; returns the first of the three nodes."""
+    element = min(max(int(s // 2), 0), (count - 3) // 2)
+    x = (s - 2 * element) / 2
+    weights[0] = (1 - x) * (1 - 2 * x)
+    weights[1] = 4 * x * (1 - x)
+    weights[2] = x * (2 * x - 1)
+    return 2 * element
+
+
+def interpolation(coordinates: NDArray[np.float64], shape: tuple[int, int]) -> sp.csr_matrix:
+    """Biquadratic interpolation (n, nu nv) from lattice nodes to lattice coordinates (n, 2)."""
+    columns, values = _interpolation(np.ascontiguousarray(coordinates), *shape)
+    pointer = np.arange(0, columns.size + 1, 9)
+    return sp.csr_matrix(
+        (values.ravel(), columns.ravel(), pointer), shape=(len(coordinates), shape[0] * shape[1])
+    )
+
+
+@njit(cache=True)
+def _interpolation(coordinates, nu, nv):  # type: ignore[no-untyped-def]
+    count = coordinates.shape[0]
+    columns = np.empty((count, 9), dtype=np.int64)
+    values = np.empty((count, 9))
+    wu, wv = np.empty(3), np.empty(3)
+    for n in range(count):
+        i = quadratic_weights(coordinates[n, 0], nu, wu)
+        j = quadratic_weights(coordinates[n, 1], nv, wv)
+        for a in range(3):
+            for b in range(3):
+                columns[n, 3 * a + b] = (i + a) * nv + j + b
+                values[n, 3 * a + b] = wu[a] * wv[b]
+    return columns, values
+
+
+def cell_points(shape: tuple[int, int]) -> NDArray[np.float64]:
+    """Lattice coordinates of 2 x 2 Gauss points in each cell between nodes, ((nu-1) (nv-1) 4, 2)."""
+    i, j = np.meshgrid(np.arange(shape[0] - 1), np.arange(shape[1] - 1), indexing="ij")
+    middle = np.stack([i.ravel() + 0.5, j.ravel() + 0.5], axis=-1)
+    offsets = GAUSS * np.array([[-1, -1], [-1, 1], [1, -1], [1, 1]])
+    return (middle[:, None, :] + offsets).reshape(-1, 2)
+
+
+def hat_values(points: NDArray[np.float64], shape: tuple[int, int]) -> sp.csr_matrix:
+    """Bilinear hats (n, nu nv) at lattice coordinates (n, 2)."""
+    base = np.minimum(np.floor(points).astype(np.int64), np.array(shape) - 2)
+    x, y = (points - base).T
+    columns = (base[:, 0] * shape[1] + base[:, 1])[:, None] + np.array([0, 1, shape[1], shape[1] + 1])
+    values = np.stack([(1 - x) * (1 - y), (1 - x) * y, x * (1 - y), x * y], axis=-1)
+    return sp.csr_matrix(
+        (values.ravel(), columns.ravel(), np.arange(0, columns.size + 1, 4)),
+        shape=(len(points), shape[0] * shape[1]),
+    )
+
+
+def cell_areas(surface: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Area (m2) that each point of `cell_points` stands for, surface nodes (nu, nv, 3)."""
+    shape = surface.shape[:2]
+    points = cell_points(shape)
+    flat = surface.reshape(-1, 3)
+    step = 1e-3
+    along = [
+        (interpolation(points + shift, shape) - interpolation(points - shift, shape)) @ flat / (2 * step)
+        for shift in (np.array([step, 0.0]), np.array([0.0, step]))
+    ]
+    return 0.25 * np.linalg.norm(np.cross(*along), axis=1)
