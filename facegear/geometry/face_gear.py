@@ -4,7 +4,6 @@ Everything is for the right flank of tooth 0 in the gear body frame (see `design
 image x -> -x. th is the roll angle of the shaper's involute, psi = phi_s + th + th_os the slope of the common
 normal. Source: shaper-generated face gears (Litvin and Fuentes, Gear Geometry and Applied Theory, ch. 18),
 with the contact condition solved for the axial coordinate: q = r_b / (m2s cos psi).
-The functions of plain numbers (`*_kernel`) take scalars or arrays and compile with numba.
 """
 
 import numpy as np
@@ -158,12 +157,12 @@ def fillet_end(design: PairDesign, radius: ArrayLike) -> Array:
     return psi_at(design, radius, design.shaper_tip_roll) - np.arctan(design.shaper_tip_roll)
 
 
-def fillet_normal(design: PairDesign, radius: ArrayLike, chi: ArrayLike) -> Array:
-    """Outward unit normal (..., 3) of the fillet, the cross product of its exact tangents."""
+def fillet_frame(design: PairDesign, chi: ArrayLike, radius: ArrayLike) -> tuple[Array, Array, Array]:
+    """Point (..., 3) of the fillet and its exact derivatives with respect to chi and gear radius."""
     radius, chi = np.broadcast_arrays(np.asarray(radius, float), np.asarray(chi, float))
     tip, ratio = design.shaper_tip_radius, design.shaper_ratio
     edge = tip * np.sin(chi)
-    beta, _ = fillet_section(design, radius, chi)
+    beta, z = fillet_section(design, radius, chi)
     reach = np.sqrt(radius**2 - edge**2)
     beta_chi, beta_radius = tip * np.cos(chi) / reach - ratio, -edge / (radius * reach)
     radial = np.stack([np.sin(beta), np.cos(beta), np.zeros_like(beta)], axis=-1)
@@ -171,6 +170,12 @@ def fillet_normal(design: PairDesign, radius: ArrayLike, chi: ArrayLike) -> Arra
     up = np.stack([np.zeros_like(beta), np.zeros_like(beta), np.ones_like(beta)], axis=-1)
     along_chi = around * beta_chi[..., None] + up * edge[..., None]
     along_radius = radial + around * beta_radius[..., None]
+    return radial * radius[..., None] + up * z[..., None], along_chi, along_radius
+
+
+def fillet_normal(design: PairDesign, radius: ArrayLike, chi: ArrayLike) -> Array:
+    """Outward unit normal (..., 3) of the fillet."""
+    _, along_chi, along_radius = fillet_frame(design, chi, radius)
     normal = np.cross(along_chi, along_radius)
     normal *= np.sign(normal[..., 2:3])
     return normal / np.linalg.norm(normal, axis=-1, keepdims=True)
