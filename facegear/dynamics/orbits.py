@@ -1,0 +1,98 @@
+"""Periodic orbits by Newton shooting, and their Floquet multipliers."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.compiled import Packed
+from facegear.dynamics.periods import DONE, Log, make_log, run_periods
+from facegear.dynamics.taylor import Work
+from facegear.errors import NotConverged
+
+Array = NDArray[np.float64]
+NEWTON_STEPS = 12
+NEUTRAL = 1e-9
+"""Directions in which the change over a period moves less than this, relatively, are left alone by Newton."""
+
+
+@dataclass(frozen=True, eq=False)
+class Orbit:
+    """A periodic orbit of `period` mesh periods through place and velocity (by phase), each (padded n,).
+
+    residual: change over the period over the length scale, also an error estimate once Newton has settled.
+    multipliers (2 n,) complex, largest first. liouville: log det of the monodromy matrix less the integral
+    of the divergence, which is zero for an exact solution (NaN where the matrix is singular to rounding).
+    """
+
+    place: Array
+    velocity: Array
+    period: int
+    residual: float
+    multipliers: NDArray[np.complex128]
+    liouville: float
+
+
+def change(packed: Packed, first: Array, second: Array) -> float:
+    """Largest difference of two states (2, n) as mesh deflections and their rates, over the length scale."""
+    return float((packed.weights * np.abs(first - second)).max() / packed.scale)
+
+
+def monodromy(
+    packed: Packed, work: Work, place: Array, velocity: Array, period: int, tolerance: float
+) -> tuple[Array, Array, Array, Log]:
+    """Run `period` mesh periods with all tangents: end place, end velocity, matrix (2 n, 2 n), log.
+
+    Raises NotConverged where the step fails.
+    """
+    n, wide = packed.n, packed.squares.size
+    tangents = np.zeros((2 * n, 2, wide))
+    rows = np.arange(n)
+    tangents[rows, 0, rows] = 1.0
+    tangents[n + rows, 1, rows] = 1.0
+    place, velocity = place.copy(), velocity.copy()
+    log = make_log(packed, period)
+    require(run_periods(packed, work, place, velocity, tangents, period, 0, tolerance, log))
+    matrix = tangents[:, :, :n].reshape(2 * n, 2 * n).T
+    return place, velocity, matrix, log
+
+
+def require(status: int) -> None:
+    """Raise NotConverged unless the status of a run is good."""
+    if status != DONE:
+        raise NotConverged("dynamics", "time integration", f"step failed with status {status}")
+
+
+def shoot(
+    packed: Packed, work: Work, place: Array, velocity: Array, period: int, tolerance: float, goal: float
+) -> Orbit | None:
+    """Newton's method on the change over `period` mesh periods; None if it does not settle near the start."""
+    n = packed.n
+    place, velocity = place.copy(), velocity.copy()
+    best = np.inf
+    for _ in range(NEWTON_STEPS):
+        end_place, end_velocity, matrix, log = monodromy(packed, work, place, velocity, period, tolerance)
+        here, there = np.array([place, velocity]), np.array([end_place, end_velocity])
+        residual = change(packed, here, there)
+        if not residual < 4.0 * best:
+            return None
+        if residual <= goal or residual > 0.5 * best and best < 1e3 * goal:
+            return _orbit(place, velocity, period, residual, matrix, log)
+        best = min(best, residual)
+        gap = (there - here)[:, :n].ravel()
+        # A body afloat in its backlash has a place of its own choice: least norm leaves it where it is.
+        correction = np.linalg.lstsq(np.eye(2 * n) - matrix, gap, rcond=NEUTRAL)[0]
+        place[:n] += correction[:n]
+        velocity[:n] += correction[n:]
+    return None
+
+
+def _orbit(place: Array, velocity: Array, period: int, residual: float, matrix: Array, log: Log) -> Orbit:
+    multipliers = np.linalg.eigvals(matrix)
+    multipliers = multipliers[np.argsort(-np.abs(multipliers))]
+    sign, volume = np.linalg.slogdet(matrix)
+    condition_lost = np.log(np.finfo(float).eps) * 0.9 > np.log(
+        max(abs(multipliers[-1]), 1e-300) / max(abs(multipliers[0]), 1e-300)
+    )
+    liouville = np.nan if condition_lost or sign <= 0 else float(volume - log.divergence[0])
+    return Orbit(place, velocity, period, residual, multipliers, liouville)

@@ -1,0 +1,144 @@
+"""Run whole mesh periods: samples, contact shares, tangents."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from facegear.dynamics.advance import advance, move
+from facegear.dynamics.compiled import TAU, Packed
+from facegear.dynamics.taylor import Work, deflect, evaluate, recurrence
+
+Array = NDArray[np.float64]
+MOST_STEPS = 2_000_000
+DONE, TOO_MANY_STEPS, NOT_FINITE = 0, 1, 2
+
+
+class Log(NamedTuple):
+    """What a run writes. Any array may have length 0, which leaves it out.
+
+    samples (periods * per_period, n): y at equally spaced phases from the start of each period.
+    ends (periods, 2, n): y and dy/ds at the end of each period. shares (3, m): phase spent open, on the
+    drive and on the back flank, rad, added up. divergence (1,): integral of the trace, added up. steps (1,):
+    added up.
+    """
+
+    samples: Array
+    ends: Array
+    shares: Array
+    divergence: Array
+    steps: NDArray[np.int64]
+
+
+def make_log(packed: Packed, periods: int, per_period: int = 0) -> Log:
+    """Allocate a log."""
+    n = packed.squares.size
+    return Log(
+        samples=np.zeros((periods * per_period, n)),
+        ends=np.zeros((periods, 2, n)),
+        shares=np.zeros((3, packed.lower.size)),
+        divergence=np.zeros(1),
+        steps=np.zeros(1, dtype=np.int64),
+    )
+
+
+@njit(cache=True, nogil=True, fastmath={"contract"})
+def run_periods(
+    packed: Packed,
+    work: Work,
+    place: Array,
+    velocity: Array,
+    tangents: Array,
+    periods: int,
+    per_period: int,
+    tolerance: float,
+    log: Log,
+) -> int:
+    """Move place and velocity (n,) and the tangents (columns, 2, n) over whole periods; returns a status."""
+    n = packed.squares.size
+    sample, scratch = np.empty(n), np.empty(n)
+    acting = work.acting.copy()
+    for period in range(periods):
+        s = 0.0
+        taken = 0
+        next_sample = 0
+        first = period == 0
+        while s < TAU:
+            length = advance(packed, work, s, TAU, place, velocity, tolerance)
+            if tangents.shape[0] > 0:
+                if not first:
+                    _switch_tangents(packed, work, acting, tangents)
+                for m in range(acting.size):
+                    acting[m] = work.acting[m]
+                _move_tangents(packed, work, length, tangents)
+            first = False
+            log.divergence[0] -= length * _trace(packed, work)
+            for m in range(packed.m):
+                log.shares[work.state[m], m] += length
+            while next_sample < per_period and TAU * next_sample / per_period < s + length:
+                ahead = TAU * next_sample / per_period - s
+                evaluate(work.y, work.order, ahead, sample, scratch)
+                for k in range(n):
+                    log.samples[period * per_period + next_sample, k] = sample[k]
+                next_sample += 1
+            move(work, length, place, velocity)
+            s += length
+            if TAU - s < 1e-13:
+                s = TAU
+            taken += 1
+            if taken > MOST_STEPS:
+                return TOO_MANY_STEPS
+        log.steps[0] += taken
+        for k in range(n):
+            log.ends[period, 0, k] = place[k]
+            log.ends[period, 1, k] = velocity[k]
+        if not np.isfinite(place.sum() + velocity.sum()):
+            return NOT_FINITE
+    return DONE
+
+
+@njit(cache=True, nogil=True)
+def _trace(packed: Packed, work: Work) -> float:
+    """Sum of all damping that acts, per rad: minus the divergence of the flow."""
+    total = 0.0
+    for k in range(packed.n):
+        total += packed.damping[k]
+    for m in range(packed.m):
+        square = 0.0
+        for k in range(packed.n):
+            square += packed.transposed[m, k] ** 2
+        total += work.acting[m] * square
+    return total
+
+
+@njit(cache=True, nogil=True)
+def _switch_tangents(packed: Packed, work: Work, acting: Array, tangents: Array) -> None:
+    """Saltation: where the mesh damping starts or stops the velocity part shears by G^T (c- - c+) G.
+
+    Stiffness alone gives none, since the force is continuous at the edge.
+    """
+    for m in range(packed.m):
+        jump = acting[m] - work.acting[m]
+        if jump == 0.0:
+            continue
+        for column in range(tangents.shape[0]):
+            along = 0.0
+            for k in range(packed.n):
+                along += packed.transposed[m, k] * tangents[column, 0, k]
+            for k in range(packed.n):
+                tangents[column, 1, k] += packed.transposed[m, k] * jump * along
+
+
+@njit(cache=True, nogil=True, fastmath={"contract"})
+def _move_tangents(packed: Packed, work: Work, length: float, tangents: Array) -> None:
+    """Move tangent vectors over the step by the same recurrence without forcing."""
+    n = packed.squares.size
+    for column in range(tangents.shape[0]):
+        for k in range(n):
+            work.tangent[0, k] = tangents[column, 0, k]
+            work.tangent[1, k] = tangents[column, 1, k]
+        deflect(packed, work.tangent, 0, work.zero_error, work.tangent_deflection)
+        deflect(packed, work.tangent, 1, work.zero_error, work.tangent_deflection)
+        recurrence(packed, work, work.zero_error, work.zero_load, work.tangent, work.tangent_deflection)
+        evaluate(work.tangent, work.order, length, tangents[column, 0], tangents[column, 1])

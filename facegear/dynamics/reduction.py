@@ -1,0 +1,85 @@
+"""Leave out exactly the motions that no mesh can excite or feel.
+
+Degrees of freedom with the same bearing frequency (and so, with C = lambda M + beta K, the same damping) may
+be combined freely; of each such group only the combinations that appear in a mesh deflection move together
+with the others. The rest (pinion axial motions, the rigid rotation, one translation of each pinion) are
+decoupled.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.transmission.layout import DOF_PER_BODY
+from facegear.transmission.machine import Damping, Machine
+from facegear.transmission.matrices import bearing_diagonal, mass_diagonal, mesh_directions
+
+SAME_FREQUENCY = 1e-12
+RANK = 1e-10
+
+
+@dataclass(frozen=True, eq=False)
+class Reduced:
+    """The moving part in n mass-normalised coordinates y, displacements = basis y.
+
+    basis (4 bodies, n), directions (meshes, n), squares (n,) bearing frequencies squared in 1/s2,
+    damping (n,) in 1/s, load (n,) from the torques, `free` the names of the DOF that nothing touches.
+    """
+
+    basis: NDArray[np.float64]
+    directions: NDArray[np.float64]
+    squares: NDArray[np.float64]
+    damping: NDArray[np.float64]
+    load: NDArray[np.float64]
+    free: tuple[str, ...]
+
+
+def reduce(machine: Machine) -> Reduced:
+    """Reduced coordinates of a machine; torques are in balance, so the rigid rotation stays at rest."""
+    layout = machine.layout
+    mass = mass_diagonal(layout)
+    bearing = bearing_diagonal(layout)
+    directions = mesh_directions(layout)
+    applied = np.zeros(mass.size)
+    applied[3::DOF_PER_BODY] = machine.torques
+    basis, squares = coupled_basis(directions, mass, bearing)
+    touched = (directions != 0.0).any(axis=0) | (bearing != 0.0) | (applied != 0.0)
+    names = np.array(layout.dof_names)
+    return Reduced(
+        basis=basis,
+        directions=directions @ basis,
+        squares=squares,
+        damping=modal_damping(machine.damping, squares),
+        load=basis.T @ applied,
+        free=tuple(names[~touched].tolist()),
+    )
+
+
+def modal_damping(damping: Damping, squares: NDArray[np.float64]) -> NDArray[np.float64]:
+    """lambda + beta omega^2 of each coordinate, equation (21), 1/s."""
+    return damping.mass + damping.bearing * squares
+
+
+def coupled_basis(
+    directions: NDArray[np.float64], mass: NDArray[np.float64], bearing: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Basis (DOF, n) with unit modal mass of all motions that meshes couple, and their bearing omega^2
+    (n,).
+    """
+    squares = bearing / mass
+    scaled = directions / np.sqrt(mass)
+    size = np.linalg.norm(scaled)
+    columns, kept = [], []
+    remaining = np.ones(mass.size, dtype=bool)
+    while remaining.any():
+        value = squares[remaining].min()
+        group = np.flatnonzero(remaining & (squares <= value * (1.0 + SAME_FREQUENCY)))
+        remaining[group] = False
+        _, sizes, rows = np.linalg.svd(scaled[:, group], full_matrices=False)
+        for row in rows[sizes > RANK * size]:
+            column = np.zeros(mass.size)
+            column[group] = row / np.sqrt(mass[group])
+            columns.append(column)
+            kept.append(value)
+    return np.array(columns).T.reshape(mass.size, len(columns)), np.array(kept)

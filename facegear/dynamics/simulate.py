@@ -1,0 +1,198 @@
+"""Steady state of a machine at a speed: the public entry of the dynamics."""
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.compiled import TAU, Packed, pack
+from facegear.dynamics.exponent import largest_exponent
+from facegear.dynamics.motion import Motion, Settings, State
+from facegear.dynamics.orbits import require
+from facegear.dynamics.periods import make_log, run_periods
+from facegear.dynamics.reduction import Reduced, reduce
+from facegear.dynamics.settle import Settled, settle
+from facegear.dynamics.system import System, machine_system
+from facegear.dynamics.taylor import make_work
+from facegear.transmission.machine import Machine, mesh_frequency
+from facegear.transmission.matrices import mass_diagonal
+from facegear.transmission.statics import static_equilibrium
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyState:
+    """The response over `periods` mesh periods (the orbit's own period, else the window), sampled evenly.
+
+    samples K = periods * per_period; deflections (K, meshes) in m with e(t) taken off, forces (K, meshes)
+    elastic mesh forces k f(d) in N, coordinates (K, n); displacements(machine) gives all DOF. shares (3,
+    meshes): fraction of time open, on the drive flank, on the back flank. residual: change over the period,
+    over the length scale. multipliers (2 n,) of a refined periodic orbit. exponent: largest Lyapunov
+    exponent per mesh period with its 95 % half-width, for motions that are not periodic.
+    """
+
+    motion: Motion
+    period: int
+    frequency: float
+    residual: float
+    periods: int
+    per_period: int
+    deflections: Array
+    forces: Array
+    coordinates: Array
+    shares: Array
+    multipliers: NDArray[np.complex128] | None
+    liouville: float | None
+    exponent: tuple[float, float] | None
+    spent: int
+    state: State
+
+    @property
+    def label(self) -> str:
+        """`period-n` or the class of motion."""
+        return f"period-{self.period}" if self.motion is Motion.PERIODIC else self.motion.value
+
+    @property
+    def phases(self) -> Array:
+        """Time of each sample in mesh periods, shape (K,)."""
+        return np.arange(self.periods * self.per_period) / self.per_period
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A machine made ready: its reduction and system, to be used at many speeds."""
+
+    machine: Machine
+    reduced: Reduced
+    system: System
+
+    def displacements(self, response: SteadyState) -> Array:
+        """Displacements (K, 4 bodies) in m and rad; the free rigid rotation is left out."""
+        return response.coordinates @ self.reduced.basis.T
+
+
+def model(machine: Machine) -> Model:
+    """Reduce a machine once for all speeds."""
+    reduced = reduce(machine)
+    return Model(machine, reduced, machine_system(machine, reduced))
+
+
+def static_start(ready: Model) -> State:
+    """At rest in the static equilibrium with mean stiffness."""
+    standing = static_equilibrium(ready.machine).displacements
+    place = ready.reduced.basis.T @ (mass_diagonal(ready.machine.layout) * standing)
+    return State(place, np.zeros_like(place))
+
+
+def simulate(
+    ready: Model | Machine, speed_rpm: float, settings: Settings | None = None, start: State | None = None
+) -> SteadyState:
+    """Steady state at a pinion speed, from `start` or from static equilibrium.
+
+    Raises NotConverged if the integration itself fails; a motion that does not settle is a result, named so.
+    """
+    ready = model(ready) if isinstance(ready, Machine) else ready
+    frequency = TAU * mesh_frequency(ready.machine.layout, speed_rpm)
+    start = static_start(ready) if start is None else start
+    return steady_state(ready.system, frequency, settings or Settings(), start)
+
+
+def simulate_many(
+    jobs: Sequence[tuple[Model | Machine, float]], settings: Settings, threads: int = 1
+) -> list[SteadyState]:
+    """simulate() for many (machine, speed), on threads: the compiled part runs without the interpreter's
+    lock.
+    """
+    if threads <= 1:
+        return [simulate(machine, speed, settings) for machine, speed in jobs]
+    with ThreadPoolExecutor(threads) as pool:
+        return list(pool.map(lambda job: simulate(job[0], job[1], settings), jobs))
+
+
+def steady_state(system: System, frequency: float, settings: Settings, start: State) -> SteadyState:
+    """Steady state of any system at an angular mesh frequency in rad/s."""
+    packed = pack(system, frequency)
+    work = make_work(packed, settings.taylor_order)
+    place, velocity = _widened(packed, start.place), _widened(packed, start.velocity / frequency)
+    settled = settle(packed, work, place, velocity, settings)
+    exponent = None
+    motion = Motion.PERIODIC
+    if settled.period == 0:
+        motion, exponent = largest_exponent(packed, work, settled.place, settled.velocity, settings)
+    periods = settled.period or settings.window
+    return _measure(packed, system, frequency, settings, settled, motion, exponent, periods)
+
+
+def _measure(
+    packed: Packed,
+    system: System,
+    frequency: float,
+    settings: Settings,
+    settled: Settled,
+    motion: Motion,
+    exponent: tuple[float, float] | None,
+    periods: int,
+) -> SteadyState:
+    place, velocity = settled.place.copy(), settled.velocity.copy()
+    log = make_log(packed, periods, settings.samples)
+    work = make_work(packed, settings.taylor_order)
+    tangents = np.zeros((0, 2, place.size))
+    require(
+        run_periods(
+            packed, work, place, velocity, tangents, periods, settings.samples, settings.tolerance, log
+        )
+    )
+    coordinates = log.samples[:, : packed.n]
+    deflections, forces = mesh_response(system, coordinates, settings.samples)
+    orbit = settled.orbit
+    return SteadyState(
+        motion=motion,
+        period=settled.period,
+        frequency=frequency,
+        residual=settled.residual,
+        periods=periods,
+        per_period=settings.samples,
+        deflections=deflections,
+        forces=forces,
+        coordinates=coordinates,
+        shares=log.shares[:, : packed.m] / (TAU * periods),
+        multipliers=orbit.multipliers if orbit else None,
+        liouville=orbit.liouville if orbit else None,
+        exponent=exponent,
+        spent=settled.spent,
+        state=State(place[: packed.n].copy(), velocity[: packed.n] * frequency),
+    )
+
+
+def mesh_response(system: System, coordinates: Array, per_period: int) -> tuple[Array, Array]:
+    """Deflections and elastic mesh forces (K, meshes) of samples that start with a mesh period."""
+    cycles = np.arange(per_period) / per_period
+    repeats = len(coordinates) // per_period
+    error = np.tile(series_values(system.error, cycles)[:, system.error_kind], (repeats, 1))
+    stiffness = series_values(system.stiffness, cycles)
+    for kind, piece in enumerate(system.pieces):
+        index = np.searchsorted(piece.breaks, cycles, side="right") - 1
+        ahead = cycles - piece.breaks[index]
+        stiffness[:, kind] += (
+            piece.coefficients[index] * np.vander(ahead, piece.coefficients.shape[1], True)
+        ).sum(1)
+    stiffness = np.tile(stiffness[:, system.stiffness_kind], (repeats, 1))
+    deflections = coordinates @ system.directions.T - error
+    beyond = np.maximum(deflections - system.upper, 0.0) + np.minimum(deflections - system.lower, 0.0)
+    linear = system.lower >= system.upper
+    return deflections, stiffness * np.where(linear, deflections - system.upper, beyond)
+
+
+def series_values(series: Array, cycles: Array) -> Array:
+    """Values of Fourier rows (kinds, 2, harmonics + 1) at times in mesh periods, shape (times, kinds)."""
+    angle = TAU * np.outer(cycles, np.arange(series.shape[2]))
+    return np.sin(angle) @ series[:, 0].T + np.cos(angle) @ series[:, 1].T
+
+
+def _widened(packed: Packed, values: Array) -> Array:
+    wide = np.zeros(packed.squares.size)
+    wide[: packed.n] = values
+    return wide

@@ -1,0 +1,110 @@
+"""What the compiled integrator sees: unit-mass oscillators coupled by meshes with clearance.
+
+    y'' + damping y' + squares y + G^T F = load(t),   F = k(t) f(d) + c d',   d = G y - e(t),
+
+f(d) = d - upper above `upper`, d - lower below `lower`, zero between. k, e and load are Fourier series in the
+mesh phase s = 2 pi t / T, k plus an optional piecewise polynomial. One degree of freedom is a case like any
+other.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.reduction import Reduced
+from facegear.harmonics.series import Harmonics
+from facegear.transmission.machine import Machine, OpenFlanks
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Piecewise:
+    """Stiffness added to the Fourier part: cubic pieces of the phase, in mesh periods since each break.
+
+    breaks (pieces + 1,) from 0 to 1; coefficients (pieces, degree + 1), ascending powers.
+    """
+
+    breaks: Array
+    coefficients: Array
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """n coordinates, m meshes. Fourier series are (rows, 2, harmonics + 1): sine part, cosine part.
+
+    directions (m, n); squares, damping (n,); mesh_damping, lower, upper (m,); stiffness and error of the
+    kinds of mesh that differ in phase, stiffness_kind and error_kind (m,) say which; load (n, 2, harmonics +
+    1). A mesh with lower >= upper never opens. `scale` is the length that tolerances refer to.
+    """
+
+    directions: Array
+    squares: Array
+    damping: Array
+    mesh_damping: Array
+    lower: Array
+    upper: Array
+    stiffness: Array
+    stiffness_kind: NDArray[np.int64]
+    error: Array
+    error_kind: NDArray[np.int64]
+    load: Array
+    damping_when_open: bool
+    scale: float
+    pieces: tuple[Piecewise, ...] = field(default=())
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates n."""
+        return self.squares.size
+
+
+def fourier_rows(series: list[Harmonics]) -> Array:
+    """Stack Fourier series into (rows, 2, harmonics + 1)."""
+    order = max(one.order for one in series)
+    rows = np.zeros((len(series), 2, order + 1))
+    for row, one in zip(rows, series, strict=True):
+        row[0, : one.order + 1] = one.a
+        row[1, : one.order + 1] = one.b
+    return rows
+
+
+def machine_system(machine: Machine, reduced: Reduced) -> System:
+    """The system of a machine in its reduced coordinates."""
+    meshes = len(machine.layout.meshes)
+    stiffness, stiffness_kind = _kinds(machine.stiffness, machine.phases)
+    error, error_kind = _kinds(machine.error, machine.error_phases)
+    load = np.zeros((reduced.squares.size, 2, 1))
+    load[:, 1, 0] = reduced.load
+    return System(
+        directions=reduced.directions,
+        squares=reduced.squares,
+        damping=reduced.damping,
+        mesh_damping=np.full(meshes, machine.damping.mesh),
+        lower=np.full(meshes, -machine.half_backlash),
+        upper=np.full(meshes, machine.half_backlash),
+        stiffness=stiffness,
+        stiffness_kind=stiffness_kind,
+        error=error,
+        error_kind=error_kind,
+        load=load,
+        damping_when_open=machine.damping.open_flanks is OpenFlanks.ALWAYS,
+        scale=length_scale(machine),
+    )
+
+
+def length_scale(machine: Machine) -> float:
+    """Largest of the mesh deflection under the torques, the half backlash and the error's amplitude, m."""
+    layout = machine.layout
+    lever = layout.pinion_radius * np.cos(layout.pressure_angle)
+    forces = np.abs(machine.torques[: len(layout.pinions)]) / lever
+    loaded = float(forces.max()) / machine.stiffness.mean
+    return max(loaded, machine.half_backlash, float(machine.error.amplitudes[1:].sum()), 1e-12)
+
+
+def _kinds(series: Harmonics, phases: Array) -> tuple[Array, NDArray[np.int64]]:
+    """Shifted copies of a series, one for each phase that occurs, and which one each mesh takes."""
+    rounded = np.round(phases, 12) % 1.0
+    different, kind = np.unique(rounded, return_inverse=True)
+    return fourier_rows([series.shifted(float(phase)) for phase in different]), kind.astype(np.int64)
