@@ -1,0 +1,93 @@
+"""Config section `dynamics`: nominal speed, accuracy, how long to wait and measure, speed sweep."""
+
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from facegear.config.base import Section, refuse
+from facegear.dynamics.motion import Settings
+from facegear.dynamics.plan import SweepPlan
+
+MAX_SPEED_RPM = 200_000
+
+
+class Accuracy(Section):
+    """Numerical settings of a steady state; lengths in mesh periods."""
+
+    tolerance: float = Field(
+        1e-6, ge=1e-13, le=1e-2, description="local error of a step over the length scale"
+    )
+    dwell_periods: int = Field(32, ge=16, le=1_000_000, description="run before anything is judged")
+    settle_periods: int = Field(
+        512, ge=16, le=10_000_000, description="run before a motion counts as not periodic"
+    )
+    window_periods: int = Field(
+        256, ge=16, le=1_000_000, description="measured where the motion is not periodic"
+    )
+    longest_period: int = Field(8, ge=1, le=64, description="longest period looked for")
+    periodic_residual: float = Field(
+        1e-7, ge=1e-13, le=1e-2, description="change over a period, over the scale"
+    )
+    samples_per_period: int = Field(64, ge=16, le=4096)
+    refine: bool = Field(True, description="periodic orbits to rounding, with Floquet multipliers")
+
+
+class Sweep(Section):
+    """Speeds run up and down with the state carried over."""
+
+    from_rpm: float = Field(200, gt=0, le=MAX_SPEED_RPM)
+    to_rpm: float = Field(20_000, gt=0, le=MAX_SPEED_RPM)
+    points: int = Field(400, ge=2, le=100_000)
+    directions: tuple[Literal["up", "down"], ...] = Field(("up", "down"), min_length=1, max_length=2)
+    chunks: int = Field(4, ge=1, le=1000, description="independent pieces of each direction")
+    overlap_points: int = Field(8, ge=0, le=1000, description="speeds a chunk runs before its own first one")
+    jump_resolution_rpm: float = Field(1.0, gt=0, le=1000)
+    accuracy: Accuracy = Accuracy(
+        tolerance=1e-4, dwell_periods=32, settle_periods=128, window_periods=128, periodic_residual=1e-5
+    )
+
+    @model_validator(mode="after")
+    def _rising(self) -> "Sweep":
+        if self.to_rpm <= self.from_rpm:
+            refuse("to_rpm", self.to_rpm, f"more than from_rpm = {self.from_rpm}")
+        if len(set(self.directions)) < len(self.directions):
+            refuse("directions", list(self.directions), "up, down, or both once")
+        if self.chunks > self.points:
+            refuse("chunks", self.chunks, f"at most one for each of the {self.points} points")
+        return self
+
+
+class Dynamics(Section):
+    """Time response of the lumped model."""
+
+    speed_rpm: float = Field(7500, gt=0, le=MAX_SPEED_RPM, description="nominal pinion speed")
+    accuracy: Accuracy = Accuracy()
+    sweep: Sweep = Sweep()
+
+
+def settings(section: Accuracy) -> Settings:
+    """Settings of the steady-state search."""
+    return Settings(
+        tolerance=section.tolerance,
+        dwell=section.dwell_periods,
+        settle=max(section.settle_periods, section.dwell_periods),
+        longest_period=section.longest_period,
+        periodic_residual=section.periodic_residual,
+        window=section.window_periods,
+        samples=section.samples_per_period,
+        refine=section.refine,
+    )
+
+
+def sweep_plan(section: Sweep) -> SweepPlan:
+    """Speeds, directions, chunks and settings of the sweep."""
+    return SweepPlan(
+        first_rpm=section.from_rpm,
+        last_rpm=section.to_rpm,
+        points=section.points,
+        directions=section.directions,
+        chunks=section.chunks,
+        overlap=section.overlap_points,
+        jump_resolution_rpm=section.jump_resolution_rpm,
+        settings=settings(section.accuracy),
+    )

@@ -1,0 +1,37 @@
+"""Which speeds a sweep runs, and in which chunks."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.motion import Settings
+
+
+@dataclass(frozen=True)
+class SweepPlan:
+    """Evenly spaced speeds from first to last, run in each direction in chunks.
+
+    A chunk first runs `overlap` speeds of the one before it, until the state has forgotten its start.
+    """
+
+    first_rpm: float
+    last_rpm: float
+    points: int
+    directions: tuple[str, ...]
+    chunks: int
+    overlap: int
+    jump_resolution_rpm: float
+    settings: Settings
+
+    @property
+    def speeds(self) -> NDArray[np.float64]:
+        """All speeds, ascending, rpm."""
+        return np.linspace(self.first_rpm, self.last_rpm, self.points)
+
+    def chunk(self, direction: str, number: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Speeds to run for overlap, and the chunk's own, each in the order of running."""
+        speeds = self.speeds if direction == "up" else self.speeds[::-1]
+        bounds = np.linspace(0, self.points, self.chunks + 1).round().astype(int)
+        start, stop = bounds[number], bounds[number + 1]
+        return speeds[max(0, start - self.overlap) : start], speeds[start:stop]
