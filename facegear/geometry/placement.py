@@ -48,3 +48,23 @@ def mirrored(design: PairDesign) -> PairDesign:
     Angles change sign; the back pair of pinion tooth j and gear tooth j - 1 becomes pair 1 - j.
     """
     return replace(design, assembly=replace(design.assembly, offset=-design.assembly.offset))
+
+
+def to_pinion_section(design: PairDesign, points: Array, phi1: Array, phi2: Array, teeth: Array) -> Array:
+    """Gear points (n, 3) of tooth 0's body frame in the pinion's tooth section.
+
+    For p placements and t tooth numbers, gear tooth j against pinion tooth j: (p, t, n, 3), x, -z, y of the
+    pinion tooth's body frame.
+    """
+    turn = (phi2[:, None] + teeth * 2 * pi / design.face_gear.teeth)[..., None]
+    c, s = np.cos(turn), np.sin(turn)
+    x, y, z = points[:, 0], points[:, 1], points[:, 2]
+    x, y, z = c * x + s * y, c * y - s * x, np.broadcast_to(z, (*turn.shape[:2], len(points)))
+    errors = design.assembly
+    x, z = x - errors.offset, z - errors.axial_shift
+    tilt_c, tilt_s = np.cos(errors.shaft_angle_error), np.sin(errors.shaft_angle_error)
+    along = y - design.mean_radius
+    y, z = design.mean_radius + along * tilt_c + z * tilt_s, z * tilt_c - along * tilt_s
+    turn = (phi1[:, None] + (teeth - 0.5) * 2 * pi / design.pinion.teeth)[..., None]
+    c, s = np.cos(turn), np.sin(turn)
+    return np.stack([c * x + s * z, s * x - c * z, y], axis=-1)

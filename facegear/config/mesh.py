@@ -1,0 +1,30 @@
+"""The section mesh: a rung of the resolution ladder or sizes of one's own."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from facegear.config.base import Section
+from facegear.mesh.sizes import MeshSizes, named_sizes
+
+
+class SizesSection(Section):
+    """Element sizes; quadratic elements carry nodes at half these distances."""
+
+    profile_mm: float = Field(gt=0, le=100, description="across the flank's profile, at its surface")
+    width_mm: float = Field(gt=0, le=100, description="along the face")
+    thickness_mm: float = Field(gt=0, le=100, description="largest inside the tooth and the body below")
+
+
+class Mesh(Section):
+    """How fine both bodies are meshed."""
+
+    resolution: Literal["coarse", "medium", "fine", "finest"] | SizesSection = "medium"
+
+
+def mesh_sizes(section: Mesh, module: float) -> MeshSizes:
+    """Sizes in SI units for a module (m)."""
+    sizes = section.resolution
+    if isinstance(sizes, str):
+        return named_sizes(sizes, module)
+    return MeshSizes(1e-3 * sizes.profile_mm, 1e-3 * sizes.width_mm, 1e-3 * sizes.thickness_mm)

@@ -1,0 +1,155 @@
+"""The section tooth_pair: teeth, blanks, tools, material and assembly of one pinion and face gear."""
+
+from math import pi, radians
+
+from pydantic import Field, model_validator
+
+from facegear.config.base import Section, refuse
+from facegear.errors import GeometryError
+from facegear.geometry.design import (
+    Assembly,
+    FaceGear,
+    Material,
+    PairDesign,
+    Pinion,
+    Relief,
+    Shaper,
+)
+from facegear.geometry.validate import check
+
+
+class MaterialSection(Section):
+    """Linear elastic, isotropic."""
+
+    young_modulus_gpa: float = Field(gt=0, le=2000, description="Young's modulus")
+    poisson_ratio: float = Field(ge=0, le=0.49)
+
+
+class ReliefSection(Section):
+    """A modification of the pinion's flank, removed along the normal."""
+
+    amount_um: float = Field(default=0.0, ge=0, le=500)
+    start_mm: float = Field(
+        default=0.0,
+        ge=0,
+        description="tip and root: roll length from the end with the full amount; crowning: unmodified half width",
+    )
+    length_mm: float = Field(default=0.0, ge=0, description="over which it grows from nothing to the amount")
+
+
+class PinionSection(Section):
+    """Spur pinion cut by a rack."""
+
+    width_mm: float = Field(gt=0, le=2000)
+    addendum_modules: float = Field(default=1.0, gt=0, le=2)
+    dedendum_modules: float = Field(default=1.25, gt=0, le=2.5)
+    rack_tip_radius_modules: float = Field(default=0.1, ge=0, le=0.6)
+    profile_shift_modules: float = Field(default=0.0, ge=-1, le=1)
+    thinning_um: float = Field(
+        default=0.0, ge=0, description="off both flanks together: nominal normal backlash"
+    )
+    tip_chamfer_mm: float = Field(default=0.0, ge=0, description="radial height of a 45 degree chamfer")
+    bore_radius_mm: float = Field(gt=0)
+    tip_relief: ReliefSection = ReliefSection()
+    root_relief: ReliefSection = ReliefSection()
+    lead_crowning: ReliefSection = ReliefSection()
+    material: MaterialSection | None = Field(default=None, description="if not the pair's")
+
+
+class FaceGearSection(Section):
+    """Face gear blank."""
+
+    inner_radius_mm: float = Field(gt=0, le=10000)
+    outer_radius_mm: float = Field(gt=0, le=10000)
+    addendum_modules: float = Field(default=1.0, gt=0, le=2)
+    rim_thickness_mm: float = Field(gt=0, description="from the root land to the back, which is clamped")
+    material: MaterialSection | None = Field(default=None, description="if not the pair's")
+
+
+class ShaperSection(Section):
+    """The tool that generates the face gear."""
+
+    teeth: int = Field(ge=5, le=500, description="from the pinion's number (line contact) to three more")
+    addendum_modules: float = Field(default=1.25, gt=0, le=2.5)
+
+
+class AssemblySection(Section):
+    """Assembly errors; signs as in docs/geometry.md."""
+
+    offset_um: float = Field(default=0.0, ge=-5000, le=5000, description="dE")
+    shaft_angle_error_deg: float = Field(default=0.0, ge=-2, le=2, description="dgamma")
+    axial_shift_um: float = Field(default=0.0, ge=-5000, le=5000, description="dq, gear away from the pinion")
+
+
+class ToothPair(Section):
+    """A spur pinion and the face gear generated for it."""
+
+    pinion_teeth: int = Field(ge=5, le=500)
+    face_gear_teeth: int = Field(ge=10, le=2000)
+    module_mm: float = Field(gt=0, ge=0.1, le=100)
+    pressure_angle_deg: float = Field(ge=10, le=40)
+    material: MaterialSection = MaterialSection(young_modulus_gpa=206.0, poisson_ratio=0.3)
+    pinion: PinionSection
+    face_gear: FaceGearSection
+    shaper: ShaperSection
+    assembly: AssemblySection = AssemblySection()
+
+    @model_validator(mode="after")
+    def _possible(self) -> "ToothPair":
+        try:
+            check(pair_design(self))
+        except GeometryError as error:
+            refuse(error.key, error.value, error.allowed)
+        return self
+
+
+def pair_design(section: ToothPair) -> PairDesign:
+    """The pair in SI units."""
+    m = 1e-3 * section.module_mm
+    pinion, gear = section.pinion, section.face_gear
+    return PairDesign(
+        module=m,
+        pressure_angle=radians(section.pressure_angle_deg),
+        pinion=Pinion(
+            teeth=section.pinion_teeth,
+            width=1e-3 * pinion.width_mm,
+            addendum=m * pinion.addendum_modules,
+            dedendum=m * pinion.dedendum_modules,
+            rack_tip_radius=m * pinion.rack_tip_radius_modules,
+            bore_radius=1e-3 * pinion.bore_radius_mm,
+            profile_shift=m * pinion.profile_shift_modules,
+            thinning=1e-6 * pinion.thinning_um,
+            tip_chamfer=1e-3 * pinion.tip_chamfer_mm,
+            tip_relief=_relief(pinion.tip_relief),
+            root_relief=_relief(pinion.root_relief),
+            lead_crowning=_relief(pinion.lead_crowning),
+        ),
+        face_gear=FaceGear(
+            teeth=section.face_gear_teeth,
+            inner_radius=1e-3 * gear.inner_radius_mm,
+            outer_radius=1e-3 * gear.outer_radius_mm,
+            addendum=m * gear.addendum_modules,
+            rim_thickness=1e-3 * gear.rim_thickness_mm,
+        ),
+        shaper=Shaper(section.shaper.teeth, m * section.shaper.addendum_modules),
+        assembly=Assembly(
+            offset=1e-6 * section.assembly.offset_um,
+            shaft_angle_error=section.assembly.shaft_angle_error_deg * pi / 180,
+            axial_shift=1e-6 * section.assembly.axial_shift_um,
+        ),
+    )
+
+
+def materials(section: ToothPair) -> tuple[Material, Material]:
+    """Materials of pinion and face gear in SI units."""
+    pinion = section.pinion.material or section.material
+    gear = section.face_gear.material or section.material
+    return _material(pinion), _material(gear)
+
+
+def _material(section: MaterialSection) -> Material:
+    return Material(1e9 * section.young_modulus_gpa, section.poisson_ratio)
+
+
+def _relief(section: ReliefSection) -> Relief:
+    return Relief(1e-6 * section.amount_um, 1e-3 * section.start_mm, 1e-3 * section.length_mm)

@@ -1,0 +1,107 @@
+"""The pinion's tooth as a dense outline in its section, and signed distances to it."""
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from facegear.geometry import pinion
+from facegear.geometry.design import PairDesign
+from facegear.geometry.relief import removed
+
+Array = NDArray[np.float64]
+
+PINION_PARTS = ("tip land", "chamfer", "flank", "fillet", "root land")
+_MODIFIED = [PINION_PARTS.index("flank"), PINION_PARTS.index("fillet")]
+
+
+@dataclass(frozen=True)
+class PinionOutline:
+    """The right half tooth from the middle of the tip land to the middle of the space.
+
+    points, normals: (n, 2) in (x, -z); other_normals differ at the corners, where two parts meet. part: (n,)
+    index in PINION_PARTS. roll: (n,) roll angle (rad) that modifications are taken at.
+    """
+
+    points: Array
+    normals: Array
+    other_normals: Array
+    part: NDArray[np.int64]
+    roll: Array
+    tree: cKDTree
+
+
+def pinion_outline(design: PairDesign, density: int = 1200) -> PinionOutline:
+    """Outline with `density` points on the flank and on the fillet."""
+    edge, space = pinion.tip_half_angle(design), pi / design.pinion.teeth
+    few = density // 20
+    land = np.linspace(0, edge, few)
+    top, bottom = design.pinion_tip_roll, pinion.junction_roll(design)
+    roll = np.sqrt(np.linspace(top**2, bottom**2, density))
+    gamma = np.linspace(design.pressure_angle, pi / 2, density)
+    root = np.linspace(space - pinion.root_half_angle(design), space, few)
+    parts = {
+        "tip land": (np.full(few, design.pinion_tip_radius), land, (np.sin(land), np.cos(land))),
+        "flank": (*pinion.involute_point(design, roll), _upright(pinion.involute_normal(design, roll))),
+        "fillet": (*pinion.trochoid_point(design, gamma), _upright(pinion.trochoid_normal(design, gamma))),
+        "root land": (np.full(few, design.pinion_root_radius), root, (np.sin(root), np.cos(root))),
+    }
+    if design.pinion.tip_chamfer > 0:
+        parts["chamfer"] = _chamfer(design, few)
+    names = [name for name in PINION_PARTS if name in parts]
+    points = [
+        np.stack([parts[n][0] * np.sin(parts[n][1]), parts[n][0] * np.cos(parts[n][1])], 1) for n in names
+    ]
+    normals = [np.stack(parts[n][2], 1) for n in names]
+    others = [normal.copy() for normal in normals]
+    for before, after in zip(range(len(names) - 1), range(1, len(names)), strict=True):
+        others[before][-1], others[after][0] = normals[after][0], normals[before][-1]
+    sizes = [len(part) for part in points]
+    numbers = np.repeat([PINION_PARTS.index(name) for name in names], sizes)
+    rolls = np.full(sum(sizes), bottom)
+    rolls[numbers == PINION_PARTS.index("flank")] = roll
+    points = np.concatenate(points)
+    return PinionOutline(
+        points, np.concatenate(normals), np.concatenate(others), numbers, rolls, cKDTree(points)
+    )
+
+
+def _upright(normal: tuple[Array, Array]) -> tuple[Array, Array]:
+    return normal[0], -normal[1]
+
+
+def _chamfer(design: PairDesign, count: int) -> tuple[Array, Array, tuple[Array, Array]]:
+    (r0, a0) = design.pinion_tip_radius, pinion.tip_half_angle(design)
+    r1, a1 = (float(part) for part in pinion.involute_point(design, design.pinion_tip_roll))
+    start, end = (np.array([r * np.sin(a), r * np.cos(a)]) for r, a in ((r0, a0), (r1, a1)))
+    line = start + np.linspace(0, 1, count)[:, None] * (end - start)
+    along = (end - start) / np.linalg.norm(end - start)
+    normal = np.full(count, -along[1]), np.full(count, along[0])
+    return np.hypot(line[:, 0], line[:, 1]), np.arctan2(line[:, 0], line[:, 1]), normal
+
+
+def signed_distance(
+    design: PairDesign, outline: PinionOutline, section: Array, reach: float
+) -> tuple[Array, NDArray[np.int64]]:
+    """Signed distance (m) of points (..., 3), x, -z, y of the tooth's frame, and the nearest vertex' index.
+
+    Negative inside the tooth. inf beyond `reach` and beyond the ends of the face. Modifications are taken off
+    the flank and the fillet.
+    """
+    distance, nearest = outline.tree.query(section[..., :2], distance_upper_bound=reach)
+    away = np.abs(section[..., 2] - design.mean_radius) > design.pinion.width / 2
+    far = ~np.isfinite(distance) | away
+    nearest = np.where(far, 0, nearest)
+    offset = section[..., :2] - outline.points[nearest]
+    normal = np.sum(offset * outline.normals[nearest], axis=-1)
+    # a point at a convex corner is outside if it is outside either part
+    normal = np.maximum(normal, np.sum(offset * outline.other_normals[nearest], axis=-1))
+    along = np.sqrt(np.maximum(np.where(far, 0.0, distance) ** 2 - normal**2, 0.0))
+    # on a smooth part the nearest vertex lies within a spacing: the normal part is the distance
+    corner = (along > 0.02 * design.module) & (normal > 0)
+    signed = np.where(corner, distance, normal)
+    modified = np.isin(outline.part[nearest], _MODIFIED)
+    signed = signed + np.where(modified, removed(design, outline.roll[nearest], section[..., 2]), 0.0)
+    return np.where(far, np.inf, signed), nearest

@@ -1,0 +1,160 @@
+"""Refuses designs that cannot exist, naming the config key, its value and what is allowed."""
+
+from math import cos, inf, pi, sin, tan
+
+import numpy as np
+
+from facegear.errors import GeometryError
+from facegear.geometry import face_gear, pinion
+from facegear.geometry.design import PairDesign, Relief
+from facegear.geometry.limits import RadiusLimits, radius_limits
+
+THINNEST_LAND = 0.05
+"""Thinnest tip or root land, in modules: less cannot be cut, nor meshed."""
+
+
+def check(design: PairDesign) -> RadiusLimits:
+    """Limits of the gear's radii, if the design can exist.
+
+    Raises GeometryError with the key relative to the section tooth_pair.
+    """
+    _check_pinion(design)
+    _check_relief(design)
+    _check_shaper(design)
+    return _check_gear(design)
+
+
+def _refuse(key: str, value: float, allowed: str) -> None:
+    raise GeometryError(key, round(float(value), 6), allowed)
+
+
+def _check_pinion(design: PairDesign) -> None:
+    part, m, angle = design.pinion, design.module, design.pressure_angle
+    rho = part.rack_tip_radius
+    half_thickness = pi * m / 4 + part.thinning / (2 * cos(angle))
+    most = (
+        (half_thickness - part.dedendum * tan(angle) - THINNEST_LAND * m / 2) * cos(angle) / (1 - sin(angle))
+    )
+    if rho > most:
+        _refuse(
+            "pinion.rack_tip_radius_modules",
+            rho / m,
+            f"at most {max(most, 0) / m:.4f}: the rack's tip is round",
+        )
+    if most < 0:
+        deepest = (half_thickness - THINNEST_LAND * m / 2) / tan(angle)
+        _refuse(
+            "pinion.dedendum_modules", part.dedendum / m, f"at most {deepest / m:.4f}: the rack is pointed"
+        )
+    least = part.dedendum - rho - (design.pinion_pitch_radius * sin(angle) - rho) * sin(angle)
+    if part.profile_shift < least:
+        _refuse("pinion.profile_shift_modules", part.profile_shift / m, f"at least {least / m:.4f}: undercut")
+    if part.profile_shift >= part.dedendum - rho - 1e-3 * m:
+        _refuse(
+            "pinion.profile_shift_modules",
+            part.profile_shift / m,
+            f"less than {(part.dedendum - rho) / m:.4f}",
+        )
+    start = design.pinion_base_radius * np.hypot(1, pinion.junction_roll(design))
+    if design.pinion_tip_radius - part.tip_chamfer <= start + 0.1 * m:
+        room = design.pinion_tip_radius - start - 0.1 * m
+        _refuse(
+            "pinion.tip_chamfer_mm",
+            1e3 * part.tip_chamfer,
+            f"less than {1e3 * max(room, 0):.3f}: no flank left",
+        )
+    land = 2 * pinion.tip_half_angle(design) * design.pinion_tip_radius
+    if land < THINNEST_LAND * m:
+        key, value = (
+            ("tip_chamfer_mm", 1e3 * part.tip_chamfer)
+            if part.tip_chamfer
+            else ("addendum_modules", part.addendum / m)
+        )
+        _refuse(f"pinion.{key}", value, f"less: the tip land would be {1e3 * land:.3f} mm wide")
+    deepest = design.pinion_root_radius - 0.6 * m
+    if part.bore_radius > deepest:
+        _refuse("pinion.bore_radius_mm", 1e3 * part.bore_radius, f"at most {1e3 * deepest:.3f}")
+
+
+def _check_relief(design: PairDesign) -> None:
+    part = design.pinion
+    flank = design.pinion_base_radius * (design.pinion_tip_roll - pinion.junction_roll(design))
+    for name, relief, room in (
+        ("tip_relief", part.tip_relief, flank),
+        ("root_relief", part.root_relief, flank),
+        ("lead_crowning", part.lead_crowning, inf),
+    ):
+        _check_modification(name, relief, room)
+
+
+def _check_modification(name: str, relief: Relief, room: float) -> None:
+    if relief.amount == 0:
+        return
+    if relief.length <= 0:
+        _refuse(f"pinion.{name}.length_mm", 1e3 * relief.length, "greater than 0 where an amount is given")
+    if relief.start + relief.length > room:
+        end = 1e3 * (relief.start + relief.length)
+        _refuse(
+            f"pinion.{name}.length_mm", end, f"with start at most {1e3 * room:.3f}, the flank's roll length"
+        )
+
+
+def _check_shaper(design: PairDesign) -> None:
+    teeth, least = design.shaper.teeth, design.pinion.teeth
+    if not least <= teeth <= least + 3:
+        _refuse("shaper.teeth", teeth, f"from {least} (line contact) to {least + 3}")
+    m = design.module
+    if design.shaper.addendum < design.pinion.addendum:
+        least_addendum = f"at least {design.pinion.addendum / m:.4f}, the pinion's addendum"
+        _refuse("shaper.addendum_modules", design.shaper.addendum / m, least_addendum)
+    land = 2 * face_gear.root_half_angle(design) * design.gear_pitch_radius
+    if land < THINNEST_LAND * m:
+        _refuse(
+            "shaper.addendum_modules",
+            design.shaper.addendum / m,
+            f"less: the shaper's tip land would be {1e3 * land:.3f} mm wide",
+        )
+
+
+def _check_gear(design: PairDesign) -> RadiusLimits:
+    gear, m = design.face_gear, design.module
+    if gear.addendum >= design.pinion.dedendum:
+        _refuse(
+            "face_gear.addendum_modules",
+            gear.addendum / m,
+            f"less than the pinion's dedendum {design.pinion.dedendum / m:.4f}",
+        )
+    if gear.rim_thickness < 0.5 * m:
+        _refuse("face_gear.rim_thickness_mm", 1e3 * gear.rim_thickness, f"at least {500 * m:.3f}")
+    limits = radius_limits(design)
+    allowed = f"between {1e3 * limits.inner:.3f} (undercut) and {1e3 * limits.outer:.3f} (pointing)"
+    for key, value in (("inner_radius_mm", gear.inner_radius), ("outer_radius_mm", gear.outer_radius)):
+        if not limits.inner <= value <= limits.outer:
+            _refuse(f"face_gear.{key}", 1e3 * value, allowed)
+    if gear.outer_radius - gear.inner_radius < 0.5 * m:
+        least = 1e3 * (gear.inner_radius + 0.5 * m)
+        _refuse(
+            "face_gear.outer_radius_mm",
+            1e3 * gear.outer_radius,
+            f"at least {least:.3f}, half a module of face",
+        )
+    radius = np.linspace(gear.inner_radius, gear.outer_radius, 33)
+    roll, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
+    if roll.min() < 0:
+        start = design.shaper_base_radius * np.cos(psi[np.argmin(roll)])
+        most = design.shaper_pitch_radius + design.pinion.profile_shift - start
+        _refuse(
+            "face_gear.addendum_modules",
+            gear.addendum / m,
+            f"less than {most / m:.4f}: no involute generates it",
+        )
+    if np.max(roll) >= design.shaper_tip_roll:
+        _refuse("face_gear.addendum_modules", gear.addendum / m, "more: the flank has no height")
+    land = 2 * face_gear.flank_point(design, roll, psi)[:, 0].min()
+    if land < THINNEST_LAND * m:
+        _refuse(
+            "face_gear.outer_radius_mm",
+            1e3 * gear.outer_radius,
+            f"less: the tip land would be {1e3 * land:.3f} mm wide; {allowed}",
+        )
+    return limits
