@@ -1,0 +1,46 @@
+"""Config section `load_sharing`: how long and from how many starts the coefficients are averaged."""
+
+from pydantic import Field, model_validator
+
+from facegear.config.base import Section, refuse
+from facegear.load_sharing.options import SharingOptions, SpeedRange
+
+
+class SpeedRangeSection(Section):
+    """Speeds over which the largest coefficients are looked for."""
+
+    from_rpm: float = Field(200.0, gt=0, le=1e5)
+    to_rpm: float = Field(20000.0, gt=0, le=1e5)
+    points: int = Field(100, ge=2, le=2000)
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "SpeedRangeSection":
+        if self.to_rpm <= self.from_rpm:
+            refuse("to_rpm", self.to_rpm, f"above from_rpm = {self.from_rpm:g}")
+        return self
+
+
+class LoadSharing(Section):
+    """Averages over many cycles and starts, with their uncertainty; statics and slow running beside them."""
+
+    samples_per_cycle: int = Field(256, ge=32, le=8192)
+    cycles: int = Field(200, ge=20, le=20000, description="mesh cycles kept from each start")
+    starts: int = Field(4, ge=1, le=200, description="one from rest, the others disturbed at random")
+    start_spread_um: float = Field(20.0, ge=0, le=1e4, description="size of the random disturbance")
+    confidence: float = Field(0.95, gt=0.5, lt=1.0)
+    quasi_static_rpm: float = Field(10.0, gt=0, le=1000, description="speed of the slow run")
+    speed_range: SpeedRangeSection = SpeedRangeSection()
+
+
+def sharing_options(section: LoadSharing) -> SharingOptions:
+    """SI options of the load-sharing stage."""
+    speeds = section.speed_range
+    return SharingOptions(
+        samples=section.samples_per_cycle,
+        cycles=section.cycles,
+        starts=section.starts,
+        spread=1e-6 * section.start_spread_um,
+        confidence=section.confidence,
+        slow_rpm=section.quasi_static_rpm,
+        speeds=SpeedRange(speeds.from_rpm, speeds.to_rpm, speeds.points),
+    )

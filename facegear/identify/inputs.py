@@ -1,0 +1,110 @@
+"""The inputs that the paper leaves out, as points of a search space."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.harmonics.series import Harmonics
+from facegear.transmission.machine import Machine, balanced_torques, pinion_torques
+from facegear.transmission.phases import PhaseConvention
+
+StiffnessAt = Callable[[float], Harmonics]
+"""Mesh stiffness series of the reference mesh from the torque on a pinion for one mesh, N m."""
+
+
+class Meaning(StrEnum):
+    """What the paper's 50 um of transmission error is."""
+
+    AMPLITUDE = "amplitude"
+    RANGE = "range"
+
+
+class Waveform(StrEnum):
+    """Form of e(t): a cosine, a triangle, or parabolic arcs as between equal teeth."""
+
+    SINE = "sine"
+    TRIANGLE = "triangle"
+    ARCS = "arcs"
+
+
+@dataclass(frozen=True)
+class Branch:
+    """The choices that are not numbers. `stiffness` names the source of the stiffness harmonics."""
+
+    meaning: Meaning
+    in_step: bool
+    convention: PhaseConvention
+    waveform: Waveform
+    stiffness: str
+
+    @property
+    def name(self) -> str:
+        """Readable and usable as a file name."""
+        phasing = "in_step" if self.in_step else "mesh"
+        parts = (self.meaning, phasing, self.convention, self.waveform, self.stiffness)
+        return "-".join(str(part) for part in parts)
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """One point: torque per input pinion (N m), share leaving at the tail, phase of e(t) in mesh periods."""
+
+    branch: Branch
+    torque: float
+    tail_share: float
+    error_phase: float
+
+
+@dataclass(frozen=True)
+class Space:
+    """Ranges of the three numbers; the torque is searched on a logarithmic scale."""
+
+    torque: tuple[float, float]
+    tail_share: tuple[float, float]
+
+    def inputs(self, branch: Branch, unit: NDArray[np.float64]) -> Inputs:
+        """The point at `unit`, shape (3,), each in [0, 1]; the last one is cyclic."""
+        low, high = np.log(self.torque)
+        torque = float(np.exp(low + unit[0] * (high - low)))
+        tail = self.tail_share[0] + float(unit[1]) * (self.tail_share[1] - self.tail_share[0])
+        return Inputs(branch, torque, tail, float(unit[2] % 1.0))
+
+
+WAVEFORM_TERMS: Mapping[Waveform, tuple[tuple[int, float], ...]] = {
+    Waveform.SINE: ((1, 1.0),),
+    Waveform.TRIANGLE: tuple((j, 8.0 / (np.pi * j) ** 2) for j in (1, 3, 5, 7)),
+    Waveform.ARCS: tuple((j, -8.0 * (-1.0) ** j / (np.pi * j) ** 2) for j in (1, 2, 3, 4, 5, 6)),
+}
+"""Cosine series with unit half range; triangle and arcs are cut where a term is below 3 % of the first."""
+
+
+def error_series(size: float, branch: Branch, phase: float) -> Harmonics:
+    """e(t) of the reference mesh; `size` (m) is the paper's number, `phase` the lead in mesh periods."""
+    half_range = size if branch.meaning is Meaning.AMPLITUDE else 0.5 * size
+    terms = WAVEFORM_TERMS[branch.waveform]
+    a, b = np.zeros(terms[-1][0] + 1), np.zeros(terms[-1][0] + 1)
+    for order, weight in terms:
+        b[order] = half_range * weight
+    return Harmonics(a, b).shifted(-phase)
+
+
+def machine_with(
+    base: Machine, inputs: Inputs, error_size: float, stiffness: Mapping[str, StiffnessAt]
+) -> Machine:
+    """The base machine with the undisclosed inputs put in."""
+    layout = base.layout
+    on_pinions = pinion_torques(layout, inputs.torque, inputs.tail_share)
+    meshes = len(layout.gears)
+    return replace(
+        base,
+        torques=balanced_torques(layout, on_pinions),
+        stiffness=stiffness[inputs.branch.stiffness](inputs.torque / meshes),
+        error=error_series(error_size, inputs.branch, inputs.error_phase),
+        phase_convention=inputs.branch.convention,
+        error_in_step=inputs.branch.in_step,
+    )
+
+

@@ -1,0 +1,109 @@
+"""Global search over the undisclosed inputs, one branch at a time."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+import scipy.optimize
+import scipy.stats
+from numpy.typing import NDArray
+
+from facegear.dynamics.motion import Settings
+from facegear.identify.inputs import Branch, Inputs, Space, StiffnessAt, machine_with
+from facegear.identify.objective import Misfit, misfit
+from facegear.identify.targets import Targets
+from facegear.progress import Progress
+from facegear.transmission.machine import Machine
+
+NUMBERS = 3
+QUICK = Settings(tolerance=1e-3, refine=False, settle=128, dwell=64, window=64, samples=64)
+QUICK_SWEEP = Settings(tolerance=1e-3, refine=False, settle=64, dwell=48, window=16, samples=32)
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """Everything the search needs but the inputs: base machine, size of e(t) in m, stiffness sources, targets."""
+
+    base: Machine
+    error_size: float
+    stiffness: Mapping[str, StiffnessAt]
+    targets: Targets
+    space: Space
+
+
+@dataclass(frozen=True)
+class Budget:
+    """Evaluations of a branch: points of the first scan, points and generations of the refinement."""
+
+    scan: int
+    population: int
+    generations: int
+    seed: int = 0
+
+
+def search_branch(problem: Problem, branch: Branch, budget: Budget) -> pd.DataFrame:
+    """Scan a branch with a Sobol sequence, then refine its best points by differential evolution.
+
+    Every evaluation is a row, so that the landscape and separate optima can be read from the result.
+    """
+    rows: list[dict[str, object]] = []
+    progress = Progress(
+        f"identify {branch.name}", budget.scan + budget.population * (budget.generations + 1)
+    )
+
+    def evaluate(unit: NDArray[np.float64]) -> float:
+        inputs = problem.space.inputs(branch, unit)
+        found = misfit_of(problem, inputs)
+        rows.append({**inputs_row(inputs), **misfit_row(found), "evaluation": len(rows)})
+        progress.step()
+        return found.total
+
+    sobol = scipy.stats.qmc.Sobol(NUMBERS, seed=budget.seed)
+    units = sobol.random(budget.scan)
+    values = np.array([evaluate(unit) for unit in units])
+    if budget.generations > 0:
+        best = units[np.argsort(values, kind="stable")[: budget.population]]
+        scipy.optimize.differential_evolution(
+            evaluate,
+            [(0.0, 1.0)] * NUMBERS,
+            init=best,
+            maxiter=budget.generations,
+            mutation=(0.4, 0.9),
+            polish=False,
+            tol=0.0,
+            seed=budget.seed,
+        )
+    return pd.DataFrame(rows)
+
+
+def misfit_of(problem: Problem, inputs: Inputs) -> Misfit:
+    """Misfit of one set of inputs."""
+    machine = machine_with(problem.base, inputs, problem.error_size, problem.stiffness)
+    return misfit(machine, problem.targets, QUICK, QUICK_SWEEP)
+
+
+def inputs_row(inputs: Inputs) -> dict[str, object]:
+    """A set of inputs as the cells of a table."""
+    branch = inputs.branch
+    return {
+        "branch": branch.name,
+        "meaning": branch.meaning.value,
+        "phasing": "in_step" if branch.in_step else "mesh",
+        "phase_convention": branch.convention.value,
+        "waveform": branch.waveform.value,
+        "stiffness": branch.stiffness,
+        "per_input_n_m": inputs.torque,
+        "tail_share": inputs.tail_share,
+        "error_phase_deg": 360.0 * inputs.error_phase,
+    }
+
+
+def misfit_row(found: Misfit) -> dict[str, object]:
+    """A misfit as the cells of a table."""
+    return {
+        "misfit": found.total,
+        "sharing_misfit": found.sharing,
+        "worst_mean": found.worst_mean,
+        **{f"jump_{i + 1}_off": value for i, value in enumerate(found.jumps)},
+    }

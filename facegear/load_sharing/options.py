@@ -1,0 +1,26 @@
+"""Settings of the load-sharing stage."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class SpeedRange:
+    """Evenly spaced speeds in rpm, both ends included."""
+
+    first: float
+    last: float
+    points: int
+
+
+@dataclass(frozen=True)
+class SharingOptions:
+    """Samples a cycle, cycles and starts averaged, size of the random disturbance of a start (m, at the mesh),
+    confidence level, speed of the quasi-static run (rpm), and the range searched for the largest coefficient."""
+
+    samples: int
+    cycles: int
+    starts: int
+    spread: float
+    confidence: float
+    slow_rpm: float
+    speeds: SpeedRange

@@ -1,0 +1,84 @@
+"""Averages of a coefficient over many mesh cycles, and how well they are known."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.stats
+from numpy.typing import NDArray
+
+BATCHES = 10
+
+
+@dataclass(frozen=True)
+class Average:
+    """Mean over all defined instants, its confidence half-width, extremes, and what single cycles show.
+
+    `cycle_low` and `cycle_high` bound the means of single cycles at the confidence level; `cycle_minimum` is
+    the median of their minima. `lost` and `undefined` are shares of time with a path without load and with no
+    load at all; undefined instants are left out of everything else. All NaN where nothing is ever loaded.
+    """
+
+    mean: float
+    half_width: float
+    minimum: float
+    maximum: float
+    cycle_low: float
+    cycle_high: float
+    cycle_minimum: float
+    lost: float
+    undefined: float
+    cycles: int
+
+
+def average(
+    coefficients: NDArray[np.float64],
+    lost: NDArray[np.bool_],
+    confidence: float = 0.95,
+    periodic: bool = False,
+) -> Average:
+    """Average a coefficient given as (cycles, samples), NaN where undefined; `lost` likewise.
+
+    A periodic motion given over its whole period has an exact mean: its half-width is zero.
+    """
+    undefined = np.isnan(coefficients)
+    counts = (~undefined).sum(axis=-1)
+    loaded = counts > 0
+    count = len(coefficients)
+    if not loaded.any():
+        nothing = [float("nan")] * 7
+        return Average(*nothing, lost=float(lost.mean()), undefined=1.0, cycles=count)
+    sums = np.where(undefined, 0.0, coefficients).sum(axis=-1)
+    means = sums[loaded] / counts[loaded]
+    lows = np.where(undefined, np.inf, coefficients).min(axis=-1)[loaded]
+    tail = 0.5 * (1.0 - confidence)
+    return Average(
+        mean=float(sums.sum() / counts.sum()),
+        half_width=0.0 if periodic else _half_width(sums, counts, confidence),
+        minimum=float(np.nanmin(coefficients)),
+        maximum=float(np.nanmax(coefficients)),
+        cycle_low=float(np.quantile(means, tail)),
+        cycle_high=float(np.quantile(means, 1.0 - tail)),
+        cycle_minimum=float(np.median(lows)),
+        lost=float(lost.mean()),
+        undefined=float(undefined.mean()),
+        cycles=count,
+    )
+
+
+def _half_width(sums: NDArray[np.float64], counts: NDArray[np.int64], confidence: float) -> float:
+    """Half-width of the mean's confidence interval from batch means; sums and counts are (cycles,).
+
+    Cycles follow each other and are not independent, batches of many cycles nearly are. NaN from one batch.
+    """
+    batches = min(BATCHES, sums.size)
+    means = [
+        batch_sums.sum() / batch_counts.sum()
+        for batch_sums, batch_counts in zip(
+            np.array_split(sums, batches), np.array_split(counts, batches), strict=True
+        )
+        if batch_counts.sum() > 0
+    ]
+    if len(means) < 2:
+        return float("nan")
+    quantile = scipy.stats.t.ppf(0.5 + 0.5 * confidence, len(means) - 1)
+    return float(quantile * np.std(means, ddof=1) / np.sqrt(len(means)))
