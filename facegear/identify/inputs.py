@@ -106,5 +106,3 @@ def machine_with(
         phase_convention=inputs.branch.convention,
         error_in_step=inputs.branch.in_step,
     )
-
-

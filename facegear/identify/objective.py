@@ -65,9 +65,7 @@ def misfit(machine: Machine, targets: Targets, settings: Settings, sweep: Settin
     return Misfit(total, sharing, float(off[:, :2].max()), jumps, found)
 
 
-def coefficients(
-    ready: Model, speed: float, settings: Settings, start: State
-) -> tuple[float, float, float]:
+def coefficients(ready: Model, speed: float, settings: Settings, start: State) -> tuple[float, float, float]:
     """Means of inputs and idlers and the idlers' minimum in a cycle, at a speed in rpm."""
     response = simulate(ready, speed, settings, start=start)
     inputs = _averages(response, ready, GroupKind.INPUTS)

@@ -48,9 +48,7 @@ def search_branch(problem: Problem, branch: Branch, budget: Budget) -> pd.DataFr
     Every evaluation is a row, so that the landscape and separate optima can be read from the result.
     """
     rows: list[dict[str, object]] = []
-    progress = Progress(
-        f"identify {branch.name}", budget.scan + budget.population * (budget.generations + 1)
-    )
+    progress = Progress(f"identify {branch.name}", budget.scan + budget.population * (budget.generations + 1))
 
     def evaluate(unit: NDArray[np.float64]) -> float:
         inputs = problem.space.inputs(branch, unit)

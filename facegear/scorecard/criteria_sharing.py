@@ -58,7 +58,9 @@ def steeper(tables: Tables, study: str, kind: str, point: str) -> Outcome:
     """The curve's root-mean-square slope at the named point exceeds that at every other point of the study."""
     points = list(dict.fromkeys(_study(tables, study)["point"]))
     slopes = [float(np.sqrt(np.mean(_slope(_curve(tables, study, name, kind)) ** 2))) for name in points]
-    return statement(points[int(np.argmax(slopes))] == point, f"rms slope per cycle {_listed(points, slopes)}")
+    return statement(
+        points[int(np.argmax(slopes))] == point, f"rms slope per cycle {_listed(points, slopes)}"
+    )
 
 
 def differ(tables: Tables, study: str, kind: str, column: str, by: float) -> Outcome:

@@ -1,0 +1,100 @@
+"""What the dynamic coefficients are held against: the machine at rest, running slowly, and over all speeds."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from facegear.dynamics.motion import Settings
+from facegear.dynamics.simulate import model, simulate
+from facegear.harmonics.series import Harmonics
+from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
+from facegear.load_sharing.groups import load_groups
+from facegear.load_sharing.options import SharingOptions
+from facegear.load_sharing.run import cycle_forces, group_average
+from facegear.load_sharing.statics import mean_equilibrium_forces, static_forces
+from facegear.load_sharing.statistics import average
+from facegear.progress import Progress
+from facegear.transmission.machine import Machine
+
+POSITIONS = 64
+SLOW_PERIODS = 4
+
+
+def reference_table(machine: Machine, settings: Settings, options: SharingOptions) -> pd.DataFrame:
+    """Coefficients without dynamics, one row a quantity and group.
+
+    `static`: equilibrium at every position of the mesh cycle; `quasi_static`: the same model run slowly, which
+    tends to the static one; `equilibrium`: mean stiffness, no transmission error; `no_error` and
+    `no_error_no_backlash`: the static one with these left out. Raises NotConverged.
+    """
+    silent = replace(machine, error=Harmonics(np.zeros(1), np.zeros(1)))
+    tight = replace(silent, half_backlash=0.0)
+    cases = {
+        "static": static_forces(machine, POSITIONS),
+        "quasi_static": slow_forces(machine, settings, options.slow_rpm),
+        "equilibrium": mean_equilibrium_forces(machine),
+        "no_error": static_forces(silent, POSITIONS),
+        "no_error_no_backlash": static_forces(tight, POSITIONS),
+    }
+    rows = [row for quantity, forces in cases.items() for row in _rows(machine, quantity, forces)]
+    return pd.DataFrame(rows)
+
+
+def slow_forces(machine: Machine, settings: Settings, speed_rpm: float) -> NDArray[np.float64]:
+    """Elastic mesh forces over one cycle at a low speed, shape (1, positions, meshes), N.
+
+    A cycle lasts many decay times there, so a few cycles from equilibrium are settled.
+    """
+    slow = replace(
+        settings, samples=POSITIONS, dwell=SLOW_PERIODS, settle=SLOW_PERIODS, window=1, refine=False
+    )
+    return cycle_forces(simulate(model(machine), speed_rpm, slow))[-1:]
+
+
+def speed_range_table(machine: Machine, settings: Settings, options: SharingOptions) -> pd.DataFrame:
+    """Mean and largest coefficient of each group over a range of speeds, the state carried upward."""
+    speeds = np.linspace(options.speeds.first, options.speeds.last, options.speeds.points)
+    progress = Progress("load sharing over speed", speeds.size)
+    ready, state, rows = model(machine), None, []
+    for speed in speeds:
+        response = simulate(ready, float(speed), settings, start=state)
+        state = response.state
+        for group in load_groups(machine.layout):
+            one = group_average(response, group, options.confidence)[2]
+            rows.append(
+                {
+                    "speed_rpm": speed,
+                    "group": group.name,
+                    "kind": group.kind.value,
+                    "mean": one.mean,
+                    "half_width": one.half_width,
+                    "maximum": one.maximum,
+                    "lost_share": one.lost,
+                    "undefined_share": one.undefined,
+                    "motion": response.label,
+                }
+            )
+        progress.step()
+    return pd.DataFrame(rows)
+
+
+def _rows(machine: Machine, quantity: str, forces: NDArray[np.float64]) -> list[dict[str, object]]:
+    rows: list[dict[str, object]] = []
+    for group in load_groups(machine.layout):
+        own = forces[..., group.meshes]
+        one = average(sharing_coefficient(own), lost_contact(own), periodic=True)
+        rows.append(
+            {
+                "quantity": quantity,
+                "group": group.name,
+                "kind": group.kind.value,
+                "mean": one.mean,
+                "minimum": one.minimum,
+                "maximum": one.maximum,
+                "lost_share": one.lost,
+                "undefined_share": one.undefined,
+            }
+        )
+    return rows
