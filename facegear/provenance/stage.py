@@ -2,6 +2,7 @@
 
 import sys
 import time
+import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -43,7 +44,8 @@ def stage(snakemake: Any) -> Iterator[Run]:
         try:
             yield run
         except FacegearError as error:
-            print(f"error in {snakemake.rule}: {error} (log: {log})", file=sys.stderr, flush=True)
+            where = f"{snakemake.rule} of {snakemake.wildcards.get('case', 'this workflow')}"
+            print(f"error in {where}: {error} (log: {log})", file=sys.stderr, flush=True)
             raise SystemExit(1) from None
         for manifest in manifests:
             write_manifest(
@@ -70,6 +72,8 @@ class _Copied:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         sys.stderr = self.terminal
+        if kind is not None and kind is not SystemExit:
+            traceback.print_exception(kind, error, trace, file=self.log)
 
     def write(self, text: str) -> int:
         self.log.write(text)

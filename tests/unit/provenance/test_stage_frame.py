@@ -1,0 +1,55 @@
+"""The frame around a script: manifest at the end, one-line errors, tracebacks only in the log."""
+
+import json
+from types import SimpleNamespace
+
+import pytest
+
+from facegear.errors import NotConverged
+from facegear.provenance.stage import stage
+
+
+@pytest.fixture
+def job(tmp_path):
+    return SimpleNamespace(
+        output=[str(tmp_path / "a.csv"), str(tmp_path / "a.provenance.json")],
+        log=[str(tmp_path / "a.log")],
+        params={"code": "c0de", "section": {"teeth": 23}},
+        rule="contact",
+        wildcards={"case": "paper"},
+        config={"rebuild_command": "snakemake --cores 2 --force"},
+    )
+
+
+def test_manifest_records_what_made_the_outputs(job, tmp_path, capsys):
+    with stage(job) as run:
+        (tmp_path / "a.csv").write_text("x\n1\n")
+        run.summary("mean stiffness 4.1e8 N/m")
+    made = json.loads((tmp_path / "a.provenance.json").read_text())
+    assert made["rule"] == "contact"
+    assert made["code"] == "c0de"
+    assert made["params"] == {"section": {"teeth": 23}}
+    assert made["summary"] == "mean stiffness 4.1e8 N/m"
+    assert made["files"]["a.csv"]["bytes"] == 4
+    assert {"python", "numpy"} <= set(made["versions"])
+    assert "summary: mean stiffness" in capsys.readouterr().err
+    assert "mean stiffness" in (tmp_path / "a.log").read_text()
+
+
+def test_solver_failure_is_one_line_with_case_and_log(job, tmp_path, capsys):
+    (tmp_path / "a.provenance.json").write_text("{}")
+    with pytest.raises(SystemExit) as ended, stage(job):
+        raise NotConverged("contact", "position 0.25, 600 N m", "40 active set steps")
+    assert ended.value.code == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line == (
+        "error in contact of paper: contact did not converge at position 0.25, 600 N m: 40 active set steps "
+        f"(log: {tmp_path / 'a.log'})"
+    )
+    assert not (tmp_path / "a.provenance.json").exists()
+
+
+def test_traceback_of_a_programming_error_is_kept_in_the_log(job, tmp_path):
+    with pytest.raises(ZeroDivisionError), stage(job):
+        1 / 0  # noqa: B018
+    assert "ZeroDivisionError" in (tmp_path / "a.log").read_text()
