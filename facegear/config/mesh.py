@@ -20,6 +20,9 @@ class Mesh(Section):
     """How fine both bodies are meshed."""
 
     resolution: Literal["coarse", "medium", "fine", "finest"] | SizesSection = "medium"
+    exported_teeth: int = Field(
+        default=3, ge=1, le=2000, description="teeth in mesh files, at most all of them"
+    )
 
 
 def mesh_sizes(section: Mesh, module: float) -> MeshSizes:

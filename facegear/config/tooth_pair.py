@@ -32,7 +32,7 @@ class ReliefSection(Section):
     start_mm: float = Field(
         default=0.0,
         ge=0,
-        description="tip and root: roll length from the end with the full amount; crowning: unmodified half width",
+        description="tip, root: roll length from the end with the full amount; crowning: plain half width",
     )
     length_mm: float = Field(default=0.0, ge=0, description="over which it grows from nothing to the amount")
 

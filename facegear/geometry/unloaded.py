@@ -51,7 +51,7 @@ def unloaded_contact(design: PairDesign, phi1: ArrayLike) -> UnloadedContact:
     """
     phi1 = np.atleast_1d(np.asarray(phi1, float))
     conjugate = conjugate_angle(design, phi1)
-    phi2 = conjugate.copy()
+    phi2 = conjugate - design.pinion.thinning / 2 / design.gear_base_radius
     roll, y, size = _coarse(design, phi1, phi2)
     levels = 16
     for _ in range(12):

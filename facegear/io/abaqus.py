@@ -1,0 +1,47 @@
+"""Write a mesh as an Abaqus / CalculiX input deck (.inp)."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TextIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.io.atomic import atomic_path
+
+Indices = NDArray[np.int64]
+
+
+def write(
+    path: str | Path,
+    title: str,
+    nodes: NDArray[np.float64],
+    elements: Indices,
+    node_sets: Mapping[str, Indices],
+    surfaces: Mapping[str, Sequence[tuple[int, str]]],
+) -> None:
+    """Nodes (N, 3) in m, C3D20 elements (M, 20) of node indices, sets of node indices.
+
+    surfaces: named lists of (element index, face S1..S6). Nodes that no element uses are left out; labels are
+    index + 1. Lengths are in m, so a modulus belongs in Pa.
+    """
+    used = np.unique(elements)
+    with atomic_path(path) as temporary, open(temporary, "w", encoding="ascii") as stream:
+        stream.write(f"*HEADING\n{title}; lengths in m\n*NODE, NSET=ALL_NODES\n")
+        table = np.column_stack([used + 1, nodes[used]])
+        np.savetxt(stream, table, fmt="%d, %.15e, %.15e, %.15e")
+        stream.write("*ELEMENT, TYPE=C3D20, ELSET=BODY\n")
+        labels = np.column_stack([np.arange(1, len(elements) + 1), elements + 1])
+        for row in labels.tolist():
+            stream.write(", ".join(map(str, row[:11])) + ",\n" + ", ".join(map(str, row[11:])) + "\n")
+        for name, members in node_sets.items():
+            stream.write(f"*NSET, NSET={name.upper()}\n")
+            _list(stream, np.intersect1d(members, used) + 1)
+        for name, faces in surfaces.items():
+            stream.write(f"*SURFACE, NAME={name.upper()}, TYPE=ELEMENT\n")
+            stream.writelines(f"{element + 1}, {side}\n" for element, side in faces)
+
+
+def _list(stream: TextIO, labels: Indices) -> None:
+    for start in range(0, len(labels), 12):
+        stream.write(", ".join(map(str, labels[start : start + 12].tolist())) + "\n")

@@ -1,0 +1,66 @@
+"""What the mesh stage writes: files for gmsh, ParaView, Abaqus and CalculiX, and the quality table."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from facegear.io import abaqus, meshes
+from facegear.io.atomic import atomic_path
+from facegear.mesh.gmsh_model import write_msh
+from facegear.mesh.orderings import FACES, SERENDIPITY20, VTK27
+from facegear.mesh.quality import scaled_jacobians, volume
+from facegear.mesh.sector import SectorMesh
+
+QUANTILES = (0.0, 0.01, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0)
+
+
+def write_files(sector: SectorMesh, msh: Path, vtu: Path, inp: Path) -> pd.DataFrame:
+    """Write the sector in three formats and return the body's rows of quality.csv."""
+    with atomic_path(msh) as temporary:
+        condition = write_msh(sector, temporary)
+    jacobian = scaled_jacobians(sector.nodes, sector.hexes)
+    meshes.write_vtu(
+        vtu,
+        sector.nodes,
+        {"hexahedron27": sector.hexes[:, VTK27]},
+        cell_data={"scaled_jacobian": [jacobian], "min_sicn": [condition]},
+    )
+    names = [name for name in sector.tooth.faces if len(sector.faces(name))]
+    abaqus.write(
+        inp,
+        f"{sector.tooth.body}: {len(sector.tooth_nodes)} of {sector.tooth.teeth} teeth",
+        sector.nodes,
+        sector.hexes[:, SERENDIPITY20],
+        {name: np.unique(sector.faces(name)) for name in names},
+        {f"{name}_surface": element_faces(sector, name) for name in names},
+    )
+    return quality_table(sector, jacobian, condition)
+
+
+def element_faces(sector: SectorMesh, name: str) -> list[tuple[int, str]]:
+    """Element index and Abaqus face name of every face of a group."""
+    middle = sector.faces(name)[:, 4]
+    sides = sector.hexes[:, list(FACES.values())]
+    order = np.argsort(sides.ravel(), kind="stable")
+    place = order[np.searchsorted(sides.ravel(), middle, sorter=order)]
+    labels = list(FACES)
+    return [(int(at // 6), labels[at % 6]) for at in place]
+
+
+def quality_table(
+    sector: SectorMesh, jacobian: NDArray[np.float64], condition: NDArray[np.float64]
+) -> pd.DataFrame:
+    """Rows (body, quantity, statistic, value): counts and volume, and quality by quantile."""
+    body, serendipity = sector.tooth.body, np.unique(sector.hexes[:, SERENDIPITY20])
+    rows = [
+        (body, "teeth", "count", len(sector.tooth_nodes)),
+        (body, "elements", "count", len(sector.hexes)),
+        (body, "nodes", "count", len(sector.nodes)),
+        (body, "serendipity_dof", "count", 3 * len(serendipity)),
+        (body, "volume_mm3", "sum", 1e9 * volume(sector.nodes, sector.hexes)),
+    ]
+    for name, values in (("scaled_jacobian", jacobian), ("min_sicn", condition)):
+        rows += [(body, name, f"quantile_{q:g}", float(np.quantile(values, q))) for q in QUANTILES]
+    return pd.DataFrame(rows, columns=["body", "quantity", "statistic", "value"])

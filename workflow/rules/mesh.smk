@@ -1,0 +1,28 @@
+rule mesh:
+    input:
+        pair=upstream("geometry", "geometry/pair.json"),
+    output:
+        pinion_msh="results/{case}/mesh/pinion.msh",
+        pinion_vtu="results/{case}/mesh/pinion.vtu",
+        pinion_inp="results/{case}/mesh/pinion.inp",
+        face_gear_msh="results/{case}/mesh/face_gear.msh",
+        face_gear_vtu="results/{case}/mesh/face_gear.vtu",
+        face_gear_inp="results/{case}/mesh/face_gear.inp",
+        quality="results/{case}/mesh/quality.csv",
+        manifest="results/{case}/mesh/mesh.provenance.json",
+    log:
+        "results/{case}/logs/mesh.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/mesh.tsv"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=10,
+    params:
+        tooth_pair=config_slice("tooth_pair"),
+        mesh=config_slice("mesh"),
+        code=fingerprint("mesh.py"),
+    message:
+        "meshes of {wildcards.case}"
+    script:
+        "../scripts/mesh.py"
