@@ -42,19 +42,35 @@ def parse(model: type[SectionType], values: Mapping[str, Any], source: str = "co
     try:
         return model.model_validate_json(text)
     except ValidationError as error:
-        lines = [_line(model, details) for details in error.errors(include_url=False)]
+        lines = _lines(model, error.errors(include_url=False))
         raise ConfigErrors(source, list(dict.fromkeys(lines))) from None
 
 
-def _line(model: type[Section], details: ErrorDetails) -> str:
+def _lines(model: type[Section], found: list[ErrorDetails]) -> list[str]:
+    """A line for each mistake; a misspelt key is not told again as a missing one."""
+    places = [[part for part in details["loc"] if not _is_union_tag(part)] for details in found]
+    meant = [
+        [*place[:-1], _nearest(model, place)]
+        for place, details in zip(places, found, strict=True)
+        if details["type"] == "extra_forbidden"
+    ]
+    return [
+        _line(model, details, place)
+        for place, details in zip(places, found, strict=True)
+        if details["type"] != "missing" or place not in meant
+    ]
+
+
+def _line(model: type[Section], details: ErrorDetails, location: list[int | str]) -> str:
     kind, context = details["type"], details.get("ctx", {})
-    location = [part for part in details["loc"] if not _is_union_tag(part)]
     if kind == "refused":
         key = ".".join([_dotted(location), context["key"]]).strip(".")
         return f"{key} = {context['value']}: {context['allowed']}"
     key = _dotted(location) or "(the whole file)"
     if kind == "extra_forbidden":
-        return f"{key} = {_shown(details['input'])}: unknown key{_nearest(model, location)}"
+        nearest, keys = _nearest(model, location), _keys_at(model, location[:-1])
+        hint = f"did you mean {nearest!r}?" if nearest else f"allowed here: {', '.join(sorted(keys))}"
+        return f"{key} = {_shown(details['input'])}: unknown key; {hint}"
     if kind == "missing":
         return f"{key} = (missing): this key is required"
     message = details["msg"].removeprefix("Input ").removeprefix("Value error, ")
@@ -81,12 +97,10 @@ def _shown(value: Any) -> str:
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
-def _nearest(model: type[Section], location: list[int | str]) -> str:
+def _nearest(model: type[Section], location: list[int | str]) -> str | None:
     keys = _keys_at(model, location[:-1])
-    close = difflib.get_close_matches(str(location[-1]), keys, n=1, cutoff=0.6)
-    if close:
-        return f"; did you mean {close[0]!r}?"
-    return f"; allowed here: {', '.join(sorted(keys))}" if keys else ""
+    close = difflib.get_close_matches(str(location[-1]), sorted(keys), n=1, cutoff=0.6)
+    return close[0] if close else None
 
 
 def _keys_at(model: type[BaseModel], location: list[int | str]) -> set[str]:

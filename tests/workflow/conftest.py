@@ -36,8 +36,8 @@ class Project:
 
     def planned(self, *arguments: str) -> set[str]:
         """Names of the rules that a dry run would execute."""
-        text = self.run("-n", "--quiet", "host", *arguments).stdout
-        return rules_in(text)
+        done = self.run("-n", *arguments)
+        return rules_in(done.stdout + done.stderr) - {"all"}
 
 
 def rules_in(text: str) -> set[str]:

@@ -33,7 +33,7 @@ GOOD = {"case": "a", "bearing": {"stiffness_n_per_m": 1}}
 @pytest.mark.parametrize(
     ("change", "line"),
     [
-        ({"bearing": {"stifness_n_per_m": 1, "stiffness_n_per_m": 1}}, "did you mean 'stiffness_n_per_m'?"),
+        ({"bearing": {"stifness_n_per_m": 1}}, "did you mean 'stiffness_n_per_m'?"),
         ({"bearing": {}}, "bearing.stiffness_n_per_m = (missing): this key is required"),
         (
             {"bearing": {"stiffness_n_per_m": -1}},
