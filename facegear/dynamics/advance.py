@@ -1,10 +1,11 @@
 """One step of the integration: as far as the Taylor polynomials hold, or to the next contact switch."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from facegear.dynamics.compiled import Packed
+from facegear.dynamics.kernel import kernel
+from facegear.dynamics.lanes import LANES, larger, load, multiply_add, smaller, splat, store
 from facegear.dynamics.roots import first_root
 from facegear.dynamics.taylor import Work, deflect, evaluate, excitation, recurrence, step_length
 
@@ -16,7 +17,7 @@ SHORTEST = 1e-10
 OPEN, DRIVE, BACK = 0, 1, -1
 
 
-@njit(cache=True, nogil=True, fastmath={"contract"})
+@kernel
 def advance(
     packed: Packed, work: Work, s: float, stop: float, place: Array, velocity: Array, tolerance: float
 ) -> float:
@@ -42,7 +43,7 @@ def advance(
             break
         recurrence(packed, work, work.error, work.load, work.y, work.deflection)
     longest = stop - s
-    length = step_length(packed, work.y, work.order, tolerance)
+    length = step_length(packed, work, tolerance)
     if length >= longest:
         length = longest
     elif 2.0 * length > longest:
@@ -50,7 +51,7 @@ def advance(
     return _until_switch(packed, work, length)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def set_state(packed: Packed, work: Work, m: int, state: int) -> None:
     """Give mesh m a contact state and what follows from it; row 0 of its deflection counts from the edge."""
     work.state[m] = state
@@ -61,7 +62,7 @@ def set_state(packed: Packed, work: Work, m: int, state: int) -> None:
     work.edge[m] = edge
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _find_state(packed: Packed, work: Work) -> None:
     """Contact state of every mesh from deflection and, on an edge, its direction of motion."""
     margin = EDGE * packed.scale
@@ -87,7 +88,7 @@ def _find_state(packed: Packed, work: Work) -> None:
             set_state(packed, work, m, OPEN)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _correct_state(packed: Packed, work: Work) -> bool:
     """Where a mesh stands on an edge with hardly any speed its acceleration decides; True if one changed."""
     changed = False
@@ -95,42 +96,53 @@ def _correct_state(packed: Packed, work: Work) -> bool:
         if work.at_edge[m] == 0:
             continue
         soon = work.deflection[1, m] + SHORTEST * work.deflection[2, m]
-        if work.at_edge[m] == 1:
-            wanted = DRIVE if soon > 0.0 else OPEN
-        else:
-            wanted = BACK if soon < 0.0 else OPEN
+        wanted = (DRIVE if soon > 0.0 else OPEN) if work.at_edge[m] == 1 else BACK if soon < 0.0 else OPEN
         if wanted != work.state[m]:
             set_state(packed, work, m, wanted)
             changed = True
     return changed
 
 
-@njit(cache=True, nogil=True, fastmath={"contract"})
+@kernel
 def _until_switch(packed: Packed, work: Work, length: float) -> float:
     """Shorten the step to the first contact switch inside it."""
+    _ranges(work, length)
     for m in range(packed.m):
         lower, upper = packed.lower[m], packed.upper[m]
         if lower >= upper:
             continue
-        state = work.state[m]
-        reach = 0.0
-        power = length
-        for i in range(1, work.order + 1):
-            reach += abs(work.deflection[i, m]) * power
-            power *= length
-        now = work.deflection[0, m]
-        if state != OPEN:
-            if abs(now) <= reach:
+        least, most = work.least[m], work.most[m]
+        if work.state[m] != OPEN:
+            if least <= 0.0 <= most:
                 length = _crossing(work, m, 0.0, work.at_edge[m] != 0, length)
         else:
-            if upper - now <= reach:
+            if most >= upper:
                 length = _crossing(work, m, upper, work.at_edge[m] == 1, length)
-            if now - lower <= reach:
+            if least <= lower:
                 length = _crossing(work, m, lower, work.at_edge[m] == -1, length)
     return length
 
 
-@njit(cache=True, nogil=True, fastmath={"contract"})
+@kernel
+def _ranges(work: Work, length: float) -> None:
+    """Bounds of every deflection over the step: its least and largest Bernstein coefficient."""
+    rows, wide = work.deflection.shape
+    for c in range(0, wide, LANES):
+        least = load(work.deflection, c)
+        most = least
+        for i in range(1, rows):
+            total = load(work.deflection, c)
+            power = length
+            for k in range(1, i + 1):
+                weight = splat(work.conversion[i, k] * power)
+                total = multiply_add(load(work.deflection, k * wide + c), weight, total)
+                power *= length
+            least, most = smaller(least, total), larger(most, total)
+        store(work.least, c, least)
+        store(work.most, c, most)
+
+
+@kernel
 def _crossing(work: Work, m: int, level: float, on_it: bool, length: float) -> float:
     """First time within `length` at which deflection m passes the level; `length` itself if it does not.
 
@@ -155,7 +167,7 @@ def _crossing(work: Work, m: int, level: float, on_it: bool, length: float) -> f
     return min(root, 1.0) * length
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _beyond(work: Work, degree: int, root: float, length: float) -> float:
     """The next zero after a spurious one at the start: divide it out and search again."""
     carry = work.polynomial[degree]
@@ -168,7 +180,7 @@ def _beyond(work: Work, degree: int, root: float, length: float) -> float:
     return min(again, 1.0) * length
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def move(work: Work, length: float, place: Array, velocity: Array) -> None:
     """Move place and velocity (n,) to the end of the step."""
     evaluate(work.y, work.order, length, place, velocity)

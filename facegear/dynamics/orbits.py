@@ -76,7 +76,7 @@ def shoot(
         residual = change(packed, here, there)
         if not residual < 4.0 * best:
             return None
-        if residual <= goal or residual > 0.5 * best and best < 1e3 * goal:
+        if residual <= goal or (residual > 0.5 * best and best < 1e3 * goal):
             return _orbit(place, velocity, period, residual, matrix, log)
         best = min(best, residual)
         gap = (there - here)[:, :n].ravel()

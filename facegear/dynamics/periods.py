@@ -3,11 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from facegear.dynamics.advance import advance, move
 from facegear.dynamics.compiled import TAU, Packed
+from facegear.dynamics.kernel import kernel
 from facegear.dynamics.taylor import Work, deflect, evaluate, recurrence
 
 Array = NDArray[np.float64]
@@ -43,7 +43,7 @@ def make_log(packed: Packed, periods: int, per_period: int = 0) -> Log:
     )
 
 
-@njit(cache=True, nogil=True, fastmath={"contract"})
+@kernel
 def run_periods(
     packed: Packed,
     work: Work,
@@ -57,8 +57,7 @@ def run_periods(
 ) -> int:
     """Move place and velocity (n,) and the tangents (columns, 2, n) over whole periods; returns a status."""
     n = packed.squares.size
-    sample, scratch = np.empty(n), np.empty(n)
-    acting = work.acting.copy()
+    sample, scratch, acting = work.sample, work.scratch, work.was_acting
     for period in range(periods):
         s = 0.0
         taken = 0
@@ -98,7 +97,7 @@ def run_periods(
     return DONE
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _trace(packed: Packed, work: Work) -> float:
     """Sum of all damping that acts, per rad: minus the divergence of the flow."""
     total = 0.0
@@ -112,7 +111,7 @@ def _trace(packed: Packed, work: Work) -> float:
     return total
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _switch_tangents(packed: Packed, work: Work, acting: Array, tangents: Array) -> None:
     """Saltation: where the mesh damping starts or stops the velocity part shears by G^T (c- - c+) G.
 
@@ -130,7 +129,7 @@ def _switch_tangents(packed: Packed, work: Work, acting: Array, tangents: Array)
                 tangents[column, 1, k] += packed.transposed[m, k] * jump * along
 
 
-@njit(cache=True, nogil=True, fastmath={"contract"})
+@kernel
 def _move_tangents(packed: Packed, work: Work, length: float, tangents: Array) -> None:
     """Move tangent vectors over the step by the same recurrence without forcing."""
     n = packed.squares.size

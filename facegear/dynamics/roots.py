@@ -1,11 +1,14 @@
 """First zero of a polynomial in an interval, certain to be found or excluded (Bernstein subdivision)."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from facegear.dynamics.kernel import kernel
 
 Array = NDArray[np.float64]
 MAX_DEPTH = 48
+CLOSE = 1e-10
+"""Newton's last step, over the interval: the error after it is of the order of its square."""
 
 
 def bernstein_matrix(degree: int) -> Array:
@@ -23,7 +26,7 @@ def bernstein_matrix(degree: int) -> Array:
     return matrix
 
 
-@njit(cache=True, nogil=True, fastmath={"contract"})
+@kernel
 def first_root(coefficients: Array, degree: int, conversion: Array, work: Array) -> float:
     """Smallest t in (0, 1] where sum_n c_n t^n changes sign, or 2.0 if there is none.
 
@@ -68,7 +71,7 @@ def first_root(coefficients: Array, degree: int, conversion: Array, work: Array)
         _restart(coefficients, degree, conversion, left, width, work, depth)
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kernel
 def _next(left: float, width: float, depth: int) -> tuple[int, float]:
     """Depth and width of the largest dyadic interval that starts at `left` within [0, 1]; -1 at the end."""
     if left >= 1.0:
@@ -79,7 +82,7 @@ def _next(left: float, width: float, depth: int) -> tuple[int, float]:
     return depth, width
 
 
-@njit(cache=True, nogil=True, fastmath={"contract"})
+@kernel
 def _halve(work: Array, depth: int, degree: int) -> None:
     """Bernstein coefficients of the left half, from row `depth` into row `depth + 1` (de Casteljau)."""
     for i in range(degree + 1):
@@ -89,7 +92,7 @@ def _halve(work: Array, depth: int, degree: int) -> None:
             work[depth + 1, i] = 0.5 * (work[depth + 1, i] + work[depth + 1, i - 1])
 
 
-@njit(cache=True, nogil=True, fastmath={"contract"})
+@kernel
 def _restart(
     coefficients: Array, degree: int, conversion: Array, left: float, width: float, work: Array, depth: int
 ) -> None:
@@ -113,7 +116,7 @@ def _restart(
         work[depth, i] = total
 
 
-@njit(cache=True, nogil=True, fastmath={"contract"})
+@kernel
 def _refine(
     coefficients: Array, degree: int, low: float, high: float, at_low: float, at_high: float
 ) -> float:
@@ -121,7 +124,7 @@ def _refine(
     if at_high == 0.0:
         return high
     rising = at_high > at_low
-    t = 0.5 * (low + high)
+    t = low + (high - low) * at_low / (at_low - at_high)
     for _ in range(100):
         value = coefficients[degree]
         slope = 0.0
@@ -137,7 +140,7 @@ def _refine(
         step = t - value / slope if slope != 0.0 else low - 1.0
         if not low < step < high:
             step = 0.5 * (low + high)
-        if abs(step - t) <= 1e-15 * t or high - low <= 4e-16:
+        if abs(step - t) <= CLOSE or high - low <= 4e-16:
             return step
         t = step
     return t
