@@ -1,8 +1,8 @@
 """Teeth coupled through their cut faces: a full ring, or a sector with free or clamped ends.
 
 All teeth are copies, so that only one is ever factorised. The teeth that carry no load are joined by doubling
-(two equal chains in series make one), the loaded ones are written out. Cost: a few dense operations on the
-cut face dof, whatever the number of teeth.
+(two equal chains in series make one). Cost: a few dense operations on the cut face dof, whatever the number of
+teeth.
 """
 
 from typing import Literal
@@ -10,8 +10,6 @@ from typing import Literal
 import numpy as np
 import scipy.linalg as sl
 from numpy.typing import NDArray
-
-from facegear.contact.substructure import Superelement
 
 Ends = Literal["ring", "free", "clamped"]
 
@@ -40,52 +38,69 @@ def chain(faces: NDArray[np.float64], teeth: int) -> NDArray[np.float64]:
 
 
 def face_compliance(
-    faces: NDArray[np.float64], loaded_teeth: int, teeth: int, ends: Ends
+    faces: NDArray[np.float64], neighbours: int, teeth: int, ends: Ends
 ) -> NDArray[np.float64]:
-    """Displacements of the cut faces of `loaded_teeth` teeth by forces on the faces of the middle one.
+    """Displacements of the cut faces of a tooth and its neighbours by forces on the tooth's own faces.
 
     `faces` (2s, 2s) is one tooth's stiffness, `teeth` the number in the ring or sector. Returns
-    (loaded_teeth, 2s, 2s): block t maps a force on both faces of the middle tooth to the face displacements of
-    tooth t. Raises ValueError if the ring has fewer teeth than are loaded.
+    (2 neighbours + 1, 2s, 2s): block t maps a force on both faces of the middle tooth to the face
+    displacements of the tooth t - neighbours places further. Raises ValueError if there are too few teeth.
     """
-    if not 1 <= loaded_teeth <= teeth or loaded_teeth % 2 == 0:
-        raise ValueError(f"{loaded_teeth} loaded teeth in a ring of {teeth}")
-    s = len(faces) // 2
+    loaded, s = 2 * neighbours + 1, len(faces) // 2
+    if loaded > teeth - (ends == "ring"):
+        raise ValueError(f"{loaded} teeth next to each other in a {ends} of {teeth}")
     if s == 0:
-        return np.zeros((loaded_teeth, 0, 0))
-    planes = loaded_teeth + 1
-    stiffness = np.zeros((planes * s, planes * s))
-    for tooth in range(loaded_teeth):
+        return np.zeros((loaded, 0, 0))
+    planes = _ring(faces, neighbours, teeth) if ends == "ring" else _sector(faces, neighbours, teeth, ends)
+    return np.stack([np.concatenate([planes[tooth], planes[tooth + 1]]) for tooth in range(loaded)])
+
+
+def _ring(faces: NDArray[np.float64], neighbours: int, teeth: int) -> list[NDArray[np.float64]]:
+    """Outwards from the loaded tooth, each plane from the two before it and the chain that closes the ring."""
+    s = len(faces) // 2
+    near, far = slice(0, s), slice(s, None)
+    rests = [chain(faces, teeth - 1 - neighbours)]
+    for _ in range(neighbours):
+        rests.append(joined(faces, rests[-1]))
+    rests.reverse()
+    whole = faces.copy()
+    whole[far, far] += rests[0][near, near]
+    whole[near, near] += rests[0][far, far]
+    whole[far, near] += rests[0][near, far]
+    whole[near, far] += rests[0][far, near]
+    inverse = sl.cho_solve(sl.cho_factor(whole, lower=True), np.eye(2 * s))
+    left, right = [inverse[near]], [inverse[far]]
+    first, last = inverse[near], inverse[far]
+    for rest in rests[1:]:
+        push = faces[far, near] @ right[-1] + rest[near, far] @ first
+        right.append(-sl.solve(faces[far, far] + rest[near, near], push, assume_a="pos"))
+        push = faces[near, far] @ left[-1] + rest[far, near] @ last
+        left.append(-sl.solve(faces[near, near] + rest[far, far], push, assume_a="pos"))
+    return left[::-1] + right
+
+
+def _sector(faces: NDArray[np.float64], neighbours: int, teeth: int, ends: Ends) -> list[NDArray[np.float64]]:
+    """All planes of the loaded teeth at once, the others seen from the two ends."""
+    loaded, s = 2 * neighbours + 1, len(faces) // 2
+    size = (loaded + 1) * s
+    stiffness = np.zeros((size, size))
+    for tooth in range(loaded):
         block = slice(tooth * s, (tooth + 2) * s)
         stiffness[block, block] += faces
-    _close(stiffness, faces, teeth - loaded_teeth, ends)
-    middle = loaded_teeth // 2
-    columns = np.zeros((planes * s, 2 * s))
-    columns[middle * s : (middle + 2) * s] = np.eye(2 * s)
-    if ends == "clamped" and teeth == loaded_teeth:
-        free = np.arange(s, loaded_teeth * s)
-    else:
-        free = np.arange(planes * s)
+    before = (teeth - loaded) // 2
+    after = teeth - loaded - before
+    near, far = slice(0, s), slice(s, None)
+    if before:
+        stiffness[:s, :s] += _seen_from_end(chain(faces, before), far, near, ends)
+    if after:
+        stiffness[-s:, -s:] += _seen_from_end(chain(faces, after), near, far, ends)
+    clamped = ends == "clamped"
+    free = np.arange(0 if before or not clamped else s, size if after or not clamped else size - s)
+    columns = np.zeros((size, 2 * s))
+    columns[neighbours * s : (neighbours + 2) * s] = np.eye(2 * s)
     moved = np.zeros_like(columns)
     moved[free] = sl.cho_solve(sl.cho_factor(stiffness[np.ix_(free, free)], lower=True), columns[free])
-    return np.stack([moved[tooth * s : (tooth + 2) * s] for tooth in range(loaded_teeth)])
-
-
-def _close(stiffness: NDArray[np.float64], faces: NDArray[np.float64], others: int, ends: Ends) -> None:
-    """Add the teeth that carry no load: all on one side of a ring, half on each side of a sector."""
-    s = len(faces) // 2
-    last = len(stiffness) - s
-    if ends == "ring":
-        if others < 1:
-            raise ValueError("a ring needs at least one tooth that carries no load")
-        where = np.r_[last : last + s, 0:s]
-        stiffness[np.ix_(where, where)] += chain(faces, others)
-        return
-    before, after = others // 2, others - others // 2
-    if before:
-        stiffness[:s, :s] += _seen_from_end(chain(faces, before), slice(s, None), slice(0, s), ends)
-    if after:
-        stiffness[last:, last:] += _seen_from_end(chain(faces, after), slice(0, s), slice(s, None), ends)
+    return list(moved.reshape(loaded + 1, s, 2 * s))
 
 
 def _seen_from_end(

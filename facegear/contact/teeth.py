@@ -1,0 +1,168 @@
+"""The contact side of a tooth mesh: which surface is loaded, its exact points, where the body is held."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from facegear.contact.body import Piece
+from facegear.contact.layer import Refinement
+from facegear.contact.surface import interpolation
+from facegear.geometry import face_gear, pinion
+from facegear.geometry.design import Material, PairDesign
+from facegear.geometry.pinion_surface import SurfacePoints, fillet_points, flank_points
+from facegear.geometry.separation import FILLET, FLANK, TIP_LAND, Separation
+from facegear.mesh.tooth import ToothMesh
+
+LOADED_SIDE = {"pinion": "right", "face_gear": "left"}
+"""Sides in contact when the pinion drives towards +x; the opposite flanks are their mirror images."""
+
+FILLET_MARGIN = 0.1
+"""Modules of fillet kept as contact surface beyond what the other gear's tip can reach."""
+
+
+@dataclass(frozen=True, eq=False)
+class ContactSide:
+    """Contact surface of a tooth: flank rows, then the fillet rows the other gear's tip can reach.
+
+    nodes, u, v: (nu, nv) nodes of the mesh and parameters as in `facegear.mesh.tooth.SurfaceGrid`;
+    `flank_rows` of the rows belong to the flank, the last of them shared with the fillet.
+    """
+
+    nodes: NDArray[np.int64]
+    u: NDArray[np.float64]
+    v: NDArray[np.float64]
+    flank_rows: int
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Nodes across the profile and along the width, before refinement."""
+        return self.nodes.shape
+
+
+def contact_side(design: PairDesign, tooth: ToothMesh, side: str | None = None) -> ContactSide:
+    """The surface of a tooth that can touch; `side` None takes the one loaded when the pinion drives."""
+    side = side or LOADED_SIDE[tooth.body]
+    flank, fillet = (tooth.surfaces[f"{name}_{side}"] for name in ("flank", "fillet"))
+    points = tooth.nodes[fillet.nodes]
+    if tooth.body == "pinion":
+        height = np.hypot(points[..., 0], points[..., 2])
+        reached = design.pinion_pitch_radius - design.face_gear.addendum + design.pinion.profile_shift
+    else:
+        height = points[..., 2]
+        reached = -design.pinion_tip_radius
+    touched = (height[:-1:2] > reached - FILLET_MARGIN * design.module).any(axis=1)
+    elements = int(np.flatnonzero(touched).max() + 1) if touched.any() else 0
+    rows = slice(1, 2 * elements + 1)
+    return ContactSide(
+        np.concatenate([flank.nodes, fillet.nodes[rows]]),
+        np.concatenate([flank.u, fillet.u[rows]]),
+        np.concatenate([flank.v, fillet.v[rows]]),
+        len(flank.nodes),
+    )
+
+
+def piece_of(
+    design: PairDesign, tooth: ToothMesh, material: Material, side: str | None = None
+) -> tuple[Piece, ContactSide]:
+    """The tooth as an elastic piece, bore or rim back clamped, and its contact surface."""
+    surface = contact_side(design, tooth, side)
+    rows = surface.flank_rows
+    if tooth.body == "pinion":
+        flank = flank_points(design, surface.u[:rows], surface.v[:rows]).normal
+        fillet = fillet_points(design, surface.u[rows:], surface.v[rows:]).normal
+    else:
+        flank = face_gear.flank_normal(design, surface.u[:rows], surface.v[:rows])
+        fillet = face_gear.fillet_normal(design, surface.v[rows:], surface.u[rows:])
+    normals = np.concatenate([flank, fillet])
+    if (side or LOADED_SIDE[tooth.body]) == "left":
+        normals = normals * np.array([-1.0, 1.0, 1.0])
+    held = np.zeros(tooth.nodes.shape, dtype=bool)
+    held[tooth.faces["bore" if tooth.body == "pinion" else "rim_back"]] = True
+    turn = tooth.rotated(np.eye(3), tooth.pitch).T
+    piece = Piece(
+        tooth.nodes,
+        tooth.hexes,
+        material,
+        surface.nodes,
+        normals,
+        held,
+        tooth.cut_left,
+        tooth.cut_right,
+        turn,
+    )
+    return piece, surface
+
+
+def pinion_points(
+    design: PairDesign, side: ContactSide, refinement: Refinement, lattice: NDArray[np.float64]
+) -> SurfacePoints:
+    """Exact points of the pinion's surface, modifications included, at refined lattice coordinates (n, 2)."""
+    coarse = lattice / np.array([refinement.profile, refinement.width])
+    weights = interpolation(coarse, side.shape)
+    u, v = weights @ side.u.ravel(), weights @ side.v.ravel()
+    on_flank = coarse[:, 0] <= side.flank_rows - 1
+    flank = flank_points(design, np.where(on_flank, u, side.u[0, 0]), v)
+    fillet = fillet_points(design, np.where(on_flank, design.pressure_angle, u), v)
+    where = on_flank[:, None]
+    return SurfacePoints(
+        np.where(where, flank.position, fillet.position), np.where(where, flank.normal, fillet.normal)
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class GearLattice:
+    """From what a pinion normal hits on the gear to refined lattice coordinates of the gear's surface."""
+
+    design: PairDesign
+    side: ContactSide
+    refinement: Refinement
+
+    @cached_property
+    def _tip_roll(self) -> CubicSpline:
+        gear = self.design.face_gear
+        radius = np.linspace(gear.inner_radius, gear.outer_radius, 65)
+        roll, _ = face_gear.roll_and_psi_at_height(self.design, radius, self.design.gear_tip_plane)
+        return CubicSpline(radius, roll)
+
+    @cached_property
+    def _fillet_share(self) -> NDArray[np.float64]:
+        """chi over its value at the flank's end, at the fillet rows' nodes (the same on all planes)."""
+        end = face_gear.fillet_end(self.design, self.side.v[-1])[0]
+        return np.concatenate([[1.0], self.side.u[self.side.flank_rows :, 0] / end])
+
+    def coordinates(self, found: Separation, fillet: bool, edge: float) -> NDArray[np.float64]:
+        """Lattice coordinates (p, n, 2), nan where nothing that can touch is hit.
+
+        With `fillet`, the fillet and the tip land within `edge` (m) of the flank count too; the latter moves
+        as the tip edge does.
+        """
+        face, rows = self.design.face_gear, self.side.flank_rows
+        row = np.full(found.gap.shape, np.nan)
+        radius = np.full(found.gap.shape, np.nan)
+        on = found.part == FLANK
+        point = face_gear.flank_point(self.design, found.u[on], found.v[on])
+        radius[on] = np.hypot(point[:, 0], point[:, 1])
+        tip = self._tip_roll(radius[on])
+        row[on] = (found.u[on] - tip) / (self.design.shaper_tip_roll - tip) * (rows - 1)
+        if fillet and len(self._fillet_share) > 1:
+            on = found.part == FILLET
+            radius[on] = found.v[on]
+            share = found.u[on] / face_gear.fillet_end(self.design, found.v[on])
+            known = share >= self._fillet_share[-1]
+            at = np.interp(-share, -self._fillet_share, np.arange(len(self._fillet_share)))
+            row[on] = np.where(known, rows - 1 + at, np.nan)
+        if fillet:
+            on = found.part == TIP_LAND
+            roll, psi = face_gear.roll_and_psi_at_height(
+                self.design, found.v[on], np.full(on.sum(), self.design.gear_tip_plane)
+            )
+            tip_edge = face_gear.flank_point(self.design, roll, psi)
+            beyond = found.v[on] * (np.arctan2(tip_edge[:, 0], tip_edge[:, 1]) - found.u[on])
+            radius[on] = found.v[on]
+            row[on] = np.where(beyond <= edge, 0.0, np.nan)
+        along = (radius - face.inner_radius) / (face.outer_radius - face.inner_radius)
+        column = along * (self.side.shape[1] - 1)
+        return np.stack([row * self.refinement.profile, column * self.refinement.width], axis=-1)
