@@ -48,3 +48,6 @@ class Study(Section):
     name: str = Field(pattern=NAME)
     title: str = Field(min_length=1, max_length=120)
     axes: tuple[Axis, ...] = Field(min_length=1, max_length=2)
+    figures: tuple[int, int] | None = Field(
+        None, description="numbers of the load-sharing figures: inputs, idlers; null: named after the study"
+    )

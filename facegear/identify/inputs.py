@@ -32,19 +32,18 @@ class Waveform(StrEnum):
 
 @dataclass(frozen=True)
 class Branch:
-    """The choices that are not numbers. `stiffness` names the source of the stiffness harmonics."""
+    """The choices that are not numbers."""
 
     meaning: Meaning
     in_step: bool
     convention: PhaseConvention
     waveform: Waveform
-    stiffness: str
 
     @property
     def name(self) -> str:
         """Readable and usable as a file name."""
         phasing = "in_step" if self.in_step else "mesh"
-        parts = (self.meaning, phasing, self.convention, self.waveform, self.stiffness)
+        parts = (self.meaning, phasing, self.convention, self.waveform)
         return "-".join(str(part) for part in parts)
 
 
@@ -91,9 +90,7 @@ def error_series(size: float, branch: Branch, phase: float) -> Harmonics:
     return Harmonics(a, b).shifted(-phase)
 
 
-def machine_with(
-    base: Machine, inputs: Inputs, error_size: float, stiffness: Mapping[str, StiffnessAt]
-) -> Machine:
+def machine_with(base: Machine, inputs: Inputs, error_size: float, stiffness: StiffnessAt) -> Machine:
     """The base machine with the undisclosed inputs put in."""
     layout = base.layout
     on_pinions = pinion_torques(layout, inputs.torque, inputs.tail_share)
@@ -101,7 +98,7 @@ def machine_with(
     return replace(
         base,
         torques=balanced_torques(layout, on_pinions),
-        stiffness=stiffness[inputs.branch.stiffness](inputs.torque / meshes),
+        stiffness=stiffness(inputs.torque / meshes),
         error=error_series(error_size, inputs.branch, inputs.error_phase),
         phase_convention=inputs.branch.convention,
         error_in_step=inputs.branch.in_step,

@@ -1,6 +1,5 @@
 """Global search over the undisclosed inputs, one branch at a time."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +9,7 @@ import scipy.stats
 from numpy.typing import NDArray
 
 from facegear.dynamics.motion import Settings
+from facegear.identify.budget import Budget
 from facegear.identify.inputs import Branch, Inputs, Space, StiffnessAt, machine_with
 from facegear.identify.objective import Misfit, misfit
 from facegear.identify.targets import Targets
@@ -23,23 +23,13 @@ QUICK_SWEEP = Settings(tolerance=1e-3, refine=False, settle=64, dwell=48, window
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """Everything the search needs but the inputs: base machine, size of e(t) in m, stiffness sources, targets."""
+    """All but the inputs: base machine, size of e(t) in m, stiffness by load, targets, ranges."""
 
     base: Machine
     error_size: float
-    stiffness: Mapping[str, StiffnessAt]
+    stiffness: StiffnessAt
     targets: Targets
     space: Space
-
-
-@dataclass(frozen=True)
-class Budget:
-    """Evaluations of a branch: points of the first scan, points and generations of the refinement."""
-
-    scan: int
-    population: int
-    generations: int
-    seed: int = 0
 
 
 def search_branch(problem: Problem, branch: Branch, budget: Budget) -> pd.DataFrame:
@@ -90,7 +80,6 @@ def inputs_row(inputs: Inputs) -> dict[str, object]:
         "phasing": "in_step" if branch.in_step else "mesh",
         "phase_convention": branch.convention.value,
         "waveform": branch.waveform.value,
-        "stiffness": branch.stiffness,
         "per_input_n_m": inputs.torque,
         "tail_share": inputs.tail_share,
         "error_phase_deg": 360.0 * inputs.error_phase,

@@ -14,8 +14,10 @@ class SpeedRange:
 
 @dataclass(frozen=True)
 class SharingOptions:
-    """Samples a cycle, cycles and starts averaged, size of the random disturbance of a start (m, at the mesh),
-    confidence level, speed of the quasi-static run (rpm), and the range searched for the largest coefficient."""
+    """Samples a cycle, cycles and starts averaged, size of the random disturbance of starts (m at mesh).
+
+    Then the confidence level, the speed of the quasi-static run (rpm), and the range of speeds looked over.
+    """
 
     samples: int
     cycles: int

@@ -1,4 +1,4 @@
-"""What the dynamic coefficients are held against: the machine at rest, running slowly, and over all speeds."""
+"""What the dynamic coefficients are held against: the machine at rest, run slowly, at all speeds."""
 
 from dataclasses import replace
 
@@ -25,8 +25,8 @@ SLOW_PERIODS = 4
 def reference_table(machine: Machine, settings: Settings, options: SharingOptions) -> pd.DataFrame:
     """Coefficients without dynamics, one row a quantity and group.
 
-    `static`: equilibrium at every position of the mesh cycle; `quasi_static`: the same model run slowly, which
-    tends to the static one; `equilibrium`: mean stiffness, no transmission error; `no_error` and
+    `static`: equilibrium at every position of the mesh cycle; `quasi_static`: the same model run slowly,
+    which tends to the static one; `equilibrium`: mean stiffness, no transmission error; `no_error` and
     `no_error_no_backlash`: the static one with these left out. Raises NotConverged.
     """
     silent = replace(machine, error=Harmonics(np.zeros(1), np.zeros(1)))

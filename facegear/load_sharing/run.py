@@ -18,7 +18,7 @@ from facegear.transmission.matrices import mass_diagonal
 
 @dataclass(frozen=True, eq=False)
 class GroupSharing:
-    """One group: coefficient and lost contact (cycles, samples), average, range of the means of other starts."""
+    """One group: coefficient and lost contact (cycles, samples), average, range of the means over starts."""
 
     group: LoadGroup
     coefficients: NDArray[np.float64]

@@ -10,8 +10,8 @@ from facegear.transmission.statics import static_equilibrium
 def static_forces(machine: Machine, positions: int) -> NDArray[np.float64]:
     """Elastic mesh forces with k and e frozen at evenly spaced positions, shape (1, positions, meshes), N.
 
-    This is the limit of slow running: damping and inertia vanish, and who carries load follows from stiffness,
-    backlash and transmission error alone. Raises NotConverged naming the position.
+    This is the limit of slow running: damping and inertia vanish, and who carries load follows from
+    stiffness, backlash and transmission error alone. Raises NotConverged naming the position.
     """
     cycles = np.arange(positions) / positions
     return np.array([[static_equilibrium(machine, float(at)).forces for at in cycles]])

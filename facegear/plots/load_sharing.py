@@ -1,0 +1,66 @@
+"""Figures 13 to 20: load-sharing coefficients over one mesh cycle, one line a point of a study."""
+
+import textwrap
+
+import matplotlib.pyplot as plt
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from facegear.plots.style import styled
+
+LINES = ("-", "--", "-.", ":")
+COLOURS = ("black", "tab:red", "tab:blue", "tab:green", "tab:purple", "tab:orange")
+YLABEL = {
+    "inputs": "Instantaneous dynamic load sharing coefficient\nof upper and lower face gear",
+    "idlers": "Instantaneous dynamic load sharing coefficient\nof idler pinions and tail rotor idler",
+    "drivers": "Instantaneous dynamic load sharing coefficient\nof the input pinions",
+}
+CAPTION_WIDTH = 118
+ENVELOPE = 0.02
+"""An envelope narrower than this is a line, and not drawn."""
+
+
+def sharing_figure(
+    curves: pd.DataFrame, summary: pd.DataFrame, kind: str, title: str, caption: str
+) -> Figure | None:
+    """Coefficient against time over one mesh cycle; None where the machine has no such group.
+
+    Where the motion is not period-one a single cycle is drawn over the envelope of all cycles. Gaps are
+    instants at which no path carries load. Of several groups of a kind the first is drawn, as in the paper.
+    """
+    rows = curves[curves["kind"] == kind]
+    if rows.empty:
+        return None
+    group = rows["group"].iloc[0]
+    rows = rows[rows["group"] == group]
+    means = summary[(summary["group"] == group) & (summary["study"] == rows["study"].iloc[0])]
+    means = means.set_index("point")
+    with styled():
+        figure, axis = plt.subplots(figsize=(7.2, 4.6))
+        for number, (point, curve) in enumerate(rows.groupby("point", sort=False)):
+            _draw(axis, curve, means.loc[point], number)
+        axis.set_xlim(0.0, 1e4 * rows["time_s"].max() * len(curve) / (len(curve) - 1))
+        top = max(2.0 if kind == "inputs" else 3.0, float(rows["envelope_high"].max()))
+        axis.set_ylim(0.95, top + 0.05)
+        axis.set_xlabel("Time over one mesh cycle (10$^{-4}$ s)")
+        axis.set_ylabel(YLABEL[kind])
+        axis.set_title(f"{title}: {group}", fontsize=9)
+        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=1, fontsize=8)
+        figure.supxlabel("\n".join(textwrap.wrap(caption, CAPTION_WIDTH)), fontsize=6, color="0.35")
+    return figure
+
+
+def _draw(axis: Axes, curve: pd.DataFrame, mean: pd.Series, number: int) -> None:
+    """One point's curve, its envelope if it has one, and a legend line with mean and class of motion."""
+    colour = COLOURS[number % len(COLOURS)]
+    time = 1e4 * curve["time_s"]
+    if (curve["envelope_high"] - curve["envelope_low"]).max() > ENVELOPE:
+        axis.fill_between(time, curve["envelope_low"], curve["envelope_high"], color=colour, alpha=0.12, lw=0)
+    width = f" ± {mean['half_width']:.2f}" if mean["half_width"] > 0.005 else ""
+    label = (
+        f"{str(curve['point'].iloc[0]).replace('_', ' ')}: mean {mean['mean']:.2f}{width}, {mean['motion']}"
+    )
+    if mean["undefined_share"] > 0.005:
+        label += f", no load {100 * mean['undefined_share']:.0f} % of the time"
+    axis.plot(time, curve["coefficient"], LINES[number % len(LINES)], color=colour, lw=1.3, label=label)
