@@ -7,7 +7,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from facegear.contact.layer import Refinement
+from facegear.contact.options import Refinement
 from facegear.contact.surface import cell_areas, cell_points, hat_values, interpolation
 from facegear.contact.teeth import ContactSide, GearLattice, pinion_points
 from facegear.geometry.design import PairDesign

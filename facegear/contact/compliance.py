@@ -7,8 +7,9 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from facegear.contact.body import Piece
-from facegear.contact.layer import Refinement, tied_system
-from facegear.contact.ring import Ends, face_compliance
+from facegear.contact.layer import tied_system
+from facegear.contact.options import Ends, Refinement
+from facegear.contact.ring import face_compliance
 from facegear.contact.substructure import condense
 
 

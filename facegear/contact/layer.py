@@ -14,21 +14,9 @@ from numpy.typing import NDArray
 from facegear.contact.assembly import stiffness_matrix
 from facegear.contact.body import Piece
 from facegear.contact.elements import block_hexes, hex_shapes
+from facegear.contact.options import Refinement
 
 ALL_NODES = np.arange(27).reshape(3, 3, 3).transpose(2, 1, 0)
-
-
-@dataclass(frozen=True)
-class Refinement:
-    """How often the elements under the flank are cut: across the profile, along the width and in depth.
-
-    `grading` is the ratio of neighbouring sizes in depth, the smallest at the surface.
-    """
-
-    profile: int = 1
-    width: int = 1
-    depth: int = 1
-    grading: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)

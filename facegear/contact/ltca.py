@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from facegear.contact.candidates import Candidates, PinionSurface, find_candidates
 from facegear.contact.compliance import FlankCompliance
 from facegear.contact.influence import influence_matrix
+from facegear.contact.options import ContactOptions
 from facegear.contact.solver import Contact, solve
 from facegear.contact.teeth import GearLattice
 from facegear.errors import NotConverged
@@ -32,14 +33,6 @@ class ContactModel:
     lattice: GearLattice
     pinion: FlankCompliance
     gear: FlankCompliance
-
-
-@dataclass(frozen=True)
-class ContactOptions:
-    """What is left out for comparison: fillets and tip lands as contact surfaces, coupling of neighbouring teeth."""
-
-    fillet: bool = True
-    coupled: bool = True
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,13 +5,11 @@ All teeth are copies, so that only one is ever factorised. The teeth that carry 
 teeth.
 """
 
-from typing import Literal
-
 import numpy as np
 import scipy.linalg as sl
 from numpy.typing import NDArray
 
-Ends = Literal["ring", "free", "clamped"]
+from facegear.contact.options import Ends
 
 
 def joined(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:

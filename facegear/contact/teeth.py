@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from facegear.contact.body import Piece
-from facegear.contact.layer import Refinement
+from facegear.contact.options import Refinement
 from facegear.contact.surface import interpolation
-from facegear.geometry import face_gear, pinion
+from facegear.geometry import face_gear
 from facegear.geometry.design import Material, PairDesign
 from facegear.geometry.pinion_surface import SurfacePoints, fillet_points, flank_points
 from facegear.geometry.separation import FILLET, FLANK, TIP_LAND, Separation

@@ -1,0 +1,47 @@
+"""What a contact analysis is asked to do; light to import, so that configs can be read without the solvers."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+Ends = Literal["ring", "free", "clamped"]
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """How often the elements under the flank are cut: across the profile, along the width and in depth.
+
+    `grading` is the ratio of neighbouring sizes in depth, the smallest at the surface.
+    """
+
+    profile: int = 1
+    width: int = 1
+    depth: int = 1
+    grading: float = 1.0
+
+
+@dataclass(frozen=True)
+class Sector:
+    """How much of each gear is modelled: all teeth (None) or so many, and what holds the cut faces then."""
+
+    pinion_teeth: int | None = None
+    face_gear_teeth: int | None = None
+    cut_faces: Literal["free", "clamped"] = "free"
+
+
+@dataclass(frozen=True)
+class ContactOptions:
+    """What takes part: fillets and tip lands as contact surfaces, coupling between neighbouring teeth."""
+
+    fillet: bool = True
+    coupled: bool = True
+
+
+@dataclass(frozen=True)
+class ContactPlan:
+    """Torques (N m, on the pinion, per mesh), positions a pitch, model and options."""
+
+    torques: tuple[float, ...]
+    positions: int
+    refinement: Refinement
+    sector: Sector
+    options: ContactOptions
