@@ -6,6 +6,7 @@ from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
 from facegear.harmonics.series import Harmonics
+from facegear.stiffness.request import StiffnessRequest
 
 
 class HarmonicSection(Section):
@@ -51,10 +52,17 @@ class MeshStiffness(Section):
         return self
 
 
-def given_harmonics(section: MeshStiffness) -> Harmonics:
-    """The series written in the config, N/m."""
+def stiffness_request(section: MeshStiffness) -> StiffnessRequest:
+    """What is asked of the stiffness stage, with the series written in the config (N/m) if there is one."""
     order = max((row.order for row in section.table), default=0)
     a, b = [0.0] * (order + 1), [section.mean_n_per_m] + [0.0] * order
     for row in section.table:
         a[row.order], b[row.order] = row.a_n_per_m, row.b_n_per_m
-    return Harmonics(a, b).kept(section.harmonics_kept)
+    return StiffnessRequest(
+        source=section.source,
+        mean=section.mean_n_per_m,
+        torque=section.torque_n_m,
+        definition=section.definition,
+        kept=section.harmonics_kept,
+        given=Harmonics(a, b),
+    )

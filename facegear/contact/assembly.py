@@ -1,7 +1,7 @@
 """Stiffness of linear elastic hexahedra, assembled in batches.
 
-scikit-fem's form assembly gives the same matrix to rounding and is the reference in the tests; for the 27-node
-element it is about ten times slower, which would make it the longest part of a compliance job.
+scikit-fem's form assembly gives the same matrix to rounding and is the reference in the tests; for the
+27-node element it is about ten times slower, which would make it the longest part of a compliance job.
 """
 
 import numpy as np
@@ -22,7 +22,8 @@ def lame_constants(material: Material) -> tuple[float, float]:
 
 
 def element_stiffness(corners: NDArray[np.float64], material: Material) -> NDArray[np.float64]:
-    """Stiffness (m, 81, 81) of 27-node hexahedra with node positions (m, 27, 3), three Gauss points a direction.
+    """Stiffness (m, 81, 81) of 27-node hexahedra with node positions (m, 27, 3), three Gauss points a
+    direction.
 
     Dof 3 a + i is the displacement of local node a along axis i. Raises ValueError for an inverted element.
     """

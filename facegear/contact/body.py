@@ -12,10 +12,11 @@ from facegear.geometry.design import Material
 class Piece:
     """Mesh of 27-node hexahedra (tensor node order) with its contact surface, supports and cut faces.
 
-    `flank` (2a+1, 2b+1) holds the nodes of the contact surface, axis 0 across the profile and axis 1 along the width;
-    `normals` (2a+1, 2b+1, 3) point out of the body there. `held` (n, 3) marks dof kept at zero.
-    `left` and `right` (s,) are the nodes of the two cut faces: the rotation `turn` (3, 3) by one pitch about the
-    gear's axis takes the left ones to the right ones, in this order. Both are empty for a body that does not repeat.
+    `flank` (2a+1, 2b+1) holds the nodes of the contact surface, axis 0 across the profile and axis 1 along
+    the width; `normals` (2a+1, 2b+1, 3) point out of the body there. `held` (n, 3) marks dof kept at zero.
+    `left` and `right` (s,) are the nodes of the two cut faces: the rotation `turn` (3, 3) by one pitch about
+    the gear's axis takes the left ones to the right ones, in this order. Both are empty for a body that does
+    not repeat.
     """
 
     points: NDArray[np.float64]

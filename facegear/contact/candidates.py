@@ -23,8 +23,8 @@ class PinionSurface:
     """The pinion's pressure hats and the exact points their integrals are taken at.
 
     For q points: `points`, `area` (q,) m2, `arm` (q,) m (speed along the normal per rotation), `nodal` (q, n)
-    and `hats` (q, n) interpolation to lattice nodes, `coarse` (q, c) to nodes before refinement; `element` (q,)
-    the flat index of the unrefined element (ne_u, ne_v) a point belongs to.
+    and `hats` (q, n) interpolation to lattice nodes, `coarse` (q, c) to nodes before refinement; `element`
+    (q,) the flat index of the unrefined element (ne_u, ne_v) a point belongs to.
     """
 
     design: PairDesign
@@ -96,8 +96,9 @@ class PinionSurface:
 class Candidates:
     """Pressure hats of one tooth pair that may touch: a unit force each, spread over the hat's covered area.
 
-    hats (m,) lattice nodes; gap (m,) m and arm (m,) m averaged over the hat; area (m,) m2; loads on the lattice nodes
-    `pinion` (m, n1) and `gear` (m, n2), and on the unrefined ones `pinion_coarse`, `gear_coarse`.
+    hats (m,) lattice nodes; gap (m,) m and arm (m,) m averaged over the hat; area (m,) m2; loads on the
+    lattice nodes `pinion` (m, n1) and `gear` (m, n2), and on the unrefined ones `pinion_coarse`,
+    `gear_coarse`.
     """
 
     tooth: int

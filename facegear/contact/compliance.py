@@ -1,5 +1,6 @@
 """Flank compliance of a whole gear from one of its teeth."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,9 +18,10 @@ from facegear.contact.substructure import condense
 class FlankCompliance:
     """Normal displacements of the flanks of a gear by unit normal forces on one of them, m/N.
 
-    `own` (n, n): on the loaded tooth, nodes of the refined lattice `shape`; `others` (2 d + 1, c, c): on the tooth
-    t - d places further, nodes of the lattice before refinement `coarse_shape` (the field of a neighbour is smooth);
-    the middle block repeats the own tooth and is not used. `refinement` relates the two lattices.
+    `own` (n, n): on the loaded tooth, nodes of the refined lattice `shape`; `others` (2 d + 1, c, c): on the
+    tooth t - d places further, nodes of the lattice before refinement `coarse_shape` (the field of a
+    neighbour is smooth); the middle block repeats the own tooth and is not used. `refinement` relates the two
+    lattices.
     """
 
     own: NDArray[np.float64]
@@ -70,3 +72,38 @@ def _spread(spread: sp.csr_matrix, flank: NDArray[np.float64]) -> NDArray[np.flo
         return flank[np.ix_(spread.indices, spread.indices)]
     half = spread @ flank
     return np.ascontiguousarray((spread @ half.T).T)
+
+
+def to_arrays(compliance: FlankCompliance) -> dict[str, NDArray]:
+    """Named arrays from which `from_arrays` rebuilds the compliance."""
+    cuts = compliance.refinement
+    return {
+        "own_m_per_n": compliance.own,
+        "others_m_per_n": compliance.others,
+        "shape": np.array(compliance.shape),
+        "coarse_shape": np.array(compliance.coarse_shape),
+        "refinement": np.array([cuts.profile, cuts.width, cuts.depth, cuts.grading], dtype=float),
+    }
+
+
+STORED = {
+    "own_m_per_n": (None, None),
+    "others_m_per_n": (None, None, None),
+    "shape": (2,),
+    "coarse_shape": (2,),
+    "refinement": (4,),
+}
+"""Names and shapes of the arrays of a stored compliance."""
+
+
+def from_arrays(arrays: Mapping[str, NDArray]) -> FlankCompliance:
+    """Inverse of `to_arrays`."""
+    profile, width, depth, grading = arrays["refinement"]
+    shape, coarse_shape = (tuple(int(n) for n in arrays[name]) for name in ("shape", "coarse_shape"))
+    return FlankCompliance(
+        arrays["own_m_per_n"],
+        arrays["others_m_per_n"],
+        shape,
+        coarse_shape,
+        Refinement(int(profile), int(width), int(depth), float(grading)),
+    )

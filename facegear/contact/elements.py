@@ -1,6 +1,7 @@
 """The triquadratic 27-node hexahedron and its faces, nodes in tensor order.
 
-Local node a = i + 3 j + 9 k stands at (i, j, k) / 2 of the unit cube, so that index arithmetic replaces tables.
+Local node a = i + 3 j + 9 k stands at (i, j, k) / 2 of the unit cube, so that index arithmetic replaces
+tables.
 """
 
 import numpy as np

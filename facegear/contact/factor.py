@@ -1,6 +1,7 @@
 """Sparse symmetric positive definite systems: solves and Schur complements.
 
-PARDISO (MKL through pypardiso, matrix type 2, upper triangle) where it has a wheel, SciPy's SuperLU elsewhere.
+PARDISO (MKL through pypardiso, matrix type 2, upper triangle) where it has a wheel, SciPy's SuperLU
+elsewhere.
 """
 
 import numpy as np

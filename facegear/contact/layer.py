@@ -23,10 +23,10 @@ ALL_NODES = np.arange(27).reshape(3, 3, 3).transpose(2, 1, 0)
 class TiedSystem:
     """Stiffness of a piece with refined flank layer, on its free (master) nodes.
 
-    `stiffness` (3n, 3n) in N/m on the masters at `points` (n, 3), of which `held` (n, 3) stay at zero; `coarse` maps a
-    node of the piece to its master, -1 if it was refined away. The refined surface has nodes `surface` (nu, nv, 3) with normals `normals` of that
-    shape; its normal displacement is `spread` (nu nv, k) times that of the master nodes `loaded` (k,), whose
-    normals are `loaded_normals` (k, 3).
+    `stiffness` (3n, 3n) in N/m on the masters at `points` (n, 3), of which `held` (n, 3) stay at zero;
+    `coarse` maps a node of the piece to its master, -1 if it was refined away. The refined surface has nodes
+    `surface` (nu, nv, 3) with normals `normals` of that shape; its normal displacement is `spread` (nu nv, k)
+    times that of the master nodes `loaded` (k,), whose normals are `loaded_normals` (k, 3).
     """
 
     stiffness: sp.csr_matrix

@@ -37,7 +37,9 @@ class ContactModel:
 
 @dataclass(frozen=True, eq=False)
 class Spot:
-    """Hats of one pair at one position and torque: lattice node, force (N), pressure (Pa) and gear coordinates."""
+    """Hats of one pair at one position and torque: lattice node, force (N), pressure (Pa) and gear
+    coordinates.
+    """
 
     tooth: int
     hats: NDArray[np.int64]
@@ -49,9 +51,9 @@ class Spot:
 class LoadedPosition:
     """One position at one torque.
 
-    `position` 0..1 of a pitch; `torque` N m on the pinion; transmission errors (m) along the line of action, the
-    pinion ahead of the gear positive, `ste` loaded and `unloaded`; stiffnesses (N/m) on the line of action;
-    `share` (5,) of the torque carried by the pairs -2..2; `residual` of the contact conditions.
+    `position` 0..1 of a pitch; `torque` N m on the pinion; transmission errors (m) along the line of action,
+    the pinion ahead of the gear positive, `ste` loaded and `unloaded`; stiffnesses (N/m) on the line of
+    action; `share` (5,) of the torque carried by the pairs -2..2; `residual` of the contact conditions.
     """
 
     position: float
@@ -74,6 +76,11 @@ class LoadedPosition:
     def peak_pressure(self) -> float:
         """Largest pressure, Pa."""
         return max(float(spot.pressure.max()) for spot in self.spots)
+
+
+def even_positions(count: int) -> NDArray[np.float64]:
+    """Positions 0, 1/n, 2/n ... of a pitch."""
+    return np.arange(count) / count
 
 
 def analyse(

@@ -1,8 +1,8 @@
 """Teeth coupled through their cut faces: a full ring, or a sector with free or clamped ends.
 
 All teeth are copies, so that only one is ever factorised. The teeth that carry no load are joined by doubling
-(two equal chains in series make one). Cost: a few dense operations on the cut face dof, whatever the number of
-teeth.
+(two equal chains in series make one). Cost: a few dense operations on the cut face dof, whatever the number
+of teeth.
 """
 
 import numpy as np

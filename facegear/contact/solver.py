@@ -1,9 +1,9 @@
 """Frictionless unilateral contact of two condensed bodies turned against each other by a torque.
 
-Find forces f >= 0 and the rotation r with  gap + C f - r arm >= 0,  f . (gap + C f - r arm) = 0,  arm . f = torque:
-the optimality conditions of a convex quadratic programme, hence one solution for a positive definite C.
-A primal-dual active set (semismooth Newton; Hintermueller, Ito, Kunisch 2003) finishes in a few steps; should it
-cycle, a single-exchange active set, which lowers the energy at each step, finishes the work.
+Find forces f >= 0 and the rotation r with  gap + C f - r arm >= 0,  f . (gap + C f - r arm) = 0,  arm . f =
+torque: the optimality conditions of a convex quadratic programme, hence one solution for a positive definite
+C. A primal-dual active set (semismooth Newton; Hintermueller, Ito, Kunisch 2003) finishes in a few steps;
+should it cycle, a single-exchange active set, which lowers the energy at each step, finishes the work.
 """
 
 from dataclasses import dataclass
@@ -22,8 +22,8 @@ TOLERANCE = 1e-11
 class Contact:
     """A loaded contact.
 
-    `force` (n,) N; `rotation` rad (the approach in m where arms are 1); `slope` d rotation / d torque with the contact
-    area following the load, rad/(N m); `residual` largest violation of the conditions, relative.
+    `force` (n,) N; `rotation` rad (the approach in m where arms are 1); `slope` d rotation / d torque with
+    the contact area following the load, rad/(N m); `residual` largest violation of the conditions, relative.
     """
 
     force: NDArray[np.float64]

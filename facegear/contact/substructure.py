@@ -18,8 +18,9 @@ class Superelement:
     """A tooth seen from its loaded flank and its two cut faces, each face in its own turned frame.
 
     `flank` (k, k), m/N: normal displacements by unit normal forces with both faces clamped;
-    `influence` (k, 2 s), s the free dof of a face: minus the normal displacement by unit face displacements (left, then right), which is also
-    the force on the faces by unit normal forces; `faces` (2 s, 2 s), N/m: stiffness of the faces, flank unloaded.
+    `influence` (k, 2 s), s the free dof of a face: minus the normal displacement by unit face displacements
+    (left, then right), which is also the force on the faces by unit normal forces; `faces` (2 s, 2 s), N/m:
+    stiffness of the faces, flank unloaded.
     """
 
     flank: NDArray[np.float64]

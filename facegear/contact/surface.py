@@ -1,8 +1,9 @@
-"""The refined contact surface: quadratic displacement, piecewise bilinear pressure, loads consistent with both.
+"""The refined contact surface: quadratic displacement, piecewise bilinear pressure, loads consistent with
+both.
 
-The displacement lives on a lattice of nodes (nu, nv), two nodes an element both ways. The pressure is a sum of
-bilinear hats, one a node, so that a hat's nodal loads, its mean gap and its mean displacement follow from one
-matrix. Lattice coordinates count nodes: 0..nu-1 across the profile, 0..nv-1 along the width.
+The displacement lives on a lattice of nodes (nu, nv), two nodes an element both ways. The pressure is a sum
+of bilinear hats, one a node, so that a hat's nodal loads, its mean gap and its mean displacement follow from
+one matrix. Lattice coordinates count nodes: 0..nu-1 across the profile, 0..nv-1 along the width.
 """
 
 import numpy as np

@@ -1,0 +1,18 @@
+"""Columns of the contact table, apart from what computes it, so that readers need no solver."""
+
+SHARES = tuple(f"load_share_pair_{name}" for name in ("m2", "m1", "0", "p1", "p2"))
+"""Load shares of the tooth pairs -2..2 (numbers as in `facegear.geometry.design`)."""
+
+LTCA_COLUMNS = (
+    "torque_n_m",
+    "position",
+    "ste_um",
+    "unloaded_ste_um",
+    "k_average_n_per_m",
+    "k_local_n_per_m",
+    "pairs_in_contact",
+    *SHARES,
+    "peak_pressure_mpa",
+    "kkt_residual",
+    "torque_residual",
+)

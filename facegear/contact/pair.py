@@ -1,0 +1,54 @@
+"""Both gears of a pair, meshed, condensed and put together for contact."""
+
+from collections.abc import Callable
+
+from facegear.contact.candidates import PinionSurface
+from facegear.contact.compliance import FlankCompliance, flank_compliance
+from facegear.contact.ltca import ContactModel
+from facegear.contact.options import ContactPlan
+from facegear.contact.teeth import GearLattice, contact_side, piece_of
+from facegear.errors import ConfigError
+from facegear.geometry.design import Material, PairDesign
+from facegear.mesh.sizes import MeshSizes
+from facegear.mesh.tooth import ToothMesh, gear_tooth, pinion_tooth
+
+NEIGHBOURS = 2
+"""Teeth on each side whose coupling is kept: at most three or four pairs touch at once."""
+
+BUILDERS: dict[str, Callable[[PairDesign, MeshSizes], ToothMesh]] = {
+    "pinion": pinion_tooth,
+    "face_gear": gear_tooth,
+}
+
+
+def body_compliance(
+    design: PairDesign, body: str, sizes: MeshSizes, material: Material, plan: ContactPlan
+) -> FlankCompliance:
+    """Flank compliance of the pinion or the face gear.
+
+    Raises ConfigError for a sector with more teeth than the gear, FacegearError if the mesh cannot be
+    factorised.
+    """
+    tooth = BUILDERS[body](design, sizes)
+    sector = plan.sector
+    wanted = sector.pinion_teeth if body == "pinion" else sector.face_gear_teeth
+    if wanted is not None and wanted > tooth.teeth:
+        raise ConfigError(f"contact.sector.{body}_teeth", wanted, f"at most {tooth.teeth}")
+    piece, _ = piece_of(design, tooth, material)
+    ends = "ring" if wanted is None else sector.cut_faces
+    neighbours = min(NEIGHBOURS, ((wanted or tooth.teeth - 1) - 1) // 2)
+    return flank_compliance(piece, plan.refinement, wanted or tooth.teeth, neighbours, ends)
+
+
+def contact_model(
+    design: PairDesign, sizes: MeshSizes, pinion: FlankCompliance, gear: FlankCompliance
+) -> ContactModel:
+    """The pair with compliances made for the same design and sizes."""
+    sides = [contact_side(design, build(design, sizes)) for build in BUILDERS.values()]
+    return ContactModel(
+        design,
+        PinionSurface(design, sides[0], pinion.refinement),
+        GearLattice(design, sides[1], gear.refinement),
+        pinion,
+        gear,
+    )

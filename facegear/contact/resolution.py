@@ -1,0 +1,41 @@
+"""Whether the contact surface's nodes can see the contact strip at all."""
+
+from math import pi, sin, sqrt
+
+from facegear.contact.options import ContactPlan
+from facegear.errors import ConfigError
+from facegear.geometry.design import Material, PairDesign
+from facegear.mesh.sizes import MeshSizes
+
+COARSEST = 1.5
+"""Node distance over the strip's half-width that is still let through: one or two nodes in contact."""
+
+
+def half_width(design: PairDesign, materials: tuple[Material, Material], torque: float) -> float:
+    """Hertz half-width (m) of two pairs sharing a torque (N m) evenly along the face, at the pitch point.
+
+    Line contact of a cylinder with the pinion's radius of curvature r_p sin a0 on the nearly flat gear flank.
+    """
+    face = design.face_gear.outer_radius - design.face_gear.inner_radius
+    line_load = torque / design.pinion_base_radius / (2 * min(face, design.pinion.width))
+    softness = sum((1 - m.poisson_ratio**2) / m.young_modulus for m in materials)
+    return sqrt(4 * line_load * design.pinion_pitch_radius * sin(design.pressure_angle) * softness / pi)
+
+
+def check_resolution(
+    design: PairDesign, materials: tuple[Material, Material], sizes: MeshSizes, plan: ContactPlan
+) -> None:
+    """Refuse a mesh whose nodes are too far apart for the contact strip at the largest torque.
+
+    Raises ConfigError.
+    """
+    spacing = sizes.profile / plan.refinement.profile / 2
+    strip = half_width(design, materials, max(plan.torques))
+    if spacing > COARSEST * strip:
+        largest = 2e3 * COARSEST * strip * plan.refinement.profile
+        raise ConfigError(
+            "mesh.resolution",
+            f"{1e3 * sizes.profile:.3g} mm across the profile",
+            f"too coarse to resolve contact: at most {largest:.3g} mm with contact.refinement.profile = "
+            f"{plan.refinement.profile}",
+        )

@@ -1,0 +1,61 @@
+"""Fourier series of a periodic curve sampled evenly, with the errors of cutting and of sampling."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.harmonics.series import Harmonics
+
+LEVELS = (0.001, 0.01, 0.05)
+"""Parts of the peak-to-peak value for which the orders needed are reported."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """`series` through all n samples, orders 0..(n-1)//2.
+
+    truncation: (H+1,) largest deviation from the samples if cut after each order; sampling: (H+1,) estimate
+    of each amplitude's error from leaving out every second sample, whose aliasing is that of half the points
+    (nan where half the points do not reach). peak_to_peak of the samples. All N/m.
+    """
+
+    series: Harmonics
+    truncation: NDArray[np.float64]
+    sampling: NDArray[np.float64]
+    peak_to_peak: float
+
+    def orders_within(self, level: float) -> int | None:
+        """Smallest order whose cut deviates at most `level` times peak-to-peak; None if no order does."""
+        enough = np.flatnonzero(self.truncation <= level * self.peak_to_peak)
+        return int(enough[0]) if enough.size else None
+
+
+def fit_harmonics(samples: NDArray[np.float64]) -> Fit:
+    """Least squares fit (the discrete Fourier transform) to samples (n,) at 0, 1/n, 2/n ... of a period.
+
+    Raises ValueError for fewer than four samples.
+    """
+    samples = np.asarray(samples, dtype=float)
+    if samples.ndim != 1 or samples.size < 4:
+        raise ValueError("at least four samples of one period are needed")
+    series = _transform(samples)
+    cycles = np.arange(samples.size) / samples.size
+    truncation = np.array([np.abs(samples - series.kept(h)(cycles)).max() for h in range(series.order + 1)])
+    halves = [_transform(samples[start::2]) for start in (0, 1)] if samples.size >= 8 else []
+    sampling = np.full(series.order + 1, np.nan)
+    for half, shift in zip(halves, (0.0, 1.0 / samples.size), strict=False):
+        moved = half.shifted(shift)
+        count = half.order + 1
+        change = np.hypot(moved.a - series.a[:count], moved.b - series.b[:count])
+        sampling[:count] = np.fmax(sampling[:count], change)
+    return Fit(series, truncation, sampling, float(np.ptp(samples)))
+
+
+def _transform(samples: NDArray[np.float64]) -> Harmonics:
+    count = samples.size
+    spectrum = np.fft.rfft(samples)[: (count - 1) // 2 + 1] / count
+    spectrum[1:] *= 2.0
+    a = -spectrum.imag
+    a[0] = 0.0
+    return Harmonics(a, spectrum.real)

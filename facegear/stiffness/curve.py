@@ -1,0 +1,66 @@
+"""Mesh stiffness over a pitch at a load between those that were solved."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+
+from facegear.errors import ConfigError
+from facegear.stiffness.request import Definition
+
+COLUMN = {"average": "k_average_n_per_m", "local": "k_local_n_per_m"}
+
+
+@dataclass(frozen=True, eq=False)
+class LoadTable:
+    """k(position, torque): torques (t,) N m, positions (p,) 0..1, `average` and `local` (t, p) N/m."""
+
+    torques: NDArray[np.float64]
+    positions: NDArray[np.float64]
+    average: NDArray[np.float64]
+    local: NDArray[np.float64]
+
+    def at(self, torque: float, definition: Definition) -> NDArray[np.float64]:
+        """Stiffness (p,) at a torque, monotone cubic in log torque at each position.
+
+        Raises ConfigError outside the torques solved: the curve is never extrapolated.
+        """
+        values = self.average if definition == "average" else self.local
+        exact = np.flatnonzero(np.isclose(self.torques, torque, rtol=1e-12))
+        if exact.size:
+            return values[exact[0]]
+        low, high = self.torques[0], self.torques[-1]
+        if not low <= torque <= high:
+            allowed = f"within contact.torques_n_m, {low:g} to {high:g}"
+            raise ConfigError("mesh_stiffness.torque_n_m", torque, allowed)
+        return PchipInterpolator(np.log(self.torques), values, axis=0)(np.log(torque))
+
+    def interpolation_error(self, torque: float, definition: Definition) -> float:
+        """Largest relative change of the curve if the nearest inner torque had not been solved; nan if there
+        is none.
+        """
+        inner = np.arange(1, len(self.torques) - 1)
+        if inner.size == 0 or np.isclose(self.torques, torque, rtol=1e-12).any():
+            return 0.0 if inner.size else float("nan")
+        left_out = inner[np.argmin(np.abs(np.log(self.torques[inner] / torque)))]
+        kept = np.delete(np.arange(len(self.torques)), left_out)
+        fewer = LoadTable(self.torques[kept], self.positions, self.average[kept], self.local[kept])
+        full = self.at(torque, definition)
+        return float(np.abs(fewer.at(torque, definition) / full - 1.0).max())
+
+
+def load_table(ltca: pd.DataFrame) -> LoadTable:
+    """From the contact table, all positions at all torques."""
+    tables = {
+        name: ltca.pivot(index="torque_n_m", columns="position", values=column)
+        for name, column in COLUMN.items()
+    }
+    average = tables["average"]
+    return LoadTable(
+        average.index.to_numpy(float),
+        average.columns.to_numpy(float),
+        average.to_numpy(float),
+        tables["local"].to_numpy(float),
+    )

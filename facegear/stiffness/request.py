@@ -1,0 +1,20 @@
+"""What is asked of the stiffness stage; light to import, so that configs can be read without it."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from facegear.harmonics.series import Harmonics
+
+Definition = Literal["average", "local"]
+
+
+@dataclass(frozen=True, eq=False)
+class StiffnessRequest:
+    """Source of k(t); `mean` N/m, `torque` N m on the pinion per mesh, orders `kept`, and the series `given`."""
+
+    source: Literal["fem", "fem_scaled", "harmonics"]
+    mean: float
+    torque: float | None
+    definition: Definition
+    kept: int
+    given: Harmonics

@@ -1,0 +1,66 @@
+"""k(t) from the contact analysis or from given harmonics, with its tables."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from facegear.harmonics.fit import LEVELS, fit_harmonics
+from facegear.harmonics.series import Harmonics
+from facegear.stiffness.curve import load_table
+from facegear.stiffness.request import StiffnessRequest
+from facegear.stiffness.tables import curve_table, harmonics_table
+
+DRAWN = 256
+"""Points a pitch of a curve that comes from given harmonics."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stiffness:
+    """`harmonics`: the orders kept; `spectrum`: all orders; `curve` over a pitch."""
+
+    curve: pd.DataFrame
+    harmonics: pd.DataFrame
+    spectrum: pd.DataFrame
+    summary: str
+
+
+def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Stiffness:
+    """Curve at the requested load and its series.
+
+    Source fem_scaled multiplies the curve so that its mean is the requested one. Raises ConfigError for a
+    load outside those solved.
+    """
+    assert request.torque is not None
+    table = load_table(ltca)
+    samples = table.at(request.torque, request.definition)
+    fit = fit_harmonics(samples)
+    scale = request.mean / fit.series.mean if request.source == "fem_scaled" else 1.0
+    whole = fit.series.scaled(scale)
+    series = whole.kept(request.kept)
+    reach = ", ".join(f"{100 * level:g} %: {fit.orders_within(level)}" for level in LEVELS)
+    between = table.interpolation_error(request.torque, request.definition)
+    summary = (
+        f"{request.definition} stiffness at {request.torque:g} N m, mean {fit.series.mean:.4g} N/m "
+        f"times {scale:.4f}; orders for an error of the peak-to-peak of {reach}; "
+        f"interpolation between loads {100 * between:.2g} %"
+    )
+    return Stiffness(
+        curve_table(table.positions, scale * samples, series),
+        harmonics_table(series, fit, scale),
+        harmonics_table(whole, fit, scale),
+        summary,
+    )
+
+
+def stiffness_given(own: Harmonics | None, request: StiffnessRequest) -> Stiffness:
+    """Curve of a given series: `own` (read from the user's file), its mean included, or the config's."""
+    whole = request.given if own is None else own
+    series = whole.kept(request.kept)
+    positions = np.arange(DRAWN) / DRAWN
+    return Stiffness(
+        curve_table(positions, whole(positions), series),
+        harmonics_table(series, None),
+        harmonics_table(whole, None),
+        f"given harmonics, {series.order} kept, mean {series.mean:.4g} N/m",
+    )

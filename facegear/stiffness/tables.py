@@ -1,0 +1,70 @@
+"""Mesh stiffness results as tables."""
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from facegear.harmonics.fit import LEVELS, Fit, fit_harmonics
+from facegear.harmonics.series import Harmonics
+from facegear.stiffness.curve import LoadTable
+
+HARMONICS_COLUMNS = ("order", "a_n_per_m", "b_n_per_m", "amplitude_n_per_m")
+
+
+def harmonics_table(series: Harmonics, fit: Fit | None, scale: float = 1.0) -> pd.DataFrame:
+    """Orders of a series with the errors of the fit it comes from, times `scale`; zero errors if it was
+    given.
+    """
+    orders = np.arange(series.order + 1)
+    zeros = np.zeros(orders.size)
+    truncation = zeros if fit is None else scale * fit.truncation[orders]
+    sampling = zeros if fit is None else scale * fit.sampling[orders]
+    return pd.DataFrame(
+        {
+            "order": orders,
+            "a_n_per_m": series.a,
+            "b_n_per_m": series.b,
+            "amplitude_n_per_m": series.amplitudes,
+            "truncation_error_n_per_m": truncation,
+            "sampling_error_n_per_m": sampling,
+        }
+    )
+
+
+def curve_table(
+    positions: NDArray[np.float64], samples: NDArray[np.float64], series: Harmonics
+) -> pd.DataFrame:
+    """The curve over a pitch and its cut series, N/m."""
+    return pd.DataFrame({"position": positions, "k_n_per_m": samples, "k_series_n_per_m": series(positions)})
+
+
+def load_dependence(table: LoadTable) -> pd.DataFrame:
+    """Mean, extremes and first harmonics of both stiffnesses at each torque solved."""
+    rows = []
+    for definition in ("average", "local"):
+        for torque in table.torques:
+            samples = table.at(torque, definition)
+            fit = fit_harmonics(samples)
+            first, second = (*fit.series.amplitudes[1:3], np.nan)[:2]
+            needed = [fit.orders_within(level) for level in LEVELS]
+            rows.append(
+                (definition, torque, samples.mean(), samples.min(), samples.max(), first, second, *needed)
+            )
+    names = [f"orders_for_{100 * level:g}_percent" for level in LEVELS]
+    columns = ["definition", "torque_n_m", "mean_n_per_m", "min_n_per_m", "max_n_per_m"]
+    frame = pd.DataFrame(rows, columns=[*columns, "amplitude_1_n_per_m", "amplitude_2_n_per_m", *names])
+    return frame.astype(dict.fromkeys(names, "Int64"))
+
+
+def series_of(table: pd.DataFrame) -> Harmonics:
+    """The series of a table with the columns order, a_n_per_m, b_n_per_m; orders left out are zero.
+
+    Raises ValueError for orders that are not whole numbers from zero, or stand twice.
+    """
+    orders = table["order"].to_numpy()
+    if (orders != np.round(orders)).any() or (orders < 0).any() or np.unique(orders).size != orders.size:
+        raise ValueError("orders must be whole numbers from 0, each once")
+    a, b = np.zeros(int(orders.max()) + 1), np.zeros(int(orders.max()) + 1)
+    a[orders.astype(int)] = table["a_n_per_m"]
+    b[orders.astype(int)] = table["b_n_per_m"]
+    return Harmonics(a, b)

@@ -1,0 +1,102 @@
+def stiffness_input(wildcards):
+    """Contact results, or the user's own file, or nothing when the harmonics stand in the config."""
+    section = config_slice("mesh_stiffness")(wildcards)
+    if section["source"] != "harmonics":
+        return {"ltca": upstream("contact", "contact/ltca.csv")(wildcards)}
+    return {"given": section["csv"]} if section["csv"] else {}
+
+
+rule stiffness:
+    input:
+        unpack(stiffness_input),
+    output:
+        tvms="results/{case}/stiffness/tvms.csv",
+        harmonics="results/{case}/stiffness/harmonics.csv",
+        spectrum="results/{case}/stiffness/spectrum.csv",
+        manifest="results/{case}/stiffness/stiffness.provenance.json",
+    log:
+        "results/{case}/logs/stiffness.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/stiffness.tsv"
+    threads: 1
+    resources:
+        mem_mb=500,
+        runtime=5,
+    params:
+        section=config_slice("mesh_stiffness"),
+        code=fingerprint("stiffness.py"),
+    message:
+        "mesh stiffness of {wildcards.case}"
+    script:
+        "../scripts/stiffness.py"
+
+
+rule load_dependence:
+    input:
+        ltca=upstream("contact", "contact/ltca.csv"),
+    output:
+        table="results/{case}/stiffness/load_dependence.csv",
+        manifest="results/{case}/stiffness/load_dependence.provenance.json",
+    log:
+        "results/{case}/logs/load_dependence.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/load_dependence.tsv"
+    threads: 1
+    resources:
+        mem_mb=500,
+        runtime=5,
+    params:
+        code=fingerprint("load_dependence.py"),
+    message:
+        "stiffness against load of {wildcards.case}"
+    script:
+        "../scripts/load_dependence.py"
+
+
+rule stiffness_figures:
+    input:
+        tvms=upstream("stiffness", "stiffness/tvms.csv"),
+        spectrum=upstream("stiffness", "stiffness/spectrum.csv"),
+    output:
+        tvms_svg="results/{case}/figures/fig07.svg",
+        tvms_png="results/{case}/figures/fig07.png",
+        harmonics_svg="results/{case}/figures/fig08.svg",
+        harmonics_png="results/{case}/figures/fig08.png",
+        manifest="results/{case}/figures/stiffness.provenance.json",
+    log:
+        "results/{case}/logs/stiffness_figures.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/stiffness_figures.tsv"
+    threads: 1
+    resources:
+        mem_mb=700,
+        runtime=5,
+    params:
+        code=fingerprint("stiffness_figures.py"),
+    message:
+        "figures 7 and 8 of {wildcards.case}"
+    script:
+        "../scripts/stiffness_figures.py"
+
+
+rule load_dependence_figure:
+    input:
+        table="results/{case}/stiffness/load_dependence.csv",
+    output:
+        svg="results/{case}/figures/stiffness_load.svg",
+        png="results/{case}/figures/stiffness_load.png",
+        manifest="results/{case}/figures/stiffness_load.provenance.json",
+    log:
+        "results/{case}/logs/load_dependence_figure.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/load_dependence_figure.tsv"
+    threads: 1
+    resources:
+        mem_mb=700,
+        runtime=5,
+    params:
+        code=fingerprint("load_dependence_figure.py"),
+    message:
+        "stiffness against load of {wildcards.case}, drawn"
+    script:
+        "../scripts/load_dependence_figure.py"
