@@ -30,6 +30,9 @@ class Accuracy(Section):
     )
     samples_per_period: int = Field(64, ge=16, le=4096)
     refine: bool = Field(True, description="periodic orbits to rounding, with Floquet multipliers")
+    extensions: int = Field(
+        2, ge=0, le=10, description="doublings of patience for a motion that is undecided"
+    )
 
 
 class Sweep(Section):
@@ -39,11 +42,16 @@ class Sweep(Section):
     to_rpm: float = Field(20_000, gt=0, le=MAX_SPEED_RPM)
     points: int = Field(400, ge=2, le=100_000)
     directions: tuple[Literal["up", "down"], ...] = Field(("up", "down"), min_length=1, max_length=2)
-    chunks: int = Field(4, ge=1, le=1000, description="independent pieces of each direction")
+    chunks: int = Field(2, ge=1, le=1000, description="independent pieces of each direction")
     overlap_points: int = Field(8, ge=0, le=1000, description="speeds a chunk runs before its own first one")
     jump_resolution_rpm: float = Field(1.0, gt=0, le=1000)
     accuracy: Accuracy = Accuracy(
-        tolerance=1e-4, dwell_periods=32, settle_periods=128, window_periods=128, periodic_residual=1e-5
+        tolerance=1e-4,
+        dwell_periods=32,
+        settle_periods=128,
+        window_periods=128,
+        periodic_residual=1e-5,
+        extensions=1,
     )
 
     @model_validator(mode="after")
@@ -76,6 +84,7 @@ def settings(section: Accuracy) -> Settings:
         window=section.window_periods,
         samples=section.samples_per_period,
         refine=section.refine,
+        extensions=section.extensions,
     )
 
 

@@ -1,6 +1,6 @@
 """Kinds of motion and how a run is settled."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
@@ -39,6 +39,7 @@ class Settings:
     window: int = 256
     samples: int = 64
     refine: bool = True
+    extensions: int = 2
 
     @property
     def taylor_order(self) -> int:
@@ -46,6 +47,16 @@ class Settings:
         if self.order is not None:
             return self.order
         return int(np.clip(round(4.0 - 1.0 * np.log10(self.tolerance)), 6, 20))
+
+    def extended(self, times: int) -> "Settings":
+        """The same with patience, window and longest period doubled `times` times."""
+        factor = 2**times
+        return replace(
+            self,
+            settle=factor * self.settle,
+            window=factor * self.window,
+            longest_period=factor * self.longest_period,
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.compiled import Packed
+from facegear.dynamics.compiled import TAU, Packed
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.orbits import Orbit, change, require, shoot
 from facegear.dynamics.periods import make_log, run_periods
@@ -35,7 +35,11 @@ def settle(packed: Packed, work: Work, place: Array, velocity: Array, settings: 
     """Run blocks of periods until the state repeats after 1 .. longest_period of them, or patience ends."""
     place, velocity = place.copy(), velocity.copy()
     longest = settings.longest_period
-    block = max(BLOCK, 2 * longest)
+    # Slow speeds forget within fewer periods: 30 time constants of the least damped coordinate are plenty.
+    rate = 0.5 * TAU * packed.damping[: packed.n].min()
+    forgotten = int(np.ceil(30.0 / rate)) if rate > 0.0 else settings.dwell
+    block = max(min(BLOCK, forgotten), longest + 1)
+    dwell = min(settings.dwell, max(block, forgotten))
     tangents = np.zeros((NO_TANGENTS, 2, place.size))
     spent = 0
     residual, period = np.inf, 0
@@ -45,7 +49,7 @@ def settle(packed: Packed, work: Work, place: Array, velocity: Array, settings: 
         require(run_periods(packed, work, place, velocity, tangents, block, 0, settings.tolerance, log))
         spent += block
         period, residual = repeat(packed, log.ends, longest, settings.periodic_residual)
-        enough = spent >= settings.dwell
+        enough = spent >= dwell
         if enough and settings.refine and residual < min(TRY_NEWTON, 0.1 * tried.get(period, np.inf)):
             orbit = _stable_orbit(packed, work, place, velocity, period, residual, settings)
             if orbit is not None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -117,12 +117,20 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
     packed = pack(system, frequency)
     work = make_work(packed, settings.taylor_order)
     place, velocity = _widened(packed, start.place), _widened(packed, start.velocity / frequency)
-    settled = settle(packed, work, place, velocity, settings)
-    exponent = None
-    motion = Motion.PERIODIC
-    if settled.period == 0:
-        motion, exponent = largest_exponent(packed, work, settled.place, settled.velocity, settings)
-    periods = settled.period or settings.window
+    exponent, spent = None, 0
+    for times in range(settings.extensions + 1):
+        patient = settings.extended(times)
+        settled = settle(packed, work, place, velocity, patient)
+        spent += settled.spent
+        motion = Motion.PERIODIC
+        if settled.period:
+            break
+        place, velocity = settled.place, settled.velocity
+        motion, exponent = largest_exponent(packed, work, place, velocity, patient)
+        if motion is not Motion.NOT_SETTLED:
+            break
+    settled = replace(settled, spent=spent)
+    periods = settled.period or patient.window
     return _measure(packed, system, frequency, settings, settled, motion, exponent, periods)
 
 

@@ -1,0 +1,75 @@
+"""Chunks of a sweep put together as if it had been run in one go."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from facegear.dynamics.jumps import distance
+from facegear.dynamics.plan import SweepPlan
+from facegear.dynamics.simulate import Model
+from facegear.dynamics.sweep import DEFLECTION, Piece, collect, joined, run_speeds
+
+SAME = 5e-3
+"""Relative difference of the AC RMS of periodic motions that counts as the same orbit."""
+
+
+class SeamKind(StrEnum):
+    """How two chunks met."""
+
+    AGREED = "agreed"
+    RERUN = "rerun"
+    IRREGULAR = "irregular"
+
+
+@dataclass(frozen=True)
+class Seam:
+    """Where two chunks meet and how many speeds had to be run again from the end of the first.
+
+    `irregular`: both are in irregular motion there, whose state is never forgotten; the chunks agree in RMS
+    only.
+    """
+
+    direction: str
+    speed_rpm: float
+    kind: SeamKind
+    rerun: int
+
+
+def same_response(first: Piece, i: int, second: Piece, j: int) -> SeamKind | None:
+    """Whether two responses at one speed are the same motion; None if not."""
+    label, other = str(first.labels[i]), str(second.labels[j])
+    rms, interval = DEFLECTION.index("ac_rms"), DEFLECTION.index("ac_rms_interval")
+    periodic = label.startswith("period-"), other.startswith("period-")
+    if all(periodic):
+        near = distance(first.deflection[i, rms], second.deflection[j, rms]) <= SAME
+        return SeamKind.AGREED if near and label == other else None
+    if any(periodic):
+        return None
+    doubt = first.deflection[i, interval] + second.deflection[j, interval]
+    gap = np.abs(first.deflection[i, rms] - second.deflection[j, rms])
+    return SeamKind.IRREGULAR if (gap <= 2.0 * doubt + SAME * first.deflection[i, rms]).all() else None
+
+
+def assemble(
+    ready: Model, plan: SweepPlan, direction: str, chunks: list[tuple[Piece, Piece]]
+) -> tuple[Piece, list[Seam]]:
+    """Join (overlap, own) chunks; where a chunk started on another branch it is run again until it agrees."""
+    whole = chunks[0][1]
+    seams: list[Seam] = []
+    for before, own in chunks[1:]:
+        speed = float(whole.speeds[-1])
+        kind = same_response(whole, -1, before, -1) if len(before.speeds) else None
+        if kind is not None:
+            seams.append(Seam(direction, speed, kind, 0))
+            whole = joined([whole, own])
+            continue
+        redone: list[Piece] = []
+        for i in range(len(own.speeds)):
+            state = (redone[-1] if redone else whole).state(-1)
+            redone.append(collect(ready, run_speeds(ready, own.speeds[i : i + 1], plan.settings, state)))
+            if same_response(redone[-1], -1, own, i) is not None:
+                break
+        seams.append(Seam(direction, speed, SeamKind.RERUN, len(redone)))
+        whole = joined([whole, *redone, own.tail(len(redone))])
+    return whole, seams

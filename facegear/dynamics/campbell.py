@@ -1,0 +1,77 @@
+"""Which natural mode a resonance belongs to."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.sweep import DEFLECTION, TRANSLATION, Piece
+from facegear.transmission.modes import Modes
+
+Array = NDArray[np.float64]
+PROMINENT = 1.15
+
+
+@dataclass(frozen=True)
+class Resonance:
+    """The natural mode (order in the frequency table, from 1) that holds most of a response's energy.
+
+    order: multiple of the mesh frequency at which it moves most; share: of the energy of all modes;
+    predicted_rpm: where that multiple meets the mode's linear frequency.
+    """
+
+    mode: int
+    frequency_hz: float
+    order: float
+    share: float
+    predicted_rpm: float
+
+    @property
+    def name(self) -> str:
+        """`mode 17 at 1x`."""
+        return f"mode {self.mode} at {self.order:g}x"
+
+
+def resonance(piece: Piece, position: int, modes: Modes, teeth: int) -> Resonance:
+    """The resonance that a response belongs to; modes of one frequency count together."""
+    energy = piece.modal[position] ** 2
+    groups = [energy[start:stop].sum() for start, stop in modes.groups]
+    start, _ = modes.groups[int(np.argmax(groups))]
+    frequency = float(modes.frequencies[start])
+    order = float(piece.modal_order[position])
+    share = float(max(groups) / max(energy.sum(), 1e-300))
+    return Resonance(start + 1, frequency, order, share, 60.0 * frequency / (order * teeth))
+
+
+def peaks(piece: Piece) -> list[tuple[str, int, int, float]]:
+    """Local maxima over speed: (deflection or x, y, z), mesh or body, position, AC RMS in m.
+
+    A maximum counts if it stands 15 % over the lowest value on either side before a higher one comes.
+    """
+    found = []
+    ac_rms = piece.deflection[:, DEFLECTION.index("ac_rms")]
+    for mesh in range(ac_rms.shape[1]):
+        found += [("deflection", mesh, i, float(ac_rms[i, mesh])) for i in _maxima(ac_rms[:, mesh])]
+    moved = piece.translation[:, TRANSLATION.index("ac_rms")]
+    for body in range(moved.shape[1]):
+        for axis, letter in enumerate("xyz"):
+            curve = moved[:, body, axis]
+            if curve.max() > 1e-12:
+                found += [(letter, body, i, float(curve[i])) for i in _maxima(curve)]
+    return found
+
+
+def _maxima(curve: Array) -> list[int]:
+    inner = np.flatnonzero((curve[1:-1] > curve[:-2]) & (curve[1:-1] >= curve[2:])) + 1
+    kept = []
+    for i in inner:
+        left = curve[:i][::-1]
+        right = curve[i + 1 :]
+        valleys = []
+        for side in (left, right):
+            higher = np.flatnonzero(side > curve[i])
+            reach = side[: higher[0]] if higher.size else side
+            valleys.append(reach.min() if reach.size else curve[i])
+        if curve[i] > PROMINENT * max(valleys) and curve[i] > 0.1 * curve.max():
+            kept.append(int(i))
+    return kept

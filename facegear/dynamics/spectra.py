@@ -1,0 +1,47 @@
+"""Amplitude spectra over multiples of the mesh frequency."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+SEGMENT = 8
+"""Mesh periods in a segment; orders are multiples of 1 / SEGMENT."""
+HIGHEST = 6
+ORDERS = np.arange(SEGMENT * HIGHEST + 1) / SEGMENT
+
+
+def spectrum(samples: Array, per_period: int, periodic: bool) -> tuple[Array, Array]:
+    """Orders (F,) and amplitudes (F, columns) of whole periods; Hann-weighted unless periodic.
+
+    A sine of amplitude A at an order of the grid has the amplitude A (the mean stays the mean).
+    """
+    count = len(samples)
+    window = np.ones(count) if periodic else np.hanning(count + 1)[:count]
+    transform = np.fft.rfft(samples * window[:, None], axis=0) / window.sum()
+    amplitudes = 2.0 * np.abs(transform)
+    amplitudes[0] *= 0.5
+    return np.arange(len(amplitudes)) * per_period / count, amplitudes
+
+
+def order_spectrum(samples: Array, per_period: int, period: int) -> Array:
+    """Amplitudes on the fixed grid ORDERS, shape (columns, orders), RMS-averaged over segments.
+
+    Lines of a period that SEGMENT is no multiple of go to the nearest order of the grid.
+    """
+    result = np.zeros((samples.shape[1], ORDERS.size))
+    if period:
+        orders, lines = spectrum(samples, per_period, True)
+        bins = np.round(orders * SEGMENT).astype(int)
+        for place, line in zip(bins, lines, strict=True):
+            if place < ORDERS.size:
+                result[:, place] = np.hypot(result[:, place], line)
+        return result
+    length = SEGMENT * per_period
+    segments = samples[: len(samples) // length * length].reshape(-1, length, samples.shape[1])
+    total = np.zeros((ORDERS.size, samples.shape[1]))
+    for segment in segments:
+        _, lines = spectrum(segment - segment.mean(axis=0), per_period, False)
+        total += lines[: ORDERS.size] ** 2
+    result[:] = np.sqrt(total / max(len(segments), 1)).T
+    result[:, 0] = np.abs(samples.mean(axis=0))
+    return result

@@ -1,0 +1,138 @@
+"""Speed sweeps: steady states at many speeds, each started from the one before."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.motion import Settings, State
+from facegear.dynamics.plan import SweepPlan
+from facegear.dynamics.simulate import Model, SteadyState, simulate, static_start
+from facegear.dynamics.spectra import order_spectrum, spectrum
+from facegear.dynamics.statistics import moments
+from facegear.transmission.matrices import mass_diagonal
+from facegear.transmission.modes import natural_modes
+
+Array = NDArray[np.float64]
+DEFLECTION = ("mean", "rms", "ac_rms", "least", "most", "rms_interval", "ac_rms_interval")
+TRANSLATION = ("rms", "ac_rms", "ac_rms_interval")
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """Results of one chunk in the order of running; P speeds, M meshes, B bodies, n coordinates.
+
+    deflection (P, 7, M): the moments named in DEFLECTION, m. force (P, 2, M): mean and mean magnitude of the
+    elastic mesh force, N. shares (P, 3, M): open, drive, back. translation (P, 3, B, 3): the moments named in
+    TRANSLATION of x, y, z, m. labels (P,): class of motion. facts (P, 5): residual, leading multiplier or
+    NaN, exponent and half-width or NaN, periods spent. spectrum (P, M, orders), m. modal (P, modes): RMS
+    velocity scale omega * coordinate of every natural mode without mean, sqrt(J). modal_order (P,): where in
+    multiples of the mesh frequency the strongest mode moves most. place, velocity (P, n).
+    """
+
+    speeds: Array
+    labels: NDArray[np.str_]
+    deflection: Array
+    force: Array
+    shares: Array
+    translation: Array
+    facts: Array
+    spectrum: Array
+    modal: Array
+    modal_order: Array
+    place: Array
+    velocity: Array
+
+    def tail(self, start: int) -> "Piece":
+        """The speeds from position `start` on."""
+        return Piece(**{name: getattr(self, name)[start:] for name in self.__dataclass_fields__})
+
+    def state(self, index: int) -> State:
+        """State at the end of one speed."""
+        return State(self.place[index], self.velocity[index])
+
+
+def joined(pieces: list[Piece]) -> Piece:
+    """Pieces one after another."""
+    names = Piece.__dataclass_fields__
+    return Piece(**{name: np.concatenate([getattr(piece, name) for piece in pieces]) for name in names})
+
+
+def run_chunk(
+    ready: Model, plan: SweepPlan, direction: str, number: int, step: Callable[[], None] = lambda: None
+) -> tuple[Piece, Piece]:
+    """Overlap and own speeds of a chunk, the first speed started from static equilibrium."""
+    before, own = plan.chunk(direction, number)
+    responses = run_speeds(ready, np.concatenate([before, own]), plan.settings, None, step)
+    piece = collect(ready, responses)
+    count = len(before)
+    return Piece(**{n: getattr(piece, n)[:count] for n in Piece.__dataclass_fields__}), piece.tail(count)
+
+
+def run_speeds(
+    ready: Model,
+    speeds: Array,
+    settings: Settings,
+    start: State | None,
+    step: Callable[[], None] = lambda: None,
+) -> Iterator[tuple[float, SteadyState]]:
+    """Steady states at speeds in the given order, the state carried over."""
+    state = static_start(ready) if start is None else start
+    for speed in speeds:
+        response = simulate(ready, float(speed), settings, state)
+        state = response.state
+        step()
+        yield float(speed), response
+
+
+def collect(ready: Model, responses: Iterator[tuple[float, SteadyState]]) -> Piece:
+    """Reduce responses to the numbers that a sweep keeps."""
+    machine = ready.machine
+    modes = natural_modes(machine.layout, machine.stiffness.mean)
+    to_modal = mass_diagonal(machine.layout)[:, None] * modes.shapes * (2.0 * np.pi * modes.frequencies)
+    rows = [_row(ready, to_modal, speed, response) for speed, response in responses]
+    return Piece(**{name: np.array([row[name] for row in rows]) for name in Piece.__dataclass_fields__})
+
+
+def _row(
+    ready: Model, to_modal: Array, speed: float, response: SteadyState
+) -> dict[str, Array | float | str]:
+    periodic = response.period > 0
+    meshes = moments(response.deflections, response.per_period, periodic)
+    displacements = ready.displacements(response)
+    in_modes = displacements @ to_modal
+    in_modes -= in_modes.mean(axis=0)
+    modal = np.sqrt((in_modes**2).mean(axis=0))
+    orders, lines = spectrum(in_modes[:, [modal.argmax()]], response.per_period, periodic)
+    displacements = displacements.reshape(len(in_modes), -1, 4)
+    bodies = displacements.shape[1]
+    moved = moments(displacements[:, :, :3].reshape(-1, 3 * bodies), response.per_period, periodic)
+    exponent, half = response.exponent or (np.nan, np.nan)
+    leading = np.nan if response.multipliers is None else abs(response.multipliers[0])
+    return {
+        "speeds": speed,
+        "labels": response.label,
+        "deflection": np.array([getattr(meshes, name) for name in DEFLECTION]),
+        "force": np.array([response.forces.mean(axis=0), np.abs(response.forces).mean(axis=0)]),
+        "shares": response.shares,
+        "translation": np.array([getattr(moved, name).reshape(bodies, 3) for name in TRANSLATION]),
+        "facts": np.array([response.residual, leading, exponent, half, response.spent]),
+        "spectrum": order_spectrum(response.deflections, response.per_period, response.period),
+        "modal": modal,
+        "modal_order": orders[lines[1:, 0].argmax() + 1],
+        "place": response.state.place,
+        "velocity": response.state.velocity,
+    }
+
+
+def tighter(settings: Settings) -> Settings:
+    """Half the tolerance and twice the dwell, to show what a sweep's numbers are worth."""
+    return replace(
+        settings,
+        tolerance=0.5 * settings.tolerance,
+        order=settings.taylor_order,
+        dwell=2 * settings.dwell,
+        settle=2 * settings.settle,
+        window=2 * settings.window,
+    )
