@@ -7,21 +7,39 @@ from typing import Any
 from facegear.config.base import parse
 from facegear.config.model import Config
 from facegear.config.yaml_file import numbers, read_yaml
+from facegear.errors import ConfigErrors
 
 
 def load_config(path: str | Path, overrides: Mapping[str, Any] | None = None) -> Config:
     """Read and validate a config file. Raises ConfigErrors with one line for every mistake."""
-    return parse(Config, merged(read_yaml(path), numbers(dict(overrides or {}))), source=str(path))
+    return parse(Config, merged(read_layers(path), numbers(dict(overrides or {}))), source=str(path))
 
 
 def load_values(paths: Sequence[str | Path], overrides: Mapping[str, Any]) -> dict[str, Any]:
     """Validated plain values of config files laid over one another, with defaults filled in."""
     values: dict[str, Any] = {}
     for path in paths:
-        values = merged(values, read_yaml(path))
+        values = merged(values, read_layers(path))
     values = merged(values, numbers(dict(overrides)))
     source = ", ".join(_short(path) for path in paths)
     return parse(Config, values, source).model_dump(mode="json")
+
+
+def read_layers(path: str | Path, below: Sequence[Path] = ()) -> dict[str, Any]:
+    """Values of a config file laid over those of the file its key `extends` names, in the same folder.
+
+    Raises ConfigErrors if that file is missing, lies elsewhere, or extends this one.
+    """
+    path = Path(path)
+    values = read_yaml(path)
+    if "extends" not in values:
+        return values
+    base = values.pop("extends")
+    others = {other.name for other in path.parent.glob("*.yaml")} - {path.name, *(one.name for one in below)}
+    if not isinstance(base, str) or base not in others:
+        told = f"extends = {base!r}: the name of another config file in the same folder"
+        raise ConfigErrors(_short(path), [told])
+    return merged(read_layers(path.with_name(base), (path, *below)), values)
 
 
 def merged(values: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:

@@ -87,7 +87,7 @@ def test_an_altered_intermediate_is_named_with_the_command_that_rebuilds_it(quic
     ],
 )
 def test_a_config_mistake_stops_before_any_work_in_one_line(tmp_path, old, new, line):
-    text = (ROOT / "config" / "quick.yaml").read_text()
+    text = (ROOT / "config" / "paper.yaml").read_text()
     assert old in text
     config = tmp_path / "bad.yaml"
     config.write_text(text.replace(old, new, 1))

@@ -84,13 +84,13 @@ def test_a_comment_reruns_nothing(edited, module):
     ],
 )
 def test_a_change_of_the_transmission_recomputes_nothing_before_the_dynamics(edited, pattern, replacement):
-    old = re.search(pattern, (ROOT / "config" / "quick.yaml").read_text()).group()
-    planned = edited("config/quick.yaml", old, replacement)
+    old = re.search(pattern, (ROOT / "config" / "paper.yaml").read_text()).group()
+    planned = edited("config/paper.yaml", old, replacement)
     assert "response" in planned
     assert not {"geometry", "mesh", "compliance", "contact", "stiffness"} & planned
 
 
 def test_a_change_of_tooth_data_recomputes_everything_after_geometry(edited):
-    old = re.search(r"outer_radius_mm: \S+", (ROOT / "config" / "quick.yaml").read_text()).group()
-    planned = edited("config/quick.yaml", old, "outer_radius_mm: 274")
+    old = re.search(r"outer_radius_mm: \S+", (ROOT / "config" / "paper.yaml").read_text()).group()
+    planned = edited("config/paper.yaml", old, "outer_radius_mm: 274")
     assert {"geometry", "mesh", "compliance", "contact", "stiffness", "response", "load_sharing"} <= planned

@@ -1,0 +1,45 @@
+"""The whole config and the checks that reach across its sections."""
+
+from pydantic import Field, model_validator
+
+from facegear.config.base import Section, refuse
+from facegear.config.contact import Contact
+from facegear.config.dynamics import Dynamics
+from facegear.config.identify import Identify, ScorecardSection
+from facegear.config.load_sharing import LoadSharing
+from facegear.config.mesh import Mesh
+from facegear.config.stiffness import MeshStiffness
+from facegear.config.studies import NAME, Study
+from facegear.config.tooth_pair import ToothPair
+from facegear.config.transmission import Transmission, layout, tooth_numbers
+from facegear.errors import ConfigError
+
+
+class Config(Section):
+    """One machine and what is to be computed for it."""
+
+    case: str = Field(pattern=NAME, description="names the folder under results/")
+    tooth_pair: ToothPair
+    mesh: Mesh = Mesh()
+    contact: Contact = Contact()
+    mesh_stiffness: MeshStiffness
+    transmission: Transmission
+    dynamics: Dynamics = Dynamics()
+    load_sharing: LoadSharing = LoadSharing()
+    studies: tuple[Study, ...] = ()
+    scorecard: ScorecardSection | None = None
+    identify: Identify | None = None
+
+    @model_validator(mode="after")
+    def _buildable(self) -> "Config":
+        pair = self.tooth_pair
+        try:
+            layout(
+                self.transmission,
+                tooth_numbers(
+                    pair.pinion_teeth, pair.face_gear_teeth, pair.module_mm, pair.pressure_angle_deg
+                ),
+            )
+        except ConfigError as error:
+            refuse(error.key, error.value, error.allowed)
+        return self
