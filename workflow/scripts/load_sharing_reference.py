@@ -4,14 +4,14 @@ from facegear.config.base import parse
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.load_sharing import LoadSharing, sharing_options
 from facegear.config.transmission import Transmission, machine, tooth_numbers
-from facegear.harmonics.stored import COLUMNS, from_table
 from facegear.io import tables
 from facegear.load_sharing.reference import reference_table, speed_range_table
 from facegear.provenance.stage import stage
+from facegear.stiffness.tables import HARMONICS_COLUMNS, series_of
 
 with stage(snakemake) as run:
     params = snakemake.params
-    stiffness = from_table(tables.read(snakemake.input.harmonics, COLUMNS))
+    stiffness = series_of(tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS))
     built = machine(parse(Transmission, params.section), tooth_numbers(**params.teeth), stiffness)
     options = sharing_options(parse(LoadSharing, params.options))
     reference = reference_table(built, settings(parse(Accuracy, params.accuracy)), options)
