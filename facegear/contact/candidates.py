@@ -96,9 +96,9 @@ class PinionSurface:
 class Candidates:
     """Pressure hats of one tooth pair that may touch: a unit force each, spread over the hat's covered area.
 
-    hats (m,) lattice nodes; gap (m,) m and arm (m,) m averaged over the hat; area (m,) m2; loads on the
-    lattice nodes `pinion` (m, n1) and `gear` (m, n2), and on the unrefined ones `pinion_coarse`,
-    `gear_coarse`.
+    hats (m,) lattice nodes; gap (m,) m and arm (m,) m averaged over the hat; area (m,) m2, `whole` where no
+    edge cuts it; loads on the lattice nodes `pinion` (m, n1) and `gear` (m, n2), and on the unrefined ones
+    `pinion_coarse`, `gear_coarse`.
     """
 
     tooth: int
@@ -106,6 +106,7 @@ class Candidates:
     gap: NDArray[np.float64]
     arm: NDArray[np.float64]
     area: NDArray[np.float64]
+    whole: NDArray[np.bool_]
     pinion: sp.csr_matrix
     gear: sp.csr_matrix
     pinion_coarse: sp.csr_matrix
@@ -178,11 +179,19 @@ def _pair_candidates(
         mean_gap[near],
         arm[near],
         area[hats][near],
+        _whole(surface, hats[near], area[hats][near]),
         (weight @ surface.nodal[points]).tocsr(),
         gear.tocsr(),
         (weight @ surface.coarse[points]).tocsr(),
         gear_coarse.tocsr(),
     )
+
+
+def _whole(surface: PinionSurface, hats: NDArray[np.int64], area: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Hats that neither the gear's edges cut nor the pinion's, which are those of its lattice."""
+    row, column = np.divmod(hats, surface.shape[1])
+    inside = (row > 0) & (column > 0) & (column < surface.shape[1] - 1)
+    return inside & (area > (1 - 1e-9) * surface.full_area[hats])
 
 
 def _factors(refinement: Refinement) -> tuple[int, int]:

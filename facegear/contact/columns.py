@@ -13,6 +13,21 @@ LTCA_COLUMNS = (
     "pairs_in_contact",
     *SHARES,
     "peak_pressure_mpa",
+    "edge_pressure_mpa",
     "kkt_residual",
     "torque_residual",
 )
+
+PRESSURE_ARRAYS = {
+    "torque_n_m": (None,),
+    "position": (None,),
+    "tooth": (None,),
+    "node": (None,),
+    "force_n": (None,),
+    "pressure_pa": (None,),
+    "whole": (None,),
+    "shape": (2,),
+    "point_m": (None, 3),
+    "area_m2": (None,),
+}
+"""Arrays of the pressure file: one loaded hat a row, then the lattice the nodes belong to."""

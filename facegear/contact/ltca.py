@@ -37,14 +37,16 @@ class ContactModel:
 
 @dataclass(frozen=True, eq=False)
 class Spot:
-    """Hats of one pair at one position and torque: lattice node, force (N), pressure (Pa) and gear
-    coordinates.
+    """Loaded hats of one pair at one position and torque: lattice node, force (N), pressure (Pa).
+
+    `whole` marks hats that no edge of either tooth cuts.
     """
 
     tooth: int
     hats: NDArray[np.int64]
     force: NDArray[np.float64]
     pressure: NDArray[np.float64]
+    whole: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,8 +76,13 @@ class LoadedPosition:
 
     @property
     def peak_pressure(self) -> float:
-        """Largest pressure, Pa."""
-        return max(float(spot.pressure.max()) for spot in self.spots)
+        """Largest pressure away from edges, Pa."""
+        return max((float(spot.pressure[spot.whole].max(initial=0.0)) for spot in self.spots), default=0.0)
+
+    @property
+    def edge_pressure(self) -> float:
+        """Largest pressure at an edge, Pa; without relief it grows as the mesh is refined."""
+        return max((float(spot.pressure[~spot.whole].max(initial=0.0)) for spot in self.spots), default=0.0)
 
 
 def even_positions(count: int) -> NDArray[np.float64]:
@@ -169,7 +176,9 @@ def _result(
         share[np.searchsorted(PAIRS, pair.tooth)] = force @ arm[rows] / torque
         on = force > 0.0
         if on.any():
-            spots.append(Spot(pair.tooth, pair.hats[on], force[on], force[on] / pair.area[on]))
+            spots.append(
+                Spot(pair.tooth, pair.hats[on], force[on], force[on] / pair.area[on], pair.whole[on])
+            )
     approach = base * contact.rotation
     return LoadedPosition(
         position,

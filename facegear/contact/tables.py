@@ -11,9 +11,6 @@ from facegear.contact.columns import LTCA_COLUMNS
 from facegear.contact.ltca import LoadedPosition
 from facegear.contact.teeth import pinion_points
 
-SPOTS = {"torque_n_m": (None,), "position": (None,), "tooth": (None,), "node": (None,), "force_n": (None,)}
-"""Arrays of the pressure file that list one loaded hat a row (with `pressure_pa`)."""
-
 
 def ltca_table(results: Sequence[LoadedPosition]) -> pd.DataFrame:
     """One row a torque and position, columns as LTCA_COLUMNS."""
@@ -28,6 +25,7 @@ def ltca_table(results: Sequence[LoadedPosition]) -> pd.DataFrame:
             r.pairs_in_contact,
             *r.share,
             1e-6 * r.peak_pressure,
+            1e-6 * r.edge_pressure,
             r.residual,
             abs(r.share.sum() - 1.0),
         )
@@ -38,8 +36,13 @@ def ltca_table(results: Sequence[LoadedPosition]) -> pd.DataFrame:
 
 
 def pressure_arrays(results: Sequence[LoadedPosition], surface: PinionSurface) -> dict[str, NDArray]:
-    """All loaded hats, one a row, and the lattice they belong to: point (n, 3) m, roll (n,) rad and y (n,) m."""
-    rows: dict[str, list[NDArray]] = {name: [] for name in (*SPOTS, "pressure_pa")}
+    """All loaded hats, one a row, and the lattice they belong to, as PRESSURE_ARRAYS.
+
+    `whole` is false for hats cut by an edge of either tooth, whose pressure has no limit as the mesh is
+    refined.
+    """
+    names = ("torque_n_m", "position", "tooth", "node", "force_n", "pressure_pa", "whole")
+    rows: dict[str, list[NDArray]] = {name: [] for name in names}
     for result in results:
         for spot in result.spots:
             count = spot.hats.size
@@ -49,6 +52,7 @@ def pressure_arrays(results: Sequence[LoadedPosition], surface: PinionSurface) -
             rows["node"].append(spot.hats)
             rows["force_n"].append(spot.force)
             rows["pressure_pa"].append(spot.pressure)
+            rows["whole"].append(spot.whole)
     nodes = np.stack(np.meshgrid(*map(np.arange, surface.shape), indexing="ij"), axis=-1).reshape(-1, 2)
     points = pinion_points(surface.design, surface.side, surface.refinement, nodes.astype(float)).position
     arrays = {name: np.concatenate(parts) for name, parts in rows.items()}
@@ -68,7 +72,7 @@ def pressure_surface(
     corners = nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]
     fields = {}
     for torque in np.unique(arrays["torque_n_m"]):
-        on = arrays["torque_n_m"] == torque
+        on = (arrays["torque_n_m"] == torque) & arrays["whole"]
         largest = np.zeros(nu * nv)
         np.maximum.at(largest, arrays["node"][on], arrays["pressure_pa"][on])
         fields[f"largest_pressure_pa_at_{torque:g}_n_m"] = largest

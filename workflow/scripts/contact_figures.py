@@ -1,0 +1,13 @@
+"""Transmission error, load share and contact pattern."""
+
+from facegear.contact.columns import LTCA_COLUMNS, PRESSURE_ARRAYS
+from facegear.io import arrays, tables
+from facegear.plots.contact import contact_curves, contact_pattern
+from facegear.plots.style import save
+from facegear.provenance.stage import stage
+
+with stage(snakemake) as run:
+    ltca = tables.read(snakemake.input.ltca, LTCA_COLUMNS)
+    pressure = arrays.read(snakemake.input.pressure, PRESSURE_ARRAYS)
+    save(contact_curves(ltca), snakemake.output.curves_svg, snakemake.output.curves_png)
+    save(contact_pattern(pressure), snakemake.output.pattern_svg, snakemake.output.pattern_png)
