@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import acos, atan, cos, hypot, pi, sin, sqrt, tan
 
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from facegear.errors import GeometryError, NotConverged
 from facegear.geometry.design import PairDesign
@@ -37,6 +37,17 @@ def undercut_radius(design: PairDesign) -> float:
 
     psi = brentq(margin, 0.0, atan(roll), xtol=1e-15)
     return hypot(base * (sin(psi) - roll * cos(psi)), base / (ratio * cos(psi)))
+
+
+def tip_plane_radius(design: PairDesign) -> float:
+    """Smallest gear radius (m) at which the flank reaches the tip plane (the envelope turns back there)."""
+    base, ratio = design.shaper_base_radius, design.shaper_ratio
+    height = (design.shaper_lift - design.gear_tip_plane) / base
+
+    def radius(psi: float) -> float:
+        return hypot(base * (1 - height * cos(psi)) / sin(psi), base / (ratio * cos(psi)))
+
+    return float(minimize_scalar(radius, bounds=(1e-4, 1.0), method="bounded", options={"xatol": 1e-10}).fun)
 
 
 def _pointing_radii(design: PairDesign) -> tuple[float, float]:

@@ -104,17 +104,19 @@ def _flank(design: PairDesign, position: Array, normal: Array, reach: float) -> 
     roll = np.clip(
         ((lift - position[:, 2]) / base - np.cos(psi)) / np.sin(psi), 0.0, 1.2 * design.shaper_tip_roll
     )
-    facing = np.sum(normal * face_gear.flank_normal(design, roll, psi), axis=1) < 0
+    facing = np.sum(normal * face_gear.flank_normal(design, roll, psi), axis=1) < -0.8
 
     def surface(roll, psi):
         return face_gear.flank_point(design, roll, psi), *face_gear.flank_tangents(design, roll, psi)
 
     start = face_gear.flank_point(design, roll, psi) - position
     guess = np.abs(np.sum(start * normal, axis=1))
+    deepest = roll + guess * np.abs(normal[:, 2]) / (base * np.sin(psi))
+    opposite = facing & (deepest < 0.98 * design.shaper_tip_roll) & (position[:, 2] < design.gear_tip_plane)
     roll, psi, distance, hit, done = _newton(surface, position, normal, roll, psi)
     height = design.gear_tip_plane + 1e-12
-    lost = ~done & facing & (guess < reach / 4) & (np.hypot(position[:, 0], position[:, 1]) == inside)
-    lost &= (position[:, 2] < height) & (position[:, 2] > design.gear_root_plane + design.module)
+    # below the flank or above the tip the flank's extension may turn back: a ray may rightly miss it there
+    lost = ~done & opposite & (guess < reach / 4) & (np.hypot(position[:, 0], position[:, 1]) == inside)
     if lost.any():
         raise NotConverged("separation", f"{lost.sum()} rays at the flank", "40 Newton steps")
     valid = done & (hit[:, 2] <= height) & (roll <= design.shaper_tip_roll) & _within(design, hit)
@@ -175,6 +177,7 @@ def _newton(surface, position: Array, normal: Array, a: Array, b: Array) -> tupl
     up = np.cross(normal, side)
     done = np.zeros(len(a), bool)
     todo = np.arange(len(a))
+    rounding = 1e-14 * np.max(np.abs(position), initial=0.0)
     a, b = a.copy(), b.copy()
     for _ in range(40):
         point, along_a, along_b = surface(a[todo], b[todo])
@@ -189,7 +192,7 @@ def _newton(surface, position: Array, normal: Array, a: Array, b: Array) -> tupl
             scale = np.minimum(1.0, 0.2 / np.maximum(np.abs(da), np.abs(db)))
         a[todo] -= scale * da
         b[todo] -= scale * db
-        converged = (np.abs(r1) < 1e-15) & (np.abs(r2) < 1e-15) | (np.hypot(da, db) < 2e-15)
+        converged = (np.hypot(r1, r2) < rounding) | (np.hypot(da, db) < 2e-15)
         done[todo[converged]] = True
         todo = todo[~converged & np.isfinite(da) & np.isfinite(db)]
         if len(todo) == 0:

@@ -7,7 +7,7 @@ import numpy as np
 from facegear.errors import GeometryError
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign, Relief
-from facegear.geometry.limits import RadiusLimits, radius_limits
+from facegear.geometry.limits import RadiusLimits, radius_limits, tip_plane_radius
 
 THINNEST_LAND = 0.05
 """Thinnest tip or root land, in modules: less cannot be cut, nor meshed."""
@@ -138,16 +138,23 @@ def _check_gear(design: PairDesign) -> RadiusLimits:
             1e3 * gear.outer_radius,
             f"at least {least:.3f}, half a module of face",
         )
+    reached = tip_plane_radius(design)
+    if gear.inner_radius <= reached:
+        _refuse(
+            "face_gear.inner_radius_mm",
+            1e3 * gear.inner_radius,
+            f"more than {1e3 * reached:.3f}: tip undercut",
+        )
     radius = np.linspace(gear.inner_radius, gear.outer_radius, 33)
-    roll, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
-    if roll.min() < 0:
-        start = design.shaper_base_radius * np.cos(psi[np.argmin(roll)])
-        most = design.shaper_pitch_radius + design.pinion.profile_shift - start
+    highest = face_gear.flank_point(design, 0.0, face_gear.psi_at(design, radius, 0.0))[:, 2].min()
+    if design.gear_tip_plane > highest:
+        most = highest - design.pitch_plane
         _refuse(
             "face_gear.addendum_modules",
             gear.addendum / m,
             f"less than {most / m:.4f}: no involute generates it",
         )
+    roll, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
     if np.max(roll) >= design.shaper_tip_roll:
         _refuse("face_gear.addendum_modules", gear.addendum / m, "more: the flank has no height")
     land = 2 * face_gear.flank_point(design, roll, psi)[:, 0].min()
@@ -156,5 +163,12 @@ def _check_gear(design: PairDesign) -> RadiusLimits:
             "face_gear.outer_radius_mm",
             1e3 * gear.outer_radius,
             f"less: the tip land would be {1e3 * land:.3f} mm wide; {allowed}",
+        )
+    if np.max(face_gear.fillet_end(design, radius)) * design.shaper_tip_radius > -THINNEST_LAND * m:
+        most = 1e3 * design.shaper_tip_radius / design.shaper_ratio
+        _refuse(
+            "face_gear.outer_radius_mm",
+            1e3 * gear.outer_radius,
+            f"well below {most:.3f}, where the shaper's tip rolls off without leaving a fillet; {allowed}",
         )
     return limits

@@ -28,7 +28,7 @@ def write_vtu(
 
 
 def read_msh(path: str | Path) -> tuple[Array, NDArray[np.int64], dict[str, NDArray[np.int64]]]:
-    """Nodes (N, 3), hexahedra (M, 27) in gmsh's order, and the faces (F, 9) of every named group.
+    """Nodes (N, 3), hexahedra (M, 27) in VTK's order, and the faces (F, 9) of every named group.
 
     Raises CorruptFile for a file that is altered, truncated or holds anything else.
     """

@@ -5,7 +5,6 @@ from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
 from facegear.mesh.outline import Outline
 from facegear.mesh.sizes import MeshSizes
@@ -111,7 +110,10 @@ def _inner_line(outline: Outline, plan: SectionPlan, sigma: Array) -> tuple[Arra
     junction = plan.breaks["flank"][1]
     _, end_of_flank = outline.points("flank", np.ones(1))
     under = end_of_flank[0] - 0.3 * (end_of_flank[0] - plan.floor_height)
-    tip, floor = np.full_like(under, outline.tip_height), np.full_like(under, plan.floor_height)
-    down = PchipInterpolator([0.0, junction, float(wall)], np.stack([tip, under, floor]), axis=0)
-    height = np.where((sigma < wall)[:, None], down(np.minimum(sigma, wall)), plan.floor_height)
+    # straight between coarse columns, so that mid nodes stand in the middle
+    columns = np.arange(wall + 1.0)
+    height = np.empty((len(sigma), len(under)))
+    for plane, middle in enumerate(under):
+        steps = [outline.tip_height, middle, plan.floor_height]
+        height[:, plane] = np.interp(sigma, columns, np.interp(columns, [0.0, junction, wall], steps))
     return np.maximum(sigma - wall, 0.0) / floor_columns * outline.half_pitch, height

@@ -21,7 +21,7 @@ class SurfaceGrid:
 
     u, v are the parameters of the right side's exact surface, the left being its mirror image: pinion flank:
     roll angle (rad) and y (m); pinion fillet: gamma (rad) and y; gear flank: roll th and psi (rad); gear
-    fillet: chi (rad), gear radius (m). Every second node in each direction, from the first, is an element corner.
+    fillet: chi (rad), gear radius (m). Every second node in each direction, from the first, is a corner.
     """
 
     nodes: Indices
