@@ -1,8 +1,8 @@
 from facegear.config.cases import study_points
-from facegear.config.base import parse
+from facegear.config.base import parse as parse_section  # `parse` is a name of Snakemake
 from facegear.config.studies import Study
 
-STUDIES = [parse(Study, study) for study in CONFIG["studies"]]
+STUDIES = [parse_section(Study, study) for study in CONFIG["studies"]]
 STUDY_POINTS = [(study.name, point) for study in STUDIES for point in study_points(study)]
 
 
