@@ -21,7 +21,7 @@ class Claim(Section):
     where: str
     claim: str
     criterion: str
-    args: dict[str, Any] = {}
+    args: dict[str, Any] = Field(default_factory=dict)
     paper: float | None = None
     unit: str = ""
     tolerance: float | None = Field(None, ge=0)

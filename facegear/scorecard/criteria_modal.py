@@ -27,3 +27,17 @@ def mode_class(tables: Tables, orders: list[int], mode_class: str) -> Outcome:
     frame = tables["frequencies"]
     found = sorted(frame.loc[frame["class"] == mode_class, "order"].astype(int))
     return statement(found == sorted(orders), f"orders {', '.join(map(str, found))}")
+
+
+def class_count(tables: Tables) -> Outcome:
+    """Number of classes among the modes that are not rigid."""
+    frame = tables["frequencies"]
+    return number(int(frame.loc[frame["frequency_hz"] > 0.0, "class"].nunique()))
+
+
+def coupled_share(tables: Tables, lower: float) -> Outcome:
+    """More than the stated share of the elastic modes has bodies that both translate and rotate."""
+    frame = tables["frequencies"]
+    symbols = frame.loc[frame["frequency_hz"] > 0.0, "symbols"]
+    coupled = symbols.str.contains(r"T(?:\([xy]\))?-R")
+    return statement(coupled.mean() > lower, f"{coupled.sum()} of {coupled.size} modes")

@@ -6,24 +6,25 @@ import pandas as pd
 from facegear.scorecard.outcome import Outcome, Tables, number, statement
 
 NEARLY_ONE_CARRIER = 0.02
+Point = str | float
 FLAT_SLOPE = 0.1
 FLAT_SHARE = 0.05
 
 
-def sharing(tables: Tables, kind: str, column: str = "mean", study: str = "", point: str = "") -> Outcome:
+def sharing(tables: Tables, kind: str, column: str = "mean", study: str = "", point: Point = "") -> Outcome:
     """A column of the load-sharing summary, averaged over the input pinions where kind is inputs."""
     return number(_value(tables, kind, column, study, point), 4)
 
 
 def reference(tables: Tables, kind: str, quantity: str, column: str = "mean") -> Outcome:
-    """A static, quasi-static or speed-range coefficient, averaged over the input pinions where kind is inputs."""
+    """A static or quasi-static coefficient, averaged over the input pinions where kind is inputs."""
     frame = tables["reference"]
     rows = frame[(frame["quantity"] == quantity) & (frame["kind"] == kind)]
     return number(rows[column].mean(), 4)
 
 
 def one_carrier_occurs(tables: Tables, study: str) -> Outcome:
-    """Somewhere in the cycle, at every point of the study, the coefficient comes within 2 % of its maximum."""
+    """At every point of the study the coefficient comes within 2 % of its bound somewhere in the cycle."""
     frame = tables["curves"]
     rows = frame[frame["study"] == study]
     tops = rows.groupby(["kind", "point"])["coefficient"].max()
@@ -32,34 +33,34 @@ def one_carrier_occurs(tables: Tables, study: str) -> Outcome:
     return statement(reached.all(), f"{reached.sum()} of {reached.size} curves reach their maximum")
 
 
-def flat_region(tables: Tables, study: str, point: str, kind: str) -> Outcome:
+def flat_region(tables: Tables, study: str, point: Point, kind: str) -> Outcome:
     """For at least 5 % of the cycle the coefficient changes by less than 0.1 of its value per cycle."""
     share = _flat_share(_curve(tables, study, point, kind))
     return statement(share >= FLAT_SHARE, f"flat for {100 * share:.0f} % of the cycle")
 
 
 def orders(
-    tables: Tables, study: str, kind: str, points: list[str], column: str = "mean", margin: float = 0.0
+    tables: Tables, study: str, kind: str, points: list[Point], column: str = "mean", margin: float = 0.0
 ) -> Outcome:
     """The column grows along the listed points of the study, each time by more than the margin."""
     values = [_value(tables, kind, column, study, point) for point in points]
     return statement(bool((np.diff(values) > margin).all()), _listed(points, values))
 
 
-def lowest_at(tables: Tables, study: str, kind: str, point: str, column: str = "mean") -> Outcome:
+def lowest_at(tables: Tables, study: str, kind: str, point: Point, column: str = "mean") -> Outcome:
     """Among all points of the study the column is lowest at the named one."""
     frame = _study(tables, study)
     points = list(dict.fromkeys(frame["point"]))
     values = [_value(tables, kind, column, study, name) for name in points]
-    return statement(points[int(np.argmin(values))] == point, _listed(points, values))
+    return statement(points[int(np.argmin(values))] == _name(point), _listed(points, values))
 
 
-def steeper(tables: Tables, study: str, kind: str, point: str) -> Outcome:
-    """The curve's root-mean-square slope at the named point exceeds that at every other point of the study."""
+def steeper(tables: Tables, study: str, kind: str, point: Point) -> Outcome:
+    """The curve's RMS slope at the named point exceeds that at every other point of the study."""
     points = list(dict.fromkeys(_study(tables, study)["point"]))
     slopes = [float(np.sqrt(np.mean(_slope(_curve(tables, study, name, kind)) ** 2))) for name in points]
     return statement(
-        points[int(np.argmax(slopes))] == point, f"rms slope per cycle {_listed(points, slopes)}"
+        points[int(np.argmax(slopes))] == _name(point), f"rms slope per cycle {_listed(points, slopes)}"
     )
 
 
@@ -70,25 +71,44 @@ def differ(tables: Tables, study: str, kind: str, column: str, by: float) -> Out
     return statement(max(values) - min(values) > by, _listed(points, values))
 
 
+def lost_regions_move(tables: Tables, study: str, kind: str, by: float) -> Outcome:
+    """Between two points of the study contact is lost at different instants for more than the stated share of
+    the cycle.
+    """
+    frame = tables["curves"]
+    rows = frame[(frame["study"] == study) & (frame["kind"] == kind)]
+    regions = [
+        curve.sort_values("cycle_fraction")["lost_share"].to_numpy(float)
+        for _, curve in rows[rows["group"] == rows["group"].iloc[0]].groupby("point", sort=False)
+    ]
+    moved = max(float(np.abs(a - b).mean()) for a in regions for b in regions)
+    return statement(moved > by, f"{100 * moved:.0f} % of the cycle")
+
+
+def _name(point: Point) -> str:
+    """Name of a study's point; a claims file turns names such as 80 into numbers."""
+    return f"{point:g}" if isinstance(point, float) else str(point)
+
+
 def _study(tables: Tables, study: str) -> pd.DataFrame:
     frame = tables["sharing"]
     return frame[frame["study"] == study]
 
 
-def _value(tables: Tables, kind: str, column: str, study: str, point: str) -> float:
+def _value(tables: Tables, kind: str, column: str, study: str, point: Point) -> float:
     frame = tables["sharing"]
     rows = frame[(frame["study"] == study) & (frame["kind"] == kind)]
     if point:
-        rows = rows[rows["point"] == point]
+        rows = rows[rows["point"] == _name(point)]
     if rows.empty:
         raise KeyError(f"no load-sharing result for study {study!r}, point {point!r}, kind {kind!r}")
     return float(rows[column].mean())
 
 
-def _curve(tables: Tables, study: str, point: str, kind: str) -> np.ndarray:
+def _curve(tables: Tables, study: str, point: Point, kind: str) -> np.ndarray:
     """Coefficient over one cycle, shape (samples,), of the group named first."""
     frame = tables["curves"]
-    rows = frame[(frame["study"] == study) & (frame["point"] == point) & (frame["kind"] == kind)]
+    rows = frame[(frame["study"] == study) & (frame["point"] == _name(point)) & (frame["kind"] == kind)]
     first = rows[rows["group"] == rows["group"].iloc[0]].sort_values("cycle_fraction")
     return first["coefficient"].to_numpy(float)
 
@@ -104,5 +124,5 @@ def _flat_share(curve: np.ndarray) -> float:
     return float(flat[np.isfinite(slope)].mean())
 
 
-def _listed(points: list[str], values: list[float]) -> str:
-    return ", ".join(f"{point}: {value:.3g}" for point, value in zip(points, values, strict=True))
+def _listed(points: list[Point], values: list[float]) -> str:
+    return ", ".join(f"{_name(point)}: {value:.3g}" for point, value in zip(points, values, strict=True))

@@ -7,7 +7,7 @@ from typing import Any
 import pandas as pd
 
 Tables = Mapping[str, pd.DataFrame]
-"""Stored results by name: frequencies, stiffness, sharing, curves, reference, spectrum, sweep, jumps, response."""
+"""Stored results by name: frequencies, tvms, sharing, curves, reference, response, spectrum, sweep, jumps."""
 
 
 @dataclass(frozen=True)
