@@ -1,11 +1,14 @@
 include: "workflow/rules/common.smk"
 include: "workflow/rules/geometry.smk"
 include: "workflow/rules/mesh.smk"
+include: "workflow/rules/compliance.smk"
 include: "workflow/rules/contact.smk"
 include: "workflow/rules/stiffness.smk"
 include: "workflow/rules/modal.smk"
 include: "workflow/rules/dynamics.smk"
+include: "workflow/rules/dynamics.smk"
 include: "workflow/rules/load_sharing.smk"
+include: "workflow/rules/targets.smk"
 
 
 rule all:

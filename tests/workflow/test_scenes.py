@@ -24,7 +24,7 @@ def test_given_harmonics_need_no_contact_at_all(tmp_path):
     config = str(ROOT / "config" / "harmonics_only.yaml")
     planned = Project(tmp_path).planned("--configfile", config)
     assert not {"geometry", "mesh", "compliance", "contact"} & planned
-    assert {"modal", "response", "load_sharing"} <= planned
+    assert {"modal", "dynamics_response", "load_sharing"} <= planned
 
 
 @pytest.mark.parametrize("config", sorted(path.name for path in (ROOT / "config").glob("*.yaml")))

@@ -1,0 +1,13 @@
+def figure(case, *names):
+    """The svg of each named figure of a case."""
+    return [f"results/{case}/figures/{name}.svg" for name in names]
+
+
+def targets(case):
+    """What `snakemake` makes for a case: only the stages that its config asks for."""
+    files = [f"results/{case}/{name}" for name in ("modal/frequencies.csv", "stiffness/harmonics.csv")]
+    files += figure(case, "fig06", "fig07", "fig08")
+    if CASES[case]["mesh_stiffness"]["source"] != "harmonics":
+        files += [f"results/{case}/{name}" for name in ("mesh/quality.csv", "contact/ltca.csv")]
+        files += figure(case, "tooth_pair", "contact_curves", "contact_pattern", "stiffness_load")
+    return files + dynamics_targets(case) + load_sharing_targets(case)
