@@ -101,27 +101,76 @@ def _flank(design: PairDesign, position: Array, normal: Array, reach: float) -> 
     gear = design.face_gear
     inside = np.clip(np.hypot(position[:, 0], position[:, 1]), gear.inner_radius, gear.outer_radius)
     psi = np.arccos(base / (ratio * inside))
-    roll = np.clip(
-        ((lift - position[:, 2]) / base - np.cos(psi)) / np.sin(psi), 0.0, 1.2 * design.shaper_tip_roll
-    )
-    facing = np.sum(normal * face_gear.flank_normal(design, roll, psi), axis=1) < -0.8
+    roll = ((lift - position[:, 2]) / base - np.cos(psi)) / np.sin(psi)
+    roll = np.clip(roll, 0.0, 1.2 * design.shaper_tip_roll)
 
     def surface(roll, psi):
         return face_gear.flank_point(design, roll, psi), *face_gear.flank_tangents(design, roll, psi)
 
-    start = face_gear.flank_point(design, roll, psi) - position
-    guess = np.abs(np.sum(start * normal, axis=1))
-    deepest = roll + guess * np.abs(normal[:, 2]) / (base * np.sin(psi))
-    opposite = facing & (deepest < 0.98 * design.shaper_tip_roll) & (position[:, 2] < design.gear_tip_plane)
     roll, psi, distance, hit, done = _newton(surface, position, normal, roll, psi)
+    if not done.all():
+        missed = np.flatnonzero(~done)
+        grid = _FlankGrid.of(design)
+        near, first, second, inner = grid.nearest(position[missed], normal[missed], reach)
+        again = missed[near]
+        found = _newton(surface, position[again], normal[again], first[near], second[near])
+        for target, values in zip((roll, psi, distance, hit, done), found, strict=True):
+            target[again] = values
+        lost = np.count_nonzero(~done[again] & inner[near])
+        if lost:
+            raise NotConverged(
+                "separation", f"{lost} rays at the flank", "Newton from two starts, 40 steps each"
+            )
     height = design.gear_tip_plane + 1e-12
-    # below the flank or above the tip the flank's extension may turn back: a ray may rightly miss it there
-    lost = ~done & opposite & (guess < reach / 4) & (np.hypot(position[:, 0], position[:, 1]) == inside)
-    if lost.any():
-        raise NotConverged("separation", f"{lost.sum()} rays at the flank", "40 Newton steps")
     valid = done & (hit[:, 2] <= height) & (roll <= design.shaper_tip_roll) & _within(design, hit)
     valid &= np.sum(normal * face_gear.flank_normal(design, roll, psi), axis=1) < 0
     return np.where(valid, distance, np.inf), roll, psi
+
+
+@dataclass(frozen=True)
+class _FlankGrid:
+    """Sampled flank: a second start for rays, and proof that a ray misses it."""
+
+    point: Array
+    normal: Array
+    roll: Array
+    psi: Array
+    inner: NDArray[np.bool_]
+    spacing: float
+
+    @classmethod
+    def of(cls, design: PairDesign, size: int = 25) -> "_FlankGrid":
+        gear = design.face_gear
+        radius = np.linspace(gear.inner_radius, gear.outer_radius, size)[None, :]
+        top, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
+        roll = top + np.linspace(0, 1, size)[:, None] * (design.shaper_tip_roll - top)
+        psi = face_gear.psi_at(design, radius, roll)
+        point = face_gear.flank_point(design, roll, psi)
+        inner = np.zeros((size, size), bool)
+        inner[2:-2, 2:-2] = True
+        steps = (
+            np.linalg.norm(np.diff(point, axis=0), axis=-1),
+            np.linalg.norm(np.diff(point, axis=1), axis=-1),
+        )
+        normal = face_gear.flank_normal(design, roll, psi)
+        return cls(
+            point.reshape(-1, 3),
+            normal.reshape(-1, 3),
+            roll.ravel(),
+            psi.ravel(),
+            inner.ravel(),
+            float(np.hypot(steps[0].max(), steps[1].max())),
+        )
+
+    def nearest(self, position: Array, normal: Array, reach: float) -> tuple[Array, ...]:
+        """Rays that pass within the spacing, th and psi of the nearest point, whether it is an inner one."""
+        offset = self.point[None] - position[:, None]
+        along = np.sum(offset * normal[:, None], axis=-1)
+        aside = np.sqrt(np.maximum(np.sum(offset**2, axis=-1) - along**2, 0.0))
+        aside[(np.abs(along) > reach) | (normal @ self.normal.T > -0.1)] = np.inf
+        best = np.argmin(aside, axis=1)
+        near = aside[np.arange(len(best)), best] < self.spacing
+        return near, self.roll[best], self.psi[best], self.inner[best]
 
 
 def _fillet(design: PairDesign, position: Array, normal: Array, reach: float) -> tuple[Array, Array, Array]:

@@ -101,7 +101,19 @@ def section_nodes(outline: Outline, plan: SectionPlan) -> tuple[Array, Array]:
     height = (1 - inward) * outer_height[index] + inward * inner_height[index]
     below = half.t > 1
     height[below] = plan.floor_height + (half.t[below, None] - 1) * (outline.back_height - plan.floor_height)
+    for values in (angle, height):
+        _straighten(half, values)
     return angle, height
+
+
+def _straighten(half: HalfSection, values: Array) -> None:
+    """Put mid nodes off the surface halfway between their ends, whatever the outline does in between."""
+    quads = half.quads
+    for middle, first, last in ((1, 0, 2), (3, 0, 6), (5, 2, 8), (7, 6, 8)):
+        edges = quads[half.t[quads[:, middle]] > 0]
+        values[edges[:, middle]] = (values[edges[:, first]] + values[edges[:, last]]) / 2
+    sides, corners = (values[quads[:, members]].sum(axis=1) for members in ([1, 3, 5, 7], [0, 2, 6, 8]))
+    values[quads[:, 4]] = sides / 2 - corners / 4
 
 
 def _inner_line(outline: Outline, plan: SectionPlan, sigma: Array) -> tuple[Array, Array]:

@@ -1,0 +1,172 @@
+"""Pictures of the tooth pair: in mesh, both sections with limits, contact path, separation contours."""
+
+from collections.abc import Mapping
+from math import pi
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LightSource
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+from numpy.typing import NDArray
+
+from facegear.plots.style import styled
+
+Array = NDArray[np.float64]
+
+PINION_COLOUR, GEAR_COLOUR = "#c98a3d", "#5b7fa6"
+
+
+def tooth_pair(
+    record: Mapping[str, Any], flanks: Mapping[str, Array], contact: Mapping[str, Array]
+) -> Figure:
+    """One page of four panels from `geometry/pair.json`, `flanks.npz` and `contact.npz`."""
+    with styled():
+        figure = plt.figure(figsize=(11, 8.5))
+        _in_mesh(figure.add_subplot(2, 2, 1, projection="3d"), record, flanks)
+        _pinion_section(figure.add_subplot(2, 2, 2), record, flanks)
+        _gear_sections(figure.add_subplot(2, 2, 3), record, flanks)
+        _contours(figure.add_subplot(2, 2, 4), record, flanks, contact)
+    return figure
+
+
+def _in_mesh(axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, Array]) -> None:
+    design = record["design_si"]
+    pinion_teeth, gear_teeth = design["pinion"]["teeth"], design["face_gear"]["teeth"]
+    pinion = [
+        _turned_pinion(_pinion_skin(flanks), (tooth - 0.5) * 2 * pi / pinion_teeth)
+        for tooth in range(pinion_teeth)
+    ]
+    gear = [_turned_gear(_gear_skin(flanks), tooth * 2 * pi / gear_teeth) for tooth in range(-6, 7)]
+    quads = [(_quads(skin), PINION_COLOUR) for skin in pinion] + [
+        (_quads(skin), GEAR_COLOUR) for skin in gear
+    ]
+    light = LightSource(azdeg=300, altdeg=50)
+    faces = np.concatenate([quad for quad, _ in quads]) * 1e3
+    colours = np.concatenate(
+        [np.tile(plt.matplotlib.colors.to_rgb(colour), (len(quad), 1)) for quad, colour in quads]
+    )
+    normals = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
+    area = np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = np.divide(normals, area, where=area > 0, out=np.zeros_like(normals))
+    brightness = 0.35 + 0.65 * np.abs(normals @ light.direction)
+    axes.add_collection3d(Poly3DCollection(faces, facecolors=colours * brightness[:, None], linewidths=0))
+    low, high = faces.min(axis=(0, 1)), faces.max(axis=(0, 1))
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
+    axes.set_box_aspect(high - low, zoom=1.25)
+    axes.view_init(elev=22, azim=-62)
+    axes.set(xlabel="x (mm)", ylabel="y (mm)", zlabel="z (mm)", title="Pinion and face gear in mesh")
+    axes.tick_params(labelsize=7)
+
+
+def _pinion_skin(flanks: Mapping[str, Array]) -> Array:
+    """Grid (profile, 2, 3) of one tooth from space to space."""
+    half = flanks["pinion_section"][::8]
+    section = np.concatenate([half[::-1], half * [-1, 1]])
+    ends = flanks["pinion_flank"][0, [0, -1], 1]
+    skin = np.empty((len(section), 2, 3))
+    skin[..., 0], skin[..., 2] = section[:, None, 0], -section[:, None, 1]
+    skin[..., 1] = ends
+    return skin
+
+
+def _gear_skin(flanks: Mapping[str, Array]) -> Array:
+    """Grid (profile, width, 3) of one tooth from fillet to fillet."""
+    right = np.concatenate([flanks["gear_flank"][::4, ::8], flanks["gear_fillet"][::4, ::8]])
+    return np.concatenate([right[::-1], right * [-1, 1, 1]])
+
+
+def _turned_pinion(points: Array, angle: float) -> Array:
+    c, s = np.cos(angle), np.sin(angle)
+    return points @ np.array([[c, 0, -s], [0, 1, 0], [s, 0, c]]).T
+
+
+def _turned_gear(points: Array, angle: float) -> Array:
+    c, s = np.cos(angle), np.sin(angle)
+    return points @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]).T
+
+
+def _quads(grid: Array) -> Array:
+    return np.stack([grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]], axis=2).reshape(-1, 4, 3)
+
+
+def _pinion_section(axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, Array]) -> None:
+    half = 1e3 * flanks["pinion_section"]
+    tooth = np.concatenate([half[::-1], half * [-1, 1]])
+    axes.fill(
+        np.append(tooth[:, 0], [tooth[-1, 0], tooth[0, 0]]),
+        np.append(tooth[:, 1], [half[:, 1].min() - 1.5] * 2),
+        color=PINION_COLOUR,
+        alpha=0.35,
+    )
+    axes.plot(tooth[:, 0], tooth[:, 1], color=PINION_COLOUR)
+    reach = 1.2 * np.abs(tooth[:, 0]).max()
+    x = np.linspace(-reach, reach, 101)
+    for name, style in (
+        ("pinion_tip", "-"),
+        ("pinion_pitch", "-."),
+        ("pinion_fillet_start", ":"),
+        ("pinion_base", "--"),
+        ("pinion_root", "-"),
+    ):
+        radius = record["radii_mm"][name]
+        axes.plot(x, np.sqrt(radius**2 - x**2), style, color="0.4", lw=0.8)
+        label = name.removeprefix("pinion_").replace("_", " ")
+        axes.annotate(
+            f"{label} {radius:.3f}", (reach, np.sqrt(radius**2 - reach**2)), fontsize=7, va="center"
+        )
+    axes.set_aspect("equal")
+    axes.set(xlabel="across (mm)", ylabel="radius (mm)", title="Pinion tooth", xlim=(-reach, 1.75 * reach))
+
+
+def _gear_sections(axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, Array]) -> None:
+    right = 1e3 * np.concatenate([flanks["gear_flank"], flanks["gear_fillet"][1:]])
+    width = right.shape[1]
+    radius = np.hypot(right[0, :, 0], right[0, :, 1])
+    for column, style in ((0, "-"), (width // 2, "--"), (width - 1, ":")):
+        arc = radius[column] * np.arctan2(right[:, column, 0], right[:, column, 1])
+        across = np.concatenate([-arc[::-1], arc])
+        height = np.concatenate([right[::-1, column, 2], right[:, column, 2]])
+        axes.plot(across, height, style, color=GEAR_COLOUR, label=f"gear radius {radius[column]:.1f} mm")
+    limits, radii = record["limits_mm"], record["radii_mm"]
+    text = (
+        f"undercut below {limits['inner_undercut']:.3f} mm\nface {radii['gear_inner']:.1f} to "
+        f"{radii['gear_outer']:.1f} mm\npointed above {limits['outer_pointing']:.3f} mm\n"
+        f"contact path at {radii['gear_contact_path_nominal']:.3f} mm"
+    )
+    axes.text(0.5, 0.03, text, transform=axes.transAxes, ha="center", va="bottom", fontsize=7)
+    axes.margins(y=0.12)
+    axes.set_aspect("equal")
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=7)
+    axes.set(xlabel="arc (mm)", ylabel="z (mm)", title="Face gear tooth")
+
+
+def _contours(
+    axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, Array], contact: Mapping[str, Array]
+) -> None:
+    facing = contact["contour_facing"].astype(bool)
+    gap = np.ma.masked_where(~facing, 1e6 * contact["contour_gap"])
+    # places outside the flank are masked, yet a contour plot wants coordinates everywhere
+    radius = np.where(facing, 1e3 * contact["contour_radius"], 1e3 * contact["contour_y"])
+    height = np.where(facing, 1e3 * contact["contour_height"], np.nan)
+    height = np.where(np.isnan(height), np.nanmean(height), height)
+    filled = axes.contourf(radius, height, gap, levels=12, cmap="viridis_r")
+    axes.figure.colorbar(filled, ax=axes, label="separation (um)", shrink=0.8)
+    top, flank = 1e3 * flanks["gear_flank"][0], 1e3 * flanks["gear_flank"][-1]
+    for line, label in ((top, "tip edge"), (flank, "end of the flank")):
+        axes.plot(np.hypot(line[:, 0], line[:, 1]), line[:, 2], color="0.2", lw=0.8)
+        axes.annotate(label, (np.hypot(*line[0, :2]), line[0, 2]), fontsize=7, va="bottom")
+    path_radius = np.interp(contact["path_roll"], contact["contour_roll"][:, 0], np.arange(len(radius)))
+    rows = np.clip(np.round(path_radius).astype(int), 0, len(radius) - 1)
+    axes.plot(1e3 * contact["path_y"], height[rows, height.shape[1] // 2], "r.", ms=4, label="contact path")
+    gap_record = record["smallest_gap"]
+    axes.set(
+        xlabel="gear radius (mm)",
+        ylabel="z (mm)",
+        title=f"Drive flank of the gear, smallest gap elsewhere {gap_record['gap_um']:.1f} um\n"
+        f"(gear {gap_record['gear_part']}, pinion {gap_record['pinion_part']}, "
+        f"{gap_record['gear_radius_mm']:.1f} mm)",
+    )
+    axes.legend(fontsize=7, loc="lower right")
