@@ -6,7 +6,6 @@ include: "workflow/rules/contact.smk"
 include: "workflow/rules/stiffness.smk"
 include: "workflow/rules/modal.smk"
 include: "workflow/rules/dynamics.smk"
-include: "workflow/rules/dynamics.smk"
 include: "workflow/rules/load_sharing.smk"
 include: "workflow/rules/targets.smk"
 
