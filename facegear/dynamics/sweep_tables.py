@@ -7,8 +7,8 @@ import pandas as pd
 
 from facegear.dynamics.assemble import Seam
 from facegear.dynamics.campbell import peaks, resonance
-from facegear.dynamics.jumps import Jump
 from facegear.dynamics.sweep import DEFLECTION, TRANSLATION, Piece
+from facegear.dynamics.whole_sweep import Direction
 from facegear.transmission.layout import Layout
 from facegear.transmission.modes import Modes
 
@@ -50,7 +50,7 @@ def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
                     add(f"{letter}_{name}_um", body, UM * piece.translation[:, row, b, axis])
     for row, name in enumerate(FACTS):
         add(name, "machine", piece.facts[:, row])
-    return pd.concat(frames, ignore_index=True)
+    return pd.concat(frames, ignore_index=True).dropna(subset="value")
 
 
 JUMP_COLUMNS = (
@@ -80,14 +80,14 @@ RESONANCE_COLUMNS = (
 )
 
 
-def jump_table(layout: Layout, direction: str, jumps: list[Jump], piece: Piece, modes: Modes) -> pd.DataFrame:
+def jump_table(layout: Layout, name: str, direction: Direction, modes: Modes) -> pd.DataFrame:
     """One row for each jump: bracket, mesh that changes most, AC RMS, classes, multiplier, resonance."""
     rows = []
-    for jump in jumps:
-        belongs = resonance(piece, jump.largest, modes, layout.pinion_teeth)
+    for jump in direction.jumps:
+        belongs = resonance(direction.piece, jump.largest, modes, layout.pinion_teeth)
         rows.append(
             (
-                direction,
+                name,
                 jump.speed_before,
                 jump.speed_after,
                 layout.mesh_names[jump.mesh],

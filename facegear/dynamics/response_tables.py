@@ -1,0 +1,68 @@
+"""The csv tables of the response at one speed."""
+
+import numpy as np
+import pandas as pd
+
+from facegear.dynamics.compiled import TAU
+from facegear.dynamics.simulate import Model, SteadyState
+from facegear.dynamics.spectra import HIGHEST, spectrum
+from facegear.dynamics.sweep import collect
+from facegear.dynamics.sweep_tables import UM, sweep_table
+from facegear.transmission.layout import Layout
+
+SHOWN_PERIODS = 32
+
+
+def response_table(layout: Layout, response: SteadyState) -> pd.DataFrame:
+    """Columns mesh_cycle, time_s, mesh, deflection_um, elastic_force_n over at most 32 mesh periods."""
+    count = min(response.periods, SHOWN_PERIODS) * response.per_period
+    cycles = response.phases[:count]
+    frames = [
+        pd.DataFrame(
+            {
+                "mesh_cycle": cycles,
+                "time_s": cycles * TAU / response.frequency,
+                "mesh": name,
+                "deflection_um": UM * response.deflections[:count, m],
+                "elastic_force_n": response.forces[:count, m],
+            }
+        )
+        for m, name in enumerate(layout.mesh_names)
+    ]
+    return pd.concat(frames, ignore_index=True)
+
+
+def spectrum_table(layout: Layout, response: SteadyState) -> pd.DataFrame:
+    """Columns mesh, order (multiple of the mesh frequency), frequency_hz, amplitude_um of the whole
+    response.
+    """
+    orders, lines = spectrum(response.deflections, response.per_period, response.period > 0)
+    kept = orders <= HIGHEST
+    frames = [
+        pd.DataFrame(
+            {
+                "mesh": name,
+                "order": orders[kept],
+                "frequency_hz": orders[kept] * response.frequency / TAU,
+                "amplitude_um": UM * lines[kept, m],
+            }
+        )
+        for m, name in enumerate(layout.mesh_names)
+    ]
+    return pd.concat(frames, ignore_index=True)
+
+
+def summary_of_response(ready: Model, speed_rpm: float, response: SteadyState) -> pd.DataFrame:
+    """Columns speed_rpm, quantity, body_or_mesh, value, class: the numbers that a sweep keeps, at one
+    speed.
+    """
+    table = sweep_table(ready.machine.layout, "none", collect(ready, iter([(speed_rpm, response)])))
+    return table.drop(columns="direction")
+
+
+def multiplier_table(response: SteadyState) -> pd.DataFrame:
+    """Columns real, imaginary, magnitude of the Floquet multipliers; empty where the motion is not
+    periodic.
+    """
+    values = np.zeros(0, dtype=complex) if response.multipliers is None else response.multipliers
+    return pd.DataFrame({"real": values.real, "imaginary": values.imag, "magnitude": np.abs(values)})

@@ -1,0 +1,39 @@
+"""One line about what a stage found."""
+
+from collections import Counter
+from collections.abc import Mapping
+
+import numpy as np
+
+from facegear.dynamics.simulate import SteadyState
+from facegear.dynamics.whole_sweep import Direction
+
+
+def response_summary(response: SteadyState) -> str:
+    """Class of motion with the evidence for it, and the largest share of time out of contact."""
+    parts = [response.label, f"change over the period {response.residual:.1e} of the length scale"]
+    if response.multipliers is not None:
+        parts.append(f"leading multiplier {abs(response.multipliers[0]):.4f}")
+    if response.liouville is not None and np.isfinite(response.liouville):
+        parts.append(f"Liouville check {response.liouville:.1e}")
+    if response.exponent is not None:
+        parts.append(
+            f"largest exponent {response.exponent[0]:.3f} +- {response.exponent[1]:.3f} a mesh period"
+        )
+    parts.append(f"open for up to {100.0 * response.shares[0].max():.0f} % of the time")
+    return ", ".join(parts)
+
+
+def sweep_summary(directions: Mapping[str, Direction]) -> str:
+    """Jumps and counts of the classes of motion in each direction, and seams that have not forgotten."""
+    parts = []
+    for name, direction in directions.items():
+        classes = Counter(
+            "periodic" if label.startswith("period-") else label for label in direction.piece.labels
+        )
+        counts = ", ".join(f"{count} {label}" for label, count in classes.most_common())
+        irregular = sum(seam.kind.value == "irregular" for seam in direction.seams)
+        rerun = sum(seam.rerun for seam in direction.seams)
+        seams = f"seams: {rerun} speeds run again, {irregular} irregular"
+        parts.append(f"{name}: {len(direction.jumps)} jumps; {counts}; {seams}")
+    return " | ".join(parts)
