@@ -8,6 +8,8 @@ from pydantic import Field, model_validator
 from facegear.config.base import Section, parse, refuse
 from facegear.config.yaml_file import read_yaml
 
+TORQUE, GEAR_DATA = "torque per engine", "gear data"
+
 
 class Claim(Section):
     """One row of the scorecard.
@@ -34,6 +36,11 @@ class Claim(Section):
         if (self.paper is None) != (self.tolerance is None):
             refuse("tolerance", self.tolerance, "stands beside a paper value, and only there")
         return self
+
+    @property
+    def dynamic(self) -> bool:
+        """Whether the row hangs on inputs of the dynamics that the paper leaves out."""
+        return TORQUE in self.undisclosed and GEAR_DATA not in self.undisclosed
 
 
 class Claims(Section):

@@ -1,0 +1,59 @@
+"""All dynamic tables of a machine and its studies in memory, for sets of inputs other than the config's."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import pandas as pd
+
+from facegear.dynamics.motion import Settings
+from facegear.dynamics.plan import SweepPlan
+from facegear.dynamics.response_tables import response_table, spectrum_table
+from facegear.dynamics.simulate import model, simulate
+from facegear.dynamics.sweep import run_chunk
+from facegear.dynamics.sweep_tables import jump_table, sweep_table
+from facegear.dynamics.whole_sweep import whole_sweep
+from facegear.load_sharing.collect import NOMINAL, collected
+from facegear.load_sharing.options import SharingOptions
+from facegear.load_sharing.reference import reference_table
+from facegear.load_sharing.run import load_sharing
+from facegear.load_sharing.tables import curve_table, summary_table
+from facegear.transmission.machine import Machine
+from facegear.transmission.modes import natural_modes
+
+
+@dataclass(frozen=True)
+class RunSettings:
+    """Nominal speed (rpm), settings of the steady state, of the load sharing, and of the sweep."""
+
+    speed: float
+    settings: Settings
+    sharing: SharingOptions
+    sweep: SweepPlan
+
+
+def simulated_tables(
+    machine: Machine, studies: Mapping[tuple[str, str], Machine], settings: RunSettings
+) -> dict[str, pd.DataFrame]:
+    """The same tables as the workflow's stages write: response, spectrum, sweep, jumps, sharing, curves,
+    reference. `studies` holds the machine of each (study, point).
+    """
+    ready = model(machine)
+    layout = machine.layout
+    response = simulate(ready, settings.speed, settings.settings)
+    plan = replace(settings.sweep, chunks=1)
+    chunks = {direction: [run_chunk(ready, plan, direction, 0)] for direction in plan.directions}
+    sweep = whole_sweep(ready, plan, chunks)
+    modes = natural_modes(layout, machine.stiffness.mean)
+    sharing = {
+        key: load_sharing(one, settings.speed, settings.settings, settings.sharing)
+        for key, one in {(NOMINAL, NOMINAL): machine, **studies}.items()
+    }
+    return {
+        "response": response_table(layout, response),
+        "spectrum": spectrum_table(layout, response),
+        "sweep": pd.concat([sweep_table(layout, name, one.piece) for name, one in sweep.items()]),
+        "jumps": pd.concat([jump_table(layout, name, one, modes) for name, one in sweep.items()]),
+        "sharing": collected({key: summary_table(one) for key, one in sharing.items()}),
+        "curves": collected({key: curve_table(one) for key, one in sharing.items()}),
+        "reference": reference_table(machine, settings.settings, settings.sharing),
+    }

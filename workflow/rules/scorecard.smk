@@ -1,0 +1,95 @@
+import json
+
+import pandas as pd
+
+from facegear.config.cases import set_key
+from facegear.identify.sets import config_changes, named_set
+
+SCORECARD = CONFIG["scorecard"]
+
+
+def scorecard_targets(case):
+    """Final outputs of this stage for a case."""
+    return [f"results/{case}/scorecard.{ending}" for ending in ("csv", "html")] if SCORECARD else []
+
+
+def stored_sets():
+    """Names of the sets of undisclosed inputs that fit about as well, the config's own among them."""
+    file = SCORECARD and SCORECARD["sets"]
+    return [str(name) for name in pd.read_csv(ROOT / file)["set"]] if file else []
+
+
+def set_cases(wildcards):
+    """Cases of the config with a set put in: the machine itself and every study's points."""
+    row = named_set(pd.read_csv(ROOT / SCORECARD["sets"]), wildcards.set)
+    values = json.loads(json.dumps(CONFIG))
+    size = values["transmission"]["transmission_error"]["amplitude_um"]
+    for key, value in config_changes(row, size).items():
+        set_key(values, key, value)
+    return list(expand_cases(values).values())
+
+
+rule scorecard_set:
+    input:
+        ltca=upstream("contact", "contact/ltca.csv"),
+        claims=str(ROOT / SCORECARD["claims"]) if SCORECARD else [],
+    output:
+        outcomes="results/{case}/scorecard/sets/{set}.csv",
+        manifest="results/{case}/scorecard/sets/{set}.provenance.json",
+    log:
+        "results/{case}/logs/scorecard_set_{set}.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/scorecard_set_{set}.tsv"
+    wildcard_constraints:
+        set="[A-Za-z0-9_]+",
+    threads: 1
+    resources:
+        mem_mb=1200,
+        runtime=30,
+    params:
+        cases=set_cases,
+        points=STUDY_POINTS,
+        code=fingerprint("scorecard_set.py"),
+    message:
+        "claims of the paper with set {wildcards.set} of undisclosed inputs"
+    script:
+        "../scripts/scorecard_set.py"
+
+
+rule scorecard:
+    input:
+        claims=str(ROOT / SCORECARD["claims"]) if SCORECARD else [],
+        sets=str(ROOT / SCORECARD["sets"]) if SCORECARD and SCORECARD["sets"] else [],
+        outcomes=lambda wildcards: [
+            f"results/{wildcards.case}/scorecard/sets/{name}.csv" for name in stored_sets()
+        ],
+        frequencies="results/{case}/modal/frequencies.csv",
+        tvms="results/{case}/stiffness/tvms.csv",
+        load_dependence="results/{case}/stiffness/load_dependence.csv",
+        response="results/{case}/dynamics/response.csv",
+        spectrum="results/{case}/dynamics/spectrum.csv",
+        sweep="results/{case}/dynamics/sweep.csv",
+        jumps="results/{case}/dynamics/jumps.csv",
+        reference="results/{case}/load_sharing/reference.csv",
+        sharing="results/{case}/load_sharing/summary.csv",
+        nominal="results/{case}/load_sharing/nominal.csv",
+        studies=[f"results/{{case}}/load_sharing/{study.name}.csv" for study in STUDIES],
+    output:
+        csv="results/{case}/scorecard.csv",
+        html="results/{case}/scorecard.html",
+        manifest="results/{case}/scorecard.provenance.json",
+    log:
+        "results/{case}/logs/scorecard.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/scorecard.tsv"
+    threads: 1
+    resources:
+        mem_mb=800,
+        runtime=5,
+    params:
+        values=lambda wildcards: CASES[wildcards.case],
+        code=fingerprint("scorecard.py"),
+    message:
+        "scorecard of {wildcards.case}"
+    script:
+        "../scripts/scorecard.py"

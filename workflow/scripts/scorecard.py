@@ -1,0 +1,35 @@
+"""The scorecard: every number and statement of the paper beside ours."""
+
+import pandas as pd
+
+from facegear.config.undisclosed import undisclosed_inputs
+from facegear.io import tables
+from facegear.io.atomic import atomic_path
+from facegear.load_sharing.collect import NOMINAL, collected
+from facegear.provenance.stage import stage
+from facegear.scorecard.claims import read_claims
+from facegear.scorecard.page import counts, render
+from facegear.scorecard.rows import OUTCOME_COLUMNS, outcome_table, scorecard
+
+STORED = (
+    *("frequencies", "tvms", "load_dependence", "response", "spectrum"),
+    *("sweep", "jumps", "reference", "sharing"),
+)
+
+with stage(snakemake) as run:
+    files = snakemake.input
+    found = {name: tables.read(files[name], allow_empty=name == "jumps") for name in STORED}
+    nominal = collected({(NOMINAL, NOMINAL): tables.read(files.nominal)})
+    found["curves"] = pd.concat([nominal, *(tables.read(path) for path in files.studies)], ignore_index=True)
+    for name in ("sharing", "curves"):
+        found[name]["point"] = found[name]["point"].astype(str)
+    claims = read_claims(files.claims)
+    own = outcome_table(claims.claims, found)
+    others = [tables.read(path, OUTCOME_COLUMNS[:1]) for path in files.outcomes]
+    frame = scorecard(claims.claims, own, others)
+    tables.write(snakemake.output.csv, frame)
+    sets = pd.read_csv(files.sets) if files.sets else pd.DataFrame()
+    page = render(frame, claims.source, undisclosed_inputs(snakemake.params.values), sets)
+    with atomic_path(snakemake.output.html) as temporary:
+        temporary.write_text(page, encoding="utf-8")
+    run.summary(", ".join(f"{number} rows {name}" for name, number in counts(frame).items()))
