@@ -17,14 +17,16 @@ def write(path: str | Path, frame: pd.DataFrame) -> None:
         frame.to_csv(temporary, index=False)
 
 
-def read(path: str | Path, columns: Sequence[str] = (), allow_empty: bool = False) -> pd.DataFrame:
-    """Read a table that must hold `columns`, whose numbers there must be finite.
+def read(
+    path: str | Path, columns: Sequence[str] = (), allow_empty: bool = False, text: Sequence[str] = ()
+) -> pd.DataFrame:
+    """Read a table that must hold `columns`, whose numbers there must be finite; `text` columns stay text.
 
     Raises CorruptFile if it is missing, altered, truncated, lacks a column or holds a number not finite.
     """
     verify(path)
     try:
-        frame = pd.read_csv(path)
+        frame = pd.read_csv(path, dtype=dict.fromkeys(text, str))
     except (ValueError, UnicodeDecodeError) as error:
         raise CorruptFile(path, f"not a readable table ({str(error).splitlines()[0]})") from None
     missing = [name for name in columns if name not in frame.columns]

@@ -7,13 +7,13 @@ from facegear.plots.load_sharing import sharing_figure
 from facegear.plots.style import save
 from facegear.provenance.stage import stage
 
-KINDS = ("inputs", "idlers")
-
 with stage(snakemake) as run:
-    summary = tables.read(snakemake.input.summary, SUMMARY_COLUMNS[:2])
+    summary = tables.read(snakemake.input.summary, SUMMARY_COLUMNS[:2], text=["study", "point"]).astype(
+        {"point": str}
+    )
     caption = "Not disclosed, chosen here: " + "; ".join(undisclosed_inputs(snakemake.params.values))
     files = iter(zip(snakemake.output.svg, snakemake.output.png, strict=True))
     for path, title in zip(snakemake.input.studies, snakemake.params.titles, strict=True):
-        curves = tables.read(path, ["cycle_fraction"])
-        for kind in KINDS:
+        curves = tables.read(path, ["cycle_fraction"], text=["study", "point"]).astype({"point": str})
+        for kind in snakemake.params.kinds:
             save(sharing_figure(curves, summary, kind, title, caption), *next(files))
