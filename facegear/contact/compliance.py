@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from facegear.contact.body import Piece
 from facegear.contact.layer import tied_system
 from facegear.contact.options import Ends, Refinement
-from facegear.contact.ring import face_compliance
-from facegear.contact.substructure import condense
+from facegear.contact.ring import face_compliance, rest_stiffness
+from facegear.contact.substructure import condense, loaded_compliance
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,31 +39,30 @@ class FlankCompliance:
 def flank_compliance(
     piece: Piece,
     refinement: Refinement,
-    teeth: int,
+    teeth: int = 1,
     neighbours: int = 2,
     ends: Ends = "ring",
 ) -> FlankCompliance:
-    """Condense one tooth and couple `teeth` copies of it; `neighbours` on each side are kept.
+    """Compliance of a body of `teeth` copies of a piece; `neighbours` on each side of the loaded one are
+    kept.
 
+    What the loaded tooth feels of the others, and the others of it, comes from unrefined teeth: the refined
+    layer changes the field near a load only. A piece without cut faces stands for itself.
     Raises FacegearError if the body is not held, ValueError if there are too few teeth.
     """
-    system = tied_system(piece, refinement)
-    tooth = condense(piece, system)
-    shape = system.surface.shape[:2]
-    coarse_shape = piece.flank.shape
-    moved = face_compliance(tooth.faces, neighbours, teeth, ends)
-    flank = tooth.flank
-    if piece.left.size:
-        flank = flank + tooth.influence @ moved[neighbours] @ tooth.influence.T
-    corners = np.arange(flank_size(shape)).reshape(shape)[:: refinement.profile, :: refinement.width].ravel()
-    coarse = system.spread[corners] @ tooth.influence
-    others = coarse @ moved @ coarse.T
-    return FlankCompliance(_spread(system.spread, flank), others, shape, coarse_shape, refinement)
-
-
-def flank_size(shape: tuple[int, int]) -> int:
-    """Number of nodes of a lattice."""
-    return shape[0] * shape[1]
+    plain = tied_system(piece, Refinement())
+    repeats = piece.left.size > 0
+    others = np.zeros((1, piece.flank.size, piece.flank.size))
+    rest = np.zeros((0, 0))
+    if repeats:
+        tooth = condense(piece, plain)
+        rests = rest_stiffness(tooth.faces, neighbours, teeth, ends)
+        coarse = plain.spread @ tooth.influence
+        others = coarse @ face_compliance(tooth.faces, rests) @ coarse.T
+        rest = rests[0][0]
+    system = plain if refinement == Refinement() else tied_system(piece, refinement)
+    own = _spread(system.spread, loaded_compliance(piece, system, rest))
+    return FlankCompliance(own, others, system.surface.shape[:2], piece.flank.shape, refinement)
 
 
 def _spread(spread: sp.csr_matrix, flank: NDArray[np.float64]) -> NDArray[np.float64]:

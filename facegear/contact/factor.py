@@ -37,7 +37,9 @@ def schur_complement(matrix: sp.csr_matrix, kept: NDArray[np.int64]) -> NDArray[
     schur = solve(ordered, rest.size)
     if not np.isfinite(schur).all():
         raise FacegearError("the stiffness matrix is singular: the body is not held or its mesh is broken")
-    return 0.5 * (schur + schur.T)
+    schur += schur.T.copy()
+    schur *= 0.5
+    return schur
 
 
 def _schur_pardiso(matrix: sp.csr_matrix, eliminated: int) -> NDArray[np.float64]:

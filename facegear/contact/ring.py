@@ -2,7 +2,7 @@
 
 All teeth are copies, so that only one is ever factorised. The teeth that carry no load are joined by doubling
 (two equal chains in series make one). Cost: a few dense operations on the cut face dof, whatever the number
-of teeth.
+of teeth. Matrices (2s, 2s) hold the left face first, then the right one.
 """
 
 import numpy as np
@@ -35,70 +35,60 @@ def chain(faces: NDArray[np.float64], teeth: int) -> NDArray[np.float64]:
         power = joined(power, power)
 
 
-def face_compliance(
+def rest_stiffness(
     faces: NDArray[np.float64], neighbours: int, teeth: int, ends: Ends
+) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+    """What the faces of 1 + k adjoining teeth feel from the others, k = 0..neighbours.
+
+    For k further teeth to the right, and for k to the left, the stiffness (2s, 2s) that joins the row's left
+    and right face from outside. Raises ValueError if no tooth would be left outside.
+    """
+    s = len(faces) // 2
+    if teeth < 2 * neighbours + 3:
+        raise ValueError(f"{2 * neighbours + 1} loaded teeth and two more do not fit in a {ends} of {teeth}")
+    swap = np.r_[s : 2 * s, 0:s]
+    rests = []
+    if ends == "ring":
+        outside = chain(faces, teeth - 1 - neighbours)
+        for k in range(neighbours, -1, -1):
+            around = outside[np.ix_(swap, swap)]
+            rests.append((around, around))
+            if k:
+                outside = joined(faces, outside)
+        return rests[::-1]
+    before = (teeth - 1) // 2
+    after = teeth - 1 - before
+    for k in range(neighbours + 1):
+        sides = []
+        for left, right in ((before, after - k), (before - k, after)):
+            rest = np.zeros((2 * s, 2 * s))
+            rest[:s, :s] = _seen_from_end(chain(faces, left), slice(s, None), slice(0, s), ends)
+            rest[s:, s:] = _seen_from_end(chain(faces, right), slice(0, s), slice(s, None), ends)
+            sides.append(rest)
+        rests.append((sides[0], sides[1]))
+    return rests
+
+
+def face_compliance(
+    faces: NDArray[np.float64], rests: list[tuple[NDArray[np.float64], NDArray[np.float64]]]
 ) -> NDArray[np.float64]:
     """Displacements of the cut faces of a tooth and its neighbours by forces on the tooth's own faces.
 
-    `faces` (2s, 2s) is one tooth's stiffness, `teeth` the number in the ring or sector. Returns
-    (2 neighbours + 1, 2s, 2s): block t maps a force on both faces of the middle tooth to the face
-    displacements of the tooth t - neighbours places further. Raises ValueError if there are too few teeth.
+    `faces` (2s, 2s) is one tooth's stiffness, `rests` from `rest_stiffness` for n neighbours on each side.
+    Returns (2 n + 1, 2s, 2s): block t maps a force on both faces of the middle tooth to the face
+    displacements of the tooth t - n places further.
     """
-    loaded, s = 2 * neighbours + 1, len(faces) // 2
-    if loaded > teeth - (ends == "ring"):
-        raise ValueError(f"{loaded} teeth next to each other in a {ends} of {teeth}")
-    if s == 0:
-        return np.zeros((loaded, 0, 0))
-    planes = _ring(faces, neighbours, teeth) if ends == "ring" else _sector(faces, neighbours, teeth, ends)
-    return np.stack([np.concatenate([planes[tooth], planes[tooth + 1]]) for tooth in range(loaded)])
-
-
-def _ring(faces: NDArray[np.float64], neighbours: int, teeth: int) -> list[NDArray[np.float64]]:
-    """Outwards from the loaded tooth, each plane from the two before it and the chain that closes the ring."""
     s = len(faces) // 2
-    near, far = slice(0, s), slice(s, None)
-    rests = [chain(faces, teeth - 1 - neighbours)]
-    for _ in range(neighbours):
-        rests.append(joined(faces, rests[-1]))
-    rests.reverse()
-    whole = faces.copy()
-    whole[far, far] += rests[0][near, near]
-    whole[near, near] += rests[0][far, far]
-    whole[far, near] += rests[0][near, far]
-    whole[near, far] += rests[0][far, near]
-    inverse = sl.cho_solve(sl.cho_factor(whole, lower=True), np.eye(2 * s))
-    left, right = [inverse[near]], [inverse[far]]
-    first, last = inverse[near], inverse[far]
-    for rest in rests[1:]:
-        push = faces[far, near] @ right[-1] + rest[near, far] @ first
-        right.append(-sl.solve(faces[far, far] + rest[near, near], push, assume_a="pos"))
-        push = faces[near, far] @ left[-1] + rest[far, near] @ last
-        left.append(-sl.solve(faces[near, near] + rest[far, far], push, assume_a="pos"))
-    return left[::-1] + right
-
-
-def _sector(faces: NDArray[np.float64], neighbours: int, teeth: int, ends: Ends) -> list[NDArray[np.float64]]:
-    """All planes of the loaded teeth at once, the others seen from the two ends."""
-    loaded, s = 2 * neighbours + 1, len(faces) // 2
-    size = (loaded + 1) * s
-    stiffness = np.zeros((size, size))
-    for tooth in range(loaded):
-        block = slice(tooth * s, (tooth + 2) * s)
-        stiffness[block, block] += faces
-    before = (teeth - loaded) // 2
-    after = teeth - loaded - before
-    near, far = slice(0, s), slice(s, None)
-    if before:
-        stiffness[:s, :s] += _seen_from_end(chain(faces, before), far, near, ends)
-    if after:
-        stiffness[-s:, -s:] += _seen_from_end(chain(faces, after), near, far, ends)
-    clamped = ends == "clamped"
-    free = np.arange(0 if before or not clamped else s, size if after or not clamped else size - s)
-    columns = np.zeros((size, 2 * s))
-    columns[neighbours * s : (neighbours + 2) * s] = np.eye(2 * s)
-    moved = np.zeros_like(columns)
-    moved[free] = sl.cho_solve(sl.cho_factor(stiffness[np.ix_(free, free)], lower=True), columns[free])
-    return list(moved.reshape(loaded + 1, s, 2 * s))
+    low, high = slice(0, s), slice(s, None)
+    inverse = sl.cho_solve(sl.cho_factor(faces + rests[0][0], lower=True), np.eye(2 * s))
+    left, right = [inverse[low]], [inverse[high]]
+    for to_right, to_left in rests[1:]:
+        push = faces[high, low] @ right[-1] + to_right[high, low] @ inverse[low]
+        right.append(-sl.solve(faces[high, high] + to_right[high, high], push, assume_a="pos"))
+        push = faces[low, high] @ left[-1] + to_left[low, high] @ inverse[high]
+        left.append(-sl.solve(faces[low, low] + to_left[low, low], push, assume_a="pos"))
+    planes = left[::-1] + right
+    return np.stack([np.concatenate(planes[tooth : tooth + 2]) for tooth in range(len(planes) - 1)])
 
 
 def _seen_from_end(

@@ -28,63 +28,83 @@ class Superelement:
     faces: NDArray[np.float64]
 
 
-def frames_of(normals: NDArray[np.float64], held: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Orthonormal rows (n, 3, 3): the unit normal (n, 3), then the held axis (n, 3) of a node that has one.
+def condense(piece: Piece, system: TiedSystem) -> Superelement:
+    """Eliminate everything but the normal displacements of the flank and the cut faces.
 
-    Raises ValueError if a held axis is not tangential: the node could not follow a load.
+    Raises FacegearError if the body is not held, ValueError if the flank touches a held or a cut face.
+    """
+    stiffness, flank, faces = _turned(piece, system)
+    schur = schur_complement(stiffness, np.concatenate([flank, faces]))
+    k = flank.size
+    inner = inverse(schur[:k, :k])
+    influence = inner @ schur[:k, k:]
+    outer = schur[k:, k:] - schur[k:, :k] @ influence
+    return Superelement(inner, influence, 0.5 * (outer + outer.T))
+
+
+def loaded_compliance(piece: Piece, system: TiedSystem, rest: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Normal displacements (k, k) of the flank by unit normal forces, m/N, the faces held by `rest` (2s, 2s).
+
+    Raises as `condense`.
+    """
+    stiffness, flank, faces = _turned(piece, system)
+    if faces.size:
+        rows, columns = np.meshgrid(faces, faces, indexing="ij")
+        springs = sp.coo_matrix((rest.ravel(), (rows.ravel(), columns.ravel())), shape=stiffness.shape)
+        stiffness = (stiffness + springs.tocsr()).tocsr()
+    return inverse(schur_complement(stiffness, flank))
+
+
+def frames_of(normals: NDArray[np.float64], held: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Orthonormal rows (n, 3, 3): the unit normal (n, 3), then the held axes (n, 3) of a node that has any.
+
+    Raises ValueError if a held axis is not tangential.
     """
     axis = np.where(held.any(axis=1), np.argmax(held, axis=1), np.argmin(np.abs(normals), axis=1))
-    if (held.sum(axis=1) > 1).any() or np.abs(normals[held]).max(initial=0.0) > 1e-12:
-        raise ValueError("a flank node is held along its normal or along more than one axis")
+    if np.abs(normals[held]).max(initial=0.0) > 1e-12:
+        raise ValueError("a flank node is held along its normal: it cannot follow a load")
     along = np.eye(3)[axis]
     first = along - normals * np.sum(along * normals, axis=1)[:, None]
     first /= np.linalg.norm(first, axis=1)[:, None]
     return np.stack([normals, first, np.cross(normals, first)], axis=1)
 
 
-def condense(piece: Piece, system: TiedSystem) -> Superelement:
-    """Eliminate everything but the normal displacements of the flank and the cut faces.
+def inverse(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Inverse of a symmetric positive definite matrix at half the cost of solving for the unit matrix.
 
-    Raises FacegearError if a flank node is held or lies on a cut face, or the body is not held.
+    Raises FacegearError if it is not positive definite.
+    """
+    factor, failed = lapack.dpotrf(matrix, lower=1, clean=0)
+    if failed:
+        raise FacegearError("the flank's stiffness is not positive definite: the body is not held")
+    lower, _ = lapack.dpotri(factor, lower=1, overwrite_c=1)
+    result = np.tril(lower)
+    result += np.tril(lower, -1).T
+    return result
+
+
+def _turned(piece: Piece, system: TiedSystem) -> tuple[sp.csr_matrix, NDArray[np.int64], NDArray[np.int64]]:
+    """Stiffness on the free dof, flank nodes turned to their normals and right faces to the left's frame.
+
+    Also the positions of the flank's normal dof and of the faces' dof (left, then right) in it.
     """
     count = len(system.points)
     frames = np.tile(np.eye(3), (count, 1, 1))
     held = system.held.copy()
     frames[system.loaded] = frames_of(system.loaded_normals, held[system.loaded])
-    held[system.loaded] = np.array([False, True, False]) & held[system.loaded].any(axis=1)[:, None]
+    held[system.loaded] = held[system.loaded].sum(axis=1)[:, None] > np.array([3, 0, 1])
     left, right = system.coarse[piece.left], system.coarse[piece.right]
     frames[right] = piece.turn.T
     turn = sp.bsr_matrix(
         (frames, np.arange(count), np.arange(count + 1)), shape=(3 * count, 3 * count)
     ).tocsr()
-    stiffness = (turn @ system.stiffness @ turn.T).tocsr()
-
     free = ~held.ravel()
+    turn = turn[free]
+    stiffness = (turn @ system.stiffness @ turn.T).tocsr()
     position = np.cumsum(free) - 1
-    axes = np.arange(3)
-    faces = np.concatenate([(3 * face[:, None] + axes).ravel() for face in (left, right)])
-    kept = np.concatenate([3 * system.loaded, faces])
-    if np.unique(kept).size != kept.size:
+    faces = np.concatenate([(3 * face[:, None] + np.arange(3)).ravel() for face in (left, right)])
+    if np.intersect1d(3 * system.loaded, faces).size:
         raise ValueError("a flank node lies on a cut face")
     if not np.array_equal(*np.split(free[faces], 2)):
         raise ValueError("the two cut faces are not held alike")
-    schur = schur_complement(stiffness[free][:, free], position[kept[free[kept]]])
-    return _eliminate_flank(schur, system.loaded.size)
-
-
-def _eliminate_flank(schur: NDArray[np.float64], loaded: int) -> Superelement:
-    flank = _inverse(schur[:loaded, :loaded])
-    influence = flank @ schur[:loaded, loaded:]
-    faces = schur[loaded:, loaded:] - schur[loaded:, :loaded] @ influence
-    return Superelement(flank, influence, 0.5 * (faces + faces.T))
-
-
-def _inverse(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Inverse of a symmetric positive definite matrix at half the cost of solving for the unit matrix."""
-    factor, failed = lapack.dpotrf(matrix, lower=1, clean=0)
-    if failed:
-        raise FacegearError("the flank's stiffness is not positive definite: the body is not held")
-    lower, _ = lapack.dpotri(factor, lower=1, overwrite_c=1)
-    inverse = np.tril(lower)
-    inverse += np.tril(lower, -1).T
-    return inverse
+    return stiffness, position[3 * system.loaded], position[faces[free[faces]]]
