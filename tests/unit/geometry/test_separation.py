@@ -1,0 +1,239 @@
+"""Separation along the pinion's normal, unloaded contact and curvature, against independent forms."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from facegear.geometry import face_gear, pinion
+from facegear.geometry.analysis import path_curvatures, section_contact_ratio
+from facegear.geometry.curvature import relative_curvatures
+from facegear.geometry.design import Relief
+from facegear.geometry.easeoff import ease_off
+from facegear.geometry.pinion_surface import SurfacePoints, fillet_points, flank_points
+from facegear.geometry.placement import conjugate_angle, mirrored, to_left_flank
+from facegear.geometry.separation import FLANK, separation
+from facegear.geometry.unloaded import unloaded_contact
+
+
+def pitch(design, count):
+    return (np.arange(count) / count - 0.5) * 2 * np.pi / design.pinion.teeth
+
+
+def test_equal_tooth_numbers_touch_in_a_line_without_transmission_error(pair):
+    design = pair(23)
+    contact = unloaded_contact(design, pitch(design, 24))
+    assert np.max(np.abs(contact.transmission_error)) <= 1e-12
+    ys = np.linspace(0.2505, 0.2745, 9)
+    touching = [
+        np.min(separation(design, flank_points(design, np.linspace(0.2, 0.66, 4001), y), 0.0, 0.0).gap)
+        for y in ys
+    ]
+    assert np.max(np.abs(touching)) < 1e-10
+
+
+@pytest.mark.parametrize("teeth", [24, 25, 26])
+def test_localised_contact_path_lies_at_the_pitch_radius(pair, teeth):
+    design = pair(teeth)
+    contact = unloaded_contact(design, pitch(design, 16))
+    roll, y = contact.path
+    assert np.max(np.abs(contact.transmission_error)) < 1e-12
+    position = flank_points(design, roll, y).position
+    gear = [
+        to_left_flank(design, p[None], *(np.array([v]) for v in (f1, f2, j)), False)[0, 0]
+        for p, f1, f2, j in zip(position, contact.phi1, contact.phi2, contact.tooth, strict=True)
+    ]
+    radius = np.hypot(*np.array(gear)[:, :2].T)
+    # y is the axial coordinate; the radius differs by the sideways part of the point only
+    np.testing.assert_allclose(y, design.gear_pitch_radius, atol=1e-5)
+    assert np.max(np.abs(radius - design.gear_pitch_radius)) < 2e-4
+
+
+@pytest.mark.parametrize("teeth", [24, 26])
+def test_separation_of_the_generating_planes_has_the_closed_form(pair, teeth):
+    """Tangent planes of slope a_x stand (r_ps - r_p1)(sin a + cos a (a_x - a) - sin a_x) apart.
+
+    Gear flank point on the instantaneous line of generation, pinion flank point with the same normal.
+    """
+    design = pair(teeth)
+    _, ratio, space, _ = face_gear.shaper_numbers(design)
+    a = design.pressure_angle
+    for gear_radius in np.linspace(0.251, 0.275, 10):
+        slope = np.arccos(design.gear_base_radius / gear_radius)
+        turn = 0.013
+        phi_s = ratio**-1 * turn
+        roll = slope - phi_s - space
+        gear = face_gear.flank_point(design, roll, slope) * [-1, 1, 1]
+        pinion_roll = design.pinion_half_base_angle + slope
+        phi1 = -turn * 143 / 23
+        # left flank of the gear at -turn: mirror image of the right flank at +turn
+        c, s = np.cos(-turn), np.sin(-turn)
+        gear = np.array([c * gear[0] + s * gear[1], c * gear[1] - s * gear[0], gear[2]])
+        normal = np.array([np.cos(slope), 0.0, -np.sin(slope)])
+        angle = phi1 - np.pi / 23
+        pinion_roll += angle
+        point = flank_points(design, pinion_roll, gear_radius).position
+        c, s = np.cos(angle), np.sin(angle)
+        point = np.array([c * point[0] - s * point[2], point[1], s * point[0] + c * point[2]])
+        lift = design.shaper_lift
+        expected = -lift * (np.sin(slope) - np.sin(a) - np.cos(a) * (slope - a))
+        assert (gear - point) @ normal == pytest.approx(expected, abs=1e-12)
+
+
+def closed_form(design, y):
+    a, slope = design.pressure_angle, np.arccos(design.gear_base_radius / np.asarray(y))
+    return -design.shaper_lift * (np.sin(slope) - np.sin(a) - np.cos(a) * (slope - a))
+
+
+@pytest.mark.parametrize("teeth", [24, 26])
+@pytest.mark.parametrize("position", [0.0, 0.1, 0.2])
+def test_smallest_separation_in_a_section_follows_the_closed_form(pair, teeth, position):
+    """Along the pinion's own normal the field differs from the planes' distance in second order only."""
+    design = pair(teeth)
+    phi1 = position * 2 * np.pi / 23
+    phi2 = conjugate_angle(design, phi1)
+    for y in np.linspace(0.251, 0.2745, 10):
+        low, high = pinion.junction_roll(design), design.pinion_tip_roll
+        for _ in range(8):
+            roll = np.linspace(low, high, 41)
+            gap = separation(design, flank_points(design, roll, y), phi1, phi2).gap[0]
+            best, step = np.argmin(gap), roll[1] - roll[0]
+            low, high = max(low, roll[best] - 2 * step), min(high, roll[best] + 2 * step)
+        assert gap.min() == pytest.approx(closed_form(design, y), rel=1e-3)
+
+
+def test_contours_are_the_closed_form_within_a_fifth_of_a_micrometre(pair):
+    """The contours' own error: the parabola over the sampled mesh positions."""
+    design = pair(26)
+    contours = ease_off(design, 0.0, (9, 10))
+    facing = contours.facing[4]
+    assert facing.sum() >= 8
+    expected = closed_form(design, contours.y[4][facing])
+    np.testing.assert_allclose(contours.gap[4][facing], expected, atol=2e-7)
+
+
+def test_separation_agrees_with_a_dense_cloud_of_the_gear(pair):
+    """Brute force: distance along the ray to the nearest of half a million gear points."""
+    design = pair(26, offset=1e-4, shaft_angle_error=1e-3, axial_shift=5e-5, thinning=1e-4)
+    points = flank_points(design, [0.35, 0.4, 0.5], [0.256, 0.262, 0.27])
+    phi1 = np.array([0.02])
+    found = separation(design, points, phi1, conjugate_angle(design, phi1), 0)
+    position, normal = (
+        to_left_flank(design, v, phi1, conjugate_angle(design, phi1), np.zeros(1), d)[0]
+        for v, d in ((points.position, False), (points.normal, True))
+    )
+    radius = np.linspace(0.25, 0.275, 700)[None, :]
+    roll = np.linspace(0.35, 0.66, 700)[:, None]
+    cloud = face_gear.flank_point(design, roll, face_gear.psi_at(design, radius, roll)).reshape(-1, 3)
+    for number in range(3):
+        offset = cloud - position[number]
+        along = offset @ normal[number]
+        aside = np.linalg.norm(offset - along[:, None] * normal[number], axis=1)
+        nearest = np.argmin(aside)
+        assert found.part[0, number] == FLANK
+        assert found.gap[0, number] == pytest.approx(along[nearest], abs=0.05 * aside[nearest] + 1e-7)
+
+
+def test_relief_opens_the_gap_by_its_amount(pair):
+    design = pair(26)
+    relieved = pair(26, tip_relief=Relief(amount=20e-6, start=0.2e-3, length=2e-3))
+    roll = design.pinion_tip_roll - np.array([0.0, 0.1e-3, 1.2e-3, 3e-3]) / design.pinion_base_radius
+    phi1 = np.array([0.14])
+    plain, cut = (
+        separation(d, flank_points(d, roll, 0.266), phi1, conjugate_angle(d, phi1)).gap
+        for d in (design, relieved)
+    )
+    np.testing.assert_allclose((cut - plain)[0], [20e-6, 20e-6, 10e-6, 0.0], atol=1e-9)
+
+
+def test_lead_crowning_is_a_parabola_in_the_face(pair):
+    design = pair(23)
+    crowned = replace(design, pinion=replace(design.pinion, lead_crowning=Relief(10e-6, 0.0, 0.0125)))
+    y = design.mean_radius + np.array([-0.0125, -0.00625, 0.0, 0.00625, 0.0125])
+    offset = flank_points(design, 0.4, y).position - flank_points(crowned, 0.4, y).position
+    np.testing.assert_allclose(np.linalg.norm(offset, axis=1), [10e-6, 2.5e-6, 0, 2.5e-6, 10e-6], atol=1e-12)
+
+
+def test_assembly_errors_shift_the_path_but_leave_the_motion_conjugate(pair):
+    """A spur pinion with a face gear is insensitive to alignment: the path moves, the ratio stays exact."""
+    nominal = pair(26).gear_pitch_radius
+    for errors in ({"offset": 1e-4}, {"axial_shift": 1e-4}, {"shaft_angle_error": 2e-3}):
+        design = pair(26, **errors)
+        contact = unloaded_contact(design, pitch(design, 8))
+        assert np.ptp(contact.transmission_error) < 1e-11
+        assert np.ptp(contact.path[1]) < 1e-4
+        assert abs(contact.path[1].mean() - nominal) > 1e-3
+
+
+def test_axial_shift_opens_each_flank_by_its_normal_part(pair):
+    shift = 1e-7
+    contact = unloaded_contact(pair(26, axial_shift=shift), [0.0])
+    assert contact.transmission_error[0] == pytest.approx(-shift * np.sin(np.radians(25)), rel=2e-3)
+
+
+def test_thinning_turns_the_gear_back_by_half_of_it(pair):
+    contact = unloaded_contact(pair(26, thinning=8e-5), pitch(pair(), 4))
+    np.testing.assert_allclose(contact.transmission_error, -4e-5, atol=1e-12)
+
+
+def test_mirrored_pair_has_the_mirrored_contact(pair):
+    design = pair(26, offset=8e-5)
+    one = unloaded_contact(design, [0.03]).transmission_error
+    other = unloaded_contact(mirrored(design), [0.03]).transmission_error
+    assert abs(one - other)[0] > 1e-5
+    twice = unloaded_contact(mirrored(mirrored(design)), [0.03]).transmission_error
+    assert twice == pytest.approx(one, abs=1e-13)
+
+
+def test_second_relative_curvature_vanishes_in_line_contact(pair):
+    design = pair(23)
+    roll = np.linspace(0.2, 0.68, 9)[:, None]
+    psi = face_gear.psi_at(design, np.linspace(0.25, 0.275, 7)[None, :], roll)
+    large, small, _ = relative_curvatures(design, roll, psi)
+    assert np.max(np.abs(small / large)) < 1e-6
+    assert np.all(large > 0)
+
+
+def test_relative_curvatures_are_the_second_derivatives_of_the_gap(pair):
+    design = pair(26)
+    roll, large, small, slope = (part[16] for part in path_curvatures(design))
+    base = design.pinion_base_radius
+    phi1 = roll - design.pinion_half_base_angle - design.pressure_angle + np.pi / 23
+    step = 2e-4
+    across, along = np.meshgrid([-step, 0, step], [-step, 0, step], indexing="ij")
+    length = across + roll**2 * base / 2
+    points = flank_points(design, np.sqrt(2 * length / base), design.gear_pitch_radius + along)
+    gap = separation(design, points.flat(), phi1, conjugate_angle(design, phi1)).gap.reshape(3, 3)
+    assert gap[1, 1] == pytest.approx(0, abs=1e-13)
+    second = np.diff(gap, 2, axis=0)[0, 1], np.diff(gap, 2, axis=1)[1, 0]
+    cross = gap[2, 2] - gap[0, 2] - gap[2, 0] + gap[0, 0]
+    hessian = np.array([[second[0], cross / 4], [cross / 4, second[1]]]) / step**2
+    values, vectors = np.linalg.eigh(hessian)
+    np.testing.assert_allclose(values, [small, large], rtol=5e-3)
+    line = vectors[:, 0]
+    assert np.arctan(line[0] / line[1]) == pytest.approx(slope, abs=2e-3)
+
+
+def test_contact_ratio_counts_the_pairs_that_touch(pair):
+    design = pair(26)
+    contact = unloaded_contact(design, pitch(design, 96))
+    touching = np.count_nonzero(contact.gap < 1e-10) / 96
+    assert touching == pytest.approx(section_contact_ratio(design), abs=2 / 96)
+    assert section_contact_ratio(design) == pytest.approx(1.55, abs=0.01)
+
+
+def test_rays_of_the_fillet_meet_the_tip_land(pair):
+    design = pair(26)
+    points = fillet_points(design, np.linspace(0.9, 1.5, 5), 0.262)
+    found = separation(design, points, 0.0, 0.0)
+    assert set(found.part[0]) <= {0, 1, 3}
+    down = SurfacePoints(np.array([[0.0, 0.262, -0.0385]]), np.array([[0.0, 0.0, -1.0]]))
+    gap = separation(design, down, np.pi / 23, 0.0).gap
+    assert gap[0, 0] == pytest.approx(-0.0385 - design.gear_tip_plane, abs=1e-15)
+
+
+def test_no_gear_beyond_its_ends(pair):
+    design = pair(26)
+    points = flank_points(design, 0.4, [0.2485, 0.2765])
+    assert np.all(np.isinf(separation(design, points, 0.0, 0.0).gap))
+    assert pinion.junction_roll(design) < 0.4

@@ -1,0 +1,104 @@
+"""Impossible designs are refused by the key that breaks them; random pairs are valid or refused."""
+
+from dataclasses import replace
+from math import radians
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from facegear.errors import GeometryError
+from facegear.geometry.design import FaceGear, PairDesign, Pinion, Relief, Shaper
+from facegear.geometry.outline import pinion_outline
+from facegear.geometry.unloaded import unloaded_contact
+from facegear.geometry.validate import check
+from facegear.mesh.quality import scaled_jacobians
+from facegear.mesh.sizes import named_sizes
+from facegear.mesh.tooth import gear_tooth, pinion_tooth
+
+
+def changed(design, **changes):
+    """Replace parts' fields given as part__field."""
+    for name, value in changes.items():
+        part, field = name.split("__")
+        design = replace(design, **{part: replace(getattr(design, part), **{field: value})})
+    return design
+
+
+@pytest.mark.parametrize(
+    ("change", "key"),
+    [
+        ({"face_gear__inner_radius": 0.245}, "face_gear.inner_radius_mm"),
+        ({"face_gear__outer_radius": 0.302}, "face_gear.outer_radius_mm"),
+        ({"face_gear__outer_radius": 0.2501}, "face_gear.outer_radius_mm"),
+        ({"face_gear__addendum": 4.7e-3}, "face_gear.addendum_modules"),
+        ({"face_gear__rim_thickness": 1e-3}, "face_gear.rim_thickness_mm"),
+        ({"shaper__teeth": 22}, "shaper.teeth"),
+        ({"shaper__teeth": 27}, "shaper.teeth"),
+        ({"shaper__addendum": 3e-3}, "shaper.addendum_modules"),
+        ({"shaper__addendum": 6.5e-3}, "shaper.addendum_modules"),
+        ({"pinion__rack_tip_radius": 2e-3}, "pinion.rack_tip_radius_modules"),
+        ({"pinion__profile_shift": -4e-3}, "pinion.profile_shift_modules"),
+        ({"pinion__bore_radius": 0.038}, "pinion.bore_radius_mm"),
+        ({"pinion__addendum": 6.5e-3, "shaper__addendum": 6.6e-3}, "pinion.addendum_modules"),
+        ({"pinion__tip_chamfer": 3e-3}, "pinion.tip_chamfer_mm"),
+        ({"pinion__tip_relief": Relief(1e-5, 0.0, 0.0)}, "pinion.tip_relief.length_mm"),
+        ({"pinion__root_relief": Relief(1e-5, 0.01, 0.02)}, "pinion.root_relief.length_mm"),
+    ],
+)
+def test_impossible_designs_name_the_key(pair, change, key):
+    with pytest.raises(GeometryError) as refused:
+        check(changed(pair(26), **change))
+    assert refused.value.key == key
+    assert "\n" not in str(refused.value)
+
+
+def test_a_gear_outside_its_limits_is_told_both(pair):
+    with pytest.raises(GeometryError, match=r"245\.800 .* 301\.436"):
+        check(changed(pair(26), face_gear__inner_radius=0.24))
+
+
+@st.composite
+def designs(draw):
+    def number(low, high):
+        return draw(st.floats(low, high, allow_nan=False))
+
+    m = 1e-3 * number(0.5, 10)
+    n1, n2 = draw(st.integers(17, 40)), draw(st.integers(70, 200))
+    angle = radians(number(18, 30))
+    inner = m * n2 * np.cos(angle) / 2 * (1 + number(0.0, 0.1))
+    width = m * number(0.6, 10)
+    dedendum, shift = number(1.15, 1.4), draw(st.sampled_from([0.0, 0.0, -0.1, 0.2, 0.4]))
+    pinion = Pinion(
+        teeth=n1,
+        width=width * number(0.8, 1.3),
+        addendum=m * number(0.8, 1.05),
+        dedendum=m * dedendum,
+        rack_tip_radius=m * number(0.0, 0.3),
+        bore_radius=m * (n1 / 2 - dedendum + shift) * number(0.2, 0.95),
+        profile_shift=m * shift,
+        thinning=m * number(0, 0.03),
+    )
+    gear = FaceGear(n2, inner, inner + width, m * number(0.8, 1.05), m * number(0.4, 4))
+    return PairDesign(m, angle, pinion, gear, Shaper(n1 + draw(st.integers(0, 3)), m * number(1.05, 1.3)))
+
+
+@settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+@given(designs())
+def test_random_pairs_are_valid_or_refused(design):
+    try:
+        limits = check(design)
+    except GeometryError as refused:
+        assert refused.key.split(".")[0] in ("pinion", "face_gear", "shaper")
+        return
+    assert limits.inner <= design.face_gear.inner_radius < design.face_gear.outer_radius <= limits.outer
+    outline = pinion_outline(design, 200)
+    angle = np.arctan2(outline.points[:, 0], outline.points[:, 1])
+    assert np.all(np.diff(np.hypot(*outline.points.T)) < 1e-12)
+    assert np.all((angle >= 0) & (angle <= np.pi / design.pinion.teeth + 1e-12))
+    for build in (pinion_tooth, gear_tooth):
+        mesh = build(design, named_sizes("coarse", design.module))
+        assert scaled_jacobians(mesh.nodes, mesh.hexes).min() > 0
+    contact = unloaded_contact(design, [0.0])
+    assert np.isfinite(contact.transmission_error).all()
