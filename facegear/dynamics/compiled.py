@@ -36,6 +36,7 @@ class Packed(NamedTuple):
     breaks: Array
     pieces: Array
     weights: Array
+    fastest: float
     damping_when_open: bool
     scale: float
 
@@ -63,9 +64,28 @@ def pack(system: System, frequency: float) -> Packed:
         breaks=breaks,
         pieces=pieces / frequency**2,
         weights=np.abs(transposed).max(axis=0),
+        fastest=_fastest(system, frequency),
         damping_when_open=system.damping_when_open,
         scale=system.scale,
     )
+
+
+def _fastest(system: System, frequency: float) -> float:
+    """Stiffest natural frequency with all meshes in contact, plus damping, plus the harmonics of k that
+    matter.
+    """
+    amplitudes = np.hypot(system.stiffness[:, 0], system.stiffness[:, 1])
+    highest = amplitudes.sum(axis=1) + np.array(
+        [np.abs(p.coefficients).sum() for p in system.pieces] or [0.0]
+    )
+    mesh = highest[system.stiffness_kind]
+    directions = system.directions
+    stiffness = np.diag(system.squares) + (directions.T * mesh) @ directions
+    damping = np.diag(system.damping) + (directions.T * system.mesh_damping) @ directions
+    natural = np.sqrt(max(np.linalg.eigvalsh(stiffness)[-1], 0.0)) + np.linalg.eigvalsh(damping)[-1]
+    share = (amplitudes / np.maximum(highest, 1e-300)[:, None]).max(axis=0)
+    harmonics = (np.arange(share.size) * share ** (1.0 / 8.0)).max()
+    return float(natural / frequency + harmonics)
 
 
 def _whole(length: int) -> int:

@@ -48,6 +48,17 @@ class Jump:
         return distance(self.before, self.after) > np.log1p(LEAST_CHANGE if regular else 3.0 * LEAST_CHANGE)
 
 
+@dataclass(frozen=True, eq=False)
+class Side:
+    """Response on one side of a jump: AC RMS of the mesh deflections (meshes,), class, multiplier, state."""
+
+    speed: float
+    ac_rms: Array
+    label: str
+    multiplier: float
+    state: State
+
+
 def suspects(piece: Piece) -> list[int]:
     """Positions i where the response jumps on the way from speed i to i + 1."""
     ac_rms = piece.deflection[:, DEFLECTION.index("ac_rms")]
@@ -65,25 +76,56 @@ def suspects(piece: Piece) -> list[int]:
 
 
 def refine(piece: Piece, position: int, respond: Respond, resolution: float) -> Jump:
-    """Bisect between two speeds, each time from the state on the branch that ends, to `resolution`."""
-    low, high = float(piece.speeds[position]), float(piece.speeds[position + 1])
+    """Bisect between two speeds of a sweep, each time from the state on the branch that ends."""
     row = DEFLECTION.index("ac_rms")
-    before, after = piece.deflection[position, row], piece.deflection[position + 1, row]
-    label_before, label_after = str(piece.labels[position]), str(piece.labels[position + 1])
-    multiplier = float(piece.facts[position, 1])
-    state = piece.state(position)
-    while abs(high - low) > resolution:
-        middle = 0.5 * (low + high)
-        response = respond(middle, state)
-        here = moments(response.deflections, response.per_period, response.period > 0).ac_rms
-        if distance(here, before) <= distance(here, after):
-            low, before, label_before, state = middle, here, response.label, response.state
-            multiplier = np.nan if response.multipliers is None else float(abs(response.multipliers[0]))
+    before = Side(
+        float(piece.speeds[position]),
+        piece.deflection[position, row],
+        str(piece.labels[position]),
+        float(piece.facts[position, 1]),
+        piece.state(position),
+    )
+    after = Side(
+        float(piece.speeds[position + 1]),
+        piece.deflection[position + 1, row],
+        str(piece.labels[position + 1]),
+        float(piece.facts[position + 1, 1]),
+        piece.state(position + 1),
+    )
+    before, after = bracket(before, after, respond, resolution)
+    floor = np.full_like(before.ac_rms, 1e-300)
+    ratio = np.log(np.maximum(after.ac_rms, floor) / np.maximum(before.ac_rms, floor))
+    mesh = int(np.argmax(np.abs(ratio)))
+    return Jump(
+        before.speed,
+        after.speed,
+        before.ac_rms,
+        after.ac_rms,
+        before.label,
+        after.label,
+        mesh,
+        before.multiplier,
+        position + int(ratio[mesh] > 0.0),
+    )
+
+
+def bracket(before: Side, after: Side, respond: Respond, resolution: float) -> tuple[Side, Side]:
+    """Halve the interval between two speeds with different responses down to `resolution`."""
+    while abs(after.speed - before.speed) > resolution:
+        middle = 0.5 * (before.speed + after.speed)
+        here = side(middle, respond(middle, before.state))
+        if distance(here.ac_rms, before.ac_rms) <= distance(here.ac_rms, after.ac_rms):
+            before = here
         else:
-            high, after, label_after = middle, here, response.label
-    mesh = int(np.argmax(np.abs(np.log(np.maximum(after, 1e-300) / np.maximum(before, 1e-300)))))
-    largest = position + int(after[mesh] > before[mesh])
-    return Jump(low, high, before, after, label_before, label_after, mesh, multiplier, largest)
+            after = here
+    return before, after
+
+
+def side(speed: float, response: SteadyState) -> Side:
+    """What bisection compares, from a response."""
+    ac_rms = moments(response.deflections, response.per_period, response.period > 0).ac_rms
+    multiplier = np.nan if response.multipliers is None else float(abs(response.multipliers[0]))
+    return Side(speed, ac_rms, response.label, multiplier, response.state)
 
 
 def distance(first: Array, second: Array) -> float:

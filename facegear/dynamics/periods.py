@@ -57,6 +57,10 @@ def run_periods(
 ) -> int:
     """Move place and velocity (n,) and the tangents (columns, 2, n) over whole periods; returns a status."""
     n = packed.squares.size
+    # The step is chosen for the motion; a motion at rest says nothing about what its disturbances need.
+    longest = TAU
+    if tangents.shape[0] > 0:
+        longest = disturbance_step(packed, work.order, tolerance)
     sample, scratch, acting = work.sample, work.scratch, work.was_acting
     for period in range(periods):
         s = 0.0
@@ -64,7 +68,7 @@ def run_periods(
         next_sample = 0
         first = period == 0
         while s < TAU:
-            length = advance(packed, work, s, TAU, place, velocity, tolerance)
+            length = advance(packed, work, s, min(TAU, s + longest), place, velocity, tolerance)
             if tangents.shape[0] > 0:
                 if not first:
                     _switch_tangents(packed, work, acting, tangents)
@@ -95,6 +99,15 @@ def run_periods(
         if not np.isfinite(place.sum() + velocity.sum()):
             return NOT_FINITE
     return DONE
+
+
+@kernel
+def disturbance_step(packed: Packed, order: int, tolerance: float) -> float:
+    """Step at which the last Taylor term of the fastest disturbance is below the tolerance."""
+    logarithm = np.log(tolerance)
+    for i in range(2, order + 1):
+        logarithm += np.log(float(i))
+    return np.exp(logarithm / order) / packed.fastest
 
 
 @kernel

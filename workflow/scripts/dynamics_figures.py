@@ -12,7 +12,8 @@ SWEEP = ["direction", "speed_rpm", "quantity", "body_or_mesh", "value", "class"]
 with stage(snakemake) as run:
     params, given = snakemake.params, snakemake.input
     pinions = [place["name"] for place in params.pinions]
-    typical = list({place["role"]: place["name"] for place in reversed(params.pinions)}.values())[::-1]
+    roles = [place["role"] for place in params.pinions]
+    typical = [name for i, name in enumerate(pinions) if roles[i] not in roles[:i]]
     sides = [side for side in ("upper", "lower") if side in params.gears]
     sweep = tables.read(given.sweep, SWEEP)
     jumps = tables.read(given.jumps, ["direction", "speed_after_rpm", "resonance"], allow_empty=True)

@@ -1,0 +1,100 @@
+"""Dense output: the Taylor polynomials of every step, for extremes and integrals to full accuracy."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.advance import advance, move
+from facegear.dynamics.compiled import TAU, Packed, pack
+from facegear.dynamics.motion import Settings, State
+from facegear.dynamics.system import System
+from facegear.dynamics.taylor import make_work
+from facegear.errors import NotConverged
+
+Array = NDArray[np.float64]
+MOST_STEPS = 1_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """Polynomials of S steps in the mesh phase s (rad), which runs on over the periods.
+
+    starts, lengths (S,); coordinates (S, order + 1, n) and deflections (S, order + 1, meshes), ascending
+    powers of the phase since the start of the step; states (S, meshes): 0 open, 1 drive flank, -1 back flank.
+    """
+
+    frequency: float
+    starts: Array
+    lengths: Array
+    coordinates: Array
+    deflections: Array
+    states: NDArray[np.int64]
+
+    def at(self, phases: Array) -> tuple[Array, Array]:
+        """Coordinates (K, n) and deflections (K, meshes) at mesh phases (K,) in rad."""
+        step = np.clip(np.searchsorted(self.starts, phases, side="right") - 1, 0, self.starts.size - 1)
+        ahead = (phases - self.starts[step])[:, None] ** np.arange(self.coordinates.shape[1])
+        return (
+            np.einsum("kp,kpn->kn", ahead, self.coordinates[step]),
+            np.einsum("kp,kpm->km", ahead, self.deflections[step]),
+        )
+
+    def quadrature(self, points: int = 12) -> tuple[Array, Array]:
+        """Phases (S * points,) and weights in rad for integrals over the run, exact to the steps' order."""
+        nodes, weights = np.polynomial.legendre.leggauss(points)
+        phases = self.starts[:, None] + 0.5 * self.lengths[:, None] * (1.0 + nodes)
+        return phases.ravel(), (0.5 * self.lengths[:, None] * weights).ravel()
+
+    def extremes(self, mesh: int) -> tuple[float, float]:
+        """Least and largest deflection of a mesh, from the zeros of the polynomials' derivatives."""
+        values = []
+        for length, polynomial in zip(self.lengths, self.deflections[:, :, mesh], strict=True):
+            scaled = np.polynomial.Polynomial(polynomial * length ** np.arange(polynomial.size))
+            turning = scaled.deriv().roots()
+            real = turning[np.abs(turning.imag) < 1e-9].real
+            inside = real[(real > 0.0) & (real < 1.0)]
+            values += scaled(np.concatenate([[0.0, 1.0], inside])).tolist()
+        return min(values), max(values)
+
+
+def record(
+    system: System, frequency: float, state: State, periods: int, settings: Settings | None = None
+) -> Trajectory:
+    """Run whole mesh periods from a state and keep every step. Raises NotConverged if a step fails."""
+    settings = settings or Settings()
+    packed = pack(system, frequency)
+    work = make_work(packed, settings.taylor_order)
+    place, velocity = _wide(packed, state.place), _wide(packed, state.velocity / frequency)
+    starts, lengths, coordinates, deflections, states = [], [], [], [], []
+    for period in range(periods):
+        s = 0.0
+        while s < TAU:
+            length = advance(packed, work, s, TAU, place, velocity, settings.tolerance)
+            starts.append(period * TAU + s)
+            lengths.append(length)
+            coordinates.append(work.y[:, : packed.n].copy())
+            polynomial = work.deflection[:, : packed.m].copy()
+            polynomial[0] += work.edge[: packed.m]
+            deflections.append(polynomial)
+            states.append(work.state[: packed.m].copy())
+            move(work, length, place, velocity)
+            s += length
+            if TAU - s < 1e-13:
+                s = TAU
+            if len(starts) > MOST_STEPS or not np.isfinite(length):
+                raise NotConverged("dynamics", f"mesh phase {s:.6g} rad", f"{len(starts)} steps")
+    return Trajectory(
+        frequency,
+        np.array(starts),
+        np.array(lengths),
+        np.array(coordinates),
+        np.array(deflections),
+        np.array(states),
+    )
+
+
+def _wide(packed: Packed, values: Array) -> Array:
+    wide = np.zeros(packed.squares.size)
+    wide[: packed.n] = values
+    return wide

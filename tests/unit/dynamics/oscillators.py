@@ -1,0 +1,53 @@
+"""One-degree systems with known answers, for the same code as the gearbox."""
+
+import numpy as np
+
+from facegear.dynamics.system import Piecewise, System
+
+
+def one_degree(
+    damping, stiffness=((0.0,), (1.0,)), load=((0.0,), (0.0,)), lower=-1.0, upper=1.0, pieces=()
+) -> System:
+    return System(
+        directions=np.ones((1, 1)),
+        squares=np.zeros(1),
+        damping=np.array([damping]),
+        mesh_damping=np.zeros(1),
+        lower=np.array([lower]),
+        upper=np.array([upper]),
+        stiffness=np.array([stiffness], dtype=float),
+        stiffness_kind=np.zeros(1, dtype=int),
+        error=np.zeros((1, 2, 1)),
+        error_kind=np.zeros(1, dtype=int),
+        load=np.array([load], dtype=float),
+        damping_when_open=True,
+        scale=1.0,
+        pieces=pieces,
+    )
+
+
+def backlash_oscillator(speed, damping_ratio=0.05, mean=0.1, amplitude=0.05) -> System:
+    """Oracle (a): x'' + 2 z x' + f(x) = Fm + Fa W^2 cos W t."""
+    return one_degree(2 * damping_ratio, load=((0.0, 0.0), (mean, amplitude * speed**2)))
+
+
+def square_wave(depth=0.2, share=0.5) -> Piecewise:
+    """Stiffness 1 + depth for a share of the period, then 1 - depth share / (1 - share)."""
+    levels = np.array([[1.0 + depth], [1.0 - depth * share / (1.0 - share)]])
+    return Piecewise(np.array([0.0, share, 1.0]), levels)
+
+
+def meissner(damping_ratio, one_sided=False) -> System:
+    """Oracles (b), one-sided contact under unit load, and (c), the linear equation."""
+    return one_degree(
+        2 * damping_ratio,
+        stiffness=((0.0,), (0.0,)),
+        load=((0.0,), (1.0 if one_sided else 0.0,)),
+        lower=-np.inf if one_sided else 0.0,
+        upper=0.0,
+        pieces=(square_wave(),),
+    )
+
+
+def mathieu(depth) -> System:
+    return one_degree(0.0, stiffness=((0.0, 0.0), (1.0, depth)), lower=0.0, upper=0.0)
