@@ -7,10 +7,13 @@ include: "workflow/rules/stiffness.smk"
 include: "workflow/rules/modal.smk"
 include: "workflow/rules/dynamics.smk"
 include: "workflow/rules/load_sharing.smk"
+include: "workflow/rules/scorecard.smk"
 include: "workflow/rules/targets.smk"
+include: "workflow/rules/report.smk"
 
 
 rule all:
     default_target: True
     input:
         targets(CASE),
+        f"results/{CASE}/report.html",

@@ -1,0 +1,144 @@
+"""What the report of a case holds, from the machine as configured to what made each file."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from facegear.report.contents import CAPTIONS, CHAPTERS
+from facegear.report.page import Chapter, Picture, Table, render
+
+LARGEST_SVG = 1_500_000
+"""Bytes; a larger drawing is shown as its png."""
+
+
+def case_report(
+    values: Mapping[str, Any],
+    tables: Mapping[str, pd.DataFrame],
+    pictures: Mapping[str, Path],
+    manifests: Sequence[Mapping[str, Any]],
+) -> str:
+    """The HTML page of a case.
+
+    values: its config; tables by file name without ending; pictures (svg) by name; manifests of all rules.
+    Chapters without a picture or table are left out.
+    """
+    known = {name for _, _, names in CHAPTERS for name in names}
+    others = [name for name in pictures if name not in known]
+    chapters = [Chapter("The machine as configured", _machine_text(values), (), _machine_tables(values))]
+    for title, text, names in CHAPTERS:
+        shown = [*names, *(others if title == "Load sharing" else ())]
+        found = [_picture(pictures[name], name) for name in shown if name in pictures]
+        own = _tables(title, tables)
+        if found or own:
+            chapters.append(Chapter(title, text, found, own))
+    if "scorecard" in tables:
+        text = "Every number and statement of the paper beside ours; a row that differs says why."
+        chapters.append(Chapter("Scorecard", text, (), [Table("Scorecard", tables["scorecard"], 4)]))
+    chapters.append(_errors(tables))
+    chapters.append(_provenance(manifests))
+    lead = f"Case {values['case']}: what facegear computed from its config, in the order of computation."
+    return render(f"facegear: {values['case']}", lead, chapters)
+
+
+def _picture(path: Path, name: str) -> Picture:
+    smaller = path.with_suffix(".png")
+    shown = smaller if path.stat().st_size > LARGEST_SVG and smaller.exists() else path
+    return Picture(shown, CAPTIONS.get(name, name.replace("fig", "Figure ").replace("_", " ")))
+
+
+def _machine_text(values: Mapping[str, Any]) -> str:
+    pair, transmission = values["tooth_pair"], values["transmission"]
+    return (
+        f"{len(transmission['pinions'])} pinions of {pair['pinion_teeth']} teeth and "
+        f"{len(transmission['face_gears'])} face gear(s) of {pair['face_gear_teeth']} teeth, module {pair['module_mm']:g} mm, pressure angle "
+        f"{pair['pressure_angle_deg']:g} deg. Mesh stiffness: {values['mesh_stiffness']['source']}."
+    )
+
+
+def _machine_tables(values: Mapping[str, Any]) -> list[Table]:
+    sections = ("tooth_pair", "transmission", "mesh", "contact", "mesh_stiffness", "dynamics")
+    rows = [
+        row for section in sections for row in _flat(section, values[section]) if row[1] not in (None, "")
+    ]
+    pinions = pd.DataFrame(values["transmission"]["pinions"]).dropna(axis=1, how="all")
+    keys = pd.DataFrame([row for row in rows if ".pinions" not in row[0]], columns=["key", "value"])
+    return [Table("Pinions", pinions), Table("Config, defaults included", keys)]
+
+
+def _flat(key: str, value: Any) -> list[tuple[str, Any]]:
+    if isinstance(value, Mapping):
+        return [row for name, inside in value.items() for row in _flat(f"{key}.{name}", inside)]
+    if isinstance(value, list):
+        return [(key, ", ".join(str(item) for item in value))]
+    return [(key, value)]
+
+
+def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
+    if title == "Loaded contact" and "ltca" in tables:
+        columns = {
+            "k_average_n_per_m": ["mean", "min", "max"],
+            "k_local_n_per_m": ["mean"],
+            "pairs_in_contact": ["min", "max"],
+            "peak_pressure_mpa": ["max"],
+        }
+        found = tables["ltca"].groupby("torque_n_m").agg(columns)
+        found.columns = [" ".join(column) for column in found.columns]
+        return [Table("Over a pitch, for each torque on the pinion", found.reset_index(), 4)]
+    if title == "Mesh stiffness" and "harmonics" in tables:
+        return [Table("Harmonics kept", tables["harmonics"].iloc[:, :4], 5)]
+    if title == "Modes" and "frequencies" in tables:
+        return [Table("Natural frequencies", tables["frequencies"].drop(columns="pinion_energy_share"), 6)]
+    if title.startswith("Nominal") and "jumps" in tables:
+        columns = [
+            "direction",
+            "speed_before_rpm",
+            "mesh",
+            "class_before",
+            "class_after",
+            "resonance",
+            "resonance_rpm",
+        ]
+        return [Table("Jumps, with the resonance nearest to each", tables["jumps"][columns], 6)]
+    if title == "Load sharing" and "summary" in tables:
+        columns = [
+            "study",
+            "point",
+            "group",
+            "mean",
+            "half_width",
+            "minimum",
+            "maximum",
+            "lost_share",
+            "motion",
+        ]
+        return [Table("Means over the cycle with their 95 % half-widths", tables["summary"][columns], 4)]
+    return []
+
+
+def _errors(tables: Mapping[str, pd.DataFrame]) -> Chapter:
+    rows = []
+    if "ltca" in tables:
+        rows.append(("largest KKT residual of all contacts, relative", tables["ltca"]["kkt_residual"].max()))
+        rows.append(
+            ("largest torque imbalance of all contacts, relative", tables["ltca"]["torque_residual"].max())
+        )
+    if "harmonics" in tables:
+        kept = tables["harmonics"].iloc[-1]
+        rows.append(("stiffness left out by the truncated series (N/m)", kept["truncation_error_n_per_m"]))
+    if "summary" in tables:
+        rows.append(("widest 95 % half-width of a load-sharing mean", tables["summary"]["half_width"].max()))
+    frame = pd.DataFrame(rows, columns=["quantity", "value"])
+    return Chapter(
+        "Numerical errors", "Estimates that the stages made themselves.", (), [Table("Estimates", frame, 3)]
+    )
+
+
+def _provenance(manifests: Sequence[Mapping[str, Any]]) -> Chapter:
+    columns = ["rule", "summary", "seconds", "made_at", "code"]
+    frame = pd.DataFrame([{name: one.get(name) for name in columns} for one in manifests], columns=columns)
+    versions = dict(sorted({item for one in manifests for item in one["versions"].items()}))
+    text = "Each output has a manifest beside it with versions, config slice, code fingerprint and checksums."
+    stored = pd.DataFrame(list(versions.items()), columns=["library", "version"])
+    return Chapter("Provenance", text, (), [Table("Rules", frame, 4), Table("Versions", stored)])

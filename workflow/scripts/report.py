@@ -1,0 +1,18 @@
+"""The self-contained HTML report of a case."""
+
+from pathlib import Path
+
+from facegear.io import documents, tables
+from facegear.io.atomic import atomic_path
+from facegear.provenance.stage import stage
+from facegear.report.case import case_report
+
+with stage(snakemake) as run:
+    found = {Path(path).stem: tables.read(path, allow_empty=True) for path in snakemake.input.tables}
+    pictures = {Path(path).stem: Path(path) for path in snakemake.input.pictures}
+    case = Path(snakemake.output.html).parent
+    manifests = [documents.read(path, ["rule"]) for path in sorted(case.glob("*/*.provenance.json"))]
+    page = case_report(snakemake.params.values, found, pictures, manifests)
+    with atomic_path(snakemake.output.html) as temporary:
+        temporary.write_text(page, encoding="utf-8")
+    run.summary(f"{len(pictures)} pictures, {len(found)} tables, {len(page) / 1e6:.1f} MB")
