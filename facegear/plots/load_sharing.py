@@ -23,15 +23,13 @@ ENVELOPE = 0.02
 
 def sharing_figure(
     curves: pd.DataFrame, summary: pd.DataFrame, kind: str, title: str, caption: str
-) -> Figure | None:
-    """Coefficient against time over one mesh cycle; None where the machine has no such group.
+) -> Figure:
+    """Coefficient against time over one mesh cycle.
 
     Where the motion is not period-one a single cycle is drawn over the envelope of all cycles. Gaps are
     instants at which no path carries load. Of several groups of a kind the first is drawn, as in the paper.
     """
     rows = curves[curves["kind"] == kind]
-    if rows.empty:
-        return None
     group = rows["group"].iloc[0]
     rows = rows[rows["group"] == group]
     means = summary[(summary["group"] == group) & (summary["study"] == rows["study"].iloc[0])]
