@@ -32,16 +32,24 @@ class Closest:
     y: Array
 
 
-def closest(design: PairDesign, phi1: Array, phi2: Array, near: Closest | None = None) -> Closest:
-    """Search the flanks of all pairs at p placements (rad), from a coarse grid or around a `near` result."""
+def closest(
+    design: PairDesign, phi1: Array, phi2: Array, near: Closest | None = None, margin: float = np.inf
+) -> Closest:
+    """Search the flanks of all pairs at p placements (rad), from a coarse grid or around a `near` result.
+
+    Pairs whose `near` gap exceeds the smallest by more than `margin` (m) keep their `near` values.
+    """
     size = np.array([1e-3, 1e-4])
     if near is None:
         near, size = _coarse(design, phi1, phi2)
-    rows = _Rows(
-        np.repeat(phi1, len(PAIRS)), np.repeat(phi2, len(PAIRS)), np.tile(PAIRS, len(phi1)).astype(float)
-    )
-    gap, roll, y = _search(design, rows, near.roll.ravel(), near.y.ravel(), size)
-    return Closest(*(part.reshape(near.roll.shape) for part in (gap, roll, y)))
+    chosen = (near.gap <= near.gap.min(axis=1, keepdims=True) + margin).ravel()
+    turns = np.repeat(phi1, len(PAIRS))[chosen], np.repeat(phi2, len(PAIRS))[chosen]
+    rows = _Rows(*turns, np.tile(PAIRS, len(phi1))[chosen].astype(float))
+    parts = [part.ravel().copy() for part in (near.gap, near.roll, near.y)]
+    found = _search(design, rows, parts[1][chosen], parts[2][chosen], size)
+    for part, values in zip(parts, found, strict=True):
+        part[chosen] = values
+    return Closest(*(part.reshape(near.roll.shape) for part in parts))
 
 
 @dataclass(frozen=True)

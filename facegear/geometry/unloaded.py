@@ -51,11 +51,16 @@ def unloaded_contact(design: PairDesign, phi1: ArrayLike) -> UnloadedContact:
     conjugate = conjugate_angle(design, phi1)
     phi2 = conjugate - design.pinion.thinning / 2 / design.gear_base_radius
     found = closest(design, phi1, phi2)
+    whole = True
     for _ in range(12):
         smallest = found.gap.min(axis=1)
         if not np.all(np.isfinite(smallest)):
             where = f"phi1 = {phi1[~np.isfinite(smallest)][0]:.6f} rad"
             raise NotConverged("unloaded contact", where, "tooth pairs -2..2: no flanks face each other")
+        if np.max(np.abs(smallest)) < TOLERANCE and not whole:
+            # only pairs about to touch were followed: look at all of them where the gear stands now
+            found, whole = closest(design, phi1, phi2, found), True
+            smallest = found.gap.min(axis=1)
         if np.max(np.abs(smallest)) < TOLERANCE:
             facing = np.isfinite(found.gap)
             return UnloadedContact(
@@ -68,6 +73,6 @@ def unloaded_contact(design: PairDesign, phi1: ArrayLike) -> UnloadedContact:
                 np.where(facing, found.y, np.nan),
             )
         phi2 = phi2 - smallest / design.gear_base_radius
-        found = closest(design, phi1, phi2, found)
+        found, whole = closest(design, phi1, phi2, found, margin=2e-6), False
     residual = np.max(np.abs(found.gap.min(axis=1)))
     raise NotConverged("unloaded contact", f"residual gap {residual:.1e} m", "12 turns of the gear")

@@ -7,8 +7,9 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import LightSource
+from matplotlib.colors import BoundaryNorm, LightSource, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from numpy.typing import NDArray
 
@@ -35,47 +36,53 @@ def tooth_pair(
 def _in_mesh(axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, Array]) -> None:
     design = record["design_si"]
     pinion_teeth, gear_teeth = design["pinion"]["teeth"], design["face_gear"]["teeth"]
-    pinion = [
-        _turned_pinion(_pinion_skin(flanks), (tooth - 0.5) * 2 * pi / pinion_teeth)
-        for tooth in range(pinion_teeth)
-    ]
-    gear = [_turned_gear(_gear_skin(flanks), tooth * 2 * pi / gear_teeth) for tooth in range(-6, 7)]
-    quads = [(_quads(skin), PINION_COLOUR) for skin in pinion] + [
-        (_quads(skin), GEAR_COLOUR) for skin in gear
-    ]
-    light = LightSource(azdeg=300, altdeg=50)
-    faces = np.concatenate([quad for quad, _ in quads]) * 1e3
+    pinion = np.concatenate([_quads(grid) for grid in _pinion_skin(flanks, design["pinion"]["bore_radius"])])
+    gear = np.concatenate([_quads(grid) for grid in _gear_skin(flanks, gear_teeth)])
+    parts = [
+        _turned_pinion(pinion, (tooth - 0.5) * 2 * pi / pinion_teeth) for tooth in range(pinion_teeth)
+    ] + [_turned_gear(gear, tooth * 2 * pi / gear_teeth) for tooth in range(-6, 7)]
+    names = [PINION_COLOUR] * pinion_teeth + [GEAR_COLOUR] * 13
+    faces = np.concatenate(parts) * 1e3
     colours = np.concatenate(
-        [np.tile(plt.matplotlib.colors.to_rgb(colour), (len(quad), 1)) for quad, colour in quads]
+        [np.tile(to_rgb(name), (len(part), 1)) for name, part in zip(names, parts, strict=True)]
     )
     normals = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
     area = np.linalg.norm(normals, axis=1, keepdims=True)
     normals = np.divide(normals, area, where=area > 0, out=np.zeros_like(normals))
-    brightness = 0.35 + 0.65 * np.abs(normals @ light.direction)
-    axes.add_collection3d(Poly3DCollection(faces, facecolors=colours * brightness[:, None], linewidths=0))
+    brightness = 0.4 + 0.6 * np.abs(normals @ LightSource(azdeg=300, altdeg=50).direction)
+    shaded = colours * brightness[:, None]
+    axes.add_collection3d(Poly3DCollection(faces, facecolors=shaded, edgecolors=shaded, linewidths=0.2))
     low, high = faces.min(axis=(0, 1)), faces.max(axis=(0, 1))
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
     axes.set_box_aspect(high - low, zoom=1.25)
     axes.view_init(elev=22, azim=-62)
     axes.set(xlabel="x (mm)", ylabel="y (mm)", zlabel="z (mm)", title="Pinion and face gear in mesh")
+    axes.yaxis.set_major_locator(MaxNLocator(2))
     axes.tick_params(labelsize=7)
 
 
-def _pinion_skin(flanks: Mapping[str, Array]) -> Array:
-    """Grid (profile, 2, 3) of one tooth from space to space."""
+def _pinion_skin(flanks: Mapping[str, Array], bore: float) -> list[Array]:
+    """Grids (profile, 2, 3) of one tooth from space to space: its surface and the end that is looked at."""
     half = flanks["pinion_section"][::8]
     section = np.concatenate([half[::-1], half * [-1, 1]])
-    ends = flanks["pinion_flank"][0, [0, -1], 1]
-    skin = np.empty((len(section), 2, 3))
-    skin[..., 0], skin[..., 2] = section[:, None, 0], -section[:, None, 1]
-    skin[..., 1] = ends
-    return skin
+    first, last = flanks["pinion_flank"][0, [0, -1], 1]
+    outer = np.insert(section * [1, -1], 1, first, axis=1)
+    inner = np.insert(
+        bore * section / np.linalg.norm(section, axis=1, keepdims=True) * [1, -1], 1, first, axis=1
+    )
+    return [np.stack([outer, outer + [0, last - first, 0]], axis=1), np.stack([outer, inner], axis=1)]
 
 
-def _gear_skin(flanks: Mapping[str, Array]) -> Array:
-    """Grid (profile, width, 3) of one tooth from fillet to fillet."""
+def _gear_skin(flanks: Mapping[str, Array], teeth: int) -> list[Array]:
+    """Grids (profile, width, 3) of one tooth from space to space: its surface and its inner end."""
     right = np.concatenate([flanks["gear_flank"][::4, ::8], flanks["gear_fillet"][::4, ::8]])
-    return np.concatenate([right[::-1], right * [-1, 1, 1]])
+    radius = np.hypot(right[0, :, 0], right[0, :, 1])
+    middle = np.stack([radius * np.sin(pi / teeth), radius * np.cos(pi / teeth), right[-1, :, 2]], axis=-1)
+    right = np.concatenate([right, middle[None]])
+    surface = np.concatenate([right[::-1], right * [-1, 1, 1]])
+    below = surface[:, 0].copy()
+    below[:, 2] = 1.15 * surface[..., 2].min()
+    return [surface, np.stack([surface[:, 0], below], axis=1)]
 
 
 def _turned_pinion(points: Array, angle: float) -> Array:
@@ -152,12 +159,15 @@ def _contours(
     radius = np.where(facing, 1e3 * contact["contour_radius"], 1e3 * contact["contour_y"])
     height = np.where(facing, 1e3 * contact["contour_height"], np.nan)
     height = np.where(np.isnan(height), np.nanmean(height), height)
-    filled = axes.contourf(radius, height, gap, levels=12, cmap="viridis_r")
-    axes.figure.colorbar(filled, ax=axes, label="separation (um)", shrink=0.8)
+    levels = [0, 0.1, 0.3, 1, 2, 5, 10, 20, 30, 40, 60, 80, 120, 200]
+    levels = [level for level in levels if level <= gap.max()] + [float(np.ceil(gap.max() + 1e-9))]
+    colours = BoundaryNorm(levels, plt.get_cmap("viridis_r").N)
+    filled = axes.contourf(radius, height, gap, levels=levels, norm=colours, cmap="viridis_r", extend="min")
+    axes.figure.colorbar(filled, ax=axes, label="separation (um)", shrink=0.8, ticks=levels)
     top, flank = 1e3 * flanks["gear_flank"][0], 1e3 * flanks["gear_flank"][-1]
     for line, label in ((top, "tip edge"), (flank, "end of the flank")):
         axes.plot(np.hypot(line[:, 0], line[:, 1]), line[:, 2], color="0.2", lw=0.8)
-        axes.annotate(label, (np.hypot(*line[0, :2]), line[0, 2]), fontsize=7, va="bottom")
+        axes.annotate(label, (np.hypot(*line[-1, :2]), line[-1, 2]), fontsize=7, va="bottom", ha="right")
     path_radius = np.interp(contact["path_roll"], contact["contour_roll"][:, 0], np.arange(len(radius)))
     rows = np.clip(np.round(path_radius).astype(int), 0, len(radius) - 1)
     axes.plot(1e3 * contact["path_y"], height[rows, height.shape[1] // 2], "r.", ms=4, label="contact path")
@@ -169,4 +179,4 @@ def _contours(
         f"(gear {gap_record['gear_part']}, pinion {gap_record['pinion_part']}, "
         f"{gap_record['gear_radius_mm']:.1f} mm)",
     )
-    axes.legend(fontsize=7, loc="lower right")
+    axes.legend(fontsize=7, loc="lower left")

@@ -11,7 +11,7 @@ from facegear.provenance.stage import stage
 with stage(snakemake) as run:
     design = pair_design(parse(ToothPair, snakemake.params.section))
     analysis = analyse(design)
-    contours = ease_off(design, float(analysis.drive.transmission_error.mean()))
+    contours = ease_off(design, float(analysis.drive.transmission_error.mean()), (37, 29))
     documents.write(snakemake.output.pair, pair_record(design, analysis))
     arrays.write(snakemake.output.flanks, **flank_arrays(design))
     arrays.write(snakemake.output.contact, **contact_arrays(design, analysis, contours))
