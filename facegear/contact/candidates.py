@@ -157,7 +157,33 @@ def _pair_candidates(
     usable = np.isfinite(coordinates).all(axis=1) & np.isfinite(seen.gap[0])
     if not fillet:
         usable &= surface.lattice[points, 0] <= (surface.side.flank_rows - 1) * surface.refinement.profile
-    points, gap, coordinates = points[usable], seen.gap[0][usable], coordinates[usable]
+    return hats_over(
+        surface,
+        lattice.side.shape,
+        lattice.refinement,
+        place[2],
+        points[usable],
+        seen.gap[0][usable],
+        coordinates[usable],
+        limit,
+    )
+
+
+def hats_over(
+    surface: PinionSurface,
+    gear_shape: tuple[int, int],
+    gear_refinement: Refinement,
+    tooth: int,
+    points: NDArray[np.int64],
+    gap: NDArray[np.float64],
+    coordinates: NDArray[np.float64],
+    limit: float,
+) -> Candidates | None:
+    """Hats over those integration points (q,) of the pinion that face the gear.
+
+    `gap` (q,) m and where the gear is hit, `coordinates` (q, 2) of its refined lattice; `gear_shape` is its
+    lattice before refinement. Returns the hats that a turn by `limit` (rad) would close, or None.
+    """
     if points.size == 0:
         return None
     weight = surface.hats[points].multiply(surface.area[points, None]).T.tocsr()
@@ -169,21 +195,19 @@ def _pair_candidates(
     if not near.any():
         return None
     weight = weight[near].tocsr()
-    shape = lattice.side.shape
-    fine = tuple((n - 1) * f + 1 for n, f in zip(shape, _factors(lattice.refinement), strict=True))
-    gear = weight @ interpolation(coordinates, fine)
-    gear_coarse = weight @ interpolation(coordinates / np.array(_factors(lattice.refinement)), shape)
+    factors = np.array([gear_refinement.profile, gear_refinement.width])
+    fine = tuple((n - 1) * int(f) + 1 for n, f in zip(gear_shape, factors, strict=True))
     return Candidates(
-        place[2],
+        tooth,
         hats[near],
         mean_gap[near],
         arm[near],
         area[hats][near],
         _whole(surface, hats[near], area[hats][near]),
         (weight @ surface.nodal[points]).tocsr(),
-        gear.tocsr(),
+        (weight @ interpolation(coordinates, fine)).tocsr(),
         (weight @ surface.coarse[points]).tocsr(),
-        gear_coarse.tocsr(),
+        (weight @ interpolation(coordinates / factors, gear_shape)).tocsr(),
     )
 
 
@@ -192,7 +216,3 @@ def _whole(surface: PinionSurface, hats: NDArray[np.int64], area: NDArray[np.flo
     row, column = np.divmod(hats, surface.shape[1])
     inside = (row > 0) & (column > 0) & (column < surface.shape[1] - 1)
     return inside & (area > (1 - 1e-9) * surface.full_area[hats])
-
-
-def _factors(refinement: Refinement) -> tuple[int, int]:
-    return refinement.profile, refinement.width

@@ -1,7 +1,8 @@
 """Loaded tooth contact analysis: every position of a pitch at every torque."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from math import pi
 
 import numpy as np
@@ -22,6 +23,8 @@ FIRST_GUESS = 40e-6
 """Approach (m) that the candidates of the first solution must cover; later ones follow the solutions."""
 
 MARGIN = 1.15
+
+ENLARGEMENTS = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,64 +112,87 @@ def analyse(
     for row, position in enumerate(positions):
         angles = float(phi1[row]), float(unloaded.phi2[row])
         error = -float(unloaded.transmission_error[row])
-        solved, guess = _position(model, float(position), angles, error, torques, guess, options)
+        find = partial(_candidates, model, angles, options.fillet)
+        combine = partial(influence_matrix, pinion=model.pinion, gear=model.gear, coupled=options.coupled)
+        place = Place(float(position), error, model.design.pinion_base_radius)
+        solved, guess = solve_position(find, combine, place, torques, guess)
         results += solved
         progress.step()
     return results
 
 
-def _position(
-    model: ContactModel,
-    position: float,
-    angles: tuple[float, float],
-    unloaded: float,
+def _candidates(
+    model: ContactModel, angles: tuple[float, float], fillet: bool, limit: float
+) -> list[Candidates]:
+    return find_candidates(model.surface, model.lattice, *angles, PAIRS, limit, fillet)
+
+
+@dataclass(frozen=True)
+class Place:
+    """Position 0..1 of a pitch, unloaded transmission error (m) there, and the pinion's base radius (m)."""
+
+    position: float
+    unloaded: float
+    base_radius: float
+
+
+def solve_position(
+    find: Callable[[float], list[Candidates]],
+    combine: Callable[[list[Candidates]], NDArray[np.float64]],
+    place: Place,
     torques: Sequence[float],
     guess: float,
-    options: ContactOptions,
 ) -> tuple[list[LoadedPosition], float]:
-    """All torques of a position, the largest first; returns also the largest turn (rad)."""
+    """All torques of a position, the largest first, each warm-started from the one before.
+
+    `find` gives the candidates that a turn (rad) would close, `combine` their influence matrix. `guess` is a
+    first guess of the largest turn; the largest turn found is returned with the results, as the next guess.
+    Raises NotConverged naming position and torque.
+    """
     limit = MARGIN * guess
     order = np.argsort(torques)[::-1]
-    for _ in range(12):
-        pairs = find_candidates(model.surface, model.lattice, *angles, PAIRS, limit, options.fillet)
-        if pairs:
-            matrix = influence_matrix(pairs, model.pinion, model.gear, options.coupled)
-            gap, arm = (np.concatenate([getattr(pair, name) for pair in pairs]) for name in ("gap", "arm"))
-            where = f"position {position:.6f}, torque {max(torques):g} N m"
-            largest = solve(matrix, gap, arm, float(torques[order[0]]), where=where)
-            if largest.rotation <= limit:
-                break
-            limit = MARGIN * largest.rotation
-        else:
+
+    def where(torque: float) -> str:
+        return f"position {place.position:.6f}, torque {torque:g} N m"
+
+    for _ in range(ENLARGEMENTS):
+        pairs = find(limit)
+        if not pairs:
             limit *= 4.0
+            continue
+        matrix = combine(pairs)
+        gap, arm = (np.concatenate([getattr(pair, name) for pair in pairs]) for name in ("gap", "arm"))
+        torque = float(torques[order[0]])
+        largest = solve(matrix, gap, arm, torque, where=where(torque))
+        if largest.rotation <= limit:
+            break
+        limit = MARGIN * largest.rotation
     else:
-        where = f"position {position:.6f}, torque {max(torques):g} N m"
-        raise NotConverged("contact", where, f"candidates up to a turn of {limit:.2e} rad")
+        tried = f"candidates of {ENLARGEMENTS} turns up to {limit:.2e} rad"
+        raise NotConverged("contact", where(max(torques)), tried)
     results: dict[int, LoadedPosition] = {}
     last = largest
     for index in order:
         torque = float(torques[index])
         if index != order[0]:
             keep = gap < last.rotation * arm
-            where = f"position {position:.6f}, torque {torque:g} N m"
-            inner = solve(matrix[np.ix_(keep, keep)], gap[keep], arm[keep], torque, last.active[keep], where)
+            block = matrix[np.ix_(keep, keep)]
+            inner = solve(block, gap[keep], arm[keep], torque, last.active[keep], where(torque))
             force = np.zeros_like(gap)
             force[keep] = inner.force
-            last = Contact(force, inner.rotation, inner.slope, inner.residual, inner.steps)
-        results[int(index)] = _result(model, position, torque, unloaded, pairs, arm, last)
+            last = replace(inner, force=force)
+        results[int(index)] = _result(place, torque, pairs, arm, last)
     return [results[index] for index in range(len(torques))], largest.rotation
 
 
 def _result(
-    model: ContactModel,
-    position: float,
+    place: Place,
     torque: float,
-    unloaded: float,
     pairs: list[Candidates],
     arm: NDArray[np.float64],
     contact: Contact,
 ) -> LoadedPosition:
-    base = model.design.pinion_base_radius
+    base = place.base_radius
     share = np.zeros(len(PAIRS))
     spots, start = [], 0
     for pair in pairs:
@@ -181,10 +207,10 @@ def _result(
             )
     approach = base * contact.rotation
     return LoadedPosition(
-        position,
+        place.position,
         torque,
-        unloaded + approach,
-        unloaded,
+        place.unloaded + approach,
+        place.unloaded,
         torque / base / approach,
         1.0 / (base**2 * contact.slope),
         share,

@@ -1,9 +1,16 @@
 """Simple bodies for the contact tests: mapped blocks of 27-node hexahedra."""
 
+from dataclasses import replace
+
 import numpy as np
+import scipy.sparse as sp
 
 from facegear.contact.body import Piece
 from facegear.contact.elements import block_hexes
+from facegear.contact.layer import tied_system
+from facegear.contact.solver import solve
+from facegear.contact.substructure import condense
+from facegear.contact.surface import cell_areas, cell_points, hat_values, interpolation
 from facegear.geometry.design import Material
 
 STEEL = Material(206e9, 0.3)
@@ -52,3 +59,46 @@ def half_disc(radius, elements_x, elements_y):
 
     x = elements_x[elements_x > 0]
     return block(np.concatenate([-x[::-1], [0.0], x]), elements_y, [0.0, 1.0], mapping, held)
+
+
+def quarter_space(size, total, loaded, ratio=2.0):
+    """Quarter of a half space (x, z > 0 by symmetry), elements of `size` growing outwards to `total`.
+
+    The first `loaded` x `loaded` elements of the surface can touch; the far faces are clamped.
+    """
+    ends = np.concatenate([size * np.arange(loaded), size * loaded + graded(size, total - size * loaded, ratio)])
+    depth = -graded(size, total, ratio)[::-1]
+
+    def held(p):
+        far = (p[:, 1] < -total * 0.999999) | (p[:, 0] > total * 0.999999) | (p[:, 2] > total * 0.999999)
+        return np.stack([far | (p[:, 0] < 1e-15), far, far | (p[:, 2] < 1e-15)], axis=1)
+
+    piece = block(ends, depth, ends, held=held)
+    rows = slice(0, 2 * loaded + 1)
+    return replace(piece, flank=piece.flank[rows, rows], normals=piece.normals[rows, rows])
+
+
+def pressed(piece, refinement, gap_of, force, reach=None):
+    """Press a rigid surface, `gap_of` (n, 3) points, on a body; returns the contact, pressures and hat centres."""
+    system = tied_system(piece, refinement)
+    flank = condense(piece, system).flank
+    shape = system.surface.shape[:2]
+    compliance = system.spread @ flank @ system.spread.T
+    points, weight, area = hats_of(system.surface)
+    matrix = weight @ interpolation(points, shape)
+    surface = system.surface.reshape(-1, 3)
+    gap = matrix @ gap_of(surface)
+    near = np.flatnonzero(gap <= (np.inf if reach is None else reach))
+    loads = matrix[near]
+    influence = loads @ (loads @ compliance).T
+    contact = solve(influence, gap[near], np.ones(near.size), force)
+    return contact, contact.force / area[near], surface[near]
+
+
+def hats_of(surface):
+    """Integration points of a lattice (nu, nv, 3), unit hats at them (n, q), and the hats' areas."""
+    shape = surface.shape[:2]
+    points = cell_points(shape)
+    weight = hat_values(points, shape).multiply(cell_areas(surface)[:, None]).T.tocsr()
+    area = np.asarray(weight.sum(axis=1)).ravel()
+    return points, sp.diags_array(1 / area) @ weight, area

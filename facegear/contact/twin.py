@@ -1,0 +1,168 @@
+"""The plane-strain twin: two spur gears through the same bodies, influence matrix and contact solver.
+
+The pinion is as in `facegear.geometry.design`, its axis the y axis; the gear is a second pinion body turned
+by half a turn below it, so that both touch with their right sides. Involute flanks only, standard centre
+distance.
+"""
+
+from dataclasses import dataclass, replace
+from functools import partial
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.contact.candidates import Candidates, PinionSurface, hats_over
+from facegear.contact.compliance import FlankCompliance, flank_compliance
+from facegear.contact.influence import influence_matrix
+from facegear.contact.ltca import FIRST_GUESS, LoadedPosition, Place, solve_position
+from facegear.contact.options import Ends, Refinement
+from facegear.contact.teeth import ContactSide, piece_of
+from facegear.geometry import pinion
+from facegear.geometry.design import Material, PairDesign
+from facegear.geometry.unloaded import PAIRS
+from facegear.mesh.sizes import MeshSizes
+from facegear.mesh.tooth import ToothMesh, pinion_tooth
+
+
+@dataclass(frozen=True, eq=False)
+class TwinModel:
+    """Both gears (their own `pinion` counts), the pinion's surface and both compliances of one slab."""
+
+    pinion: PairDesign
+    gear: PairDesign
+    surface: PinionSurface
+    gear_side: ContactSide
+    pinion_compliance: FlankCompliance
+    gear_compliance: FlankCompliance
+
+
+def twin_model(
+    pinion_design: PairDesign,
+    gear_design: PairDesign,
+    sizes: tuple[MeshSizes, MeshSizes],
+    refinement: Refinement,
+    materials: tuple[Material, Material],
+    teeth: int | None = None,
+    ends: Ends = "ring",
+) -> TwinModel:
+    """Slabs of both gears in plane strain, their whole rings or a sector of `teeth`."""
+    sides, compliances = [], []
+    layer = replace(refinement, width=1)
+    for design, size, material in zip((pinion_design, gear_design), sizes, materials, strict=True):
+        tooth = slab_tooth(design, size)
+        piece, side = piece_of(design, tooth, material, "right")
+        held = piece.held.copy()
+        held[:, 1] = True
+        number = teeth or design.pinion.teeth
+        compliances.append(flank_compliance(replace(piece, held=held), layer, number, 2, ends))
+        sides.append(side)
+    surface = PinionSurface(pinion_design, sides[0], layer)
+    return TwinModel(pinion_design, gear_design, surface, sides[1], *compliances)
+
+
+def slab_tooth(design: PairDesign, sizes: MeshSizes) -> ToothMesh:
+    """First layer of elements of a spur tooth along its axis."""
+    tooth = pinion_tooth(design, sizes)
+    planes = tooth.surfaces["flank_right"].nodes.shape[1]
+    layers, count = (planes - 1) // 2, len(tooth.nodes) // planes
+    surfaces = {
+        name: replace(grid, nodes=grid.nodes[:, :3], u=grid.u[:, :3], v=grid.v[:, :3])
+        for name, grid in tooth.surfaces.items()
+    }
+    return replace(
+        tooth,
+        nodes=tooth.nodes[: 3 * count],
+        hexes=tooth.hexes[: len(tooth.hexes) // layers],
+        faces={name: face[(face < 3 * count).all(axis=1)] for name, face in tooth.faces.items()},
+        surfaces=surfaces,
+        cut_left=tooth.cut_left.reshape(-1, planes)[:, :3].ravel(),
+        cut_right=tooth.cut_right.reshape(-1, planes)[:, :3].ravel(),
+    )
+
+
+def analyse_twin(
+    model: TwinModel, positions: NDArray[np.float64], line_loads: list[float]
+) -> list[LoadedPosition]:
+    """Solve all positions (0..1 of a pitch) at all loads (N/m along the line of action).
+
+    The torques in the results are those of the slab. Raises NotConverged naming position and torque.
+    """
+    thickness = float(np.ptp(model.surface.side.v))
+    base = model.pinion.pinion_base_radius
+    torques = [load * thickness * base for load in line_loads]
+    gear = replace(model.gear_compliance, others=model.gear_compliance.others[::-1])
+    combine = partial(influence_matrix, pinion=model.pinion_compliance, gear=gear)
+    guess, results = FIRST_GUESS / base, []
+    for position in positions:
+        phi1 = (float(position) - 0.5) * 2 * pi / model.pinion.pinion.teeth
+        find = partial(_candidates, model, phi1)
+        solved, guess = solve_position(find, combine, Place(float(position), 0.0, base), torques, guess)
+        results += solved
+    return results
+
+
+def involute_separation(
+    model_pinion: PairDesign,
+    model_gear: PairDesign,
+    points: NDArray[np.float64],
+    normals: NDArray[np.float64],
+    phi1: float,
+    tooth: int,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Gap (n,) m along the normals of pinion points (n, 3), and the gear's roll angle there (nan: no flank).
+    """
+    teeth, other = model_pinion.pinion.teeth, model_gear.pinion.teeth
+    centre = model_pinion.pinion_pitch_radius + model_gear.pinion_pitch_radius
+    turn = phi1 + (tooth - 0.5) * 2 * pi / teeth
+    back = phi1 * teeth / other + tooth * 2 * pi / other
+    start, along = _turned(points[:, [0, 2]], turn), _turned(normals[:, [0, 2]], turn)
+    start, along = (_turned(-vector, back) for vector in (start + np.array([0.0, centre]), along))
+    low, high = pinion.junction_roll(model_gear), model_gear.pinion_tip_roll
+    roll, distance = np.full(len(points), 0.5 * (low + high)), np.zeros(len(points))
+    base = model_gear.pinion_base_radius
+    for _ in range(50):
+        radius, angle = pinion.involute_point(model_gear, roll)
+        surface = np.stack([radius * np.sin(angle), -radius * np.cos(angle)], axis=1)
+        nx, nz = pinion.involute_normal(model_gear, roll)
+        tangent = base * roll[:, None] * np.stack([nz, -nx], axis=1)
+        miss = start + distance[:, None] * along - surface
+        determinant = tangent[:, 0] * along[:, 1] - tangent[:, 1] * along[:, 0]
+        step = (miss[:, 0] * along[:, 1] - miss[:, 1] * along[:, 0]) / determinant
+        move = (miss[:, 0] * tangent[:, 1] - miss[:, 1] * tangent[:, 0]) / determinant
+        step = np.clip(step, -0.1, 0.1)
+        roll, distance = np.clip(roll + step, 0.02, high + 0.2), distance + move
+        if np.abs(step).max() < 1e-14:
+            break
+    facing = np.sum(along * np.stack([nx, nz], axis=1), axis=1) < -0.5
+    on = facing & (roll >= low) & (roll <= high) & (np.abs(step) < 1e-11) & (np.abs(distance) < 1e-3)
+    return np.where(on, distance, np.inf), np.where(on, roll, np.nan)
+
+
+def _turned(vectors: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
+    """x and z of vectors (n, 2) turned as the pinion turns."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.stack([c * vectors[:, 0] - s * vectors[:, 1], s * vectors[:, 0] + c * vectors[:, 1]], axis=1)
+
+
+def _candidates(model: TwinModel, phi1: float, limit: float) -> list[Candidates]:
+    surface, side = model.surface, model.gear_side
+    factors = np.array([surface.refinement.profile, 1])
+    on_flank = surface.lattice[:, 0] <= (surface.side.flank_rows - 1) * factors[0]
+    low, high = pinion.junction_roll(model.gear), model.gear.pinion_tip_roll
+    reach = 3 * limit * model.pinion.pinion_base_radius + 20e-6
+    found = []
+    for tooth in PAIRS:
+        gap, roll = involute_separation(
+            model.pinion, model.gear, surface.points.position, surface.points.normal, phi1, int(tooth)
+        )
+        points = np.flatnonzero(on_flank & np.isfinite(roll) & (gap < reach))
+        fraction = (high**2 - roll[points] ** 2) / (high**2 - low**2)
+        row = fraction * (side.flank_rows - 1) * factors[0]
+        coordinates = np.stack([row, surface.lattice[points, 1]], axis=1)
+        pair = hats_over(
+            surface, side.shape, surface.refinement, int(tooth), points, gap[points], coordinates, limit
+        )
+        if pair is not None:
+            found.append(pair)
+    return found
