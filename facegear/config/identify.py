@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Field, model_validator
 
 from facegear.config.base import Section, refuse
 from facegear.identify.budget import Budget
-from facegear.identify.inputs import Branch, Meaning, Space, Waveform
+from facegear.identify.inputs import Branch, Meaning, Space, StiffnessLoad, Waveform
 from facegear.identify.targets import BacklashTarget, Targets
 from facegear.transmission.phases import PhaseConvention
 
@@ -71,7 +71,10 @@ class SearchBudget(Section):
     population: int = Field(16, ge=5, le=1000, description="best points that are refined together")
     generations: int = Field(12, ge=0, le=10_000)
     starts: int = Field(8, ge=1, le=200, description="starts for the confidence of each optimum")
-    sets: int = Field(8, ge=1, le=50, description="separate optima that are kept")
+    sets: int = Field(6, ge=1, le=50, description="separate optima that are kept")
+    slack: float = Field(
+        1.5, ge=1, le=10, description="misfit of a kept optimum, at most this many times the best"
+    )
     seed: int = Field(1, ge=0, le=2**31)
 
 
@@ -86,15 +89,28 @@ class Identify(Section):
         ("geometric", "printed"), min_length=1
     )
     waveforms: tuple[Literal["sine", "triangle", "arcs"], ...] = Field(("sine",), min_length=1)
+    stiffness_loads: tuple[Literal["operating", "mean"], ...] = Field(
+        ("operating", "mean"), min_length=1, description="load at which k(t) has its shape"
+    )
     budget: SearchBudget = SearchBudget()
 
 
 def branches(section: Identify) -> tuple[Branch, ...]:
     """All combinations of the choices that are not numbers."""
     return tuple(
-        Branch(Meaning(meaning), phasing == "in_step", PhaseConvention(convention), Waveform(waveform))
-        for meaning, phasing, convention, waveform in itertools.product(
-            section.meanings, section.phasings, section.phase_conventions, section.waveforms
+        Branch(
+            Meaning(meaning),
+            phasing == "in_step",
+            PhaseConvention(convention),
+            Waveform(waveform),
+            StiffnessLoad(load),
+        )
+        for meaning, phasing, convention, waveform, load in itertools.product(
+            section.meanings,
+            section.phasings,
+            section.phase_conventions,
+            section.waveforms,
+            section.stiffness_loads,
         )
     )
 

@@ -30,6 +30,15 @@ class Waveform(StrEnum):
     ARCS = "arcs"
 
 
+class StiffnessLoad(StrEnum):
+    """Load on a mesh at which k(t) has its shape: the operating one (an equal share of an input pinion's
+    torque), or the one at which the mean is the paper's.
+    """
+
+    OPERATING = "operating"
+    MEAN = "mean"
+
+
 @dataclass(frozen=True)
 class Branch:
     """The choices that are not numbers."""
@@ -38,12 +47,13 @@ class Branch:
     in_step: bool
     convention: PhaseConvention
     waveform: Waveform
+    load: StiffnessLoad
 
     @property
     def name(self) -> str:
         """Readable and usable as a file name."""
         phasing = "in_step" if self.in_step else "mesh"
-        parts = (self.meaning, phasing, self.convention, self.waveform)
+        parts = (self.meaning, phasing, self.convention, self.waveform, self.load)
         return "-".join(str(part) for part in parts)
 
 
@@ -90,15 +100,23 @@ def error_series(size: float, branch: Branch, phase: float) -> Harmonics:
     return Harmonics(a, b).shifted(-phase)
 
 
-def machine_with(base: Machine, inputs: Inputs, error_size: float, stiffness: StiffnessAt) -> Machine:
+def stiffness_torque(base: Machine, inputs: Inputs, load_for_mean: float) -> float:
+    """Torque on the pinion of one mesh at which k(t) is taken, N m."""
+    if inputs.branch.load is StiffnessLoad.MEAN:
+        return load_for_mean
+    return inputs.torque / len(base.layout.gears)
+
+
+def machine_with(
+    base: Machine, inputs: Inputs, error_size: float, stiffness: StiffnessAt, load_for_mean: float
+) -> Machine:
     """The base machine with the undisclosed inputs put in."""
     layout = base.layout
     on_pinions = pinion_torques(layout, inputs.torque, inputs.tail_share)
-    meshes = len(layout.gears)
     return replace(
         base,
         torques=balanced_torques(layout, on_pinions),
-        stiffness=stiffness(inputs.torque / meshes),
+        stiffness=stiffness(stiffness_torque(base, inputs, load_for_mean)),
         error=error_series(error_size, inputs.branch, inputs.error_phase),
         phase_convention=inputs.branch.convention,
         error_in_step=inputs.branch.in_step,

@@ -1,5 +1,6 @@
 """How well an optimum is known: many starts at full accuracy, and sensitivity to each number."""
 
+import string
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,10 +9,11 @@ import scipy.stats
 
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.simulate import model, static_start
-from facegear.identify.inputs import Inputs, machine_with
+from facegear.identify.inputs import Inputs
 from facegear.identify.objective import coefficients
-from facegear.identify.search import Problem, misfit_of
+from facegear.identify.search import Problem, inputs_of, misfit_of
 from facegear.load_sharing.run import disturb
+from facegear.progress import Progress
 from facegear.transmission.machine import Machine
 
 SPREAD = 20e-6
@@ -21,17 +23,41 @@ STEPS = {"torque": 0.02, "tail_share": 0.01, "error_phase": 5.0 / 360.0}
 NAMES = ("inputs_mean", "idlers_mean", "idlers_minimum")
 
 
-@dataclass(frozen=True)
-class Judgement:
-    """Tables of one optimum: coefficients at each backlash, and change of the misfit with each number."""
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """Tables over all sets: the sets themselves, their coefficients at each backlash, their sensitivity."""
 
+    sets: pd.DataFrame
     coefficients: pd.DataFrame
     sensitivity: pd.DataFrame
 
 
-def judge(problem: Problem, inputs: Inputs, settings: Settings, starts: int, seed: int) -> Judgement:
-    """Judge one set of inputs; the first start is static equilibrium. Raises NotConverged."""
-    machine = machine_with(problem.base, inputs, problem.error_size, problem.stiffness)
+def judge_sets(problem: Problem, optima: pd.DataFrame, settings: Settings, starts: int, seed: int) -> Judged:
+    """Judge the rows of a search at full accuracy; sets are named a, b, c ... best first.
+
+    `judged_worst_mean` is the largest deviation of a mean from the paper's, started from static equilibrium.
+    Raises NotConverged.
+    """
+    sets, coefficients, sensitivity = [], [], []
+    progress = Progress("judging sets", len(optima))
+    for number, row in enumerate(optima.to_dict("records")):
+        name = string.ascii_lowercase[number % 26] + (str(number // 26) if number >= 26 else "")
+        inputs = inputs_of(row)
+        found = coefficients_table(problem, inputs, settings, starts, seed)
+        means = found[found["quantity"].isin(NAMES[:2])]
+        worst = float((means["from_equilibrium"] - means["paper"]).abs().max())
+        sets.append({"set": name, **row, "judged_worst_mean": worst})
+        coefficients.append(found.assign(set=name))
+        sensitivity.append(sensitivity_table(problem, inputs).assign(set=name))
+        progress.step()
+    return Judged(pd.DataFrame(sets), pd.concat(coefficients), pd.concat(sensitivity))
+
+
+def coefficients_table(
+    problem: Problem, inputs: Inputs, settings: Settings, starts: int, seed: int
+) -> pd.DataFrame:
+    """Fitted coefficients from static equilibrium and over disturbed starts, one row each."""
+    machine = problem.machine(inputs)
     rows = []
     for target in problem.targets.backlash:
         one = replace(machine, half_backlash=0.5 * target.backlash)
@@ -50,7 +76,7 @@ def judge(problem: Problem, inputs: Inputs, settings: Settings, starts: int, see
                     "starts_high": float(np.nanmax(values[:, column])),
                 }
             )
-    return Judgement(pd.DataFrame(rows), _sensitivity(problem, inputs))
+    return pd.DataFrame(rows)
 
 
 def _from_starts(machine: Machine, speed: float, settings: Settings, starts: int, seed: int) -> np.ndarray:
@@ -71,7 +97,7 @@ def _half_width(values: np.ndarray) -> float:
     return float(quantile * values.std(ddof=1) / np.sqrt(values.size))
 
 
-def _sensitivity(problem: Problem, inputs: Inputs) -> pd.DataFrame:
+def sensitivity_table(problem: Problem, inputs: Inputs) -> pd.DataFrame:
     """Misfit a step below and above each number."""
     rows = []
     middle = misfit_of(problem, inputs).total

@@ -1,6 +1,8 @@
 """Global search over the undisclosed inputs, one branch at a time."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -10,11 +12,22 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.motion import Settings
 from facegear.identify.budget import Budget
-from facegear.identify.inputs import Branch, Inputs, Space, StiffnessAt, machine_with
+from facegear.identify.inputs import (
+    Branch,
+    Inputs,
+    Meaning,
+    Space,
+    StiffnessAt,
+    StiffnessLoad,
+    Waveform,
+    machine_with,
+    stiffness_torque,
+)
 from facegear.identify.objective import Misfit, misfit
 from facegear.identify.targets import Targets
 from facegear.progress import Progress
 from facegear.transmission.machine import Machine
+from facegear.transmission.phases import PhaseConvention
 
 NUMBERS = 3
 QUICK = Settings(tolerance=1e-3, refine=False, settle=128, dwell=64, window=64, samples=64)
@@ -23,13 +36,21 @@ QUICK_SWEEP = Settings(tolerance=1e-3, refine=False, settle=64, dwell=48, window
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """All but the inputs: base machine, size of e(t) in m, stiffness by load, targets, ranges."""
+    """All but the inputs: base machine, size of e(t) in m, stiffness by load, targets, ranges.
+
+    `load_for_mean` is the torque on a mesh (N m) at which contact analysis gives the paper's mean stiffness.
+    """
 
     base: Machine
     error_size: float
     stiffness: StiffnessAt
+    load_for_mean: float
     targets: Targets
     space: Space
+
+    def machine(self, inputs: Inputs) -> Machine:
+        """The machine with a set of inputs."""
+        return machine_with(self.base, inputs, self.error_size, self.stiffness, self.load_for_mean)
 
 
 def search_branch(problem: Problem, branch: Branch, budget: Budget) -> pd.DataFrame:
@@ -43,7 +64,9 @@ def search_branch(problem: Problem, branch: Branch, budget: Budget) -> pd.DataFr
     def evaluate(unit: NDArray[np.float64]) -> float:
         inputs = problem.space.inputs(branch, unit)
         found = misfit_of(problem, inputs)
-        rows.append({**inputs_row(inputs), **misfit_row(found), "evaluation": len(rows)})
+        torque = stiffness_torque(problem.base, inputs, problem.load_for_mean)
+        row = {**inputs_row(inputs), "stiffness_torque_n_m": torque, **misfit_row(found)}
+        rows.append({**row, "evaluation": len(rows)})
         progress.step()
         return found.total
 
@@ -67,8 +90,21 @@ def search_branch(problem: Problem, branch: Branch, budget: Budget) -> pd.DataFr
 
 def misfit_of(problem: Problem, inputs: Inputs) -> Misfit:
     """Misfit of one set of inputs."""
-    machine = machine_with(problem.base, inputs, problem.error_size, problem.stiffness)
-    return misfit(machine, problem.targets, QUICK, QUICK_SWEEP)
+    return misfit(problem.machine(inputs), problem.targets, QUICK, QUICK_SWEEP)
+
+
+def inputs_of(row: Mapping[str, Any]) -> Inputs:
+    """The set of inputs that a row of a table holds."""
+    branch = Branch(
+        Meaning(row["meaning"]),
+        row["phasing"] == "in_step",
+        PhaseConvention(row["phase_convention"]),
+        Waveform(row["waveform"]),
+        StiffnessLoad(row["stiffness_load"]),
+    )
+    return Inputs(
+        branch, float(row["per_input_n_m"]), float(row["tail_share"]), float(row["error_phase_deg"]) / 360.0
+    )
 
 
 def inputs_row(inputs: Inputs) -> dict[str, object]:
@@ -80,6 +116,7 @@ def inputs_row(inputs: Inputs) -> dict[str, object]:
         "phasing": "in_step" if branch.in_step else "mesh",
         "phase_convention": branch.convention.value,
         "waveform": branch.waveform.value,
+        "stiffness_load": branch.load.value,
         "per_input_n_m": inputs.torque,
         "tail_share": inputs.tail_share,
         "error_phase_deg": 360.0 * inputs.error_phase,

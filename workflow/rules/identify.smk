@@ -1,0 +1,63 @@
+from facegear.config.identify import Identify, branches
+
+IDENTIFY = parse_section(Identify, CONFIG["identify"]) if CONFIG["identify"] else None
+BRANCHES = [branch.name for branch in branches(IDENTIFY)] if IDENTIFY else []
+
+
+rule identify_branch:
+    input:
+        ltca=upstream("contact", "contact/ltca.csv"),
+    output:
+        evaluations="results/{case}/identify/branches/{branch}.csv",
+        manifest="results/{case}/identify/branches/{branch}.provenance.json",
+    log:
+        "results/{case}/logs/identify_{branch}.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/identify_{branch}.tsv"
+    wildcard_constraints:
+        branch="[a-z_-]+",
+    threads: 1
+    resources:
+        mem_mb=700,
+        runtime=120,
+    params:
+        values=lambda wildcards: CASES[wildcards.case],
+        code=fingerprint("identify_branch.py"),
+    message:
+        "search of undisclosed inputs, branch {wildcards.branch}"
+    script:
+        "../scripts/identify_branch.py"
+
+
+rule identify_sets:
+    input:
+        ltca=upstream("contact", "contact/ltca.csv"),
+        branches=[f"results/{{case}}/identify/branches/{name}.csv" for name in BRANCHES],
+    output:
+        sets="results/{case}/identify/sets.csv",
+        coefficients="results/{case}/identify/coefficients.csv",
+        sensitivity="results/{case}/identify/sensitivity.csv",
+        roads="results/{case}/identify/roads.csv",
+        svg="results/{case}/figures/identify_landscape.svg",
+        png="results/{case}/figures/identify_landscape.png",
+        manifest="results/{case}/identify/identify.provenance.json",
+    log:
+        "results/{case}/logs/identify_sets.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/identify_sets.tsv"
+    threads: 1
+    resources:
+        mem_mb=700,
+        runtime=30,
+    params:
+        values=lambda wildcards: CASES[wildcards.case],
+        code=fingerprint("identify_sets.py"),
+    message:
+        "separate optima of the search for undisclosed inputs"
+    script:
+        "../scripts/identify_sets.py"
+
+
+rule identify:
+    input:
+        [f"results/{CASE}/identify/sets.csv"] if IDENTIFY else [],

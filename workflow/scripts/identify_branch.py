@@ -1,0 +1,22 @@
+"""Search one branch of the undisclosed inputs."""
+
+from facegear.config.base import parse
+from facegear.config.identify import Identify, branches, search_budget
+from facegear.config.search import search_problem
+from facegear.contact.columns import LTCA_COLUMNS
+from facegear.identify.search import search_branch
+from facegear.io import tables
+from facegear.provenance.stage import stage
+
+with stage(snakemake) as run:
+    values = snakemake.params.values
+    section = parse(Identify, values["identify"])
+    branch = next(one for one in branches(section) if one.name == snakemake.wildcards.branch)
+    problem = search_problem(values, tables.read(snakemake.input.ltca, LTCA_COLUMNS))
+    found = search_branch(problem, branch, search_budget(section.budget))
+    tables.write(snakemake.output.evaluations, found)
+    best = found.loc[found["misfit"].idxmin()]
+    run.summary(
+        f"{len(found)} evaluations, misfit {best['misfit']:.2f}, largest deviation of a mean "
+        f"{best['worst_mean']:.2f} at {best['per_input_n_m']:.0f} N m, tail {best['tail_share']:.2f}"
+    )

@@ -1,0 +1,36 @@
+"""Separate optima of the search, how well they are known, and whether the two roads agree."""
+
+import pandas as pd
+
+from facegear.config.base import parse
+from facegear.config.dynamics import Accuracy, settings
+from facegear.config.identify import Identify, search_space
+from facegear.config.search import search_problem
+from facegear.contact.columns import LTCA_COLUMNS
+from facegear.identify.judge import judge_sets
+from facegear.identify.optima import separate_optima
+from facegear.identify.roads import roads_table
+from facegear.io import tables
+from facegear.plots.identify import landscape
+from facegear.plots.style import save
+from facegear.provenance.stage import stage
+
+with stage(snakemake) as run:
+    values, output = snakemake.params.values, snakemake.output
+    section = parse(Identify, values["identify"])
+    problem = search_problem(values, tables.read(snakemake.input.ltca, LTCA_COLUMNS))
+    found = pd.concat([tables.read(path) for path in snakemake.input.branches], ignore_index=True)
+    budget = section.budget
+    optima = separate_optima(found, search_space(section.ranges), budget.sets, budget.slack)
+    accuracy = settings(parse(Accuracy, values["dynamics"]["accuracy"]))
+    judged = judge_sets(problem, optima, accuracy, budget.starts, budget.seed)
+    tables.write(output.sets, judged.sets)
+    tables.write(output.coefficients, judged.coefficients)
+    tables.write(output.sensitivity, judged.sensitivity)
+    tables.write(output.roads, roads_table(judged.sets, problem.load_for_mean))
+    save(landscape(found, judged.sets), output.svg, output.png)
+    best = judged.sets.iloc[0]
+    run.summary(
+        f"{len(judged.sets)} sets; best misfit {best['misfit']:.2f}, largest deviation of a mean "
+        f"{best['judged_worst_mean']:.2f}"
+    )
