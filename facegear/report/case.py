@@ -52,8 +52,9 @@ def _machine_text(values: Mapping[str, Any]) -> str:
     pair, transmission = values["tooth_pair"], values["transmission"]
     return (
         f"{len(transmission['pinions'])} pinions of {pair['pinion_teeth']} teeth and "
-        f"{len(transmission['face_gears'])} face gear(s) of {pair['face_gear_teeth']} teeth, module {pair['module_mm']:g} mm, pressure angle "
-        f"{pair['pressure_angle_deg']:g} deg. Mesh stiffness: {values['mesh_stiffness']['source']}."
+        f"{len(transmission['face_gears'])} face gear(s) of {pair['face_gear_teeth']} teeth, "
+        f"module {pair['module_mm']:g} mm, pressure angle {pair['pressure_angle_deg']:g} deg. "
+        f"Mesh stiffness: {values['mesh_stiffness']['source']}."
     )
 
 
