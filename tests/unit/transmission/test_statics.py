@@ -18,7 +18,7 @@ from facegear.transmission.statics import static_equilibrium
     cycles=st.one_of(st.none(), st.floats(0, 1)),
 )
 def test_static_mesh_forces_balance_the_torques_on_every_pinion(torque, share, backlash, cycles):
-    from conftest import make_machine
+    from lumped_machines import make_machine
 
     machine = make_machine(torque=torque, tail_share=share, backlash=backlash)
     state = static_equilibrium(machine, cycles)

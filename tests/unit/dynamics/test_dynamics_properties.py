@@ -1,0 +1,244 @@
+"""Exact properties of the lumped model over random machines."""
+
+from dataclasses import replace
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from lumped_machines import make_layout, make_machine
+
+from facegear.dynamics.compiled import TAU, pack
+from facegear.dynamics.motion import Settings, State
+from facegear.dynamics.orbits import monodromy
+from facegear.dynamics.simulate import Model, model, simulate, static_start
+from facegear.dynamics.system import System
+from facegear.dynamics.taylor import make_work
+from facegear.dynamics.trajectory import record
+from facegear.harmonics.series import Harmonics
+from facegear.transmission.layout import Role, Side
+from facegear.transmission.machine import OpenFlanks, mesh_frequency
+
+FINE = Settings(tolerance=1e-14)
+
+
+@st.composite
+def machines(draw, **fixed):
+    """One to six pinions at half-pitch places between one or two face gears."""
+    count = draw(st.integers(1, 6))
+    places = []
+    for i in range(count):
+        role = Role.INPUT if i == 0 else draw(st.sampled_from(list(Role)))
+        places.append((f"p{i}", role, draw(st.integers(0, 285)) / 2.0))
+    sides = draw(st.sampled_from([(Side.LOWER, Side.UPPER), (Side.UPPER,)]))
+    layout = make_layout(tuple(places), sides, draw(st.floats(1e7, 1e9)), draw(st.floats(1e8, 1e10)))
+    swing = draw(st.floats(0.0, 0.25))
+    options = {
+        "torque": draw(st.floats(50, 2000)),
+        "tail_share": draw(st.floats(0, 0.3)),
+        "backlash": draw(st.floats(2e-5, 2e-4)),
+        "error": draw(st.floats(0, 8e-5)),
+        "stiffness": Harmonics(4.1e8 * np.array([0, swing, 0.02]), 4.1e8 * np.array([1.0, 0.5 * swing, 0.0])),
+        "mesh_damping": draw(st.floats(0, 5000)),
+        "mass_damping": draw(st.floats(0, 2000)),
+        "open_flanks": draw(st.sampled_from(list(OpenFlanks))),
+    }
+    return make_machine(layout, **(options | fixed))
+
+
+speeds = st.floats(3000, 20_000)
+
+
+def frequency(ready: Model, speed: float) -> float:
+    return TAU * mesh_frequency(ready.machine.layout, speed)
+
+
+def kicked(ready: Model, seed: int = 0) -> State:
+    """Static equilibrium with a random velocity that opens contacts within a period."""
+    start = static_start(ready)
+    kick = np.random.default_rng(seed).normal(size=start.velocity.size)
+    reach = np.abs(ready.reduced.directions).max()
+    return replace(start, velocity=0.5 * ready.system.scale / reach * kick * 2e3)
+
+
+@settings(max_examples=12, deadline=None)
+@given(machine=machines(), speed=speeds, factor=st.floats(0.01, 100))
+def test_scaling_torques_backlash_and_error_scales_the_motion(machine, speed, factor):
+    ready = model(machine)
+    start = kicked(ready)
+    scaled = replace(
+        machine,
+        torques=factor * machine.torques,
+        half_backlash=factor * machine.half_backlash,
+        error=machine.error.scaled(factor),
+    )
+    bigger = replace(model(scaled).system, scale=factor * ready.system.scale)
+    first = record(ready.system, frequency(ready, speed), start, 2, FINE)
+    second = record(
+        bigger, frequency(ready, speed), State(factor * start.place, factor * start.velocity), 2, FINE
+    )
+    phases = np.linspace(0.0, 2 * TAU, 50)
+    one, two = first.at(phases)[1], second.at(phases)[1]
+    np.testing.assert_allclose(two / factor, one, atol=1e-9 * ready.system.scale)
+
+
+@settings(max_examples=12, deadline=None)
+@given(machine=machines(), speed=speeds)
+def test_negated_torques_and_error_negate_the_motion(machine, speed):
+    ready = model(machine)
+    start = kicked(ready)
+    mirrored = model(replace(machine, torques=-machine.torques, error=machine.error.scaled(-1.0)))
+    first = record(ready.system, frequency(ready, speed), start, 2, FINE)
+    second = record(mirrored.system, frequency(ready, speed), State(-start.place, -start.velocity), 2, FINE)
+    phases = np.linspace(0.0, 2 * TAU, 50)
+    np.testing.assert_allclose(second.at(phases)[1], -first.at(phases)[1], atol=1e-9 * ready.system.scale)
+
+
+@settings(max_examples=12, deadline=None)
+@given(machine=machines(), speed=st.floats(8000, 20_000))
+def test_liouville_across_contact_switches(machine, speed):
+    ready = model(machine)
+    packed = pack(ready.system, frequency(ready, speed))
+    start = kicked(ready)
+    place, velocity = np.zeros(packed.squares.size), np.zeros(packed.squares.size)
+    place[: packed.n] = start.place
+    velocity[: packed.n] = start.velocity / frequency(ready, speed)
+    *_, matrix, log = monodromy(packed, make_work(packed, 20), place, velocity, 1, 1e-14)
+    sign, volume = np.linalg.slogdet(matrix)
+    assert sign > 0
+    # The determinant is known to the rounding of its smallest factor.
+    accuracy = 1e-13 * np.linalg.cond(matrix)
+    assert abs(volume - log.divergence[0]) < 1e-9 + accuracy
+
+
+@settings(max_examples=12, deadline=None)
+@given(machine=machines(), speed=speeds)
+def test_energy_audit_over_a_period(machine, speed):
+    ready = model(machine)
+    system: System = ready.system
+    omega = frequency(ready, speed)
+    run = record(system, omega, kicked(ready), 2, FINE)
+    phases, weights = run.quadrature(16)
+    times = weights / omega
+    step = np.searchsorted(run.starts, phases, side="right") - 1
+    ahead = (phases - run.starts[step])[:, None]
+    powers = ahead ** np.arange(run.coordinates.shape[1])
+    rates = np.arange(1, run.coordinates.shape[1]) * ahead ** np.arange(run.coordinates.shape[1] - 1)
+    velocity = omega * np.einsum("kp,kpn->kn", rates, run.coordinates[step][:, 1:])
+    deflection = np.einsum("kp,kpm->km", powers, run.deflections[step])
+    rate = omega * np.einsum("kp,kpm->km", rates, run.deflections[step][:, 1:])
+    cycles = phases / TAU
+    stiffness = np.stack([machine.stiffness(cycles - phase) for phase in machine.phases], axis=1)
+    slope = np.stack([derivative(machine.stiffness, cycles - p, omega) for p in machine.phases], axis=1)
+    error_rate = np.stack(
+        [derivative(machine.error, cycles - p, omega) for p in machine.error_phases], axis=1
+    )
+    state = run.states[step]
+    beyond = np.where(state == 0, 0.0, deflection - state * machine.half_backlash)
+    acting = machine.damping.mesh * (1.0 if system.damping_when_open else np.abs(state))
+    force = stiffness * beyond + acting * rate
+    # d/dt of kinetic + bearing + mesh energy: torques in, damping out, k'(t) stores, e'(t) pushes.
+    power = velocity @ ready.reduced.load - velocity**2 @ system.damping - (acting * rate**2).sum(axis=1)
+    power += (0.5 * slope * beyond**2).sum(axis=1) - (force * error_rate).sum(axis=1)
+
+    def energy(at):
+        y = np.stack([run.at(np.array([at + shift]))[0][0] for shift in (0.0,)])[0]
+        k = np.clip(np.searchsorted(run.starts, at, side="right") - 1, 0, run.starts.size - 1)
+        ahead_at = at - run.starts[k]
+        order = np.arange(1, run.coordinates.shape[1])
+        v = omega * (order * ahead_at ** (order - 1)) @ run.coordinates[k][1:]
+        d = run.at(np.array([at]))[1][0]
+        gap = np.sign(d) * np.maximum(np.abs(d) - machine.half_backlash, 0.0)
+        now = np.array([machine.stiffness(at / TAU - phase) for phase in machine.phases])
+        return 0.5 * v @ v + 0.5 * system.squares @ y**2 + 0.5 * now @ gap**2
+
+    ends = run.starts[-1] + run.lengths[-1]
+    change = energy(ends) - energy(0.0)
+    exchanged = np.abs(power) @ times + abs(energy(0.0))
+    assert abs(times @ power - change) < 1e-8 * exchanged
+
+
+def derivative(series: Harmonics, cycles: np.ndarray, omega: float) -> np.ndarray:
+    order = np.arange(series.order + 1)
+    return omega * Harmonics(np.r_[0.0, (-order * series.b)[1:]], order * series.a)(cycles)
+
+
+def test_mean_mesh_forces_balance_the_torques_of_a_periodic_motion():
+    for torque, speed in ((800.0, 4500.0), (1500.0, 9000.0), (1500.0, 12_000.0)):
+        machine = make_machine(torque=torque)
+        settings_ = Settings(tolerance=1e-12, periodic_residual=1e-9)
+        ready = model(machine)
+        response = simulate(ready, speed, settings_)
+        assert response.period > 0
+        run = record(ready.system, response.frequency, response.state, response.period, settings_)
+        phases, weights = run.quadrature()
+        deflections = run.at(phases)[1]
+        gap = np.sign(deflections) * np.maximum(np.abs(deflections) - machine.half_backlash, 0.0)
+        stiffness = np.stack([machine.stiffness(phases / TAU - p) for p in machine.phases], axis=1)
+        mean = weights @ (stiffness * gap) / weights.sum()
+        layout = machine.layout
+        lever = layout.pinion_radius * np.cos(layout.pressure_angle)
+        carried = mean.reshape(2, 5).sum(axis=0) * lever
+        np.testing.assert_allclose(carried, machine.torques[:5], atol=1e-7 * torque)
+
+
+@settings(max_examples=8, deadline=None)
+@given(torque=st.floats(100, 2000), speed=speeds, backlash=st.floats(0, 2e-4))
+def test_left_and_right_move_alike_where_the_machine_is_symmetric(torque, speed, backlash):
+    ready = model(make_machine(torque=torque, backlash=backlash))
+    run = record(ready.system, frequency(ready, speed), static_start(ready), 3, FINE)
+    deflections = run.at(np.linspace(0.0, 3 * TAU, 200))[1]
+    for right, left in ((1, 4), (2, 3), (6, 9), (7, 8)):
+        np.testing.assert_allclose(
+            deflections[:, right], deflections[:, left], atol=1e-9 * ready.system.scale
+        )
+
+
+@settings(max_examples=12, deadline=None)
+@given(machine=machines(backlash=0.0, mass_damping=800.0), speed=speeds)
+def test_without_backlash_the_response_is_hills(machine, speed):
+    """Harmonic balance of the linear system with periodic k, solved to rounding in the frequency domain."""
+    ready = model(machine)
+    system = ready.system
+    omega = frequency(ready, speed)
+    settings_ = Settings(tolerance=1e-14, periodic_residual=1e-10)
+    response = simulate(ready, speed, settings_)
+    if response.period != 1:  # parametrically unstable, or too slow to settle: Hill's orbit is not reached
+        assert response.period == 0
+        return
+    harmonics = 30
+    size, orders = system.size, np.arange(-harmonics, harmonics + 1)
+    matrix = np.zeros((orders.size * size, orders.size * size), dtype=complex)
+    right = np.zeros(orders.size * size, dtype=complex)
+    right[harmonics * size : (harmonics + 1) * size] = ready.reduced.load
+    directions = system.directions
+    k = np.stack([fourier(machine.stiffness, p, harmonics) for p in machine.phases], axis=1)
+    e = np.stack([fourier(machine.error, p, harmonics) for p in machine.error_phases], axis=1)
+    for i, n in enumerate(orders):
+        rows = slice(i * size, (i + 1) * size)
+        s = 1j * n * omega
+        matrix[rows, rows] += np.diag(s**2 + s * system.damping + system.squares)
+        matrix[rows, rows] += s * machine.damping.mesh * directions.T @ directions
+        right[rows] += s * machine.damping.mesh * directions.T @ e[i]
+        for j, other in enumerate(orders):
+            if abs(n - other) <= harmonics:
+                coupling = k[n - other + harmonics]
+                matrix[rows, j * size : (j + 1) * size] += (directions.T * coupling) @ directions
+                right[rows] += directions.T @ (coupling * e[j])
+    solution = np.linalg.solve(matrix, right).reshape(orders.size, size)
+    cycles = np.arange(settings_.samples) / settings_.samples
+    exact = (np.exp(2j * np.pi * np.outer(cycles, orders)) @ solution).real
+    reach = np.abs(directions).max()
+    assert np.abs(response.coordinates - exact).max() * reach < 1e-9 * max(
+        system.scale, np.abs(exact).max() * reach
+    )
+
+
+def fourier(series: Harmonics, phase: float, harmonics: int) -> np.ndarray:
+    """Complex coefficients of orders -harmonics .. harmonics of a shifted series."""
+    shifted = series.shifted(phase)
+    result = np.zeros(2 * harmonics + 1, dtype=complex)
+    for j in range(shifted.order + 1):
+        value = 0.5 * (shifted.b[j] - 1j * shifted.a[j])
+        result[harmonics + j] += value
+        result[harmonics - j] += value.conjugate()
+    return result

@@ -1,0 +1,56 @@
+"""The paper's lumped model for unit tests, with stated placeholders for what the paper leaves out."""
+
+import numpy as np
+
+from facegear.harmonics.series import Harmonics
+from facegear.transmission.layout import Body, FaceGear, Layout, Pinion, Role, Side
+from facegear.transmission.machine import Damping, Machine, OpenFlanks, balanced_torques, pinion_torques
+
+PLACES = (
+    ("tail idler", Role.TAIL, 0.0),
+    ("right idler", Role.IDLER, 22.5),
+    ("right input", Role.INPUT, 45.5),
+    ("left input", Role.INPUT, 97.5),
+    ("left idler", Role.IDLER, 120.5),
+)
+
+
+def make_layout(
+    places=PLACES, sides=(Side.LOWER, Side.UPPER), pinion_bearing=6.5e7, gear_bearing=8.7e9
+) -> Layout:
+    pinion = Body(1.199, 0.002, (pinion_bearing, pinion_bearing, 0.0))
+    gear = Body(7.795, 0.54, (gear_bearing,) * 3)
+    angle = np.radians(25.0)
+    return Layout(
+        pinions=tuple(Pinion(name, role, pitches, pinion) for name, role, pitches in places),
+        gears=tuple(FaceGear(side, gear) for side in sides),
+        pinion_teeth=23,
+        gear_teeth=143,
+        pressure_angle=angle,
+        pinion_radius=3.75e-3 * 23 / 2 * np.cos(angle),
+        gear_radius=0.2625,
+    )
+
+
+def make_machine(
+    layout=None,
+    torque=800.0,
+    tail_share=0.1,
+    backlash=100e-6,
+    error=50e-6,
+    stiffness=None,
+    mesh_damping=1200.0,
+    mass_damping=800.0,
+    bearing_damping=2e-6,
+    open_flanks=OpenFlanks.ALWAYS,
+) -> Machine:
+    layout = layout or make_layout()
+    stiffness = stiffness or Harmonics(np.array([0.0, 2e7, 6e6]), np.array([4.1e8, 3e7, -8e6]))
+    return Machine(
+        layout=layout,
+        torques=balanced_torques(layout, pinion_torques(layout, torque, tail_share)),
+        stiffness=stiffness,
+        error=Harmonics(np.zeros(2), np.array([0.0, error])),
+        half_backlash=backlash / 2,
+        damping=Damping(mesh_damping, mass_damping, bearing_damping, open_flanks),
+    )
