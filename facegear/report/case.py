@@ -65,7 +65,7 @@ def _machine_tables(values: Mapping[str, Any]) -> list[Table]:
     ]
     pinions = pd.DataFrame(values["transmission"]["pinions"]).dropna(axis=1, how="all")
     keys = pd.DataFrame([row for row in rows if ".pinions" not in row[0]], columns=["key", "value"])
-    return [Table("Pinions", pinions), Table("Config, defaults included", keys)]
+    return [Table("Pinions", pinions), Table("Config, defaults included", keys, folded=True)]
 
 
 def _flat(key: str, value: Any) -> list[tuple[str, Any]]:

@@ -9,6 +9,8 @@ import jinja2
 import pandas as pd
 
 TEMPLATE = "page.html.j2"
+UNITS = {"n_per_m": "N/m", "n_m": "N m", "rpm": "rpm", "mpa": "MPa", "hz": "Hz", "um": "um", "mm": "mm"}
+"""Units that end a column's name, as they are written."""
 
 
 @dataclass(frozen=True)
@@ -26,15 +28,24 @@ class Picture:
 
 @dataclass(frozen=True)
 class Table:
-    """Rows under a caption; numbers are shown with `digits` significant digits."""
+    """Rows under a caption; numbers with `digits` significant digits. `folded`: opened by a click."""
 
     caption: str
     frame: pd.DataFrame
     digits: int = 5
+    folded: bool = False
 
     def header(self) -> list[str]:
-        """Column names as words."""
-        return [str(name).replace("_", " ") for name in self.frame.columns]
+        """Column names as words, with their units as they are written."""
+        return [self._words(str(name)) for name in self.frame.columns]
+
+    @staticmethod
+    def _words(name: str) -> str:
+        for ending, unit in UNITS.items():
+            if f"_{ending} " in f"{name} ":
+                name = f"{name} ".replace(f"_{ending} ", f" ({unit}) ").strip()
+                break
+        return name.replace("_", " ")
 
     def rows(self) -> list[list[str]]:
         """Cells as text."""

@@ -27,3 +27,13 @@ def test_text_is_escaped_and_missing_numbers_are_blank(tmp_path):
     assert "<td>756.71</td>" in text
     assert "nan" not in text
     assert text.count("<p>") == 3
+
+
+def test_units_in_column_names_are_written_out():
+    frame = pd.DataFrame(columns=["torque_n_m", "k_average_n_per_m mean", "speed_before_rpm", "motion"])
+    assert Table("T", frame).header() == [
+        "torque (N m)",
+        "k average (N/m) mean",
+        "speed before (rpm)",
+        "motion",
+    ]
