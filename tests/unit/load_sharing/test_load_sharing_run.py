@@ -1,0 +1,79 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from facegear.dynamics.motion import Settings
+from facegear.harmonics.series import Harmonics
+from facegear.load_sharing.coefficients import sharing_coefficient
+from facegear.load_sharing.options import SharingOptions, SpeedRange
+from facegear.load_sharing.reference import reference_table, slow_forces, speed_range_table
+from facegear.load_sharing.run import load_sharing
+from facegear.load_sharing.statics import static_forces
+from facegear.load_sharing.tables import CURVE_COLUMNS, SUMMARY_COLUMNS, curve_table, summary_table
+
+OPTIONS = SharingOptions(64, 24, 2, 2e-5, 0.95, 60.0, SpeedRange(2000.0, 9000.0, 3))
+SETTINGS = Settings(tolerance=1e-4, settle=128)
+SILENT = Harmonics(np.zeros(1), np.zeros(1))
+
+
+@pytest.fixture(scope="module")
+def tight(paper_machine):
+    """Without backlash and transmission error: linear with periodic stiffness."""
+    return replace(paper_machine, half_backlash=0.0, error=SILENT)
+
+
+def test_quasi_static_coefficient_tends_to_the_static_one_as_speed_falls(tight):
+    static = sharing_coefficient(static_forces(tight, 64)[..., [2, 7]])
+    off = [
+        np.abs(sharing_coefficient(slow_forces(tight, SETTINGS, rpm)[..., [2, 7]]) - static).max()
+        for rpm in (400.0, 200.0, 100.0)
+    ]
+    assert off[1] < 0.7 * off[0]
+    assert off[2] < 0.7 * off[1]
+    assert off[2] < 0.01
+
+
+def test_left_and_right_inputs_share_alike_where_the_machine_is_symmetric(tight):
+    sharing = load_sharing(tight, 3000.0, SETTINGS, OPTIONS)
+    right, left = (group.average.mean for group in sharing.groups[:2])
+    assert sharing.response.label == "period-1"
+    assert right == pytest.approx(left, rel=1e-9)
+
+
+def test_static_start_and_disturbed_starts_meet_where_only_one_motion_exists(tight):
+    sharing = load_sharing(tight, 3000.0, SETTINGS, OPTIONS)
+    for group in sharing.groups:
+        assert group.starts_high - group.starts_low < 1e-4
+
+
+def test_lost_contact_shows_where_a_coefficient_reaches_its_bound(paper_machine):
+    sharing = load_sharing(paper_machine, 7500.0, SETTINGS, OPTIONS)
+    inputs = sharing.groups[0]
+    at_bound = inputs.coefficients == 2.0
+    np.testing.assert_array_equal(at_bound, inputs.lost & ~np.isnan(inputs.coefficients))
+
+
+def test_tables_hold_one_cycle_of_each_group_inside_its_envelope(paper_machine):
+    sharing = load_sharing(paper_machine, 7500.0, SETTINGS, OPTIONS)
+    curve, summary = curve_table(sharing), summary_table(sharing)
+    assert tuple(curve.columns) == CURVE_COLUMNS
+    assert tuple(summary.columns) == SUMMARY_COLUMNS
+    assert curve.groupby("group").size().tolist() == [64, 64, 64]
+    defined = curve.dropna()
+    assert (defined["envelope_low"] <= defined["coefficient"]).all()
+    assert (defined["coefficient"] <= defined["envelope_high"]).all()
+    assert curve["time_s"].max() * 64 / 63 == pytest.approx(3.4783e-4, abs=5e-9)
+
+
+def test_without_backlash_and_error_dynamics_vanish_at_low_speed_in_every_group(tight):
+    table = reference_table(tight, SETTINGS, OPTIONS).set_index(["quantity", "group"])["mean"]
+    for group in ("right input", "left input", "idlers"):
+        assert table["quasi_static", group] == pytest.approx(table["static", group], abs=1e-4)
+        assert table["no_error_no_backlash", group] == pytest.approx(table["static", group], rel=1e-9)
+
+
+def test_speed_range_holds_every_speed_and_group(tight):
+    table = speed_range_table(tight, SETTINGS, OPTIONS)
+    assert sorted(set(table["speed_rpm"])) == [2000.0, 5500.0, 9000.0]
+    assert (table["mean"] <= table["maximum"]).all()
