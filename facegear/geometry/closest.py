@@ -17,7 +17,7 @@ PAIRS = np.arange(-2, 3)
 """Tooth numbers looked at: at phi1 within half a pitch of zero no other pair can touch."""
 
 _GRID = np.array([(a, b) for a in np.linspace(-1, 1, 5) for b in np.linspace(-1, 1, 5)])
-_SHRINK, _LEVELS, _MOST = 0.55, 16, 60
+_SHRINK, _MOST = 0.55, 60
 
 
 @dataclass(frozen=True)
@@ -39,14 +39,14 @@ def closest(
 
     Pairs whose `near` gap exceeds the smallest by more than `margin` (m) keep their `near` values.
     """
-    size = np.array([1e-3, 1e-4])
+    size, levels = np.array([1e-3, 1e-4]), 16
     if near is None:
-        near, size = _coarse(design, phi1, phi2)
+        (near, size), levels = _coarse(design, phi1, phi2), 10
     chosen = (near.gap <= near.gap.min(axis=1, keepdims=True) + margin).ravel()
     turns = np.repeat(phi1, len(PAIRS))[chosen], np.repeat(phi2, len(PAIRS))[chosen]
     rows = _Rows(*turns, np.tile(PAIRS, len(phi1))[chosen].astype(float))
     parts = [part.ravel().copy() for part in (near.gap, near.roll, near.y)]
-    found = _search(design, rows, parts[1][chosen], parts[2][chosen], size)
+    found = _search(design, rows, parts[1][chosen], parts[2][chosen], size, levels)
     for part, values in zip(parts, found, strict=True):
         part[chosen] = values
     return Closest(*(part.reshape(near.roll.shape) for part in parts))
@@ -82,7 +82,7 @@ def _coarse(design: PairDesign, phi1: Array, phi2: Array) -> tuple[Closest, Arra
 
 
 def _search(
-    design: PairDesign, rows: _Rows, roll: Array, y: Array, size: Array
+    design: PairDesign, rows: _Rows, roll: Array, y: Array, size: Array, levels: int
 ) -> tuple[Array, Array, Array]:
     """Walk 5 x 5 grids to the lowest point, shrinking them when their middle part holds it.
 
@@ -107,10 +107,34 @@ def _search(
         gap[active] = lowest
         roll[active], y[active] = rolls[at, best], ys[at, best]
         width[active] *= np.where(border, 1.5, _SHRINK)
-        active = active[np.any(width[active] > size * _SHRINK**_LEVELS, axis=1)]
+        active = active[np.any(width[active] > size * _SHRINK**levels, axis=1)]
         if len(active) == 0:
             break
-    return gap, roll, y
+    return _polish(design, rows, gap, roll, y)
+
+
+def _polish(design: PairDesign, rows: _Rows, gap: Array, roll: Array, y: Array) -> tuple[Array, Array, Array]:
+    """One Newton step from a 3 x 3 stencil where the lowest point lies inside the flank."""
+    step = np.array([2e-4, 1e-4])
+    a, b = (part.ravel() for part in np.meshgrid([-1, 0, 1], [-1, 0, 1], indexing="ij"))
+    turns = rows.phi1, rows.phi2, rows.tooth
+    rolls, ys = roll[:, None] + a * step[0], y[:, None] + b * step[1]
+    g = separation(design, flank_points(design, rolls, ys), *turns).gap.reshape(-1, 3, 3)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        slope = (g[:, 2, 1] - g[:, 0, 1]) / 2, (g[:, 1, 2] - g[:, 1, 0]) / 2
+        bend = g[:, 2, 1] - 2 * g[:, 1, 1] + g[:, 0, 1], g[:, 1, 2] - 2 * g[:, 1, 1] + g[:, 1, 0]
+        twist = (g[:, 2, 2] - g[:, 2, 0] - g[:, 0, 2] + g[:, 0, 0]) / 4
+        det = bend[0] * bend[1] - twist**2
+        across = (twist * slope[1] - bend[1] * slope[0]) / det
+        along = (twist * slope[0] - bend[0] * slope[1]) / det
+    low, high = bounds(design)
+    new_roll, new_y = roll + across * step[0], y + along * step[1]
+    good = (det > 0) & (np.hypot(across, along) < 20) & (new_roll > low[0]) & (new_roll < high[0])
+    good &= (new_y > low[1]) & (new_y < high[1])
+    new_roll, new_y = np.where(good, new_roll, roll), np.where(good, new_y, y)
+    new = separation(design, flank_points(design, new_roll[:, None], new_y[:, None]), *turns).gap[:, 0]
+    better = good & (new < gap)
+    return np.where(better, new, gap), np.where(better, new_roll, roll), np.where(better, new_y, y)
 
 
 def _contact_line(design: PairDesign, roll: Array, y: Array) -> Array:

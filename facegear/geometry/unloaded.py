@@ -1,6 +1,6 @@
 """Unloaded contact of the pair: where the flanks touch, the transmission error, the other pairs' gaps."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,7 +12,7 @@ from facegear.geometry.placement import conjugate_angle
 
 Array = NDArray[np.float64]
 
-TOLERANCE = 1e-13
+TOLERANCE = 1e-11
 """Largest gap (m) left where the flanks touch."""
 
 
@@ -49,17 +49,19 @@ def unloaded_contact(design: PairDesign, phi1: ArrayLike) -> UnloadedContact:
     """
     phi1 = np.atleast_1d(np.asarray(phi1, float))
     conjugate = conjugate_angle(design, phi1)
-    phi2 = conjugate - design.pinion.thinning / 2 / design.gear_base_radius
+    errors, angle = design.assembly, design.pressure_angle
+    moved = errors.offset * np.cos(angle) - errors.axial_shift * np.sin(angle) - design.pinion.thinning / 2
+    phi2 = conjugate + moved / design.gear_base_radius
     found = closest(design, phi1, phi2)
-    whole = True
+    unseen = np.zeros(len(phi1))
     for _ in range(12):
         smallest = found.gap.min(axis=1)
         if not np.all(np.isfinite(smallest)):
             where = f"phi1 = {phi1[~np.isfinite(smallest)][0]:.6f} rad"
             raise NotConverged("unloaded contact", where, "tooth pairs -2..2: no flanks face each other")
-        if np.max(np.abs(smallest)) < TOLERANCE and not whole:
+        if np.max(np.abs(smallest)) < TOLERANCE and np.max(np.abs(unseen)) > 1e-6:
             # only pairs about to touch were followed: look at all of them where the gear stands now
-            found, whole = closest(design, phi1, phi2, found), True
+            found, unseen = closest(design, phi1, phi2, found), np.zeros(len(phi1))
             smallest = found.gap.min(axis=1)
         if np.max(np.abs(smallest)) < TOLERANCE:
             facing = np.isfinite(found.gap)
@@ -73,6 +75,8 @@ def unloaded_contact(design: PairDesign, phi1: ArrayLike) -> UnloadedContact:
                 np.where(facing, found.y, np.nan),
             )
         phi2 = phi2 - smallest / design.gear_base_radius
-        found, whole = closest(design, phi1, phi2, found, margin=2e-6), False
+        # the turn opens or closes all pairs alike, those not followed too
+        turned = replace(found, gap=found.gap - smallest[:, None])
+        found, unseen = closest(design, phi1, phi2, turned, margin=5e-6), unseen + smallest
     residual = np.max(np.abs(found.gap.min(axis=1)))
     raise NotConverged("unloaded contact", f"residual gap {residual:.1e} m", "12 turns of the gear")
