@@ -1,0 +1,39 @@
+"""The schema that editors use, the models and the config files agree."""
+
+from pathlib import Path
+
+import pytest
+
+from facegear.config.base import parse
+from facegear.config.load import load_config, read_layers
+from facegear.config.model import Config
+from facegear.config.schema import json_schema
+from facegear.errors import ConfigErrors
+
+ROOT = Path(__file__).parents[3]
+
+
+def test_schema_file_is_what_the_models_say():
+    stored = (ROOT / "workflow" / "schemas" / "config.schema.json").read_text()
+    assert stored == json_schema(), (
+        "run: python -m facegear.config.schema > workflow/schemas/config.schema.json"
+    )
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "config").glob("*.yaml")), ids=lambda path: path.stem)
+def test_dumped_config_is_the_same_config(path):
+    config = load_config(path)
+    assert parse(Config, config.model_dump(mode="json")) == config
+
+
+def test_a_config_extends_another_in_its_folder_key_by_key(tmp_path):
+    (tmp_path / "base.yaml").write_text("case: base\na: {x: 1, y: [1, 2]}\n")
+    (tmp_path / "own.yaml").write_text("extends: base.yaml\ncase: own\na: {y: [3]}\n")
+    assert read_layers(tmp_path / "own.yaml") == {"case": "own", "a": {"x": 1, "y": [3]}}
+
+
+@pytest.mark.parametrize("base", ["own.yaml", "../base.yaml", "/etc/passwd", "none.yaml", "3"])
+def test_a_config_cannot_extend_itself_or_a_file_elsewhere(tmp_path, base):
+    (tmp_path / "own.yaml").write_text(f"extends: {base}\n")
+    with pytest.raises(ConfigErrors, match="extends = "):
+        read_layers(tmp_path / "own.yaml")
