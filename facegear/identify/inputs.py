@@ -82,12 +82,19 @@ class Space:
         return Inputs(branch, torque, tail, float(unit[2] % 1.0))
 
 
+def _unit_range(*weights: tuple[int, float]) -> tuple[tuple[int, float], ...]:
+    """Cosine terms (order, weight) scaled to a half range of one."""
+    cycles = np.linspace(0.0, 1.0, 3601)
+    half_range = 0.5 * np.ptp(sum(weight * np.cos(2.0 * np.pi * order * cycles) for order, weight in weights))
+    return tuple((order, float(weight / half_range)) for order, weight in weights)
+
+
 WAVEFORM_TERMS: Mapping[Waveform, tuple[tuple[int, float], ...]] = {
     Waveform.SINE: ((1, 1.0),),
-    Waveform.TRIANGLE: tuple((j, 8.0 / (np.pi * j) ** 2) for j in (1, 3, 5, 7)),
-    Waveform.ARCS: tuple((j, -8.0 * (-1.0) ** j / (np.pi * j) ** 2) for j in (1, 2, 3, 4, 5, 6)),
+    Waveform.TRIANGLE: _unit_range(*((j, j**-2.0) for j in (1, 3, 5, 7))),
+    Waveform.ARCS: _unit_range(*((j, -((-1.0) ** j) * j**-2.0) for j in (1, 2, 3, 4, 5, 6))),
 }
-"""Cosine series with unit half range; triangle and arcs are cut where a term is below 3 % of the first."""
+"""Cosine series (order, weight) of half range one; triangle and arcs are cut below 3 % of the first term."""
 
 
 def error_series(size: float, branch: Branch, phase: float) -> Harmonics:
