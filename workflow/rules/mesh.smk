@@ -26,3 +26,24 @@ rule mesh:
         "meshes of {wildcards.case}"
     script:
         "../scripts/mesh.py"
+
+
+rule mesh_growth:
+    output:
+        table="results/{case}/benchmarks/mesh.csv",
+        manifest="results/{case}/benchmarks/mesh.provenance.json",
+    log:
+        "results/{case}/logs/mesh_growth.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/mesh_growth.tsv"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=10,
+    params:
+        section=config_slice("tooth_pair"),
+        code=fingerprint("mesh_growth.py"),
+    message:
+        "time to mesh against nodes, {wildcards.case}"
+    script:
+        "../scripts/mesh_growth.py"

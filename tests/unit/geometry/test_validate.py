@@ -67,15 +67,15 @@ def designs(draw):
     m = 1e-3 * number(0.5, 10)
     n1, n2 = draw(st.integers(17, 40)), draw(st.integers(70, 200))
     angle = radians(number(18, 30))
-    inner = m * n2 * np.cos(angle) / 2 * (1 + number(0.0, 0.1))
+    inner = m * n2 * np.cos(angle) / 2 * (1 + number(0.005, 0.1))
     width = m * number(0.6, 10)
-    dedendum, shift = number(1.15, 1.4), draw(st.sampled_from([0.0, 0.0, -0.1, 0.2, 0.4]))
+    dedendum, shift = number(1.15, 1.4), draw(st.sampled_from([0.0, 0.2, 0.4, -0.1]))
     pinion = Pinion(
         teeth=n1,
         width=width * number(0.8, 1.3),
         addendum=m * number(0.8, 1.05),
         dedendum=m * dedendum,
-        rack_tip_radius=m * number(0.0, 0.3),
+        rack_tip_radius=m * number(0.0, 0.2),
         bore_radius=m * (n1 / 2 - dedendum + shift) * number(0.2, 0.95),
         profile_shift=m * shift,
         thinning=m * number(0, 0.03),
@@ -84,7 +84,7 @@ def designs(draw):
     return PairDesign(m, angle, pinion, gear, Shaper(n1 + draw(st.integers(0, 3)), m * number(1.05, 1.3)))
 
 
-@settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=100, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
 @given(designs())
 def test_random_pairs_are_valid_or_refused(design):
     try:

@@ -1,0 +1,13 @@
+"""Time to mesh one tooth of either body against its number of nodes, over the resolution ladder."""
+
+from facegear.config.base import parse
+from facegear.config.tooth_pair import ToothPair, pair_design
+from facegear.io import tables
+from facegear.mesh.growth import growth_table
+from facegear.provenance.stage import stage
+
+with stage(snakemake) as run:
+    table = growth_table(pair_design(parse(ToothPair, snakemake.params.section)))
+    tables.write(snakemake.output.table, table)
+    slowest = table.loc[table["build_s"].idxmax()]
+    run.summary(f"slowest: {slowest['body']} {slowest['resolution']}, {slowest['build_s']:.2f} s a tooth")
