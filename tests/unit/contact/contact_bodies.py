@@ -66,7 +66,9 @@ def quarter_space(size, total, loaded, ratio=2.0):
 
     The first `loaded` x `loaded` elements of the surface can touch; the far faces are clamped.
     """
-    ends = np.concatenate([size * np.arange(loaded), size * loaded + graded(size, total - size * loaded, ratio)])
+    ends = np.concatenate(
+        [size * np.arange(loaded), size * loaded + graded(size, total - size * loaded, ratio)]
+    )
     depth = -graded(size, total, ratio)[::-1]
 
     def held(p):

@@ -1,0 +1,171 @@
+"""The same pair as a CalculiX deck: an independent solver on the same mesh.
+
+Two sectors of C3D20 elements in one deck, cut faces free, rim back clamped, the pinion's bore rigid and
+turned by a given angle about its axis; frictionless face-to-face contact of the loaded flanks and fillets.
+The moment at the bore is what the turn costs.
+"""
+
+import re
+import resource
+import shutil
+import subprocess
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.contact.teeth import LOADED_SIDE
+from facegear.errors import FacegearError
+from facegear.geometry.design import Material, PairDesign
+from facegear.geometry.placement import to_left_flank
+from facegear.mesh.export import element_faces
+from facegear.mesh.orderings import SERENDIPITY20
+from facegear.mesh.sector import SectorMesh, sector
+from facegear.mesh.sizes import MeshSizes
+from facegear.mesh.tooth import gear_tooth, pinion_tooth
+
+PROGRAM = "ccx"
+
+
+@dataclass(frozen=True)
+class PeerResult:
+    """Moment about the pinion's axis (N m), wall time (s), memory (GB), free dof and version of a run."""
+
+    torque: float
+    seconds: float
+    gigabytes: float
+    dof: int
+    version: str
+
+
+def program() -> str | None:
+    """Path of ccx, None where it is not installed."""
+    return shutil.which(PROGRAM)
+
+
+def write_deck(
+    path: Path,
+    design: PairDesign,
+    sizes: MeshSizes,
+    materials: tuple[Material, Material],
+    teeth: int,
+    angles: tuple[float, float],
+    turn: float,
+) -> int:
+    """Write the deck of the pair at angles (phi1, phi2) with the pinion turned by `turn` (rad); returns its
+    dof.
+
+    Both sectors have `teeth` teeth around the pairs in mesh. Lengths are in mm, stresses in MPa.
+    """
+    first = -(teeth // 2)
+    bodies = {
+        "pinion": sector(pinion_tooth(design, sizes), teeth, first),
+        "face_gear": sector(gear_tooth(design, sizes), teeth, first),
+    }
+    points = _placed(design, bodies, angles)
+    count = len(points["pinion"])
+    nodes = np.concatenate([points["pinion"], points["face_gear"]])
+    used = np.unique(
+        np.concatenate(
+            [bodies["pinion"].hexes[:, SERENDIPITY20], count + bodies["face_gear"].hexes[:, SERENDIPITY20]]
+        )
+    )
+    reference, rotation = len(nodes) + 1, len(nodes) + 2
+    with open(path, "w", encoding="ascii") as deck:
+        deck.write("*NODE, NSET=ALL_NODES\n")
+        np.savetxt(deck, np.column_stack([used + 1, 1e3 * nodes[used]]), fmt="%d, %.13e, %.13e, %.13e")
+        deck.write(f"{reference}, 0., 0., 0.\n{rotation}, 0., 0., 0.\n")
+        start = 1
+        for body, shift, material in zip(bodies, (0, count), materials, strict=True):
+            mesh = bodies[body]
+            labels = np.arange(start, start + len(mesh.hexes))
+            deck.write(f"*ELEMENT, TYPE=C3D20, ELSET={body.upper()}\n")
+            for row in np.column_stack([labels, mesh.hexes[:, SERENDIPITY20] + shift + 1]).tolist():
+                deck.write(", ".join(map(str, row[:11])) + ",\n" + ", ".join(map(str, row[11:])) + "\n")
+            side = LOADED_SIDE[body]
+            faces = [f for name in ("flank", "fillet") for f in element_faces(mesh, f"{name}_{side}")]
+            deck.write(f"*SURFACE, NAME=S_{body.upper()}, TYPE=ELEMENT\n")
+            deck.writelines(f"{start + element}, {name}\n" for element, name in faces)
+            held = np.intersect1d(mesh.faces("bore" if body == "pinion" else "rim_back") + shift, used)
+            deck.write(f"*NSET, NSET=H_{body.upper()}\n" + "".join(f"{node + 1},\n" for node in held))
+            deck.write(f"*MATERIAL, NAME=M_{body.upper()}\n*ELASTIC\n")
+            deck.write(f"{1e-6 * material.young_modulus:.10g}, {material.poisson_ratio:.10g}\n")
+            deck.write(f"*SOLID SECTION, ELSET={body.upper()}, MATERIAL=M_{body.upper()}\n")
+            start += len(mesh.hexes)
+        deck.write(_step(reference, rotation, turn, design))
+    return 3 * len(used)
+
+
+def run_deck(path: Path, threads: int, dof: int, timeout: float = 3600.0) -> PeerResult:
+    """Run ccx on a deck and read the moment.
+
+    Raises FacegearError if ccx is not installed, fails, or prints no moment.
+    """
+    found = program()
+    if found is None:
+        raise FacegearError(f"{PROGRAM} is not installed (Debian: apt-get install calculix-ccx)")
+    before, start = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss, time.perf_counter()
+    environment = {
+        "OMP_NUM_THREADS": str(threads),
+        "CCX_NPROC_EQUATION_SOLVER": str(threads),
+        "PATH": "/usr/bin:/bin",
+    }
+    done = subprocess.run(
+        [found, "-i", path.stem],
+        cwd=path.parent,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=timeout,
+    )
+    seconds = time.perf_counter() - start
+    memory = max(before, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
+    (path.parent / f"{path.stem}.log").write_text(done.stdout + done.stderr, encoding="utf-8")
+    result = path.with_suffix(".dat")
+    moments = re.findall(
+        r"^\s*\d+\s+(\S+)\s+(\S+)\s+(\S+)\s*$", result.read_text() if result.exists() else "", re.M
+    )
+    if done.returncode != 0 or not moments:
+        raise FacegearError(f"{PROGRAM} failed on {path}: see {path.parent / f'{path.stem}.log'}")
+    version = re.search(r"Version (\S+)", done.stdout)
+    along = float(moments[-1][1])
+    return PeerResult(
+        1e-3 * abs(along), seconds, memory * 1024 / 1e9, dof, version.group(1) if version else "unknown"
+    )
+
+
+def _placed(
+    design: PairDesign, bodies: dict[str, SectorMesh], angles: tuple[float, float]
+) -> dict[str, NDArray[np.float64]]:
+    """Both bodies in the gear's frame, turned to their angles, the gear's loaded flanks towards the pinion.
+    """
+    mirror = np.array([-1.0, 1.0, 1.0])
+    placed = to_left_flank(
+        design, bodies["pinion"].nodes, np.array([angles[0]]), np.array([angles[1]]), np.zeros(1), False
+    )
+    return {"pinion": placed[0] * mirror, "face_gear": bodies["face_gear"].nodes}
+
+
+def _step(reference: int, rotation: int, turn: float, design: PairDesign) -> str:
+    """Supports, contact and the one step: the bore turned about the pinion's axis, positive towards +x."""
+    return f"""*RIGID BODY, NSET=H_PINION, REF NODE={reference}, ROT NODE={rotation}
+*SURFACE INTERACTION, NAME=SMOOTH
+*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD
+*CONTACT PAIR, INTERACTION=SMOOTH, TYPE=MORTAR
+S_PINION, S_FACE_GEAR
+*BOUNDARY
+H_FACE_GEAR, 1, 3
+{reference}, 1, 3
+{rotation}, 1, 1
+{rotation}, 3, 3
+*STEP, INC=200
+*STATIC
+1., 1., 1e-3, 1.
+*BOUNDARY
+{rotation}, 2, 2, {-turn:.12e}
+*NODE PRINT, NSET=TURNED
+RF
+*END STEP
+""".replace("*STEP", f"*NSET, NSET=TURNED\n{rotation}\n*STEP", 1)

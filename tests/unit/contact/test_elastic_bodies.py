@@ -1,0 +1,173 @@
+"""Assembly, refinement ties, condensation and the ring of teeth."""
+
+from dataclasses import replace
+from math import radians
+
+import numpy as np
+import pytest
+import scipy.sparse.linalg as spl
+from contact_bodies import STEEL, block, half_disc, stations
+from skfem import Basis, ElementHex2, ElementVector, MeshHex
+from skfem.models.elasticity import lame_parameters, linear_elasticity
+
+from facegear.contact import factor
+from facegear.contact.assembly import stiffness_matrix
+from facegear.contact.compliance import flank_compliance, from_arrays, to_arrays
+from facegear.contact.elements import block_hexes
+from facegear.contact.layer import tied_system
+from facegear.contact.options import Refinement
+from facegear.contact.teeth import piece_of
+from facegear.contact.twin import slab_tooth
+from facegear.errors import FacegearError
+from facegear.geometry.design import FaceGear, PairDesign, Pinion, Shaper
+from facegear.mesh.sector import sector
+from facegear.mesh.sizes import MeshSizes
+
+DISC = half_disc(0.01, np.linspace(0, 1, 5), np.linspace(0, 1, 5))
+CUTS = Refinement(3, 1, 2, 2.0)
+
+
+def spur(teeth=17):
+    m = 4e-3
+    pinion = Pinion(teeth, 0.004, m, 1.25 * m, 0.2 * m, 0.022)
+    return PairDesign(m, radians(20), pinion, FaceGear(80, 0.16, 0.17, m, 0.01), Shaper(teeth, 1.25 * m))
+
+
+@pytest.fixture(scope="module")
+def slab():
+    """A plane-strain spur tooth, coarse, and its piece."""
+    tooth = slab_tooth(spur(), MeshSizes(1.5e-3, 2e-3, 2.5e-3))
+    piece, _ = piece_of(spur(), tooth, STEEL, "right")
+    held = piece.held.copy()
+    held[:, 1] = True
+    return tooth, replace(piece, held=held)
+
+
+def test_batched_assembly_is_scikit_fem_s_to_rounding():
+    ends = np.linspace(0, 1, 3)
+    ticks = (ends, ends**1.3, ends)
+    basis = Basis(MeshHex.init_tensor(*ticks), ElementVector(ElementHex2()))
+    reference = linear_elasticity(*lame_parameters(STEEL.young_modulus, STEEL.poisson_ratio)).assemble(basis)
+    grid = np.stack(np.meshgrid(*map(stations, ticks), indexing="ij"), axis=-1)
+    points = grid.reshape(-1, 3)
+    ours = stiffness_matrix(points, block_hexes(np.arange(125).reshape(5, 5, 5)), STEEL).tocsr()
+    place = {tuple(np.round(point, 9)): index for index, point in enumerate(points)}
+    component = np.empty(basis.N, dtype=int)
+    for dofs in (basis.nodal_dofs, basis.edge_dofs, basis.facet_dofs, basis.interior_dofs):
+        component[dofs] = np.arange(3)[:, None]
+    order = 3 * np.array([place[tuple(np.round(p, 9))] for p in basis.doflocs.T]) + component
+    difference = ours[order][:, order] - reference
+    assert np.abs(difference.data).max() < 1e-12 * np.abs(reference.data).max()
+
+
+@pytest.mark.parametrize("cuts", [Refinement(), CUTS, Refinement(2, 2, 3, 1.5)])
+def test_rigid_motion_of_a_refined_body_needs_no_force(cuts):
+    system = tied_system(DISC, cuts)
+    points = system.points
+    rotation = np.cross([0.3, -0.2, 1.0], points)
+    for motion in (np.ones_like(points), rotation):
+        force = system.stiffness @ motion.ravel()
+        scale = np.abs(system.stiffness).max() * np.abs(motion).max()
+        assert np.abs(force).max() < 1e-12 * scale
+
+
+def test_uniform_strain_passes_the_ties_of_the_refined_layer():
+    box = block(
+        np.linspace(0, 2, 4),
+        np.linspace(0, 1, 3),
+        np.linspace(0, 1, 3),
+        held=lambda p: np.zeros(p.shape, bool),
+    )
+    rows = slice(2, 5)
+    piece = replace(box, flank=box.flank[rows], normals=box.normals[rows])
+    system = tied_system(piece, CUTS)
+    strain = np.array([[1.0, 0.4, -0.2], [0.4, -0.5, 0.3], [-0.2, 0.3, 0.8]])
+    force = (system.stiffness @ (system.points @ strain).ravel()).reshape(-1, 3)
+    p = system.points
+    inside = ((p > 1e-9) & (p < np.array([2, 1, 1]) - 1e-9)).all(axis=1)
+    assert inside.sum() > 50
+    assert np.abs(force[inside]).max() < 1e-11 * np.abs(force).max()
+
+
+def test_finer_layers_make_the_body_softer_and_never_stiffer():
+    softness = []
+    for cuts in (Refinement(), Refinement(2, 1, 1), Refinement(2, 1, 2), Refinement(4, 1, 4)):
+        compliance = flank_compliance(DISC, cuts)
+        middle = np.array(compliance.shape) // 2
+        nodes = middle[0] * compliance.shape[1] + np.arange(compliance.shape[1])
+        weights = np.array([1, 4, 1]) / 6
+        softness.append(weights @ compliance.own[np.ix_(nodes, nodes)] @ weights)
+    assert (np.diff(softness) > 0).all()
+
+
+def test_influence_matrix_is_symmetric():
+    own = flank_compliance(DISC, CUTS).own
+    assert np.abs(own - own.T).max() < 1e-10 * np.abs(own).max()
+
+
+def test_both_sparse_solvers_give_the_same_complement(monkeypatch):
+    system = tied_system(DISC, CUTS)
+    held = system.held.ravel()
+    matrix = system.stiffness[~held][:, ~held]
+    kept = np.arange(0, 90, 3)
+    first = factor.schur_complement(matrix, kept)
+    monkeypatch.setattr(factor, "PyPardisoSolver", None)
+    second = factor.schur_complement(matrix, kept)
+    np.testing.assert_allclose(second, first, atol=1e-11 * np.abs(first).max())
+    unit = np.zeros((matrix.shape[0], 1))
+    unit[kept[0]] = 1.0
+    direct = spl.spsolve(matrix.tocsc(), unit)[kept]
+    np.testing.assert_allclose(np.linalg.inv(first)[:, 0], direct, atol=1e-10 * np.abs(direct).max())
+
+
+def test_body_that_nothing_holds_is_refused_in_one_line():
+    loose = replace(DISC, held=np.zeros_like(DISC.held))
+    with pytest.raises(FacegearError) as error:
+        flank_compliance(loose, Refinement())
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("places", [0, 1, -2])
+def test_ring_of_one_condensed_tooth_is_the_ring_meshed_whole(slab, places):
+    tooth, piece = slab
+    compliance = flank_compliance(piece, Refinement(), tooth.teeth, 2, "ring")
+    ring = sector(tooth, tooth.teeth)
+    assert ring.closed
+    stiffness = stiffness_matrix(ring.nodes, ring.hexes, STEEL).tocsr()
+    free = np.ones((len(ring.nodes), 3), dtype=bool)
+    free[:, 1] = False
+    free[ring.tooth_nodes[:, piece.held.all(axis=1)].ravel()] = False
+    load_at, seen_at = 5 * 3 + 1, 9 * 3 + 2
+    rhs = np.zeros((len(ring.nodes), 3))
+    rhs[ring.tooth_nodes[0][piece.flank.ravel()[load_at]]] = piece.normals.reshape(-1, 3)[load_at]
+    moved = np.zeros(free.size)
+    moved[free.ravel()] = spl.spsolve(stiffness[free.ravel()][:, free.ravel()].tocsc(), rhs[free])
+    node = ring.tooth_nodes[places % tooth.teeth][piece.flank.ravel()[seen_at]]
+    normal = tooth.rotated(piece.normals.reshape(-1, 3)[seen_at], places * tooth.pitch)
+    expected = moved.reshape(-1, 3)[node] @ normal
+    own = compliance.own if places == 0 else compliance.block(places)
+    assert own[seen_at, load_at] == pytest.approx(expected, rel=1e-8)
+
+
+def test_sectors_bracket_the_ring_and_close_in_on_it(slab):
+    tooth, piece = slab
+    rigid = [flank_compliance(piece, Refinement(), n, 1, "clamped").own.trace() for n in (5, 9)]
+    loose = [flank_compliance(piece, Refinement(), n, 1, "free").own.trace() for n in (5, 9)]
+    ring = flank_compliance(piece, Refinement(), tooth.teeth, 1, "ring").own.trace()
+    assert rigid[0] < rigid[1] < ring < loose[1] < loose[0]
+
+
+def test_sector_with_too_few_teeth_is_refused(slab):
+    with pytest.raises(ValueError, match="do not fit"):
+        flank_compliance(slab[1], Refinement(), 5, 2, "free")
+
+
+def test_stored_compliance_comes_back_unchanged():
+    compliance = flank_compliance(DISC, CUTS)
+    again = from_arrays(to_arrays(compliance))
+    np.testing.assert_array_equal(again.own, compliance.own)
+    assert (again.shape, again.coarse_shape, again.refinement) == (
+        compliance.shape,
+        compliance.coarse_shape,
+        compliance.refinement,
+    )
