@@ -76,6 +76,9 @@ def shoot(
         residual = change(packed, here, there)
         if not residual < 4.0 * best:
             return None
+        least = least_period(packed, here, log.ends, max(residual, goal))
+        if residual <= goal and least < period:
+            return shoot(packed, work, place, velocity, least, tolerance, goal)
         if residual <= goal or (residual > 0.5 * best and best < 1e3 * goal):
             return _orbit(place, velocity, period, residual, matrix, log)
         best = min(best, residual)
@@ -85,6 +88,14 @@ def shoot(
         place[:n] += correction[:n]
         velocity[:n] += correction[n:]
     return None
+
+
+def least_period(packed: Packed, start: Array, ends: Array, residual: float) -> int:
+    """Smallest number of mesh periods after which an orbit has closed already, to ten times its residual."""
+    for period in range(1, len(ends)):
+        if len(ends) % period == 0 and change(packed, start, ends[period - 1]) <= 10.0 * residual:
+            return period
+    return len(ends)
 
 
 def _orbit(place: Array, velocity: Array, period: int, residual: float, matrix: Array, log: Log) -> Orbit:
