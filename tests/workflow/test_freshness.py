@@ -59,7 +59,11 @@ def test_copy_of_the_sources_has_nothing_to_do(edited):
             {"load_sharing"},
             {"contact", "stiffness", "dynamics_response", "modal"},
         ),
-        ("facegear/plots/modal.py", {"modal_figure"}, {"modal", "contact", "dynamics_response", "load_sharing"}),
+        (
+            "facegear/plots/modal.py",
+            {"modal_figure"},
+            {"modal", "contact", "dynamics_response", "load_sharing"},
+        ),
     ],
 )
 def test_editing_a_module_reruns_its_stages_and_those_after_it(edited, module, reruns, spares):
@@ -93,4 +97,12 @@ def test_a_change_of_the_transmission_recomputes_nothing_before_the_dynamics(edi
 def test_a_change_of_tooth_data_recomputes_everything_after_geometry(edited):
     old = re.search(r"outer_radius_mm: \S+", (ROOT / "config" / "paper.yaml").read_text()).group()
     planned = edited("config/paper.yaml", old, "outer_radius_mm: 274")
-    assert {"geometry", "mesh", "compliance", "contact", "stiffness", "dynamics_response", "load_sharing"} <= planned
+    assert {
+        "geometry",
+        "mesh",
+        "compliance",
+        "contact",
+        "stiffness",
+        "dynamics_response",
+        "load_sharing",
+    } <= planned

@@ -1,0 +1,57 @@
+"""Every command shown in the README and in docs/ works."""
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import Project, environment
+
+ROOT = Path(__file__).parents[2]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "results" / "README.md"]
+COMMANDS = sorted(
+    {
+        line.split("#")[0].strip()
+        for page in PAGES
+        for block in re.findall(r"```console\n(.*?)```", page.read_text(), re.S)
+        for line in block.splitlines()
+        if line.split("#")[0].strip()
+    }
+)
+
+
+def test_the_pages_show_commands():
+    assert "make" in COMMANDS
+    assert len(COMMANDS) >= 8
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_shown_command_is_accepted(command, tmp_path):
+    words = shlex.split(command)
+    if words[0] == "make":
+        done = subprocess.run(
+            [*words, "-n"], cwd=ROOT, capture_output=True, text=True, env=environment(), check=False
+        )
+    elif words[0] == "snakemake":
+        arguments = [str(ROOT / word) if word.startswith("config/") else word for word in words[1:]]
+        done = Project(tmp_path).run("-n", *arguments, check=False)
+    elif words[:2] == ["python", "-m"]:
+        done = subprocess.run(
+            [sys.executable, "-c", f"import importlib.util as u; assert u.find_spec({words[2]!r})"],
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+    else:
+        pytest.fail(f"a command of a kind this test does not know: {command}")
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_links_between_pages_hold(page):
+    for target in re.findall(r"\]\(([^)#]+?)(?:#[^)]*)?\)", page.read_text()):
+        if not target.startswith("http"):
+            assert (page.parent / target).exists(), target
