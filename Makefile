@@ -4,7 +4,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.locked
 CORES ?= 2
 
-.PHONY: all env check test lint benchmarks peers identify report lock clean
+.PHONY: all env check test lint benchmarks peers identify lock clean
 
 all: check
 	$(BIN)/snakemake --cores $(CORES)
@@ -35,9 +35,6 @@ peers: check
 
 identify: check
 	$(BIN)/snakemake --cores $(CORES) identify
-
-report: check
-	$(BIN)/snakemake --cores $(CORES) report
 
 lock: env
 	$(BIN)/python -m pip install --quiet uv

@@ -30,6 +30,9 @@ def test_the_pages_show_commands():
 @pytest.mark.parametrize("command", COMMANDS)
 def test_shown_command_is_accepted(command, tmp_path):
     words = shlex.split(command)
+    if words[0] == "cp":
+        assert (ROOT / words[-1]).parent.is_dir()
+        return
     if words[0] == "make":
         done = subprocess.run(
             [*words, "-n"], cwd=ROOT, capture_output=True, text=True, env=environment(), check=False
