@@ -138,9 +138,12 @@ def _refine(
         else:
             low = t
         step = t - value / slope if slope != 0.0 else low - 1.0
-        if not low < step < high:
-            step = 0.5 * (low + high)
-        if abs(step - t) <= CLOSE or high - low <= 4e-16:
+        inside = low < step < high
+        if inside and abs(step - t) <= CLOSE:
             return step
+        if not inside:
+            step = 0.5 * (low + high)
+            if high - low <= 4e-16:
+                return step
         t = step
     return t

@@ -14,6 +14,7 @@ from facegear.dynamics.orbits import require
 from facegear.dynamics.periods import make_log, run_periods
 from facegear.dynamics.reduction import Reduced, reduce
 from facegear.dynamics.settle import Settled, settle
+from facegear.dynamics.statistics import drifts
 from facegear.dynamics.system import System, machine_system
 from facegear.dynamics.taylor import make_work
 from facegear.transmission.machine import Machine, mesh_frequency
@@ -156,6 +157,8 @@ def _measure(
     coordinates = log.samples[:, : packed.n]
     deflections, forces = mesh_response(system, coordinates, settings.samples)
     orbit = settled.orbit
+    if motion is Motion.CHAOTIC and drifts(deflections, settings.samples):
+        motion = Motion.NOT_SETTLED
     return SteadyState(
         motion=motion,
         period=settled.period,

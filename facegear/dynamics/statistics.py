@@ -9,6 +9,7 @@ from scipy.stats import t as student
 Array = NDArray[np.float64]
 BATCHES = 16
 CONFIDENCE = 0.95
+SMOOTH = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,3 +59,24 @@ def half_width(squares: Array, root: Array, per_period: int, periodic: bool) -> 
     spread = means.std(axis=0, ddof=1) / np.sqrt(batches)
     factor = student.ppf(0.5 + 0.5 * CONFIDENCE, batches - 1)
     return factor * spread / (2.0 * np.where(root > 0.0, root, 1.0))
+
+
+def drifts(samples: Array, per_period: int) -> bool:
+    """Whether a run is still on its way: its halves differ, or its RMS from period to period is a smooth
+    curve.
+
+    Halves differ if the AC RMS of a column does so by more than chance and 10 %. A smooth curve has
+    successive differences that are small beside its variance (von Neumann's ratio, 2 for independent values).
+    """
+    periods = len(samples) // per_period
+    half = periods // 2 * per_period
+    if half == 0:
+        return False
+    first, last = moments(samples[:half], per_period, False), moments(samples[-half:], per_period, False)
+    doubt = 3.0 * (first.ac_rms_interval + last.ac_rms_interval)
+    gap = np.abs(first.ac_rms - last.ac_rms)
+    if (gap > np.maximum(doubt, 0.1 * np.maximum(first.ac_rms, last.ac_rms))).any():
+        return True
+    by_period = samples[: periods * per_period].reshape(periods, per_period, -1).std(axis=1)
+    successive = (np.diff(by_period, axis=0) ** 2).mean(axis=0)
+    return bool((successive < SMOOTH * by_period.var(axis=0)).all())

@@ -1,0 +1,76 @@
+"""Order of the integrator with and without contact switches, and of the multipliers."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from lumped_machines import make_machine
+
+from facegear.dynamics.compiled import TAU, pack
+from facegear.dynamics.motion import Settings
+from facegear.dynamics.orbits import monodromy
+from facegear.dynamics.roots import MAX_DEPTH, bernstein_matrix, first_root
+from facegear.dynamics.simulate import model, simulate
+from facegear.dynamics.taylor import make_work
+from facegear.transmission.machine import mesh_frequency
+
+ORDER = 5
+FINE = Settings(tolerance=1e-14, periodic_residual=1e-10)
+
+
+def errors(backlash):
+    """Step length, error of the end state and of the multipliers after a period, over a ladder of
+    tolerances.
+    """
+    ready = model(make_machine(torque=1500.0, backlash=backlash, error=30e-6))
+    speed = 9000.0
+    state = simulate(ready, speed, FINE).state
+    omega = TAU * mesh_frequency(ready.machine.layout, speed)
+    packed = pack(ready.system, omega)
+
+    def end(order, tolerance):
+        place, velocity = np.zeros((2, packed.squares.size))
+        place[: packed.n], velocity[: packed.n] = state.place, state.velocity / omega
+        place, velocity, matrix, log = monodromy(
+            packed, make_work(packed, order), place, velocity, 1, tolerance
+        )
+        largest = np.sort(np.abs(np.linalg.eigvals(matrix)))[::-1][:6]
+        return packed.transposed @ place / packed.scale, largest, int(log.steps[0]), log.shares
+
+    exact, multipliers, _, shares = end(20, 1e-15)
+    rows = []
+    for tolerance in 10.0 ** -np.arange(5.0, 10.5, 0.5):
+        found, largest, steps, _ = end(ORDER, tolerance)
+        rows.append((TAU / steps, np.abs(found - exact).max(), np.abs(largest - multipliers).max()))
+    return np.array(rows), shares
+
+
+@pytest.mark.parametrize("backlash", [0.0, 100e-6])
+def test_error_falls_with_the_order_of_the_steps_even_across_switches(backlash):
+    rows, shares = errors(backlash)
+    assert (shares[0].max() > 0.0) == (backlash > 0.0)
+    rows = rows[rows[:, 1:].min(axis=1) > 3e-13]
+    assert len(rows) >= 5
+    length, error, multiplier = np.log(rows).T
+    # The velocity is the derivative of a polynomial of degree ORDER, so the method has order ORDER - 1.
+    assert np.polyfit(length, error, 1)[0] > ORDER - 1.6
+    assert np.polyfit(length, multiplier, 1)[0] > ORDER - 1.6
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.lists(st.floats(-1, 1), min_size=3, max_size=12), st.floats(0.01, 0.99))
+def test_first_root_is_the_first_sign_change(coefficients, root):
+    polynomial = np.polynomial.Polynomial(coefficients) * np.polynomial.Polynomial([-root, 1.0])
+    values = np.zeros(20)
+    values[: polynomial.coef.size] = polynomial.coef
+    degree = 19
+    work = np.zeros((MAX_DEPTH + 2, degree + 1))
+    found = first_root(values, degree, bernstein_matrix(degree), work)
+    grid = np.linspace(0.0, 1.0, 20_001)
+    signs = np.sign(polynomial(grid))
+    flips = np.flatnonzero(signs[1:] * signs[:-1] < 0)
+    size = np.abs(values).sum()
+    if found <= 1.0:
+        assert abs(polynomial(found)) <= 1e-12 * size
+    if flips.size and np.abs(polynomial(grid[: flips[0] + 1])).min() > 1e-9 * size:
+        assert found == pytest.approx(grid[flips[0]], abs=1e-4)
