@@ -28,13 +28,15 @@ class ContactSide:
     """Contact surface of a tooth: flank rows, then the fillet rows the other gear's tip can reach.
 
     nodes, u, v: (nu, nv) nodes of the mesh and parameters as in `facegear.mesh.tooth.SurfaceGrid`;
-    `flank_rows` of the rows belong to the flank, the last of them shared with the fillet.
+    `flank_rows` of the rows belong to the flank, the last of them shared with the fillet, whose parameter there
+    is `junction` (nv,).
     """
 
     nodes: NDArray[np.int64]
     u: NDArray[np.float64]
     v: NDArray[np.float64]
     flank_rows: int
+    junction: NDArray[np.float64]
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -61,6 +63,7 @@ def contact_side(design: PairDesign, tooth: ToothMesh, side: str | None = None) 
         np.concatenate([flank.u, fillet.u[rows]]),
         np.concatenate([flank.v, fillet.v[rows]]),
         len(flank.nodes),
+        fillet.u[0],
     )
 
 
@@ -102,10 +105,12 @@ def pinion_points(
     """Exact points of the pinion's surface, modifications included, at refined lattice coordinates (n, 2)."""
     coarse = lattice / np.array([refinement.profile, refinement.width])
     weights = interpolation(coarse, side.shape)
-    u, v = weights @ side.u.ravel(), weights @ side.v.ravel()
+    gamma = side.u.copy()
+    gamma[side.flank_rows - 1] = side.junction
+    u, v, gamma = (weights @ part.ravel() for part in (side.u, side.v, gamma))
     on_flank = coarse[:, 0] <= side.flank_rows - 1
     flank = flank_points(design, np.where(on_flank, u, side.u[0, 0]), v)
-    fillet = fillet_points(design, np.where(on_flank, design.pressure_angle, u), v)
+    fillet = fillet_points(design, np.where(on_flank, design.pressure_angle, gamma), v)
     where = on_flank[:, None]
     return SurfacePoints(
         np.where(where, flank.position, fillet.position), np.where(where, flank.normal, fillet.normal)
