@@ -25,7 +25,7 @@ def check(design: PairDesign) -> RadiusLimits:
 
 
 def _refuse(key: str, value: float, allowed: str) -> None:
-    raise GeometryError(key, round(float(value), 6), allowed)
+    raise GeometryError(key, value if isinstance(value, int) else round(float(value), 6), allowed)
 
 
 def _check_pinion(design: PairDesign) -> None:

@@ -23,13 +23,13 @@ def write(
     """Nodes (N, 3) in m, C3D20 elements (M, 20) of node indices, sets of node indices.
 
     surfaces: named lists of (element index, face S1..S6). Nodes that no element uses are left out; labels are
-    index + 1. Lengths are in m, so a modulus belongs in Pa.
+    index + 1. Lengths are in m, so a modulus belongs in Pa. CalculiX reads at most 20 characters a number.
     """
     used = np.unique(elements)
     with atomic_path(path) as temporary, open(temporary, "w", encoding="ascii") as stream:
         stream.write(f"*HEADING\n{title}; lengths in m\n*NODE, NSET=ALL_NODES\n")
         table = np.column_stack([used + 1, nodes[used]])
-        np.savetxt(stream, table, fmt="%d, %.15e, %.15e, %.15e")
+        np.savetxt(stream, table, fmt="%d, %.12e, %.12e, %.12e")
         stream.write("*ELEMENT, TYPE=C3D20, ELSET=BODY\n")
         labels = np.column_stack([np.arange(1, len(elements) + 1), elements + 1])
         for row in labels.tolist():

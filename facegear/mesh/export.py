@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from facegear.io import abaqus, meshes
 from facegear.io.atomic import atomic_path
 from facegear.mesh.gmsh_model import write_msh
-from facegear.mesh.orderings import FACES, SERENDIPITY20, VTK27
+from facegear.mesh.orderings import SERENDIPITY20, VTK27
 from facegear.mesh.quality import scaled_jacobians, volume
 from facegear.mesh.sector import SectorMesh
+from facegear.mesh.sides import element_faces
 
 QUANTILES = (0.0, 0.01, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0)
 
@@ -37,16 +38,6 @@ def write_files(sector: SectorMesh, msh: Path, vtu: Path, inp: Path) -> pd.DataF
         {f"{name}_surface": element_faces(sector, name) for name in names},
     )
     return quality_table(sector, jacobian, condition)
-
-
-def element_faces(sector: SectorMesh, name: str) -> list[tuple[int, str]]:
-    """Element index and Abaqus face name of every face of a group."""
-    middle = sector.faces(name)[:, 4]
-    sides = sector.hexes[:, list(FACES.values())]
-    order = np.argsort(sides.ravel(), kind="stable")
-    place = order[np.searchsorted(sides.ravel(), middle, sorter=order)]
-    labels = list(FACES)
-    return [(int(at // 6), labels[at % 6]) for at in place]
 
 
 def quality_table(
