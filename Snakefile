@@ -8,6 +8,7 @@ include: "workflow/rules/modal.smk"
 include: "workflow/rules/dynamics.smk"
 include: "workflow/rules/load_sharing.smk"
 include: "workflow/rules/scorecard.smk"
+include: "workflow/rules/identify.smk"
 include: "workflow/rules/targets.smk"
 include: "workflow/rules/report.smk"
 

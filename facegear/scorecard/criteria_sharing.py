@@ -71,18 +71,21 @@ def differ(tables: Tables, study: str, kind: str, column: str, by: float) -> Out
     return statement(max(values) - min(values) > by, _listed(points, values))
 
 
-def lost_regions_move(tables: Tables, study: str, kind: str, by: float) -> Outcome:
+def lost_regions_move(tables: Tables, study: str, by: float, kind: str = "") -> Outcome:
     """Between two points of the study contact is lost at different instants for more than the stated share of
-    the cycle.
+    the cycle, in some group of the kind (of any kind if none is named).
     """
     frame = tables["curves"]
-    rows = frame[(frame["study"] == study) & (frame["kind"] == kind)]
-    regions = [
-        curve.sort_values("cycle_fraction")["lost_share"].to_numpy(float)
-        for _, curve in rows[rows["group"] == rows["group"].iloc[0]].groupby("point", sort=False)
-    ]
-    moved = max(float(np.abs(a - b).mean()) for a in regions for b in regions)
-    return statement(moved > by, f"{100 * moved:.0f} % of the cycle")
+    rows = frame[(frame["study"] == study) & (frame["kind"].isin([kind]) if kind else True)]
+    moved = {}
+    for group, curves in rows.groupby("group", sort=False):
+        regions = [
+            curve.sort_values("cycle_fraction")["lost_share"].to_numpy(float)
+            for _, curve in curves.groupby("point", sort=False)
+        ]
+        moved[str(group)] = max(float(np.abs(a - b).mean()) for a in regions for b in regions)
+    shown = ", ".join(f"{group} {100 * value:.0f} %" for group, value in moved.items())
+    return statement(max(moved.values()) > by, f"different for {shown} of the cycle")
 
 
 def _name(point: Point) -> str:
