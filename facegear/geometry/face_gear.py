@@ -15,24 +15,8 @@ from facegear.geometry.design import PairDesign
 Array = NDArray[np.float64]
 
 
-def flank_kernel(roll, psi, base, ratio, space, lift):
-    """x, y, z (m) of the flank at roll th and normal slope psi; r_b, m2s, th_os and lift of the shaper."""
-    turn = ratio * (psi - roll - space)
-    p = base * (np.sin(psi) - roll * np.cos(psi))
-    q = base / (ratio * np.cos(psi))
-    x = p * np.cos(turn) - q * np.sin(turn)
-    y = p * np.sin(turn) + q * np.cos(turn)
-    return x, y, lift - base * (np.cos(psi) + roll * np.sin(psi))
-
-
-def normal_kernel(roll, psi, ratio, space):
-    """Outward unit normal of the flank."""
-    turn = ratio * (psi - roll - space)
-    return np.cos(psi) * np.cos(turn), np.cos(psi) * np.sin(turn), np.sin(psi)
-
-
 def shaper_numbers(design: PairDesign) -> tuple[float, float, float, float]:
-    """(r_b, m2s, th_os, lift) as the kernels take them."""
+    """(r_b, m2s, th_os, lift) of the shaper."""
     return (
         design.shaper_base_radius,
         design.shaper_ratio,
@@ -42,16 +26,23 @@ def shaper_numbers(design: PairDesign) -> tuple[float, float, float, float]:
 
 
 def flank_point(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
-    """Points (..., 3) in m."""
-    parts = flank_kernel(np.asarray(roll, float), np.asarray(psi, float), *shaper_numbers(design))
-    return np.stack(np.broadcast_arrays(*parts), axis=-1)
+    """Points (..., 3) in m at roll th and normal slope psi (rad), broadcast together."""
+    base, ratio, space, lift = shaper_numbers(design)
+    roll, psi = np.broadcast_arrays(np.asarray(roll, float), np.asarray(psi, float))
+    turn = ratio * (psi - roll - space)
+    p = base * (np.sin(psi) - roll * np.cos(psi))
+    q = base / (ratio * np.cos(psi))
+    x = p * np.cos(turn) - q * np.sin(turn)
+    y = p * np.sin(turn) + q * np.cos(turn)
+    return np.stack([x, y, lift - base * (np.cos(psi) + roll * np.sin(psi))], axis=-1)
 
 
 def flank_normal(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
     """Outward unit normals (..., 3)."""
     _, ratio, space, _ = shaper_numbers(design)
-    parts = normal_kernel(np.asarray(roll, float), np.asarray(psi, float), ratio, space)
-    return np.stack(np.broadcast_arrays(*parts), axis=-1)
+    roll, psi = np.broadcast_arrays(np.asarray(roll, float), np.asarray(psi, float))
+    turn = ratio * (psi - roll - space)
+    return np.stack([np.cos(psi) * np.cos(turn), np.cos(psi) * np.sin(turn), np.sin(psi)], axis=-1)
 
 
 def flank_tangents(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, Array]:
@@ -134,22 +125,15 @@ def edge_start(design: PairDesign) -> float:
     return design.shaper_half_space_angle + design.shaper_tip_roll - np.arctan(design.shaper_tip_roll)
 
 
-def fillet_kernel(radius, chi, tip, ratio, chi_0, lift):
-    """Gear angle (rad) and z (m) of the fillet at gear radius and edge angle chi from the vertical."""
-    edge = tip * np.sin(chi)
-    return np.arcsin(edge / radius) - ratio * (chi - chi_0), lift - tip * np.cos(chi)
-
-
 def fillet_section(design: PairDesign, radius: ArrayLike, chi: ArrayLike) -> tuple[Array, Array]:
-    """Gear angle (rad) and height z (m) of the fillet; chi runs from `fillet_end` to 0 at the root plane."""
-    return fillet_kernel(
-        np.asarray(radius, float),
-        np.asarray(chi, float),
-        design.shaper_tip_radius,
-        design.shaper_ratio,
-        edge_start(design),
-        design.shaper_lift,
-    )
+    """Gear angle (rad) and z (m) of the fillet at a gear radius (m) and the edge's angle chi (rad).
+
+    chi is taken from the vertical, from `fillet_end` to 0, where the fillet touches the root plane.
+    """
+    chi = np.asarray(chi, float)
+    tip, edge = design.shaper_tip_radius, design.shaper_tip_radius * np.sin(chi)
+    beta = np.arcsin(edge / np.asarray(radius, float)) - design.shaper_ratio * (chi - edge_start(design))
+    return beta, design.shaper_lift - tip * np.cos(chi)
 
 
 def fillet_end(design: PairDesign, radius: ArrayLike) -> Array:

@@ -29,11 +29,6 @@ def involute_normal(design: PairDesign, roll: ArrayLike) -> tuple[Array, Array]:
     return np.cos(tangent_point), np.sin(tangent_point)
 
 
-def roll_at_radius(design: PairDesign, radius: ArrayLike) -> Array:
-    """Roll angle (rad) of the involute at a radius (m) not less than the base radius."""
-    return np.sqrt((np.asarray(radius) / design.pinion_base_radius) ** 2 - 1)
-
-
 def rack_tip_centre(design: PairDesign) -> tuple[float, float]:
     """Centre of the rack's tip circle (m): distance from the rack tooth's middle, depth."""
     pinion, angle = design.pinion, design.pressure_angle

@@ -113,7 +113,8 @@ def test_tip_chamfer_is_part_of_the_outline(design):
     mesh, plain = (pinion_tooth(d, named_sizes("coarse", design.module)) for d in (chamfered, design))
     assert scaled_jacobians(mesh.nodes, mesh.hexes).min() > 0
     radius = np.linspace(chamfered.pinion_tip_radius - 0.3e-3, chamfered.pinion_tip_radius, 2001)
-    involute = pinion.involute_point(design, pinion.roll_at_radius(design, radius))[1]
+    roll = np.sqrt((radius / design.pinion_base_radius) ** 2 - 1)
+    involute = pinion.involute_point(design, roll)[1]
     chamfer = np.linspace(involute[0], pinion.tip_half_angle(chamfered), 2001)
     expected = 2 * np.trapezoid((involute - chamfer) * radius, radius) * design.pinion.width
     removed = volume(plain.nodes, plain.hexes) - volume(mesh.nodes, mesh.hexes)
