@@ -21,5 +21,7 @@ rule compliance:
         code=fingerprint("compliance.py"),
     message:
         "flank compliance of the {wildcards.body} of {wildcards.case}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/compliance.py"

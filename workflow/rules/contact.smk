@@ -22,6 +22,8 @@ rule contact:
         code=fingerprint("contact.py"),
     message:
         "loaded tooth contact of {wildcards.case}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/contact.py"
 
@@ -48,5 +50,7 @@ rule contact_figures:
         code=fingerprint("contact_figures.py"),
     message:
         "contact figures of {wildcards.case}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/contact_figures.py"

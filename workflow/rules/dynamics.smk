@@ -47,6 +47,8 @@ rule dynamics_response:
         code=fingerprint("dynamics_response.py"),
     message:
         "response of {wildcards.case} at the nominal speed"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/dynamics_response.py"
 
@@ -75,6 +77,8 @@ rule dynamics_sweep_chunk:
         code=fingerprint("dynamics_sweep_chunk.py"),
     message:
         "speed sweep of {wildcards.case} {wildcards.direction}, chunk {wildcards.number}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/dynamics_sweep_chunk.py"
 
@@ -105,6 +109,8 @@ rule dynamics_sweep:
         code=fingerprint("dynamics_sweep.py"),
     message:
         "jumps and resonances of {wildcards.case}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/dynamics_sweep.py"
 
@@ -144,5 +150,7 @@ rule dynamics_figures:
         code=fingerprint("dynamics_figures.py"),
     message:
         "figures 9 to 12, Campbell diagram and waterfall of {wildcards.case}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/dynamics_figures.py"

@@ -17,6 +17,8 @@ rule geometry:
         code=fingerprint("geometry.py"),
     message:
         "tooth geometry of {wildcards.case}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/geometry.py"
 
@@ -42,5 +44,7 @@ rule tooth_pair_figure:
         code=fingerprint("tooth_pair_figure.py"),
     message:
         "pictures of the tooth pair of {wildcards.case}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/tooth_pair_figure.py"

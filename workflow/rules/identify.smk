@@ -25,6 +25,8 @@ rule identify_branch:
         code=fingerprint("identify_branch.py"),
     message:
         "search of undisclosed inputs, branch {wildcards.branch}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/identify_branch.py"
 
@@ -54,6 +56,8 @@ rule identify_sets:
         code=fingerprint("identify_sets.py"),
     message:
         "separate optima of the search for undisclosed inputs"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/identify_sets.py"
 

@@ -66,6 +66,8 @@ rule load_sharing:
         code=fingerprint("load_sharing.py"),
     message:
         "load sharing of {wildcards.case}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/load_sharing.py"
 
@@ -94,6 +96,8 @@ rule load_sharing_reference:
         code=fingerprint("load_sharing_reference.py"),
     message:
         "static and slow load sharing of {wildcards.case}, and its maximum over speed"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/load_sharing_reference.py"
 
@@ -123,6 +127,8 @@ rule load_sharing_summary:
         code=fingerprint("load_sharing_summary.py"),
     message:
         "load sharing of all studies of {wildcards.case}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/load_sharing_summary.py"
 
@@ -150,5 +156,7 @@ rule load_sharing_figures:
         code=fingerprint("load_sharing_figures.py"),
     message:
         "load-sharing figures of {wildcards.case}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/load_sharing_figures.py"

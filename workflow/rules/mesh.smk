@@ -24,6 +24,8 @@ rule mesh:
         code=fingerprint("mesh.py"),
     message:
         "meshes of {wildcards.case}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/mesh.py"
 
@@ -45,5 +47,7 @@ rule mesh_growth:
         code=fingerprint("mesh_growth.py"),
     message:
         "time to mesh against nodes, {wildcards.case}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/mesh_growth.py"

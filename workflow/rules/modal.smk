@@ -31,6 +31,8 @@ rule modal:
         code=fingerprint("modal.py"),
     message:
         "natural frequencies and mode shapes of {wildcards.case}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/modal.py"
 
@@ -55,5 +57,7 @@ rule modal_figure:
         code=fingerprint("modal_figure.py"),
     message:
         "figure 6 of {wildcards.case}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/modal_figure.py"

@@ -33,5 +33,7 @@ rule report:
         code=fingerprint("report.py"),
     message:
         "report of {wildcards.case}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/report.py"

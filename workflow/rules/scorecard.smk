@@ -52,6 +52,8 @@ rule scorecard_set:
         code=fingerprint("scorecard_set.py"),
     message:
         "claims of the paper with set {wildcards.set} of undisclosed inputs"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/scorecard_set.py"
 
@@ -91,5 +93,7 @@ rule scorecard:
         code=fingerprint("scorecard.py"),
     message:
         "scorecard of {wildcards.case}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/scorecard.py"

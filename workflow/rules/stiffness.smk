@@ -27,6 +27,8 @@ rule stiffness:
         code=fingerprint("stiffness.py"),
     message:
         "mesh stiffness of {wildcards.case}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/stiffness.py"
 
@@ -49,6 +51,8 @@ rule load_dependence:
         code=fingerprint("load_dependence.py"),
     message:
         "stiffness against load of {wildcards.case}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/load_dependence.py"
 
@@ -75,6 +79,8 @@ rule stiffness_figures:
         code=fingerprint("stiffness_figures.py"),
     message:
         "figures 7 and 8 of {wildcards.case}"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/stiffness_figures.py"
 
@@ -98,5 +104,7 @@ rule load_dependence_figure:
         code=fingerprint("load_dependence_figure.py"),
     message:
         "stiffness against load of {wildcards.case}, drawn"
+    conda:
+        "../envs/facegear.yaml"
     script:
         "../scripts/load_dependence_figure.py"
