@@ -4,12 +4,14 @@ rule compliance:
     output:
         arrays="results/{case}/compliance/{body}.npz",
         manifest="results/{case}/compliance/{body}.provenance.json",
-    wildcard_constraints:
-        body="pinion|face_gear",
     log:
         "results/{case}/logs/compliance_{body}.log",
     benchmark:
         "results/{case}/benchmarks/rules/compliance_{body}.tsv"
+    wildcard_constraints:
+        body="pinion|face_gear",
+    conda:
+        "../envs/facegear.yaml"
     threads: 2
     resources:
         mem_mb=4000,
@@ -21,7 +23,5 @@ rule compliance:
         code=fingerprint("compliance.py"),
     message:
         "flank compliance of the {wildcards.body} of {wildcards.case}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/compliance.py"

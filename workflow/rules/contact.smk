@@ -11,6 +11,8 @@ rule contact:
         "results/{case}/logs/contact.log",
     benchmark:
         "results/{case}/benchmarks/rules/contact.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 2
     resources:
         mem_mb=4000,
@@ -22,8 +24,6 @@ rule contact:
         code=fingerprint("contact.py"),
     message:
         "loaded tooth contact of {wildcards.case}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/contact.py"
 
@@ -42,6 +42,8 @@ rule contact_figures:
         "results/{case}/logs/contact_figures.log",
     benchmark:
         "results/{case}/benchmarks/rules/contact_figures.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=700,
@@ -50,7 +52,5 @@ rule contact_figures:
         code=fingerprint("contact_figures.py"),
     message:
         "contact figures of {wildcards.case}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/contact_figures.py"

@@ -35,6 +35,8 @@ rule dynamics_response:
         "results/{case}/logs/dynamics_response.log",
     benchmark:
         "results/{case}/benchmarks/rules/dynamics_response.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=700,
@@ -47,8 +49,6 @@ rule dynamics_response:
         code=fingerprint("dynamics_response.py"),
     message:
         "response of {wildcards.case} at the nominal speed"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/dynamics_response.py"
 
@@ -66,6 +66,8 @@ rule dynamics_sweep_chunk:
     wildcard_constraints:
         direction="up|down",
         number=r"\d+",
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=700,
@@ -77,8 +79,6 @@ rule dynamics_sweep_chunk:
         code=fingerprint("dynamics_sweep_chunk.py"),
     message:
         "speed sweep of {wildcards.case} {wildcards.direction}, chunk {wildcards.number}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/dynamics_sweep_chunk.py"
 
@@ -98,6 +98,8 @@ rule dynamics_sweep:
         "results/{case}/logs/dynamics_sweep.log",
     benchmark:
         "results/{case}/benchmarks/rules/dynamics_sweep.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 2
     resources:
         mem_mb=900,
@@ -109,8 +111,6 @@ rule dynamics_sweep:
         code=fingerprint("dynamics_sweep.py"),
     message:
         "jumps and resonances of {wildcards.case}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/dynamics_sweep.py"
 
@@ -138,6 +138,8 @@ rule dynamics_figures:
         "results/{case}/logs/dynamics_figures.log",
     benchmark:
         "results/{case}/benchmarks/rules/dynamics_figures.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=900,
@@ -150,7 +152,5 @@ rule dynamics_figures:
         code=fingerprint("dynamics_figures.py"),
     message:
         "figures 9 to 12, Campbell diagram and waterfall of {wildcards.case}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/dynamics_figures.py"

@@ -8,6 +8,8 @@ rule geometry:
         "results/{case}/logs/geometry.log",
     benchmark:
         "results/{case}/benchmarks/rules/geometry.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=700,
@@ -17,8 +19,6 @@ rule geometry:
         code=fingerprint("geometry.py"),
     message:
         "tooth geometry of {wildcards.case}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/geometry.py"
 
@@ -36,6 +36,8 @@ rule tooth_pair_figure:
         "results/{case}/logs/tooth_pair_figure.log",
     benchmark:
         "results/{case}/benchmarks/rules/tooth_pair_figure.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=700,
@@ -44,7 +46,5 @@ rule tooth_pair_figure:
         code=fingerprint("tooth_pair_figure.py"),
     message:
         "pictures of the tooth pair of {wildcards.case}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/tooth_pair_figure.py"

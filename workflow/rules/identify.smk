@@ -16,6 +16,8 @@ rule identify_branch:
         "results/{case}/benchmarks/rules/identify_{branch}.tsv"
     wildcard_constraints:
         branch="[a-z_-]+",
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=700,
@@ -25,8 +27,6 @@ rule identify_branch:
         code=fingerprint("identify_branch.py"),
     message:
         "search of undisclosed inputs, branch {wildcards.branch}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/identify_branch.py"
 
@@ -47,6 +47,8 @@ rule identify_sets:
         "results/{case}/logs/identify_sets.log",
     benchmark:
         "results/{case}/benchmarks/rules/identify_sets.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=700,
@@ -56,8 +58,6 @@ rule identify_sets:
         code=fingerprint("identify_sets.py"),
     message:
         "separate optima of the search for undisclosed inputs"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/identify_sets.py"
 

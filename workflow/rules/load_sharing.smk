@@ -53,6 +53,8 @@ rule load_sharing:
         "results/{case}/logs/load_sharing.log",
     benchmark:
         "results/{case}/benchmarks/rules/load_sharing.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=700,
@@ -66,8 +68,6 @@ rule load_sharing:
         code=fingerprint("load_sharing.py"),
     message:
         "load sharing of {wildcards.case}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/load_sharing.py"
 
@@ -83,6 +83,8 @@ rule load_sharing_reference:
         "results/{case}/logs/load_sharing_reference.log",
     benchmark:
         "results/{case}/benchmarks/rules/load_sharing_reference.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=700,
@@ -96,8 +98,6 @@ rule load_sharing_reference:
         code=fingerprint("load_sharing_reference.py"),
     message:
         "static and slow load sharing of {wildcards.case}, and its maximum over speed"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/load_sharing_reference.py"
 
@@ -117,6 +117,8 @@ rule load_sharing_summary:
         "results/{case}/logs/load_sharing_summary.log",
     benchmark:
         "results/{case}/benchmarks/rules/load_sharing_summary.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=500,
@@ -127,8 +129,6 @@ rule load_sharing_summary:
         code=fingerprint("load_sharing_summary.py"),
     message:
         "load sharing of all studies of {wildcards.case}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/load_sharing_summary.py"
 
@@ -145,6 +145,8 @@ rule load_sharing_figures:
         "results/{case}/logs/load_sharing_figures.log",
     benchmark:
         "results/{case}/benchmarks/rules/load_sharing_figures.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=700,
@@ -156,7 +158,5 @@ rule load_sharing_figures:
         code=fingerprint("load_sharing_figures.py"),
     message:
         "load-sharing figures of {wildcards.case}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/load_sharing_figures.py"

@@ -14,6 +14,8 @@ rule mesh:
         "results/{case}/logs/mesh.log",
     benchmark:
         "results/{case}/benchmarks/rules/mesh.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=2000,
@@ -24,8 +26,6 @@ rule mesh:
         code=fingerprint("mesh.py"),
     message:
         "meshes of {wildcards.case}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/mesh.py"
 
@@ -38,6 +38,8 @@ rule mesh_growth:
         "results/{case}/logs/mesh_growth.log",
     benchmark:
         "results/{case}/benchmarks/rules/mesh_growth.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=2000,
@@ -47,7 +49,5 @@ rule mesh_growth:
         code=fingerprint("mesh_growth.py"),
     message:
         "time to mesh against nodes, {wildcards.case}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/mesh_growth.py"

@@ -20,6 +20,8 @@ rule modal:
         "results/{case}/logs/modal.log",
     benchmark:
         "results/{case}/benchmarks/rules/modal.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=500,
@@ -31,8 +33,6 @@ rule modal:
         code=fingerprint("modal.py"),
     message:
         "natural frequencies and mode shapes of {wildcards.case}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/modal.py"
 
@@ -49,6 +49,8 @@ rule modal_figure:
         "results/{case}/logs/modal_figure.log",
     benchmark:
         "results/{case}/benchmarks/rules/modal_figure.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=700,
@@ -57,7 +59,5 @@ rule modal_figure:
         code=fingerprint("modal_figure.py"),
     message:
         "figure 6 of {wildcards.case}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/modal_figure.py"

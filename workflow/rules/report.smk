@@ -24,6 +24,8 @@ rule report:
         "results/{case}/logs/report.log",
     benchmark:
         "results/{case}/benchmarks/rules/report.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=700,
@@ -33,7 +35,5 @@ rule report:
         code=fingerprint("report.py"),
     message:
         "report of {wildcards.case}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/report.py"

@@ -42,6 +42,8 @@ rule scorecard_set:
         "results/{case}/benchmarks/rules/scorecard_set_{set}.tsv"
     wildcard_constraints:
         set="[A-Za-z0-9_]+",
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=1200,
@@ -52,8 +54,6 @@ rule scorecard_set:
         code=fingerprint("scorecard_set.py"),
     message:
         "claims of the paper with set {wildcards.set} of undisclosed inputs"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/scorecard_set.py"
 
@@ -84,6 +84,8 @@ rule scorecard:
         "results/{case}/logs/scorecard.log",
     benchmark:
         "results/{case}/benchmarks/rules/scorecard.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=800,
@@ -93,7 +95,5 @@ rule scorecard:
         code=fingerprint("scorecard.py"),
     message:
         "scorecard of {wildcards.case}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/scorecard.py"

@@ -18,6 +18,8 @@ rule stiffness:
         "results/{case}/logs/stiffness.log",
     benchmark:
         "results/{case}/benchmarks/rules/stiffness.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=500,
@@ -27,8 +29,6 @@ rule stiffness:
         code=fingerprint("stiffness.py"),
     message:
         "mesh stiffness of {wildcards.case}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/stiffness.py"
 
@@ -43,6 +43,8 @@ rule load_dependence:
         "results/{case}/logs/load_dependence.log",
     benchmark:
         "results/{case}/benchmarks/rules/load_dependence.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=500,
@@ -51,8 +53,6 @@ rule load_dependence:
         code=fingerprint("load_dependence.py"),
     message:
         "stiffness against load of {wildcards.case}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/load_dependence.py"
 
@@ -71,6 +71,8 @@ rule stiffness_figures:
         "results/{case}/logs/stiffness_figures.log",
     benchmark:
         "results/{case}/benchmarks/rules/stiffness_figures.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=700,
@@ -79,8 +81,6 @@ rule stiffness_figures:
         code=fingerprint("stiffness_figures.py"),
     message:
         "figures 7 and 8 of {wildcards.case}"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/stiffness_figures.py"
 
@@ -96,6 +96,8 @@ rule load_dependence_figure:
         "results/{case}/logs/load_dependence_figure.log",
     benchmark:
         "results/{case}/benchmarks/rules/load_dependence_figure.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=700,
@@ -104,7 +106,5 @@ rule load_dependence_figure:
         code=fingerprint("load_dependence_figure.py"),
     message:
         "stiffness against load of {wildcards.case}, drawn"
-    conda:
-        "../envs/facegear.yaml"
     script:
         "../scripts/load_dependence_figure.py"
