@@ -1,0 +1,1 @@
+"""Speed against error: our integrator beside general ones, on the same equations."""

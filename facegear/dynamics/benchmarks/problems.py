@@ -1,0 +1,71 @@
+"""What is integrated in the comparison: three regimes of a machine, and the oscillator of oracle (a)."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.compiled import TAU
+from facegear.dynamics.motion import Settings, State
+from facegear.dynamics.simulate import model, simulate, static_start
+from facegear.dynamics.system import System
+from facegear.transmission.machine import Machine, mesh_frequency
+
+Array = NDArray[np.float64]
+SAMPLES = 32
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A start and a length in mesh periods. `statistical`: only the RMS over the run is compared."""
+
+    name: str
+    system: System
+    frequency: float
+    start: State
+    periods: int
+    statistical: bool
+
+
+def machine_problems(machine: Machine, speed_rpm: float) -> list[Problem]:
+    """Contact kept (no backlash), contact lost on a stable orbit at 0.6 of the speed, and the speed
+    itself.
+    """
+    regular = replace(machine, half_backlash=0.0)
+    return [
+        _problem("contact kept", regular, speed_rpm, 4, False),
+        _problem("contact lost", machine, 0.6 * speed_rpm, 4, False),
+        _problem("nominal speed", machine, speed_rpm, 40, True),
+    ]
+
+
+def _problem(name: str, machine: Machine, speed_rpm: float, periods: int, statistical: bool) -> Problem:
+    ready = model(machine)
+    start = simulate(
+        ready, speed_rpm, Settings(settle=128, extensions=0, window=16), static_start(ready)
+    ).state
+    frequency = TAU * mesh_frequency(machine.layout, speed_rpm)
+    return Problem(name, ready.system, frequency, start, periods, statistical)
+
+
+def oscillator_problem() -> Problem:
+    """Oracle (a) at W = 0.75 from a point off its upper orbit."""
+    speed = 0.75
+    load = np.zeros((1, 2, 2))
+    load[0, 1] = 0.1, 0.05 * speed**2
+    system = System(
+        directions=np.ones((1, 1)),
+        squares=np.zeros(1),
+        damping=np.array([0.1]),
+        mesh_damping=np.zeros(1),
+        lower=np.array([-1.0]),
+        upper=np.array([1.0]),
+        stiffness=np.array([[[0.0], [1.0]]]),
+        stiffness_kind=np.zeros(1, dtype=np.int64),
+        error=np.zeros((1, 2, 1)),
+        error_kind=np.zeros(1, dtype=np.int64),
+        load=load,
+        damping_when_open=True,
+        scale=1.0,
+    )
+    return Problem("oracle (a)", system, speed, State(np.array([0.8]), np.array([0.2])), 20, False)

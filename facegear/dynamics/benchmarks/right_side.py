@@ -1,0 +1,117 @@
+"""The equations as a right-hand side z' = f(s, z), z = (place, velocity), for integrators that need one."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.compiled import Packed
+from facegear.dynamics.kernel import kernel
+from facegear.dynamics.lanes import LANES, load, multiply, multiply_add, splat, store
+from facegear.dynamics.system import System
+from facegear.dynamics.taylor import Work, fourier_taylor, make_work
+
+Array = NDArray[np.float64]
+
+
+@kernel
+def right_side(packed: Packed, work: Work, s: float, z: Array, out: Array) -> None:
+    """Derivative by s of z (2 n,) into out; work must be of order 1 or more."""
+    n, wide = packed.directions.shape
+    cosine, sine = np.cos(s), np.sin(s)
+    fourier_taylor(packed.stiffness, work.powers, cosine, sine, 1, work.stiffness)
+    fourier_taylor(packed.error, work.powers, cosine, sine, 2, work.error)
+    fourier_taylor(packed.load, work.powers, cosine, sine, 1, work.load)
+    minus = splat(-1.0)
+    for c in range(0, wide, LANES):
+        place, rate = multiply(minus, load(work.error, c)), multiply(minus, load(work.error, wide + c))
+        for k in range(packed.n):
+            direction = load(packed.directions, k * wide + c)
+            place = multiply_add(direction, splat(z[k]), place)
+            rate = multiply_add(direction, splat(z[n + k]), rate)
+        store(work.deflection, c, place)
+        store(work.deflection, wide + c, rate)
+    for m in range(packed.m):
+        d = work.deflection[0, m]
+        beyond = max(d - packed.upper[m], 0.0) + min(d - packed.lower[m], 0.0)
+        touching = packed.damping_when_open or beyond != 0.0
+        if packed.lower[m] >= packed.upper[m]:
+            beyond, touching = d - packed.upper[m], True
+        acting = packed.mesh_damping[m] if touching else 0.0
+        work.force[m] = work.stiffness[0, m] * beyond + acting * work.deflection[1, m]
+    for c in range(0, n, LANES):
+        velocity = load(z, n + c)
+        store(out, c, velocity)
+        total = multiply_add(multiply(minus, load(packed.damping, c)), velocity, load(work.load, c))
+        total = multiply_add(multiply(minus, load(packed.squares, c)), load(z, c), total)
+        for m in range(packed.m):
+            total = multiply_add(load(packed.transposed, m * n + c), splat(-work.force[m]), total)
+        store(out, n + c, total)
+
+
+@kernel
+def fixed_rk4(
+    packed: Packed, work: Work, z: Array, scratch: Array, per_sample: int, width: float, out: Array
+) -> None:
+    """Classical Runge-Kutta with fixed steps; out (samples, 2 n) is filled every `per_sample` steps."""
+    size = z.size
+    s = 0.0
+    for sample in range(out.shape[0]):
+        for i in range(size):
+            out[sample, i] = z[i]
+        for _ in range(per_sample):
+            right_side(packed, work, s, z, scratch[0])
+            for i in range(size):
+                scratch[4, i] = z[i] + 0.5 * width * scratch[0, i]
+            right_side(packed, work, s + 0.5 * width, scratch[4], scratch[1])
+            for i in range(size):
+                scratch[4, i] = z[i] + 0.5 * width * scratch[1, i]
+            right_side(packed, work, s + 0.5 * width, scratch[4], scratch[2])
+            for i in range(size):
+                scratch[4, i] = z[i] + width * scratch[2, i]
+            right_side(packed, work, s + width, scratch[4], scratch[3])
+            for i in range(size):
+                z[i] += width / 6.0 * (scratch[0, i] + 2.0 * (scratch[1, i] + scratch[2, i]) + scratch[3, i])
+            s += width
+
+
+def compiled_right_side(packed: Packed) -> Callable[[float, Array], Array]:
+    """f(s, z) for SciPy, on the compiled code."""
+    work = make_work(packed, 2)
+
+    def derivative(s: float, z: Array) -> Array:
+        out = np.empty_like(z)
+        right_side(packed, work, s, z, out)
+        return out
+
+    return derivative
+
+
+def plain_right_side(system: System, frequency: float, width: int) -> Callable[[float, Array], Array]:
+    """f(s, z) in NumPy as people write it, z padded to 2 * width."""
+    n = system.size
+    order_k, order_e = np.arange(system.stiffness.shape[2]), np.arange(system.error.shape[2])
+    stiffness, error = system.stiffness[system.stiffness_kind], system.error[system.error_kind]
+    load = system.load
+
+    def derivative(s: float, z: Array) -> Array:
+        place, velocity = z[:n], z[width : width + n] * frequency
+        k = stiffness[:, 0] @ np.sin(order_k * s) + stiffness[:, 1] @ np.cos(order_k * s)
+        e = error[:, 0] @ np.sin(order_e * s) + error[:, 1] @ np.cos(order_e * s)
+        e_rate = frequency * (
+            error[:, 0] @ (order_e * np.cos(order_e * s)) - error[:, 1] @ (order_e * np.sin(order_e * s))
+        )
+        order_f = np.arange(load.shape[2])
+        applied = load[:, 0] @ np.sin(order_f * s) + load[:, 1] @ np.cos(order_f * s)
+        d = system.directions @ place - e
+        gap = np.where(d > system.upper, d - system.upper, np.where(d < system.lower, d - system.lower, 0.0))
+        force = k * gap + system.mesh_damping * (system.directions @ velocity - e_rate)
+        acceleration = (
+            applied - system.damping * velocity - system.squares * place - system.directions.T @ force
+        )
+        out = np.zeros_like(z)
+        out[:n] = velocity / frequency
+        out[width : width + n] = acceleration / frequency**2
+        return out
+
+    return derivative

@@ -1,0 +1,42 @@
+"""Is a sweep converged: the same sweep with half the tolerance and twice the dwell."""
+
+import numpy as np
+import pandas as pd
+
+from facegear.dynamics.sweep import DEFLECTION, Piece
+
+CONVERGED = 1e-3
+
+
+def convergence_table(direction: str, piece: Piece, finer: Piece) -> pd.DataFrame:
+    """Columns direction, speed_rpm, class, class_finer, rms_change, verdict; one row for each speed.
+
+    rms_change: largest change of a mesh's AC RMS over the largest AC RMS at that speed. Verdicts:
+    `converged`; `moved` (same class, more than 1e-3); `irregular` (not periodic in either); `other motion`
+    (classes differ, or the sweeps are on different branches: more than 10 % apart).
+    """
+    row = DEFLECTION.index("ac_rms")
+    first, second = piece.deflection[:, row], finer.deflection[:, row]
+    change = np.abs(first - second).max(axis=1) / np.maximum(first.max(axis=1), 1e-300)
+    verdicts = [
+        _verdict(str(a), str(b), c) for a, b, c in zip(piece.labels, finer.labels, change, strict=True)
+    ]
+    return pd.DataFrame(
+        {
+            "direction": direction,
+            "speed_rpm": piece.speeds,
+            "class": piece.labels,
+            "class_finer": finer.labels,
+            "rms_change": change,
+            "verdict": verdicts,
+        }
+    )
+
+
+def _verdict(label: str, finer: str, change: float) -> str:
+    periodic = label.startswith("period-"), finer.startswith("period-")
+    if not any(periodic):
+        return "irregular"
+    if label != finer or change > 0.1:
+        return "other motion"
+    return "converged" if change <= CONVERGED else "moved"

@@ -1,0 +1,42 @@
+"""Work-precision diagram and cost tables of the integrators."""
+
+import matplotlib.pyplot as plt
+import pandas as pd
+from matplotlib.figure import Figure
+
+from facegear.plots.style import styled
+
+
+def work_precision_diagram(table: pd.DataFrame) -> Figure:
+    """Error against time in logarithms, one panel for each problem and one curve for each method."""
+    problems = list(dict.fromkeys(table["problem"]))
+    columns = 2
+    rows = -(-len(problems) // columns)
+    with styled():
+        figure, axes = plt.subplots(rows, columns, figsize=(11, 4.2 * rows), squeeze=False)
+        for axis, problem in zip(axes.flat, problems, strict=False):
+            for number, (method, curve) in enumerate(
+                table[table["problem"] == problem].groupby("method", sort=False)
+            ):
+                known = curve.dropna(subset="error")
+                own = method == "facegear"
+                axis.loglog(
+                    known["error"].clip(lower=1e-15),
+                    known["seconds"],
+                    "o-" if own else ".--",
+                    color="black" if own else f"C{number}",
+                    lw=2 if own else 1,
+                    ms=4,
+                    label=method,
+                )
+            axis.set_title(problem, fontsize=9)
+            axis.set_xlabel(
+                "error (of the deflection over the length scale; of the RMS at the nominal speed)"
+            )
+            axis.set_ylabel("time (s)")
+            axis.invert_xaxis()
+        for axis in axes.flat[len(problems) :]:
+            axis.set_axis_off()
+        axes[0, 0].legend(fontsize=7)
+        figure.suptitle("Work and precision, median CPU times")
+    return figure

@@ -1,0 +1,23 @@
+"""Cost and error of sweeps against settings, pinions and harmonics."""
+
+from facegear.harmonics.stored import COLUMNS, from_table
+
+from facegear.config.base import parse
+from facegear.config.dynamics import Sweep, sweep_plan
+from facegear.config.transmission import Transmission, machine, tooth_numbers
+from facegear.dynamics.benchmarks.costs import scaling_costs, sweep_costs
+from facegear.io import tables
+from facegear.progress import Progress
+from facegear.provenance.stage import stage
+
+with stage(snakemake) as run:
+    params = snakemake.params
+    stiffness = from_table(tables.read(snakemake.input.harmonics, COLUMNS))
+    built = machine(parse(Transmission, params.section), tooth_numbers(**params.teeth), stiffness)
+    costs = sweep_costs(built, sweep_plan(parse(Sweep, params.sweep)), Progress("settings", 20).step)
+    tables.write(snakemake.output.sweep, costs)
+    tables.write(snakemake.output.scaling, scaling_costs(built, params.speed_rpm))
+    ratio = (costs["plain_seconds_per_speed"] / costs["seconds_per_speed"]).max()
+    run.summary(
+        f"a speed costs down to {1e3 * costs['seconds_per_speed'].min():.1f} ms, 1/{ratio:.0f} of plain SciPy"
+    )

@@ -1,0 +1,31 @@
+"""Error against time of our integrator and others."""
+
+from facegear.harmonics.stored import COLUMNS, from_table
+
+from facegear.config.base import parse
+from facegear.config.transmission import Transmission, machine, tooth_numbers
+from facegear.dynamics.benchmarks.methods import all_methods
+from facegear.dynamics.benchmarks.problems import machine_problems, oscillator_problem
+from facegear.dynamics.benchmarks.work_precision import Budget, seconds_at, work_precision
+from facegear.io import tables
+from facegear.plots.benchmarks import work_precision_diagram
+from facegear.plots.style import save
+from facegear.progress import Progress
+from facegear.provenance.stage import stage
+
+with stage(snakemake) as run:
+    params, output = snakemake.params, snakemake.output
+    stiffness = from_table(tables.read(snakemake.input.harmonics, COLUMNS))
+    built = machine(parse(Transmission, params.section), tooth_numbers(**params.teeth), stiffness)
+    problems = [*machine_problems(built, params.speed_rpm), oscillator_problem()]
+    methods = all_methods()
+    table = work_precision(problems, methods, Budget(), Progress("methods", len(methods)).step)
+    tables.write(output.table, table)
+    save(work_precision_diagram(table), output.svg, output.png)
+    own, rest = methods[0].name, [method.name for method in methods[1:]]
+    gains = []
+    for problem in (one for one in problems if not one.statistical):
+        others = [seconds_at(table, problem.name, name, 1e-6) for name in rest]
+        gain = min(t for t in others if t == t) / seconds_at(table, problem.name, own, 1e-6)
+        gains.append(f"{problem.name}: {gain:.1f} times the next best at 1e-6")
+    run.summary("; ".join(gains))
