@@ -1,6 +1,6 @@
-"""Where a pair of teeth can touch at a position: gaps, arms and loads of the pressure hats there."""
+"""Unit loads by which a pair of teeth can touch: their gaps, arms and nodal forces on both bodies."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -9,10 +9,9 @@ from numpy.typing import NDArray
 
 from facegear.contact.options import Refinement
 from facegear.contact.surface import cell_areas, cell_points, hat_values, interpolation
-from facegear.contact.teeth import ContactSide, GearLattice, pinion_points
+from facegear.contact.teeth import ContactSide, pinion_points
 from facegear.geometry.design import PairDesign
 from facegear.geometry.pinion_surface import SurfacePoints
-from facegear.geometry.separation import separation
 
 SMALLEST_COVER = 0.02
 """Part of a hat's area below which it is left out: the tooth opposite ends there."""
@@ -70,6 +69,12 @@ class PinionSurface:
         return self.hats.T @ self.area
 
     @cached_property
+    def row_height(self) -> float:
+        """Mean distance (m) of node rows: the height that a pressure at an edge is averaged over."""
+        width = float(np.ptp(self.side.v[0]))
+        return float(self.area.sum()) / width / (self.shape[0] - 1)
+
+    @cached_property
     def coarse(self) -> sp.csr_matrix:
         factors = np.array([self.refinement.profile, self.refinement.width])
         return interpolation(self.lattice / factors, self.side.shape)
@@ -94,7 +99,8 @@ class PinionSurface:
 
 @dataclass(frozen=True, eq=False)
 class Candidates:
-    """Pressure hats of one tooth pair that may touch: a unit force each, spread over the hat's covered area.
+    """Loads of one tooth pair that may act: a unit force each, spread over a hat's covered area or along an
+    edge.
 
     hats (m,) lattice nodes; gap (m,) m and arm (m,) m averaged over the hat; area (m,) m2, `whole` where no
     edge cuts it; loads on the lattice nodes `pinion` (m, n1) and `gear` (m, n2), and on the unrefined ones
@@ -111,62 +117,6 @@ class Candidates:
     gear: sp.csr_matrix
     pinion_coarse: sp.csr_matrix
     gear_coarse: sp.csr_matrix
-
-
-def find_candidates(
-    surface: PinionSurface,
-    lattice: GearLattice,
-    phi1: float,
-    phi2: float,
-    teeth: NDArray[np.int64],
-    limit: float,
-    fillet: bool,
-) -> list[Candidates]:
-    """Hats of the pairs `teeth` that a turn of the pinion by `limit` (rad) would bring into the gear.
-
-    phi1, phi2 (rad) place the unloaded gears. Pairs without such hats are left out.
-    """
-    probes, elements = surface.probes
-    seen = separation(surface.design, probes, phi1, phi2, teeth)
-    depth = limit * surface.design.pinion_base_radius
-    reach = 3.0 * depth + 20e-6
-    found = []
-    for tooth, gap in zip(teeth, seen.gap, strict=True):
-        near = (gap[elements] < depth + 10e-6).any(axis=1) & (np.abs(gap[elements]) < 1e-3).any(axis=1)
-        points = np.flatnonzero(near[surface.element])
-        if points.size:
-            pair = _pair_candidates(surface, lattice, (phi1, phi2, int(tooth)), points, limit, reach, fillet)
-            if pair is not None:
-                found.append(pair)
-    return found
-
-
-def _pair_candidates(
-    surface: PinionSurface,
-    lattice: GearLattice,
-    place: tuple[float, float, int],
-    points: NDArray[np.int64],
-    limit: float,
-    reach: float,
-    fillet: bool,
-) -> Candidates | None:
-    where = SurfacePoints(surface.points.position[points], surface.points.normal[points])
-    seen = separation(surface.design, where, *place[:2], place[2], reach=max(reach, 1e-4))
-    edge = 0.1 * surface.design.module
-    coordinates = lattice.coordinates(seen, fillet, edge)[0]
-    usable = np.isfinite(coordinates).all(axis=1) & np.isfinite(seen.gap[0])
-    if not fillet:
-        usable &= surface.lattice[points, 0] <= (surface.side.flank_rows - 1) * surface.refinement.profile
-    return hats_over(
-        surface,
-        lattice.side.shape,
-        lattice.refinement,
-        place[2],
-        points[usable],
-        seen.gap[0][usable],
-        coordinates[usable],
-        limit,
-    )
 
 
 def hats_over(
@@ -190,25 +140,72 @@ def hats_over(
     area = np.asarray(weight.sum(axis=1)).ravel()
     hats = np.flatnonzero(area > SMALLEST_COVER * surface.full_area)
     weight = sp.diags_array(1.0 / area[hats]) @ weight[hats]
-    mean_gap, arm = weight @ gap, weight @ surface.arm[points]
-    near = mean_gap < limit * arm
+    found = spread_loads(
+        tooth,
+        weight.tocsr(),
+        gap,
+        surface.arm[points],
+        (surface.nodal[points], surface.coarse[points]),
+        gear_loads(coordinates, gear_shape, gear_refinement),
+        limit,
+    )
+    if found is None:
+        return None
+    candidates, near = found
+    hats, area = hats[near], area[hats][near]
+    return replace(candidates, hats=hats, area=area, whole=_whole(surface, hats, area))
+
+
+def gear_loads(
+    coordinates: NDArray[np.float64], shape: tuple[int, int], refinement: Refinement
+) -> tuple[sp.csr_matrix, sp.csr_matrix]:
+    """Interpolation (q, n) from refined and from unrefined lattice nodes to refined coordinates (q, 2)."""
+    factors = np.array([refinement.profile, refinement.width])
+    fine = tuple((n - 1) * int(f) + 1 for n, f in zip(shape, factors, strict=True))
+    return interpolation(coordinates, fine), interpolation(coordinates / factors, shape)
+
+
+def spread_loads(
+    tooth: int,
+    weight: sp.csr_matrix,
+    gap: NDArray[np.float64],
+    arm: NDArray[np.float64],
+    pinion: tuple[sp.csr_matrix, sp.csr_matrix],
+    gear: tuple[sp.csr_matrix, sp.csr_matrix],
+    limit: float,
+) -> tuple[Candidates, NDArray[np.bool_]] | None:
+    """Candidates of unit forces spread over points by `weight` (m, q), rows summing to one, and which rows
+    they are.
+
+    `gap`, `arm` (q,) and the interpolations `pinion`, `gear` (refined, unrefined) belong to the points. Rows
+    that a turn by `limit` (rad) does not close are left out; None if that is all of them.
+    """
+    mean_gap, mean_arm = weight @ gap, weight @ arm
+    near = mean_gap < limit * mean_arm
     if not near.any():
         return None
-    weight = weight[near].tocsr()
-    factors = np.array([gear_refinement.profile, gear_refinement.width])
-    fine = tuple((n - 1) * int(f) + 1 for n, f in zip(gear_shape, factors, strict=True))
-    return Candidates(
-        tooth,
-        hats[near],
-        mean_gap[near],
-        arm[near],
-        area[hats][near],
-        _whole(surface, hats[near], area[hats][near]),
-        (weight @ surface.nodal[points]).tocsr(),
-        (weight @ interpolation(coordinates, fine)).tocsr(),
-        (weight @ surface.coarse[points]).tocsr(),
-        (weight @ interpolation(coordinates / factors, gear_shape)).tocsr(),
+    rows = weight[near].tocsr()
+    none = np.zeros(0)
+    loads = [(rows @ part).tocsr() for part in (*pinion, *gear)]
+    empty = Candidates(
+        tooth, none, mean_gap[near], mean_arm[near], none, none, loads[0], loads[2], loads[1], loads[3]
     )
+    return empty, near
+
+
+def merged(parts: list[Candidates]) -> Candidates:
+    """All candidates of one tooth pair as one."""
+    if len(parts) == 1:
+        return parts[0]
+    flat = {
+        name: np.concatenate([getattr(part, name) for part in parts])
+        for name in ("hats", "gap", "arm", "area", "whole")
+    }
+    loads = {
+        name: sp.vstack([getattr(part, name) for part in parts], format="csr")
+        for name in ("pinion", "gear", "pinion_coarse", "gear_coarse")
+    }
+    return Candidates(tooth=parts[0].tooth, **flat, **loads)
 
 
 def _whole(surface: PinionSurface, hats: NDArray[np.int64], area: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -8,10 +8,11 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.contact.candidates import Candidates, PinionSurface, find_candidates
+from facegear.contact.candidates import Candidates, PinionSurface
 from facegear.contact.compliance import FlankCompliance
 from facegear.contact.influence import influence_matrix
 from facegear.contact.options import ContactOptions
+from facegear.contact.search import find_candidates
 from facegear.contact.solver import Contact, solve
 from facegear.contact.teeth import GearLattice
 from facegear.errors import NotConverged

@@ -28,8 +28,8 @@ class ContactSide:
     """Contact surface of a tooth: flank rows, then the fillet rows the other gear's tip can reach.
 
     nodes, u, v: (nu, nv) nodes of the mesh and parameters as in `facegear.mesh.tooth.SurfaceGrid`;
-    `flank_rows` of the rows belong to the flank, the last of them shared with the fillet, whose parameter there
-    is `junction` (nv,).
+    `flank_rows` of the rows belong to the flank, the last of them shared with the fillet, whose parameter
+    there is `junction` (nv,).
     """
 
     nodes: NDArray[np.int64]

@@ -1,0 +1,171 @@
+"""Loaded contact of the pinion and the face gear: balance, symmetries, and cases that are hard to solve."""
+
+from dataclasses import replace
+from math import radians
+
+import numpy as np
+import pytest
+
+from facegear.contact.compliance import flank_compliance
+from facegear.contact.ltca import analyse
+from facegear.contact.options import ContactOptions, Refinement
+from facegear.contact.pair import BUILDERS
+from facegear.contact.teeth import LOADED_SIDE, piece_of
+from facegear.errors import NotConverged
+from facegear.geometry.design import Assembly, Material, Relief
+from facegear.mesh.sizes import MeshSizes
+
+TORQUES = [100.0, 600.0]
+
+
+def misaligned(model, **errors):
+    """The same elastic bodies in another assembly."""
+    design = replace(model.design, assembly=Assembly(**errors))
+    surface, lattice = replace(model.surface, design=design), replace(model.lattice, design=design)
+    return replace(model, design=design, surface=surface, lattice=lattice)
+
+
+def sound(results):
+    """Conditions met and torque balanced at every position; stiffness positive and load shares whole."""
+    for result in results:
+        assert result.residual < 1e-12
+        assert result.share.sum() == pytest.approx(1.0, abs=1e-10)
+        assert (result.share >= 0).all()
+        assert result.k_average > 0
+        assert result.k_local > 0
+        assert sum(spot.force.sum() for spot in result.spots) > 0
+    return results
+
+
+def test_forces_balance_the_torque_and_two_or_three_pairs_carry(model_of):
+    results = sound(analyse(model_of(), np.arange(8) / 8, TORQUES))
+    assert {result.pairs_in_contact for result in results if result.torque == 600.0} <= {2, 3}
+
+
+def test_stiffness_grows_with_load_and_the_local_one_is_larger(model_of):
+    light, heavy = analyse(model_of(), [0.3], TORQUES)
+    assert heavy.k_average > light.k_average
+    for result in (light, heavy):
+        assert result.k_local > result.k_average
+
+
+def test_unloaded_transmission_error_is_the_geometry_s(model_of):
+    model = misaligned(model_of(), offset=50e-6, shaft_angle_error=radians(0.02))
+    result = analyse(model, [0.3], [600.0])[0]
+    assert result.ste - result.unloaded > 0
+    assert result.k_average == pytest.approx(
+        600.0 / model.design.pinion_base_radius / (result.ste - result.unloaded), rel=1e-12
+    )
+
+
+def test_result_does_not_depend_on_the_order_of_loads_or_positions(model_of):
+    together = analyse(model_of(), [0.1, 0.6], [100.0, 300.0, 600.0])
+    alone = analyse(model_of(), [0.6], [300.0])[0]
+    backwards = analyse(model_of(), [0.6, 0.1], [600.0, 300.0, 100.0])
+    expected = together[4]
+    assert (expected.position, expected.torque) == (0.6, 300.0)
+    for other in (alone, backwards[1]):
+        assert other.ste == pytest.approx(expected.ste, rel=1e-8)
+        np.testing.assert_allclose(other.share, expected.share, atol=1e-8)
+
+
+def test_result_repeats_after_a_pitch_with_the_next_tooth(model_of):
+    first, second = analyse(model_of(), [0.0, 1.0], [600.0])
+    assert second.ste == pytest.approx(first.ste, rel=1e-8)
+    np.testing.assert_allclose(second.share[:-1], first.share[1:], atol=1e-8)
+
+
+@pytest.mark.parametrize("body", ["pinion", "face_gear"])
+def test_opposite_flank_is_as_compliant_by_mirror_symmetry(model_of, body):
+    design = model_of().design
+    tooth = BUILDERS[body](design, MeshSizes(1.5e-3, 6e-3, 3e-3))
+    both = {}
+    for side in ("left", "right"):
+        piece, _ = piece_of(design, tooth, Material(206e9, 0.3), side)
+        both[side] = flank_compliance(piece, Refinement(2, 1, 1), tooth.teeth, 1)
+    loaded = LOADED_SIDE[body]
+    other = both["left" if loaded == "right" else "right"]
+    scale = both[loaded].own.max()
+    np.testing.assert_allclose(other.own, both[loaded].own, atol=1e-8 * scale)
+    np.testing.assert_allclose(other.block(1), both[loaded].block(-1), atol=1e-8 * scale)
+
+
+def test_leaving_out_the_coupling_of_neighbours_makes_the_mesh_stiffer(model_of):
+    coupled = analyse(model_of(), [0.3], [600.0])[0]
+    alone = analyse(model_of(), [0.3], [600.0], ContactOptions(coupled=False))[0]
+    assert 1.01 < alone.k_average / coupled.k_average < 1.15
+
+
+@pytest.mark.parametrize("torque", [1.0, 5000.0])
+def test_very_small_and_very_large_torques_converge(model_of, torque):
+    results = sound(analyse(model_of(), np.arange(4) / 4, [torque]))
+    assert all(result.ste > 0 for result in results)
+
+
+def test_line_contact_pair_spreads_its_load_over_the_face(model_of):
+    line, crowned = model_of(shaper_teeth=23), model_of()
+    reach = {}
+    for name, model in (("line", line), ("crowned", crowned)):
+        result = sound(analyse(model, [0.5], [100.0]))[0]
+        columns = np.concatenate([spot.hats % model.surface.shape[1] for spot in result.spots])
+        reach[name] = np.unique(columns).size
+    assert reach["line"] > 1.3 * reach["crowned"]
+
+
+@pytest.mark.parametrize(
+    "errors",
+    [
+        {"shaft_angle_error": radians(0.2)},
+        {"shaft_angle_error": radians(-0.2)},
+        {"offset": 0.3e-3},
+        {"offset": -0.3e-3},
+        {"axial_shift": 0.3e-3},
+    ],
+)
+def test_misaligned_pair_touches_at_an_edge_and_converges(model_of, errors):
+    sound(analyse(misaligned(model_of(), **errors), np.arange(4) / 4, TORQUES))
+
+
+def test_gear_pressed_into_the_pinion_is_refused_or_solved_with_its_place_named(model_of):
+    model = misaligned(model_of(), axial_shift=-0.3e-3)
+    try:
+        sound(analyse(model, [0.25], [600.0]))
+    except NotConverged as error:
+        assert "position" in str(error) or "rad" in str(error)
+
+
+@pytest.mark.parametrize(("width", "radii"), [(0.005, (0.262, 0.267)), (0.046, (0.250, 0.290))])
+def test_narrow_and_wide_faces_converge(model_of, width, radii):
+    results = sound(analyse(model_of(pinion_width=width, radii=radii), np.arange(4) / 4, TORQUES))
+    assert all(result.k_average < 2e9 for result in results)
+
+
+def test_tip_relief_takes_load_off_the_pair_that_comes_into_contact(model_of):
+    plain = analyse(model_of(), np.arange(8) / 8, [600.0])
+    relieved = sound(analyse(model_of(tip_relief=Relief(20e-6, 0.0, 2e-3)), np.arange(8) / 8, [600.0]))
+    assert min(r.k_average for r in relieved) < min(r.k_average for r in plain)
+    assert max(r.edge_pressure for r in relieved) <= max(r.edge_pressure for r in plain)
+
+
+def test_interfering_pair_is_stiffened_by_its_fillets_and_the_switch_shows_it(model_of):
+    model = model_of(rack_tip_radius=0.25)
+    positions = np.arange(8) / 8
+    with_fillet = sound(analyse(model, positions, [600.0]))
+    without = sound(analyse(model, positions, [600.0], ContactOptions(fillet=False)))
+    gain = np.mean([r.k_average for r in with_fillet]) / np.mean([r.k_average for r in without])
+    assert gain > 1.005
+
+
+def test_stiffness_is_continuous_through_a_hand_over(model_of):
+    positions = np.linspace(0, 1, 17)
+    shares = [result.share for result in analyse(model_of(), positions, [300.0])]
+    change = [i for i in range(16) if np.count_nonzero(shares[i]) != np.count_nonzero(shares[i + 1])]
+    low, high = positions[change[0]], positions[change[0] + 1]
+    count = np.count_nonzero(shares[change[0]])
+    while high - low > 1e-6:
+        middle = 0.5 * (low + high)
+        here = np.count_nonzero(analyse(model_of(), [middle], [300.0])[0].share)
+        low, high = (middle, high) if here == count else (low, middle)
+    before, after = sound(analyse(model_of(), [low, high], [300.0]))
+    assert after.pairs_in_contact != before.pairs_in_contact
+    assert after.ste == pytest.approx(before.ste, rel=1e-4)
