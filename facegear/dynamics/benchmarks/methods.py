@@ -22,7 +22,7 @@ from facegear.dynamics.taylor import make_work
 Array = NDArray[np.float64]
 Runner = Callable[[Problem, float], Array]
 TOLERANCES = tuple(10.0**-k for k in range(2, 13))
-PATIENCE = 4.0
+PATIENCE = 2.0
 STEPS = (32, 64, 128, 256, 512, 1024, 2048, 4096)
 
 

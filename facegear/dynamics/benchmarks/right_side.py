@@ -80,8 +80,8 @@ def compiled_right_side(packed: Packed) -> Callable[[float, Array], Array]:
     work = make_work(packed, 2)
 
     def derivative(s: float, z: Array) -> Array:
-        out = np.empty_like(z)
-        right_side(packed, work, s, z, out)
+        out = np.empty(z.size)
+        right_side(packed, work, s, np.ascontiguousarray(z), out)
         return out
 
     return derivative

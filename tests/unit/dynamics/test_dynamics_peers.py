@@ -1,0 +1,58 @@
+"""The integrators of the comparison solve the same equations."""
+
+import numpy as np
+import pytest
+from lumped_machines import make_machine
+
+from facegear.dynamics.benchmarks.methods import all_methods, ours, rk4
+from facegear.dynamics.benchmarks.problems import SAMPLES, machine_problems, oscillator_problem
+from facegear.dynamics.benchmarks.right_side import compiled_right_side, plain_right_side
+from facegear.dynamics.benchmarks.work_precision import Budget, seconds_at, work_precision
+from facegear.dynamics.compiled import pack
+
+
+@pytest.fixture(scope="module")
+def problems():
+    return [*machine_problems(make_machine(), 7500.0), oscillator_problem()]
+
+
+def test_compiled_and_plain_right_hand_sides_agree(problems):
+    for problem in (problems[1], problems[3]):
+        packed = pack(problem.system, problem.frequency)
+        width, n = packed.squares.size, problem.system.size
+        rng = np.random.default_rng(0)
+        z = np.zeros(2 * width)
+        z[:n], z[width : width + n] = problem.system.scale * rng.normal(size=(2, n))
+        first = compiled_right_side(packed)(1.3, z)
+        second = plain_right_side(problem.system, problem.frequency, width)(1.3, z)
+        np.testing.assert_allclose(first, second, rtol=1e-12, atol=1e-13 * np.abs(second).max())
+
+
+def test_every_method_converges_to_ours(problems):
+    problem = problems[3]
+    exact = ours(problem, 1e-14)
+    assert exact.shape == (problem.periods * SAMPLES, 1)
+    for method in all_methods():
+        setting = 1024 if method.name.startswith("RK4") else 1e-6
+        assert np.abs(method.run(problem, setting) - exact).max() < 1e-3, method.name
+
+
+def test_fixed_steps_lose_their_order_where_contact_switches(problems):
+    kept, lost = problems[0], problems[1]
+
+    def gain(problem):
+        exact = ours(problem, 1e-14)
+        errors = [np.abs(rk4(problem, steps) - exact).max() for steps in (256, 512, 1024, 2048)]
+        return np.mean(np.log2(np.divide(errors[:-1], errors[1:])))
+
+    assert gain(kept) == pytest.approx(4.0, abs=0.25)
+    assert gain(lost) < 3.2
+
+
+def test_the_table_lists_failures_and_interpolates_times(problems):
+    methods = [one for one in all_methods() if one.name in ("facegear", "RK4 fixed")]
+    table = work_precision([problems[3]], methods, Budget(repeats=1, longest=1.0))
+    assert set(table["method"]) == {"facegear", "RK4 fixed"}
+    assert (table["failure"] == "").all()
+    time = seconds_at(table, "oracle (a)", "facegear", 1e-8)
+    assert table["seconds"].min() <= time <= table["seconds"].max()
