@@ -8,7 +8,7 @@ import subprocess
 import time
 
 import pytest
-from conftest import ROOT, Project, environment
+from projects import ROOT, Project, environment
 
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
 QUICK = ("--configfile", str(ROOT / "config" / "quick.yaml"))

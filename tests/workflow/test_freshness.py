@@ -4,7 +4,7 @@ import os
 import re
 
 import pytest
-from conftest import ROOT, Project, copy_sources
+from projects import ROOT, Project, copy_sources
 
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
 QUICK = ("--configfile", str(ROOT / "config" / "quick.yaml"))

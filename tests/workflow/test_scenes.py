@@ -1,7 +1,7 @@
 """A target runs only the stages it needs."""
 
 import pytest
-from conftest import ROOT, Project
+from projects import ROOT, Project
 
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
 

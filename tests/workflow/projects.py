@@ -1,0 +1,73 @@
+"""Runs of the whole workflow in folders of their own, from the sources of this checkout."""
+
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+
+
+@dataclass(frozen=True)
+class Project:
+    """A folder that results go to, and the sources that make them."""
+
+    folder: Path
+    sources: Path = ROOT
+
+    def command(self, *arguments: str) -> list[str]:
+        return [
+            *(sys.executable, "-m", "snakemake", "--cores", "2", "--nocolor"),
+            *("--snakefile", str(self.sources / "Snakefile"), "--directory", str(self.folder)),
+            *arguments,
+        ]
+
+    def run(self, *arguments: str, check: bool = True) -> subprocess.CompletedProcess[str]:
+        done = subprocess.run(
+            self.command(*arguments), capture_output=True, text=True, env=environment(), check=False
+        )
+        if check:
+            assert done.returncode == 0, f"{arguments}\n{done.stdout[-3000:]}\n{done.stderr[-6000:]}"
+        return done
+
+    def planned(self, *arguments: str) -> set[str]:
+        """Names of the rules that a dry run would execute."""
+        done = self.run("-n", *arguments)
+        return rules_in(done.stdout + done.stderr) - {"all"}
+
+
+def rules_in(text: str) -> set[str]:
+    """Rule names in a Snakemake job table."""
+    lines = text.splitlines()
+    found: set[str] = set()
+    for number, line in enumerate(lines):
+        if line.split() == ["job", "count"]:
+            for row in lines[number + 2 :]:
+                words = row.split()
+                if len(words) != 2 or words[0] == "total":
+                    break
+                found.add(words[0])
+    return found
+
+
+def environment() -> dict[str, str]:
+    kept = {key: value for key, value in os.environ.items() if not key.startswith("SNAKEMAKE")}
+    return {**kept, "PYTHONPATH": "", "COLUMNS": "200"}
+
+
+def copy_sources(target: Path) -> Path:
+    """A copy of the tracked and new source files, with their times."""
+    listed = subprocess.run(
+        ["git", "ls-files", "-co", "--exclude-standard", "Snakefile", "workflow", "facegear", "config"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout.splitlines()
+    for name in listed:
+        if (ROOT / name).is_file():
+            (target / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / name, target / name)
+    return target
