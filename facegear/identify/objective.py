@@ -14,7 +14,7 @@ from facegear.load_sharing.run import group_average
 from facegear.transmission.machine import Machine
 
 SWEEP_POINTS = 17
-SWEEP_WORTH = 1.0
+SWEEP_WORTH = 1.5
 """Sharing misfit above which jumps are not looked for and count as far off: such a set cannot win."""
 
 
