@@ -1,4 +1,4 @@
-"""Config section `contact`: loads and positions of the loaded tooth contact analysis, and what is modelled."""
+"""Config section `contact`: loads and positions of the loaded tooth contact analysis; what is modelled."""
 
 from typing import Annotated, Literal
 
@@ -11,8 +11,8 @@ from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Se
 class RefinementSection(Section):
     """How often the layer of elements under the flank is cut."""
 
-    profile: int = Field(default=4, ge=1, le=32, description="across the profile")
-    width: int = Field(default=2, ge=1, le=16, description="along the face")
+    profile: int = Field(default=2, ge=1, le=32, description="across the profile")
+    width: int = Field(default=1, ge=1, le=16, description="along the face")
     depth: int = Field(default=2, ge=1, le=16, description="below the flank")
     depth_grading: float = Field(default=2.0, ge=1, le=4, description="ratio of neighbouring sizes in depth")
 
@@ -37,8 +37,13 @@ class Contact(Section):
     positions_per_pitch: int = Field(default=32, ge=4, le=4096)
     refinement: RefinementSection = RefinementSection()
     sector: SectorSection = SectorSection()
+    element: Literal["hex27", "hex8", "tet4"] = Field(
+        default="hex27", description="the linear ones, on the same nodes, only for comparison"
+    )
     fillet_contact: bool = Field(default=True, description="tips may touch fillets")
     neighbour_coupling: bool = Field(default=True, description="a loaded tooth moves its neighbours")
+
+    edge_contact: bool = Field(default=True, description="tip edges carry loads of their own")
 
     @model_validator(mode="after")
     def _rising(self) -> "Contact":
@@ -55,7 +60,8 @@ def contact_plan(section: Contact) -> ContactPlan:
         positions=section.positions_per_pitch,
         refinement=Refinement(layer.profile, layer.width, layer.depth, layer.depth_grading),
         sector=Sector(_number(sector.pinion_teeth), _number(sector.face_gear_teeth), sector.cut_faces),
-        options=ContactOptions(section.fillet_contact, section.neighbour_coupling),
+        options=ContactOptions(section.fillet_contact, section.neighbour_coupling, section.edge_contact),
+        element=section.element,
     )
 
 

@@ -9,7 +9,8 @@ import scipy.sparse as sp
 from numba import njit
 from numpy.typing import NDArray
 
-from facegear.contact.elements import gauss_points, hex_shapes
+from facegear.contact.elements import gauss_points, hex_shapes, subdivided, trilinear_shapes
+from facegear.contact.options import Element
 from facegear.geometry.design import Material
 
 ELEMENTS_AT_ONCE = 256
@@ -21,28 +22,39 @@ def lame_constants(material: Material) -> tuple[float, float]:
     return 2 * shear * material.poisson_ratio / (1 - 2 * material.poisson_ratio), shear
 
 
-def element_stiffness(corners: NDArray[np.float64], material: Material) -> NDArray[np.float64]:
-    """Stiffness (m, 81, 81) of 27-node hexahedra with node positions (m, 27, 3), three Gauss points a
-    direction.
+def element_stiffness(
+    corners: NDArray[np.float64], material: Material, element: Element = "hex27"
+) -> NDArray[np.float64]:
+    """Stiffness (m, 3 a, 3 a) of elements with node positions (m, a, 3), fully integrated.
 
-    Dof 3 a + i is the displacement of local node a along axis i. Raises ValueError for an inverted element.
+    Dof 3 n + i is the displacement of local node n along axis i. Raises ValueError for an inverted element.
     """
-    where, weight = gauss_points(3, 3)
-    _, reference = hex_shapes(where)
+    reference, weight = _integration(element)
     jacobian = np.einsum("qad,mai->mqid", reference, corners)
     volume = np.linalg.det(jacobian)
     if (volume <= 0).any():
         raise ValueError(f"{int((volume <= 0).any(axis=1).sum())} elements are inverted")
     gradient = np.einsum("qad,mqdi->mqai", reference, np.linalg.inv(jacobian), optimize=True)
     scaled = gradient * np.sqrt(weight * volume)[:, :, None, None]
-    flat = scaled.reshape(len(corners), len(weight), 81)
-    outer = (flat.transpose(0, 2, 1) @ flat).reshape(-1, 27, 3, 27, 3)
+    nodes = corners.shape[1]
+    flat = scaled.reshape(len(corners), len(weight), 3 * nodes)
+    outer = (flat.transpose(0, 2, 1) @ flat).reshape(-1, nodes, 3, nodes, 3)
     lame, shear = lame_constants(material)
     stiffness = lame * outer + shear * outer.transpose(0, 1, 4, 3, 2)
     trace = shear * np.einsum("maibi->mab", outer)
     for axis in range(3):
         stiffness[:, :, axis, :, axis] += trace
-    return stiffness.reshape(-1, 81, 81)
+    return stiffness.reshape(-1, 3 * nodes, 3 * nodes)
+
+
+def _integration(element: Element) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Reference gradients (q, a, 3) and weights (q,)."""
+    if element == "tet4":
+        corner = np.array([[-1.0, -1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+        return corner[None], np.array([1 / 6])
+    where, weight = gauss_points(3 if element == "hex27" else 2, 3)
+    shapes = hex_shapes if element == "hex27" else trilinear_shapes
+    return shapes(where)[1], weight
 
 
 @njit(cache=True)
@@ -60,9 +72,13 @@ def _scatter(elements, blocks, indptr, indices, data):  # type: ignore[no-untype
 
 
 def stiffness_matrix(
-    points: NDArray[np.float64], hexes: NDArray[np.int64], material: Material
+    points: NDArray[np.float64], hexes: NDArray[np.int64], material: Material, element: Element = "hex27"
 ) -> sp.bsr_matrix:
-    """Stiffness (3n, 3n) in N/m of a mesh with points (n, 3) in m; dof 3 p + i is point p along axis i."""
+    """Stiffness (3n, 3n) in N/m of a mesh with points (n, 3) in m; dof 3 p + i is point p along axis i.
+
+    `hexes` (m, 27) are cut into the smaller hexahedra or tetrahedra of `element` on the same nodes.
+    """
+    hexes = subdivided(hexes, element)
     count, nodes = len(points), hexes.shape[1]
     touches = sp.csr_matrix(
         (np.ones(hexes.size, dtype=np.int32), (np.repeat(np.arange(len(hexes)), nodes), hexes.ravel())),
@@ -73,6 +89,6 @@ def stiffness_matrix(
     data = np.zeros((pattern.nnz, 3, 3))
     for start in range(0, len(hexes), ELEMENTS_AT_ONCE):
         batch = hexes[start : start + ELEMENTS_AT_ONCE]
-        blocks = element_stiffness(points[batch], material)
+        blocks = element_stiffness(points[batch], material, element)
         _scatter(batch, blocks, pattern.indptr, pattern.indices, data)
     return sp.bsr_matrix((data, pattern.indices, pattern.indptr), shape=(3 * count, 3 * count))

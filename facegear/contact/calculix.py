@@ -139,7 +139,7 @@ def run_deck(path: Path, threads: int, dof: int, timeout: float = 3600.0) -> Pee
 def _placed(
     design: PairDesign, bodies: dict[str, SectorMesh], angles: tuple[float, float]
 ) -> dict[str, NDArray[np.float64]]:
-    """Both bodies in the gear's frame, turned to their angles, the gear's loaded flanks towards the pinion."""
+    """Both bodies in the gear's frame, turned to their angles, loaded flanks towards the pinion."""
     mirror = np.array([-1.0, 1.0, 1.0])
     placed = to_left_flank(
         design, bodies["pinion"].nodes, np.array([angles[0]]), np.array([angles[1]]), np.zeros(1), False

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from facegear.contact.body import Piece
 from facegear.contact.layer import tied_system
-from facegear.contact.options import Ends, Refinement
+from facegear.contact.options import Element, Ends, Refinement
 from facegear.contact.ring import face_compliance, rest_stiffness
 from facegear.contact.substructure import condense, loaded_compliance
 
@@ -42,6 +42,7 @@ def flank_compliance(
     teeth: int = 1,
     neighbours: int = 2,
     ends: Ends = "ring",
+    element: Element = "hex27",
 ) -> FlankCompliance:
     """Compliance of a body of `teeth` copies of a piece; `neighbours` on each side of the loaded one are
     kept.
@@ -50,7 +51,7 @@ def flank_compliance(
     layer changes the field near a load only. A piece without cut faces stands for itself.
     Raises FacegearError if the body is not held, ValueError if there are too few teeth.
     """
-    plain = tied_system(piece, Refinement())
+    plain = tied_system(piece, Refinement(), element)
     repeats = piece.left.size > 0
     others = np.zeros((1, piece.flank.size, piece.flank.size))
     rest = np.zeros((0, 0))
@@ -60,7 +61,7 @@ def flank_compliance(
         coarse = plain.spread @ tooth.influence
         others = coarse @ face_compliance(tooth.faces, rests) @ coarse.T
         rest = rests[0][0]
-    system = plain if refinement == Refinement() else tied_system(piece, refinement)
+    system = plain if refinement == Refinement() else tied_system(piece, refinement, element)
     own = _spread(system.spread, loaded_compliance(piece, system, rest))
     return FlankCompliance(own, others, system.surface.shape[:2], piece.flank.shape, refinement)
 

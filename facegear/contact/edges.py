@@ -58,7 +58,7 @@ def gear_edge_gaps(
     teeth: NDArray[np.int64],
     fillet: bool,
 ) -> list[EdgeGaps]:
-    """Gaps along pinion normals from the gear's tip edge to the flank (and fillet) of each tooth of `teeth`."""
+    """Gaps along pinion normals from the gear's tip edge to the flank (and fillet) of each one of `teeth`."""
     design = surface.design
     gear = design.face_gear
     columns = (lattice.side.shape[1] - 1) * lattice.refinement.width + 1

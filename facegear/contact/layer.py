@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from facegear.contact.assembly import stiffness_matrix
 from facegear.contact.body import Piece
 from facegear.contact.elements import block_hexes, hex_shapes
-from facegear.contact.options import Refinement
+from facegear.contact.options import Element, Refinement
 
 ALL_NODES = np.arange(27).reshape(3, 3, 3).transpose(2, 1, 0)
 
@@ -74,8 +74,11 @@ def depth_stations(refinement: Refinement) -> NDArray[np.float64]:
     return stations
 
 
-def tied_system(piece: Piece, refinement: Refinement) -> TiedSystem:
-    """Assemble a piece whose flank layer is cut by `refinement`."""
+def tied_system(piece: Piece, refinement: Refinement, element: Element = "hex27") -> TiedSystem:
+    """Assemble a piece whose flank layer is cut by `refinement`.
+
+    `element` other than hex27 puts linear elements on the same nodes, for comparison.
+    """
     elements, turned = flank_elements(piece)
     a, b = elements.shape
     shape = (2 * a * refinement.profile + 1, 2 * b * refinement.width + 1, 2 * refinement.depth + 1)
@@ -104,7 +107,7 @@ def tied_system(piece: Piece, refinement: Refinement) -> TiedSystem:
 
     points = np.concatenate([piece.points[used], fine_points[~tied]])
     coarse_hexes = coarse[piece.hexes[stays]]
-    matrix = _stiffness(piece, points, coarse_hexes, block_hexes(lattice), fine, fine_points, follow)
+    matrix = _stiffness(piece, points, coarse_hexes, block_hexes(lattice), fine, fine_points, follow, element)
 
     top = lattice[:, :, 0].ravel()
     all_normals = np.zeros_like(piece.points)
@@ -165,12 +168,13 @@ def _stiffness(
     fine: NDArray[np.int64],
     fine_points: NDArray[np.float64],
     follow: sp.csr_matrix,
+    element: Element,
 ) -> sp.csr_matrix:
     """Stiffness on the masters; only elements with tied nodes need the costly triple product."""
     touches = (fine[fine_hexes] < 0).any(axis=1)
     plain = np.concatenate([coarse_hexes, fine[fine_hexes[~touches]]])
-    matrix = stiffness_matrix(points, plain, piece.material).tocsr()
+    matrix = stiffness_matrix(points, plain, piece.material, element).tocsr()
     nodes, compact = np.unique(fine_hexes[touches], return_inverse=True)
-    partial = stiffness_matrix(fine_points[nodes], compact.reshape(-1, 27), piece.material).tocsr()
+    partial = stiffness_matrix(fine_points[nodes], compact.reshape(-1, 27), piece.material, element).tocsr()
     ties = sp.kron(follow[nodes], np.eye(3), format="csr")
     return (matrix + ties.T @ partial @ ties).tocsr()

@@ -113,7 +113,7 @@ def analyse(
     for row, position in enumerate(positions):
         angles = float(phi1[row]), float(unloaded.phi2[row])
         error = -float(unloaded.transmission_error[row])
-        find = partial(_candidates, model, angles, options.fillet)
+        find = partial(_candidates, model, angles, options)
         combine = partial(influence_matrix, pinion=model.pinion, gear=model.gear, coupled=options.coupled)
         place = Place(float(position), error, model.design.pinion_base_radius)
         solved, guess = solve_position(find, combine, place, torques, guess)
@@ -123,9 +123,9 @@ def analyse(
 
 
 def _candidates(
-    model: ContactModel, angles: tuple[float, float], fillet: bool, limit: float
+    model: ContactModel, angles: tuple[float, float], options: ContactOptions, limit: float
 ) -> list[Candidates]:
-    return find_candidates(model.surface, model.lattice, *angles, PAIRS, limit, fillet)
+    return find_candidates(model.surface, model.lattice, *angles, PAIRS, limit, options)
 
 
 @dataclass(frozen=True)

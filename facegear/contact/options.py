@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 Ends = Literal["ring", "free", "clamped"]
+Element = Literal["hex27", "hex8", "tet4"]
 
 
 @dataclass(frozen=True)
@@ -30,10 +31,13 @@ class Sector:
 
 @dataclass(frozen=True)
 class ContactOptions:
-    """What takes part: fillets and tip lands as contact surfaces, coupling between neighbouring teeth."""
+    """What takes part: fillets and tip lands as contact surfaces, coupling between neighbouring teeth, tip
+    edges.
+    """
 
     fillet: bool = True
     coupled: bool = True
+    edges: bool = True
 
 
 @dataclass(frozen=True)
@@ -45,3 +49,4 @@ class ContactPlan:
     refinement: Refinement
     sector: Sector
     options: ContactOptions
+    element: Element = "hex27"

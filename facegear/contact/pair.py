@@ -36,8 +36,8 @@ def body_compliance(
         raise ConfigError(f"contact.sector.{body}_teeth", wanted, f"at most {tooth.teeth}")
     piece, _ = piece_of(design, tooth, material)
     ends = "ring" if wanted is None else sector.cut_faces
-    neighbours = min(NEIGHBOURS, ((wanted or tooth.teeth - 1) - 1) // 2)
-    return flank_compliance(piece, plan.refinement, wanted or tooth.teeth, neighbours, ends)
+    neighbours = min(NEIGHBOURS, ((wanted or tooth.teeth) - 3) // 2)
+    return flank_compliance(piece, plan.refinement, wanted or tooth.teeth, neighbours, ends, plan.element)
 
 
 def contact_model(

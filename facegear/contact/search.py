@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from facegear.contact.candidates import Candidates, PinionSurface, hats_over, merged
 from facegear.contact.edges import gear_edge, gear_edge_gaps, pinion_edge
+from facegear.contact.options import ContactOptions
 from facegear.contact.teeth import GearLattice
 from facegear.geometry.pinion_surface import SurfacePoints
 from facegear.geometry.separation import separation
@@ -17,26 +18,30 @@ def find_candidates(
     phi2: float,
     teeth: NDArray[np.int64],
     limit: float,
-    fillet: bool,
+    options: ContactOptions,
 ) -> list[Candidates]:
     """Hats and edges of the pairs `teeth` that a turn of the pinion by `limit` (rad) would close.
 
     phi1, phi2 (rad) place the unloaded gears. Pairs without any are left out.
     """
     probes, elements = surface.probes
+    fillet = options.fillet
     seen = separation(surface.design, probes, phi1, phi2, teeth)
     depth = limit * surface.design.pinion_base_radius
     reach = 3.0 * depth + 20e-6
     found = []
     edges = gear_edge_gaps(surface, lattice, phi1, phi2, teeth, fillet)
+    if not options.edges:
+        edges = [None] * len(teeth)
     for tooth, gap, edge in zip(teeth, seen.gap, edges, strict=True):
         near = (gap[elements] < depth + 10e-6).any(axis=1) & (np.abs(gap[elements]) < 1e-3).any(axis=1)
         points = np.flatnonzero(near[surface.element])
         place = (phi1, phi2, int(tooth))
-        parts = [gear_edge(surface, lattice, edge, int(tooth), limit)]
+        parts = [gear_edge(surface, lattice, edge, int(tooth), limit)] if edge is not None else []
         if points.size:
             parts.append(_pair_candidates(surface, lattice, place, points, limit, reach, fillet))
-            parts.append(pinion_edge(surface, lattice, place, limit, fillet))
+            if options.edges:
+                parts.append(pinion_edge(surface, lattice, place, limit, fillet))
         parts = [part for part in parts if part is not None]
         if parts:
             found.append(merged(parts))
