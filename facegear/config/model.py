@@ -33,6 +33,9 @@ class Config(Section):
     @model_validator(mode="after")
     def _buildable(self) -> "Config":
         pair = self.tooth_pair
+        if pair.pinion is None and self.mesh_stiffness.source != "harmonics":
+            allowed = "required, as mesh_stiffness.source is not harmonics"
+            refuse("tooth_pair.pinion", None, allowed)
         try:
             layout(
                 self.transmission,

@@ -5,7 +5,7 @@ from math import pi, radians
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
-from facegear.errors import GeometryError
+from facegear.errors import ConfigError, GeometryError
 from facegear.geometry.design import (
     Assembly,
     FaceGear,
@@ -89,13 +89,21 @@ class ToothPair(Section):
     module_mm: float = Field(gt=0, ge=0.1, le=100)
     pressure_angle_deg: float = Field(ge=10, le=40)
     material: MaterialSection = MaterialSection(young_modulus_gpa=206.0, poisson_ratio=0.3)
-    pinion: PinionSection
-    face_gear: FaceGearSection
-    shaper: ShaperSection
+    pinion: PinionSection | None = Field(
+        default=None, description="bodies are needed by geometry and contact"
+    )
+    face_gear: FaceGearSection | None = None
+    shaper: ShaperSection | None = None
     assembly: AssemblySection = AssemblySection()
 
     @model_validator(mode="after")
     def _possible(self) -> "ToothPair":
+        bodies = {name: getattr(self, name) for name in ("pinion", "face_gear", "shaper")}
+        missing = [name for name, body in bodies.items() if body is None]
+        if len(missing) == len(bodies):
+            return self
+        if missing:
+            refuse(missing[0], None, "pinion, face_gear and shaper are given all three, or none of them")
         try:
             check(pair_design(self))
         except GeometryError as error:
@@ -104,9 +112,11 @@ class ToothPair(Section):
 
 
 def pair_design(section: ToothPair) -> PairDesign:
-    """The pair in SI units."""
+    """The pair in SI units. Raises ConfigError for a section without bodies."""
     m = 1e-3 * section.module_mm
-    pinion, gear = section.pinion, section.face_gear
+    pinion, gear, shaper = section.pinion, section.face_gear, section.shaper
+    if pinion is None or gear is None or shaper is None:
+        raise ConfigError("tooth_pair.pinion", None, "geometry and contact need pinion, face_gear and shaper")
     return PairDesign(
         module=m,
         pressure_angle=radians(section.pressure_angle_deg),
@@ -131,7 +141,7 @@ def pair_design(section: ToothPair) -> PairDesign:
             addendum=m * gear.addendum_modules,
             rim_thickness=1e-3 * gear.rim_thickness_mm,
         ),
-        shaper=Shaper(section.shaper.teeth, m * section.shaper.addendum_modules),
+        shaper=Shaper(shaper.teeth, m * shaper.addendum_modules),
         assembly=Assembly(
             offset=1e-6 * section.assembly.offset_um,
             shaft_angle_error=section.assembly.shaft_angle_error_deg * pi / 180,
@@ -142,9 +152,9 @@ def pair_design(section: ToothPair) -> PairDesign:
 
 def materials(section: ToothPair) -> tuple[Material, Material]:
     """Materials of pinion and face gear in SI units."""
-    pinion = section.pinion.material or section.material
-    gear = section.face_gear.material or section.material
-    return _material(pinion), _material(gear)
+    own = [body.material if body else None for body in (section.pinion, section.face_gear)]
+    pinion, gear = (_material(material or section.material) for material in own)
+    return pinion, gear
 
 
 def _material(section: MaterialSection) -> Material:

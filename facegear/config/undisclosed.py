@@ -8,12 +8,21 @@ def undisclosed_inputs(values: Mapping[str, Any]) -> list[str]:
     """One phrase an input, from the plain values of a config."""
     transmission, pair = values["transmission"], values["tooth_pair"]
     torque, error = transmission["torque"], transmission["transmission_error"]
-    gear, pinion = pair["face_gear"], pair["pinion"]
+    gear, pinion, shaper = pair["face_gear"], pair["pinion"], pair["shaper"]
     stiffness = values["mesh_stiffness"]
     more = "; ".join(
         f"harmonic {term['order']}: {term['amplitude_um']:g} um" for term in error["more_harmonics"]
     )
     phasing = "in step at all meshes" if error["phasing"] == "in_step" else "shifted like the mesh stiffness"
+    teeth = (
+        []
+        if pinion is None
+        else [
+            f"face width {gear['inner_radius_mm']:g} to {gear['outer_radius_mm']:g} mm, "
+            f"rim {gear['rim_thickness_mm']:g} mm, bore {pinion['bore_radius_mm']:g} mm, "
+            f"shaper teeth {shaper['teeth']}"
+        ]
+    )
     return [
         f"torque per engine {torque['per_input_n_m']:g} N m",
         f"share of the power at the tail {100 * torque['tail_share']:.3g} %",
@@ -22,7 +31,5 @@ def undisclosed_inputs(values: Mapping[str, Any]) -> list[str]:
         f"phases of the lower meshes {transmission['phase_convention']}",
         f"mesh stiffness source {stiffness['source']}, mean {stiffness['mean_n_per_m']:.3g} N/m",
         f"mesh radius {transmission['face_gear']['mesh_radius_mm']:g} mm",
-        f"face width {gear['inner_radius_mm']:g} to {gear['outer_radius_mm']:g} mm, "
-        f"rim {gear['rim_thickness_mm']:g} mm, bore {pinion['bore_radius_mm']:g} mm, "
-        f"shaper teeth {pair['shaper']['teeth']}",
+        *teeth,
     ]

@@ -37,3 +37,11 @@ def test_a_config_cannot_extend_itself_or_a_file_elsewhere(tmp_path, base):
     (tmp_path / "own.yaml").write_text(f"extends: {base}\n")
     with pytest.raises(ConfigErrors, match="extends = "):
         read_layers(tmp_path / "own.yaml")
+
+
+def test_bodies_are_optional_only_where_harmonics_are_given():
+    values = load_config(ROOT / "config" / "harmonics_only.yaml").model_dump(mode="json")
+    assert values["tooth_pair"]["pinion"] is None
+    values["mesh_stiffness"] |= {"source": "fem", "torque_n_m": 400.0, "table": []}
+    with pytest.raises(ConfigErrors, match=r"tooth_pair\.pinion = null: required"):
+        parse(Config, values)
