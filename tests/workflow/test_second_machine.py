@@ -1,0 +1,42 @@
+"""The second machine of the docs goes through the whole chain."""
+
+import pandas as pd
+import pytest
+from projects import ROOT, Project
+
+pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    project = Project(tmp_path_factory.mktemp("second"))
+    project.run("--configfile", str(ROOT / "config" / "two_pinion.yaml"))
+    return project.folder / "results" / "two_pinion"
+
+
+def test_one_rigid_mode_and_axial_bearings_of_the_pinions(results):
+    modes = pd.read_csv(results / "modal" / "frequencies.csv")
+    assert (modes["frequency_hz"] == 0).sum() == 1
+    axial = modes[modes["symbols"].str.contains("input A")]
+    assert axial["frequency_hz"].to_list() == pytest.approx(
+        2 * [(5.0e7 / 3.4) ** 0.5 / 6.283185307], rel=1e-6
+    )
+
+
+def test_engine_out_leaves_all_load_to_the_other(results):
+    summary = pd.read_csv(results / "load_sharing" / "summary.csv").set_index(["study", "point"])
+    assert summary.loc[("second_engine", "out__120"), "mean"] == pytest.approx(2.0, abs=1e-6)
+    assert summary.loc[("second_engine", "half__120"), "mean"] == pytest.approx(600 / 450, abs=0.03)
+
+
+def test_contact_is_balanced_and_loaded_pairs_are_two_or_three(results):
+    ltca = pd.read_csv(results / "contact" / "ltca.csv")
+    assert ltca["kkt_residual"].max() < 1e-12
+    assert ltca["torque_residual"].max() < 1e-10
+    assert set(ltca["pairs_in_contact"]) <= {1, 2, 3}
+
+
+def test_report_of_the_machine_is_whole(results):
+    page = (results / "report.html").read_text()
+    assert "2 pinions of 25 teeth and 1 face gear(s) of 90 teeth" in page
+    assert '<img src="data:image' in page
