@@ -6,10 +6,11 @@ include: "workflow/rules/contact.smk"
 include: "workflow/rules/stiffness.smk"
 include: "workflow/rules/modal.smk"
 include: "workflow/rules/dynamics.smk"
+include: "workflow/rules/dynamics_benchmarks.smk"
 include: "workflow/rules/load_sharing.smk"
 include: "workflow/rules/scorecard.smk"
 include: "workflow/rules/identify.smk"
-include: "workflow/rules/targets.smk"
+include: "workflow/rules/functions/targets.smk"
 include: "workflow/rules/report.smk"
 
 

@@ -52,6 +52,7 @@ class Sweep(Section):
         window_periods=128,
         periodic_residual=1e-5,
         extensions=1,
+        samples_per_period=32,
     )
 
     @model_validator(mode="after")
