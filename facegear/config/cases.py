@@ -23,23 +23,35 @@ STAGE_KEYS: dict[str, tuple[str, ...]] = {
 def expand_cases(values: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     """Case id -> validated plain config values; the first is the config's own case.
 
-    A study's case has the id `<case>/studies/<study>/<point>`. Raises ConfigErrors naming study and point.
+    A study's case has the id `<case>/studies/<study>/<point>`, a gear design of the search for undisclosed
+    inputs `<case>/designs/<name>`. Raises ConfigErrors naming study and point.
     """
     base = dict(values)
     cases = {base["case"]: base}
-    plain = {**base, "studies": []}
     for study in base["studies"]:
         for point, changes in study_points(parse(Study, study)).items():
-            changed = deepcopy(plain)
-            try:
-                for key, value in changes.items():
-                    set_key(changed, key, value)
-            except ConfigError as error:
-                raise ConfigErrors(f"studies.{study['name']}.{point}", [str(error)]) from None
-            case = f"{base['case']}/studies/{study['name']}/{point}"
-            checked = parse(Config, changed, source=f"studies.{study['name']}.{point}")
-            cases[case] = {**checked.model_dump(mode="json"), "case": case}
-    return cases
+            where = f"studies.{study['name']}.{point}"
+            cases[f"{base['case']}/studies/{study['name']}/{point}"] = _changed(base, changes, where)
+    for name, changes in design_points(base["identify"]).items():
+        cases[f"{base['case']}/designs/{name}"] = _changed(base, changes, f"identify.designs.{name}")
+    return {case: {**changed, "case": case} for case, changed in cases.items()}
+
+
+def design_points(identify: Mapping[str, Any] | None) -> dict[str, dict[str, Any]]:
+    """Folder name -> the keys it sets, for the gear designs of config section `identify`."""
+    designs = identify["designs"] if identify else []
+    return {_folder_name(design["label"]): dict(design["set"]) for design in designs}
+
+
+def _changed(base: Mapping[str, Any], changes: Mapping[str, Any], where: str) -> dict[str, Any]:
+    """The base config without studies and search, with some keys changed, validated."""
+    changed = deepcopy({**base, "studies": [], "identify": None})
+    try:
+        for key, value in changes.items():
+            set_key(changed, key, value)
+    except ConfigError as error:
+        raise ConfigErrors(where, [str(error)]) from None
+    return parse(Config, changed, source=where).model_dump(mode="json")
 
 
 def study_points(study: Study) -> dict[str, dict[str, Any]]:

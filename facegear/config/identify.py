@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field, model_validator
 
 from facegear.config.base import Section, refuse
+from facegear.config.studies import Point
 from facegear.identify.budget import Budget
 from facegear.identify.inputs import Branch, Meaning, Space, StiffnessLoad, Waveform
 from facegear.identify.targets import BacklashTarget, Targets
@@ -93,6 +94,14 @@ class Identify(Section):
         ("operating", "mean"), min_length=1, description="load at which k(t) has its shape"
     )
     budget: SearchBudget = SearchBudget()
+    designs: tuple[Point, ...] = Field((), description="other plausible gear data for the first road")
+
+    @model_validator(mode="after")
+    def _distinct(self) -> "Identify":
+        labels = [design.label for design in self.designs]
+        if len(set(labels)) < len(labels):
+            refuse("designs", labels, "each design needs its own label")
+        return self
 
 
 def branches(section: Identify) -> tuple[Branch, ...]:

@@ -1,21 +1,33 @@
-"""Do the two roads to the undisclosed load agree?"""
+"""The first road to the undisclosed load, and whether the fit agrees with it."""
+
+from collections.abc import Mapping
 
 import pandas as pd
 
+from facegear.identify.stiffness import load_for_mean
+from facegear.stiffness.curve import LoadTable
+from facegear.stiffness.request import Definition
 
-def roads_table(sets: pd.DataFrame, load_for_mean: float) -> pd.DataFrame:
-    """One row a set: load on a mesh from the mean stiffness and from the fitted torque, and their ratio.
 
-    The first road needs no dynamics: it is the torque on the pinion of one mesh at which contact analysis of
-    the config's gear data has the paper's mean stiffness. The second is an equal share of the fitted torque
-    of an input pinion over its two meshes.
+def roads_table(
+    tables: Mapping[str, LoadTable], mean: float, definition: Definition, fitted_load: float
+) -> pd.DataFrame:
+    """One row a gear design: the load of the paper's mean stiffness, and the mean at the fitted load.
+
+    Loads are torques on the pinion of one mesh, N m. The first road needs no dynamics; the roads agree for a
+    design whose mean at the fitted load is the paper's. Empty where a load lies outside those solved.
     """
-    fitted = sets["per_input_n_m"] / 2.0
-    return pd.DataFrame(
-        {
-            "set": sets["set"],
-            "load_from_mean_stiffness_n_m": load_for_mean,
-            "load_from_fit_n_m": fitted,
-            "ratio": fitted / load_for_mean,
-        }
-    )
+    rows = []
+    for name, table in tables.items():
+        inside = table.torques[0] <= fitted_load <= table.torques[-1]
+        at_fit = float(table.at(fitted_load, definition).mean()) if inside else None
+        rows.append(
+            {
+                "design": name,
+                "load_from_mean_stiffness_n_m": load_for_mean(table, mean, definition),
+                "fitted_load_n_m": fitted_load,
+                "mean_at_fitted_load_n_per_m": at_fit,
+                "ratio_to_paper": at_fit / mean if at_fit else None,
+            }
+        )
+    return pd.DataFrame(rows)

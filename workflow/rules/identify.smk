@@ -1,6 +1,8 @@
+from facegear.config.cases import design_points
 from facegear.config.identify import Identify, branches
 
 IDENTIFY = parse_section(Identify, CONFIG["identify"]) if CONFIG["identify"] else None
+DESIGNS = list(design_points(CONFIG["identify"]))
 BRANCHES = [branch.name for branch in branches(IDENTIFY)] if IDENTIFY else []
 
 
@@ -39,7 +41,6 @@ rule identify_sets:
         sets="results/{case}/identify/sets.csv",
         coefficients="results/{case}/identify/coefficients.csv",
         sensitivity="results/{case}/identify/sensitivity.csv",
-        roads="results/{case}/identify/roads.csv",
         svg="results/{case}/figures/identify_landscape.svg",
         png="results/{case}/figures/identify_landscape.png",
         manifest="results/{case}/identify/identify.provenance.json",
@@ -62,6 +63,32 @@ rule identify_sets:
         "../scripts/identify_sets.py"
 
 
+rule identify_roads:
+    input:
+        sets="results/{case}/identify/sets.csv",
+        ltca=upstream("contact", "contact/ltca.csv"),
+        designs=[f"results/{{case}}/designs/{name}/contact/ltca.csv" for name in DESIGNS],
+    output:
+        roads="results/{case}/identify/roads.csv",
+        manifest="results/{case}/identify/roads.provenance.json",
+    log:
+        "results/{case}/logs/identify_roads.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/identify_roads.tsv"
+    threads: 1
+    resources:
+        mem_mb=500,
+        runtime=5,
+    params:
+        designs=DESIGNS,
+        stiffness=config_slice("mesh_stiffness"),
+        code=fingerprint("identify_roads.py"),
+    message:
+        "load of the paper's mean stiffness for several gear designs"
+    script:
+        "../scripts/identify_roads.py"
+
+
 rule identify:
     input:
-        [f"results/{CASE}/identify/sets.csv"] if IDENTIFY else [],
+        [f"results/{CASE}/identify/{name}.csv" for name in ("sets", "roads")] if IDENTIFY else [],

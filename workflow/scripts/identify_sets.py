@@ -1,4 +1,4 @@
-"""Separate optima of the search, how well they are known, and whether the two roads agree."""
+"""Separate optima of the search, and how well they are known."""
 
 import pandas as pd
 
@@ -9,7 +9,6 @@ from facegear.config.search import search_problem
 from facegear.contact.columns import LTCA_COLUMNS
 from facegear.identify.judge import judge_sets
 from facegear.identify.optima import separate_optima
-from facegear.identify.roads import roads_table
 from facegear.io import tables
 from facegear.plots.identify import landscape
 from facegear.plots.style import save
@@ -27,7 +26,6 @@ with stage(snakemake) as run:
     tables.write(output.sets, judged.sets)
     tables.write(output.coefficients, judged.coefficients)
     tables.write(output.sensitivity, judged.sensitivity)
-    tables.write(output.roads, roads_table(judged.sets, problem.load_for_mean))
     save(landscape(found, judged.sets), output.svg, output.png)
     best = judged.sets.iloc[0]
     run.summary(

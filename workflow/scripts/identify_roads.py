@@ -1,0 +1,20 @@
+"""Whether the load of the paper's mean stiffness agrees with the fitted one."""
+
+from facegear.config.base import parse
+from facegear.config.stiffness import MeshStiffness
+from facegear.contact.columns import LTCA_COLUMNS
+from facegear.identify.roads import roads_table
+from facegear.io import tables
+from facegear.provenance.stage import stage
+from facegear.stiffness.curve import load_table
+
+with stage(snakemake) as run:
+    files = snakemake.input
+    stiffness = parse(MeshStiffness, snakemake.params.stiffness)
+    paths = dict(zip(["config", *snakemake.params.designs], [files.ltca, *files.designs], strict=True))
+    loads = {name: load_table(tables.read(path, LTCA_COLUMNS)) for name, path in paths.items()}
+    fitted = float(tables.read(files.sets, ["stiffness_torque_n_m"])["stiffness_torque_n_m"].iloc[0])
+    roads = roads_table(loads, stiffness.mean_n_per_m, stiffness.definition, fitted)
+    tables.write(snakemake.output.roads, roads)
+    ratios = ", ".join(f"{row.design} {row.ratio_to_paper:.2f}" for row in roads.itertuples())
+    run.summary(f"mean stiffness at the fitted load over the paper's: {ratios}")
