@@ -1,0 +1,29 @@
+import json
+
+import pandas as pd
+
+from facegear.config.cases import set_key
+from facegear.identify.sets import config_changes, named_set
+
+SCORECARD = CONFIG["scorecard"]
+
+
+def scorecard_targets(case):
+    """Final outputs of this stage for a case."""
+    return [f"results/{case}/scorecard.{ending}" for ending in ("csv", "html")] if SCORECARD else []
+
+
+def stored_sets():
+    """Names of the sets of undisclosed inputs that fit about as well, the config's own among them."""
+    file = SCORECARD and SCORECARD["sets"]
+    return [str(name) for name in pd.read_csv(ROOT / file)["set"]] if file else []
+
+
+def set_cases(wildcards):
+    """Cases of the config with a set put in: the machine itself and every study's points."""
+    row = named_set(pd.read_csv(ROOT / SCORECARD["sets"]), wildcards.set)
+    values = json.loads(json.dumps(CONFIG))
+    size = values["transmission"]["transmission_error"]["amplitude_um"]
+    for key, value in config_changes(row, size).items():
+        set_key(values, key, value)
+    return list(expand_cases(values).values())
