@@ -6,7 +6,7 @@ from pathlib import Path
 
 ROOT = Path(workflow.basedir)
 sys.path.insert(0, str(ROOT))
-os.environ.update(PYTHONPATH=os.pathsep.join([str(ROOT), *sys.path]))
+os.environ.update(PYTHONPATH=str(ROOT))
 
 from facegear.config.cases import expand_cases, shared_source
 from facegear.config.load import load_values
