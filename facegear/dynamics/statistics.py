@@ -1,6 +1,7 @@
 """Numbers that describe a response: RMS with and without mean, extremes, loads, loss of contact."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,8 +58,14 @@ def half_width(squares: Array, root: Array, per_period: int, periodic: bool) -> 
     whole = periods // batches * batches * per_period
     means = squares[:whole].reshape(batches, -1, squares.shape[1]).mean(axis=1)
     spread = means.std(axis=0, ddof=1) / np.sqrt(batches)
-    factor = student.ppf(0.5 + 0.5 * CONFIDENCE, batches - 1)
+    factor = _student(batches - 1)
     return factor * spread / (2.0 * np.where(root > 0.0, root, 1.0))
+
+
+@cache
+def _student(freedom: int) -> float:
+    """Two-sided quantile of Student's distribution."""
+    return float(student.ppf(0.5 + 0.5 * CONFIDENCE, freedom))
 
 
 def drifts(samples: Array, per_period: int) -> bool:

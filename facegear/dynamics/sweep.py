@@ -91,23 +91,25 @@ def collect(ready: Model, responses: Iterator[tuple[float, SteadyState]]) -> Pie
     machine = ready.machine
     modes = natural_modes(machine.layout, machine.stiffness.mean)
     to_modal = mass_diagonal(machine.layout)[:, None] * modes.shapes * (2.0 * np.pi * modes.frequencies)
-    rows = [_row(ready, to_modal, speed, response) for speed, response in responses]
+    basis = ready.reduced.basis
+    translations = basis.reshape(-1, 4, basis.shape[1])[:, :3].reshape(-1, basis.shape[1]).T
+    views = np.hstack([translations, basis.T @ to_modal])
+    rows = [_row(views, translations.shape[1], speed, response) for speed, response in responses]
     return Piece(**{name: np.array([row[name] for row in rows]) for name in Piece.__dataclass_fields__})
 
 
 def _row(
-    ready: Model, to_modal: Array, speed: float, response: SteadyState
+    views: Array, directions: int, speed: float, response: SteadyState
 ) -> dict[str, Array | float | str]:
+    """Numbers of one response; views (n, directions + modes) takes coordinates to translations and modes."""
     periodic = response.period > 0
     meshes = moments(response.deflections, response.per_period, periodic)
-    displacements = ready.displacements(response)
-    in_modes = displacements @ to_modal
-    in_modes -= in_modes.mean(axis=0)
-    modal = np.sqrt((in_modes**2).mean(axis=0))
-    orders, lines = spectrum(in_modes[:, [modal.argmax()]], response.per_period, periodic)
-    displacements = displacements.reshape(len(in_modes), -1, 4)
-    bodies = displacements.shape[1]
-    moved = moments(displacements[:, :, :3].reshape(-1, 3 * bodies), response.per_period, periodic)
+    seen = response.coordinates @ views
+    moved = moments(seen[:, :directions], response.per_period, periodic)
+    in_modes = seen[:, directions:]
+    modal = in_modes.std(axis=0)
+    strongest = in_modes[:, [modal.argmax()]]
+    orders, lines = spectrum(strongest - strongest.mean(), response.per_period, periodic)
     exponent, half = response.exponent or (np.nan, np.nan)
     leading = np.nan if response.multipliers is None else abs(response.multipliers[0])
     return {
@@ -116,7 +118,7 @@ def _row(
         "deflection": np.array([getattr(meshes, name) for name in DEFLECTION]),
         "force": np.array([response.forces.mean(axis=0), np.abs(response.forces).mean(axis=0)]),
         "shares": response.shares,
-        "translation": np.array([getattr(moved, name).reshape(bodies, 3) for name in TRANSLATION]),
+        "translation": np.array([getattr(moved, name).reshape(-1, 3) for name in TRANSLATION]),
         "facts": np.array([response.residual, leading, exponent, half, response.spent]),
         "spectrum": order_spectrum(response.deflections, response.per_period, response.period),
         "modal": modal,
