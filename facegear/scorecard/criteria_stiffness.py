@@ -5,12 +5,13 @@ import numpy as np
 from facegear.scorecard.outcome import Outcome, Tables, number, statement
 
 
-def fe_mean_stiffness(tables: Tables, torque_n_m: float) -> Outcome:
-    """Mean of the average stiffness from contact analysis at a torque on the pinion of one mesh."""
+def fe_mean_stiffness(tables: Tables) -> Outcome:
+    """Mean of the average stiffness from contact analysis at the load at which k(t) is taken."""
     frame = tables["load_dependence"]
     rows = frame[frame["definition"] == "average"].sort_values("torque_n_m")
     logs = np.log(rows["torque_n_m"].to_numpy(float))
-    return number(float(np.interp(np.log(torque_n_m), logs, rows["mean_n_per_m"])), 4)
+    torque = float(tables["inputs"]["stiffness_torque_n_m"].iloc[0])
+    return number(float(np.interp(np.log(torque), logs, rows["mean_n_per_m"])), 4)
 
 
 def series_carries_curve(tables: Tables, within: float) -> Outcome:

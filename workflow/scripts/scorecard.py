@@ -23,6 +23,8 @@ with stage(snakemake) as run:
     found["curves"] = pd.concat([nominal, *(tables.read(path) for path in files.studies)], ignore_index=True)
     for name in ("sharing", "curves"):
         found[name]["point"] = found[name]["point"].astype(str)
+    load = snakemake.params.values["mesh_stiffness"]["torque_n_m"]
+    found["inputs"] = pd.DataFrame({"stiffness_torque_n_m": [load]})
     claims = read_claims(files.claims)
     own = outcome_table(claims.claims, found)
     others = [tables.read(path, OUTCOME_COLUMNS[:1]) for path in files.outcomes]
