@@ -19,3 +19,8 @@ rule all:
     input:
         targets(CASE),
         f"results/{CASE}/report.html",
+
+
+rule benchmarks:
+    input:
+        dynamics_benchmark_targets(CASE),

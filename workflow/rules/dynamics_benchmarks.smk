@@ -1,9 +1,3 @@
-def dynamics_benchmark_targets(case):
-    """Speed against error of the dynamics, for the target `benchmarks`."""
-    names = ["dynamics.csv", "dynamics_sweep.csv", "dynamics_convergence.csv"]
-    return [f"results/{case}/benchmarks/{name}" for name in names]
-
-
 rule dynamics_work_precision:
     input:
         harmonics=upstream("stiffness", "stiffness/harmonics.csv"),

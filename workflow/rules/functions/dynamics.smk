@@ -20,3 +20,9 @@ def sweep_chunks(wildcards):
         for direction in sweep.directions
         for number in range(sweep.chunks)
     ]
+
+
+def dynamics_benchmark_targets(case):
+    """Speed against error of the dynamics, for the target `benchmarks`."""
+    names = ["dynamics.csv", "dynamics_sweep.csv", "dynamics_convergence.csv"]
+    return [f"results/{case}/benchmarks/{name}" for name in names]
