@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,13 +10,12 @@ from numpy.typing import NDArray
 from facegear.dynamics.compiled import TAU, Packed, pack
 from facegear.dynamics.exponent import largest_exponent
 from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.orbits import require
-from facegear.dynamics.periods import make_log, run_periods
 from facegear.dynamics.reduction import Reduced, reduce
 from facegear.dynamics.settle import Settled, settle
 from facegear.dynamics.statistics import drifts
 from facegear.dynamics.system import System, machine_system
 from facegear.dynamics.taylor import make_work
+from facegear.dynamics.window import Window, run_window
 from facegear.transmission.machine import Machine, mesh_frequency
 from facegear.transmission.matrices import mass_diagonal
 from facegear.transmission.statics import static_equilibrium
@@ -118,44 +117,37 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
     packed = pack(system, frequency)
     work = make_work(packed, settings.taylor_order)
     place, velocity = _widened(packed, start.place), _widened(packed, start.velocity / frequency)
-    exponent, spent = None, 0
+    exponent, window, spent = None, None, 0
+    motion = Motion.PERIODIC
     for times in range(settings.extensions + 1):
         patient = settings.extended(times)
         settled = settle(packed, work, place, velocity, patient)
         spent += settled.spent
-        motion = Motion.PERIODIC
         if settled.period:
+            motion, exponent = Motion.PERIODIC, None
+            none = np.zeros((0, 2, place.size))
+            place, velocity = settled.place, settled.velocity
+            window = run_window(packed, work, place, velocity, none, settled.period, settings)
             break
-        place, velocity = settled.place, settled.velocity
-        motion, exponent = largest_exponent(packed, work, place, velocity, patient)
+        motion, exponent, window = largest_exponent(packed, work, settled.place, settled.velocity, patient)
+        place, velocity = window.place, window.velocity
         if motion is not Motion.NOT_SETTLED:
             break
-    settled = replace(settled, spent=spent)
-    periods = settled.period or patient.window
-    return _measure(packed, system, frequency, settings, settled, motion, exponent, periods)
+    return _result(packed, system, frequency, settings, settled, window, motion, exponent, spent)
 
 
-def _measure(
+def _result(
     packed: Packed,
     system: System,
     frequency: float,
     settings: Settings,
     settled: Settled,
+    window: Window,
     motion: Motion,
     exponent: tuple[float, float] | None,
-    periods: int,
+    spent: int,
 ) -> SteadyState:
-    place, velocity = settled.place.copy(), settled.velocity.copy()
-    log = make_log(packed, periods, settings.samples)
-    work = make_work(packed, settings.taylor_order)
-    tangents = np.zeros((0, 2, place.size))
-    require(
-        run_periods(
-            packed, work, place, velocity, tangents, periods, settings.samples, settings.tolerance, log
-        )
-    )
-    coordinates = log.samples[:, : packed.n]
-    deflections, forces = mesh_response(system, coordinates, settings.samples)
+    deflections, forces = mesh_response(system, window.samples, settings.samples)
     orbit = settled.orbit
     if motion is Motion.CHAOTIC and drifts(deflections, settings.samples):
         motion = Motion.NOT_SETTLED
@@ -164,17 +156,17 @@ def _measure(
         period=settled.period,
         frequency=frequency,
         residual=settled.residual,
-        periods=periods,
+        periods=window.periods,
         per_period=settings.samples,
         deflections=deflections,
         forces=forces,
-        coordinates=coordinates,
-        shares=log.shares[:, : packed.m] / (TAU * periods),
+        coordinates=window.samples,
+        shares=window.shares / (TAU * window.periods),
         multipliers=orbit.multipliers if orbit else None,
         liouville=orbit.liouville if orbit else None,
         exponent=exponent,
-        spent=settled.spent,
-        state=State(place[: packed.n].copy(), velocity[: packed.n] * frequency),
+        spent=spent,
+        state=State(window.place[: packed.n].copy(), window.velocity[: packed.n] * frequency),
     )
 
 

@@ -115,8 +115,8 @@ def scaling_costs(machine: Machine, speed_rpm: float) -> pd.DataFrame:
         begin = time.process_time()
         response = simulate(ready, speed_rpm, settings)
         seconds = time.process_time() - begin
-        # Exponent and measurement run a window each (with two more batches) where the motion is irregular.
-        measured = response.periods + (0 if response.period else settings.window * 18 // 16)
+        # An irregular motion is measured over the window and two batches more.
+        measured = response.periods * (1.0 if response.period else 18 / 16)
         rows.append((pinions, harmonics, ready.system.size, seconds / (response.spent + measured)))
     return pd.DataFrame(rows, columns=["pinions", "harmonics", "coordinates", "seconds_per_period"])
 
