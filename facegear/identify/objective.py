@@ -31,7 +31,7 @@ class Misfit:
 
 
 def misfit(machine: Machine, targets: Targets, settings: Settings, sweep: Settings) -> Misfit:
-    """Compare a machine with the targets, starting from static equilibrium.
+    """Compare a machine with the targets, each backlash starting from its own static equilibrium.
 
     A set whose coefficients are undefined throughout, or whose integration fails, gets the largest misfit.
     """
@@ -39,12 +39,8 @@ def misfit(machine: Machine, targets: Targets, settings: Settings, sweep: Settin
     nothing = (float("nan"),) * 3
     worst = Misfit(targets.cap, targets.cap, float("inf"), (reach,) * len(targets.jumps), (nothing,))
     try:
-        ready = model(machine)
-        start = static_start(ready)
         found = tuple(
-            coefficients(
-                model(replace(machine, half_backlash=0.5 * target.backlash)), targets.speed, settings, start
-            )
+            _from_rest(replace(machine, half_backlash=0.5 * target.backlash), targets.speed, settings)
             for target in targets.backlash
         )
         wanted = np.array([(one.inputs, one.idlers, one.idlers_minimum) for one in targets.backlash])
@@ -55,6 +51,8 @@ def misfit(machine: Machine, targets: Targets, settings: Settings, sweep: Settin
         sharing = float(np.sqrt((units**2).mean()))
         jumps = (reach,) * len(targets.jumps)
         if sharing <= SWEEP_WORTH:
+            ready = model(machine)
+            start = static_start(ready)
             jumps = tuple(
                 jump_distance(ready, speed, reach, SWEEP_POINTS, sweep, start) for speed in targets.jumps
             )
@@ -63,6 +61,11 @@ def misfit(machine: Machine, targets: Targets, settings: Settings, sweep: Settin
     everything = np.concatenate([units.ravel(), np.array(jumps) / targets.speed_tolerance])
     total = float(np.sqrt((everything**2).mean()))
     return Misfit(total, sharing, float(off[:, :2].max()), jumps, found)
+
+
+def _from_rest(machine: Machine, speed: float, settings: Settings) -> tuple[float, float, float]:
+    ready = model(machine)
+    return coefficients(ready, speed, settings, static_start(ready))
 
 
 def coefficients(ready: Model, speed: float, settings: Settings, start: State) -> tuple[float, float, float]:

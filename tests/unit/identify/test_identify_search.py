@@ -30,14 +30,11 @@ def twin():
     base = case_machine(VALUES, STIFFNESS)
     empty = Problem(base, 50e-6, lambda _: STIFFNESS, 175.0, NO_TARGETS, space)
     machine = empty.machine(TRUTH)
-    start = static_start(model(machine))
-    targets = [
-        BacklashTarget(
-            backlash,
-            *coefficients(model(replace(machine, half_backlash=0.5 * backlash)), 7500.0, QUICK, start),
-        )
-        for backlash in (80e-6, 100e-6)
-    ]
+    targets = []
+    for backlash in (80e-6, 100e-6):
+        ready = model(replace(machine, half_backlash=0.5 * backlash))
+        found = coefficients(ready, 7500.0, QUICK, static_start(ready))
+        targets.append(BacklashTarget(backlash, *found))
     return replace(empty, targets=Targets(7500.0, tuple(targets), ()))
 
 
