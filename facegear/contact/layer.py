@@ -107,7 +107,8 @@ def tied_system(piece: Piece, refinement: Refinement, element: Element = "hex27"
 
     points = np.concatenate([piece.points[used], fine_points[~tied]])
     coarse_hexes = coarse[piece.hexes[stays]]
-    matrix = _stiffness(piece, points, coarse_hexes, block_hexes(lattice), fine, fine_points, follow, element)
+    fine_hexes = _right_handed(block_hexes(lattice), fine_points)
+    matrix = _stiffness(piece, points, coarse_hexes, fine_hexes, fine, fine_points, follow, element)
 
     top = lattice[:, :, 0].ravel()
     all_normals = np.zeros_like(piece.points)
@@ -133,6 +134,14 @@ def tied_system(piece: Piece, refinement: Refinement, element: Element = "hex27"
         loaded_normals[loaded],
         follow[top][:, loaded].tocsr(),
     )
+
+
+def _right_handed(hexes: NDArray[np.int64], points: NDArray[np.float64]) -> NDArray[np.int64]:
+    """The (profile, width, depth) order is left-handed on one side of a tooth: turn it round there."""
+    origin, along = points[hexes[0, 0]], points[hexes[0, [2, 6, 18]]]
+    if np.linalg.det(along - origin) > 0:
+        return hexes
+    return hexes.reshape(-1, 9, 3)[:, :, ::-1].reshape(-1, 27)
 
 
 def _locate(
