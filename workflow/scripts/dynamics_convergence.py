@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import pandas as pd
-from facegear.harmonics.stored import COLUMNS, from_table
 
 from facegear.config.base import parse
 from facegear.config.dynamics import Sweep, sweep_plan
@@ -15,10 +14,11 @@ from facegear.dynamics.sweep import joined, run_chunk, tighter
 from facegear.io import arrays, tables
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
+from facegear.stiffness.tables import HARMONICS_COLUMNS, series_of
 
 with stage(snakemake) as run:
     params = snakemake.params
-    stiffness = from_table(tables.read(snakemake.input.harmonics, COLUMNS))
+    stiffness = series_of(tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS))
     ready = model(machine(parse(Transmission, params.section), tooth_numbers(**params.teeth), stiffness))
     plan = sweep_plan(parse(Sweep, params.sweep))
     finer = replace(plan, settings=tighter(plan.settings))

@@ -1,7 +1,5 @@
 """Cost and error of sweeps against settings, pinions and harmonics."""
 
-from facegear.harmonics.stored import COLUMNS, from_table
-
 from facegear.config.base import parse
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.config.transmission import Transmission, machine, tooth_numbers
@@ -9,10 +7,11 @@ from facegear.dynamics.benchmarks.costs import scaling_costs, sweep_costs
 from facegear.io import tables
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
+from facegear.stiffness.tables import HARMONICS_COLUMNS, series_of
 
 with stage(snakemake) as run:
     params = snakemake.params
-    stiffness = from_table(tables.read(snakemake.input.harmonics, COLUMNS))
+    stiffness = series_of(tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS))
     built = machine(parse(Transmission, params.section), tooth_numbers(**params.teeth), stiffness)
     costs = sweep_costs(built, sweep_plan(parse(Sweep, params.sweep)), Progress("settings", 20).step)
     tables.write(snakemake.output.sweep, costs)

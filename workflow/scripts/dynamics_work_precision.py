@@ -1,7 +1,5 @@
 """Error against time of our integrator and others."""
 
-from facegear.harmonics.stored import COLUMNS, from_table
-
 from facegear.config.base import parse
 from facegear.config.transmission import Transmission, machine, tooth_numbers
 from facegear.dynamics.benchmarks.methods import all_methods
@@ -12,10 +10,11 @@ from facegear.plots.benchmarks import work_precision_diagram
 from facegear.plots.style import save
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
+from facegear.stiffness.tables import HARMONICS_COLUMNS, series_of
 
 with stage(snakemake) as run:
     params, output = snakemake.params, snakemake.output
-    stiffness = from_table(tables.read(snakemake.input.harmonics, COLUMNS))
+    stiffness = series_of(tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS))
     built = machine(parse(Transmission, params.section), tooth_numbers(**params.teeth), stiffness)
     problems = [*machine_problems(built, params.speed_rpm), oscillator_problem()]
     methods = all_methods()
