@@ -42,6 +42,24 @@ def schur_complement(matrix: sp.csr_matrix, kept: NDArray[np.int64]) -> NDArray[
     return schur
 
 
+def solve(matrix: sp.csr_matrix, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Solve a symmetric positive definite system for right-hand sides (n, m).
+
+    Raises FacegearError if the factorisation fails.
+    """
+    if PyPardisoSolver is None:
+        return splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}).solve(rhs)
+    upper = sp.triu(matrix, format="csr")
+    upper.sort_indices()
+    solver = PyPardisoSolver(mtype=POSITIVE_DEFINITE)
+    try:
+        return solver.solve(upper, rhs)
+    except PyPardisoError as error:
+        raise FacegearError(f"factorisation of {matrix.shape[0]} dof failed: {error}") from None
+    finally:
+        solver.free_memory(everything=True)
+
+
 def _schur_pardiso(matrix: sp.csr_matrix, eliminated: int) -> NDArray[np.float64]:
     upper = sp.triu(matrix, format="csr")
     size = matrix.shape[0] - eliminated
