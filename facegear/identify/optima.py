@@ -23,14 +23,12 @@ def unit_points(rows: pd.DataFrame, space: Space) -> NDArray[np.float64]:
     )
 
 
-def separate_optima(rows: pd.DataFrame, space: Space, most: int, slack: float) -> pd.DataFrame:
-    """At most `most` rows with misfits up to `slack` times the best one's, best first.
+def separate_optima(rows: pd.DataFrame, space: Space, most: int) -> pd.DataFrame:
+    """At most `most` rows, best first.
 
     Within a branch they are at least APART from each other; different branches are different optima.
     """
     ranked = rows.sort_values("misfit", kind="stable").reset_index(drop=True)
-    limit = slack * float(ranked["misfit"].iloc[0])
-    ranked = ranked[ranked["misfit"] <= limit]
     points = unit_points(ranked, space)
     kept: list[int] = []
     for i in range(len(ranked)):

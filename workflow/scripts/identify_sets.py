@@ -7,7 +7,7 @@ from facegear.config.dynamics import Accuracy, settings
 from facegear.config.identify import Identify, search_space
 from facegear.config.search import search_problem
 from facegear.contact.columns import LTCA_COLUMNS
-from facegear.identify.judge import judge_sets
+from facegear.identify.judge import confirmed, judge_sets
 from facegear.identify.optima import separate_optima
 from facegear.io import tables
 from facegear.plots.identify import landscape
@@ -20,15 +20,16 @@ with stage(snakemake) as run:
     problem = search_problem(values, tables.read(snakemake.input.ltca, LTCA_COLUMNS))
     found = pd.concat([tables.read(path) for path in snakemake.input.branches], ignore_index=True)
     budget = section.budget
-    optima = separate_optima(found, search_space(section.ranges), budget.sets, budget.slack)
     accuracy = settings(parse(Accuracy, values["dynamics"]["accuracy"]))
+    points = confirmed(problem, found, accuracy, budget.slack)
+    optima = separate_optima(points, search_space(section.ranges), budget.sets)
     judged = judge_sets(problem, optima, accuracy, budget.starts, budget.seed)
     tables.write(output.sets, judged.sets)
     tables.write(output.coefficients, judged.coefficients)
     tables.write(output.sensitivity, judged.sensitivity)
     save(landscape(found, judged.sets), output.svg, output.png)
-    best = judged.sets.iloc[0]
+    best = judged.sets[judged.sets["recommended"]].iloc[0]
     run.summary(
-        f"{len(judged.sets)} sets; best misfit {best['misfit']:.2f}, largest deviation of a mean "
-        f"{best['judged_worst_mean']:.2f}"
+        f"{len(judged.sets)} sets; recommended {best['set']}: misfit {best['misfit']:.2f}, largest "
+        f"deviation of a mean {best['judged_worst_mean']:.2f}"
     )

@@ -101,7 +101,6 @@ def test_neighbours_count_as_one_optimum_and_phase_is_cyclic():
             "misfit": [1.0, 1.1, 1.2, 1.3],
         }
     )
-    kept = separate_optima(rows, SPACE, most=5, slack=2.0)
+    kept = separate_optima(rows, SPACE, most=5)
     assert kept["misfit"].tolist() == [1.0, 1.2, 1.3]
-    assert separate_optima(rows, SPACE, most=5, slack=1.25)["misfit"].tolist() == [1.0, 1.2]
-    assert len(separate_optima(rows, SPACE, most=1, slack=2.0)) == 1
+    assert len(separate_optima(rows, SPACE, most=1)) == 1

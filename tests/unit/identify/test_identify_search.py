@@ -2,6 +2,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from facegear.config.load import load_config
@@ -10,9 +11,10 @@ from facegear.dynamics.simulate import model, static_start
 from facegear.harmonics.series import Harmonics
 from facegear.identify.budget import Budget
 from facegear.identify.inputs import Branch, Inputs, Meaning, Space, StiffnessLoad, Waveform
+from facegear.identify.judge import confirmed
 from facegear.identify.objective import coefficients, misfit
 from facegear.identify.resonance import jump_speeds
-from facegear.identify.search import QUICK, QUICK_SWEEP, Problem, search_branch
+from facegear.identify.search import QUICK, QUICK_SWEEP, Problem, inputs_row, search_branch
 from facegear.identify.targets import BacklashTarget, Targets
 from facegear.transmission.phases import PhaseConvention
 
@@ -60,3 +62,11 @@ def test_jumps_are_steps_of_the_level_and_not_its_slope():
     speeds = np.arange(10.0)
     level = np.where(speeds < 4.5, 1.0, 2.0) * (1.0 + 0.02 * speeds)
     assert jump_speeds(speeds, level).tolist() == [4.5]
+
+
+def test_a_point_that_full_accuracy_does_not_confirm_is_dropped(twin):
+    row = {**inputs_row(TRUTH), "misfit": 0.0, "worst_mean": 0.0}
+    rows = pd.DataFrame([row, {**row, "misfit": 0.1, "worst_mean": 0.5}])
+    kept = confirmed(twin, rows.assign(misfit=[1.0, 1.1]), QUICK, slack=2.0)
+    assert kept["misfit"].tolist() == [1.0]
+    assert kept["judged_worst_mean"].iloc[0] == pytest.approx(0.0, abs=1e-9)
