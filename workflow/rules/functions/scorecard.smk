@@ -26,4 +26,4 @@ def set_cases(wildcards):
     size = values["transmission"]["transmission_error"]["amplitude_um"]
     for key, value in config_changes(row, size).items():
         set_key(values, key, value)
-    return list(expand_cases(values).values())
+    return list(expand_cases({**values, "identify": None}).values())
