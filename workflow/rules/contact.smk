@@ -33,9 +33,19 @@ rule contact_figures:
         ltca=upstream("contact", "contact/ltca.csv"),
         pressure=upstream("contact", "contact/pressure.npz"),
     output:
-        curves_svg="results/{case}/figures/contact_curves.svg",
+        curves_svg=report(
+            "results/{case}/figures/contact_curves.svg",
+            caption="../report/contact.rst",
+            category="Contact",
+            labels={"figure": "contact_curves"},
+        ),
         curves_png="results/{case}/figures/contact_curves.png",
-        pattern_svg="results/{case}/figures/contact_pattern.svg",
+        pattern_svg=report(
+            "results/{case}/figures/contact_pattern.svg",
+            caption="../report/contact.rst",
+            category="Contact",
+            labels={"figure": "contact_pattern"},
+        ),
         pattern_png="results/{case}/figures/contact_pattern.png",
         manifest="results/{case}/figures/contact.provenance.json",
     log:

@@ -104,9 +104,13 @@ rule dynamics_figures:
         waterfall="results/{case}/dynamics/waterfall.npz",
         frequencies="results/{case}/modal/frequencies.csv",
     output:
-        svg=expand(
-            "results/{{case}}/figures/{name}.svg",
-            name=["fig09", "fig10", "fig11", "fig12", "campbell", "waterfall"],
+        svg=report(
+            expand(
+                "results/{{case}}/figures/{name}.svg",
+                name=["fig09", "fig10", "fig11", "fig12", "campbell", "waterfall"],
+            ),
+            caption="../report/dynamics.rst",
+            category="Dynamics",
         ),
         png=expand(
             "results/{{case}}/figures/{name}.png",

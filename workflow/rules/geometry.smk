@@ -29,7 +29,12 @@ rule tooth_pair_figure:
         flanks=upstream("geometry", "geometry/flanks.npz"),
         contact=upstream("geometry", "geometry/contact.npz"),
     output:
-        svg="results/{case}/figures/tooth_pair.svg",
+        svg=report(
+            "results/{case}/figures/tooth_pair.svg",
+            caption="../report/teeth.rst",
+            category="Teeth",
+            labels={"figure": "tooth_pair"},
+        ),
         png="results/{case}/figures/tooth_pair.png",
         manifest="results/{case}/figures/tooth_pair.provenance.json",
     log:

@@ -97,7 +97,7 @@ rule load_sharing_figures:
         studies=[f"results/{{case}}/load_sharing/{study.name}.csv" for study in STUDIES],
         summary="results/{case}/load_sharing/summary.csv",
     output:
-        svg=figure_files("svg"),
+        svg=report(figure_files("svg"), caption="../report/load_sharing.rst", category="Load sharing"),
         png=figure_files("png"),
         manifest="results/{case}/figures/load_sharing_figures.provenance.json",
     log:

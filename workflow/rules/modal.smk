@@ -32,7 +32,12 @@ rule modal_figure:
         frequencies="results/{case}/modal/frequencies.csv",
         shapes="results/{case}/modal/shapes.csv",
     output:
-        svg="results/{case}/figures/fig06.svg",
+        svg=report(
+            "results/{case}/figures/fig06.svg",
+            caption="../report/modes.rst",
+            category="Modes",
+            labels={"figure": "fig06"},
+        ),
         png="results/{case}/figures/fig06.png",
         manifest="results/{case}/figures/fig06.provenance.json",
     log:

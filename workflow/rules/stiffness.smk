@@ -57,9 +57,19 @@ rule stiffness_figures:
         tvms=upstream("stiffness", "stiffness/tvms.csv"),
         spectrum=upstream("stiffness", "stiffness/spectrum.csv"),
     output:
-        tvms_svg="results/{case}/figures/fig07.svg",
+        tvms_svg=report(
+            "results/{case}/figures/fig07.svg",
+            caption="../report/stiffness.rst",
+            category="Mesh stiffness",
+            labels={"figure": "fig07"},
+        ),
         tvms_png="results/{case}/figures/fig07.png",
-        harmonics_svg="results/{case}/figures/fig08.svg",
+        harmonics_svg=report(
+            "results/{case}/figures/fig08.svg",
+            caption="../report/stiffness.rst",
+            category="Mesh stiffness",
+            labels={"figure": "fig08"},
+        ),
         harmonics_png="results/{case}/figures/fig08.png",
         manifest="results/{case}/figures/stiffness.provenance.json",
     log:
@@ -84,7 +94,12 @@ rule load_dependence_figure:
     input:
         table="results/{case}/stiffness/load_dependence.csv",
     output:
-        svg="results/{case}/figures/stiffness_load.svg",
+        svg=report(
+            "results/{case}/figures/stiffness_load.svg",
+            caption="../report/stiffness.rst",
+            category="Mesh stiffness",
+            labels={"figure": "stiffness_load"},
+        ),
         png="results/{case}/figures/stiffness_load.png",
         manifest="results/{case}/figures/stiffness_load.provenance.json",
     log:
