@@ -10,6 +10,7 @@ from facegear.dynamics.system import System
 
 Array = NDArray[np.float64]
 TAU = 2.0 * np.pi
+LEAST_CLEARANCE = 1e-12
 
 
 class Packed(NamedTuple):
@@ -48,6 +49,9 @@ def pack(system: System, frequency: float) -> Packed:
     transposed = np.zeros((wide_m, wide_n))
     transposed[:m, :n] = system.directions
     breaks, pieces = _pieces(system, wide_m)
+    # A clearance within rounding of the deflections is none: its edges could not be told apart.
+    closed = system.upper - system.lower <= LEAST_CLEARANCE * system.scale
+    lower = np.where(closed, system.upper, system.lower)
     return Packed(
         n=n,
         m=m,
@@ -56,7 +60,7 @@ def pack(system: System, frequency: float) -> Packed:
         squares=_padded(system.squares, wide_n) / frequency**2,
         damping=_padded(system.damping, wide_n) / frequency,
         mesh_damping=_padded(system.mesh_damping, wide_m) / frequency,
-        lower=_padded(system.lower, wide_m),
+        lower=_padded(lower, wide_m),
         upper=_padded(system.upper, wide_m),
         stiffness=_series(system.stiffness[system.stiffness_kind], wide_m) / frequency**2,
         error=_series(system.error[system.error_kind], wide_m),

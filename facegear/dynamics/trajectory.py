@@ -13,7 +13,7 @@ from facegear.dynamics.taylor import make_work
 from facegear.errors import NotConverged
 
 Array = NDArray[np.float64]
-MOST_STEPS = 1_000_000
+MOST_STEPS = 200_000
 
 
 @dataclass(frozen=True, eq=False)

@@ -33,8 +33,8 @@ def machine_problems(machine: Machine, speed_rpm: float) -> list[Problem]:
     """
     regular = replace(machine, half_backlash=0.0)
     return [
-        _problem("contact kept", regular, speed_rpm, 4, False),
-        _problem("contact lost", machine, 0.6 * speed_rpm, 4, False),
+        _problem("contact kept", regular, speed_rpm, 12, False),
+        _problem("contact lost", machine, 0.6 * speed_rpm, 12, False),
         _problem("nominal speed", machine, speed_rpm, 40, True),
     ]
 
