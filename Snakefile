@@ -7,6 +7,7 @@ include: "workflow/rules/stiffness.smk"
 include: "workflow/rules/modal.smk"
 include: "workflow/rules/dynamics.smk"
 include: "workflow/rules/dynamics_benchmarks.smk"
+include: "workflow/rules/contact_benchmarks.smk"
 include: "workflow/rules/load_sharing.smk"
 include: "workflow/rules/scorecard.smk"
 include: "workflow/rules/identify.smk"
@@ -23,4 +24,5 @@ rule all:
 
 rule benchmarks:
     input:
+        contact_benchmark_targets(CASE),
         dynamics_benchmark_targets(CASE),

@@ -13,10 +13,11 @@ from facegear.contact.layer import tied_system
 from facegear.contact.ltca import LoadedPosition, analyse, even_positions
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
 from facegear.contact.pair import BUILDERS, body_compliance, contact_model
+from facegear.contact.rungs import CUTS, LINEAR, SECTORS
 from facegear.contact.teeth import piece_of
 from facegear.geometry.design import Material, PairDesign
 from facegear.harmonics.fit import fit_harmonics
-from facegear.mesh.sizes import MeshSizes
+from facegear.mesh.sizes import MeshSizes, named_sizes
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,17 @@ class Rung:
     name: str
     sizes: MeshSizes
     plan: ContactPlan
+
+
+def rung(name: str, design: PairDesign, plan: ContactPlan) -> Rung:
+    """A rung of the ladder with the positions and torques of `plan`. Raises KeyError for an unknown name."""
+    resolution, cuts = CUTS["coarse_4x1x2" if name in SECTORS or name in LINEAR else name]
+    changed = replace(plan, refinement=cuts, sector=Sector(), element="hex27")
+    if name in SECTORS:
+        changed = replace(changed, sector=Sector(SECTORS[name], SECTORS[name], "free"))
+    if name in LINEAR:
+        changed = replace(changed, element=LINEAR[name])
+    return Rung(name, named_sizes(resolution, design.module), changed)
 
 
 def compliances(
@@ -96,7 +108,7 @@ def with_errors(table: pd.DataFrame, reference: str) -> pd.DataFrame:
 
 
 def shortcuts(design: PairDesign, base: Rung, materials: tuple[Material, Material]) -> pd.DataFrame:
-    """Effect (percent) of each common shortcut on mean and first harmonic against the full model at `base`."""
+    """Effect (percent) of each shortcut on mean and first harmonic against the full model at `base`."""
     plan = base.plan
     plain, few = ContactOptions(), Refinement()
     cases = {"full model": base}

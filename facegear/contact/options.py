@@ -31,9 +31,7 @@ class Sector:
 
 @dataclass(frozen=True)
 class ContactOptions:
-    """What takes part: fillets and tip lands as contact surfaces, coupling between neighbouring teeth, tip
-    edges.
-    """
+    """What takes part: fillets and tip lands as surfaces, coupling between neighbours, loads on tip edges."""
 
     fillet: bool = True
     coupled: bool = True

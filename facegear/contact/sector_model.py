@@ -28,7 +28,9 @@ Blocks = dict[tuple[int, int], NDArray[np.float64]]
 def sector_blocks(
     design: PairDesign, tooth: ToothMesh, material: Material, teeth: int, loaded: Sequence[int]
 ) -> Blocks:
-    """Flank compliance (n, n), m/N, for each pair of `loaded` teeth (seen, loaded) of a sector, cut faces free."""
+    """Flank compliance (n, n), m/N, for each pair of `loaded` teeth (seen, loaded) of a sector, cut faces
+    free.
+    """
     merged = sector(tooth, teeth, -(teeth // 2))
     single, side = piece_of(design, tooth, material, LOADED_SIDE[tooth.body])
     held = np.zeros(merged.nodes.shape, dtype=bool)
@@ -57,7 +59,7 @@ def sector_blocks(
 
 
 def _system(piece, flanks, normals) -> tuple[TiedSystem, NDArray[np.int64]]:  # type: ignore[no-untyped-def]
-    """The unrefined system with the flanks of several teeth loaded, and where each flank node stands in it."""
+    """The unrefined system with the flanks of several teeth loaded, and each flank node's place in it."""
     plain = tied_system(replace(piece, flank=flanks[0], normals=normals[0]), Refinement())
     nodes = np.concatenate([flank.ravel() for flank in flanks])
     _, loaded = cKDTree(plain.points).query(piece.points[nodes])

@@ -110,7 +110,7 @@ def involute_separation(
     phi1: float,
     tooth: int,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Gap (n,) m along the normals of pinion points (n, 3), and the gear's roll angle there (nan: no flank)."""
+    """Gap (n,) m along the normals of pinion points (n, 3), and the gear's roll there (nan: no flank)."""
     teeth, other = model_pinion.pinion.teeth, model_gear.pinion.teeth
     centre = model_pinion.pinion_pitch_radius + model_gear.pinion_pitch_radius
     turn = phi1 + (tooth - 0.5) * 2 * pi / teeth

@@ -55,7 +55,7 @@ def contact_pattern(arrays: Mapping[str, NDArray]) -> Figure:
         on = (arrays["torque_n_m"] == torque) & arrays["whole"]
         field = np.zeros(shape[0] * shape[1])
         np.maximum.at(field, arrays["node"][on], 1e-6 * arrays["pressure_pa"][on])
-        fields.append(np.where(field > 0, field, np.nan).reshape(shape))
+        fields.append(field.reshape(shape))
     top = np.nanquantile(fields[-1], 0.995)
     with styled():
         columns = min(torques.size, 2)

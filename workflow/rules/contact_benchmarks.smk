@@ -81,6 +81,7 @@ rule twin_benchmark:
         mem_mb=4000,
         runtime=60,
     params:
+        tooth_pair=config_slice("tooth_pair"),
         code=fingerprint("twin_benchmark.py"),
     message:
         "plane-strain twin against brute-force contact"
@@ -107,3 +108,13 @@ rule calculix_peer:
         "the same contact by CalculiX for {wildcards.case}"
     script:
         "../scripts/calculix_peer.py"
+
+
+rule peers:
+    input:
+        f"results/{CASE}/benchmarks/calculix.csv",
+
+
+def contact_benchmark_targets(case):
+    """Tables that `make benchmarks` writes for the contact stage."""
+    return [f"results/{case}/benchmarks/{name}.csv" for name in ("contact", "contact_shortcuts", "twin")]

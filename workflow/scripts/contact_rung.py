@@ -3,8 +3,7 @@
 from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
-from facegear.contact.benchmark import measure
-from facegear.contact.rungs import rung
+from facegear.contact.benchmark import measure, rung
 from facegear.io import tables
 from facegear.provenance.stage import stage
 

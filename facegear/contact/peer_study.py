@@ -1,0 +1,89 @@
+"""CalculiX beside the chain: the same sector on the same mesh, the pinion turned by the same angle."""
+
+import time
+from math import pi
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from facegear.contact.calculix import run_deck, write_deck
+from facegear.contact.candidates import PinionSurface
+from facegear.contact.compliance import FlankCompliance
+from facegear.contact.ltca import ContactModel, Place
+from facegear.contact.options import Refinement
+from facegear.contact.pair import BUILDERS
+from facegear.contact.sector_model import analyse_sector, sector_blocks
+from facegear.contact.teeth import GearLattice, contact_side
+from facegear.geometry.design import Material, PairDesign
+from facegear.geometry.unloaded import unloaded_contact
+from facegear.mesh.sizes import MeshSizes
+
+TEETH = 5
+LOADED = (-1, 0, 1, 2)
+POSITIONS = (0.0, 0.34, 0.67)
+AMORTISED = 128
+"""Solutions over which one compliance is shared: 32 positions at 4 loads."""
+
+
+def peer_study(
+    design: PairDesign,
+    rungs: dict[str, MeshSizes],
+    materials: tuple[Material, Material],
+    torque: float,
+    folder: Path,
+    threads: int,
+) -> pd.DataFrame:
+    """Torque (N m) that both need for the turn our sector takes under `torque`, with times (s) and memory
+    (GB).
+
+    Raises FacegearError if ccx is not installed or fails.
+    """
+    rows = []
+    for name, sizes in rungs.items():
+        model, blocks, seconds = _sector(design, sizes, materials)
+        for position in POSITIONS:
+            phi1 = (position - 0.5) * 2 * pi / design.pinion.teeth
+            angles = phi1, float(unloaded_contact(design, [phi1]).phi2[0])
+            start = time.perf_counter()
+            place = Place(position, 0.0, design.pinion_base_radius)
+            ours = analyse_sector(model, *blocks, place, angles, [torque])[0]
+            own_seconds = seconds / AMORTISED + time.perf_counter() - start
+            turn = ours.ste / design.pinion_base_radius
+            deck = folder / f"{name}_{round(100 * position):03d}.inp"
+            dof = write_deck(deck, design, sizes, materials, TEETH, angles, turn)
+            peer = run_deck(deck, threads, dof)
+            rows.append(
+                {
+                    "rung": name,
+                    "position": position,
+                    "dof": dof,
+                    "torque_n_m": torque,
+                    "calculix_torque_n_m": peer.torque,
+                    "difference_percent": 100 * (torque / peer.torque - 1),
+                    "seconds": own_seconds,
+                    "calculix_seconds": peer.seconds,
+                    "time_ratio": peer.seconds / own_seconds,
+                    "calculix_memory_gb": peer.gigabytes,
+                    "calculix_version": peer.version,
+                }
+            )
+    return pd.DataFrame(rows)
+
+
+def _sector(design, sizes, materials):  # type: ignore[no-untyped-def]
+    """Unrefined model of both sectors, their compliance blocks, and the seconds these took."""
+    start = time.perf_counter()
+    teeth = [build(design, sizes) for build in BUILDERS.values()]
+    blocks = [
+        sector_blocks(design, tooth, material, TEETH, LOADED)
+        for tooth, material in zip(teeth, materials, strict=True)
+    ]
+    sides = [contact_side(design, tooth) for tooth in teeth]
+    plain = Refinement()
+    none = np.zeros((0, 0))
+    empty = FlankCompliance(none, none[None], (0, 0), (0, 0), plain)
+    model = ContactModel(
+        design, PinionSurface(design, sides[0], plain), GearLattice(design, sides[1], plain), empty, empty
+    )
+    return model, blocks, time.perf_counter() - start

@@ -1,0 +1,24 @@
+"""The same contact by CalculiX, or a message where it is not installed."""
+
+from pathlib import Path
+
+from facegear.config.base import parse
+from facegear.config.tooth_pair import ToothPair, materials, pair_design
+from facegear.contact.peer_study import peer_study
+from facegear.io import tables
+from facegear.mesh.sizes import MeshSizes, named_sizes
+from facegear.provenance.stage import stage
+
+with stage(snakemake) as run:
+    section = parse(ToothPair, snakemake.params.tooth_pair)
+    design = pair_design(section)
+    m = design.module
+    rungs = {"coarser": MeshSizes(0.4 * m, 1.07 * m, 0.8 * m), "coarse": named_sizes("coarse", m)}
+    folder = Path(snakemake.output.table).parent / "calculix"
+    folder.mkdir(parents=True, exist_ok=True)
+    table = peer_study(design, rungs, materials(section), 600.0, folder, snakemake.threads)
+    tables.write(snakemake.output.table, table)
+    run.summary(
+        f"largest difference {table['difference_percent'].abs().max():.1f} %, time ratio "
+        f"{table['time_ratio'].min():.0f} and more"
+    )
