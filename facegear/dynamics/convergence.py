@@ -1,11 +1,29 @@
-"""Is a sweep converged: the same sweep with half the tolerance and twice the dwell."""
+"""Is a sweep converged: each speed once more with half the tolerance and twice the dwell."""
+
+from collections.abc import Callable
 
 import numpy as np
 import pandas as pd
 
-from facegear.dynamics.sweep import DEFLECTION, Piece
+from facegear.dynamics.motion import Settings
+from facegear.dynamics.simulate import Model
+from facegear.dynamics.sweep import DEFLECTION, Piece, collect, joined, run_speeds, tighter
 
 CONVERGED = 1e-3
+
+
+def rerun(ready: Model, piece: Piece, settings: Settings, step: Callable[[], None] = lambda: None) -> Piece:
+    """Every speed of a sweep again, finer, from the state that the sweep left there.
+
+    A finer sweep carried through would also choose other branches after irregular motion, which says nothing
+    about the accuracy of either.
+    """
+    finer = tighter(settings)
+    again = [
+        collect(ready, run_speeds(ready, piece.speeds[i : i + 1], finer, piece.state(i), step))
+        for i in range(len(piece.speeds))
+    ]
+    return joined(again)
 
 
 def convergence_table(direction: str, piece: Piece, finer: Piece) -> pd.DataFrame:

@@ -1,16 +1,14 @@
-"""The sweep once more with half the tolerance and twice the dwell, beside the sweep itself."""
-
-from dataclasses import replace
+"""Each speed of the sweep once more with half the tolerance and twice the dwell."""
 
 import pandas as pd
 
 from facegear.config.base import parse
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.config.transmission import Transmission, machine, tooth_numbers
-from facegear.dynamics.convergence import convergence_table
+from facegear.dynamics.convergence import convergence_table, rerun
 from facegear.dynamics.simulate import model
 from facegear.dynamics.stored import SHAPES, from_arrays
-from facegear.dynamics.sweep import joined, run_chunk, tighter
+from facegear.dynamics.sweep import joined
 from facegear.io import arrays, tables
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
@@ -21,14 +19,13 @@ with stage(snakemake) as run:
     stiffness = series_of(tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS))
     ready = model(machine(parse(Transmission, params.section), tooth_numbers(**params.teeth), stiffness))
     plan = sweep_plan(parse(Sweep, params.sweep))
-    finer = replace(plan, settings=tighter(plan.settings))
     files = iter(snakemake.input.chunks)
     progress = Progress("finer sweep", len(plan.directions) * plan.points)
     found = []
     for name in plan.directions:
-        pieces = [from_arrays(arrays.read(next(files), SHAPES))[1] for _ in range(plan.chunks)]
-        again = [run_chunk(ready, finer, name, k, progress.step)[1] for k in range(plan.chunks)]
-        found.append(convergence_table(name, joined(pieces), joined(again)))
+        piece = joined([from_arrays(arrays.read(next(files), SHAPES))[1] for _ in range(plan.chunks)])
+        again = rerun(ready, piece, plan.settings, progress.step)
+        found.append(convergence_table(name, piece, again))
     table = pd.concat(found, ignore_index=True)
     tables.write(snakemake.output.table, table)
     counts = table["verdict"].value_counts()

@@ -24,6 +24,8 @@ SPEEDS = 40
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-8)
 DWELLS = (32, 128)
 PLAIN_PERIODS = 20
+OTHER_BRANCH = 0.1
+"""Two periodic motions of one class whose RMS differ by this are different motions, not errors."""
 
 
 def sweep_costs(machine: Machine, plan: SweepPlan, step: Callable[[], None] = lambda: None) -> pd.DataFrame:
@@ -70,11 +72,12 @@ def sweep_costs(machine: Machine, plan: SweepPlan, step: Callable[[], None] = la
 
 
 def _rms_errors(piece: Piece, best: Piece) -> Array:
-    """Relative RMS errors at the speeds where both found the same class of periodic motion."""
+    """Relative RMS errors at the speeds where both found the same periodic motion."""
     row = DEFLECTION.index("ac_rms")
     same = [a == b and str(a).startswith("period-") for a, b in zip(piece.labels, best.labels, strict=True)]
     gap = np.abs(piece.deflection[same, row] - best.deflection[same, row]).max(axis=1)
-    return gap / best.deflection[same, row].max(axis=1)
+    errors = gap / best.deflection[same, row].max(axis=1)
+    return errors[errors < OTHER_BRANCH]
 
 
 def plain_seconds_per_period(machine: Machine, speeds: Array) -> float:
