@@ -14,9 +14,12 @@ def scorecard_targets(case):
 
 
 def stored_sets():
-    """Names of the sets of undisclosed inputs that fit about as well, the config's own among them."""
+    """Names of the sets of undisclosed inputs that fit about as well as the recommended one, the config's own."""
     file = SCORECARD and SCORECARD["sets"]
-    return [str(name) for name in pd.read_csv(ROOT / file)["set"]] if file else []
+    if not file:
+        return []
+    sets = pd.read_csv(ROOT / file)
+    return [str(name) for name in sets.loc[~sets["recommended"], "set"]]
 
 
 def set_cases(wildcards):
