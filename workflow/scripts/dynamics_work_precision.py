@@ -18,7 +18,9 @@ with stage(snakemake) as run:
     built = machine(parse(Transmission, params.section), tooth_numbers(**params.teeth), stiffness)
     problems = [*machine_problems(built, params.speed_rpm), oscillator_problem()]
     methods = all_methods()
-    table = work_precision(problems, methods, Budget(), Progress("methods", len(methods)).step)
+    table = work_precision(
+        problems, methods, Budget(), Progress("methods", len(methods) * len(problems)).step
+    )
     tables.write(output.table, table)
     save(work_precision_diagram(table), output.svg, output.png)
     own, rest = methods[0].name, [method.name for method in methods[1:]]
