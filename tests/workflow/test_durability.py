@@ -35,7 +35,7 @@ def test_a_killed_run_started_again_gives_the_same_files(quick, tmp_path, seed):
     for stage in ("modal", "dynamics", "load_sharing"):
         shutil.rmtree(tmp_path / "results" / "quick" / stage)
     process = subprocess.Popen(
-        project.command(*QUICK, *targets),
+        project.command(*targets, *QUICK),
         env=environment(),
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
@@ -44,7 +44,7 @@ def test_a_killed_run_started_again_gives_the_same_files(quick, tmp_path, seed):
     time.sleep(random.Random(seed).uniform(2.0, 8.0))
     os.killpg(process.pid, signal.SIGKILL)
     process.wait()
-    project.run(*QUICK, *targets)
+    project.run(*targets, *QUICK)
     undisturbed, resumed = data_files(quick), data_files(project)
     for target in targets:
         assert resumed[target] == undisturbed[target], target
