@@ -1,4 +1,4 @@
-"""What a contact analysis is asked to do; light to import, so that configs can be read without the solvers."""
+"""What a contact analysis is asked to do; light to import, so that configs need no solver."""
 
 from dataclasses import dataclass
 from typing import Literal

@@ -40,8 +40,11 @@ def fit_harmonics(samples: NDArray[np.float64]) -> Fit:
     if samples.ndim != 1 or samples.size < 4:
         raise ValueError("at least four samples of one period are needed")
     series = _transform(samples)
-    cycles = np.arange(samples.size) / samples.size
-    truncation = np.array([np.abs(samples - series.kept(h)(cycles)).max() for h in range(series.order + 1)])
+    angle = 2.0 * np.pi * np.arange(samples.size) / samples.size
+    truncation, rest = np.empty(series.order + 1), samples.copy()
+    for h in range(series.order + 1):
+        rest -= series.a[h] * np.sin(h * angle) + series.b[h] * np.cos(h * angle)
+        truncation[h] = np.abs(rest).max()
     halves = [_transform(samples[start::2]) for start in (0, 1)] if samples.size >= 8 else []
     sampling = np.full(series.order + 1, np.nan)
     for half, shift in zip(halves, (0.0, 1.0 / samples.size), strict=False):

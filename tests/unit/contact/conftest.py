@@ -27,9 +27,7 @@ def pair_design(
     pinion = Pinion(
         23, pinion_width, m, 1.25 * m, rack_tip_radius * m, 0.025, tip_relief=tip_relief or Relief()
     )
-    return PairDesign(
-        m, radians(25), pinion, FaceGear(143, *radii, m, 0.012), Shaper(shaper_teeth, 1.25 * m)
-    )
+    return PairDesign(m, radians(25), pinion, FaceGear(143, *radii, m, 0.012), Shaper(shaper_teeth, 1.25 * m))
 
 
 def build_model(design: PairDesign, cuts: Refinement = CUTS, sizes: MeshSizes = SIZES) -> ContactModel:

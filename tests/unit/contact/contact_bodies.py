@@ -33,7 +33,9 @@ def graded(first, total, ratio):
 
 
 def block(x, y, z, mapping=None, held=None, normal=(0.0, 1.0, 0.0)):
-    """Block with element ends x, y, z; the contact surface is the face of largest y, profile along x, width z."""
+    """Block with element ends x, y, z; the contact surface is the face of largest y, profile along x, width
+    z.
+    """
     grid = np.stack(np.meshgrid(stations(x), stations(y), stations(z), indexing="ij"), axis=-1)
     nodes = np.arange(grid[..., 0].size).reshape(grid.shape[:3])
     reference = grid.reshape(-1, 3)
@@ -81,7 +83,9 @@ def quarter_space(size, total, loaded, ratio=2.0):
 
 
 def pressed(piece, refinement, gap_of, force, reach=None):
-    """Press a rigid surface, `gap_of` (n, 3) points, on a body; returns the contact, pressures and hat centres."""
+    """Press a rigid surface, `gap_of` (n, 3) points, on a body; returns the contact, pressures and hat
+    centres.
+    """
     system = tied_system(piece, refinement)
     flank = condense(piece, system).flank
     shape = system.surface.shape[:2]

@@ -77,7 +77,7 @@ def test_without_gaps_rotation_grows_in_proportion_to_torque():
 
 
 def test_no_point_that_can_carry_the_torque_is_told_with_its_place():
-    with pytest.raises(NotConverged, match="position 0.25, torque 600 N m"):
+    with pytest.raises(NotConverged, match=r"position 0\.25, torque 600 N m"):
         solve(np.eye(3), np.zeros(3), -np.ones(3), 600.0, where="position 0.25, torque 600 N m")
 
 

@@ -1,0 +1,99 @@
+import numpy as np
+import pandas as pd
+import pytest
+
+from facegear.config.base import parse
+from facegear.config.stiffness import MeshStiffness, stiffness_request
+from facegear.errors import ConfigError, ConfigErrors
+from facegear.stiffness.curve import load_table
+from facegear.stiffness.source import stiffness_from_contact, stiffness_given
+from facegear.stiffness.tables import load_dependence, series_of
+
+TORQUES = np.array([100.0, 200.0, 400.0, 800.0])
+POSITIONS = np.arange(16) / 16
+
+
+def stiffness_at(torque, position):
+    return 4e8 * (torque / 400) ** 0.25 * (1 + 0.1 * np.cos(2 * np.pi * position))
+
+
+def contact_table():
+    torque, position = (grid.ravel() for grid in np.meshgrid(TORQUES, POSITIONS, indexing="ij"))
+    average = stiffness_at(torque, position)
+    columns = {"torque_n_m": torque, "position": position, "k_average_n_per_m": average}
+    return pd.DataFrame(columns | {"k_local_n_per_m": 1.3 * average})
+
+
+def request(**changes):
+    values = {"source": "fem", "mean_n_per_m": 4.1e8, "torque_n_m": 300.0, "harmonics_kept": 4} | changes
+    return stiffness_request(parse(MeshStiffness, values))
+
+
+def test_curve_between_solved_loads_follows_the_load_dependence():
+    curve = load_table(contact_table()).at(300.0, "average")
+    np.testing.assert_allclose(curve, stiffness_at(300.0, POSITIONS), rtol=2e-3)
+
+
+@pytest.mark.parametrize("torque", [50.0, 801.0])
+def test_curve_is_never_extrapolated_in_load(torque):
+    with pytest.raises(ConfigError, match="100 to 800"):
+        load_table(contact_table()).at(torque, "average")
+
+
+def test_solved_load_is_taken_as_it_is():
+    curve = load_table(contact_table()).at(400.0, "local")
+    np.testing.assert_allclose(curve, 1.3 * stiffness_at(400.0, POSITIONS), rtol=1e-14)
+
+
+def test_scaled_source_has_the_mean_asked_for_and_the_shape_computed():
+    plain = series_of(stiffness_from_contact(contact_table(), request()).harmonics)
+    scaled = series_of(stiffness_from_contact(contact_table(), request(source="fem_scaled")).harmonics)
+    assert scaled.mean == pytest.approx(4.1e8, rel=1e-12)
+    np.testing.assert_allclose(
+        scaled.amplitudes / scaled.mean, plain.amplitudes / plain.mean, rtol=1e-12, atol=1e-15
+    )
+
+
+def test_written_harmonics_are_those_kept():
+    result = stiffness_from_contact(contact_table(), request(harmonics_kept=2))
+    assert list(result.harmonics["order"]) == [0, 1, 2]
+    assert len(result.spectrum) == 8
+
+
+def test_harmonics_given_in_the_config_need_no_contact():
+    table = [{"order": 1, "a_n_per_m": 2e7, "b_n_per_m": 1e7}, {"order": 3, "b_n_per_m": -5e6}]
+    asked = request(source="harmonics", table=table, torque_n_m=None)
+    series = series_of(stiffness_given(None, asked).harmonics)
+    np.testing.assert_allclose(series.a, [0, 2e7, 0, 0])
+    np.testing.assert_allclose(series.b, [4.1e8, 1e7, 0, -5e6])
+
+
+def test_load_dependence_lists_both_stiffnesses_at_every_load():
+    table = load_dependence(load_table(contact_table()))
+    assert len(table) == 8
+    average = table[table["definition"] == "average"]
+    assert average["mean_n_per_m"].is_monotonic_increasing
+    np.testing.assert_allclose(average["amplitude_1_n_per_m"] / average["mean_n_per_m"], 0.1, rtol=1e-10)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"source": "harmonics"},
+        {"torque_n_m": None},
+        {"table": [{"order": 1}]},
+        {"source": "harmonics", "table": [{"order": 2}, {"order": 1}]},
+        {"mean_n_per_m": -1.0},
+        {"source": "measured"},
+    ],
+)
+def test_incomplete_or_contradictory_sources_are_refused(changes):
+    with pytest.raises(ConfigErrors):
+        request(**changes)
+
+
+@pytest.mark.parametrize("orders", [[0, 1, 1], [0, -1], [0, 0.5]])
+def test_orders_of_a_users_file_must_be_whole_and_single(orders):
+    frame = pd.DataFrame({"order": orders, "a_n_per_m": 0.0, "b_n_per_m": 1.0})
+    with pytest.raises(ValueError, match="orders"):
+        series_of(frame)
