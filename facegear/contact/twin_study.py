@@ -12,7 +12,8 @@ from facegear.contact.twin import analyse_twin, twin_model
 from facegear.geometry.design import Material, PairDesign
 from facegear.mesh.sizes import MeshSizes
 
-TEETH = 7
+TEETH = 13
+"""In both sectors: the loaded teeth next to the middle one must not feel the free cut faces."""
 POSITIONS = (0.0, 0.3, 0.6)
 LINE_LOADS = (1e5, 3e5, 6e5)
 STEEL = Material(206e9, 0.3)
@@ -25,7 +26,14 @@ def twin_gears(design: PairDesign, teeth: int) -> tuple[PairDesign, PairDesign]:
     return first, replace(first, pinion=replace(first.pinion, teeth=teeth, bore_radius=bore))
 
 
-def twin_study(design: PairDesign, teeth: int, ladder: tuple[float, ...]) -> pd.DataFrame:
+def twin_study(
+    design: PairDesign,
+    teeth: int,
+    ladder: tuple[float, ...],
+    positions: tuple[float, ...] = POSITIONS,
+    line_loads: tuple[float, ...] = LINE_LOADS,
+    sector: int = TEETH,
+) -> pd.DataFrame:
     """Average stiffness (N/m per m) of ours and of brute force with facets of `ladder` (modules), 7-tooth
     sectors.
 
@@ -34,11 +42,13 @@ def twin_study(design: PairDesign, teeth: int, ladder: tuple[float, ...]) -> pd.
     first, second = twin_gears(design, teeth)
     m = design.module
     sizes = MeshSizes(0.1 * m, 0.25 * m, 0.4 * m)
-    model = twin_model(first, second, (sizes, sizes), Refinement(4, 1, 3, 2.0), (STEEL, STEEL), TEETH, "free")
-    ours = analyse_twin(model, np.array(POSITIONS), list(LINE_LOADS))
+    model = twin_model(
+        first, second, (sizes, sizes), Refinement(4, 1, 3, 2.0), (STEEL, STEEL), sector, "free"
+    )
+    ours = analyse_twin(model, np.array(positions), list(line_loads))
     thickness, base = float(np.ptp(model.surface.side.v)), first.pinion_base_radius
     fine = [MeshSizes(size * m, 0.25 * m, 0.4 * m) for size in ladder]
-    meshes = [tuple(flat_gear(gear, size, STEEL, TEETH) for gear in (first, second)) for size in fine]
+    meshes = [tuple(flat_gear(gear, size, STEEL, sector) for gear in (first, second)) for size in fine]
     rows = []
     for result in ours:
         load = result.torque / base / thickness
