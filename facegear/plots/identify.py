@@ -3,6 +3,7 @@
 import matplotlib.pyplot as plt
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullLocator
 
 from facegear.plots.style import styled
 
@@ -21,6 +22,7 @@ def landscape(evaluations: pd.DataFrame, sets: pd.DataFrame) -> Figure:
             len(branches), len(AXES), figsize=(9.5, 1.6 * len(branches) + 0.6), squeeze=False, sharey=True
         )
         for row, branch in zip(axes, branches, strict=True):
+            row[0].set_ylabel("misfit")
             points = evaluations[evaluations["branch"] == branch]
             kept = sets[sets["branch"] == branch]
             for axis, (column, label) in zip(row, AXES, strict=True):
@@ -30,8 +32,10 @@ def landscape(evaluations: pd.DataFrame, sets: pd.DataFrame) -> Figure:
                     axis.annotate(one.set, (getattr(one, column), one.misfit), fontsize=8, color="tab:red")
                 if column == "per_input_n_m":
                     axis.set_xscale("log")
-                    axis.set_ylabel("misfit")
-                if row is axes[-1]:
+                    axis.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+                    axis.xaxis.set_major_formatter("{x:g}")
+                    axis.xaxis.set_minor_locator(NullLocator())
+                if branch == branches[-1]:
                     axis.set_xlabel(label)
             row[1].set_title(branch, fontsize=7)
     return figure
