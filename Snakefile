@@ -24,5 +24,6 @@ rule all:
 
 rule benchmarks:
     input:
+        f"results/{CASE}/benchmarks/mesh.csv",
         contact_benchmark_targets(CASE),
         dynamics_benchmark_targets(CASE),

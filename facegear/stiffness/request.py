@@ -10,7 +10,7 @@ Definition = Literal["average", "local"]
 
 @dataclass(frozen=True, eq=False)
 class StiffnessRequest:
-    """Source of k(t); `mean` N/m, `torque` N m on the pinion per mesh, orders `kept`, and the series `given`."""
+    """Source of k(t); `mean` N/m, `torque` N m on the pinion per mesh, orders `kept`, the series `given`."""
 
     source: Literal["fem", "fem_scaled", "harmonics"]
     mean: float

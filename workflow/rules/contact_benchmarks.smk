@@ -1,4 +1,4 @@
-from facegear.contact.rungs import RUNGS
+include: "functions/contact_benchmarks.smk"
 
 
 rule contact_rung:
@@ -9,6 +9,8 @@ rule contact_rung:
         "results/{case}/logs/contact_rung_{rung}.log",
     benchmark:
         "results/{case}/benchmarks/rules/contact_rung_{rung}.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 2
     resources:
         mem_mb=8000,
@@ -35,6 +37,8 @@ rule contact_benchmark:
         "results/{case}/logs/contact_benchmark.log",
     benchmark:
         "results/{case}/benchmarks/rules/contact_benchmark.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=700,
@@ -55,6 +59,8 @@ rule contact_shortcuts:
         "results/{case}/logs/contact_shortcuts.log",
     benchmark:
         "results/{case}/benchmarks/rules/contact_shortcuts.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 2
     resources:
         mem_mb=4000,
@@ -76,6 +82,8 @@ rule twin_benchmark:
         "results/{case}/logs/twin_benchmark.log",
     benchmark:
         "results/{case}/benchmarks/rules/twin_benchmark.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 2
     resources:
         mem_mb=4000,
@@ -97,6 +105,8 @@ rule calculix_peer:
         "results/{case}/logs/calculix_peer.log",
     benchmark:
         "results/{case}/benchmarks/rules/calculix_peer.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 2
     resources:
         mem_mb=12000,
@@ -113,8 +123,3 @@ rule calculix_peer:
 rule peers:
     input:
         f"results/{CASE}/benchmarks/calculix.csv",
-
-
-def contact_benchmark_targets(case):
-    """Tables that `make benchmarks` writes for the contact stage."""
-    return [f"results/{case}/benchmarks/{name}.csv" for name in ("contact", "contact_shortcuts", "twin")]

@@ -10,6 +10,8 @@ rule dynamics_work_precision:
         "results/{case}/logs/dynamics_work_precision.log",
     benchmark:
         "results/{case}/benchmarks/rules/dynamics_work_precision.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 2
     resources:
         mem_mb=1000,
@@ -36,6 +38,8 @@ rule dynamics_costs:
         "results/{case}/logs/dynamics_costs.log",
     benchmark:
         "results/{case}/benchmarks/rules/dynamics_costs.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 2
     resources:
         mem_mb=1000,
@@ -63,6 +67,8 @@ rule dynamics_convergence:
         "results/{case}/logs/dynamics_convergence.log",
     benchmark:
         "results/{case}/benchmarks/rules/dynamics_convergence.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=700,

@@ -75,6 +75,8 @@ rule identify_roads:
         "results/{case}/logs/identify_roads.log",
     benchmark:
         "results/{case}/benchmarks/rules/identify_roads.tsv"
+    conda:
+        "../envs/facegear.yaml"
     threads: 1
     resources:
         mem_mb=500,
