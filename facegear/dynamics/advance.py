@@ -12,6 +12,8 @@ from facegear.dynamics.taylor import Work, deflect, evaluate, excitation, recurr
 Array = NDArray[np.float64]
 EDGE = 2e-14
 """A deflection this close to an edge, in length scales, counts as standing on it."""
+BRIEFEST = 1e-14
+"""An edge that is crossed within this time (rad of mesh phase) is stood on: s itself is not known better."""
 SHORTEST = 1e-10
 """Shortest time (rad of mesh phase) between two switches of one mesh that is followed."""
 OPEN, DRIVE, BACK = 0, 1, -1
@@ -65,7 +67,6 @@ def set_state(packed: Packed, work: Work, m: int, state: int) -> None:
 @kernel
 def _find_state(packed: Packed, work: Work) -> None:
     """Contact state of every mesh from deflection and, on an edge, its direction of motion."""
-    margin = EDGE * packed.scale
     for m in range(packed.m):
         work.at_edge[m] = 0
         work.edge[m] = 0.0
@@ -74,6 +75,7 @@ def _find_state(packed: Packed, work: Work) -> None:
             set_state(packed, work, m, DRIVE)
             continue
         deflection, rate = work.deflection[0, m], work.deflection[1, m]
+        margin = EDGE * packed.scale + BRIEFEST * abs(rate)
         if abs(deflection - upper) <= margin:
             work.at_edge[m] = 1
             set_state(packed, work, m, DRIVE if rate > 0.0 else OPEN)

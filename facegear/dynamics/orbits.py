@@ -6,7 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.compiled import Packed
-from facegear.dynamics.periods import DONE, Log, make_log, run_periods
+from facegear.dynamics.periods import (
+    DONE,
+    MOST_STEPS,
+    NOT_FINITE,
+    TOO_MANY_STEPS,
+    Log,
+    make_log,
+    run_periods,
+)
 from facegear.dynamics.taylor import Work
 from facegear.errors import NotConverged
 
@@ -59,8 +67,12 @@ def monodromy(
 
 def require(status: int) -> None:
     """Raise NotConverged unless the status of a run is good."""
+    told = {
+        TOO_MANY_STEPS: f"a mesh period took more than {MOST_STEPS} steps",
+        NOT_FINITE: "the motion grew beyond all bounds",
+    }
     if status != DONE:
-        raise NotConverged("dynamics", "time integration", f"step failed with status {status}")
+        raise NotConverged("dynamics", "time integration", told[status])
 
 
 def shoot(

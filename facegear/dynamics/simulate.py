@@ -16,6 +16,7 @@ from facegear.dynamics.statistics import drifts
 from facegear.dynamics.system import System, machine_system
 from facegear.dynamics.taylor import make_work
 from facegear.dynamics.window import Window, run_window
+from facegear.errors import NotConverged
 from facegear.transmission.machine import Machine, mesh_frequency
 from facegear.transmission.matrices import mass_diagonal
 from facegear.transmission.statics import static_equilibrium
@@ -97,7 +98,10 @@ def simulate(
     ready = model(ready) if isinstance(ready, Machine) else ready
     frequency = TAU * mesh_frequency(ready.machine.layout, speed_rpm)
     start = static_start(ready) if start is None else start
-    return steady_state(ready.system, frequency, settings or Settings(), start)
+    try:
+        return steady_state(ready.system, frequency, settings or Settings(), start)
+    except NotConverged as error:
+        raise NotConverged(error.stage, f"{speed_rpm:g} rpm", error.tried) from None
 
 
 def simulate_many(
