@@ -3,15 +3,16 @@
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
-from facegear.config.contact import Contact
+from facegear.config.contact import Contact, contact_plan
 from facegear.config.dynamics import Dynamics
 from facegear.config.identify import Identify, ScorecardSection
 from facegear.config.load_sharing import LoadSharing
-from facegear.config.mesh import Mesh
+from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.stiffness import MeshStiffness
 from facegear.config.studies import NAME, Study
-from facegear.config.tooth_pair import ToothPair
+from facegear.config.tooth_pair import ToothPair, materials, pair_design
 from facegear.config.transmission import Transmission, layout, tooth_numbers
+from facegear.contact.resolution import check_resolution
 from facegear.errors import ConfigError
 
 
@@ -43,6 +44,10 @@ class Config(Section):
                     pair.pinion_teeth, pair.face_gear_teeth, pair.module_mm, pair.pressure_angle_deg
                 ),
             )
+            if self.mesh_stiffness.source != "harmonics":
+                design = pair_design(pair)
+                sizes = mesh_sizes(self.mesh, design.module)
+                check_resolution(design, materials(pair), sizes, contact_plan(self.contact))
         except ConfigError as error:
             refuse(error.key, error.value, error.allowed)
         return self

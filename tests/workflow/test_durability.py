@@ -84,6 +84,7 @@ def test_an_altered_intermediate_is_named_with_the_command_that_rebuilds_it(quic
         ("backlash_um: 100", "backlash_um: wide", "transmission.backlash_um"),
         ("inner_radius_mm: 250", "inner_radius_mm: 200", "inner_radius_mm"),
         ("outer_radius_mm: 275", "outer_radius_mm: 320", "outer_radius_mm"),
+        ("resolution: coarse", "resolution: {profile_mm: 6, width_mm: 6, thickness_mm: 6}", "too coarse"),
     ],
 )
 def test_a_config_mistake_stops_before_any_work_in_one_line(tmp_path, old, new, line):
