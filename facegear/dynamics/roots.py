@@ -51,7 +51,7 @@ def first_root(coefficients: Array, degree: int, conversion: Array, work: Array)
         for i in range(degree + 1):
             value = work[depth, i]
             if value != 0.0:
-                if last * value < 0.0:
+                if last != 0.0 and (last > 0.0) != (value > 0.0):
                     changes += 1
                 last = value
         if changes == 1:

@@ -14,10 +14,17 @@ PACKAGE = "facegear"
 
 
 def fingerprint(script: str | Path, root: str | Path) -> str:
-    """Hash of a script's own code and of all package modules below `root` that it reaches by imports."""
+    """Hash of a script's own code and of all package modules below `root` that it reaches by imports.
+
+    Templates (`*.j2`) count with the package they lie in.
+    """
     digest = hashlib.sha256(_code(Path(script)).encode())
     for module in reached_modules(script, root):
-        digest.update(module.encode() + b"\0" + _code(_file(module, Path(root))).encode())
+        file = _file(module, Path(root))
+        digest.update(module.encode() + b"\0" + _code(file).encode())
+        if file.name == "__init__.py":
+            for template in sorted(file.parent.glob("*.j2")):
+                digest.update(template.read_bytes())
     return digest.hexdigest()[:16]
 
 

@@ -81,9 +81,9 @@ def test_a_comment_reruns_nothing(edited, module):
 @pytest.mark.parametrize(
     ("pattern", "replacement"),
     [
-        (r"backlash_um: \S+", "backlash_um: 101"),
-        (r"per_input_n_m: \S+", "per_input_n_m: 777"),
-        (r"mass_per_s: \S+", "mass_per_s: 801"),
+        (r"backlash_um: [\d.]+", "backlash_um: 101"),
+        (r"per_input_n_m: [\d.]+", "per_input_n_m: 777"),
+        (r"mass_per_s: [\d.]+", "mass_per_s: 801"),
         (r"angle_pitches: 22.5", "angle_pitches: 23"),
     ],
 )

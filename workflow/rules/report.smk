@@ -5,7 +5,6 @@ rule report:
     input:
         tables=report_tables,
         pictures=report_pictures,
-        template=str(ROOT / "facegear" / "report" / "page.html.j2"),
     output:
         html="results/{case}/report.html",
         manifest="results/{case}/report.provenance.json",
