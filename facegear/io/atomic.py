@@ -8,6 +8,9 @@ from pathlib import Path
 
 from facegear.errors import FacegearError
 
+NO_SPACE = (errno.ENOSPC, errno.EDQUOT)
+NO_SPACE_TOLD = "no space left on the disk; free some and run again"
+
 
 @contextmanager
 def atomic_path(path: str | Path) -> Iterator[Path]:
@@ -24,8 +27,8 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
             os.fsync(stream.fileno())
         os.replace(temporary, path)
     except OSError as error:
-        if error.errno in (errno.ENOSPC, errno.EDQUOT):
-            raise FacegearError(f"{path}: no space left on the disk; free some and run again") from None
+        if error.errno in NO_SPACE:
+            raise FacegearError(f"{path}: {NO_SPACE_TOLD}") from None
         raise
     finally:
         temporary.unlink(missing_ok=True)

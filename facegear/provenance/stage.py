@@ -4,12 +4,13 @@ import sys
 import time
 import traceback
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
-from typing import Any, TextIO
+from typing import Any, BinaryIO
 
 from facegear.errors import FacegearError
+from facegear.io.atomic import NO_SPACE, NO_SPACE_TOLD
 from facegear.io.checksums import MANIFEST_SUFFIX
 from facegear.provenance.manifest import write_manifest
 
@@ -30,39 +31,48 @@ class Run:
 def stage(snakemake: Any) -> Iterator[Run]:
     """Run a script's body: copy standard error to the rule's log and write the manifest at the end.
 
-    A FacegearError ends the script with its own line, the log's path and exit code 1, without a traceback.
-    The manifest goes to the output whose name ends in `.provenance.json` and covers all other outputs.
+    A FacegearError or a full disk ends the script with one line, the log's path and exit code 1, without a
+    traceback. The manifest goes to the output whose name ends in `.provenance.json` and covers all others.
     """
     run, start = Run(), time.perf_counter()
     outputs = [Path(output) for output in snakemake.output]
     manifests = [output for output in outputs if output.name.endswith(MANIFEST_SUFFIX)]
     log = Path(snakemake.log[0])
-    log.parent.mkdir(parents=True, exist_ok=True)
-    with open(log, "w", encoding="utf-8") as stream, _Copied(stream):
-        for manifest in manifests:
-            manifest.unlink(missing_ok=True)
-        try:
+    with _one_line_errors(snakemake, log):
+        log.parent.mkdir(parents=True, exist_ok=True)
+        with open(log, "wb", buffering=0) as stream, _Copied(stream), _one_line_errors(snakemake, log):
+            for manifest in manifests:
+                manifest.unlink(missing_ok=True)
             yield run
-        except FacegearError as error:
-            where = f"{snakemake.rule} of {snakemake.wildcards.get('case', 'this workflow')}"
-            print(f"error in {where}: {error} (log: {log})", file=sys.stderr, flush=True)
-            raise SystemExit(1) from None
-        for manifest in manifests:
-            write_manifest(
-                manifest,
-                [output for output in outputs if output not in manifests],
-                dict(snakemake.params.items()),
-                snakemake.rule,
-                time.perf_counter() - start,
-                run.text,
-                snakemake.config.get("rebuild_command", "snakemake --cores 2 --force"),
-            )
+            for manifest in manifests:
+                write_manifest(
+                    manifest,
+                    [output for output in outputs if output not in manifests],
+                    dict(snakemake.params.items()),
+                    snakemake.rule,
+                    time.perf_counter() - start,
+                    run.text,
+                    snakemake.config.get("rebuild_command", "snakemake --cores 2 --force"),
+                )
+
+
+@contextmanager
+def _one_line_errors(snakemake: Any, log: Path) -> Iterator[None]:
+    try:
+        yield
+    except (FacegearError, OSError) as error:
+        if isinstance(error, OSError) and error.errno not in NO_SPACE:
+            raise
+        where = f"{snakemake.rule} of {snakemake.wildcards.get('case', 'this workflow')}"
+        what = f"{log}: {NO_SPACE_TOLD}" if isinstance(error, OSError) else str(error)
+        print(f"error in {where}: {what} (log: {log})", file=sys.stderr, flush=True)
+        raise SystemExit(1) from None
 
 
 class _Copied:
     """Standard error also goes to a log."""
 
-    def __init__(self, log: TextIO) -> None:
+    def __init__(self, log: BinaryIO) -> None:
         self.log, self.terminal = log, sys.stderr
 
     def __enter__(self) -> None:
@@ -73,13 +83,15 @@ class _Copied:
     ) -> None:
         sys.stderr = self.terminal
         if kind is not None and kind is not SystemExit:
-            traceback.print_exception(kind, error, trace, file=self.log)
+            self._keep("".join(traceback.format_exception(kind, error, trace)))
 
     def write(self, text: str) -> int:
-        self.log.write(text)
-        self.log.flush()
+        self._keep(text)
         return self.terminal.write(text)
 
     def flush(self) -> None:
-        self.log.flush()
         self.terminal.flush()
+
+    def _keep(self, text: str) -> None:
+        with suppress(OSError):  # a full disk must not keep the message from the terminal
+            self.log.write(text.encode())

@@ -2,6 +2,7 @@
 
 import os
 import random
+import shlex
 import shutil
 import signal
 import subprocess
@@ -49,6 +50,66 @@ def test_a_killed_run_started_again_gives_the_same_files(quick, tmp_path, seed):
     for target in targets:
         assert resumed[target] == undisturbed[target], target
     assert not list((tmp_path / "results").rglob(".[0-9]*")), "no temporary file is left behind"
+
+
+def test_a_run_killed_in_the_contact_stage_resumes_and_says_so(quick, tmp_path):
+    project = Project(tmp_path)
+    shutil.copytree(quick.folder / "results", tmp_path / "results")
+    shutil.copytree(quick.folder / ".snakemake", tmp_path / ".snakemake")
+    shutil.rmtree(tmp_path / "results" / "quick" / "contact")
+    log = tmp_path / "results" / "quick" / "logs" / "contact.log"
+    log.unlink()
+    process = subprocess.Popen(
+        project.command("results/quick/contact/ltca.csv", *QUICK),
+        env=environment(),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    deadline = time.monotonic() + 60
+    while not log.exists() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    assert not (tmp_path / "results" / "quick" / "contact" / "contact.provenance.json").exists()
+    done = project.run("results/quick/contact/ltca.csv", *QUICK)
+    assert "resuming a run that was stopped" in done.stderr
+    assert data_files(project) == data_files(quick)
+
+
+def small_disk(folder, size, *command):
+    """A command run with `folder` on a disk of `size`, in a mount namespace of its own."""
+    mounted = f"mount -t tmpfs -o size={size} tmpfs {shlex.quote(str(folder))} && {shlex.join(command)}"
+    return subprocess.run(
+        ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c", mounted],
+        capture_output=True,
+        text=True,
+        env=environment(),
+        check=False,
+    )
+
+
+def may_mount():
+    try:
+        return small_disk("/mnt", "64k", "true").returncode == 0
+    except FileNotFoundError:
+        return False
+
+
+@pytest.mark.skipif(
+    not may_mount(), reason="no small disk may be mounted here; /dev/full stands for it in the unit tests"
+)
+@pytest.mark.parametrize("size", ["4k", "16k", "56k"])
+def test_a_full_disk_stops_the_stage_in_one_line_and_nothing_half_written_stays(tmp_path, size):
+    (tmp_path / "results").mkdir()
+    command = Project(tmp_path).command("results/paper/modal/frequencies.csv")
+    listing = f"{shlex.join(command)}; code=$?; find results -name '*.csv' -o -name '.[0-9]*'; exit $code"
+    done = small_disk(tmp_path / "results", size, "sh", "-c", f"cd {shlex.quote(str(tmp_path))} && {listing}")
+    assert done.returncode != 0
+    (line,) = [line for line in done.stderr.splitlines() if line.startswith("error in ")]
+    assert "no space left on the disk; free some and run again" in line
+    assert "Traceback" not in done.stderr
+    assert [row for row in done.stdout.splitlines() if row.startswith("results/")] == []
 
 
 @pytest.mark.parametrize(

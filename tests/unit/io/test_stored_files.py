@@ -1,6 +1,5 @@
 """Stored files are whole, checked when read, and cannot execute code."""
 
-import errno
 import os
 
 import numpy as np
@@ -13,7 +12,6 @@ from hypothesis.extra.numpy import array_shapes, arrays
 from facegear.errors import CorruptFile, FacegearError
 from facegear.io import arrays as array_files
 from facegear.io import documents, tables
-from facegear.io.atomic import atomic_path
 
 finite = st.floats(allow_nan=False, allow_infinity=False, width=64)
 
@@ -101,12 +99,17 @@ def test_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
     assert [entry.name for entry in tmp_path.iterdir()] == ["pair.json"]
 
 
-def test_full_disk_ends_in_one_line(tmp_path):
-    with (
-        pytest.raises(FacegearError, match="no space left on the disk") as caught,
-        atomic_path(tmp_path / "big.npz") as temporary,
-    ):
-        temporary.write_bytes(b"x")
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+@pytest.mark.parametrize(
+    ("name", "write"),
+    [
+        ("tvms.csv", lambda path: tables.write(path, pd.DataFrame({"k_n_per_m": np.ones(2000)}))),
+        ("pinion.npz", lambda path: array_files.write(path, own=np.ones(20000))),
+        ("pair.json", lambda path: documents.write(path, {"radius_mm": 1.0})),
+    ],
+)
+def test_full_disk_ends_in_one_line_and_leaves_nothing(tmp_path, name, write):
+    (tmp_path / f".{os.getpid()}.{name}").symlink_to("/dev/full")
+    with pytest.raises(FacegearError, match=f"{name}: no space left on the disk") as caught:
+        write(tmp_path / name)
     assert "\n" not in str(caught.value)
     assert list(tmp_path.iterdir()) == []

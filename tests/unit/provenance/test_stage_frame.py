@@ -1,6 +1,8 @@
 """The frame around a script: manifest at the end, one-line errors, tracebacks only in the log."""
 
+import errno
 import json
+import os
 from types import SimpleNamespace
 
 import pytest
@@ -53,3 +55,14 @@ def test_traceback_of_a_programming_error_is_kept_in_the_log(job, tmp_path):
     with pytest.raises(ZeroDivisionError), stage(job):
         1 / 0  # noqa: B018
     assert "ZeroDivisionError" in (tmp_path / "a.log").read_text()
+
+
+def test_no_room_for_the_log_is_one_line_as_well(job, tmp_path, capsys):
+    (tmp_path / "a.log").symlink_to("/dev/full")
+    with pytest.raises(SystemExit), stage(job) as run:
+        run.summary("mean stiffness 4.1e8 N/m")
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    told = capsys.readouterr().err.splitlines()
+    assert told[0] == "summary: mean stiffness 4.1e8 N/m"
+    (line,) = told[1:]
+    assert "no space left on the disk; free some and run again" in line
