@@ -56,14 +56,13 @@ def static_equilibrium(machine: Machine, cycles: float | None = None) -> Equilib
     # Rotations are scaled by the pinion radius so that all unknowns are lengths of one order.
     scale = np.ones(bearing.size)
     scale[3::DOF_PER_BODY] = 1.0 / machine.layout.pinion_radius
-    solution = _minimise(
+    scaled = _Springs(
         directions * scale, stiffness, error, bearing * scale**2, applied * scale, machine.half_backlash
     )
-    deflections = directions @ (scale * solution) - error
-    forces = stiffness * dead_zone(deflections, machine.half_backlash)
-    balance = bearing * scale * solution + directions.T @ forces - applied
+    solution = _minimise(scaled)
+    deflections, forces = scaled.deflections(solution), scaled.forces(solution)
     size = max(np.abs(applied * scale).max(), np.abs(forces).max())
-    residual = float(np.abs(balance * scale).max() / size) if size > 0.0 else 0.0
+    residual = float(np.abs(scaled.balance(solution)).max() / size) if size > 0.0 else 0.0
     # A deflection in the dead zone's neighbourhood is known to rounding only, and so is its force.
     rounding = 100.0 * np.finfo(float).eps * stiffness.max() * np.abs(deflections).max()
     if residual * size > RESIDUAL * size + rounding:
@@ -72,56 +71,62 @@ def static_equilibrium(machine: Machine, cycles: float | None = None) -> Equilib
     return Equilibrium(scale * solution, deflections, forces, residual)
 
 
-def _minimise(
-    directions: NDArray[np.float64],
-    stiffness: NDArray[np.float64],
-    error: NDArray[np.float64],
-    bearing: NDArray[np.float64],
-    applied: NDArray[np.float64],
-    half_width: float,
-) -> NDArray[np.float64]:
+@dataclass(frozen=True, eq=False)
+class _Springs:
+    """Meshes and bearings in scaled displacements q: directions (meshes, q), the rest per mesh or per q."""
+
+    directions: NDArray[np.float64]
+    stiffness: NDArray[np.float64]
+    error: NDArray[np.float64]
+    bearing: NDArray[np.float64]
+    applied: NDArray[np.float64]
+    half_width: float
+
+    def deflections(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+        return self.directions @ q - self.error
+
+    def forces(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+        return self.stiffness * dead_zone(self.deflections(q), self.half_width)
+
+    def balance(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+        return self.bearing * q + self.directions.T @ self.forces(q) - self.applied
+
+    def curvature(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+        active = np.where(np.abs(self.deflections(q)) > self.half_width, self.stiffness, 0.0)
+        return np.diag(self.bearing) + (self.directions.T * active) @ self.directions
+
+
+def _minimise(springs: _Springs) -> NDArray[np.float64]:
     """Proximal point method: each round ties the body to its last place by a spring softer than before.
 
     The springs make every round strictly convex, so that bodies free inside their backlash have a place too;
     the force in the springs goes to zero as the rounds settle.
     """
-    size = np.abs(applied).max()
-    stiffest = max(stiffness.max(), bearing.max())
-    place = np.zeros(bearing.size)
-    for spring in stiffest * np.geomspace(FIRST_SPRING, LAST_SPRING, ROUNDS):
+    size = np.abs(springs.applied).max()
+    stiffest = max(springs.stiffness.max(), springs.bearing.max())
+    place = np.zeros(springs.bearing.size)
+    for tie in stiffest * np.geomspace(FIRST_SPRING, LAST_SPRING, ROUNDS):
         last = place
-        place = _newton(directions, stiffness, error, bearing, applied, half_width, spring, last)
-        forces = stiffness * dead_zone(directions @ place - error, half_width)
-        if spring * np.abs(place - last).max() <= 1e-3 * RESIDUAL * max(size, np.abs(forces).max()):
+        place = _newton(springs, tie, last)
+        largest = max(size, np.abs(springs.forces(place)).max())
+        if tie * np.abs(place - last).max() <= 1e-3 * RESIDUAL * largest:
             break
     return place
 
 
-def _newton(
-    directions: NDArray[np.float64],
-    stiffness: NDArray[np.float64],
-    error: NDArray[np.float64],
-    bearing: NDArray[np.float64],
-    applied: NDArray[np.float64],
-    half_width: float,
-    spring: float,
-    anchor: NDArray[np.float64],
-) -> NDArray[np.float64]:
+def _newton(springs: _Springs, tie: float, anchor: NDArray[np.float64]) -> NDArray[np.float64]:
     """Newton's method with an exact line search on the piecewise quadratic energy of one round."""
 
     def gradient(q: NDArray[np.float64]) -> NDArray[np.float64]:
-        forces = stiffness * dead_zone(directions @ q - error, half_width)
-        return bearing * q + directions.T @ forces - applied + spring * (q - anchor)
+        return springs.balance(q) + tie * (q - anchor)
 
-    place = anchor
+    place, ties = anchor, tie * np.eye(len(anchor))
     for _ in range(MAX_ITERATIONS):
-        active = np.where(np.abs(directions @ place - error) > half_width, stiffness, 0.0)
-        curvature = np.diag(bearing + spring) + (directions.T * active) @ directions
-        step = -scipy.linalg.solve(curvature, gradient(place), assume_a="pos")
+        step = -scipy.linalg.solve(springs.curvature(place) + ties, gradient(place), assume_a="pos")
         moved = place + step * _line_minimum(
             lambda s, step=step, at=place: float(gradient(at + s * step) @ step)
         )
-        if np.abs(moved - place).max() <= 1e-15 * max(np.abs(place).max(), half_width):
+        if np.abs(moved - place).max() <= 1e-15 * max(np.abs(place).max(), springs.half_width):
             return moved
         place = moved
     return place
