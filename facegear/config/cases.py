@@ -8,7 +8,7 @@ from typing import Any
 
 from facegear.config.base import parse
 from facegear.config.model import Config
-from facegear.config.studies import Study
+from facegear.config.studies import Point, Study
 from facegear.errors import ConfigError, ConfigErrors
 
 STAGE_KEYS: dict[str, tuple[str, ...]] = {
@@ -29,9 +29,9 @@ def expand_cases(values: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     base = dict(values)
     cases = {base["case"]: base}
     for study in base["studies"]:
-        for point, changes in study_points(parse(Study, study)).items():
-            where = f"studies.{study['name']}.{point}"
-            cases[f"{base['case']}/studies/{study['name']}/{point}"] = _changed(base, changes, where)
+        for name, point in study_points(parse(Study, study)).items():
+            where = f"studies.{study['name']}.{name}"
+            cases[f"{base['case']}/studies/{study['name']}/{name}"] = _changed(base, point.set, where)
     for name, changes in design_points(base["identify"]).items():
         cases[f"{base['case']}/designs/{name}"] = _changed(base, changes, f"identify.designs.{name}")
     return {case: {**changed, "case": case} for case, changed in cases.items()}
@@ -54,14 +54,21 @@ def _changed(base: Mapping[str, Any], changes: Mapping[str, Any], where: str) ->
     return parse(Config, changed, source=where).model_dump(mode="json")
 
 
-def study_points(study: Study) -> dict[str, dict[str, Any]]:
-    """Point id (usable as a folder name) -> the keys it sets; the product of the study's axes."""
-    points: dict[str, dict[str, Any]] = {}
+def study_points(study: Study) -> dict[str, Point]:
+    """Folder name -> label and keys it sets, for the product of the study's axes."""
+    points: dict[str, Point] = {}
     for combination in itertools.product(*(axis.resolved() for axis in study.axes)):
+        told = [
+            f"{axis.label} = {point.label}" if axis.key else point.label
+            for axis, point in zip(study.axes, combination, strict=True)
+        ]
         name = "__".join(_folder_name(point.label) for point in combination)
         if name in points:
             raise ConfigErrors("studies", [f"{study.name}: two points are both called {name!r}"])
-        points[name] = {key: value for point in combination for key, value in point.set.items()}
+        points[name] = Point(
+            label=", ".join(told),
+            set={key: value for point in combination for key, value in point.set.items()},
+        )
     return points
 
 

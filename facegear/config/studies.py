@@ -12,7 +12,7 @@ NAME = r"^[a-z][a-z0-9_]{0,39}$"
 class Point(Section):
     """One value of an axis: a label for the figures and the keys it sets."""
 
-    label: str = Field(min_length=1, max_length=60)
+    label: str = Field(min_length=1, max_length=160)
     set: dict[str, Any] = Field(min_length=1, description="dotted config keys and their values")
 
 

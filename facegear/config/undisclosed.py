@@ -4,6 +4,12 @@ from collections.abc import Mapping
 from typing import Any
 
 
+def inputs_caption(values: Mapping[str, Any], of_paper: bool) -> str:
+    """A figure's line of inputs; for a figure of the paper it says that the paper leaves them out."""
+    lead = "Not disclosed by the paper, chosen here: " if of_paper else "Inputs: "
+    return lead + "; ".join(undisclosed_inputs(values))
+
+
 def undisclosed_inputs(values: Mapping[str, Any]) -> list[str]:
     """One phrase an input, from the plain values of a config."""
     transmission, pair = values["transmission"], values["tooth_pair"]
@@ -23,8 +29,10 @@ def undisclosed_inputs(values: Mapping[str, Any]) -> list[str]:
             f"shaper teeth {shaper['teeth']}"
         ]
     )
+    own = [pinion for pinion in transmission["pinions"] if pinion.get("torque_n_m") is not None]
+    given = "".join(f", {pinion['name']} {pinion['torque_n_m']:g} N m" for pinion in own)
     return [
-        f"torque per engine {torque['per_input_n_m']:g} N m",
+        f"torque per engine {torque['per_input_n_m']:g} N m{given}",
         f"share of the power at the tail {100 * torque['tail_share']:.3g} %",
         f"e(t): {error['amplitude_um']:g} um read as its {error['meaning']}, cosine, "
         f"phase {error['phase_deg']:g} deg, {phasing}" + (f", {more}" if more else ""),

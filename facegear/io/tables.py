@@ -26,7 +26,7 @@ def read(
     """
     verify(path)
     try:
-        frame = pd.read_csv(path, dtype=dict.fromkeys(text, str))
+        frame = pd.read_csv(path, converters=dict.fromkeys(text, str))
     except (ValueError, UnicodeDecodeError) as error:
         raise CorruptFile(path, f"not a readable table ({str(error).splitlines()[0]})") from None
     missing = [name for name in columns if name not in frame.columns]

@@ -105,7 +105,7 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     if title == "Load sharing" and "summary" in tables:
         columns = [
             "study",
-            "point",
+            "label",
             "group",
             "mean",
             "half_width",

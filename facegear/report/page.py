@@ -5,10 +5,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import jinja2
 import pandas as pd
 
-TEMPLATE = "page.html.j2"
+from facegear.io import pages
+
+TEMPLATE = Path(__file__).with_name("page.html.j2")
 UNITS = {"n_per_m": "N/m", "n_m": "N m", "rpm": "rpm", "mpa": "MPa", "hz": "Hz", "um": "um", "mm": "mm"}
 """Units that end a column's name, as they are written."""
 
@@ -74,11 +75,4 @@ class Chapter:
 
 def render(title: str, lead: str, chapters: Sequence[Chapter]) -> str:
     """The page as HTML text that needs no other file."""
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    return environment.get_template(TEMPLATE).render(title=title, lead=lead, chapters=chapters)
+    return pages.render(TEMPLATE, title=title, lead=lead, chapters=chapters)

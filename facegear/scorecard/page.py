@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-import jinja2
 import pandas as pd
 
+from facegear.io import pages
 from facegear.scorecard.rows import Verdict
 
-TEMPLATE = "scorecard.html.j2"
+TEMPLATE = Path(__file__).with_name("scorecard.html.j2")
 DIGITS = 5
 
 
@@ -18,15 +18,9 @@ def counts(frame: pd.DataFrame) -> dict[str, int]:
 
 def render(frame: pd.DataFrame, source: str, inputs: list[str], sets: pd.DataFrame) -> str:
     """The page; `inputs` are lines naming the inputs the paper does not disclose, `sets` those that fit."""
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
     held_out = frame[(frame["undisclosed"] != "") & ~frame["fitted"]]
-    return environment.get_template(TEMPLATE).render(
+    return pages.render(
+        TEMPLATE,
         source=source,
         counts=counts(frame),
         fitted=counts(frame[frame["fitted"]]),

@@ -84,6 +84,7 @@ rule load_sharing_summary:
         runtime=5,
     params:
         points=STUDY_POINTS,
+        labels=list(STUDY_LABELS.values()),
         studies=[study.name for study in STUDIES],
         code=fingerprint("load_sharing_summary.py"),
     message:
@@ -111,7 +112,7 @@ rule load_sharing_figures:
         mem_mb=700,
         runtime=5,
     params:
-        titles=[study.title for study in STUDIES],
+        titles=[(study.title, study.figures is not None) for study in STUDIES],
         kinds=SHARING_KINDS,
         values=lambda wildcards: CASES[wildcards.case],
         code=fingerprint("load_sharing_figures.py"),

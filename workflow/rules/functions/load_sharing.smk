@@ -4,7 +4,10 @@ from facegear.config.studies import Study
 from facegear.config.machines import group_kinds
 
 STUDIES = [parse_section(Study, study) for study in CONFIG["studies"]]
-STUDY_POINTS = [(study.name, point) for study in STUDIES for point in study_points(study)]
+STUDY_LABELS = {
+    (study.name, name): point.label for study in STUDIES for name, point in study_points(study).items()
+}
+STUDY_POINTS = list(STUDY_LABELS)
 
 
 SHARING_KINDS = group_kinds(CONFIG)
