@@ -6,7 +6,7 @@ from typing import Any
 
 def inputs_caption(values: Mapping[str, Any], of_paper: bool) -> str:
     """A figure's line of inputs; for a figure of the paper it says that the paper leaves them out."""
-    lead = "Not disclosed by the paper, chosen here: " if of_paper else "Inputs: "
+    lead = "Not disclosed by the paper, chosen here: " if of_paper else "Inputs of the base case: "
     return lead + "; ".join(undisclosed_inputs(values))
 
 
@@ -19,6 +19,7 @@ def undisclosed_inputs(values: Mapping[str, Any]) -> list[str]:
     more = "; ".join(
         f"harmonic {term['order']}: {term['amplitude_um']:g} um" for term in error["more_harmonics"]
     )
+    mean = "" if stiffness["source"] == "fem" else f", mean {stiffness['mean_n_per_m']:.3g} N/m"
     phasing = "in step at all meshes" if error["phasing"] == "in_step" else "shifted like the mesh stiffness"
     teeth = (
         []
@@ -37,7 +38,7 @@ def undisclosed_inputs(values: Mapping[str, Any]) -> list[str]:
         f"e(t): {error['amplitude_um']:g} um read as its {error['meaning']}, cosine, "
         f"phase {error['phase_deg']:g} deg, {phasing}" + (f", {more}" if more else ""),
         f"phases of the lower meshes {transmission['phase_convention']}",
-        f"mesh stiffness source {stiffness['source']}, mean {stiffness['mean_n_per_m']:.3g} N/m",
+        f"mesh stiffness source {stiffness['source']}" + mean,
         f"mesh radius {transmission['face_gear']['mesh_radius_mm']:g} mm",
         *teeth,
     ]
