@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from facegear.contact.teeth import LOADED_SIDE
 from facegear.errors import FacegearError
 from facegear.geometry.design import Material, PairDesign
-from facegear.geometry.placement import to_left_flank
+from facegear.geometry.placement import to_pinion_section
 from facegear.mesh.export import element_faces
 from facegear.mesh.orderings import SERENDIPITY20
 from facegear.mesh.sector import SectorMesh, sector
@@ -139,12 +139,10 @@ def run_deck(path: Path, threads: int, dof: int, timeout: float = 3600.0) -> Pee
 def _placed(
     design: PairDesign, bodies: dict[str, SectorMesh], angles: tuple[float, float]
 ) -> dict[str, NDArray[np.float64]]:
-    """Both bodies in the gear's frame, turned to their angles, loaded flanks towards the pinion."""
-    mirror = np.array([-1.0, 1.0, 1.0])
-    placed = to_left_flank(
-        design, bodies["pinion"].nodes, np.array([angles[0]]), np.array([angles[1]]), np.zeros(1), False
-    )
-    return {"pinion": placed[0] * mirror, "face_gear": bodies["face_gear"].nodes}
+    """Both bodies in the pinion's frame, whose y axis is the axis the bore turns about."""
+    phi1, phi2 = (np.array([angle]) for angle in angles)
+    x, minus_z, y = to_pinion_section(design, bodies["face_gear"].nodes, phi1, phi2, np.zeros(1))[0, 0].T
+    return {"pinion": bodies["pinion"].nodes, "face_gear": np.stack([x, y, -minus_z], axis=1)}
 
 
 def _step(reference: int, rotation: int, turn: float, design: PairDesign) -> str:
