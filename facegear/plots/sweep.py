@@ -54,7 +54,7 @@ def mesh_sweeps(
         figure, axes = plt.subplots(
             len(sides),
             len(pinions),
-            figsize=(3.8 * len(pinions), 3.0 * len(sides)),
+            figsize=(max(6.8, 3.8 * len(pinions)), 3.0 * len(sides)),
             sharex=True,
             squeeze=False,
         )

@@ -18,6 +18,8 @@ from facegear.plots.style import styled
 Array = NDArray[np.float64]
 
 PINION_COLOUR, GEAR_COLOUR = "#c98a3d", "#5b7fa6"
+LABEL_GAP = 0.07
+"""Least distance of two radius labels, in whole depths of the tooth."""
 
 
 def tooth_pair(
@@ -111,19 +113,21 @@ def _pinion_section(axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, 
     axes.plot(tooth[:, 0], tooth[:, 1], color=PINION_COLOUR)
     reach = 1.2 * np.abs(tooth[:, 0]).max()
     x = np.linspace(-reach, reach, 101)
-    for name, style in (
-        ("pinion_tip", "-"),
-        ("pinion_pitch", "-."),
-        ("pinion_fillet_start", ":"),
-        ("pinion_base", "--"),
-        ("pinion_root", "-"),
-    ):
-        radius = record["radii_mm"][name]
-        axes.plot(x, np.sqrt(radius**2 - x**2), style, color="0.4", lw=0.8)
+    styles = {
+        "pinion_tip": "-",
+        "pinion_pitch": "-.",
+        "pinion_fillet_start": ":",
+        "pinion_base": "--",
+        "pinion_root": "-",
+    }
+    radii = {name: record["radii_mm"][name] for name in styles}
+    apart = LABEL_GAP * (radii["pinion_tip"] - radii["pinion_root"])
+    height = np.inf
+    for name, radius in sorted(radii.items(), key=lambda item: -item[1]):
+        axes.plot(x, np.sqrt(radius**2 - x**2), styles[name], color="0.4", lw=0.8)
         label = name.removeprefix("pinion_").replace("_", " ")
-        axes.annotate(
-            f"{label} {radius:.3f}", (reach, np.sqrt(radius**2 - reach**2)), fontsize=7, va="center"
-        )
+        height = min(np.sqrt(radius**2 - reach**2), height - apart)
+        axes.annotate(f"{label} {radius:.3f}", (reach, height), fontsize=7, va="center")
     axes.set_aspect("equal")
     axes.set(xlabel="across (mm)", ylabel="radius (mm)", title="Pinion tooth", xlim=(-reach, 1.75 * reach))
 

@@ -50,12 +50,19 @@ def _picture(path: Path, name: str) -> Picture:
 
 def _machine_text(values: Mapping[str, Any]) -> str:
     pair, transmission = values["tooth_pair"], values["transmission"]
+    torque = transmission["torque"]
     return (
-        f"{len(transmission['pinions'])} pinions of {pair['pinion_teeth']} teeth and "
-        f"{len(transmission['face_gears'])} face gear(s) of {pair['face_gear_teeth']} teeth, "
+        f"{_count(transmission['pinions'], 'pinion')} of {pair['pinion_teeth']} teeth and "
+        f"{_count(transmission['face_gears'], 'face gear')} of {pair['face_gear_teeth']} teeth, "
         f"module {pair['module_mm']:g} mm, pressure angle {pair['pressure_angle_deg']:g} deg. "
+        f"Each input brings {torque['per_input_n_m']:g} N m unless the table gives its own torque; "
+        f"{100 * torque['tail_share']:.3g} % of the power leaves at the tail. "
         f"Mesh stiffness: {values['mesh_stiffness']['source']}."
     )
+
+
+def _count(items: Sequence[Any], name: str) -> str:
+    return f"{len(items)} {name}" + ("" if len(items) == 1 else "s")
 
 
 def _machine_tables(values: Mapping[str, Any]) -> list[Table]:
