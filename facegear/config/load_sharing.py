@@ -27,6 +27,7 @@ class LoadSharing(Section):
     cycles: int = Field(200, ge=20, le=20000, description="mesh cycles kept from each start")
     starts: int = Field(4, ge=1, le=200, description="one from rest, the others disturbed at random")
     start_spread_um: float = Field(20.0, ge=0, le=1e4, description="size of the random disturbance")
+    seed: int = Field(0, ge=0, le=2**31, description="of the random disturbance")
     confidence: float = Field(0.95, gt=0.5, lt=1.0)
     quasi_static_rpm: float = Field(10.0, gt=0, le=1000, description="speed of the slow run")
     speed_range: SpeedRangeSection = SpeedRangeSection()
@@ -40,6 +41,7 @@ def sharing_options(section: LoadSharing) -> SharingOptions:
         cycles=section.cycles,
         starts=section.starts,
         spread=1e-6 * section.start_spread_um,
+        seed=section.seed,
         confidence=section.confidence,
         slow_rpm=section.quasi_static_rpm,
         speeds=SpeedRange(speeds.from_rpm, speeds.to_rpm, speeds.points),

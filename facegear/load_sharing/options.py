@@ -14,7 +14,7 @@ class SpeedRange:
 
 @dataclass(frozen=True)
 class SharingOptions:
-    """Samples a cycle, cycles and starts averaged, size of the random disturbance of starts (m at mesh).
+    """Samples a cycle, cycles and starts averaged, size (m at mesh) and seed of the starts' disturbance.
 
     Then the confidence level, the speed of the quasi-static run (rpm), and the range of speeds looked over.
     """
@@ -23,6 +23,7 @@ class SharingOptions:
     cycles: int
     starts: int
     spread: float
+    seed: int
     confidence: float
     slow_rpm: float
     speeds: SpeedRange

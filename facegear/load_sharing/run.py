@@ -43,7 +43,7 @@ class Sharing:
 
 
 def load_sharing(
-    machine: Machine | Model, speed_rpm: float, settings: Settings, options: SharingOptions, seed: int = 0
+    machine: Machine | Model, speed_rpm: float, settings: Settings, options: SharingOptions
 ) -> Sharing:
     """Coefficients from static equilibrium, and how far the means move from other, disturbed starts.
 
@@ -54,7 +54,7 @@ def load_sharing(
     settings = replace(settings, window=options.cycles, samples=options.samples)
     first = static_start(ready)
     responses = [simulate(ready, speed_rpm, settings, start=first)]
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(options.seed)
     for _ in range(options.starts - 1):
         disturbed = disturb(ready, first, options.spread, random)
         responses.append(simulate(ready, speed_rpm, settings, start=disturbed))

@@ -44,6 +44,10 @@ def stage(snakemake: Any) -> Iterator[Run]:
             for manifest in manifests:
                 manifest.unlink(missing_ok=True)
             yield run
+            if not run.text:
+                run.summary(
+                    "wrote " + ", ".join(output.name for output in outputs if output not in manifests)
+                )
             for manifest in manifests:
                 write_manifest(
                     manifest,

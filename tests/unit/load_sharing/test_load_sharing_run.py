@@ -12,7 +12,7 @@ from facegear.load_sharing.run import load_sharing
 from facegear.load_sharing.statics import static_forces
 from facegear.load_sharing.tables import CURVE_COLUMNS, SUMMARY_COLUMNS, curve_table, summary_table
 
-OPTIONS = SharingOptions(64, 24, 2, 2e-5, 0.95, 60.0, SpeedRange(2000.0, 9000.0, 3))
+OPTIONS = SharingOptions(64, 24, 2, 2e-5, 0, 0.95, 60.0, SpeedRange(2000.0, 9000.0, 3))
 SETTINGS = Settings(tolerance=1e-4, settle=128)
 SILENT = Harmonics(np.zeros(1), np.zeros(1))
 

@@ -38,6 +38,12 @@ def test_manifest_records_what_made_the_outputs(job, tmp_path, capsys):
     assert "mean stiffness" in (tmp_path / "a.log").read_text()
 
 
+def test_a_stage_without_findings_of_its_own_ends_with_the_files_it_wrote(job, tmp_path, capsys):
+    with stage(job):
+        (tmp_path / "a.csv").write_text("x\n1\n")
+    assert capsys.readouterr().err == "summary: wrote a.csv\n"
+
+
 def test_solver_failure_is_one_line_with_case_and_log(job, tmp_path, capsys):
     (tmp_path / "a.provenance.json").write_text("{}")
     with pytest.raises(SystemExit) as ended, stage(job):
