@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.compiled import Packed
+from facegear.dynamics.integrator.compiled import Packed
+from facegear.dynamics.integrator.work import Work
 from facegear.dynamics.motion import Motion, Settings
-from facegear.dynamics.taylor import Work
 from facegear.dynamics.window import Window, joined, run_window
 
 Array = NDArray[np.float64]

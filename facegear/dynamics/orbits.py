@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.compiled import Packed
-from facegear.dynamics.periods import (
+from facegear.dynamics.integrator.compiled import Packed
+from facegear.dynamics.integrator.periods import (
     DONE,
     MOST_STEPS,
     NOT_FINITE,
@@ -15,7 +15,7 @@ from facegear.dynamics.periods import (
     make_log,
     run_periods,
 )
-from facegear.dynamics.taylor import Work
+from facegear.dynamics.integrator.work import Work
 from facegear.errors import NotConverged
 
 Array = NDArray[np.float64]

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from facegear.dynamics.compiled import TAU
+from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.simulate import Model, SteadyState
 from facegear.dynamics.spectra import HIGHEST, spectrum
 from facegear.dynamics.sweep import collect

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.compiled import Packed
+from facegear.dynamics.integrator.compiled import Packed
+from facegear.dynamics.integrator.periods import make_log, run_periods
+from facegear.dynamics.integrator.work import Work
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.orbits import require
-from facegear.dynamics.periods import make_log, run_periods
-from facegear.dynamics.taylor import Work
 
 Array = NDArray[np.float64]
 

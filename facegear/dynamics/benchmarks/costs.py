@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.benchmarks.methods import scipy_method
 from facegear.dynamics.benchmarks.problems import Problem
-from facegear.dynamics.compiled import TAU
+from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.plan import SweepPlan
 from facegear.dynamics.simulate import model, simulate

@@ -13,11 +13,11 @@ from scipy.integrate import solve_ivp
 
 from facegear.dynamics.benchmarks.problems import SAMPLES, Problem
 from facegear.dynamics.benchmarks.right_side import compiled_right_side, fixed_rk4, plain_right_side
-from facegear.dynamics.compiled import TAU, pack
+from facegear.dynamics.integrator.compiled import TAU, pack
+from facegear.dynamics.integrator.periods import make_log, run_periods
+from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.orbits import require
-from facegear.dynamics.periods import make_log, run_periods
-from facegear.dynamics.taylor import make_work
 
 Array = NDArray[np.float64]
 Runner = Callable[[Problem, float], Array]

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.compiled import TAU
+from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.simulate import model, simulate, static_start
 from facegear.dynamics.system import System

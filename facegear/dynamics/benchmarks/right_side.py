@@ -5,11 +5,12 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.compiled import Packed
-from facegear.dynamics.kernel import kernel
-from facegear.dynamics.lanes import LANES, load, multiply, multiply_add, splat, store
+from facegear.dynamics.integrator.compiled import Packed
+from facegear.dynamics.integrator.excitation import excitation
+from facegear.dynamics.integrator.kernel import kernel
+from facegear.dynamics.integrator.lanes import LANES, load, multiply, multiply_add, splat, store
+from facegear.dynamics.integrator.work import Work, make_work
 from facegear.dynamics.system import System
-from facegear.dynamics.taylor import Work, fourier_taylor, make_work
 
 Array = NDArray[np.float64]
 
@@ -18,10 +19,7 @@ Array = NDArray[np.float64]
 def right_side(packed: Packed, work: Work, s: float, z: Array, out: Array) -> None:
     """Derivative by s of z (2 n,) into out; work must be of order 1 or more."""
     n, wide = packed.directions.shape
-    cosine, sine = np.cos(s), np.sin(s)
-    fourier_taylor(packed.stiffness, work.powers, cosine, sine, 1, work.stiffness)
-    fourier_taylor(packed.error, work.powers, cosine, sine, 2, work.error)
-    fourier_taylor(packed.load, work.powers, cosine, sine, 1, work.load)
+    excitation(packed, work, s, 0, 2)
     minus = splat(-1.0)
     for c in range(0, wide, LANES):
         place, rate = multiply(minus, load(work.error, c)), multiply(minus, load(work.error, wide + c))

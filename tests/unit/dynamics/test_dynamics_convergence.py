@@ -6,12 +6,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_machine
 
-from facegear.dynamics.compiled import TAU, pack
+from facegear.dynamics.integrator.compiled import TAU, pack
+from facegear.dynamics.integrator.roots import MAX_DEPTH, bernstein_matrix, first_root
+from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.orbits import monodromy
-from facegear.dynamics.roots import MAX_DEPTH, bernstein_matrix, first_root
 from facegear.dynamics.simulate import model, simulate
-from facegear.dynamics.taylor import make_work
 from facegear.transmission.machine import mesh_frequency
 
 FINE = Settings(tolerance=1e-14, periodic_residual=1e-10)

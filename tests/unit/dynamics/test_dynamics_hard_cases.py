@@ -10,11 +10,11 @@ from lumped_machines import make_layout, make_machine
 from oscillators import one_degree
 from scipy.integrate import solve_ivp
 
-from facegear.dynamics.compiled import TAU
+from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.trajectory import record
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.simulate import model, simulate, static_start, steady_state
 from facegear.dynamics.statistics import moments
-from facegear.dynamics.trajectory import record
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.layout import Role, Side
 from facegear.transmission.machine import balanced_torques, mesh_frequency

@@ -8,7 +8,7 @@ from facegear.dynamics.benchmarks.methods import all_methods, ours, rk4
 from facegear.dynamics.benchmarks.problems import SAMPLES, machine_problems, oscillator_problem
 from facegear.dynamics.benchmarks.right_side import compiled_right_side, plain_right_side
 from facegear.dynamics.benchmarks.work_precision import Budget, seconds_at, work_precision
-from facegear.dynamics.compiled import pack
+from facegear.dynamics.integrator.compiled import pack
 
 
 @pytest.fixture(scope="module")

@@ -7,13 +7,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 
-from facegear.dynamics.compiled import TAU, pack
+from facegear.dynamics.integrator.compiled import TAU, pack
+from facegear.dynamics.integrator.trajectory import record
+from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.orbits import monodromy
 from facegear.dynamics.simulate import Model, model, simulate, static_start
 from facegear.dynamics.system import System
-from facegear.dynamics.taylor import make_work
-from facegear.dynamics.trajectory import record
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.layout import Role, Side
 from facegear.transmission.machine import OpenFlanks, mesh_frequency

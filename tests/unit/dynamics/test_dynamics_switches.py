@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from oscillators import backlash_oscillator
 
-from facegear.dynamics.advance import advance
-from facegear.dynamics.compiled import pack
-from facegear.dynamics.kernel import cache_folder
-from facegear.dynamics.taylor import make_work
+from facegear.dynamics.integrator.advance import advance
+from facegear.dynamics.integrator.compiled import pack
+from facegear.dynamics.integrator.kernel import cache_folder
+from facegear.dynamics.integrator.work import make_work
 
 
 @pytest.mark.parametrize("rate", [1.0, 100.0, 1e4])

@@ -24,6 +24,13 @@ def cache_folder(sources: Path) -> Path:
 
 numba.config.CACHE_DIR = str(cache_folder(Path(__file__).parent))
 
-kernel = njit(cache=True, nogil=True, fastmath={"contract"}, _nrt=False)
+_OPTIONS = {"cache": True, "nogil": True, "fastmath": {"contract"}, "_nrt": False}
+
+kernel = njit(**_OPTIONS)
 """Compiled without reference counts: kernels allocate nothing, and counting every array of a Packed or Work
 at every use would cost more than the arithmetic."""
+
+inlined = njit(**_OPTIONS, forceinline=True)
+"""The same for functions of a Packed and a Work: handing over these hundreds of words would cost more than
+most of the functions do.
+"""

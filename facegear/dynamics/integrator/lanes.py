@@ -31,15 +31,29 @@ class _LanesModel(models.PrimitiveModel):
         super().__init__(manager, kind, _VECTOR)
 
 
+def _is_plain(array: Any) -> bool:
+    return isinstance(array, types.Array) and array.layout == "C" and array.dtype == types.float64
+
+
+def _place(context: Any, builder: Any, kind: types.Array, array: Any, index: Any) -> Any:
+    return builder.gep(context.make_array(kind)(context, builder, array).data, [index])
+
+
 def _pointer(context: Any, builder: Any, kind: types.Array, array: Any, index: Any) -> Any:
-    data = context.make_array(kind)(context, builder, array).data
-    return builder.bitcast(builder.gep(data, [index]), _VECTOR.as_pointer())
+    return builder.bitcast(_place(context, builder, kind, array, index), _VECTOR.as_pointer())
+
+
+def _splat(builder: Any, value: Any) -> Any:
+    vector = ir.Constant(_VECTOR, ir.Undefined)
+    for lane in range(LANES):
+        vector = builder.insert_element(vector, value, ir.Constant(ir.IntType(32), lane))
+    return vector
 
 
 @intrinsic
 def load(typing_context: Any, array: Any, index: Any) -> Any:
     """LANES values of a C-contiguous float64 array from a flat index on."""
-    if not (isinstance(array, types.Array) and array.layout == "C" and array.dtype == types.float64):
+    if not _is_plain(array):
         return None
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
@@ -51,7 +65,7 @@ def load(typing_context: Any, array: Any, index: Any) -> Any:
 @intrinsic
 def store(typing_context: Any, array: Any, index: Any, value: Any) -> Any:
     """Write LANES values to a C-contiguous float64 array from a flat index on."""
-    if not (isinstance(array, types.Array) and array.layout == "C" and array.dtype == types.float64):
+    if not _is_plain(array):
         return None
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
@@ -66,12 +80,46 @@ def splat(typing_context: Any, value: Any) -> Any:
     """The same double in every lane."""
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        vector = ir.Constant(_VECTOR, ir.Undefined)
-        for lane in range(LANES):
-            vector = builder.insert_element(vector, args[0], ir.Constant(ir.IntType(32), lane))
-        return vector
+        return _splat(builder, args[0])
 
     return lanes(types.float64), code
+
+
+@intrinsic
+def spread(typing_context: Any, array: Any, index: Any) -> Any:
+    """One value of a C-contiguous float64 array, at a flat index, in every lane (no check of the index)."""
+    if not _is_plain(array):
+        return None
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return _splat(builder, builder.load(_place(context, builder, array, *args)))
+
+    return lanes(array, types.intp), code
+
+
+@intrinsic
+def take(typing_context: Any, array: Any, index: Any) -> Any:
+    """One value of a C-contiguous float64 array at a flat index, which is not checked or wrapped."""
+    if not _is_plain(array):
+        return None
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.load(_place(context, builder, array, *args))
+
+    return types.float64(array, types.intp), code
+
+
+@intrinsic
+def put(typing_context: Any, array: Any, index: Any, value: Any) -> Any:
+    """Write one value to a C-contiguous float64 array at a flat index, which is not checked or wrapped."""
+    if not _is_plain(array):
+        return None
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        builder.store(args[2], _place(context, builder, array, *args[:2]))
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, types.float64), code
 
 
 @intrinsic
@@ -80,6 +128,16 @@ def multiply(typing_context: Any, first: Any, second: Any) -> Any:
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return builder.fmul(*args)
+
+    return lanes(lanes, lanes), code
+
+
+@intrinsic
+def add(typing_context: Any, first: Any, second: Any) -> Any:
+    """first + second in every lane."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.fadd(*args)
 
     return lanes(lanes, lanes), code
 

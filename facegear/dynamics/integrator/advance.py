@@ -3,11 +3,23 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.compiled import Packed
-from facegear.dynamics.kernel import kernel
-from facegear.dynamics.lanes import LANES, larger, load, multiply_add, smaller, splat, store
-from facegear.dynamics.roots import first_root
-from facegear.dynamics.taylor import Work, deflect, evaluate, excitation, recurrence, step_length
+from facegear.dynamics.integrator.compiled import Packed
+from facegear.dynamics.integrator.excitation import excitation
+from facegear.dynamics.integrator.kernel import inlined
+from facegear.dynamics.integrator.lanes import (
+    LANES,
+    larger,
+    load,
+    multiply,
+    multiply_add,
+    smaller,
+    splat,
+    spread,
+    store,
+)
+from facegear.dynamics.integrator.roots import first_root, refine_root
+from facegear.dynamics.integrator.taylor import deflect, evaluate, recurrence, step_length
+from facegear.dynamics.integrator.work import Work
 
 Array = NDArray[np.float64]
 EDGE = 2e-14
@@ -19,7 +31,7 @@ SHORTEST = 1e-10
 OPEN, DRIVE, BACK = 0, 1, -1
 
 
-@kernel
+@inlined
 def advance(
     packed: Packed, work: Work, s: float, stop: float, place: Array, velocity: Array, tolerance: float
 ) -> float:
@@ -35,7 +47,7 @@ def advance(
     for k in range(packed.n):
         work.y[0, k] = place[k]
         work.y[1, k] = velocity[k]
-    excitation(packed, work, s, piece)
+    excitation(packed, work, s, piece, work.order + 1)
     deflect(packed, work.y, 0, work.error, work.deflection)
     deflect(packed, work.y, 1, work.error, work.deflection)
     _find_state(packed, work)
@@ -53,7 +65,7 @@ def advance(
     return _until_switch(packed, work, length)
 
 
-@kernel
+@inlined
 def set_state(packed: Packed, work: Work, m: int, state: int) -> None:
     """Give mesh m a contact state and what follows from it; row 0 of its deflection counts from the edge."""
     work.state[m] = state
@@ -64,7 +76,7 @@ def set_state(packed: Packed, work: Work, m: int, state: int) -> None:
     work.edge[m] = edge
 
 
-@kernel
+@inlined
 def _find_state(packed: Packed, work: Work) -> None:
     """Contact state of every mesh from deflection and, on an edge, its direction of motion."""
     for m in range(packed.m):
@@ -90,7 +102,7 @@ def _find_state(packed: Packed, work: Work) -> None:
             set_state(packed, work, m, OPEN)
 
 
-@kernel
+@inlined
 def _correct_state(packed: Packed, work: Work) -> bool:
     """Where a mesh stands on an edge with hardly any speed its acceleration decides; True if one changed."""
     changed = False
@@ -105,10 +117,11 @@ def _correct_state(packed: Packed, work: Work) -> bool:
     return changed
 
 
-@kernel
+@inlined
 def _until_switch(packed: Packed, work: Work, length: float) -> float:
     """Shorten the step to the first contact switch inside it."""
-    _ranges(work, length)
+    _over_step(work, length)
+    first = 1.0
     for m in range(packed.m):
         lower, upper = packed.lower[m], packed.upper[m]
         if lower >= upper:
@@ -116,61 +129,79 @@ def _until_switch(packed: Packed, work: Work, length: float) -> float:
         least, most = work.least[m], work.most[m]
         if work.state[m] != OPEN:
             if least <= 0.0 <= most:
-                length = _crossing(work, m, 0.0, work.at_edge[m] != 0, length)
+                first = _crossing(work, m, 0.0, work.at_edge[m] != 0, length, first)
         else:
             if most >= upper:
-                length = _crossing(work, m, upper, work.at_edge[m] == 1, length)
+                first = _crossing(work, m, upper, work.at_edge[m] == 1, length, first)
             if least <= lower:
-                length = _crossing(work, m, lower, work.at_edge[m] == -1, length)
-    return length
+                first = _crossing(work, m, lower, work.at_edge[m] == -1, length, first)
+    return first * length
 
 
-@kernel
-def _ranges(work: Work, length: float) -> None:
-    """Bounds of every deflection over the step: its least and largest Bernstein coefficient."""
+@inlined
+def _over_step(work: Work, length: float) -> None:
+    """Every deflection in powers of the share of the step and in Bernstein form, with the bounds it gives."""
     rows, wide = work.deflection.shape
+    power = 1.0
+    for i in range(rows):
+        for c in range(0, wide, LANES):
+            store(work.scaled, i * wide + c, multiply(splat(power), load(work.deflection, i * wide + c)))
+        power *= length
     for c in range(0, wide, LANES):
-        least = load(work.deflection, c)
-        most = least
+        start = load(work.scaled, c)
+        least, most = start, start
+        store(work.bernstein, c, start)
         for i in range(1, rows):
-            total = load(work.deflection, c)
-            power = length
+            total = start
             for k in range(1, i + 1):
-                weight = splat(work.conversion[i, k] * power)
-                total = multiply_add(load(work.deflection, k * wide + c), weight, total)
-                power *= length
+                weight = spread(work.conversion, i * rows + k)
+                total = multiply_add(load(work.scaled, k * wide + c), weight, total)
+            store(work.bernstein, i * wide + c, total)
             least, most = smaller(least, total), larger(most, total)
         store(work.least, c, least)
         store(work.most, c, most)
 
 
-@kernel
-def _crossing(work: Work, m: int, level: float, on_it: bool, length: float) -> float:
-    """First time within `length` at which deflection m passes the level; `length` itself if it does not.
+@inlined
+def _crossing(work: Work, m: int, level: float, on_it: bool, length: float, before: float) -> float:
+    """Share of the step at which deflection m first passes the level, if that is `before` a given share.
 
     Standing on the level the known zero at the start is divided out.
     """
     order = work.order
-    power = 1.0
     if on_it:
         for i in range(order):
-            work.polynomial[i] = work.deflection[i + 1, m] * power
-            power *= length
+            work.polynomial[i] = work.scaled[i + 1, m]
         # A zero of this quotient before SHORTEST was decided by the acceleration already.
         root = first_root(work.polynomial, order - 1, work.conversion_less, work.subdivision)
         if root * length < SHORTEST:
-            return length if root >= 1.0 else _beyond(work, order - 1, root, length)
-    else:
-        for i in range(order + 1):
-            work.polynomial[i] = work.deflection[i, m] * power
-            power *= length
-        work.polynomial[0] -= level
-        root = first_root(work.polynomial, order, work.conversion, work.subdivision)
-    return min(root, 1.0) * length
+            root = _beyond(work, order - 1, root)
+        return min(root, before)
+    for i in range(order + 1):
+        work.polynomial[i] = work.scaled[i, m]
+    work.polynomial[0] -= level
+    changes, last = 0, work.polynomial[0]
+    for i in range(1, order + 1):
+        value = work.bernstein[i, m] - level
+        if value != 0.0 and (last > 0.0) != (value > 0.0):
+            changes += 1
+            last = value
+    if changes != 1:
+        root = first_root(work.polynomial, order, work.conversion, work.subdivision) if changes > 1 else 2.0
+        return min(root, before)
+    # Only one zero: it comes first only if the sign has changed by `before`.
+    value = work.bernstein[order, m] - level
+    if before < 1.0:
+        value = work.polynomial[order]
+        for i in range(order - 1, -1, -1):
+            value = value * before + work.polynomial[i]
+        if (value > 0.0) == (work.polynomial[0] > 0.0):
+            return before
+    return refine_root(work.polynomial, order, 0.0, before, work.polynomial[0], value)
 
 
-@kernel
-def _beyond(work: Work, degree: int, root: float, length: float) -> float:
+@inlined
+def _beyond(work: Work, degree: int, root: float) -> float:
     """The next zero after a spurious one at the start: divide it out and search again."""
     carry = work.polynomial[degree]
     for i in range(degree - 1, -1, -1):
@@ -178,11 +209,10 @@ def _beyond(work: Work, degree: int, root: float, length: float) -> float:
         work.polynomial[i] = carry
         carry = value + root * carry
     work.polynomial[degree] = 0.0
-    again = first_root(work.polynomial, degree, work.conversion_less, work.subdivision)
-    return min(again, 1.0) * length
+    return first_root(work.polynomial, degree, work.conversion_less, work.subdivision)
 
 
-@kernel
+@inlined
 def move(work: Work, length: float, place: Array, velocity: Array) -> None:
     """Move place and velocity (n,) to the end of the step."""
     evaluate(work.y, work.order, length, place, velocity)

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.advance import advance, move
-from facegear.dynamics.compiled import TAU, Packed, pack
+from facegear.dynamics.integrator.advance import advance, move
+from facegear.dynamics.integrator.compiled import TAU, Packed, pack
+from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.system import System
-from facegear.dynamics.taylor import make_work
 from facegear.errors import NotConverged
 
 Array = NDArray[np.float64]

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.lanes import LANES
+from facegear.dynamics.integrator.lanes import LANES
 from facegear.dynamics.system import System
 
 Array = NDArray[np.float64]
@@ -19,7 +19,8 @@ class Packed(NamedTuple):
     n, m count the real ones. directions (n, m) and transposed (m, n). Derivatives are by s = w t: squares,
     stiffness and load are over w^2, damping and mesh_damping over w. Fourier series are (harmonics + 1, 2,
     width), sine part first. pieces (pieces, degree + 1, m) add to the stiffness from one of `breaks` (rad)
-    to the next.
+    to the next; stiffness and error have one column for each of the kinds that stiffness_kind and error_kind
+    (m,) name. leverage (m,): sum of squares of a mesh's directions.
     """
 
     n: int
@@ -32,11 +33,14 @@ class Packed(NamedTuple):
     lower: Array
     upper: Array
     stiffness: Array
+    stiffness_kind: NDArray[np.int64]
     error: Array
+    error_kind: NDArray[np.int64]
     load: Array
     breaks: Array
     pieces: Array
     weights: Array
+    leverage: Array
     fastest: float
     damping_when_open: bool
     scale: float
@@ -62,12 +66,15 @@ def pack(system: System, frequency: float) -> Packed:
         mesh_damping=_padded(system.mesh_damping, wide_m) / frequency,
         lower=_padded(lower, wide_m),
         upper=_padded(system.upper, wide_m),
-        stiffness=_series(system.stiffness[system.stiffness_kind], wide_m) / frequency**2,
-        error=_series(system.error[system.error_kind], wide_m),
-        load=_series(system.load, wide_n) / frequency**2,
+        stiffness=_series(system.stiffness) / frequency**2,
+        stiffness_kind=system.stiffness_kind,
+        error=_series(system.error),
+        error_kind=system.error_kind,
+        load=_series(system.load) / frequency**2,
         breaks=breaks,
         pieces=pieces / frequency**2,
         weights=np.abs(transposed).max(axis=0),
+        leverage=(transposed**2).sum(axis=1),
         fastest=_fastest(system, frequency),
         damping_when_open=system.damping_when_open,
         scale=system.scale,
@@ -102,9 +109,9 @@ def _padded(values: Array, length: int) -> Array:
     return wide
 
 
-def _series(rows: Array, width: int) -> Array:
+def _series(rows: Array) -> Array:
     """Fourier rows (width, 2, harmonics + 1) in the order that the kernels read."""
-    return np.ascontiguousarray(_padded(rows, width).transpose(2, 1, 0))
+    return np.ascontiguousarray(_padded(rows, _whole(len(rows))).transpose(2, 1, 0))
 
 
 def _pieces(system: System, width: int) -> tuple[Array, Array]:

@@ -5,10 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.advance import advance, move
-from facegear.dynamics.compiled import TAU, Packed
-from facegear.dynamics.kernel import kernel
-from facegear.dynamics.taylor import Work, deflect, evaluate, recurrence
+from facegear.dynamics.integrator.advance import advance, move
+from facegear.dynamics.integrator.compiled import TAU, Packed
+from facegear.dynamics.integrator.kernel import inlined, kernel
+from facegear.dynamics.integrator.taylor import deflect, evaluate, recurrence
+from facegear.dynamics.integrator.work import Work
 
 Array = NDArray[np.float64]
 MOST_STEPS = 2_000_000
@@ -20,8 +21,8 @@ class Log(NamedTuple):
 
     samples (periods * per_period, n): y at equally spaced phases from the start of each period.
     ends (periods, 2, n): y and dy/ds at the end of each period. shares (3, m): phase spent open, on the
-    drive and on the back flank, rad, added up. divergence (1,): integral of the trace, added up. steps (1,):
-    added up.
+    drive and on the back flank, rad, added up with samples or tangents. divergence (1,): integral of the
+    trace, added up with tangents. steps (1,): added up.
     """
 
     samples: Array
@@ -75,10 +76,11 @@ def run_periods(
                 for m in range(acting.size):
                     acting[m] = work.acting[m]
                 _move_tangents(packed, work, length, tangents)
+                log.divergence[0] -= length * _trace(packed, work)
             first = False
-            log.divergence[0] -= length * _trace(packed, work)
-            for m in range(packed.m):
-                log.shares[work.state[m], m] += length
+            if per_period > 0 or tangents.shape[0] > 0:
+                for m in range(packed.m):
+                    log.shares[work.state[m], m] += length
             while next_sample < per_period and TAU * next_sample / per_period < s + length:
                 ahead = TAU * next_sample / per_period - s
                 evaluate(work.y, work.order, ahead, sample, scratch)
@@ -101,7 +103,7 @@ def run_periods(
     return DONE
 
 
-@kernel
+@inlined
 def disturbance_step(packed: Packed, order: int, tolerance: float) -> float:
     """Step at which the last Taylor term of the fastest disturbance is below the tolerance."""
     logarithm = np.log(tolerance)
@@ -110,21 +112,18 @@ def disturbance_step(packed: Packed, order: int, tolerance: float) -> float:
     return np.exp(logarithm / order) / packed.fastest
 
 
-@kernel
+@inlined
 def _trace(packed: Packed, work: Work) -> float:
     """Sum of all damping that acts, per rad: minus the divergence of the flow."""
     total = 0.0
     for k in range(packed.n):
         total += packed.damping[k]
     for m in range(packed.m):
-        square = 0.0
-        for k in range(packed.n):
-            square += packed.transposed[m, k] ** 2
-        total += work.acting[m] * square
+        total += work.acting[m] * packed.leverage[m]
     return total
 
 
-@kernel
+@inlined
 def _switch_tangents(packed: Packed, work: Work, acting: Array, tangents: Array) -> None:
     """Saltation: where the mesh damping starts or stops the velocity part shears by G^T (c- - c+) G.
 
@@ -142,7 +141,7 @@ def _switch_tangents(packed: Packed, work: Work, acting: Array, tangents: Array)
                 tangents[column, 1, k] += packed.transposed[m, k] * jump * along
 
 
-@kernel
+@inlined
 def _move_tangents(packed: Packed, work: Work, length: float, tangents: Array) -> None:
     """Move tangent vectors over the step by the same recurrence without forcing."""
     n = packed.squares.size

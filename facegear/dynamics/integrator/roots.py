@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.kernel import kernel
+from facegear.dynamics.integrator.kernel import kernel
 
 Array = NDArray[np.float64]
 MAX_DEPTH = 48
@@ -55,7 +55,7 @@ def first_root(coefficients: Array, degree: int, conversion: Array, work: Array)
                     changes += 1
                 last = value
         if changes == 1:
-            return _refine(coefficients, degree, left, left + width, work[depth, 0], work[depth, degree])
+            return refine_root(coefficients, degree, left, left + width, work[depth, 0], work[depth, degree])
         if changes > 1 and depth < MAX_DEPTH:
             _halve(work, depth, degree)
             depth += 1
@@ -117,7 +117,7 @@ def _restart(
 
 
 @kernel
-def _refine(
+def refine_root(
     coefficients: Array, degree: int, low: float, high: float, at_low: float, at_high: float
 ) -> float:
     """The one zero between low and high: Newton's method kept inside a shrinking bracket."""

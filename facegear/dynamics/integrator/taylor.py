@@ -1,0 +1,135 @@
+"""Taylor coefficients of the motion between two contact switches.
+
+Between switches the equations are linear with analytic coefficients, so the coefficients of y follow from
+each other by a recurrence that costs one product with G and one with its transpose for each order. Sums are
+kept in several parts side by side, as a processor adds many numbers at once but one number slowly.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.integrator.compiled import Packed
+from facegear.dynamics.integrator.kernel import inlined
+from facegear.dynamics.integrator.lanes import (
+    LANES,
+    add,
+    load,
+    magnitude,
+    multiply,
+    multiply_add,
+    splat,
+    spread,
+    store,
+)
+from facegear.dynamics.integrator.work import Work
+
+Array = NDArray[np.float64]
+
+
+@inlined
+def accumulate(matrix: Array, rows: int, factors: Array, at: int, out: Array, to: int) -> None:
+    """Add sum_j matrix[j] factors[at + j] over the first `rows` (even) rows to out, from its index `to` on.
+
+    Three vectors at a time share each factor that is read.
+    """
+    wide = matrix.shape[1]
+    triples = wide // (3 * LANES) * (3 * LANES)
+    for c in range(0, triples, 3 * LANES):
+        one, two, three = load(out, to + c), load(out, to + c + LANES), load(out, to + c + 2 * LANES)
+        four, five, six = splat(0.0), splat(0.0), splat(0.0)
+        for j in range(0, rows, 2):
+            row = j * wide + c
+            factor, other = spread(factors, at + j), spread(factors, at + j + 1)
+            one = multiply_add(load(matrix, row), factor, one)
+            two = multiply_add(load(matrix, row + LANES), factor, two)
+            three = multiply_add(load(matrix, row + 2 * LANES), factor, three)
+            row += wide
+            four = multiply_add(load(matrix, row), other, four)
+            five = multiply_add(load(matrix, row + LANES), other, five)
+            six = multiply_add(load(matrix, row + 2 * LANES), other, six)
+        store(out, to + c, add(one, four))
+        store(out, to + c + LANES, add(two, five))
+        store(out, to + c + 2 * LANES, add(three, six))
+    for c in range(triples, wide, LANES):
+        one, two = load(out, to + c), splat(0.0)
+        for j in range(0, rows, 2):
+            row = j * wide + c
+            one = multiply_add(load(matrix, row), spread(factors, at + j), one)
+            two = multiply_add(load(matrix, row + wide), spread(factors, at + j + 1), two)
+        store(out, to + c, add(one, two))
+
+
+@inlined
+def deflect(packed: Packed, y: Array, row: int, error: Array, deflection: Array) -> None:
+    """One row of the mesh deflections, G y - e."""
+    n, wide = packed.directions.shape
+    minus = splat(-1.0)
+    for c in range(row * wide, (row + 1) * wide, LANES):
+        store(deflection, c, multiply(minus, load(error, c)))
+    accumulate(packed.directions, packed.n + packed.n % 2, y, row * n, deflection, row * wide)
+
+
+@inlined
+def recurrence(packed: Packed, work: Work, error: Array, applied: Array, y: Array, deflection: Array) -> None:
+    """Fill rows 2.. of y and of deflection from rows 0 and 1 of both.
+
+    Row 0 of deflection has the edge of the contact subtracted. work.active (m,) masks meshes in contact,
+    work.acting (m,) holds the mesh damping that acts.
+    """
+    n, wide = packed.directions.shape
+    force, stiffness = work.force, work.stiffness
+    minus = splat(-1.0)
+    for i in range(work.order - 1):
+        rate = splat(float(i + 1))
+        # Forces push back; they carry the factor of the next coefficient already.
+        pushed = splat(-1.0 / ((i + 1) * (i + 2)))
+        for c in range(0, wide, LANES):
+            # The newest rows come last: the others do not wait for them.
+            total = splat(0.0)
+            for j in range(i, -1, -1):
+                total = multiply_add(
+                    load(stiffness, j * wide + c), load(deflection, (i - j) * wide + c), total
+                )
+            total = multiply(load(work.active, c), total)
+            damping = multiply(load(work.acting, c), rate)
+            total = multiply_add(damping, load(deflection, (i + 1) * wide + c), total)
+            store(force, c, multiply(pushed, total))
+        factor = splat(1.0 / ((i + 1) * (i + 2)))
+        for c in range(0, n, LANES):
+            total = multiply(load(packed.damping, c), multiply(rate, load(y, (i + 1) * n + c)))
+            total = multiply_add(load(packed.squares, c), load(y, i * n + c), total)
+            total = multiply_add(minus, total, load(applied, i * n + c))
+            store(y, (i + 2) * n + c, multiply(factor, total))
+        accumulate(packed.transposed, packed.m + packed.m % 2, force, 0, y, (i + 2) * n)
+        deflect(packed, y, i + 2, error, deflection)
+
+
+@inlined
+def step_length(packed: Packed, work: Work, tolerance: float) -> float:
+    """Step at which each of the last two terms is below the tolerance times the system's length scale."""
+    n = packed.squares.size
+    target = tolerance * packed.scale
+    longest = 1e300
+    for i in range(work.order - 1, work.order + 1):
+        total = splat(0.0)
+        for c in range(0, n, LANES):
+            total = multiply_add(load(packed.weights, c), magnitude(load(work.y, i * n + c)), total)
+        store(work.force, 0, total)
+        size = work.force[0] + work.force[1] + work.force[2] + work.force[3]
+        if size > 0.0:
+            longest = min(longest, np.exp(np.log(target / size) / i))
+    return longest
+
+
+@inlined
+def evaluate(y: Array, order: int, ahead: float, place: Array, velocity: Array) -> None:
+    """Value and derivative by s of the Taylor polynomials, each (n,), by Horner's rule."""
+    n = place.size
+    step = splat(ahead)
+    for c in range(0, n, LANES):
+        value, slope = load(y, order * n + c), splat(0.0)
+        for i in range(order - 1, -1, -1):
+            slope = multiply_add(slope, step, value)
+            value = multiply_add(value, step, load(y, i * n + c))
+        store(place, c, value)
+        store(velocity, c, slope)
