@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
+from facegear.config.load import load_values
 from facegear.errors import CorruptFile, FacegearError
 from facegear.io import arrays as array_files
 from facegear.io import documents, tables
@@ -113,3 +114,29 @@ def test_full_disk_ends_in_one_line_and_leaves_nothing(tmp_path, name, write):
         write(tmp_path / name)
     assert "\n" not in str(caught.value)
     assert list(tmp_path.iterdir()) == []
+
+
+class Trap:
+    """Unpickling it would make a file."""
+
+    def __init__(self, target):
+        self.target = target
+
+    def __reduce__(self):
+        return (open, (str(self.target), "w"))
+
+
+def test_a_stored_object_is_refused_and_not_brought_to_life(tmp_path):
+    trap = np.array([Trap(tmp_path / "sprung")], dtype=object)
+    np.savez(tmp_path / "pinion.npz", own=trap, allow_pickle=True)
+    with pytest.raises(CorruptFile, match=r"pinion\.npz"):
+        array_files.read(tmp_path / "pinion.npz", {"own": (None,)})
+    assert not (tmp_path / "sprung").exists()
+
+
+def test_a_config_cannot_call_code(tmp_path):
+    path = tmp_path / "bad.yaml"
+    path.write_text(f"case: !!python/object/apply:os.mkdir ['{tmp_path / 'sprung'}']\n")
+    with pytest.raises(FacegearError):
+        load_values([path], {})
+    assert not (tmp_path / "sprung").exists()

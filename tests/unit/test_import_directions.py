@@ -1,0 +1,59 @@
+"""The pipeline's packages import only what comes before them, and no workflow engine."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).parents[2] / "facegear"
+FOUNDATION = {"errors", "progress", "io"}
+MAY_IMPORT = {
+    "errors": set(),
+    "progress": set(),
+    "io": {"errors"},
+    "provenance": {"errors", "io"},
+    "geometry": {"errors"},
+    "harmonics": {"errors"},
+    "mesh": {"geometry"},
+    "contact": {"geometry", "mesh", "harmonics"},
+    "stiffness": {"harmonics"},
+    "transmission": {"harmonics"},
+    "dynamics": {"transmission", "harmonics"},
+    "load_sharing": {"dynamics", "transmission", "harmonics"},
+    "plots": {"geometry", "contact", "stiffness", "harmonics", "transmission", "dynamics", "load_sharing"},
+    "identify": {"load_sharing", "dynamics", "transmission", "stiffness", "harmonics"},
+    "report": set(),
+}
+MODULES = sorted(PACKAGE.rglob("*.py"))
+
+
+def imported(module: Path) -> set[str]:
+    names = set()
+    for node in ast.walk(ast.parse(module.read_text())):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            names.add(node.module)
+    return names
+
+
+@pytest.mark.parametrize("package", sorted(MAY_IMPORT))
+def test_data_flows_one_way(package):
+    allowed = MAY_IMPORT[package] | FOUNDATION | {package}
+    for module in MODULES:
+        inside = module.relative_to(PACKAGE).with_suffix("").parts
+        if inside[0] != package:
+            continue
+        reached = {name.split(".")[1] for name in imported(module) if name.startswith("facegear.")}
+        assert reached <= allowed, module
+
+
+def test_no_module_of_the_package_knows_the_workflow_engine():
+    for module in MODULES:
+        assert not any(name.split(".")[0] == "snakemake" for name in imported(module)), module
+
+
+def test_matplotlib_is_only_known_to_the_plots():
+    for module in MODULES:
+        if module.relative_to(PACKAGE).parts[0] != "plots":
+            assert not any(name.split(".")[0] == "matplotlib" for name in imported(module)), module
