@@ -106,9 +106,14 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
             "class_before",
             "class_after",
             "resonance",
+            "energy_share",
             "resonance_rpm",
         ]
-        return [Table("Jumps, with the resonance nearest to each", tables["jumps"][columns], 6)]
+        caption = (
+            "Jumps; resonance: the linear mode that holds the largest share of the energy, the multiple of the "
+            "mesh frequency at which it moves most, and the speed at which that multiple would meet it"
+        )
+        return [Table(caption, tables["jumps"][columns], 6)]
     if title == "Load sharing" and "summary" in tables:
         columns = [
             "study",
