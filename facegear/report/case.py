@@ -34,8 +34,7 @@ def case_report(
         if found or own:
             chapters.append(Chapter(title, text, found, own))
     if "scorecard" in tables:
-        text = "Every number and statement of the paper beside ours; a row that differs says why."
-        chapters.append(Chapter("Scorecard", text, (), [Table("Scorecard", tables["scorecard"], 4)]))
+        chapters.append(_scorecard(tables["scorecard"]))
     chapters.append(_errors(tables))
     chapters.append(_provenance(manifests))
     lead = f"Case {values['case']}: what facegear computed from its config, in the order of computation."
@@ -110,8 +109,8 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
             "resonance_rpm",
         ]
         caption = (
-            "Jumps; resonance: the linear mode that holds the largest share of the energy, the multiple of the "
-            "mesh frequency at which it moves most, and the speed at which that multiple would meet it"
+            "Jumps; resonance: the linear mode that holds the largest share of the energy, the multiple of "
+            "the mesh frequency at which it moves most, and the speed at which that multiple would meet it"
         )
         return [Table(caption, tables["jumps"][columns], 6)]
     if title == "Load sharing" and "summary" in tables:
@@ -128,6 +127,17 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
         ]
         return [Table("Means over the cycle with their 95 % half-widths", tables["summary"][columns], 4)]
     return []
+
+
+def _scorecard(frame: pd.DataFrame) -> Chapter:
+    text = (
+        "Every number and statement of the paper beside ours; a row that differs says why. Criteria, "
+        "tolerances and what other sets of inputs give stand in scorecard.html."
+    )
+    counts = frame["verdict"].value_counts(sort=False).rename_axis("verdict").reset_index(name="rows")
+    claims = frame[["where", "claim", "paper", "shown", "unit", "verdict", "reason"]]
+    claims = claims.rename(columns={"shown": "ours"})
+    return Chapter("Scorecard", text, (), [Table("Verdicts", counts), Table("Claims", claims, 5)])
 
 
 def _errors(tables: Mapping[str, pd.DataFrame]) -> Chapter:
