@@ -65,7 +65,6 @@ rule identify_sets:
 
 rule identify_roads:
     input:
-        sets="results/{case}/identify/sets.csv",
         ltca=upstream("contact", "contact/ltca.csv"),
         designs=[f"results/{{case}}/designs/{name}/contact/ltca.csv" for name in DESIGNS],
     output:
