@@ -1,17 +1,20 @@
 """Unit loads by which a pair of teeth can touch: their gaps, arms and nodal forces on both bodies."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from facegear.contact.averages import Rows, hat_averages, rows_of, spread, stacked
 from facegear.contact.options import Refinement
-from facegear.contact.surface import cell_areas, cell_points, hat_values, interpolation
+from facegear.contact.surface import cell_areas, cell_points, hat_values, line_points
 from facegear.contact.teeth import ContactSide, pinion_points
 from facegear.geometry.design import PairDesign
-from facegear.geometry.pinion_surface import SurfacePoints
+from facegear.geometry.pinion_surface import SurfacePoints, fillet_points
+
+FILLET_SAMPLES = 2000
 
 SMALLEST_COVER = 0.02
 """Part of a hat's area below which it is left out: the tooth opposite ends there."""
@@ -21,9 +24,9 @@ SMALLEST_COVER = 0.02
 class PinionSurface:
     """The pinion's pressure hats and the exact points their integrals are taken at.
 
-    For q points: `points`, `area` (q,) m2, `arm` (q,) m (speed along the normal per rotation), `nodal` (q, n)
-    and `hats` (q, n) interpolation to lattice nodes, `coarse` (q, c) to nodes before refinement; `element`
-    (q,) the flat index of the unrefined element (ne_u, ne_v) a point belongs to.
+    For q points: `points`, `area` (q,) m2, `arm` (q,) m (speed along the normal per rotation), `hats` (q, n)
+    their values, four a point; `element` (q,) the flat index of the unrefined element (ne_u, ne_v) a point
+    belongs to.
     """
 
     design: PairDesign
@@ -56,10 +59,6 @@ class PinionSurface:
         return x * self.points.normal[:, 2] - z * self.points.normal[:, 0]
 
     @cached_property
-    def nodal(self) -> sp.csr_matrix:
-        return interpolation(self.lattice, self.shape)
-
-    @cached_property
     def hats(self) -> sp.csr_matrix:
         return hat_values(self.lattice, self.shape)
 
@@ -75,15 +74,27 @@ class PinionSurface:
         return float(self.area.sum()) / width / (self.shape[0] - 1)
 
     @cached_property
-    def coarse(self) -> sp.csr_matrix:
-        factors = np.array([self.refinement.profile, self.refinement.width])
-        return interpolation(self.lattice / factors, self.side.shape)
-
-    @cached_property
     def element(self) -> NDArray[np.int64]:
         factors = 2 * np.array([self.refinement.profile, self.refinement.width])
         row, column = np.floor(self.lattice / factors).astype(np.int64).T
         return row * ((self.side.shape[1] - 1) // 2) + column
+
+    @cached_property
+    def tip(self) -> tuple[NDArray[np.float64], SurfacePoints]:
+        """Lattice coordinates (q, 2) of points along the tip edge, and the points."""
+        along = line_points(self.shape[1])
+        coordinates = np.stack([np.zeros(along.size), along], axis=1)
+        return coordinates, pinion_points(self.design, self.side, self.refinement, coordinates)
+
+    @cached_property
+    def fillet(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Points (n, 2) of the fillet's section (x, -z), outward normals (n, 2), unrefined rows (n,)."""
+        rows = self.side.flank_rows
+        ends = np.concatenate([self.side.junction[:1], self.side.u[rows:, 0]])
+        gamma = np.linspace(ends[0], ends[-1], FILLET_SAMPLES)
+        points = fillet_points(self.design, gamma, self.design.mean_radius)
+        curve, normal = (part[:, [0, 2]] * np.array([1.0, -1.0]) for part in (points.position, points.normal))
+        return curve, normal, rows - 1 + np.interp(gamma, ends, np.arange(ends.size))
 
     @cached_property
     def probes(self) -> tuple[SurfacePoints, NDArray[np.int64]]:
@@ -102,13 +113,14 @@ class Candidates:
     """Loads of one tooth pair that may act: a unit force each, spread over a hat's covered area or along an
     edge.
 
-    hats (m,) lattice nodes; gap (m,) m and arm (m,) m averaged over the hat; area (m,) m2, `whole` where no
-    edge cuts it; loads on the lattice nodes `pinion` (m, n1) and `gear` (m, n2), and on the unrefined ones
-    `pinion_coarse`, `gear_coarse`.
+    hats (m,) lattice nodes and their `column` along the width; gap (m,) m and arm (m,) m averaged over the
+    hat; area (m,) m2, `whole` where no edge cuts it; loads on the lattice nodes `pinion` (m, n1) and `gear`
+    (m, n2), and on the unrefined ones `pinion_coarse`, `gear_coarse`.
     """
 
     tooth: int
     hats: NDArray[np.int64]
+    column: NDArray[np.int64]
     gap: NDArray[np.float64]
     arm: NDArray[np.float64]
     area: NDArray[np.float64]
@@ -117,6 +129,97 @@ class Candidates:
     gear: sp.csr_matrix
     pinion_coarse: sp.csr_matrix
     gear_coarse: sp.csr_matrix
+
+    def only(self, keep: NDArray[np.bool_]) -> "Candidates":
+        """Those marked (m,)."""
+        if keep.all():
+            return self
+        parts = [getattr(self, field.name) for field in fields(self)[1:]]
+        parts = [rows_of(part, keep) if sp.issparse(part) else part[keep] for part in parts]
+        return Candidates(self.tooth, *parts)
+
+
+@dataclass(frozen=True, eq=False)
+class Loads:
+    """Unit forces of one tooth pair, each spread over points of the pinion or of an edge by a row of `rows`.
+
+    For m forces: `hats`, `area` and `whole` as in `Candidates`. For q points: `gap` (m), `arm` (m), and where
+    they are on both refined lattices, `pinion` and `gear` (q, 2).
+    """
+
+    rows: Rows
+    hats: NDArray[np.int64]
+    area: NDArray[np.float64]
+    whole: NDArray[np.bool_]
+    gap: NDArray[np.float64]
+    arm: NDArray[np.float64]
+    pinion: NDArray[np.float64]
+    gear: NDArray[np.float64]
+
+
+def candidates_of(
+    surface: PinionSurface,
+    gear_shape: tuple[int, int],
+    gear_refinement: Refinement,
+    tooth: int,
+    parts: list[Loads],
+    limit: float,
+) -> Candidates | None:
+    """Those of the loads that a turn by `limit` (rad) would close, or None.
+
+    `gear_shape` is the gear's lattice before refinement.
+    """
+    if not parts:
+        return None
+    rows = stacked([part.rows for part in parts], [part.gap.size for part in parts])
+    hats, area, whole, gap, arm, pinion, gear = (
+        np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Loads)[1:]
+    )
+    mean_gap, mean_arm = rows.mean(gap), rows.mean(arm)
+    near = mean_gap < limit * mean_arm
+    if not near.any():
+        return None
+    rows = rows.only(near)
+    loads = []
+    for place, shape, cuts in (
+        (pinion, surface.side.shape, surface.refinement),
+        (gear, gear_shape, gear_refinement),
+    ):
+        factors = np.array([cuts.profile, cuts.width])
+        fine = (shape[0] - 1) * cuts.profile + 1, (shape[1] - 1) * cuts.width + 1
+        loads.append((spread(rows, place, fine), spread(rows, place / factors, shape)))
+    (on_pinion, pinion_coarse), (on_gear, gear_coarse) = loads
+    return Candidates(
+        tooth,
+        hats[near],
+        hats[near] % surface.shape[1],
+        mean_gap[near],
+        mean_arm[near],
+        area[near],
+        whole[near],
+        on_pinion,
+        on_gear,
+        pinion_coarse,
+        gear_coarse,
+    )
+
+
+def hat_loads(
+    surface: PinionSurface,
+    points: NDArray[np.int64],
+    gap: NDArray[np.float64],
+    coordinates: NDArray[np.float64],
+) -> Loads:
+    """Loads of the hats over those integration points (q,) of the pinion that face the gear.
+
+    `gap` (q,) m and where the gear is hit, `coordinates` (q, 2) of its refined lattice.
+    """
+    under, values = surface.hats.indices.reshape(-1, 4), surface.hats.data.reshape(-1, 4)
+    rows, hats, area = hat_averages(
+        under[points], values[points], surface.area[points], SMALLEST_COVER * surface.full_area
+    )
+    whole = _whole(surface, hats, area)
+    return Loads(rows, hats, area, whole, gap, surface.arm[points], surface.lattice[points], coordinates)
 
 
 def hats_over(
@@ -129,83 +232,9 @@ def hats_over(
     coordinates: NDArray[np.float64],
     limit: float,
 ) -> Candidates | None:
-    """Hats over those integration points (q,) of the pinion that face the gear.
-
-    `gap` (q,) m and where the gear is hit, `coordinates` (q, 2) of its refined lattice; `gear_shape` is its
-    lattice before refinement. Returns the hats that a turn by `limit` (rad) would close, or None.
-    """
-    if points.size == 0:
-        return None
-    weight = surface.hats[points].multiply(surface.area[points, None]).T.tocsr()
-    area = np.asarray(weight.sum(axis=1)).ravel()
-    hats = np.flatnonzero(area > SMALLEST_COVER * surface.full_area)
-    weight = sp.diags_array(1.0 / area[hats]) @ weight[hats]
-    found = spread_loads(
-        tooth,
-        weight.tocsr(),
-        gap,
-        surface.arm[points],
-        (surface.nodal[points], surface.coarse[points]),
-        gear_loads(coordinates, gear_shape, gear_refinement),
-        limit,
-    )
-    if found is None:
-        return None
-    candidates, near = found
-    hats, area = hats[near], area[hats][near]
-    return replace(candidates, hats=hats, area=area, whole=_whole(surface, hats, area))
-
-
-def gear_loads(
-    coordinates: NDArray[np.float64], shape: tuple[int, int], refinement: Refinement
-) -> tuple[sp.csr_matrix, sp.csr_matrix]:
-    """Interpolation (q, n) from refined and from unrefined lattice nodes to refined coordinates (q, 2)."""
-    factors = np.array([refinement.profile, refinement.width])
-    fine = tuple((n - 1) * int(f) + 1 for n, f in zip(shape, factors, strict=True))
-    return interpolation(coordinates, fine), interpolation(coordinates / factors, shape)
-
-
-def spread_loads(
-    tooth: int,
-    weight: sp.csr_matrix,
-    gap: NDArray[np.float64],
-    arm: NDArray[np.float64],
-    pinion: tuple[sp.csr_matrix, sp.csr_matrix],
-    gear: tuple[sp.csr_matrix, sp.csr_matrix],
-    limit: float,
-) -> tuple[Candidates, NDArray[np.bool_]] | None:
-    """Candidates of unit forces spread over points by `weight` (m, q), rows summing to one, and which rows
-    they are.
-
-    `gap`, `arm` (q,) and the interpolations `pinion`, `gear` (refined, unrefined) belong to the points. Rows
-    that a turn by `limit` (rad) does not close are left out; None if that is all of them.
-    """
-    mean_gap, mean_arm = weight @ gap, weight @ arm
-    near = mean_gap < limit * mean_arm
-    if not near.any():
-        return None
-    rows = weight[near].tocsr()
-    none = np.zeros(0)
-    loads = [(rows @ part).tocsr() for part in (*pinion, *gear)]
-    empty = Candidates(
-        tooth, none, mean_gap[near], mean_arm[near], none, none, loads[0], loads[2], loads[1], loads[3]
-    )
-    return empty, near
-
-
-def merged(parts: list[Candidates]) -> Candidates:
-    """All candidates of one tooth pair as one."""
-    if len(parts) == 1:
-        return parts[0]
-    flat = {
-        name: np.concatenate([getattr(part, name) for part in parts])
-        for name in ("hats", "gap", "arm", "area", "whole")
-    }
-    loads = {
-        name: sp.vstack([getattr(part, name) for part in parts], format="csr")
-        for name in ("pinion", "gear", "pinion_coarse", "gear_coarse")
-    }
-    return Candidates(tooth=parts[0].tooth, **flat, **loads)
+    """The hats of `hat_loads` that a turn by `limit` (rad) would close, or None."""
+    loads = [hat_loads(surface, points, gap, coordinates)] if points.size else []
+    return candidates_of(surface, gear_shape, gear_refinement, tooth, loads, limit)
 
 
 def _whole(surface: PinionSurface, hats: NDArray[np.int64], area: NDArray[np.float64]) -> NDArray[np.bool_]:

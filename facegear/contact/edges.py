@@ -5,33 +5,27 @@ grows by micrometres within a node distance, so that averages over the surface b
 therefore carry loads of their own, hats along the edge with gaps taken on it.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from facegear.contact.candidates import (
-    SMALLEST_COVER,
-    Candidates,
-    PinionSurface,
-    gear_loads,
-    spread_loads,
-)
-from facegear.contact.surface import GAUSS, interpolation
-from facegear.contact.teeth import GearLattice, pinion_points
+from facegear.contact.averages import hat_averages
+from facegear.contact.candidates import SMALLEST_COVER, Loads, PinionSurface
+from facegear.contact.surface import line_points
+from facegear.contact.teeth import GearLattice
 from facegear.geometry import face_gear, pinion
-from facegear.geometry.pinion_surface import fillet_points
 from facegear.geometry.placement import to_pinion_section
 from facegear.geometry.relief import removed
 from facegear.geometry.separation import separation
 
-FILLET_SAMPLES = 2000
+FARTHEST = 1e-3
+"""Gap or depth (m) beyond which the surfaces of both teeth do not see each other."""
 
 
 @dataclass(frozen=True, eq=False)
 class EdgeGaps:
-    """Points of the gear's tip edge against one pinion tooth: gap (q,) m, arm (q,) m, where on both lattices.
+    """Points of a tip edge against a tooth of the other gear: gap (q,) m, arm (q,) m, where on both lattices.
 
     `pinion` and `gear` (q, 2) are refined lattice coordinates; points that face nothing are left out, `index`
     (q,) numbers the others along the edge.
@@ -42,12 +36,6 @@ class EdgeGaps:
     arm: NDArray[np.float64]
     pinion: NDArray[np.float64]
     gear: NDArray[np.float64]
-
-
-def line_points(nodes: int) -> NDArray[np.float64]:
-    """Two Gauss points in each interval between `nodes` nodes on a line, (2 (nodes - 1),)."""
-    middle = np.arange(nodes - 1) + 0.5
-    return np.stack([middle - GAUSS, middle + GAUSS], axis=-1).ravel()
 
 
 def gear_edge_gaps(
@@ -88,83 +76,57 @@ def gear_edge_gaps(
     return found
 
 
-def gear_edge(
-    surface: PinionSurface, lattice: GearLattice, edge: EdgeGaps, tooth: int, limit: float
-) -> Candidates | None:
-    """Loads along the gear's tip edge that a turn by `limit` (rad) would close, or None."""
+def gear_edge(surface: PinionSurface, lattice: GearLattice, edge: EdgeGaps) -> Loads | None:
+    """Loads along the gear's tip edge, or None."""
     columns = (lattice.side.shape[1] - 1) * lattice.refinement.width + 1
-    factors = np.array([surface.refinement.profile, surface.refinement.width])
-    on_pinion = (
-        interpolation(edge.pinion, surface.shape),
-        interpolation(edge.pinion / factors, surface.side.shape),
-    )
-    on_gear = gear_loads(edge.gear, lattice.side.shape, lattice.refinement)
     gear = surface.design.face_gear
     spacing = (gear.outer_radius - gear.inner_radius) / (columns - 1)
-    place = np.rint(edge.pinion).astype(np.int64)
-    nodes = place[:, 0] * surface.shape[1] + place[:, 1]
-    return _edge_loads(
-        surface, edge.index, nodes, columns, spacing, (tooth, edge.gap, edge.arm, on_pinion, on_gear, limit)
-    )
+    return _edge_loads(surface, edge, columns, spacing)
 
 
 def pinion_edge(
-    surface: PinionSurface, lattice: GearLattice, place: tuple[float, float, int], limit: float, fillet: bool
-) -> Candidates | None:
-    """Loads along the pinion's tip edge that a turn by `limit` (rad) would close, or None."""
+    surface: PinionSurface, lattice: GearLattice, place: tuple[float, float, int], fillet: bool
+) -> Loads | None:
+    """Loads along the pinion's tip edge, or None."""
     columns = surface.shape[1]
-    along = line_points(columns)
-    coordinates = np.stack([np.zeros(along.size), along], axis=1)
-    points = pinion_points(surface.design, surface.side, surface.refinement, coordinates)
-    seen = separation(surface.design, points, place[0], place[1], place[2], reach=1e-4)
+    coordinates, points = surface.tip
+    seen = separation(surface.design, points, place[0], place[1], place[2], reach=FARTHEST)
     gear = lattice.coordinates(seen, fillet, 0.0)[0]
     index = np.flatnonzero(np.isfinite(gear).all(axis=1) & np.isfinite(seen.gap[0]))
-    coordinates, gear, gap = coordinates[index], gear[index], seen.gap[0][index]
-    factors = np.array([surface.refinement.profile, surface.refinement.width])
     x, z = points.position[index, 0], points.position[index, 2]
     arm = x * points.normal[index, 2] - z * points.normal[index, 0]
-    on_pinion = (
-        interpolation(coordinates, surface.shape),
-        interpolation(coordinates / factors, surface.side.shape),
-    )
-    on_gear = gear_loads(gear, lattice.side.shape, lattice.refinement)
-    spacing = float(np.ptp(surface.side.v[0])) / (columns - 1)
-    nodes = np.rint(coordinates[:, 1]).astype(np.int64)
-    return _edge_loads(
-        surface, index, nodes, columns, spacing, (place[2], gap, arm, on_pinion, on_gear, limit)
-    )
+    edge = EdgeGaps(index, seen.gap[0][index], arm, coordinates[index], gear[index])
+    return _edge_loads(surface, edge, columns, float(np.ptp(surface.side.v[0])) / (columns - 1))
 
 
-def _edge_loads(surface, index, nodes, columns, spacing, loads):  # type: ignore[no-untyped-def]
-    """Hats along an edge of `columns` nodes over the points `index` of `line_points`."""
-    tooth, gap, arm, on_pinion, on_gear, limit = loads
-    if index.size == 0:
+def _edge_loads(surface: PinionSurface, edge: EdgeGaps, columns: int, spacing: float) -> Loads | None:
+    """Hats along an edge of `columns` nodes, `spacing` (m) apart, over points of `line_points`."""
+    if edge.index.size == 0:
         return None
-    along = line_points(columns)[index]
+    along = line_points(columns)[edge.index]
     base = np.floor(along).astype(np.int64)
     share = along - base
-    weight = sp.coo_matrix(
-        (
-            np.concatenate([1 - share, share]),
-            (np.concatenate([base, base + 1]), np.tile(np.arange(index.size), 2)),
-        ),
-        shape=(columns, index.size),
-    ).tocsr()
-    length = 0.5 * np.asarray(weight.sum(axis=1)).ravel()
-    whole = np.ones(columns)
-    whole[[0, -1]] = 0.5
-    hats = np.flatnonzero(length > SMALLEST_COVER * whole)
-    weight = (sp.diags_array(0.5 / length[hats]) @ weight[hats]).tocsr()
-    found = spread_loads(tooth, weight, gap, arm, on_pinion, on_gear, limit)
-    if found is None:
+    least = np.full(columns, SMALLEST_COVER)
+    least[[0, -1]] *= 0.5
+    rows, hats, length = hat_averages(
+        np.stack([base, base + 1], axis=1),
+        np.stack([1 - share, share], axis=1),
+        np.full(share.size, 0.5),
+        least,
+    )
+    if hats.size == 0:
         return None
-    candidates, near = found
-    nearest = np.asarray(weight.argmax(axis=1)).ravel()
-    return replace(
-        candidates,
-        hats=nodes[nearest][near],
-        area=length[hats][near] * spacing * surface.row_height,
-        whole=np.zeros(near.sum(), dtype=bool),
+    place = np.rint(edge.pinion).astype(np.int64)
+    nodes = place[:, 0] * surface.shape[1] + place[:, 1]
+    return Loads(
+        rows,
+        nodes[rows.heaviest()],
+        length * spacing * surface.row_height,
+        np.zeros(hats.size, dtype=bool),
+        edge.gap,
+        edge.arm,
+        edge.pinion,
+        edge.gear,
     )
 
 
@@ -198,23 +160,18 @@ def _fillet_feet(
     surface: PinionSurface, section: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """The same for the fillet, from its nearest of many points; inf where the nearest is an end of it."""
-    design, side = surface.design, surface.side
-    gammas = np.concatenate([side.junction[:1], side.u[side.flank_rows :, 0]])
-    if gammas.size == 1 or len(section) == 0:
-        return np.full(len(section), np.inf), np.full(len(section), np.nan), np.zeros(len(section))
-    gamma = np.linspace(gammas[0], gammas[-1], FILLET_SAMPLES)
-    points = fillet_points(design, gamma, design.mean_radius)
-    curve = points.position[:, [0, 2]] * np.array([1.0, -1.0])
-    normal = points.normal[:, [0, 2]] * np.array([1.0, -1.0])
-    nearest = np.argmin(np.linalg.norm(section[:, None, :2] - curve, axis=2), axis=1)
-    gap = np.sum((section[:, :2] - curve[nearest]) * normal[nearest], axis=1)
-    gap += removed(design, pinion.junction_roll(design), section[:, 2])
-    on = (nearest > 0) & (nearest < FILLET_SAMPLES - 1) & (np.abs(gap) < design.module)
-    row = side.flank_rows - 1 + np.interp(gamma[nearest], gammas, np.arange(gammas.size))
-    x, h = curve[nearest].T
-    arm = h * normal[nearest, 0] - x * normal[nearest, 1]
-    return (
-        np.where(on, gap, np.inf),
-        np.where(on, row * surface.refinement.profile, np.nan),
-        arm,
-    )
+    gap, row, arm = (np.full(len(section), value) for value in (np.inf, np.nan, 0.0))
+    if surface.side.flank_rows == surface.side.shape[0]:
+        return gap, row, arm
+    curve, normal, rows = surface.fillet
+    low, high = curve.min(axis=0) - FARTHEST, curve.max(axis=0) + FARTHEST
+    close = np.flatnonzero(((section[:, :2] > low) & (section[:, :2] < high)).all(axis=1))
+    here = section[close]
+    nearest = np.argmin(np.linalg.norm(here[:, None, :2] - curve, axis=2), axis=1)
+    apart = np.sum((here[:, :2] - curve[nearest]) * normal[nearest], axis=1)
+    apart += removed(surface.design, pinion.junction_roll(surface.design), here[:, 2])
+    on = (nearest > 0) & (nearest < len(curve) - 1) & (np.abs(apart) < FARTHEST)
+    close, nearest = close[on], nearest[on]
+    gap[close], row[close] = apart[on], rows[nearest] * surface.refinement.profile
+    arm[close] = curve[nearest, 1] * normal[nearest, 0] - curve[nearest, 0] * normal[nearest, 1]
+    return gap, row, arm

@@ -1,7 +1,8 @@
-"""Compliance between all candidate hats of a position: both bodies, own teeth and neighbours."""
+"""Compliance between candidate hats of a position: both bodies, own teeth and neighbours."""
 
 import numpy as np
 import scipy.sparse as sp
+from numba import njit
 from numpy.typing import NDArray
 
 from facegear.contact.candidates import Candidates
@@ -22,31 +23,121 @@ def influence_matrix(
     matrix = np.zeros((ends[-1], ends[-1]))
     for i, first in enumerate(pairs):
         own = slice(ends[i], ends[i + 1])
-        matrix[own, own] = _own(first.pinion, pinion.own) + _own(first.gear, gear.own)
-        if not coupled:
-            continue
-        for j in range(i):
+        block = _product(first.pinion, pinion.own, first.pinion) + _product(first.gear, gear.own, first.gear)
+        matrix[own, own] = 0.5 * (block + block.T)
+        for j in range(i) if coupled else ():
             second = pairs[j]
             other = slice(ends[j], ends[j + 1])
             places = first.tooth - second.tooth
-            block = _between(first.pinion_coarse, pinion.block(places), second.pinion_coarse)
-            block = block + _between(first.gear_coarse, gear.block(places), second.gear_coarse)
+            block = _product(first.pinion_coarse, pinion.block(places), second.pinion_coarse)
+            block += _product(first.gear_coarse, gear.block(places), second.gear_coarse)
             matrix[own, other] = block
             matrix[other, own] = block.T
     return matrix
 
 
-def _own(loads: sp.csr_matrix, compliance: NDArray[np.float64]) -> NDArray[np.float64]:
-    used = np.unique(loads.indices)
-    narrow = loads[:, used]
-    part = compliance[np.ix_(used, used)]
-    result = narrow @ (narrow @ part).T
-    return 0.5 * (result + result.T)
+def displacement(
+    seen: list[Candidates],
+    pairs: list[Candidates],
+    forces: NDArray[np.float64],
+    pinion: FlankCompliance,
+    gear: FlankCompliance,
+    coupled: bool = True,
+) -> NDArray[np.float64]:
+    """Approach (k, t) m at the hats of `seen` by forces (m, t) N on those of `pairs`, t load cases."""
+    ends = np.cumsum([len(pair.hats) for pair in pairs])[:-1]
+    loads = list(zip(pairs, np.split(forces, ends), strict=True))
+    return np.concatenate([_approach(here, loads, pinion, gear, coupled) for here in seen])
 
 
-def _between(
-    first: sp.csr_matrix, compliance: NDArray[np.float64] | None, second: sp.csr_matrix
+def _approach(here, loads, pinion, gear, coupled):  # type: ignore[no-untyped-def]
+    total = np.zeros((len(here.hats), loads[0][1].shape[1]))
+    for pair, force in loads:
+        places = here.tooth - pair.tooth
+        if places == 0:
+            total += _response(here.pinion, pinion.own, pair.pinion, force)
+            total += _response(here.gear, gear.own, pair.gear, force)
+        elif coupled:
+            total += _response(here.pinion_coarse, pinion.block(places), pair.pinion_coarse, force)
+            total += _response(here.gear_coarse, gear.block(places), pair.gear_coarse, force)
+    return total
+
+
+def _response(
+    seen: sp.csr_matrix,
+    compliance: NDArray[np.float64] | None,
+    loads: sp.csr_matrix,
+    forces: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     if compliance is None:
+        return np.zeros((seen.shape[0], forces.shape[1]))
+    touching = (seen.indptr, seen.indices, seen.data), (loads.indptr, loads.indices, loads.data)
+    return _sparse_response(touching[0], compliance, touching[1], np.ascontiguousarray(forces))
+
+
+@njit(cache=True)
+def _sparse_response(seen, compliance, loads, forces):  # type: ignore[no-untyped-def]
+    loaded, place = _used(loads[1], compliance.shape[1])
+    nodal = np.zeros((loaded.size, forces.shape[1]))
+    for i in range(forces.shape[0]):
+        for k in range(loads[0][i], loads[0][i + 1]):
+            for t in range(forces.shape[1]):
+                nodal[place[loads[1][k]], t] += loads[2][k] * forces[i, t]
+    used, place = _used(seen[1], compliance.shape[0])
+    part = np.empty((used.size, loaded.size))
+    for a in range(used.size):
+        line = compliance[used[a]]
+        for b in range(loaded.size):
+            part[a, b] = line[loaded[b]]
+    return _averaged(seen[0], place[seen[1]], seen[2], part @ nodal)
+
+
+def _product(
+    first: sp.csr_matrix, compliance: NDArray[np.float64] | None, second: sp.csr_matrix
+) -> NDArray[np.float64]:
+    """first @ compliance @ second.T, touching only what the two have entries for."""
+    if compliance is None:
         return np.zeros((first.shape[0], second.shape[0]))
-    return first @ (second @ compliance.T).T
+    return _sparse_product(
+        (first.indptr, first.indices, first.data),
+        compliance,
+        (second.indptr, second.indices, second.data),
+    )
+
+
+@njit(cache=True)
+def _sparse_product(first, compliance, second):  # type: ignore[no-untyped-def]
+    rows, row_place = _used(first[1], compliance.shape[0])
+    columns, column_place = _used(second[1], compliance.shape[1])
+    part = np.empty((rows.size, columns.size))
+    for a in range(rows.size):
+        line = compliance[rows[a]]
+        for b in range(columns.size):
+            part[a, b] = line[columns[b]]
+    half = _averaged(first[0], row_place[first[1]], first[2], part)
+    return _averaged(second[0], column_place[second[1]], second[2], np.ascontiguousarray(half.T)).T
+
+
+@njit(cache=True)
+def _used(indices, count):  # type: ignore[no-untyped-def]
+    """The distinct indices, rising, and the place of each among them."""
+    mark = np.zeros(count, np.bool_)
+    for index in indices:
+        mark[index] = True
+    used = np.flatnonzero(mark)
+    place = np.full(count, -1)
+    place[used] = np.arange(used.size)
+    return used, place
+
+
+@njit(cache=True)
+def _averaged(pointer, index, weight, dense):  # type: ignore[no-untyped-def]
+    """Sparse rows times a dense matrix."""
+    result = np.zeros((pointer.size - 1, dense.shape[1]))
+    for i in range(pointer.size - 1):
+        row = result[i]
+        for k in range(pointer[i], pointer[i + 1]):
+            line, w = dense[index[k]], weight[k]
+            for c in range(dense.shape[1]):
+                row[c] += w * line[c]
+    return result

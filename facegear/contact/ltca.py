@@ -1,7 +1,7 @@
 """Loaded tooth contact analysis: every position of a pitch at every torque."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from math import pi
 
@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from facegear.contact.candidates import Candidates, PinionSurface
 from facegear.contact.compliance import FlankCompliance
-from facegear.contact.influence import influence_matrix
+from facegear.contact.influence import displacement, influence_matrix
 from facegear.contact.options import ContactOptions
 from facegear.contact.search import find_candidates
-from facegear.contact.solver import Contact, solve
+from facegear.contact.solver import Contact
+from facegear.contact.strip import Combine, Displace, solve_torques
 from facegear.contact.teeth import GearLattice
 from facegear.errors import NotConverged
 from facegear.geometry.design import PairDesign
@@ -114,9 +115,10 @@ def analyse(
         angles = float(phi1[row]), float(unloaded.phi2[row])
         error = -float(unloaded.transmission_error[row])
         find = partial(_candidates, model, angles, options)
-        combine = partial(influence_matrix, pinion=model.pinion, gear=model.gear, coupled=options.coupled)
+        bodies = {"pinion": model.pinion, "gear": model.gear, "coupled": options.coupled}
+        combine, displace = partial(influence_matrix, **bodies), partial(displacement, **bodies)
         place = Place(float(position), error, model.design.pinion_base_radius)
-        solved, guess = solve_position(find, combine, place, torques, guess)
+        solved, guess = solve_position(find, combine, place, torques, guess, displace)
         results += solved
         progress.step()
     return results
@@ -139,15 +141,17 @@ class Place:
 
 def solve_position(
     find: Callable[[float], list[Candidates]],
-    combine: Callable[[list[Candidates]], NDArray[np.float64]],
+    combine: Combine,
     place: Place,
     torques: Sequence[float],
     guess: float,
+    displace: Displace | None = None,
 ) -> tuple[list[LoadedPosition], float]:
-    """All torques of a position, the largest first, each warm-started from the one before.
+    """All torques of a position.
 
-    `find` gives the candidates that a turn (rad) would close, `combine` their influence matrix. `guess` is a
-    first guess of the largest turn; the largest turn found is returned with the results, as the next guess.
+    `find` gives the candidates that a turn (rad) would close, `combine` their influence matrix; with
+    `displace` it is made for a strip of them only, and the others are checked. `guess` is a first guess of
+    the largest turn; the largest turn found is returned with the results, as the next guess.
     Raises NotConverged naming position and torque.
     """
     limit = MARGIN * guess
@@ -161,36 +165,21 @@ def solve_position(
         if not pairs:
             limit *= 4.0
             continue
-        matrix = combine(pairs)
-        gap, arm = (np.concatenate([getattr(pair, name) for pair in pairs]) for name in ("gap", "arm"))
-        torque = float(torques[order[0]])
-        largest = solve(matrix, gap, arm, torque, where=where(torque))
-        if largest.rotation <= limit:
+        loads = [float(torques[index]) for index in order]
+        contacts = solve_torques(pairs, limit, loads, combine, displace, where)
+        if contacts[0].rotation <= limit:
             break
-        limit = MARGIN * largest.rotation
+        limit = MARGIN * contacts[0].rotation
     else:
         tried = f"candidates of {ENLARGEMENTS} turns up to {limit:.2e} rad"
         raise NotConverged("contact", where(max(torques)), tried)
-    results: dict[int, LoadedPosition] = {}
-    last = largest
-    for index in order:
-        torque = float(torques[index])
-        if index != order[0]:
-            keep = gap < last.rotation * arm
-            block = matrix[np.ix_(keep, keep)]
-            inner = solve(block, gap[keep], arm[keep], torque, last.active[keep], where(torque))
-            force = np.zeros_like(gap)
-            force[keep] = inner.force
-            last = replace(inner, force=force)
-        results[int(index)] = _result(place, torque, pairs, arm, last)
-    return [results[index] for index in range(len(torques))], largest.rotation
+    results = [_result(place, pairs, contacts[i]) for i in np.argsort(order)]
+    return results, contacts[0].rotation
 
 
 def _result(
     place: Place,
-    torque: float,
     pairs: list[Candidates],
-    arm: NDArray[np.float64],
     contact: Contact,
 ) -> LoadedPosition:
     base = place.base_radius
@@ -200,7 +189,7 @@ def _result(
         rows = slice(start, start + len(pair.hats))
         start = rows.stop
         force = contact.force[rows]
-        share[np.searchsorted(PAIRS, pair.tooth)] = force @ arm[rows] / torque
+        share[np.searchsorted(PAIRS, pair.tooth)] = force @ pair.arm / contact.torque
         on = force > 0.0
         if on.any():
             spots.append(
@@ -209,14 +198,14 @@ def _result(
     approach = base * contact.rotation
     return LoadedPosition(
         place.position,
-        torque,
+        contact.torque,
         place.unloaded + approach,
         place.unloaded,
-        torque / base / approach,
+        contact.torque / base / approach,
         1.0 / (base**2 * contact.slope),
         share,
         contact.residual,
         contact.steps,
-        len(arm),
+        len(contact.force),
         tuple(spots),
     )

@@ -3,12 +3,15 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.contact.candidates import Candidates, PinionSurface, hats_over, merged
-from facegear.contact.edges import gear_edge, gear_edge_gaps, pinion_edge
+from facegear.contact.candidates import Candidates, Loads, PinionSurface, candidates_of, hat_loads
+from facegear.contact.edges import FARTHEST, gear_edge, gear_edge_gaps, pinion_edge
 from facegear.contact.options import ContactOptions
 from facegear.contact.teeth import GearLattice
 from facegear.geometry.pinion_surface import SurfacePoints
 from facegear.geometry.separation import separation
+
+SAG = 10e-6
+"""By how much (m) a gap between probes may be less than at the nearest of them."""
 
 
 def find_candidates(
@@ -26,51 +29,50 @@ def find_candidates(
     """
     probes, elements = surface.probes
     fillet = options.fillet
-    seen = separation(surface.design, probes, phi1, phi2, teeth)
+    seen = separation(surface.design, probes, phi1, phi2, teeth, reach=FARTHEST)
     depth = limit * surface.design.pinion_base_radius
-    reach = 3.0 * depth + 20e-6
     found = []
     edges = gear_edge_gaps(surface, lattice, phi1, phi2, teeth, fillet)
     if not options.edges:
         edges = [None] * len(teeth)
-    for tooth, gap, edge in zip(teeth, seen.gap, edges, strict=True):
-        near = (gap[elements] < depth + 10e-6).any(axis=1) & (np.abs(gap[elements]) < 1e-3).any(axis=1)
+    # a gear's edge may lie between a probe and the points that touch: the flank is taken to go on there
+    gaps = np.minimum(seen.gap, seen.continued)
+    for tooth, gap, edge in zip(teeth, gaps, edges, strict=True):
+        near = (gap[elements] < depth + SAG).any(axis=1)
         points = np.flatnonzero(near[surface.element])
         place = (phi1, phi2, int(tooth))
-        parts = [gear_edge(surface, lattice, edge, int(tooth), limit)] if edge is not None else []
+        parts = [gear_edge(surface, lattice, edge)] if edge is not None else []
         if points.size:
-            parts.append(_pair_candidates(surface, lattice, place, points, limit, reach, fillet))
+            parts.append(_facing_hats(surface, lattice, place, points, fillet))
             if options.edges:
-                parts.append(pinion_edge(surface, lattice, place, limit, fillet))
-        parts = [part for part in parts if part is not None]
-        if parts:
-            found.append(merged(parts))
+                parts.append(pinion_edge(surface, lattice, place, fillet))
+        pair = candidates_of(
+            surface,
+            lattice.side.shape,
+            lattice.refinement,
+            int(tooth),
+            [part for part in parts if part is not None],
+            limit,
+        )
+        if pair is not None:
+            found.append(pair)
     return found
 
 
-def _pair_candidates(
+def _facing_hats(
     surface: PinionSurface,
     lattice: GearLattice,
     place: tuple[float, float, int],
     points: NDArray[np.int64],
-    limit: float,
-    reach: float,
     fillet: bool,
-) -> Candidates | None:
+) -> Loads | None:
     where = SurfacePoints(surface.points.position[points], surface.points.normal[points])
-    seen = separation(surface.design, where, *place[:2], place[2], reach=max(reach, 1e-4))
+    seen = separation(surface.design, where, *place[:2], place[2], reach=FARTHEST)
     edge = 0.1 * surface.design.module
     coordinates = lattice.coordinates(seen, fillet, edge)[0]
     usable = np.isfinite(coordinates).all(axis=1) & np.isfinite(seen.gap[0])
     if not fillet:
         usable &= surface.lattice[points, 0] <= (surface.side.flank_rows - 1) * surface.refinement.profile
-    return hats_over(
-        surface,
-        lattice.side.shape,
-        lattice.refinement,
-        place[2],
-        points[usable],
-        seen.gap[0][usable],
-        coordinates[usable],
-        limit,
-    )
+    if not usable.any():
+        return None
+    return hat_loads(surface, points[usable], seen.gap[0][usable], coordinates[usable])

@@ -20,12 +20,13 @@ TOLERANCE = 1e-11
 
 @dataclass(frozen=True, eq=False)
 class Contact:
-    """A loaded contact.
+    """A contact loaded by `torque` (N m).
 
     `force` (n,) N; `rotation` rad (the approach in m where arms are 1); `slope` d rotation / d torque with
     the contact area following the load, rad/(N m); `residual` largest violation of the conditions, relative.
     """
 
+    torque: float
     force: NDArray[np.float64]
     rotation: float
     slope: float
@@ -58,12 +59,12 @@ def solve(
     active = _first_guess(gap, arm) if start is None or not (start & (arm > 0)).any() else start.copy()
     seen: set[bytes] = set()
     for step in range(1, NEWTON_STEPS + 1):
-        force, rotation, slope = _bonded(compliance, gap, arm, torque, active)
-        distance = gap + compliance[:, active] @ force[active] - rotation * arm
-        scale = np.abs(rotation * arm).max() + np.abs(gap[active]).max()
-        next_active = np.where(active, force > 0.0, distance < -TOLERANCE * scale)
+        bonded = _bonded(compliance, gap, arm, torque, active)
+        distance = gap + compliance @ bonded.force - bonded.rotation * arm
+        scale = np.abs(bonded.rotation * arm).max() + np.abs(gap[active]).max()
+        next_active = np.where(active, bonded.force > 0.0, distance < -TOLERANCE * scale)
         if np.array_equal(next_active, active):
-            return _checked(compliance, gap, arm, torque, force, rotation, slope, step, where)
+            return _checked(compliance, gap, arm, torque, bonded, step, where)
         key = np.packbits(next_active).tobytes()
         if key in seen or not (next_active & (arm > 0)).any():
             break
@@ -79,33 +80,49 @@ def _first_guess(gap: NDArray[np.float64], arm: NDArray[np.float64]) -> NDArray[
     return turns <= first + reach
 
 
-def _bonded(compliance, gap, arm, torque, active):  # type: ignore[no-untyped-def]
-    """Forces and rotation if exactly the active points touch."""
-    factor = sl.cho_factor(compliance[np.ix_(active, active)], lower=True, check_finite=False)
+@dataclass(frozen=True, eq=False)
+class _Bonded:
+    """What happens if exactly the points `active` (k,) touch, and the factor of their compliance."""
+
+    active: NDArray[np.int64]
+    compliance: NDArray[np.float64]
+    factor: tuple[NDArray[np.float64], bool]
+    lever: NDArray[np.float64]
+    force: NDArray[np.float64]
+    rotation: float
+    slope: float
+
+
+def _bonded(compliance, gap, arm, torque, touching):  # type: ignore[no-untyped-def]
+    active = np.flatnonzero(touching)
+    block = compliance[np.ix_(active, active)]
+    factor = sl.cho_factor(block, lower=True, check_finite=False)
     lever, offset = arm[active], gap[active]
     both = sl.cho_solve(factor, np.stack([lever, offset], axis=1), check_finite=False)
     stiffness = lever @ both[:, 0]
     rotation = (torque + lever @ both[:, 1]) / stiffness
     force = np.zeros_like(gap)
     force[active] = rotation * both[:, 0] - both[:, 1]
-    return force, rotation, 1.0 / stiffness
+    return _Bonded(active, block, factor, both[:, 0], force, rotation, 1.0 / stiffness)
 
 
-def _checked(compliance, gap, arm, torque, force, rotation, slope, steps, where):  # type: ignore[no-untyped-def]
-    active = force > 0.0
-    factor = sl.cho_factor(compliance[np.ix_(active, active)], lower=True, check_finite=False)
-    lever = sl.cho_solve(factor, arm[active], check_finite=False)
+def _checked(compliance, gap, arm, torque, bonded, steps, where):  # type: ignore[no-untyped-def]
+    """The result after two steps of iterative refinement, its residual tested."""
+    active, lever = bonded.active, bonded.lever
+    force, rotation = bonded.force[active], bonded.rotation
     for _ in range(2):
-        distance = gap[active] + compliance[np.ix_(active, active)] @ force[active] - rotation * arm[active]
-        missing = torque - arm[active] @ force[active]
-        change = -sl.cho_solve(factor, distance, check_finite=False)
+        distance = gap[active] + bonded.compliance @ force - rotation * arm[active]
+        missing = torque - arm[active] @ force
+        change = -sl.cho_solve(bonded.factor, distance, check_finite=False)
         turn = (missing - arm[active] @ change) / (arm[active] @ lever)
-        force[active] += change + turn * lever
+        force = force + change + turn * lever
         rotation += turn
-    residual = kkt_residual(compliance, gap, arm, torque, force, rotation)
+    refined = np.zeros_like(gap)
+    refined[active] = force
+    residual = kkt_residual(compliance, gap, arm, torque, refined, rotation)
     if not residual < TOLERANCE * 10:
         raise NotConverged("contact", where, f"KKT residual {residual:.1e} after {steps} steps")
-    return Contact(force, float(rotation), float(slope), residual, steps)
+    return Contact(torque, refined, float(rotation), float(bonded.slope), residual, steps)
 
 
 def kkt_residual(
@@ -118,7 +135,7 @@ def kkt_residual(
 ) -> float:
     """Largest relative violation of balance, no tension, no penetration and complementarity."""
     active = force != 0.0
-    distance = gap + compliance[:, active] @ force[active] - rotation * arm
+    distance = gap + compliance @ force - rotation * arm
     scale = np.abs(rotation * arm).max() + np.abs(gap[active]).max()
     return float(
         max(
@@ -139,7 +156,8 @@ def _exchange(compliance, gap, arm, torque, where):  # type: ignore[no-untyped-d
     active = force > 0.0
     limit = 20 * gap.size + 100
     for step in range(limit):
-        target, rotation, slope = _bonded(compliance, gap, arm, torque, active)
+        bonded = _bonded(compliance, gap, arm, torque, active)
+        target, rotation = bonded.force, bonded.rotation
         falling = active & (target <= 0.0)
         if falling.any():
             share = np.min(force[falling] / (force[falling] - target[falling]))
@@ -149,10 +167,10 @@ def _exchange(compliance, gap, arm, torque, where):  # type: ignore[no-untyped-d
             active &= ~leaving
             continue
         force = target
-        distance = gap + compliance[:, active] @ force[active] - rotation * arm
+        distance = gap + compliance @ force - rotation * arm
         scale = np.abs(rotation * arm).max() + np.abs(gap[active]).max()
         worst = int(np.argmin(np.where(active, np.inf, distance)))
         if active.all() or distance[worst] >= -TOLERANCE * scale:
-            return _checked(compliance, gap, arm, torque, force, rotation, slope, NEWTON_STEPS + step, where)
+            return _checked(compliance, gap, arm, torque, bonded, NEWTON_STEPS + step, where)
         active[worst] = True
     raise NotConverged("contact", where, f"{NEWTON_STEPS} Newton and {limit} exchange steps")

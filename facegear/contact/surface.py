@@ -58,6 +58,12 @@ def cell_points(shape: tuple[int, int]) -> NDArray[np.float64]:
     return (middle[:, None, :] + offsets).reshape(-1, 2)
 
 
+def line_points(nodes: int) -> NDArray[np.float64]:
+    """Two Gauss points in each interval between `nodes` nodes on a line, (2 (nodes - 1),)."""
+    middle = np.arange(nodes - 1) + 0.5
+    return np.stack([middle - GAUSS, middle + GAUSS], axis=-1).ravel()
+
+
 def hat_values(points: NDArray[np.float64], shape: tuple[int, int]) -> sp.csr_matrix:
     """Bilinear hats (n, nu nv) at lattice coordinates (n, 2)."""
     base = np.minimum(np.floor(points).astype(np.int64), np.array(shape) - 2)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import root
 
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.analysis import path_curvatures, section_contact_ratio
@@ -12,7 +13,7 @@ from facegear.geometry.design import Relief
 from facegear.geometry.easeoff import ease_off
 from facegear.geometry.pinion_surface import SurfacePoints, fillet_points, flank_points
 from facegear.geometry.placement import conjugate_angle, mirrored, to_left_flank
-from facegear.geometry.separation import FLANK, separation
+from facegear.geometry.separation import FILLET, FLANK, ROOT_LAND, TIP_LAND, separation
 from facegear.geometry.unloaded import unloaded_contact
 
 
@@ -237,3 +238,47 @@ def test_no_gear_beyond_its_ends(pair):
     points = flank_points(design, 0.4, [0.2485, 0.2765])
     assert np.all(np.isinf(separation(design, points, 0.0, 0.0).gap))
     assert pinion.junction_roll(design) < 0.4
+
+
+def test_every_ray_ends_on_the_part_it_names(pair):
+    """The compiled rays against the closed forms of `face_gear`, the gap against another root find."""
+    design = pair(26, offset=1e-4, shaft_angle_error=2e-3, thinning=1e-4)
+    rng = np.random.default_rng(3)
+    y = rng.uniform(0.249, 0.276, 200)
+    flank = flank_points(design, rng.uniform(pinion.junction_roll(design), design.pinion_tip_roll, 200), y)
+    fillet = fillet_points(design, rng.uniform(design.pressure_angle, 1.5, 200), y)
+    x = np.linspace(-2e-3, 2e-3, 41)
+    tip = np.stack([x, np.full(41, 0.26), np.full(41, -design.pinion_tip_radius)], axis=1)
+    points = joined(flank, fillet, SurfacePoints(tip, np.tile([0.0, 0.0, -1.0], (41, 1))))
+    phi1 = np.repeat([-0.1, 0.02, 0.12], 3)
+    placement = phi1, conjugate_angle(design, phi1), np.tile([-1, 0, 1], 3)
+    found = separation(design, points, *placement)
+    start, along = (
+        to_left_flank(design, v, *map(np.asarray, placement), d)
+        for v, d in ((points.position, False), (points.normal, True))
+    )
+    end = start + found.gap[..., None] * along
+    surfaces = {
+        FLANK: lambda u, v: face_gear.flank_point(design, u, v),
+        FILLET: lambda u, v: face_gear.fillet_frame(design, u, v)[0],
+        TIP_LAND: lambda u, v: face_gear.cylindrical(v, u, np.full_like(u, design.gear_tip_plane)),
+        ROOT_LAND: lambda u, v: face_gear.cylindrical(v, u, np.full_like(u, design.gear_root_plane)),
+    }
+    for part, surface in surfaces.items():
+        hit = found.part == part
+        assert hit.sum() > 3
+        assert np.abs(surface(found.u[hit], found.v[hit]) - end[hit]).max() < 1e-14
+    for row, column in np.argwhere(found.part == FLANK)[::25]:
+        p, n = start[row, column], along[row, column]
+        solved = root(
+            lambda x, p=p, n=n: (face_gear.flank_point(design, x[0], x[1]) - p - x[2] * n) * 1e3,
+            [found.u[row, column] + 0.03, found.v[row, column] - 0.02, 0.0],
+            tol=1e-14,
+        )
+        assert solved.x[2] == pytest.approx(found.gap[row, column], abs=1e-13)
+
+
+def joined(*parts):
+    return SurfacePoints(
+        np.concatenate([part.position for part in parts]), np.concatenate([part.normal for part in parts])
+    )

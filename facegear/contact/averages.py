@@ -1,0 +1,129 @@
+"""Averages over points under hats, and the nodal loads that unit forces spread by them make; compiled."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numba import njit
+from numpy.typing import NDArray
+
+from facegear.contact.surface import quadratic_weights
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Averages over points: row i takes points `index` by `weight`, from pointer[i] to pointer[i + 1].
+
+    No row is empty, and the weights of a row sum to one.
+    """
+
+    pointer: NDArray[np.int64]
+    index: NDArray[np.int64]
+    weight: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.pointer) - 1
+
+    def mean(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Averages (m,) of values (q,)."""
+        return np.add.reduceat(self.weight * values[self.index], self.pointer[:-1])
+
+    def heaviest(self) -> NDArray[np.int64]:
+        """The point (m,) with the largest weight of each row."""
+        row = np.repeat(np.arange(len(self)), np.diff(self.pointer))
+        return self.index[np.lexsort((-self.weight, row))[self.pointer[:-1]]]
+
+    def only(self, keep: NDArray[np.bool_]) -> "Rows":
+        """The rows marked (m,)."""
+        counts = np.diff(self.pointer)
+        inside = np.repeat(keep, counts)
+        pointer = np.zeros(np.count_nonzero(keep) + 1, self.pointer.dtype)
+        np.cumsum(counts[keep], out=pointer[1:])
+        return Rows(pointer, self.index[inside], self.weight[inside])
+
+
+def rows_of(matrix: sp.csr_matrix, keep: NDArray[np.bool_]) -> sp.csr_matrix:
+    """Rows marked (m,), as `matrix[keep]`, which takes ten times longer."""
+    rows = Rows(matrix.indptr, matrix.indices, matrix.data).only(keep)
+    return sp.csr_matrix((rows.weight, rows.index, rows.pointer), shape=(len(rows), matrix.shape[1]))
+
+
+def stacked(parts: list[Rows], points: list[int]) -> Rows:
+    """Rows below each other, over the points of all parts one after the other, `points` each."""
+    rows = np.cumsum([0] + [part.index.size for part in parts])
+    starts = np.cumsum([0, *points])
+    return Rows(
+        np.concatenate([[0]] + [part.pointer[1:] + row for part, row in zip(parts, rows, strict=False)]),
+        np.concatenate([part.index + start for part, start in zip(parts, starts, strict=False)]),
+        np.concatenate([part.weight for part in parts]),
+    )
+
+
+def hat_averages(
+    hats: NDArray[np.int64],
+    values: NDArray[np.float64],
+    area: NDArray[np.float64],
+    least: NDArray[np.float64],
+) -> tuple[Rows, NDArray[np.int64], NDArray[np.float64]]:
+    """Averages by area over hats, from points (q,) of known area.
+
+    `hats`, `values` (q, h): the hats that a point lies under and their values there; `least` (n,): the area
+    below which a hat is left out. Returns the rows, their hats (m,) and the area (m,) under each.
+    """
+    pointer, index, weight, chosen, covered = _hat_averages(hats, values, area, least)
+    return Rows(pointer, index, weight), chosen, covered
+
+
+@njit(cache=True)
+def _hat_averages(hats, values, area, least):  # type: ignore[no-untyped-def]
+    covered, points = np.zeros(least.size), np.zeros(least.size, np.int64)
+    for q in range(hats.shape[0]):
+        for h in range(hats.shape[1]):
+            covered[hats[q, h]] += values[q, h] * area[q]
+            points[hats[q, h]] += 1
+    chosen = np.flatnonzero(covered > least)
+    pointer = np.zeros(chosen.size + 1, np.int64)
+    pointer[1:] = np.cumsum(points[chosen])
+    place = np.full(least.size, -1)
+    place[chosen] = pointer[:-1]
+    index, weight = np.empty(pointer[-1], np.int64), np.empty(pointer[-1])
+    for q in range(hats.shape[0]):
+        for h in range(hats.shape[1]):
+            hat = hats[q, h]
+            if place[hat] >= 0:
+                index[place[hat]] = q
+                weight[place[hat]] = values[q, h] * area[q] / covered[hat]
+                place[hat] += 1
+    return pointer, index, weight, chosen, covered[chosen]
+
+
+def spread(rows: Rows, coordinates: NDArray[np.float64], shape: tuple[int, int]) -> sp.csr_matrix:
+    """The rows times `surface.interpolation(coordinates, shape)`, (m, nu nv), in one pass."""
+    columns, values, pointer = _spread(
+        rows.pointer, rows.index, rows.weight, np.ascontiguousarray(coordinates), *shape
+    )
+    return sp.csr_matrix((values, columns, pointer), shape=(len(rows), shape[0] * shape[1]))
+
+
+@njit(cache=True)
+def _spread(pointer, index, weight, coordinates, nu, nv):  # type: ignore[no-untyped-def]
+    count = pointer.size - 1
+    columns, values = np.empty(9 * index.size, np.int32), np.empty(9 * index.size)
+    ends, slot = np.zeros(count + 1, np.int32), np.full(nu * nv, -1)
+    wu, wv = np.empty(3), np.empty(3)
+    filled = 0
+    for row in range(count):
+        first = filled
+        for k in range(pointer[row], pointer[row + 1]):
+            i = quadratic_weights(coordinates[index[k], 0], nu, wu)
+            j = quadratic_weights(coordinates[index[k], 1], nv, wv)
+            for a in range(3):
+                for b in range(3):
+                    node = (i + a) * nv + j + b
+                    if slot[node] < first:
+                        slot[node] = filled
+                        columns[filled], values[filled] = node, 0.0
+                        filled += 1
+                    values[slot[node]] += weight[k] * wu[a] * wv[b]
+        ends[row + 1] = filled
+    return columns[:filled].copy(), values[:filled].copy(), ends

@@ -1,0 +1,109 @@
+"""Contact at all candidates, solved in the strip that can be expected to touch and checked on the rest.
+
+A load at a hat moves all hats away from the other gear, so that only hats whose gap a rigid turn would close
+can touch. Most of those do not: the bodies give way around the strip that does. The influence matrix of the
+strip alone is many times cheaper, and one product shows whether the rest stays clear.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.contact.candidates import Candidates
+from facegear.contact.solver import TOLERANCE, Contact, solve
+
+LOWEST, BAND = 0.8, 0.2
+"""Parts of the rigid approach within which contact is sought: the least gap of a column of hats (the bodies
+give way by the rest) and, above that, the gap of the others in it (the strip's half-width)."""
+
+START_LOWEST, START_BAND = 0.6, 0.09
+"""The same parts for the first guess of what touches."""
+
+Combine = Callable[[list[Candidates]], NDArray[np.float64]]
+"""Influence matrix (m, m) of candidates."""
+
+Displace = Callable[[list[Candidates], list[Candidates], NDArray[np.float64]], NDArray[np.float64]]
+"""Approach (k, t) at the first candidates by forces (m, t) on the second."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Turns:
+    """Turn (n,) of the pinion that closes each candidate's gap, and the least (n,) in its column of hats."""
+
+    own: NDArray[np.float64]
+    least: NDArray[np.float64]
+
+    def within(self, lowest: float, band: float) -> NDArray[np.bool_]:
+        return (self.own < self.least + band) & (self.least < lowest)
+
+
+def _turns(pairs: list[Candidates]) -> _Turns:
+    own, low = [], []
+    for pair in pairs:
+        forward = pair.arm > 0
+        turn = np.where(forward, pair.gap / np.where(forward, pair.arm, 1.0), np.inf)
+        least = np.full(pair.column.max() + 1, np.inf)
+        np.minimum.at(least, pair.column, turn)
+        own.append(turn)
+        low.append(least[pair.column])
+    return _Turns(np.concatenate(own), np.concatenate(low))
+
+
+def only(pairs: list[Candidates], keep: NDArray[np.bool_]) -> list[Candidates]:
+    """Those marked (n,), pairs without any left out."""
+    ends = np.cumsum([len(pair.hats) for pair in pairs])[:-1]
+    parts = zip(pairs, np.split(keep, ends), strict=True)
+    return [pair.only(marked) for pair, marked in parts if marked.any()]
+
+
+def solve_torques(
+    pairs: list[Candidates],
+    limit: float,
+    torques: Sequence[float],
+    combine: Combine,
+    displace: Displace | None,
+    where: Callable[[float], str],
+) -> list[Contact]:
+    """Contact (forces (n,) of all candidates) under torques (N m), the largest first.
+
+    `pairs` are those that a turn by `limit` (rad) would close. If the first torque turns further, only its
+    contact is returned. Without `displace`, all candidates take part in the solution.
+    Raises NotConverged with `where(torque)`.
+    """
+    gap, arm = (np.concatenate([getattr(pair, name) for pair in pairs]) for name in ("gap", "arm"))
+    turns = _turns(pairs)
+    keep = turns.within(LOWEST * limit, BAND * limit) if displace else np.ones(len(gap), dtype=bool)
+    if not (keep & (arm > 0)).any():
+        keep[:] = True
+    while True:
+        chosen = only(pairs, keep)
+        matrix = combine(chosen)
+        contacts: list[Contact] = []
+        turn = limit
+        for torque in torques:
+            if contacts:
+                turn = contacts[-1].rotation * torque / contacts[-1].torque
+            start = turns.within(START_LOWEST * turn, START_BAND * turn)[keep]
+            contacts.append(solve(matrix, gap[keep], arm[keep], torque, start, where(torque)))
+            if contacts[0].rotation > limit:
+                break
+        left = ~keep & (gap < contacts[0].rotation * arm)
+        worst = np.zeros(len(contacts))
+        if left.any():
+            forces = np.stack([contact.force for contact in contacts], axis=1)
+            turned = np.array([contact.rotation for contact in contacts])
+            moved = displace(only(pairs, left), chosen, forces)
+            distance = gap[left, None] + moved - arm[left, None] * turned
+            worst = -distance.min(axis=0) / (turned * np.abs(arm).max())
+            if worst.max() > TOLERANCE:
+                keep |= left
+                continue
+        return [_whole(contact, keep, value) for contact, value in zip(contacts, worst, strict=True)]
+
+
+def _whole(contact: Contact, keep: NDArray[np.bool_], worst: float) -> Contact:
+    force = np.zeros(len(keep))
+    force[keep] = contact.force
+    return replace(contact, force=force, residual=max(contact.residual, float(worst)))
