@@ -11,7 +11,7 @@ from facegear.contact.body import Piece
 from facegear.contact.layer import tied_system
 from facegear.contact.options import Element, Ends, Refinement
 from facegear.contact.ring import face_compliance, rest_stiffness
-from facegear.contact.substructure import condense, loaded_compliance
+from facegear.contact.substructure import condense, held_by
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,23 +47,22 @@ def flank_compliance(
     """Compliance of a body of `teeth` copies of a piece; `neighbours` on each side of the loaded one are
     kept.
 
-    What the loaded tooth feels of the others, and the others of it, comes from unrefined teeth: the refined
-    layer changes the field near a load only. A piece without cut faces stands for itself.
+    All teeth are refined alike, so that one factorisation serves the loaded tooth and its neighbours. A piece
+    without cut faces stands for itself.
     Raises FacegearError if the body is not held, ValueError if there are too few teeth.
     """
-    plain = tied_system(piece, Refinement(), element)
-    repeats = piece.left.size > 0
-    others = np.zeros((1, piece.flank.size, piece.flank.size))
-    rest = np.zeros((0, 0))
-    if repeats:
-        tooth = condense(piece, plain)
+    system = tied_system(piece, refinement, element)
+    tooth = condense(piece, system)
+    shape, coarse_shape = system.surface.shape[:2], piece.flank.shape
+    others, rest = np.zeros((1, piece.flank.size, piece.flank.size)), np.zeros((0, 0))
+    if piece.left.size:
         rests = rest_stiffness(tooth.faces, neighbours, teeth, ends)
-        coarse = plain.spread @ tooth.influence
-        others = coarse @ face_compliance(tooth.faces, rests) @ coarse.T
+        nodes = np.arange(shape[0] * shape[1]).reshape(shape)
+        seen = system.spread[nodes[:: refinement.profile, :: refinement.width].ravel()] @ tooth.influence
+        others = seen @ face_compliance(tooth.faces, rests) @ seen.T
         rest = rests[0][0]
-    system = plain if refinement == Refinement() else tied_system(piece, refinement, element)
-    own = _spread(system.spread, loaded_compliance(piece, system, rest))
-    return FlankCompliance(own, others, system.surface.shape[:2], piece.flank.shape, refinement)
+    own = _spread(system.spread, held_by(tooth, rest))
+    return FlankCompliance(own, others, shape, coarse_shape, refinement)
 
 
 def _spread(spread: sp.csr_matrix, flank: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -9,18 +9,20 @@ import numpy as np
 import scipy.linalg as sl
 from numpy.typing import NDArray
 
+from facegear.contact.dense import cholesky, inverse
 from facegear.contact.options import Ends
 
 
 def joined(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
     """Stiffness (2s, 2s) of two chains in series, right face of the first on the left face of the second."""
     s = len(first) // 2
-    middle = sl.cho_factor(first[s:, s:] + second[:s, :s], lower=True)
+    middle = cholesky(first[s:, s:] + second[:s, :s])
     coupling = np.concatenate([first[:s, s:].T, second[:s, s:]], axis=1)
-    outer = np.zeros((2 * s, 2 * s))
-    outer[:s, :s], outer[s:, s:] = first[:s, :s], second[s:, s:]
-    chain = outer - coupling.T @ sl.cho_solve(middle, coupling)
-    return 0.5 * (chain + chain.T)
+    half = sl.solve_triangular(middle, coupling, lower=True, check_finite=False)
+    chain = -half.T @ half
+    chain[:s, :s] += first[:s, :s]
+    chain[s:, s:] += second[s:, s:]
+    return chain
 
 
 def chain(faces: NDArray[np.float64], teeth: int) -> NDArray[np.float64]:
@@ -80,12 +82,12 @@ def face_compliance(
     """
     s = len(faces) // 2
     low, high = slice(0, s), slice(s, None)
-    inverse = sl.cho_solve(sl.cho_factor(faces + rests[0][0], lower=True), np.eye(2 * s))
-    left, right = [inverse[low]], [inverse[high]]
+    held = inverse(cholesky(faces + rests[0][0]))
+    left, right = [held[low]], [held[high]]
     for to_right, to_left in rests[1:]:
-        push = faces[high, low] @ right[-1] + to_right[high, low] @ inverse[low]
+        push = faces[high, low] @ right[-1] + to_right[high, low] @ held[low]
         right.append(-sl.solve(faces[high, high] + to_right[high, high], push, assume_a="pos"))
-        push = faces[low, high] @ left[-1] + to_left[low, high] @ inverse[high]
+        push = faces[low, high] @ left[-1] + to_left[low, high] @ held[high]
         left.append(-sl.solve(faces[low, low] + to_left[low, low], push, assume_a="pos"))
     planes = left[::-1] + right
     return np.stack([np.concatenate(planes[tooth : tooth + 2]) for tooth in range(len(planes) - 1)])

@@ -50,7 +50,7 @@ def sector_blocks(
         right=side.nodes[:0, 0],
     )
     system, place = _system(piece, flanks, normals)
-    whole = loaded_compliance(piece, system, np.zeros((0, 0)))[np.ix_(place, place)]
+    whole = loaded_compliance(piece, system)[np.ix_(place, place)]
     return {
         (seen, load): whole[i * size : (i + 1) * size, j * size : (j + 1) * size]
         for i, seen in enumerate(sorted(loaded))

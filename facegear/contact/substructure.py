@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.linalg import lapack
+from scipy.linalg import solve_triangular
 
 from facegear.contact.body import Piece
+from facegear.contact.dense import cholesky, inverse
 from facegear.contact.factor import schur_complement
 from facegear.contact.layer import TiedSystem
-from facegear.errors import FacegearError
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,23 +36,29 @@ def condense(piece: Piece, system: TiedSystem) -> Superelement:
     stiffness, flank, faces = _turned(piece, system)
     schur = schur_complement(stiffness, np.concatenate([flank, faces]))
     k = flank.size
-    inner = inverse(schur[:k, :k])
-    influence = inner @ schur[:k, k:]
-    outer = schur[k:, k:] - schur[k:, :k] @ influence
-    return Superelement(inner, influence, 0.5 * (outer + outer.T))
+    lower = cholesky(schur[:k, :k])
+    half = solve_triangular(lower, schur[:k, k:], lower=True, check_finite=False)
+    outer = schur[k:, k:] - half.T @ half
+    del schur
+    influence = solve_triangular(lower, half, trans="T", lower=True, check_finite=False)
+    return Superelement(inverse(lower), influence, outer)
 
 
-def loaded_compliance(piece: Piece, system: TiedSystem, rest: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Normal displacements (k, k) of the flank by unit normal forces, m/N, the faces held by `rest` (2s, 2s).
+def held_by(tooth: Superelement, rest: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Normal displacements (k, k), m/N, of the flank by unit normal forces, faces held by `rest` (2s, 2s)."""
+    if rest.size == 0:
+        return tooth.flank
+    half = solve_triangular(cholesky(tooth.faces + rest), tooth.influence.T, lower=True, check_finite=False)
+    return tooth.flank + half.T @ half
 
-    Raises as `condense`.
+
+def loaded_compliance(piece: Piece, system: TiedSystem) -> NDArray[np.float64]:
+    """Normal displacements (k, k) of the flank by unit normal forces, m/N, cut faces free.
+
+    Raises FacegearError if the body is not held.
     """
-    stiffness, flank, faces = _turned(piece, system)
-    if faces.size:
-        rows, columns = np.meshgrid(faces, faces, indexing="ij")
-        springs = sp.coo_matrix((rest.ravel(), (rows.ravel(), columns.ravel())), shape=stiffness.shape)
-        stiffness = (stiffness + springs.tocsr()).tocsr()
-    return inverse(schur_complement(stiffness, flank))
+    stiffness, flank, _ = _turned(piece, system)
+    return inverse(cholesky(schur_complement(stiffness, flank)))
 
 
 def frames_of(normals: NDArray[np.float64], held: NDArray[np.bool_]) -> NDArray[np.float64]:
@@ -67,20 +73,6 @@ def frames_of(normals: NDArray[np.float64], held: NDArray[np.bool_]) -> NDArray[
     first = along - normals * np.sum(along * normals, axis=1)[:, None]
     first /= np.linalg.norm(first, axis=1)[:, None]
     return np.stack([normals, first, np.cross(normals, first)], axis=1)
-
-
-def inverse(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Inverse of a symmetric positive definite matrix at half the cost of solving for the unit matrix.
-
-    Raises FacegearError if it is not positive definite.
-    """
-    factor, failed = lapack.dpotrf(matrix, lower=1, clean=0)
-    if failed:
-        raise FacegearError("the flank's stiffness is not positive definite: the body is not held")
-    lower, _ = lapack.dpotri(factor, lower=1, overwrite_c=1)
-    result = np.tril(lower)
-    result += np.tril(lower, -1).T
-    return result
 
 
 def _turned(piece: Piece, system: TiedSystem) -> tuple[sp.csr_matrix, NDArray[np.int64], NDArray[np.int64]]:

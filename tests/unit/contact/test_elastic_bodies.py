@@ -149,6 +149,15 @@ def test_ring_of_one_condensed_tooth_is_the_ring_meshed_whole(slab, places):
     assert own[seen_at, load_at] == pytest.approx(expected, rel=1e-8)
 
 
+def test_neighbouring_refined_teeth_move_each_other_alike(slab):
+    """Maxwell's reciprocity between teeth, at the unrefined nodes."""
+    tooth, piece = slab
+    compliance = flank_compliance(piece, CUTS, tooth.teeth, 2)
+    for places in (1, 2):
+        there, back = compliance.block(places), compliance.block(-places)
+        np.testing.assert_allclose(there, back.T, atol=1e-10 * np.abs(there).max())
+
+
 def test_sectors_bracket_the_ring_and_close_in_on_it(slab):
     tooth, piece = slab
     rigid = [flank_compliance(piece, Refinement(), n, 1, "clamped").own.trace() for n in (5, 9)]

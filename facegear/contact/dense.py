@@ -1,0 +1,23 @@
+"""Dense symmetric positive definite matrices."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import lapack
+
+from facegear.errors import FacegearError
+
+
+def cholesky(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Lower factor (n, n) of a symmetric matrix. Raises FacegearError if it is not positive definite."""
+    lower, failed = lapack.dpotrf(matrix, lower=1, clean=1)
+    if failed:
+        raise FacegearError("a condensed stiffness is not positive definite: the body is not held")
+    return lower
+
+
+def inverse(factor: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Inverse (n, n) from a lower factor, at half the cost of solving for the unit matrix."""
+    lower, _ = lapack.dpotri(factor, lower=1)
+    result = np.tril(lower)
+    result += np.tril(lower, -1).T
+    return result
