@@ -50,6 +50,7 @@ class Sweep(Section):
         dwell_periods=32,
         settle_periods=128,
         window_periods=128,
+        longest_period=32,
         periodic_residual=1e-5,
         extensions=1,
         samples_per_period=32,

@@ -7,7 +7,7 @@ import pandas as pd
 
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.simulate import Model
-from facegear.dynamics.sweep import DEFLECTION, Piece, collect, joined, run_speeds, tighter
+from facegear.dynamics.sweep import DEFLECTION, FACTS, Piece, collect, joined, run_speeds, tighter
 
 CONVERGED = 1e-3
 
@@ -27,13 +27,14 @@ def rerun(ready: Model, piece: Piece, settings: Settings, step: Callable[[], Non
 
 
 def convergence_table(direction: str, piece: Piece, finer: Piece) -> pd.DataFrame:
-    """Columns direction, speed_rpm, class, class_finer, rms_change, verdict; one row for each speed.
+    """One row for each speed: direction, speed_rpm, class, class_finer, multiplier, multiplier_finer,
+    rms_change, verdict.
 
-    rms_change: largest change of a mesh's AC RMS over the largest AC RMS at that speed. Verdicts:
-    `converged`; `moved` (same class, more than 1e-3); `irregular` (not periodic in either); `other motion`
-    (classes differ, or the sweeps are on different branches: more than 10 % apart).
+    rms_change: largest change of a mesh's AC RMS over the largest AC RMS at that speed; the multipliers are
+    the leading ones of refined orbits. Verdicts: `converged`; `moved` (same class, more than 1e-3);
+    `other class` (periodic in one of the two, or with another period); `irregular` (periodic in neither).
     """
-    row = DEFLECTION.index("ac_rms")
+    row, multiplier = DEFLECTION.index("ac_rms"), FACTS.index("multiplier")
     first, second = piece.deflection[:, row], finer.deflection[:, row]
     change = np.abs(first - second).max(axis=1) / np.maximum(first.max(axis=1), 1e-300)
     verdicts = [
@@ -45,6 +46,8 @@ def convergence_table(direction: str, piece: Piece, finer: Piece) -> pd.DataFram
             "speed_rpm": piece.speeds,
             "class": piece.labels,
             "class_finer": finer.labels,
+            "multiplier": piece.facts[:, multiplier],
+            "multiplier_finer": finer.facts[:, multiplier],
             "rms_change": change,
             "verdict": verdicts,
         }
@@ -55,6 +58,19 @@ def _verdict(label: str, finer: str, change: float) -> str:
     periodic = label.startswith("period-"), finer.startswith("period-")
     if not any(periodic):
         return "irregular"
-    if label != finer or change > 0.1:
-        return "other motion"
+    if label != finer:
+        return "other class"
     return "converged" if change <= CONVERGED else "moved"
+
+
+def not_converged(table: pd.DataFrame) -> str:
+    """Counts of the verdicts, and the speeds that moved or changed their class."""
+    found = table["verdict"].value_counts()
+    counts = ", ".join(f"{count} speeds {verdict}" for verdict, count in found.items())
+    odd = table[table["verdict"].isin(["moved", "other class"])]
+    places = [
+        f"{row.direction} {row.speed_rpm:.0f} rpm ({row['class']}, finer {row.class_finer}, "
+        f"{100.0 * row.rms_change:.2g} %)"
+        for _, row in odd.iterrows()
+    ]
+    return "; ".join([counts, *places])

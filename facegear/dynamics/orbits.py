@@ -12,6 +12,7 @@ from facegear.dynamics.integrator.periods import (
     NOT_FINITE,
     TOO_MANY_STEPS,
     Log,
+    disturbance_step,
     make_log,
     run_periods,
 )
@@ -22,6 +23,8 @@ Array = NDArray[np.float64]
 NEWTON_STEPS = 12
 NEUTRAL = 1e-9
 """Directions in which the change over a period moves less than this, relatively, are left alone by Newton."""
+ROUNDING = 1e-11
+"""Change over a period, over the length scale, that rounding alone may leave."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +32,8 @@ class Orbit:
     """A periodic orbit of `period` mesh periods through place and velocity (by phase), each (padded n,).
 
     residual: change over the period over the length scale, also an error estimate once Newton has settled.
-    multipliers (2 n,) complex, largest first. liouville: log det of the monodromy matrix less the integral
+    multipliers (2 n,) complex, largest first; leading (2, padded n) the direction of the first, of which
+    change() is one. liouville: log det of the monodromy matrix less the integral
     of the divergence, which is zero for an exact solution (NaN where the matrix is singular to rounding).
     """
 
@@ -38,12 +42,19 @@ class Orbit:
     period: int
     residual: float
     multipliers: NDArray[np.complex128]
+    leading: Array
     liouville: float
 
 
 def change(packed: Packed, first: Array, second: Array) -> float:
     """Largest difference of two states (2, n) as mesh deflections and their rates, over the length scale."""
     return float((packed.weights * np.abs(first - second)).max() / packed.scale)
+
+
+def changes(packed: Packed, ends: Array, longest: int) -> Array:
+    """change() of the last of `ends` (periods, 2, n) from those 1 .. longest periods before it."""
+    earlier = ends[-2 : -2 - min(longest, len(ends) - 1) : -1]
+    return (packed.weights * np.abs(ends[-1] - earlier)).max(axis=(1, 2)) / packed.scale
 
 
 def monodromy(
@@ -58,11 +69,20 @@ def monodromy(
     rows = np.arange(n)
     tangents[rows, 0, rows] = 1.0
     tangents[n + rows, 1, rows] = 1.0
-    place, velocity = place.copy(), velocity.copy()
-    log = make_log(packed, period)
-    require(run_periods(packed, work, place, velocity, tangents, period, 0, tolerance, log))
+    place, velocity, log = _moved(packed, work, place, velocity, tangents, period, tolerance)
     matrix = tangents[:, :, :n].reshape(2 * n, 2 * n).T
     return place, velocity, matrix, log
+
+
+def _moved(
+    packed: Packed, work: Work, place: Array, velocity: Array, tangents: Array, period: int, tolerance: float
+) -> tuple[Array, Array, Log]:
+    """A state moved over mesh periods in the steps that tangents need, with or without any."""
+    place, velocity = place.copy(), velocity.copy()
+    log = make_log(packed, period)
+    longest = disturbance_step(packed, work.order, tolerance)
+    require(run_periods(packed, work, place, velocity, tangents, period, 0, tolerance, log, longest))
+    return place, velocity, log
 
 
 def require(status: int) -> None:
@@ -78,28 +98,51 @@ def require(status: int) -> None:
 def shoot(
     packed: Packed, work: Work, place: Array, velocity: Array, period: int, tolerance: float, goal: float
 ) -> Orbit | None:
-    """Newton's method on the change over `period` mesh periods; None if it does not settle near the start."""
+    """Newton's method on the change over `period` mesh periods; None if it does not settle near the start.
+
+    A matrix serves as long as each step with it gains a digit, and is the orbit's own if that lies within ten
+    steps' errors of where it was taken.
+    """
     n = packed.n
     place, velocity = place.copy(), velocity.copy()
-    best = np.inf
+    none = np.zeros((0, 2, place.size))
+    best, gained = np.inf, 0.0
+    taken: tuple[Array, Array, Log] | None = None
     for _ in range(NEWTON_STEPS):
-        end_place, end_velocity, matrix, log = monodromy(packed, work, place, velocity, period, tolerance)
-        here, there = np.array([place, velocity]), np.array([end_place, end_velocity])
+        here = np.array([place, velocity])
+        if gained < 0.1 and taken is not None:
+            end_place, end_velocity, log = _moved(packed, work, place, velocity, none, period, tolerance)
+        else:
+            end_place, end_velocity, matrix, log = monodromy(packed, work, place, velocity, period, tolerance)
+            taken = here, matrix, log
+        there = np.array([end_place, end_velocity])
         residual = change(packed, here, there)
         if not residual < 4.0 * best:
             return None
         least = least_period(packed, here, log.ends, max(residual, goal))
         if residual <= goal and least < period:
             return shoot(packed, work, place, velocity, least, tolerance, goal)
-        if residual <= goal or (residual > 0.5 * best and best < 1e3 * goal):
-            return _orbit(place, velocity, period, residual, matrix, log)
+        # Newton's method cannot do better than the steps and their rounding; how far that leaves the orbit
+        # off depends on how fast it draws in what is near.
+        stalled = residual > 0.5 * best
+        if residual <= goal or (stalled and residual <= max(tolerance * slowness(taken[1]), ROUNDING)):
+            if change(packed, here, taken[0]) > 10.0 * tolerance:
+                *_, matrix, log = monodromy(packed, work, place, velocity, period, tolerance)
+                taken = here, matrix, log
+            return _orbit(packed, place, velocity, period, residual, taken[1], taken[2])
+        gained = residual / best if np.isfinite(best) else 0.0
         best = min(best, residual)
         gap = (there - here)[:, :n].ravel()
         # A body afloat in its backlash has a place of its own choice: least norm leaves it where it is.
-        correction = np.linalg.lstsq(np.eye(2 * n) - matrix, gap, rcond=NEUTRAL)[0]
+        correction = np.linalg.lstsq(np.eye(2 * n) - taken[1], gap, rcond=NEUTRAL)[0]
         place[:n] += correction[:n]
         velocity[:n] += correction[n:]
     return None
+
+
+def slowness(matrix: Array) -> float:
+    """Distance of the largest multiplier from the unit circle, not below 1e-3: what divides a residual."""
+    return max(abs(1.0 - float(np.abs(np.linalg.eigvals(matrix)).max())), 1e-3)
 
 
 def least_period(packed: Packed, start: Array, ends: Array, residual: float) -> int:
@@ -110,12 +153,18 @@ def least_period(packed: Packed, start: Array, ends: Array, residual: float) -> 
     return len(ends)
 
 
-def _orbit(place: Array, velocity: Array, period: int, residual: float, matrix: Array, log: Log) -> Orbit:
-    multipliers = np.linalg.eigvals(matrix)
-    multipliers = multipliers[np.argsort(-np.abs(multipliers))]
+def _orbit(
+    packed: Packed, place: Array, velocity: Array, period: int, residual: float, matrix: Array, log: Log
+) -> Orbit:
+    multipliers, directions = np.linalg.eig(matrix)
+    order = np.argsort(-np.abs(multipliers))
+    multipliers = multipliers[order]
+    leading = np.zeros((2, place.size))
+    leading[:, : packed.n] = directions[:, order[0]].real.reshape(2, -1)
+    leading /= change(packed, leading, 0.0 * leading)
     sign, volume = np.linalg.slogdet(matrix)
     condition_lost = np.log(np.finfo(float).eps) * 0.9 > np.log(
         max(abs(multipliers[-1]), 1e-300) / max(abs(multipliers[0]), 1e-300)
     )
     liouville = np.nan if condition_lost or sign <= 0 else float(volume - log.divergence[0])
-    return Orbit(place, velocity, period, residual, multipliers, liouville)
+    return Orbit(place, velocity, period, residual, multipliers, leading, liouville)

@@ -9,14 +9,19 @@ from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.periods import make_log, run_periods
 from facegear.dynamics.integrator.work import Work
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.orbits import Orbit, change, require, shoot
+from facegear.dynamics.orbits import Orbit, change, changes, require, shoot
 
 Array = NDArray[np.float64]
 NO_TANGENTS = 0
 TRY_NEWTON = 0.02
+NEWTON_COST = 20
+"""Periods that a run may take for each period of an orbit before Newton's method is the cheaper way."""
 BLOCK = 16
 AFLOAT = 1e-6
 """A multiplier may exceed one by this: it is one for a body afloat inside its backlash."""
+KICK = 0.1
+"""Disturbance of an unstable orbit along its leading direction, as a change."""
+MOST_KICKS = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,50 +37,81 @@ class Settled:
 
 
 def settle(packed: Packed, work: Work, place: Array, velocity: Array, settings: Settings) -> Settled:
-    """Run blocks of periods until the state repeats after 1 .. longest_period of them, or patience ends."""
+    """Run blocks of periods until the state repeats after 1 .. longest_period of them, or patience ends.
+
+    With `refine` a motion that seems to repeat is made an orbit by Newton's method as soon as that pays. An
+    unstable orbit, which exact symmetry or a slow escape may hold a run on, is left by a kick.
+    """
     place, velocity = place.copy(), velocity.copy()
-    longest = settings.longest_period
-    # Slow speeds forget within fewer periods: 30 time constants of the least damped coordinate are plenty.
-    rate = 0.5 * TAU * packed.damping[: packed.n].min()
-    forgotten = int(np.ceil(30.0 / rate)) if rate > 0.0 else settings.dwell
-    block = max(min(BLOCK, forgotten), longest + 1)
-    dwell = min(settings.dwell, max(block, forgotten))
+    longest, goal = settings.longest_period, settings.periodic_residual
+    block, dwell = _blocks(packed, settings)
     tangents = np.zeros((NO_TANGENTS, 2, place.size))
-    spent = 0
-    residual, period = np.inf, 0
+    ends = np.zeros((0, 2, place.size))
+    spent, kicks = 0, 0
     tried: dict[int, float] = {}
     while True:
         log = make_log(packed, block)
         require(run_periods(packed, work, place, velocity, tangents, block, 0, settings.tolerance, log))
         spent += block
-        period, residual = repeat(packed, log.ends, longest, settings.periodic_residual)
-        enough = spent >= dwell
-        if enough and settings.refine and residual < min(TRY_NEWTON, 0.1 * tried.get(period, np.inf)):
-            orbit = _stable_orbit(packed, work, place, velocity, period, residual, settings)
-            if orbit is not None:
-                return Settled(orbit.place, orbit.velocity, orbit.period, orbit.residual, orbit, spent)
+        ends = np.concatenate([ends, log.ends])[-(2 * longest + BLOCK) :]
+        period, residual = repeat(packed, ends, longest, goal)
+        left = spent >= settings.settle
+        if spent < dwell:
+            continue
+        pays = NEWTON_COST * period <= spent or left
+        if settings.refine and pays and residual < min(TRY_NEWTON, 0.1 * tried.get(period, np.inf)):
+            orbit = _near_orbit(packed, work, place, velocity, period, residual, settings)
             tried[period] = residual
-        repeats = residual <= settings.periodic_residual
-        if enough and repeats and (not settings.refine or spent >= settings.settle):
+            if orbit is not None and abs(orbit.multipliers[0]) <= 1.0 + AFLOAT:
+                return Settled(orbit.place, orbit.velocity, orbit.period, orbit.residual, orbit, spent)
+            if orbit is not None and kicks < MOST_KICKS and not left:
+                kicks += 1
+                place += KICK * orbit.leading[0]
+                velocity += KICK * orbit.leading[1]
+                ends = ends[:0]
+                continue
+        done = settled_by_itself(packed, ends, period, residual, goal)
+        if done and (not settings.refine or left):
             return Settled(place, velocity, period, residual, None, spent)
-        if spent >= settings.settle:
+        if left:
             return Settled(place, velocity, 0, residual, None, spent)
 
 
-def repeat(packed: Packed, ends: Array, longest: int, goal: float) -> tuple[int, float]:
-    """The period with the smallest change at the end of a run; a shorter one wins if nearly as good.
+def _blocks(packed: Packed, settings: Settings) -> tuple[int, int]:
+    """Periods in a block, and those to run before anything is judged.
 
-    The residual is the largest change between the last two repetitions that were run.
+    Slow speeds forget within fewer periods: 30 time constants of the least damped coordinate are plenty.
     """
+    rate = 0.5 * TAU * packed.damping[: packed.n].min()
+    forgotten = int(np.ceil(30.0 / rate)) if rate > 0.0 else settings.dwell
+    block = max(min(BLOCK, forgotten), 2)
+    return block, min(settings.dwell, max(block, forgotten))
+
+
+def repeat(packed: Packed, ends: Array, longest: int, goal: float) -> tuple[int, float]:
+    """The period with the smallest change at the end of a run; a shorter one wins if nearly as good."""
     best_period, best = 1, np.inf
-    for period in range(1, longest + 1):
-        last = change(packed, ends[-1], ends[-1 - period])
+    for place, last in enumerate(changes(packed, ends, longest)):
         if last < 0.2 * best and not best <= goal:
-            best_period, best = period, last
+            best_period, best = place + 1, float(last)
     return best_period, best
 
 
-def _stable_orbit(
+def settled_by_itself(packed: Packed, ends: Array, period: int, residual: float, goal: float) -> bool:
+    """Whether the change over the period is small and what is still to come of it is too.
+
+    A run that creeps past the place where an orbit has just vanished, or off an unstable one, changes little
+    too, but not less and less.
+    """
+    back = len(ends) - 1 - period
+    if residual > goal or back < 1:
+        return False
+    before = change(packed, ends[-1 - back], ends[-1 - back - period])
+    rate = (residual / before) ** (1.0 / back) if before > 0.0 else 0.0
+    return residual <= 10.0 * goal * max(1.0 - rate, 1e-3)
+
+
+def _near_orbit(
     packed: Packed,
     work: Work,
     place: Array,
@@ -84,11 +120,13 @@ def _stable_orbit(
     residual: float,
     settings: Settings,
 ) -> Orbit | None:
-    """The stable orbit next to the state, or None if Newton's method leads away or to an unstable one."""
+    """The orbit next to the state, or None if Newton's method does not settle or leads away."""
     orbit = shoot(packed, work, place, velocity, period, settings.tolerance, settings.periodic_residual)
-    if orbit is None or abs(orbit.multipliers[0]) > 1.0 + AFLOAT:
+    if orbit is None:
         return None
     moved = change(packed, np.array([place, velocity]), np.array([orbit.place, orbit.velocity]))
-    # What is left to decay is about residual / (1 - multiplier); much further away lies another orbit.
-    reach = 20.0 * residual / max(1.0 - abs(orbit.multipliers[0]), 1e-3)
+    # What is left to decay is about residual / (1 - multiplier); much further away lies another orbit. The
+    # error of a step moves an orbit likewise.
+    slow = max(abs(1.0 - abs(orbit.multipliers[0])), 1e-3)
+    reach = max(20.0 * residual, 10.0 * settings.tolerance) / slow
     return orbit if moved <= max(reach, 10.0 * settings.periodic_residual) else None

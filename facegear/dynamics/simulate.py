@@ -129,9 +129,8 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
         spent += settled.spent
         if settled.period:
             motion, exponent = Motion.PERIODIC, None
-            none = np.zeros((0, 2, place.size))
             place, velocity = settled.place, settled.velocity
-            window = run_window(packed, work, place, velocity, none, settled.period, settings)
+            window = run_window(packed, work, place, velocity, settled.period, settings)
             break
         motion, exponent, window = largest_exponent(packed, work, settled.place, settled.velocity, patient)
         place, velocity = window.place, window.velocity
@@ -153,7 +152,7 @@ def _result(
 ) -> SteadyState:
     deflections, forces = mesh_response(system, window.samples, settings.samples)
     orbit = settled.orbit
-    if motion is Motion.CHAOTIC and drifts(deflections, settings.samples):
+    if motion in (Motion.CHAOTIC, Motion.QUASI_PERIODIC) and drifts(deflections, settings.samples):
         motion = Motion.NOT_SETTLED
     return SteadyState(
         motion=motion,

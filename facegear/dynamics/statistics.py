@@ -36,30 +36,40 @@ def moments(samples: Array, per_period: int, periodic: bool) -> Moments:
     """
     mean = samples.mean(axis=0)
     centred = samples - mean
-    rms = np.sqrt((samples**2).mean(axis=0))
-    ac_rms = np.sqrt((centred**2).mean(axis=0))
+    squares = centred**2
+    variance = squares.mean(axis=0)
+    rms, ac_rms = np.sqrt(variance + mean**2), np.sqrt(variance)
+    spread, ac_spread = np.zeros((2, mean.size))
+    if not periodic:
+        from_mean, from_squares = (batch_means(values, per_period) for values in (centred, squares))
+        spread = half_width(from_squares + 2.0 * mean * from_mean, rms)
+        ac_spread = half_width(from_squares, ac_rms)
     return Moments(
         mean=mean,
         rms=rms,
         ac_rms=ac_rms,
         least=samples.min(axis=0),
         most=samples.max(axis=0),
-        rms_interval=half_width(samples**2, rms, per_period, periodic),
-        ac_rms_interval=half_width(centred**2, ac_rms, per_period, periodic),
+        rms_interval=spread,
+        ac_rms_interval=ac_spread,
     )
 
 
-def half_width(squares: Array, root: Array, per_period: int, periodic: bool) -> Array:
-    """95 % half-width of a root mean square by batch means, shape (columns,)."""
-    periods = len(squares) // per_period
-    batches = min(BATCHES, periods)
-    if periodic or batches < 2:
-        return np.zeros(squares.shape[1])
+def batch_means(values: Array, per_period: int) -> Array:
+    """Means over batches of whole periods, shape (batches, columns)."""
+    periods = len(values) // per_period
+    batches = max(min(BATCHES, periods), 1)
     whole = periods // batches * batches * per_period
-    means = squares[:whole].reshape(batches, -1, squares.shape[1]).mean(axis=1)
-    spread = means.std(axis=0, ddof=1) / np.sqrt(batches)
-    factor = _student(batches - 1)
-    return factor * spread / (2.0 * np.where(root > 0.0, root, 1.0))
+    return values[:whole].reshape(batches, -1, values.shape[1]).mean(axis=1)
+
+
+def half_width(means: Array, root: Array) -> Array:
+    """95 % half-width (columns,) of a root mean square from batch means of what differs from its square."""
+    batches = len(means)
+    if batches < 2:
+        return np.zeros(root.size)
+    error = _student(batches - 1) * means.std(axis=0, ddof=1) / np.sqrt(batches)
+    return error / (2.0 * np.where(root > 0.0, root, 1.0))
 
 
 @cache

@@ -16,6 +16,7 @@ from facegear.transmission.modes import natural_modes
 
 Array = NDArray[np.float64]
 DEFLECTION = ("mean", "rms", "ac_rms", "least", "most", "rms_interval", "ac_rms_interval")
+FACTS = ("residual", "multiplier", "exponent", "exponent_interval", "periods")
 TRANSLATION = ("rms", "ac_rms", "ac_rms_interval")
 
 
@@ -25,8 +26,8 @@ class Piece:
 
     deflection (P, 7, M): the moments named in DEFLECTION, m. force (P, 2, M): mean and mean magnitude of the
     elastic mesh force, N. shares (P, 3, M): open, drive, back. translation (P, 3, B, 3): the moments named in
-    TRANSLATION of x, y, z, m. labels (P,): class of motion. facts (P, 5): residual, leading multiplier or
-    NaN, exponent and half-width or NaN, periods spent. spectrum (P, M, orders), m. modal (P, modes): RMS
+    TRANSLATION of x, y, z, m. labels (P,): class of motion. facts (P, 5): what FACTS names, the (leading)
+    multiplier and the exponent NaN where there is none. spectrum (P, M, orders), m. modal (P, modes): RMS
     velocity scale omega * coordinate of every natural mode without mean, sqrt(J). modal_order (P,): where in
     multiples of the mesh frequency the strongest mode moves most. place, velocity (P, n).
     """

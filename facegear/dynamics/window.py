@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.integrator.compiled import Packed
-from facegear.dynamics.integrator.periods import make_log, run_periods
+from facegear.dynamics.integrator.compiled import TAU, Packed
+from facegear.dynamics.integrator.periods import disturbance_step, make_log, run_periods
 from facegear.dynamics.integrator.work import Work
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.orbits import require
@@ -16,18 +16,41 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Window:
-    """Whole mesh periods: samples (periods * per_period, n) of y, shares (3, m) in rad, state at the end
-    by phase.
+    """Whole mesh periods: samples (periods * per_period, n) of y, shares (3, m) in rad, growth (periods,)
+    of a disturbance as a logarithm (empty if none was run), state at the end by phase.
     """
 
     periods: int
     samples: Array
     shares: Array
+    growth: Array
     place: Array
     velocity: Array
 
 
 def run_window(
+    packed: Packed, work: Work, place: Array, velocity: Array, periods: int, settings: Settings
+) -> Window:
+    """Run periods from a state, which is left alone. Raises NotConverged where a step fails."""
+    none = np.zeros((0, 2, place.size))
+    return _window(packed, work, place, velocity, none, periods, settings, TAU)
+
+
+def run_disturbed(
+    packed: Packed,
+    work: Work,
+    place: Array,
+    velocity: Array,
+    tangent: Array,
+    periods: int,
+    settings: Settings,
+) -> Window:
+    """The same with a disturbance (1, 2, n) of length one, which is moved along and turned."""
+    longest = disturbance_step(packed, work.order, settings.tolerance)
+    return _window(packed, work, place, velocity, tangent, periods, settings, longest)
+
+
+def _window(
     packed: Packed,
     work: Work,
     place: Array,
@@ -35,26 +58,13 @@ def run_window(
     tangents: Array,
     periods: int,
     settings: Settings,
+    longest: float,
 ) -> Window:
-    """Run periods from a state, which is left alone; tangents (columns, 2, n) are moved along.
-
-    Raises NotConverged where a step fails.
-    """
     place, velocity = place.copy(), velocity.copy()
-    log = make_log(packed, periods, settings.samples)
-    status = run_periods(
-        packed, work, place, velocity, tangents, periods, settings.samples, settings.tolerance, log
+    per_period, tolerance = settings.samples, settings.tolerance
+    log = make_log(packed, periods, per_period, len(tangents) > 0)
+    require(
+        run_periods(packed, work, place, velocity, tangents, periods, per_period, tolerance, log, longest)
     )
-    require(status)
-    return Window(periods, log.samples[:, : packed.n], log.shares[:, : packed.m], place, velocity)
-
-
-def joined(windows: list[Window]) -> Window:
-    """Windows that follow one another as one."""
-    return Window(
-        sum(window.periods for window in windows),
-        np.concatenate([window.samples for window in windows]),
-        np.sum([window.shares for window in windows], axis=0),
-        windows[-1].place,
-        windows[-1].velocity,
-    )
+    samples, shares = log.samples[:, : packed.n], log.shares[:, : packed.m]
+    return Window(periods, samples, shares, log.growth, place, velocity)

@@ -5,7 +5,7 @@ import pandas as pd
 from facegear.config.base import parse
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.config.transmission import Transmission, machine, tooth_numbers
-from facegear.dynamics.convergence import convergence_table, rerun
+from facegear.dynamics.convergence import convergence_table, not_converged, rerun
 from facegear.dynamics.simulate import model
 from facegear.dynamics.stored import SHAPES, from_arrays
 from facegear.dynamics.sweep import joined
@@ -28,5 +28,4 @@ with stage(snakemake) as run:
         found.append(convergence_table(name, piece, again))
     table = pd.concat(found, ignore_index=True)
     tables.write(snakemake.output.table, table)
-    counts = table["verdict"].value_counts()
-    run.summary(", ".join(f"{count} speeds {verdict}" for verdict, count in counts.items()))
+    run.summary(not_converged(table))

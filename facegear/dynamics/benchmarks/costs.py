@@ -1,5 +1,6 @@
 """What a sweep costs: against settings, against the number of pinions and of harmonics."""
 
+import itertools
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -10,11 +11,14 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.benchmarks.methods import scipy_method
 from facegear.dynamics.benchmarks.problems import Problem
-from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.compiled import TAU, pack
+from facegear.dynamics.integrator.periods import make_log, run_periods
+from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Settings
+from facegear.dynamics.orbits import require
 from facegear.dynamics.plan import SweepPlan
-from facegear.dynamics.simulate import model, simulate
-from facegear.dynamics.sweep import DEFLECTION, Piece, collect, run_speeds
+from facegear.dynamics.simulate import Model, model, simulate, static_start
+from facegear.dynamics.sweep import DEFLECTION, FACTS, Piece, collect, run_speeds
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.layout import Layout, Role
 from facegear.transmission.machine import Machine, balanced_torques, mesh_frequency
@@ -24,60 +28,57 @@ SPEEDS = 40
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-8)
 DWELLS = (32, 128)
 PLAIN_PERIODS = 20
-OTHER_BRANCH = 0.1
-"""Two periodic motions of one class whose RMS differ by this are different motions, not errors."""
+COST_PERIODS = 1000
 
 
 def sweep_costs(machine: Machine, plan: SweepPlan, step: Callable[[], None] = lambda: None) -> pd.DataFrame:
     """Settings of a sweep of 40 speeds up against time and the error of the RMS where motions are periodic.
 
-    Columns tolerance, settle_periods, refine, seconds_per_speed, periodic_speeds, rms_error (largest relative
-    to the largest mesh at the speed), rms_error_median, plain_seconds_per_speed (SciPy RK45 on NumPy for as
-    many periods as ours ran, from a shorter run).
+    Each periodic motion is run again from its own state at a tight tolerance, so that the error is that of
+    the orbit found and not of the branch chosen. Columns tolerance, settle_periods, refine,
+    seconds_per_speed, periodic_speeds, not_confirmed (periodic speeds whose class is another one then),
+    rms_error (largest of the confirmed, relative to the largest mesh at the speed), rms_error_median,
+    plain_seconds_per_speed (SciPy RK45 on NumPy for as many periods as ours ran, from a shorter run).
     """
     ready = model(machine)
     speeds = np.linspace(plan.first_rpm, plan.last_rpm, SPEEDS)
-    tight = replace(
-        plan.settings, tolerance=1e-10, order=None, settle=1024, refine=True, periodic_residual=1e-9
-    )
-    best = collect(ready, run_speeds(ready, speeds, tight, None))
+    plain = plain_seconds_per_period(machine, speeds)
     rows = []
-    for tolerance in TOLERANCES:
-        for settle in DWELLS:
-            for refine in (True, False):
-                settings = replace(
-                    plan.settings, tolerance=tolerance, settle=settle, refine=refine, extensions=0
-                )
-                begin = time.process_time()
-                piece = collect(ready, run_speeds(ready, speeds, settings, None))
-                seconds = (time.process_time() - begin) / SPEEDS
-                errors = _rms_errors(piece, best)
-                rows.append(
-                    (
-                        tolerance,
-                        settle,
-                        refine,
-                        seconds,
-                        errors.size,
-                        errors.max(initial=0.0),
-                        np.median(errors),
-                    )
-                )
-                step()
-    names = ["tolerance", "settle_periods", "refine", "seconds_per_speed", "periodic_speeds"]
-    table = pd.DataFrame(rows, columns=[*names, "rms_error", "rms_error_median"])
-    spent = float(np.mean(best.facts[:, 4]))
-    table["plain_seconds_per_speed"] = plain_seconds_per_period(machine, speeds) * spent
-    return table
+    for tolerance, settle, refine in itertools.product(TOLERANCES, DWELLS, (True, False)):
+        settings = replace(plan.settings, tolerance=tolerance, settle=settle, refine=refine, extensions=0)
+        begin = time.process_time()
+        piece = collect(ready, run_speeds(ready, speeds, settings, None))
+        seconds = (time.process_time() - begin) / SPEEDS
+        periodic, errors = _rms_errors(ready, piece, plan.settings)
+        rows.append(
+            {
+                "tolerance": tolerance,
+                "settle_periods": settle,
+                "refine": refine,
+                "seconds_per_speed": seconds,
+                "periodic_speeds": periodic,
+                "not_confirmed": periodic - errors.size,
+                "rms_error": errors.max(initial=0.0),
+                "rms_error_median": np.median(errors),
+                "plain_seconds_per_speed": plain * piece.facts[:, FACTS.index("periods")].mean(),
+            }
+        )
+        step()
+    return pd.DataFrame(rows)
 
 
-def _rms_errors(piece: Piece, best: Piece) -> Array:
-    """Relative RMS errors at the speeds where both found the same periodic motion."""
+def _rms_errors(ready: Model, piece: Piece, settings: Settings) -> tuple[int, Array]:
+    """Number of periodic speeds, and the relative RMS errors of those that are the same motion when tight."""
+    tight = replace(settings, tolerance=1e-10, order=None, periodic_residual=1e-9, extensions=0)
     row = DEFLECTION.index("ac_rms")
-    same = [a == b and str(a).startswith("period-") for a, b in zip(piece.labels, best.labels, strict=True)]
-    gap = np.abs(piece.deflection[same, row] - best.deflection[same, row]).max(axis=1)
-    errors = gap / best.deflection[same, row].max(axis=1)
-    return errors[errors < OTHER_BRANCH]
+    periodic = [i for i, label in enumerate(piece.labels) if str(label).startswith("period-")]
+    errors = []
+    for i in periodic:
+        best = collect(ready, run_speeds(ready, piece.speeds[i : i + 1], tight, piece.state(i)))
+        if best.labels[0] == piece.labels[i]:
+            found, exact = piece.deflection[i, row], best.deflection[0, row]
+            errors.append(np.abs(found - exact).max() / exact.max())
+    return len(periodic), np.array(errors)
 
 
 def plain_seconds_per_period(machine: Machine, speeds: Array) -> float:
@@ -98,30 +99,35 @@ def plain_seconds_per_period(machine: Machine, speeds: Array) -> float:
 def scaling_costs(machine: Machine, speed_rpm: float) -> pd.DataFrame:
     """Time of a mesh period against pinions (evenly spread copies) and harmonics of k.
 
-    Columns pinions, harmonics, coordinates, seconds_per_period.
+    Columns pinions, harmonics, coordinates, seconds_per_period (least of three long runs), steps_per_period.
     """
-    settings = Settings(tolerance=1e-4, settle=256, extensions=0, window=256, refine=False)
-    rows = []
     order = machine.stiffness.order
-    for pinions, harmonics in [
-        (1, order),
-        (2, order),
-        (5, order),
-        (8, order),
-        (12, order),
-        (5, 1),
-        (5, 20),
-        (5, 40),
-    ]:
+    sizes = [(pinions, order) for pinions in (1, 2, 5, 8, 12)] + [(5, harmonics) for harmonics in (1, 20, 40)]
+    rows = []
+    for pinions, harmonics in sizes:
         ready = model(_resized(machine, pinions, harmonics))
-        simulate(ready, speed_rpm, replace(settings, settle=16, window=16))
+        seconds, steps = _period_cost(ready, TAU * mesh_frequency(machine.layout, speed_rpm))
+        rows.append((pinions, harmonics, ready.system.size, seconds, steps))
+    names = ["pinions", "harmonics", "coordinates", "seconds_per_period", "steps_per_period"]
+    return pd.DataFrame(rows, columns=names)
+
+
+def _period_cost(ready: Model, frequency: float) -> tuple[float, float]:
+    """CPU seconds and steps of a mesh period at the sweep's tolerance, once the start is forgotten."""
+    settings = Settings(tolerance=1e-4)
+    packed = pack(ready.system, frequency)
+    work = make_work(packed, settings.taylor_order)
+    start = static_start(ready)
+    place, velocity = np.zeros((2, packed.squares.size))
+    place[: packed.n] = start.place
+    none = np.zeros((0, 2, place.size))
+    times = []
+    for periods in (100, COST_PERIODS, COST_PERIODS, COST_PERIODS):
+        log = make_log(packed, periods)
         begin = time.process_time()
-        response = simulate(ready, speed_rpm, settings)
-        seconds = time.process_time() - begin
-        # An irregular motion is measured over the window and two batches more.
-        measured = response.periods * (1.0 if response.period else 18 / 16)
-        rows.append((pinions, harmonics, ready.system.size, seconds / (response.spent + measured)))
-    return pd.DataFrame(rows, columns=["pinions", "harmonics", "coordinates", "seconds_per_period"])
+        require(run_periods(packed, work, place, velocity, none, periods, 0, settings.tolerance, log))
+        times.append((time.process_time() - begin) / periods)
+    return min(times[1:]), float(log.steps[0]) / COST_PERIODS
 
 
 def _resized(machine: Machine, count: int, harmonics: int) -> Machine:

@@ -22,8 +22,8 @@ from facegear.dynamics.orbits import require
 Array = NDArray[np.float64]
 Runner = Callable[[Problem, float], Array]
 TOLERANCES = tuple(10.0**-k for k in range(2, 13))
-PATIENCE = 2.0
-STEPS = (32, 64, 128, 256, 512, 1024, 2048, 4096)
+PATIENCE, PATIENCE_IRREGULAR = 2.0, 6.0
+STEPS = (16, 32, 64, 128, 256, 512, 1024, 2048, 4096)
 
 
 @dataclass(frozen=True)
@@ -45,13 +45,14 @@ def start_of(problem: Problem) -> tuple[Array, int]:
     return z, width
 
 
-def limited(derivative: Callable[[float, Array], Array]) -> Callable[[float, Array], Array]:
-    """The same right-hand side, which raises TimeoutError once PATIENCE is over."""
-    end = time.monotonic() + PATIENCE
+def limited(derivative: Callable[[float, Array], Array], problem: Problem) -> Callable[[float, Array], Array]:
+    """The same right-hand side, which raises TimeoutError once the patience with a run is over."""
+    patience = PATIENCE_IRREGULAR if problem.statistical else PATIENCE
+    end = time.monotonic() + patience
 
     def checked(s: float, z: Array) -> Array:
         if time.monotonic() > end:
-            raise TimeoutError(f"longer than {PATIENCE:g} s")
+            raise TimeoutError(f"longer than {patience:g} s")
         return derivative(s, z)
 
     return checked
@@ -89,7 +90,7 @@ def scipy_method(name: str, plain: bool = False) -> Runner:
             derivative = plain_right_side(problem.system, problem.frequency, width)
         else:
             derivative = compiled_right_side(pack(problem.system, problem.frequency))
-        derivative = limited(derivative)
+        derivative = limited(derivative, problem)
         times = TAU * np.arange(problem.periods * SAMPLES) / SAMPLES
         absolute = tolerance * np.abs(z).max()
         solution = solve_ivp(
@@ -114,7 +115,7 @@ def cvode(method: str) -> Runner:
 
     def run(problem: Problem, tolerance: float) -> Array:
         z, _ = start_of(problem)
-        compiled = limited(compiled_right_side(pack(problem.system, problem.frequency)))
+        compiled = limited(compiled_right_side(pack(problem.system, problem.frequency)), problem)
 
         def derivative(s: float, y: Array, out: Array) -> None:
             out[:] = compiled(s, np.array(y))

@@ -6,13 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.compiled import TAU
-from facegear.dynamics.motion import Settings, State
+from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.simulate import model, simulate, static_start
 from facegear.dynamics.system import System
 from facegear.transmission.machine import Machine, mesh_frequency
 
 Array = NDArray[np.float64]
-SAMPLES = 32
+SAMPLES = 16
+FACTORS = (1.0, 2.0, 1.5, 1.75, 2.5)
+IRREGULAR_PERIODS = 400
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,24 +30,30 @@ class Problem:
 
 
 def machine_problems(machine: Machine, speed_rpm: float) -> list[Problem]:
-    """Contact kept (no backlash), contact lost on a stable orbit at 0.6 of the speed, and the speed
-    itself.
+    """Contact kept (no backlash), contact lost on a stable orbit at 0.6 of the speed, and irregular motion at
+    the first of FACTORS times the speed where there is any.
     """
     regular = replace(machine, half_backlash=0.0)
-    return [
-        _problem("contact kept", regular, speed_rpm, 12, False),
-        _problem("contact lost", machine, 0.6 * speed_rpm, 12, False),
-        _problem("nominal speed", machine, speed_rpm, 40, True),
+    problems = [
+        _problem("contact kept", regular, speed_rpm, 12, False)[0],
+        _problem("contact lost", machine, 0.6 * speed_rpm, 12, False)[0],
     ]
+    for factor in FACTORS:
+        name = f"irregular, {factor * speed_rpm:.0f} rpm"
+        problem, motion = _problem(name, machine, factor * speed_rpm, IRREGULAR_PERIODS, True)
+        if motion is Motion.CHAOTIC:
+            problems.append(problem)
+            break
+    return problems
 
 
-def _problem(name: str, machine: Machine, speed_rpm: float, periods: int, statistical: bool) -> Problem:
+def _problem(
+    name: str, machine: Machine, speed_rpm: float, periods: int, statistical: bool
+) -> tuple[Problem, Motion]:
     ready = model(machine)
-    start = simulate(
-        ready, speed_rpm, Settings(settle=128, extensions=0, window=16), static_start(ready)
-    ).state
+    response = simulate(ready, speed_rpm, Settings(settle=128, extensions=0), static_start(ready))
     frequency = TAU * mesh_frequency(machine.layout, speed_rpm)
-    return Problem(name, ready.system, frequency, start, periods, statistical)
+    return Problem(name, ready.system, frequency, response.state, periods, statistical), response.motion
 
 
 def oscillator_problem() -> Problem:

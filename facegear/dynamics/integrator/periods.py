@@ -22,24 +22,27 @@ class Log(NamedTuple):
     samples (periods * per_period, n): y at equally spaced phases from the start of each period.
     ends (periods, 2, n): y and dy/ds at the end of each period. shares (3, m): phase spent open, on the
     drive and on the back flank, rad, added up with samples or tangents. divergence (1,): integral of the
-    trace, added up with tangents. steps (1,): added up.
+    trace, added up with tangents. growth (periods,): logarithm of the first tangent's length in each period,
+    brought back to one after it. steps (1,): added up.
     """
 
     samples: Array
     ends: Array
     shares: Array
     divergence: Array
+    growth: Array
     steps: NDArray[np.int64]
 
 
-def make_log(packed: Packed, periods: int, per_period: int = 0) -> Log:
-    """Allocate a log."""
+def make_log(packed: Packed, periods: int, per_period: int = 0, growth: bool = False) -> Log:
+    """Allocate a log; with `growth` one tangent must be run, of length one."""
     n = packed.squares.size
     return Log(
         samples=np.zeros((periods * per_period, n)),
         ends=np.zeros((periods, 2, n)),
         shares=np.zeros((3, packed.lower.size)),
         divergence=np.zeros(1),
+        growth=np.zeros(periods if growth else 0),
         steps=np.zeros(1, dtype=np.int64),
     )
 
@@ -55,13 +58,14 @@ def run_periods(
     per_period: int,
     tolerance: float,
     log: Log,
+    longest: float = TAU,
 ) -> int:
-    """Move place and velocity (n,) and the tangents (columns, 2, n) over whole periods; returns a status."""
+    """Move place and velocity (n,) and the tangents (columns, 2, n) over whole periods; returns a status.
+
+    The step is chosen for the motion, but not above `longest`: a motion at rest says nothing about what its
+    disturbances need, which is disturbance_step().
+    """
     n = packed.squares.size
-    # The step is chosen for the motion; a motion at rest says nothing about what its disturbances need.
-    longest = TAU
-    if tangents.shape[0] > 0:
-        longest = disturbance_step(packed, work.order, tolerance)
     sample, scratch, acting = work.sample, work.scratch, work.was_acting
     for period in range(periods):
         s = 0.0
@@ -98,18 +102,37 @@ def run_periods(
         for k in range(n):
             log.ends[period, 0, k] = place[k]
             log.ends[period, 1, k] = velocity[k]
+        if log.growth.size > 0:
+            log.growth[period] = np.log(_shorten(packed, tangents[0]))
         if not np.isfinite(place.sum() + velocity.sum()):
             return NOT_FINITE
     return DONE
 
 
-@inlined
+@kernel
 def disturbance_step(packed: Packed, order: int, tolerance: float) -> float:
-    """Step at which the last Taylor term of the fastest disturbance is below the tolerance."""
-    logarithm = np.log(tolerance)
+    """Step at which the last Taylor term of the fastest disturbance is a hundred times the tolerance.
+
+    The fastest are the most damped; one of half its frequency is then below the tolerance at any order used.
+    """
+    logarithm = np.log(min(100.0 * tolerance, 0.01))
     for i in range(2, order + 1):
         logarithm += np.log(float(i))
     return np.exp(logarithm / order) / packed.fastest
+
+
+@inlined
+def _shorten(packed: Packed, tangent: Array) -> float:
+    """Length of a tangent (2, n), which is divided by it."""
+    total = 0.0
+    for i in range(2):
+        for k in range(packed.n):
+            total += (packed.weights[k] * tangent[i, k]) ** 2
+    length = np.sqrt(total)
+    for i in range(2):
+        for k in range(packed.n):
+            tangent[i, k] /= length
+    return length
 
 
 @inlined
