@@ -7,7 +7,7 @@ import scipy.sparse as sp
 from numba import njit
 from numpy.typing import NDArray
 
-from facegear.contact.surface import quadratic_weights
+from facegear.contact.surface import shape_weights
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,16 +97,18 @@ def _hat_averages(hats, values, area, least):  # type: ignore[no-untyped-def]
     return pointer, index, weight, chosen, covered[chosen]
 
 
-def spread(rows: Rows, coordinates: NDArray[np.float64], shape: tuple[int, int]) -> sp.csr_matrix:
-    """The rows times `surface.interpolation(coordinates, shape)`, (m, nu nv), in one pass."""
+def spread(
+    rows: Rows, coordinates: NDArray[np.float64], shape: tuple[int, int], linear: bool = False
+) -> sp.csr_matrix:
+    """The rows times `surface.interpolation(coordinates, shape, linear)`, (m, nu nv), in one pass."""
     columns, values, pointer = _spread(
-        rows.pointer, rows.index, rows.weight, np.ascontiguousarray(coordinates), *shape
+        rows.pointer, rows.index, rows.weight, np.ascontiguousarray(coordinates), *shape, linear
     )
     return sp.csr_matrix((values, columns, pointer), shape=(len(rows), shape[0] * shape[1]))
 
 
 @njit(cache=True)
-def _spread(pointer, index, weight, coordinates, nu, nv):  # type: ignore[no-untyped-def]
+def _spread(pointer, index, weight, coordinates, nu, nv, linear):  # type: ignore[no-untyped-def]
     count = pointer.size - 1
     columns, values = np.empty(9 * index.size, np.int32), np.empty(9 * index.size)
     ends, slot = np.zeros(count + 1, np.int32), np.full(nu * nv, -1)
@@ -115,8 +117,8 @@ def _spread(pointer, index, weight, coordinates, nu, nv):  # type: ignore[no-unt
     for row in range(count):
         first = filled
         for k in range(pointer[row], pointer[row + 1]):
-            i = quadratic_weights(coordinates[index[k], 0], nu, wu)
-            j = quadratic_weights(coordinates[index[k], 1], nv, wv)
+            i = shape_weights(coordinates[index[k], 0], nu, linear, wu)
+            j = shape_weights(coordinates[index[k], 1], nv, linear, wv)
             for a in range(3):
                 for b in range(3):
                     node = (i + a) * nv + j + b

@@ -26,12 +26,13 @@ class PinionSurface:
 
     For q points: `points`, `area` (q,) m2, `arm` (q,) m (speed along the normal per rotation), `hats` (q, n)
     their values, four a point; `element` (q,) the flat index of the unrefined element (ne_u, ne_v) a point
-    belongs to.
+    belongs to. `linear` says that both bodies are of elements linear between nodes.
     """
 
     design: PairDesign
     side: ContactSide
     refinement: Refinement
+    linear: bool = False
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -187,7 +188,9 @@ def candidates_of(
     ):
         factors = np.array([cuts.profile, cuts.width])
         fine = (shape[0] - 1) * cuts.profile + 1, (shape[1] - 1) * cuts.width + 1
-        loads.append((spread(rows, place, fine), spread(rows, place / factors, shape)))
+        loads.append(
+            [spread(rows, at, n, surface.linear) for at, n in ((place, fine), (place / factors, shape))]
+        )
     (on_pinion, pinion_coarse), (on_gear, gear_coarse) = loads
     return Candidates(
         tooth,

@@ -21,7 +21,7 @@ class FlankCompliance:
     `own` (n, n): on the loaded tooth, nodes of the refined lattice `shape`; `others` (2 d + 1, c, c): on the
     tooth t - d places further, nodes of the lattice before refinement `coarse_shape` (the field of a
     neighbour is smooth); the middle block repeats the own tooth and is not used. `refinement` relates the two
-    lattices.
+    lattices; `linear` where displacements are so between nodes, not quadratic over elements.
     """
 
     own: NDArray[np.float64]
@@ -29,6 +29,7 @@ class FlankCompliance:
     shape: tuple[int, int]
     coarse_shape: tuple[int, int]
     refinement: Refinement
+    linear: bool = False
 
     def block(self, places: int) -> NDArray[np.float64] | None:
         """Coarse block for a tooth `places` further than the loaded one; None beyond those computed."""
@@ -62,7 +63,7 @@ def flank_compliance(
         others = seen @ face_compliance(tooth.faces, rests) @ seen.T
         rest = rests[0][0]
     own = _spread(system.spread, held_by(tooth, rest))
-    return FlankCompliance(own, others, shape, coarse_shape, refinement)
+    return FlankCompliance(own, others, shape, coarse_shape, refinement, element != "hex27")
 
 
 def _spread(spread: sp.csr_matrix, flank: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -82,6 +83,7 @@ def to_arrays(compliance: FlankCompliance) -> dict[str, NDArray]:
         "shape": np.array(compliance.shape),
         "coarse_shape": np.array(compliance.coarse_shape),
         "refinement": np.array([cuts.profile, cuts.width, cuts.depth, cuts.grading], dtype=float),
+        "linear": np.array([compliance.linear]),
     }
 
 
@@ -91,6 +93,7 @@ STORED = {
     "shape": (2,),
     "coarse_shape": (2,),
     "refinement": (4,),
+    "linear": (1,),
 }
 """Names and shapes of the arrays of a stored compliance."""
 
@@ -105,4 +108,5 @@ def from_arrays(arrays: Mapping[str, NDArray]) -> FlankCompliance:
         shape,
         coarse_shape,
         Refinement(int(profile), int(width), int(depth), float(grading)),
+        bool(arrays["linear"][0]),
     )

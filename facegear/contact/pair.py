@@ -47,7 +47,7 @@ def contact_model(
     sides = [contact_side(design, build(design, sizes)) for build in BUILDERS.values()]
     return ContactModel(
         design,
-        PinionSurface(design, sides[0], pinion.refinement),
+        PinionSurface(design, sides[0], pinion.refinement, pinion.linear),
         GearLattice(design, sides[1], gear.refinement),
         pinion,
         gear,

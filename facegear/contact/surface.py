@@ -15,19 +15,26 @@ GAUSS = 0.5 / np.sqrt(3.0)
 
 
 @njit(cache=True)
-def quadratic_weights(s, count, weights):  # type: ignore[no-untyped-def]
+def shape_weights(s, count, linear, weights):  # type: ignore[no-untyped-def]
     """Fill `weights` (3,) at lattice coordinate s; returns the first of the three nodes."""
     element = min(max(int(s // 2), 0), (count - 3) // 2)
     x = (s - 2 * element) / 2
-    weights[0] = (1 - x) * (1 - 2 * x)
-    weights[1] = 4 * x * (1 - x)
-    weights[2] = x * (2 * x - 1)
+    if linear:
+        weights[0], weights[2] = max(1 - 2 * x, 0.0), max(2 * x - 1, 0.0)
+        weights[1] = 1 - weights[0] - weights[2]
+    else:
+        weights[0], weights[1], weights[2] = (1 - x) * (1 - 2 * x), 4 * x * (1 - x), x * (2 * x - 1)
     return 2 * element
 
 
-def interpolation(coordinates: NDArray[np.float64], shape: tuple[int, int]) -> sp.csr_matrix:
-    """Biquadratic interpolation (n, nu nv) from lattice nodes to lattice coordinates (n, 2)."""
-    columns, values = _interpolation(np.ascontiguousarray(coordinates), *shape)
+def interpolation(
+    coordinates: NDArray[np.float64], shape: tuple[int, int], linear: bool = False
+) -> sp.csr_matrix:
+    """Interpolation (n, nu nv) from lattice nodes to lattice coordinates (n, 2), biquadratic over elements.
+
+    `linear` interpolates between neighbouring nodes instead, as 8-node hexahedra on the same nodes do.
+    """
+    columns, values = _interpolation(np.ascontiguousarray(coordinates), *shape, linear)
     pointer = np.arange(0, columns.size + 1, 9)
     return sp.csr_matrix(
         (values.ravel(), columns.ravel(), pointer), shape=(len(coordinates), shape[0] * shape[1])
@@ -35,14 +42,14 @@ def interpolation(coordinates: NDArray[np.float64], shape: tuple[int, int]) -> s
 
 
 @njit(cache=True)
-def _interpolation(coordinates, nu, nv):  # type: ignore[no-untyped-def]
+def _interpolation(coordinates, nu, nv, linear):  # type: ignore[no-untyped-def]
     count = coordinates.shape[0]
     columns = np.empty((count, 9), dtype=np.int64)
     values = np.empty((count, 9))
     wu, wv = np.empty(3), np.empty(3)
     for n in range(count):
-        i = quadratic_weights(coordinates[n, 0], nu, wu)
-        j = quadratic_weights(coordinates[n, 1], nv, wv)
+        i = shape_weights(coordinates[n, 0], nu, linear, wu)
+        j = shape_weights(coordinates[n, 1], nv, linear, wv)
         for a in range(3):
             for b in range(3):
                 columns[n, 3 * a + b] = (i + a) * nv + j + b

@@ -88,12 +88,13 @@ def test_displacements_without_the_matrix_are_those_with_it(model_of):
     np.testing.assert_allclose(without, with_matrix, rtol=1e-9)
 
 
-def test_loads_spread_in_one_pass_are_the_sparse_product():
+@pytest.mark.parametrize("linear", [False, True])
+def test_loads_spread_in_one_pass_are_the_sparse_product(linear):
     rng = np.random.default_rng(1)
     shape, points = (9, 7), rng.uniform(0, 6, (40, 2))
     matrix = sp.random_array((12, 40), density=0.2, format="csr", rng=rng)
     rows = Rows(matrix.indptr, matrix.indices, matrix.data)
-    expected = matrix @ interpolation(points, shape)
-    np.testing.assert_allclose(spread(rows, points, shape).toarray(), expected.toarray(), atol=1e-14)
+    expected = matrix @ interpolation(points, shape, linear)
+    np.testing.assert_allclose(spread(rows, points, shape, linear).toarray(), expected.toarray(), atol=1e-14)
     keep = np.arange(12) % 3 == 0
     np.testing.assert_array_equal(rows_of(matrix, keep).toarray(), matrix.toarray()[keep])

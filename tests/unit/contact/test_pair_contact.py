@@ -8,8 +8,8 @@ import pytest
 
 from facegear.contact.compliance import flank_compliance
 from facegear.contact.ltca import analyse
-from facegear.contact.options import ContactOptions, Refinement
-from facegear.contact.pair import BUILDERS
+from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
+from facegear.contact.pair import BUILDERS, body_compliance, contact_model
 from facegear.contact.teeth import LOADED_SIDE, piece_of
 from facegear.errors import NotConverged
 from facegear.geometry.design import Assembly, Material, Relief
@@ -169,3 +169,16 @@ def test_stiffness_is_continuous_through_a_hand_over(model_of):
     before, after = sound(analyse(model_of(), [low, high], [300.0]))
     assert after.pairs_in_contact != before.pairs_in_contact
     assert after.ste == pytest.approx(before.ste, rel=1e-4)
+
+
+def test_linear_elements_on_the_same_nodes_are_too_stiff(model_of):
+    """Trilinear hexahedra by about a percent, tetrahedra by several."""
+    design, sizes, steel = model_of().design, MeshSizes(1.5e-3, 3.2e-3, 3e-3), Material(206e9, 0.3)
+    stiffness = {}
+    for element in ("hex27", "hex8", "tet4"):
+        plan = ContactPlan((600.0,), 4, Refinement(2, 1, 1), Sector(), ContactOptions(), element)
+        bodies = [body_compliance(design, body, sizes, steel, plan) for body in BUILDERS]
+        results = analyse(contact_model(design, sizes, *bodies), [0.1, 0.6], [600.0])
+        stiffness[element] = np.mean([result.k_average for result in results])
+    assert 1.003 < stiffness["hex8"] / stiffness["hex27"] < 1.03
+    assert 1.03 < stiffness["tet4"] / stiffness["hex27"] < 1.15
