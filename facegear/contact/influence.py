@@ -23,14 +23,14 @@ def influence_matrix(
     matrix = np.zeros((ends[-1], ends[-1]))
     for i, first in enumerate(pairs):
         own = slice(ends[i], ends[i + 1])
-        block = _product(first.pinion, pinion.own, first.pinion) + _product(first.gear, gear.own, first.gear)
+        block = product(first.pinion, pinion.own, first.pinion) + product(first.gear, gear.own, first.gear)
         matrix[own, own] = 0.5 * (block + block.T)
         for j in range(i) if coupled else ():
             second = pairs[j]
             other = slice(ends[j], ends[j + 1])
             places = first.tooth - second.tooth
-            block = _product(first.pinion_coarse, pinion.block(places), second.pinion_coarse)
-            block += _product(first.gear_coarse, gear.block(places), second.gear_coarse)
+            block = product(first.pinion_coarse, pinion.block(places), second.pinion_coarse)
+            block += product(first.gear_coarse, gear.block(places), second.gear_coarse)
             matrix[own, other] = block
             matrix[other, own] = block.T
     return matrix
@@ -92,7 +92,7 @@ def _sparse_response(seen, compliance, loads, forces):  # type: ignore[no-untype
     return _averaged(seen[0], place[seen[1]], seen[2], part @ nodal)
 
 
-def _product(
+def product(
     first: sp.csr_matrix, compliance: NDArray[np.float64] | None, second: sp.csr_matrix
 ) -> NDArray[np.float64]:
     """first @ compliance @ second.T, touching only what the two have entries for."""

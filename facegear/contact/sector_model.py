@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from facegear.contact.candidates import Candidates
+from facegear.contact.influence import product
 from facegear.contact.layer import TiedSystem, tied_system
 from facegear.contact.ltca import ContactModel, LoadedPosition, Place, solve_position
 from facegear.contact.options import ContactOptions, Refinement
@@ -89,14 +90,14 @@ def analyse_sector(
 
 
 def _influence(pairs: list[Candidates], pinion: Blocks, gear: Blocks) -> NDArray[np.float64]:
-    rows = []
-    for first in pairs:
-        row = []
-        for second in pairs:
-            key = first.tooth, second.tooth
-            row.append(
-                first.pinion @ (second.pinion @ pinion[key].T).T + first.gear @ (second.gear @ gear[key].T).T
-            )
-        rows.append(row)
-    matrix = np.block(rows)
+    matrix = np.block(
+        [
+            [
+                product(first.pinion, pinion[first.tooth, second.tooth], second.pinion)
+                + product(first.gear, gear[first.tooth, second.tooth], second.gear)
+                for second in pairs
+            ]
+            for first in pairs
+        ]
+    )
     return 0.5 * (matrix + matrix.T)

@@ -13,7 +13,7 @@ with stage(snakemake) as run:
     section = parse(ToothPair, snakemake.params.tooth_pair)
     design = pair_design(section)
     m = design.module
-    rungs = {"coarser": MeshSizes(0.4 * m, 1.07 * m, 0.8 * m), "coarse": named_sizes("coarse", m)}
+    rungs = {"coarser": MeshSizes(0.2 * m, 1.07 * m, 0.8 * m), "coarse": named_sizes("coarse", m)}
     folder = Path(snakemake.output.table).parent / "calculix"
     folder.mkdir(parents=True, exist_ok=True)
     table = peer_study(design, rungs, materials(section), 600.0, folder, snakemake.threads)
