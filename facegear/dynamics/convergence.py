@@ -34,7 +34,7 @@ def convergence_table(direction: str, piece: Piece, finer: Piece) -> pd.DataFram
     the leading ones of refined orbits. Verdicts: `converged`; `moved` (same class, more than 1e-3);
     `other class` (periodic in one of the two, or with another period); `irregular` (periodic in neither).
     """
-    row, multiplier = DEFLECTION.index("ac_rms"), FACTS.index("multiplier")
+    row, multiplier = DEFLECTION.index("ac_rms"), FACTS.index("leading_multiplier")
     first, second = piece.deflection[:, row], finer.deflection[:, row]
     change = np.abs(first - second).max(axis=1) / np.maximum(first.max(axis=1), 1e-300)
     verdicts = [

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from facegear.dynamics.motion import State
 from facegear.dynamics.simulate import SteadyState
 from facegear.dynamics.statistics import moments
-from facegear.dynamics.sweep import DEFLECTION, Piece
+from facegear.dynamics.sweep import DEFLECTION, FACTS, Piece
 
 Array = NDArray[np.float64]
+MULTIPLIER = FACTS.index("leading_multiplier")
 LEAST_CHANGE = 0.1
 """Relative change of a mesh's AC RMS between neighbouring speeds that may be a jump."""
 ABRUPT = 3.0
@@ -82,14 +83,14 @@ def refine(piece: Piece, position: int, respond: Respond, resolution: float) -> 
         float(piece.speeds[position]),
         piece.deflection[position, row],
         str(piece.labels[position]),
-        float(piece.facts[position, 1]),
+        float(piece.facts[position, MULTIPLIER]),
         piece.state(position),
     )
     after = Side(
         float(piece.speeds[position + 1]),
         piece.deflection[position + 1, row],
         str(piece.labels[position + 1]),
-        float(piece.facts[position + 1, 1]),
+        float(piece.facts[position + 1, MULTIPLIER]),
         piece.state(position + 1),
     )
     before, after = bracket(before, after, respond, resolution)

@@ -95,54 +95,75 @@ def require(status: int) -> None:
         raise NotConverged("dynamics", "time integration", told[status])
 
 
+@dataclass(frozen=True, eq=False)
+class _Tangent:
+    """The map over the period near a state: matrix, its eigenvalues and vectors, largest first."""
+
+    state: Array
+    matrix: Array
+    multipliers: NDArray[np.complex128]
+    directions: NDArray[np.complex128]
+    log: Log
+
+    @property
+    def slowness(self) -> float:
+        """How far the largest multiplier is from the unit circle (at least 1e-3); it divides a residual."""
+        return max(abs(1.0 - float(abs(self.multipliers[0]))), 1e-3)
+
+
 def shoot(
     packed: Packed, work: Work, place: Array, velocity: Array, period: int, tolerance: float, goal: float
 ) -> Orbit | None:
     """Newton's method on the change over `period` mesh periods; None if it does not settle near the start.
 
     A matrix serves as long as each step with it gains a digit, and is the orbit's own if that lies within ten
-    steps' errors of where it was taken.
+    steps' errors of where it was taken. An orbit is accepted when the change is so small that the
+    orbit is known to the goal.
     """
     n = packed.n
     place, velocity = place.copy(), velocity.copy()
     none = np.zeros((0, 2, place.size))
     best, gained = np.inf, 0.0
-    taken: tuple[Array, Array, Log] | None = None
+    tangent: _Tangent | None = None
     for _ in range(NEWTON_STEPS):
         here = np.array([place, velocity])
-        if gained < 0.1 and taken is not None:
+        if gained < 0.1 and tangent is not None:
             end_place, end_velocity, log = _moved(packed, work, place, velocity, none, period, tolerance)
+            there = np.array([end_place, end_velocity])
         else:
-            end_place, end_velocity, matrix, log = monodromy(packed, work, place, velocity, period, tolerance)
-            taken = here, matrix, log
-        there = np.array([end_place, end_velocity])
+            there, tangent = _linearised(packed, work, here, period, tolerance)
+            log = tangent.log
         residual = change(packed, here, there)
         if not residual < 4.0 * best:
             return None
         least = least_period(packed, here, log.ends, max(residual, goal))
         if residual <= goal and least < period:
             return shoot(packed, work, place, velocity, least, tolerance, goal)
-        # Newton's method cannot do better than the steps and their rounding; how far that leaves the orbit
-        # off depends on how fast it draws in what is near.
-        stalled = residual > 0.5 * best
-        if residual <= goal or (stalled and residual <= max(tolerance * slowness(taken[1]), ROUNDING)):
-            if change(packed, here, taken[0]) > 10.0 * tolerance:
-                *_, matrix, log = monodromy(packed, work, place, velocity, period, tolerance)
-                taken = here, matrix, log
-            return _orbit(packed, place, velocity, period, residual, taken[1], taken[2])
+        # Newton's method cannot do better than the steps and their rounding.
+        stalled = residual > 0.5 * best and residual <= max(tolerance * tangent.slowness, ROUNDING)
+        if residual <= goal * min(1.0, tangent.slowness) or stalled:
+            if change(packed, here, tangent.state) > 10.0 * tolerance:
+                _, tangent = _linearised(packed, work, here, period, tolerance)
+            return _orbit(packed, here, period, residual, tangent)
         gained = residual / best if np.isfinite(best) else 0.0
         best = min(best, residual)
         gap = (there - here)[:, :n].ravel()
         # A body afloat in its backlash has a place of its own choice: least norm leaves it where it is.
-        correction = np.linalg.lstsq(np.eye(2 * n) - taken[1], gap, rcond=NEUTRAL)[0]
+        correction = np.linalg.lstsq(np.eye(2 * n) - tangent.matrix, gap, rcond=NEUTRAL)[0]
         place[:n] += correction[:n]
         velocity[:n] += correction[n:]
     return None
 
 
-def slowness(matrix: Array) -> float:
-    """Distance of the largest multiplier from the unit circle, not below 1e-3: what divides a residual."""
-    return max(abs(1.0 - float(np.abs(np.linalg.eigvals(matrix)).max())), 1e-3)
+def _linearised(
+    packed: Packed, work: Work, state: Array, period: int, tolerance: float
+) -> tuple[Array, _Tangent]:
+    """Where a state (2, n) comes to over the period, and the map near it."""
+    place, velocity, matrix, log = monodromy(packed, work, state[0], state[1], period, tolerance)
+    multipliers, directions = np.linalg.eig(matrix)
+    order = np.argsort(-np.abs(multipliers))
+    there = np.array([place, velocity])
+    return there, _Tangent(state, matrix, multipliers[order], directions[:, order], log)
 
 
 def least_period(packed: Packed, start: Array, ends: Array, residual: float) -> int:
@@ -153,18 +174,14 @@ def least_period(packed: Packed, start: Array, ends: Array, residual: float) -> 
     return len(ends)
 
 
-def _orbit(
-    packed: Packed, place: Array, velocity: Array, period: int, residual: float, matrix: Array, log: Log
-) -> Orbit:
-    multipliers, directions = np.linalg.eig(matrix)
-    order = np.argsort(-np.abs(multipliers))
-    multipliers = multipliers[order]
-    leading = np.zeros((2, place.size))
-    leading[:, : packed.n] = directions[:, order[0]].real.reshape(2, -1)
+def _orbit(packed: Packed, state: Array, period: int, residual: float, tangent: _Tangent) -> Orbit:
+    multipliers = tangent.multipliers
+    leading = np.zeros_like(state)
+    leading[:, : packed.n] = tangent.directions[:, 0].real.reshape(2, -1)
     leading /= change(packed, leading, 0.0 * leading)
-    sign, volume = np.linalg.slogdet(matrix)
+    sign, volume = np.linalg.slogdet(tangent.matrix)
     condition_lost = np.log(np.finfo(float).eps) * 0.9 > np.log(
         max(abs(multipliers[-1]), 1e-300) / max(abs(multipliers[0]), 1e-300)
     )
-    liouville = np.nan if condition_lost or sign <= 0 else float(volume - log.divergence[0])
-    return Orbit(place, velocity, period, residual, multipliers, leading, liouville)
+    liouville = np.nan if condition_lost or sign <= 0 else float(volume - tangent.log.divergence[0])
+    return Orbit(state[0], state[1], period, residual, multipliers, leading, liouville)

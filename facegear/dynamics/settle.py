@@ -22,6 +22,7 @@ AFLOAT = 1e-6
 KICK = 0.1
 """Disturbance of an unstable orbit along its leading direction, as a change."""
 MOST_KICKS = 2
+TREND = 7
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,13 +102,15 @@ def settled_by_itself(packed: Packed, ends: Array, period: int, residual: float,
     """Whether the change over the period is small and what is still to come of it is too.
 
     A run that creeps past the place where an orbit has just vanished, or off an unstable one, changes little
-    too, but not less and less.
+    too, but not less and less: so the largest change of the last TREND periods is held against that of the
+    TREND before them.
     """
-    back = len(ends) - 1 - period
-    if residual > goal or back < 1:
+    if residual > goal or len(ends) < 2 * TREND + period:
         return False
-    before = change(packed, ends[-1 - back], ends[-1 - back - period])
-    rate = (residual / before) ** (1.0 / back) if before > 0.0 else 0.0
+    kept = ends[-2 * TREND - period :]
+    gaps = (packed.weights * np.abs(kept[period:] - kept[:-period])).max(axis=(1, 2))
+    early, late = gaps[:TREND].max(), gaps[TREND:].max()
+    rate = (late / early) ** (1.0 / TREND) if early > 0.0 else 0.0
     return residual <= 10.0 * goal * max(1.0 - rate, 1e-3)
 
 

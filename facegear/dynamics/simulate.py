@@ -22,6 +22,8 @@ from facegear.transmission.matrices import mass_diagonal
 from facegear.transmission.statics import static_equilibrium
 
 Array = NDArray[np.float64]
+ESCAPING = 1e-3
+"""Growing disturbances of a motion that repeats as closely as this tell of its end, not of chaos."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,6 +135,8 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
             window = run_window(packed, work, place, velocity, settled.period, settings)
             break
         motion, exponent, window = largest_exponent(packed, work, settled.place, settled.velocity, patient)
+        if motion is Motion.CHAOTIC and settled.residual < ESCAPING:
+            motion = Motion.NOT_SETTLED
         place, velocity = window.place, window.velocity
         if motion is not Motion.NOT_SETTLED:
             break

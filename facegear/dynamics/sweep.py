@@ -16,7 +16,7 @@ from facegear.transmission.modes import natural_modes
 
 Array = NDArray[np.float64]
 DEFLECTION = ("mean", "rms", "ac_rms", "least", "most", "rms_interval", "ac_rms_interval")
-FACTS = ("residual", "multiplier", "exponent", "exponent_interval", "periods")
+FACTS = ("residual", "leading_multiplier", "exponent_per_period", "exponent_interval", "periods_spent")
 TRANSLATION = ("rms", "ac_rms", "ac_rms_interval")
 
 

@@ -7,14 +7,13 @@ import pandas as pd
 
 from facegear.dynamics.assemble import Seam
 from facegear.dynamics.campbell import peaks, resonance
-from facegear.dynamics.sweep import DEFLECTION, TRANSLATION, Piece
+from facegear.dynamics.sweep import DEFLECTION, FACTS, TRANSLATION, Piece
 from facegear.dynamics.whole_sweep import Direction
 from facegear.transmission.layout import Layout
 from facegear.transmission.modes import Modes
 
 UM = 1e6
 SHARES = ("open_share", "drive_share", "back_share")
-FACTS = ("residual", "leading_multiplier", "exponent_per_period", "exponent_interval", "periods_spent")
 
 
 def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:

@@ -60,7 +60,7 @@ def sweep_costs(machine: Machine, plan: SweepPlan, step: Callable[[], None] = la
                 "not_confirmed": periodic - errors.size,
                 "rms_error": errors.max(initial=0.0),
                 "rms_error_median": np.median(errors),
-                "plain_seconds_per_speed": plain * piece.facts[:, FACTS.index("periods")].mean(),
+                "plain_seconds_per_speed": plain * piece.facts[:, FACTS.index("periods_spent")].mean(),
             }
         )
         step()

@@ -1,0 +1,79 @@
+"""What is called a steady state, and what is not."""
+
+import itertools
+
+import numpy as np
+import pytest
+from oscillators import backlash_oscillator, one_degree
+
+from facegear.dynamics.exponent import smooth_mean
+from facegear.dynamics.integrator.compiled import pack
+from facegear.dynamics.integrator.work import make_work
+from facegear.dynamics.motion import Motion, Settings, State
+from facegear.dynamics.orbits import shoot
+from facegear.dynamics.simulate import steady_state
+
+FOLD_UP = 0.82846394
+SPEED = 0.75
+
+
+def unstable_orbit():
+    """The orbit of oracle (a) between its two stable ones, by Newton's method from many places."""
+    system = backlash_oscillator(SPEED)
+    packed = pack(system, SPEED)
+    work = make_work(packed, 16)
+    for first, rate in itertools.product(np.linspace(0.9, 1.3, 9), np.linspace(-0.3, 0.3, 9)):
+        place, velocity = np.zeros((2, packed.squares.size))
+        place[0], velocity[0] = first, rate
+        orbit = shoot(packed, work, place, velocity, 1, 1e-12, 1e-11)
+        if orbit is not None and abs(orbit.multipliers[0]) > 1.0:
+            return system, orbit
+    raise AssertionError("no unstable orbit found")
+
+
+def test_a_run_started_on_an_unstable_orbit_ends_on_a_stable_one():
+    system, orbit = unstable_orbit()
+    start = State(orbit.place[:1], SPEED * orbit.velocity[:1])
+    response = steady_state(system, SPEED, Settings(tolerance=1e-10, periodic_residual=1e-9), start)
+    assert response.label == "period-1"
+    assert abs(response.multipliers[0]) < 1.0
+    on_lower = response.state.place[0] == pytest.approx(1.1624504362, abs=1e-7)
+    on_upper = response.state.place[0] == pytest.approx(0.8338430125, abs=1e-7)
+    assert on_lower or on_upper
+
+
+@pytest.mark.parametrize("refine", [True, False])
+def test_creeping_past_a_vanished_orbit_is_not_called_periodic(refine):
+    """Just beyond the fold the state moves ever so little a period, where nothing is periodic."""
+    state = State(np.array([1.1624504362]), np.array([0.0080293418]))
+    for speed in (SPEED, 0.80, 0.82, 0.826, 0.828, FOLD_UP - 1e-7):
+        below = steady_state(backlash_oscillator(speed), speed, Settings(tolerance=1e-12), state)
+        state = below.state
+    assert below.label == "period-1" and below.multipliers[0].real > 0.99
+    speed = FOLD_UP + 5e-6
+    hasty = Settings(
+        tolerance=1e-10, periodic_residual=1e-4, dwell=32, settle=64, window=16, extensions=0, refine=refine
+    )
+    response = steady_state(backlash_oscillator(speed), speed, hasty, state)
+    assert response.residual < hasty.periodic_residual
+    # Short of patience it is not settled; else it has come to the orbit that is there, with contact lost.
+    assert response.motion is not Motion.PERIODIC or response.deflections.min() < 0.8
+
+
+def test_a_torus_has_a_neutral_exponent_long_before_its_plain_mean_has():
+    periods = np.arange(128)
+    swinging = 0.3 * np.cos(2 * np.pi * 0.2360679775 * periods)
+    smooth, doubt = smooth_mean(swinging)
+    assert abs(smooth) + doubt < 1e-4
+    noisy = 0.05 + 0.3 * np.random.default_rng(1).normal(size=128)
+    smooth, doubt = smooth_mean(noisy)
+    assert doubt > 5e-3
+
+
+def test_two_incommensurate_loads_make_a_quasi_periodic_motion():
+    """An undamped oscillator keeps its own frequency beside that of the load: a torus, exponent zero."""
+    system = one_degree(0.0, load=((0.0, 0.0), (0.0, 0.1)), lower=0.0, upper=0.0)
+    start = State(np.array([1.0]), np.array([0.0]))
+    response = steady_state(system, 0.6180339887, Settings(tolerance=1e-10), start)
+    assert response.motion is Motion.QUASI_PERIODIC
+    assert abs(response.exponent[0]) < 2e-3
