@@ -2,22 +2,27 @@
 
 import resource
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeVar
 
 import numpy as np
 import pandas as pd
 
-from facegear.contact.compliance import FlankCompliance
+from facegear.contact.compliance import FlankCompliance, coupled_compliance
 from facegear.contact.layer import tied_system
 from facegear.contact.ltca import LoadedPosition, analyse, even_positions
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
-from facegear.contact.pair import BUILDERS, body_compliance, contact_model
-from facegear.contact.rungs import CUTS, LINEAR, SECTORS
+from facegear.contact.pair import BUILDERS, body_compliance, contact_model, extent
+from facegear.contact.rungs import CUTS, DEFAULT, LIMITS, LINEAR, SECTORS
+from facegear.contact.substructure import condense
 from facegear.contact.teeth import piece_of
+from facegear.errors import NotConverged
 from facegear.geometry.design import Material, PairDesign
 from facegear.harmonics.fit import fit_harmonics
 from facegear.mesh.sizes import MeshSizes, named_sizes
+
+Result = TypeVar("Result")
 
 
 @dataclass(frozen=True)
@@ -31,7 +36,7 @@ class Rung:
 
 def rung(name: str, design: PairDesign, plan: ContactPlan) -> Rung:
     """A rung of the ladder with the positions and torques of `plan`. Raises KeyError for an unknown name."""
-    resolution, cuts = CUTS["coarse_4x1x2" if name in SECTORS or name in LINEAR else name]
+    resolution, cuts = CUTS[DEFAULT if name in SECTORS or name in LINEAR else name]
     changed = replace(plan, refinement=cuts, sector=Sector(), element="hex27")
     if name in SECTORS:
         changed = replace(changed, sector=Sector(SECTORS[name], SECTORS[name], "free"))
@@ -51,36 +56,72 @@ def compliances(
     return pinion, gear
 
 
+@dataclass
+class Stopwatch:
+    """Adds up the seconds of named steps."""
+
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    def time(self, name: str, step: Callable[..., Result], *arguments: Any) -> Result:
+        """The step's result."""
+        start = time.perf_counter()
+        result = step(*arguments)
+        self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start
+        return result
+
+
 def measure(design: PairDesign, rung: Rung, materials: tuple[Material, Material]) -> pd.DataFrame:
     """One row a torque: free dof, times (s), memory (GB), mean and first harmonic of both stiffnesses (N/m).
 
-    The memory is the process's largest so far, so that rungs should be measured in processes of their own.
+    Times of both bodies: assembly; factorisation down to flank and cut faces; compliance of the flanks in the
+    ring; then contact at all positions and torques, and the sum. One position is solved beforehand, so that
+    machine code is loaded. The memory is the process's largest so far, so that rungs should be measured in
+    processes of their own.
     """
-    dof, assembly = 0, 0.0
+    watch, dof, bodies, plan = Stopwatch(), 0, [], rung.plan
     for body, material in zip(BUILDERS, materials, strict=True):
-        piece, _ = piece_of(design, BUILDERS[body](design, rung.sizes), material)
-        start = time.perf_counter()
-        system = tied_system(piece, rung.plan.refinement, rung.plan.element)
-        assembly += time.perf_counter() - start
+        tooth = BUILDERS[body](design, rung.sizes)
+        piece, _ = piece_of(design, tooth, material)
+        system = watch.time("assembly_s", tied_system, piece, plan.refinement, plan.element)
+        condensed = watch.time("factorisation_s", condense, piece, system)
+        kept = extent(tooth, body, plan)
+        rest = piece, system, condensed, plan.refinement, *kept, plan.element
+        bodies.append(watch.time("compliance_s", coupled_compliance, *rest))
         dof += int(np.count_nonzero(~system.held))
-    start = time.perf_counter()
-    bodies = compliances(design, rung, materials)
-    compliance = time.perf_counter() - start
     model = contact_model(design, rung.sizes, *bodies)
-    start = time.perf_counter()
-    results = analyse(model, even_positions(rung.plan.positions), rung.plan.torques, rung.plan.options)
-    contact = time.perf_counter() - start
-    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e9
+    analyse(model, [0.3], plan.torques, plan.options)
+    run = model, even_positions(plan.positions), plan.torques, plan.options
+    results = watch.time("contact_s", analyse, *run)
     costs = {
         "dof": dof,
         "flank_nodes": sum(len(body.own) for body in bodies),
-        "assembly_s": assembly,
-        "compliance_s": compliance,
-        "contact_s": contact,
-        "contact_s_per_position_and_load": contact / len(results),
-        "memory_gb": memory,
+        **watch.seconds,
+        "total_s": sum(watch.seconds.values()),
+        "contact_s_per_position_and_load": watch.seconds["contact_s"] / len(results),
+        "memory_gb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e9,
     }
-    return summary(results).assign(rung=rung.name, element=rung.plan.element, **costs)
+    return summary(results).assign(rung=rung.name, element=plan.element, **costs)
+
+
+def growth(
+    design: PairDesign,
+    rung: Rung,
+    materials: tuple[Material, Material],
+    positions: Sequence[int],
+    loads: Sequence[int],
+) -> pd.DataFrame:
+    """Time (s) of contact against the number of positions (at 4 torques) and of torques (at 16 positions)."""
+    model = contact_model(design, rung.sizes, *compliances(design, rung, materials))
+    low, high = min(rung.plan.torques), max(rung.plan.torques)
+    analyse(model, [0.3], rung.plan.torques, rung.plan.options)
+    cases = [("positions", n, 4) for n in positions] + [("loads", 16, n) for n in loads]
+    rows = []
+    for varied, count, number in cases:
+        watch = Stopwatch()
+        torques = np.geomspace(high, low, number)[::-1]
+        watch.time("contact_s", analyse, model, even_positions(count), torques, rung.plan.options)
+        rows.append((varied, count, number, watch.seconds["contact_s"]))
+    return pd.DataFrame(rows, columns=["varied", "positions", "loads", "contact_s"])
 
 
 def summary(results: Sequence[LoadedPosition]) -> pd.DataFrame:
@@ -105,6 +146,20 @@ def with_errors(table: pd.DataFrame, reference: str) -> pd.DataFrame:
         column = f"{name}_n_per_m"
         result[f"{name}_error_percent"] = 100 * (table[column] / table["torque_n_m"].map(finest[column]) - 1)
     return result
+
+
+def cheapest(table: pd.DataFrame) -> str:
+    """The quickest rung of a table with errors that is within LIMITS at all torques.
+
+    Raises NotConverged if there is none.
+    """
+    columns = [f"{name}_error_percent" for name in LIMITS]
+    inside = (table[columns].abs() <= list(LIMITS.values())).all(axis=1)
+    whole = inside.groupby(table["rung"]).all()
+    if not whole.any():
+        raise NotConverged("contact", "all resolutions of the ladder", "errors of mean and first harmonic")
+    times = table.groupby("rung")["total_s"].first()
+    return str(times[whole[whole].index].idxmin())
 
 
 def shortcuts(design: PairDesign, base: Rung, materials: tuple[Material, Material]) -> pd.DataFrame:

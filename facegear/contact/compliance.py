@@ -8,10 +8,10 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from facegear.contact.body import Piece
-from facegear.contact.layer import tied_system
+from facegear.contact.layer import TiedSystem, tied_system
 from facegear.contact.options import Element, Ends, Refinement
 from facegear.contact.ring import face_compliance, rest_stiffness
-from facegear.contact.substructure import condense, held_by
+from facegear.contact.substructure import Superelement, condense, held_by
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +54,23 @@ def flank_compliance(
     """
     system = tied_system(piece, refinement, element)
     tooth = condense(piece, system)
+    return coupled_compliance(piece, system, tooth, refinement, teeth, neighbours, ends, element)
+
+
+def coupled_compliance(
+    piece: Piece,
+    system: TiedSystem,
+    tooth: Superelement,
+    refinement: Refinement,
+    teeth: int,
+    neighbours: int,
+    ends: Ends,
+    element: Element,
+) -> FlankCompliance:
+    """The last step of `flank_compliance`: copies of a condensed tooth joined to a ring or sector.
+
+    Raises ValueError if there are too few teeth.
+    """
     shape, coarse_shape = system.surface.shape[:2], piece.flank.shape
     others, rest = np.zeros((1, piece.flank.size, piece.flank.size)), np.zeros((0, 0))
     if piece.left.size:

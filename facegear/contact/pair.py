@@ -5,7 +5,7 @@ from collections.abc import Callable
 from facegear.contact.candidates import PinionSurface
 from facegear.contact.compliance import FlankCompliance, flank_compliance
 from facegear.contact.ltca import ContactModel
-from facegear.contact.options import ContactPlan
+from facegear.contact.options import ContactPlan, Ends
 from facegear.contact.teeth import GearLattice, contact_side, piece_of
 from facegear.errors import ConfigError
 from facegear.geometry.design import Material, PairDesign
@@ -30,14 +30,23 @@ def body_compliance(
     factorised.
     """
     tooth = BUILDERS[body](design, sizes)
+    piece, _ = piece_of(design, tooth, material)
+    teeth, neighbours, ends = extent(tooth, body, plan)
+    return flank_compliance(piece, plan.refinement, teeth, neighbours, ends, plan.element)
+
+
+def extent(tooth: ToothMesh, body: str, plan: ContactPlan) -> tuple[int, int, Ends]:
+    """How many teeth of a body are modelled, the neighbours on each side that are kept, and what ends them.
+
+    Raises ConfigError for a sector with more teeth than the gear.
+    """
     sector = plan.sector
     wanted = sector.pinion_teeth if body == "pinion" else sector.face_gear_teeth
-    if wanted is not None and wanted > tooth.teeth:
+    if wanted is None:
+        return tooth.teeth, min(NEIGHBOURS, (tooth.teeth - 3) // 2), "ring"
+    if wanted > tooth.teeth:
         raise ConfigError(f"contact.sector.{body}_teeth", wanted, f"at most {tooth.teeth}")
-    piece, _ = piece_of(design, tooth, material)
-    ends = "ring" if wanted is None else sector.cut_faces
-    neighbours = min(NEIGHBOURS, ((wanted or tooth.teeth) - 3) // 2)
-    return flank_compliance(piece, plan.refinement, wanted or tooth.teeth, neighbours, ends, plan.element)
+    return wanted, min(NEIGHBOURS, (wanted - 3) // 2), sector.cut_faces
 
 
 def contact_model(

@@ -6,16 +6,25 @@ CUTS = {
     "coarse_1x1x1": ("coarse", Refinement()),
     "coarse_2x1x1": ("coarse", Refinement(2, 1, 1)),
     "coarse_2x1x2": ("coarse", Refinement(2, 1, 2, 2.0)),
-    "coarse_4x1x2": ("coarse", Refinement(4, 1, 2, 2.0)),
     "coarse_2x2x2": ("coarse", Refinement(2, 2, 2, 2.0)),
+    "coarse_4x1x2": ("coarse", Refinement(4, 1, 2, 2.0)),
     "coarse_4x2x2": ("coarse", Refinement(4, 2, 2, 2.0)),
+    "coarse_8x1x3": ("coarse", Refinement(8, 1, 3, 2.0)),
+    "medium_2x1x1": ("medium", Refinement(2, 1, 1)),
     "medium_2x1x2": ("medium", Refinement(2, 1, 2, 2.0)),
-    "medium_2x2x2": ("medium", Refinement(2, 2, 2, 2.0)),
+    "medium_4x1x2": ("medium", Refinement(4, 1, 2, 2.0)),
+    "fine_1x1x1": ("fine", Refinement()),
 }
 """Mesh resolution and cuts of the flank layer across the profile, along the width and in depth."""
+
+DEFAULT = "coarse_4x1x2"
+"""The rung that the default config stands for; sectors and linear elements are measured at it."""
 
 SECTORS = {"coarse_4x1x2_sector_5": 5, "coarse_4x1x2_sector_9": 9}
 LINEAR: dict[str, Element] = {"coarse_4x1x2_hex8": "hex8", "coarse_4x1x2_tet4": "tet4"}
 
 FINEST = "medium_2x2x2"
 RUNGS = (*CUTS, *SECTORS, *LINEAR)
+
+LIMITS = {"mean": 0.5, "amplitude_1": 3.0}
+"""Percent that the default resolution may be off the finest, mean and first harmonic."""

@@ -33,7 +33,8 @@ def work_precision_diagram(table: pd.DataFrame) -> Figure:
                     axis.axvline(known["interval"].median(), color="0.8", lw=1, zorder=0)
             axis.set_title(problem, fontsize=9)
             axis.set_xlabel(
-                "error of the RMS (lines: what chance leaves)" if known["interval"].any()
+                "error of the RMS (lines: what chance leaves)"
+                if known["interval"].any()
                 else "error of the deflection over the length scale"
             )
             axis.set_ylabel("time (s)")

@@ -25,9 +25,34 @@ rule contact_rung:
         "../scripts/contact_rung.py"
 
 
+rule contact_growth:
+    output:
+        table="results/{case}/benchmarks/contact_growth.csv",
+        manifest="results/{case}/benchmarks/contact_growth.provenance.json",
+    log:
+        "results/{case}/logs/contact_growth.log",
+    benchmark:
+        "results/{case}/benchmarks/rules/contact_growth.tsv"
+    conda:
+        "../envs/facegear.yaml"
+    threads: 2
+    resources:
+        mem_mb=3000,
+        runtime=10,
+    params:
+        tooth_pair=config_slice("tooth_pair"),
+        contact=config_slice("contact"),
+        code=fingerprint("contact_growth.py"),
+    message:
+        "time of contact against positions and loads of {wildcards.case}"
+    script:
+        "../scripts/contact_growth.py"
+
+
 rule contact_benchmark:
     input:
         tables=expand("results/{{case}}/benchmarks/contact/{rung}.csv", rung=RUNGS),
+        growth="results/{case}/benchmarks/contact_growth.csv",
     output:
         table="results/{case}/benchmarks/contact.csv",
         svg="results/{case}/figures/contact_speed_error.svg",
