@@ -23,6 +23,8 @@ Array = NDArray[np.float64]
 NEWTON_STEPS = 12
 NEUTRAL = 1e-9
 """Directions in which the change over a period moves less than this, relatively, are left alone by Newton."""
+AFLOAT = 1e-6
+"""A multiplier may exceed one by this: it is one for a body afloat inside its backlash."""
 ROUNDING = 1e-11
 """Change over a period, over the length scale, that rounding alone may leave."""
 
@@ -107,8 +109,12 @@ class _Tangent:
 
     @property
     def slowness(self) -> float:
-        """How far the largest multiplier is from the unit circle (at least 1e-3); it divides a residual."""
-        return max(abs(1.0 - float(abs(self.multipliers[0]))), 1e-3)
+        """How far the multipliers stay from the unit circle (at least 1e-3), by which a residual is divided.
+
+        The neutral one of a body afloat inside its backlash, which goes nowhere, does not count.
+        """
+        off = np.abs(1.0 - np.abs(self.multipliers))
+        return max(float(off[off > AFLOAT].min(initial=1.0)), 1e-3)
 
 
 def shoot(

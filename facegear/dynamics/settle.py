@@ -9,7 +9,7 @@ from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.periods import make_log, run_periods
 from facegear.dynamics.integrator.work import Work
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.orbits import Orbit, change, changes, require, shoot
+from facegear.dynamics.orbits import AFLOAT, Orbit, change, changes, require, shoot
 
 Array = NDArray[np.float64]
 NO_TANGENTS = 0
@@ -17,8 +17,6 @@ TRY_NEWTON = 0.02
 NEWTON_COST = 20
 """Periods that a run may take for each period of an orbit before Newton's method is the cheaper way."""
 BLOCK = 16
-AFLOAT = 1e-6
-"""A multiplier may exceed one by this: it is one for a body afloat inside its backlash."""
 KICK = 0.1
 """Disturbance of an unstable orbit along its leading direction, as a change."""
 MOST_KICKS = 2

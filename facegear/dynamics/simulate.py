@@ -180,8 +180,7 @@ def _result(
 def mesh_response(system: System, coordinates: Array, per_period: int) -> tuple[Array, Array]:
     """Deflections and elastic mesh forces (K, meshes) of samples that start with a mesh period."""
     cycles = np.arange(per_period) / per_period
-    repeats = len(coordinates) // per_period
-    error = np.tile(series_values(system.error, cycles)[:, system.error_kind], (repeats, 1))
+    error = series_values(system.error, cycles)[:, system.error_kind]
     stiffness = series_values(system.stiffness, cycles)
     for kind, piece in enumerate(system.pieces):
         index = np.searchsorted(piece.breaks, cycles, side="right") - 1
@@ -189,11 +188,17 @@ def mesh_response(system: System, coordinates: Array, per_period: int) -> tuple[
         stiffness[:, kind] += (
             piece.coefficients[index] * np.vander(ahead, piece.coefficients.shape[1], True)
         ).sum(1)
-    stiffness = np.tile(stiffness[:, system.stiffness_kind], (repeats, 1))
-    deflections = coordinates @ system.directions.T - error
-    beyond = np.maximum(deflections - system.upper, 0.0) + np.minimum(deflections - system.lower, 0.0)
+    stiffness = stiffness[:, system.stiffness_kind]
+    shape = (-1, per_period, len(system.directions))
+    deflections = (coordinates @ system.directions.T).reshape(shape)
+    deflections -= error
+    # Without clearance everything counts from the upper edge.
     linear = system.lower >= system.upper
-    return deflections, stiffness * np.where(linear, deflections - system.upper, beyond)
+    lower, upper = (np.where(linear, system.upper, edge) for edge in (system.lower, system.upper))
+    forces = np.clip(deflections, lower, upper)
+    np.subtract(deflections, forces, out=forces)
+    forces *= stiffness
+    return deflections.reshape(len(coordinates), -1), forces.reshape(len(coordinates), -1)
 
 
 def series_values(series: Array, cycles: Array) -> Array:

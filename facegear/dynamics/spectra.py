@@ -37,11 +37,11 @@ def order_spectrum(samples: Array, per_period: int, period: int) -> Array:
                 result[:, place] = np.hypot(result[:, place], line)
         return result
     length = SEGMENT * per_period
-    segments = samples[: len(samples) // length * length].reshape(-1, length, samples.shape[1])
-    total = np.zeros((ORDERS.size, samples.shape[1]))
-    for segment in segments:
-        _, lines = spectrum(segment - segment.mean(axis=0), per_period, False)
-        total += lines[: ORDERS.size] ** 2
-    result[:] = np.sqrt(total / max(len(segments), 1)).T
+    count = len(samples) // length
+    segments = samples[: count * length].reshape(count, length, -1)
+    window = np.hanning(length + 1)[:length]
+    centred = (segments - segments.mean(axis=1, keepdims=True)) * window[:, None]
+    lines = 2.0 * np.abs(np.fft.rfft(centred, axis=1)[:, : ORDERS.size]) / window.sum()
+    result[:] = np.sqrt((lines**2).sum(axis=0) / max(count, 1)).T
     result[:, 0] = np.abs(samples.mean(axis=0))
     return result

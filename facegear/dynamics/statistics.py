@@ -63,6 +63,25 @@ def batch_means(values: Array, per_period: int) -> Array:
     return values[:whole].reshape(batches, -1, values.shape[1]).mean(axis=1)
 
 
+def view_moments(samples: Array, views: Array, per_period: int, periodic: bool) -> tuple[Array, Array, Array]:
+    """Of samples @ views (n, columns): RMS, RMS without mean and its 95 % half-width, each (columns,).
+
+    From the covariances of the samples (K, n), batch by batch, without the product itself.
+    """
+    centre = samples.mean(axis=0)
+    centred = samples - centre
+    periods = len(samples) // per_period
+    batches = 1 if periodic else max(min(BATCHES, periods), 1)
+    whole = len(samples) if batches == 1 else periods // batches * batches * per_period
+    parts = centred[:whole].reshape(batches, -1, samples.shape[1])
+    covariances = parts.transpose(0, 2, 1) @ parts / parts.shape[1]
+    variances = np.maximum(((covariances @ views) * views).sum(axis=1), 0.0)
+    mean = centre @ views
+    variance = variances.mean(axis=0)
+    ac_rms = np.sqrt(variance)
+    return np.sqrt(variance + mean**2), ac_rms, half_width(variances, ac_rms)
+
+
 def half_width(means: Array, root: Array) -> Array:
     """95 % half-width (columns,) of a root mean square from batch means of what differs from its square."""
     batches = len(means)

@@ -10,7 +10,7 @@ from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.plan import SweepPlan
 from facegear.dynamics.simulate import Model, SteadyState, simulate, static_start
 from facegear.dynamics.spectra import order_spectrum, spectrum
-from facegear.dynamics.statistics import moments
+from facegear.dynamics.statistics import moments, view_moments
 from facegear.transmission.matrices import mass_diagonal
 from facegear.transmission.modes import natural_modes
 
@@ -105,11 +105,9 @@ def _row(
     """Numbers of one response; views (n, directions + modes) takes coordinates to translations and modes."""
     periodic = response.period > 0
     meshes = moments(response.deflections, response.per_period, periodic)
-    seen = response.coordinates @ views
-    moved = moments(seen[:, :directions], response.per_period, periodic)
-    in_modes = seen[:, directions:]
-    modal = in_modes.std(axis=0)
-    strongest = in_modes[:, [modal.argmax()]]
+    rms, ac_rms, interval = view_moments(response.coordinates, views, response.per_period, periodic)
+    modal = ac_rms[directions:]
+    strongest = response.coordinates @ views[:, [directions + modal.argmax()]]
     orders, lines = spectrum(strongest - strongest.mean(), response.per_period, periodic)
     exponent, half = response.exponent or (np.nan, np.nan)
     leading = np.nan if response.multipliers is None else abs(response.multipliers[0])
@@ -119,7 +117,7 @@ def _row(
         "deflection": np.array([getattr(meshes, name) for name in DEFLECTION]),
         "force": np.array([response.forces.mean(axis=0), np.abs(response.forces).mean(axis=0)]),
         "shares": response.shares,
-        "translation": np.array([getattr(moved, name).reshape(-1, 3) for name in TRANSLATION]),
+        "translation": np.array([values[:directions].reshape(-1, 3) for values in (rms, ac_rms, interval)]),
         "facts": np.array([response.residual, leading, exponent, half, response.spent]),
         "spectrum": order_spectrum(response.deflections, response.per_period, response.period),
         "modal": modal,
