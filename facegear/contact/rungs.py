@@ -23,7 +23,7 @@ DEFAULT = "coarse_4x1x2"
 SECTORS = {"coarse_4x1x2_sector_5": 5, "coarse_4x1x2_sector_9": 9}
 LINEAR: dict[str, Element] = {"coarse_4x1x2_hex8": "hex8", "coarse_4x1x2_tet4": "tet4"}
 
-FINEST = "medium_2x2x2"
+FINEST = "medium_4x1x2"
 RUNGS = (*CUTS, *SECTORS, *LINEAR)
 
 LIMITS = {"mean": 0.5, "amplitude_1": 3.0}
