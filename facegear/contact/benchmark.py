@@ -174,6 +174,7 @@ def shortcuts(design: PairDesign, base: Rung, materials: tuple[Material, Materia
         ("no coupling between neighbours", replace(plain, coupled=False)),
         ("no fillet contact", replace(plain, fillet=False)),
         ("no loads on tip edges", replace(plain, edges=False)),
+        ("contact on the pitch section's path only", replace(plain, path_only=True)),
     ):
         cases[name] = replace(base, plan=replace(plan, options=options))
     cases["contact strip not resolved"] = replace(base, plan=replace(plan, refinement=few))

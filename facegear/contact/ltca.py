@@ -12,6 +12,7 @@ from facegear.contact.candidates import Candidates, PinionSurface
 from facegear.contact.compliance import FlankCompliance
 from facegear.contact.influence import displacement, influence_matrix
 from facegear.contact.options import ContactOptions
+from facegear.contact.path import pairs_to_try
 from facegear.contact.search import find_candidates
 from facegear.contact.solver import Contact
 from facegear.contact.strip import Combine, Displace, solve_torques
@@ -127,7 +128,8 @@ def analyse(
 def _candidates(
     model: ContactModel, angles: tuple[float, float], options: ContactOptions, limit: float
 ) -> list[Candidates]:
-    return find_candidates(model.surface, model.lattice, *angles, PAIRS, limit, options)
+    teeth = pairs_to_try(model.design, angles[0], options)
+    return find_candidates(model.surface, model.lattice, *angles, teeth, limit, options)
 
 
 @dataclass(frozen=True)

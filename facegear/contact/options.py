@@ -31,11 +31,15 @@ class Sector:
 
 @dataclass(frozen=True)
 class ContactOptions:
-    """What takes part: fillets and tip lands as surfaces, coupling between neighbours, loads on tip edges."""
+    """What takes part: fillets and tip lands as surfaces, coupling between neighbours, loads on tip edges.
+
+    `path_only` leaves out the pairs that touch off the path of contact, where load bends teeth together.
+    """
 
     fillet: bool = True
     coupled: bool = True
     edges: bool = True
+    path_only: bool = False
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,24 @@
+"""Which pairs of teeth stand on the path of contact of the pitch section, where the unloaded flanks touch."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.contact.options import ContactOptions
+from facegear.geometry.design import Assembly, PairDesign
+from facegear.geometry.unloaded import PAIRS, unloaded_contact
+
+TOUCHING = 1e-9
+"""Gap (m) of conjugate flanks below which they count as touching; off the path it grows by micrometres."""
+
+
+def pairs_to_try(design: PairDesign, phi1: float, options: ContactOptions) -> NDArray[np.int64]:
+    """Pairs that may carry load at the pinion angle phi1 (rad): all, or with `path_only` those on the path.
+
+    The path is that of the nominal assembly: between the tips of pinion and gear at the radius m N2 / 2.
+    """
+    if not options.path_only:
+        return PAIRS
+    gaps = unloaded_contact(replace(design, assembly=Assembly()), [phi1]).gap[0]
+    return PAIRS[gaps < TOUCHING]

@@ -1,0 +1,101 @@
+"""What the finite elements of both bodies answer to the contact's forces."""
+
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from conftest import STEEL, pair_design
+
+from facegear.contact.candidates import PinionSurface
+from facegear.contact.compliance import flank_compliance
+from facegear.contact.factor import solve as solve_sparse
+from facegear.contact.influence import influence_matrix
+from facegear.contact.layer import tied_system
+from facegear.contact.options import ContactOptions, Refinement
+from facegear.contact.pair import BUILDERS
+from facegear.contact.search import find_candidates
+from facegear.contact.solver import solve
+from facegear.contact.teeth import GearLattice, piece_of
+from facegear.geometry.unloaded import unloaded_contact
+from facegear.mesh.sizes import MeshSizes
+
+CUTS = Refinement(3, 2, 2, 2.0)
+TORQUE = 400.0
+
+
+@pytest.fixture(scope="module")
+def pressed_teeth():
+    """One tooth of each gear, cut faces free: pieces, elements, the pair's contact and what made it."""
+    design, none = pair_design(), np.zeros(0, dtype=np.int64)
+    pieces, sides = zip(
+        *(piece_of(design, B(design, MeshSizes(1.5e-3, 6e-3, 3e-3)), STEEL) for B in BUILDERS.values()),
+        strict=True,
+    )
+    pieces = [replace(piece, left=none, right=none) for piece in pieces]
+    bodies = [flank_compliance(piece, CUTS) for piece in pieces]
+    systems = [tied_system(piece, CUTS) for piece in pieces]
+    phi1 = -0.1 * 2 * pi / design.pinion.teeth
+    phi2 = float(unloaded_contact(design, [phi1]).phi2[0])
+    surfaces = PinionSurface(design, sides[0], CUTS), GearLattice(design, sides[1], CUTS)
+    pairs = find_candidates(*surfaces, phi1, phi2, np.array([0]), 4e-3, ContactOptions())
+    contact = solve(influence_matrix(pairs, *bodies), pairs[0].gap, pairs[0].arm, TORQUE)
+    return systems, bodies, pairs[0], contact
+
+
+def answer(system, nodal):
+    """Forces (n, 3) on the masters, their displacements (n, 3), and the reactions (n, 3) where held."""
+    force = np.zeros((len(system.points), 3))
+    force[system.loaded] = (system.spread.T @ nodal)[:, None] * system.loaded_normals
+    free = ~system.held.ravel()
+    moved = np.zeros(free.size)
+    moved[free] = solve_sparse(
+        sp.csr_matrix(system.stiffness[free][:, free]), -force.ravel()[free][:, None]
+    ).ravel()
+    reaction = (system.stiffness @ moved).reshape(force.shape) + force
+    return -force, moved.reshape(force.shape), np.where(system.held, reaction, 0.0)
+
+
+@pytest.mark.parametrize("body", [0, 1], ids=["pinion", "face gear"])
+def test_contact_forces_and_reactions_of_a_body_balance_in_all_six_components(pressed_teeth, body):
+    systems, _, pair, contact = pressed_teeth
+    loads = (pair.pinion, pair.gear)[body]
+    force, _, reaction = answer(systems[body], loads.T @ contact.force)
+    points = systems[body].points
+    scale = np.linalg.norm(force.sum(axis=0))
+    assert scale > 5e3
+    np.testing.assert_allclose((force + reaction).sum(axis=0), 0.0, atol=1e-10 * scale)
+    moment = np.cross(points, force + reaction).sum(axis=0)
+    np.testing.assert_allclose(moment, 0.0, atol=1e-10 * scale * np.abs(points).max())
+
+
+def test_bore_feels_the_torque_that_the_contact_was_solved_for(pressed_teeth):
+    systems, _, pair, contact = pressed_teeth
+    _, _, reaction = answer(systems[0], pair.pinion.T @ contact.force)
+    moment = np.cross(systems[0].points, reaction)[:, 1].sum()
+    assert abs(moment) == pytest.approx(TORQUE, rel=1e-3)
+
+
+def test_flanks_displaced_by_the_finite_elements_just_touch_where_pressed(pressed_teeth):
+    systems, bodies, pair, contact = pressed_teeth
+    approach = np.zeros(len(contact.force))
+    for system, body, loads in zip(systems, bodies, (pair.pinion, pair.gear), strict=True):
+        nodal = loads.T @ contact.force
+        _, moved, _ = answer(system, nodal)
+        normal = system.spread @ np.sum(moved[system.loaded] * system.loaded_normals, axis=1)
+        np.testing.assert_allclose(-normal, body.own @ nodal, atol=1e-9 * np.abs(normal).max())
+        approach -= loads @ normal
+    clearance = pair.gap + approach - contact.rotation * pair.arm
+    largest = contact.rotation * pair.arm.max()
+    np.testing.assert_allclose(clearance[contact.active], 0.0, atol=1e-9 * largest)
+    assert clearance.min() > -1e-9 * largest
+
+
+def test_both_gears_are_pressed_alike(pressed_teeth):
+    systems, _, pair, contact = pressed_teeth
+    forces = [
+        np.linalg.norm(answer(system, loads.T @ contact.force)[0].sum(axis=0))
+        for system, loads in zip(systems, (pair.pinion, pair.gear), strict=True)
+    ]
+    assert forces[0] == pytest.approx(forces[1], rel=1e-3)
