@@ -50,7 +50,7 @@ def settle(packed: Packed, work: Work, place: Array, velocity: Array, settings: 
     tried: dict[int, float] = {}
     while True:
         log = make_log(packed, block)
-        require(run_periods(packed, work, place, velocity, tangents, block, 0, settings.tolerance, log))
+        require(run_periods(packed, work, place, velocity, tangents, block, 0, settings.tolerance, log, TAU))
         spent += block
         ends = np.concatenate([ends, log.ends])[-(2 * longest + BLOCK) :]
         period, residual = repeat(packed, ends, longest, goal)

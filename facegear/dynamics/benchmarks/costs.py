@@ -125,7 +125,7 @@ def _period_cost(ready: Model, frequency: float) -> tuple[float, float]:
     for periods in (100, COST_PERIODS, COST_PERIODS, COST_PERIODS):
         log = make_log(packed, periods)
         begin = time.process_time()
-        require(run_periods(packed, work, place, velocity, none, periods, 0, settings.tolerance, log))
+        require(run_periods(packed, work, place, velocity, none, periods, 0, settings.tolerance, log, TAU))
         times.append((time.process_time() - begin) / periods)
     return min(times[1:]), float(log.steps[0]) / COST_PERIODS
 

@@ -67,7 +67,7 @@ def ours(problem: Problem, tolerance: float) -> Array:
     work = make_work(packed, settings.taylor_order)
     place, velocity = z[:width].copy(), z[width:].copy()
     none = np.zeros((0, 2, width))
-    require(run_periods(packed, work, place, velocity, none, problem.periods, SAMPLES, tolerance, log))
+    require(run_periods(packed, work, place, velocity, none, problem.periods, SAMPLES, tolerance, log, TAU))
     return log.samples[:, : packed.n]
 
 

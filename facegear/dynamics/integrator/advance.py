@@ -28,6 +28,7 @@ BRIEFEST = 1e-14
 """An edge that is crossed within this time (rad of mesh phase) is stood on: s itself is not known better."""
 SHORTEST = 1e-10
 """Shortest time (rad of mesh phase) between two switches of one mesh that is followed."""
+MOST_GUESSES = 4
 OPEN, DRIVE, BACK = 0, 1, -1
 
 
@@ -51,11 +52,10 @@ def advance(
     deflect(packed, work.y, 0, work.error, work.deflection)
     deflect(packed, work.y, 1, work.error, work.deflection)
     _find_state(packed, work)
-    recurrence(packed, work, work.error, work.load, work.y, work.deflection)
-    for _ in range(3):
+    for _ in range(MOST_GUESSES):
+        recurrence(packed, work, work.error, work.load, work.y, work.deflection)
         if not _correct_state(packed, work):
             break
-        recurrence(packed, work, work.error, work.load, work.y, work.deflection)
     longest = stop - s
     length = step_length(packed, work, tolerance)
     if length >= longest:
@@ -126,15 +126,15 @@ def _until_switch(packed: Packed, work: Work, length: float) -> float:
         lower, upper = packed.lower[m], packed.upper[m]
         if lower >= upper:
             continue
-        least, most = work.least[m], work.most[m]
-        if work.state[m] != OPEN:
-            if least <= 0.0 <= most:
-                first = _crossing(work, m, 0.0, work.at_edge[m] != 0, length, first)
-        else:
-            if most >= upper:
-                first = _crossing(work, m, upper, work.at_edge[m] == 1, length, first)
-            if least <= lower:
-                first = _crossing(work, m, lower, work.at_edge[m] == -1, length, first)
+        closed = work.state[m] != OPEN
+        for side in range(1 if closed else 2):
+            level, edge = 0.0, work.at_edge[m]
+            if not closed:
+                # Open, a mesh may reach either edge, and stand on one of them.
+                level = upper if side == 0 else lower
+                edge = edge if (edge == 1) == (side == 0) else 0
+            if work.least[m] <= level <= work.most[m]:
+                first = _crossing(work, m, level, edge != 0, length, first)
     return first * length
 
 

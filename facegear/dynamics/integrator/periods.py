@@ -58,7 +58,7 @@ def run_periods(
     per_period: int,
     tolerance: float,
     log: Log,
-    longest: float = TAU,
+    longest: float,
 ) -> int:
     """Move place and velocity (n,) and the tangents (columns, 2, n) over whole periods; returns a status.
 
