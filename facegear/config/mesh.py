@@ -19,7 +19,7 @@ class SizesSection(Section):
 class Mesh(Section):
     """How fine both bodies are meshed."""
 
-    resolution: Literal["coarse", "medium", "fine", "finest"] | SizesSection = "medium"
+    resolution: Literal["coarse", "medium", "fine", "finest"] | SizesSection = "coarse"
     exported_teeth: int = Field(
         default=3, ge=1, le=2000, description="teeth in mesh files, at most all of them"
     )
