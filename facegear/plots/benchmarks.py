@@ -29,12 +29,13 @@ def work_precision_diagram(table: pd.DataFrame) -> Figure:
                     ms=4,
                     label=method,
                 )
-                if known["interval"].any():
-                    axis.axvline(known["interval"].median(), color="0.8", lw=1, zorder=0)
+            chance = table.loc[table["problem"] == problem, "interval"].median()
+            if chance > 0.0:
+                axis.axvline(chance, color="0.8", lw=3, zorder=0)
             axis.set_title(problem, fontsize=9)
             axis.set_xlabel(
-                "error of the RMS (lines: what chance leaves)"
-                if known["interval"].any()
+                "error of the RMS (line: what chance leaves)"
+                if chance > 0.0
                 else "error of the deflection over the length scale"
             )
             axis.set_ylabel("time (s)")

@@ -14,7 +14,7 @@ from facegear.transmission.machine import Machine, mesh_frequency
 Array = NDArray[np.float64]
 SAMPLES = 16
 FACTORS = (1.0, 2.0, 1.5, 1.75, 2.5)
-IRREGULAR_PERIODS = 400
+PERIODS, IRREGULAR_PERIODS = 24, 400
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,8 +35,8 @@ def machine_problems(machine: Machine, speed_rpm: float) -> list[Problem]:
     """
     regular = replace(machine, half_backlash=0.0)
     problems = [
-        _problem("contact kept", regular, speed_rpm, 12, False)[0],
-        _problem("contact lost", machine, 0.6 * speed_rpm, 12, False)[0],
+        _problem("contact kept", regular, speed_rpm, PERIODS, False)[0],
+        _problem("contact lost", machine, 0.6 * speed_rpm, PERIODS, False)[0],
     ]
     for factor in FACTORS:
         name = f"irregular, {factor * speed_rpm:.0f} rpm"

@@ -25,7 +25,7 @@ class Budget:
     """Repeats of each run for the median CPU time, and the longest run (s) after which a ladder ends."""
 
     repeats: int = 3
-    longest: float = 0.5
+    longest: float = 1.0
     longest_irregular: float = 3.0
 
 

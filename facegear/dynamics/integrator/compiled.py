@@ -1,5 +1,6 @@
 """A system at one speed, packed for the compiled kernels, with time counted as mesh phase s in rad."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -53,6 +54,7 @@ def pack(system: System, frequency: float) -> Packed:
     transposed = np.zeros((wide_m, wide_n))
     transposed[:m, :n] = system.directions
     breaks, pieces = _pieces(system, wide_m)
+    natural, harmonics = _fastest(system)
     # A clearance within rounding of the deflections is none: its edges could not be told apart.
     closed = system.upper - system.lower <= LEAST_CLEARANCE * system.scale
     lower = np.where(closed, system.upper, system.lower)
@@ -75,15 +77,16 @@ def pack(system: System, frequency: float) -> Packed:
         pieces=pieces / frequency**2,
         weights=np.abs(transposed).max(axis=0),
         leverage=(transposed**2).sum(axis=1),
-        fastest=_fastest(system, frequency),
+        fastest=natural / frequency + harmonics,
         damping_when_open=system.damping_when_open,
         scale=system.scale,
     )
 
 
-def _fastest(system: System, frequency: float) -> float:
-    """Stiffest natural frequency with all meshes in contact, plus damping, plus the harmonics of k that
-    matter.
+@lru_cache(maxsize=16)
+def _fastest(system: System) -> tuple[float, float]:
+    """Stiffest natural frequency with all meshes in contact plus damping, 1/s, and the harmonics of k that
+    matter, in multiples of the mesh frequency.
     """
     amplitudes = np.hypot(system.stiffness[:, 0], system.stiffness[:, 1])
     highest = amplitudes.sum(axis=1) + np.array(
@@ -96,7 +99,7 @@ def _fastest(system: System, frequency: float) -> float:
     natural = np.sqrt(max(np.linalg.eigvalsh(stiffness)[-1], 0.0)) + np.linalg.eigvalsh(damping)[-1]
     share = (amplitudes / np.maximum(highest, 1e-300)[:, None]).max(axis=0)
     harmonics = (np.arange(share.size) * share ** (1.0 / 8.0)).max()
-    return float(natural / frequency + harmonics)
+    return float(natural), float(harmonics)
 
 
 def _whole(length: int) -> int:

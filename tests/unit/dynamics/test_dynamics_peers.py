@@ -1,13 +1,19 @@
 """The integrators of the comparison solve the same equations."""
 
 import numpy as np
+import pandas as pd
 import pytest
 from lumped_machines import make_machine
 
 from facegear.dynamics.benchmarks.methods import all_methods, ours, rk4
 from facegear.dynamics.benchmarks.problems import SAMPLES, machine_problems, oscillator_problem
 from facegear.dynamics.benchmarks.right_side import compiled_right_side, plain_right_side
-from facegear.dynamics.benchmarks.work_precision import Budget, seconds_at, work_precision
+from facegear.dynamics.benchmarks.work_precision import (
+    Budget,
+    cheapest_within_chance,
+    seconds_at,
+    work_precision,
+)
 from facegear.dynamics.integrator.compiled import pack
 
 
@@ -56,3 +62,12 @@ def test_the_table_lists_failures_and_interpolates_times(problems):
     assert (table["failure"] == "").all()
     time = seconds_at(table, "oracle (a)", "facegear", 1e-8)
     assert table["seconds"].min() <= time <= table["seconds"].max()
+
+
+def test_an_rms_counts_as_right_only_where_every_finer_setting_is_right_too():
+    rows = [("a", 1e-2, 0.01, 1.0), ("a", 1e-3, 0.09, 2.0), ("a", 1e-4, 0.02, 3.0), ("a", 1e-5, 0.01, 4.0)]
+    table = pd.DataFrame(rows, columns=["method", "setting", "error", "seconds"])
+    table = table.assign(problem="irregular", interval=0.03)
+    found = cheapest_within_chance(table, "irregular")
+    assert found["setting"].tolist() == [1e-4]
+    assert cheapest_within_chance(table.assign(error=0.5), "irregular").empty

@@ -6,6 +6,7 @@ from lumped_machines import make_machine
 
 from facegear.dynamics.assemble import SeamKind, assemble
 from facegear.dynamics.campbell import resonance
+from facegear.dynamics.convergence import convergence_table, not_converged
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.plan import SweepPlan
 from facegear.dynamics.simulate import model, simulate, simulate_many
@@ -134,3 +135,20 @@ def test_irregular_motion_has_a_positive_exponent_and_an_interval_on_its_rms(rea
     gap = np.abs(second.deflection[0, AC_RMS] - piece.deflection[0, AC_RMS])
     doubt = interval + second.deflection[0, DEFLECTION.index("ac_rms_interval")]
     assert (gap < 3.0 * doubt).mean() >= 0.8
+
+
+def test_convergence_names_the_speeds_that_moved_or_changed_class(whole):
+    piece = whole["up"].piece
+    first, second = np.flatnonzero(periodic(piece))[:2]
+    deflection, labels = piece.deflection.copy(), piece.labels.astype("<U16")
+    deflection[first] *= 1.02
+    labels[second] = "period-7"
+    table = convergence_table("up", piece, replace(piece, deflection=deflection, labels=labels))
+    assert table["verdict"][first] == "moved"
+    assert table["rms_change"][first] == pytest.approx(0.02)
+    assert table["verdict"][second] == "other class"
+    rest = table.drop([first, second])
+    assert set(rest["verdict"]) <= {"converged", "irregular"}
+    told = not_converged(table)
+    assert f"up {piece.speeds[first]:.0f} rpm" in told and f"up {piece.speeds[second]:.0f} rpm" in told
+    assert told.count("rpm") == 2
