@@ -129,7 +129,7 @@ def run_deck(path: Path, threads: int, dof: int, timeout: float = 3600.0) -> Pee
     )
     if done.returncode != 0 or not moments:
         raise FacegearError(f"{PROGRAM} failed on {path}: see {path.parent / f'{path.stem}.log'}")
-    version = re.search(r"Version (\S+)", done.stdout)
+    version = re.search(r"Version ([\d.]+)", done.stdout)
     along = float(moments[-1][1])
     return PeerResult(
         1e-3 * abs(along), seconds, memory * 1024 / 1e9, dof, version.group(1) if version else "unknown"
