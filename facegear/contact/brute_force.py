@@ -1,130 +1,154 @@
 """Two spur gears in plane strain by plain finite elements: the reference for the twin, sharing none of its
 parts.
 
-scikit-fem assembles two sectors of teeth with straight-sided quadratic quadrilaterals. Contact acts at Gauss
-points of the pinion's flank facets by a penalty so stiff that it gives way by nanometres; Newton's method on
-the whole sparse system. No condensation, no influence matrix, no hats.
+Contact acts at Gauss points of the pinion's flank facets by a penalty so stiff that it gives way by
+nanometres; Newton's method on the whole sparse system of `brute_mesh`. No condensation, no influence matrix,
+no hats.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from skfem import Basis, ElementQuad2, ElementVector, MeshQuad
-from skfem.models.elasticity import lame_parameters, linear_elasticity
+from scipy.optimize import brentq
 
+from facegear.contact.brute_mesh import Chain, FlatGear, FlatMesh, flat_gear, refined
 from facegear.contact.factor import solve
-from facegear.contact.twin import involute_separation, slab_tooth
+from facegear.contact.twin import involute_separation
 from facegear.errors import NotConverged
 from facegear.geometry import pinion
-from facegear.geometry.design import Material, PairDesign
+from facegear.geometry.design import Material
 from facegear.geometry.unloaded import PAIRS
-from facegear.mesh.sector import sector
-from facegear.mesh.sizes import MeshSizes
 
-PENALTY = 1e18
-"""Pa per m: a pressure of 1 GPa gives way by 1 nm."""
+PENALTIES = (1e14, 1e15, 1e16, 1e17, 1e18)
+"""Pa per m, each the start of the next: by the last a pressure of 1 GPa gives way by 1 nm."""
 STEPS = 60
-GAUSS_POINTS = 12
-"""On a facet: many, so that a tip edge that ends the contact within a facet is seen where it is."""
+GAUSS_POINTS = 6
+CLOSE = 3e-4
+"""Points with larger gaps (m) are left out."""
+REACH = 40e-6
+"""Pairs closer than this (m) when unloaded are refined around their closest point."""
 
 
-@dataclass(frozen=True, eq=False)
-class FlatGear:
-    """A sector in plane strain: stiffness on all dof (N/m per m), free dof, and the dof along each tooth's
-    flank.
-
-    `flanks` maps a tooth to (2 n + 1, 2) x and z dof from tip to root, corners and middles of n straight
-    facets; `corners` (n + 1, 2) are those of tooth 0.
-    """
-
-    design: PairDesign
-    stiffness: sp.csc_matrix
-    free: NDArray[np.bool_]
-    flanks: dict[int, NDArray[np.int64]]
-    corners: NDArray[np.float64]
-
-
-def flat_gear(design: PairDesign, sizes: MeshSizes, material: Material, teeth: int) -> FlatGear:
-    """Sector of `teeth` teeth with free cut faces, bore clamped; right flanks loaded."""
-    slab = sector(slab_tooth(design, sizes), teeth, -(teeth // 2))
-    count = len(slab.nodes)
-    quads = slab.hexes[:, [0, 2, 8, 6]]
-    used, local = np.unique(quads, return_inverse=True)
-    points = slab.nodes[used][:, [0, 2]]
-    corners = local.reshape(-1, 4)
-    turn = np.cross(
-        points[corners[:, 1]] - points[corners[:, 0]], points[corners[:, 2]] - points[corners[:, 0]]
+def gears_at(
+    meshes: tuple[FlatMesh, FlatMesh], position: float, material: Material, radius: float, halvings: int
+) -> tuple[FlatGear, FlatGear]:
+    """Both gears, halved `halvings` times within `radius` (m) of where they touch at a position."""
+    first, second = (mesh.design for mesh in meshes)
+    facets = [len(mesh.flanks[0]) - 1 for mesh in meshes]
+    place = np.linspace(0.0, facets[0], 40 * facets[0] + 1)
+    phi1 = _angle(first, position)
+    spots: tuple[list[tuple[int, float]], list[tuple[int, float]]] = ([], [])
+    for tooth in PAIRS.tolist():
+        _, gap, hit = _separation((first, second), facets, place, phi1, tooth)
+        gap = np.where(np.isfinite(hit), gap, np.inf)
+        nearest = np.argmin(gap)
+        if gap[nearest] < REACH:
+            spots[0].append((tooth, float(place[nearest])))
+            spots[1].append((-tooth, float(_place(second, facets[1], hit[nearest]))))
+    own, other = (
+        flat_gear(mesh, refined(mesh, at, radius, halvings), material, PAIRS.tolist())
+        for mesh, at in zip(meshes, spots, strict=True)
     )
-    corners[turn < 0] = corners[turn < 0][:, ::-1]
-    mesh = MeshQuad(points.T.copy(), corners.T.copy())
-    basis = Basis(mesh, ElementVector(ElementQuad2()), intorder=4)
-    lame = lame_parameters(material.young_modulus, material.poisson_ratio)
-    stiffness = linear_elasticity(*lame).assemble(basis).tocsc()
-    renumber = np.full(count, -1)
-    renumber[used] = np.arange(used.size)
-    facet_of = {tuple(sorted(pair)): i for i, pair in enumerate(mesh.facets.T.tolist())}
-
-    def chain(nodes: NDArray[np.int64]) -> NDArray[np.int64]:
-        ends = renumber[nodes[::2]]
-        dofs = np.empty((2 * ends.size - 1, 2), dtype=np.int64)
-        dofs[::2] = basis.nodal_dofs[:, ends].T
-        facets = [
-            facet_of[tuple(sorted(pair))] for pair in zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True)
-        ]
-        dofs[1::2] = basis.facet_dofs[:, facets].T
-        return dofs
-
-    grid = slab.tooth.surfaces["flank_right"].nodes[:, 0]
-    bore = np.unique(slab.tooth_nodes[:, slab.tooth.faces["bore"].ravel()])
-    held_points = renumber[bore]
-    free = np.ones(basis.N, dtype=bool)
-    held = np.zeros(len(points), dtype=bool)
-    held[held_points[held_points >= 0]] = True
-    free[basis.nodal_dofs[:, held]] = False
-    free[basis.facet_dofs[:, held[mesh.facets].all(axis=0)]] = False
-    flanks = {slab.first + j: chain(slab.tooth_nodes[j][grid]) for j in range(teeth)}
-    return FlatGear(design, stiffness, free, flanks, slab.tooth.nodes[grid[::2]][:, [0, 2]])
+    return own, other
 
 
-def loaded_rotation(
-    gears: tuple[FlatGear, FlatGear], position: float, line_load: float
-) -> tuple[float, NDArray[np.float64]]:
-    """Rotation (rad) of the pinion's bore under a load (N/m along the line of action), and the pairs' shares.
+def loaded_rotations(
+    gears: tuple[FlatGear, FlatGear], position: float, line_loads: Sequence[float]
+) -> list[tuple[float, NDArray[np.float64]]]:
+    """Rotation (rad) of the pinion's bore under each load (N/m along the line of action), and the pairs'
+    shares.
 
+    Newton's method on a convex energy with an exact search along each step, hence no cycling.
     Raises NotConverged naming position and load.
     """
     first, second = gears
     base = first.design.pinion_base_radius
-    phi1 = (position - 0.5) * 2 * np.pi / first.design.pinion.teeth
+    phi1 = _angle(first.design, position)
     rows, gaps, weights, owner = _constraints(gears, phi1)
     stiffness = sp.block_diag([first.stiffness, second.stiffness], format="csc")
     free = np.concatenate([first.free, second.free])
-    stiffness, rows = stiffness[free][:, free], rows[:, free].tocsr()
-    torque = line_load * base
-    rotation, moved = 2.0 * torque / (1.5e10 * base**2), np.zeros(free.sum())
+    stiffness = stiffness[free][:, free].tocsr()
+    rows = sp.hstack([rows[:, free], np.full((len(gaps), 1), -base)], format="csr")
+    state = np.zeros(free.sum() + 1)
+    state[-1] = gaps.min() / base + line_loads[0] / (1e10 * base)
+    found = []
+    for load in line_loads:
+        for penalty in PENALTIES if load == line_loads[0] else PENALTIES[-1:]:
+            springs = penalty * weights
+            state = _balanced(stiffness, rows, springs, gaps, state, load * base, f"position {position:g}")
+        force = springs * np.maximum(-gaps - rows @ state, 0.0)
+        found.append((float(state[-1]), np.array([force[owner == tooth].sum() for tooth in PAIRS]) / load))
+    return found
+
+
+def _balanced(stiffness, rows, springs, gaps, state, torque, where):  # type: ignore[no-untyped-def]
+    """Displacements and rotation at balance."""
     for _ in range(STEPS):
-        depth = rotation * base - gaps - rows @ moved
+        depth = -gaps - rows @ state
         active = depth > 0
-        part = rows[active]
-        scaled = sp.diags_array(PENALTY * weights[active]) @ part
-        tangent = (stiffness + part.T @ scaled).tocsr()
-        push = base * np.asarray(scaled.sum(axis=0)).ravel()
-        both = solve(tangent, np.stack([push, -scaled.T @ gaps[active]], axis=1))
-        own = PENALTY * weights[active]
-        own_turn = base**2 * own.sum() - push @ both[:, 0]
-        own_gap = -base * own @ gaps[active] - push @ both[:, 1]
-        new_rotation = (torque - own_gap) / own_turn
-        new_moved = new_rotation * both[:, 0] + both[:, 1]
-        change = abs(new_rotation - rotation) / new_rotation
-        rotation, moved = new_rotation, new_moved
-        pressed = rotation * base - gaps - rows @ moved > 0
-        if change < 1e-12 and np.array_equal(pressed, active):
-            force = own * (rotation * base - gaps[active] - part @ moved)
-            share = np.array([force[owner[active] == tooth].sum() for tooth in PAIRS]) * base / torque
-            return float(rotation), share
-    raise NotConverged("brute force", f"position {position:g}, {line_load:g} N/m", f"{STEPS} Newton steps")
+        step = _newton_step(stiffness, rows[active], springs[active], depth[active], state, torque)
+        state = state + _length(stiffness, rows, springs, depth, state, step, torque) * step
+        pressed = -gaps - rows @ state > 0
+        if np.array_equal(pressed, active) and np.abs(step).max() < 1e-10 * np.abs(state).max():
+            return state
+    raise NotConverged("brute force", f"{where}, {torque:g} N m per m", f"{STEPS} Newton steps")
+
+
+def _newton_step(stiffness, rows, springs, depth, state, torque):  # type: ignore[no-untyped-def]
+    """Change of displacements and rotation (the last) to the balance of the present contact points."""
+    scaled = sp.diags_array(springs) @ rows
+    part, lever = rows[:, :-1], rows[:, -1].toarray().ravel()
+    tangent = (stiffness + part.T @ scaled[:, :-1]).tocsr()
+    push = part.T @ (springs * lever)
+    missing = -stiffness @ state[:-1] + part.T @ (springs * depth)
+    both = solve(tangent, np.stack([push, missing], axis=1))
+    short = torque + lever @ (springs * depth)
+    turn = (short - push @ both[:, 1]) / (lever @ (springs * lever) - push @ both[:, 0])
+    return np.append(both[:, 1] - turn * both[:, 0], turn)
+
+
+def _length(stiffness, rows, springs, depth, state, step, torque):  # type: ignore[no-untyped-def]
+    """Where along the step the energy is least: the root of its slope, which never falls."""
+    bent = stiffness @ step[:-1]
+    start, rise = state[:-1] @ bent - torque * step[-1], step[:-1] @ bent
+    closing = rows @ step
+
+    def slope(length: float) -> float:
+        return start + length * rise + (springs * closing) @ np.minimum(length * closing - depth, 0.0)
+
+    high = 1.0
+    while slope(high) < 0 and high < 1e6:
+        high *= 2.0
+    return brentq(slope, 0.0, high, xtol=1e-15, rtol=1e-14) if slope(0.0) < 0 < slope(high) else 1.0
+
+
+def _angle(design, position):  # type: ignore[no-untyped-def]
+    return (position - 0.5) * 2 * np.pi / design.pinion.teeth
+
+
+def _roll(design, facets, place):  # type: ignore[no-untyped-def]
+    """Roll angle at places along the flank, whose nodes are evenly spaced in its square, from tip to root."""
+    top, bottom = design.pinion_tip_roll, pinion.junction_roll(design)
+    return np.sqrt(top**2 + place / facets * (bottom**2 - top**2))
+
+
+def _place(design, facets, roll):  # type: ignore[no-untyped-def]
+    top, bottom = design.pinion_tip_roll, pinion.junction_roll(design)
+    return (top**2 - roll**2) / (top**2 - bottom**2) * facets
+
+
+def _separation(designs, facets, place, phi1, tooth):  # type: ignore[no-untyped-def]
+    """Normals (n, 3) of the pinion's flank at places, gaps (n,) along them and the gear's places, nan
+    beside it.
+    """
+    roll = _roll(designs[0], facets[0], place)
+    points = pinion.cartesian(*pinion.involute_point(designs[0], roll), 0.0)
+    nx, nz = pinion.involute_normal(designs[0], roll)
+    normals = np.stack([nx, np.zeros_like(nx), nz], axis=1)
+    gap, hit = involute_separation(*designs, points, normals, phi1, tooth)
+    return normals, gap, hit
 
 
 def _constraints(
@@ -133,42 +157,36 @@ def _constraints(
     """Rows that give the normal approach spent on elastic displacement, gaps, lengths and teeth of all
     points.
     """
-    first, second = gears
-    top, bottom = first.design.pinion_tip_roll, pinion.junction_roll(first.design)
-    facets = len(first.corners) - 1
+    designs = gears[0].design, gears[1].design
+    pitches = [2 * np.pi / design.pinion.teeth for design in designs]
+    facets = [round(gear.chains[0].ends[-1]) for gear in gears]
     where, weight = np.polynomial.legendre.leggauss(GAUSS_POINTS)
-    place = (np.arange(facets)[:, None] + (where + 1) / 2).ravel()
-    roll = np.sqrt(top**2 + place / facets * (bottom**2 - top**2))
-    points = pinion.cartesian(*pinion.involute_point(first.design, roll), 0.0)
-    nx, nz = pinion.involute_normal(first.design, roll)
-    normals = np.stack([nx, np.zeros_like(nx), nz], axis=1)
-    lengths = np.linalg.norm(np.diff(first.corners, axis=0), axis=1)
-    weights = (lengths[:, None] * weight / 2).ravel()
-    low, high = pinion.junction_roll(second.design), second.design.pinion_tip_roll
-    size, shift = first.stiffness.shape[0] + second.stiffness.shape[0], first.stiffness.shape[0]
-    matrices, found_gaps, found_weights, owners = [], [], [], []
-    for tooth in PAIRS:
-        gap, hit = involute_separation(first.design, second.design, points, normals, phi1, int(tooth))
-        on = np.isfinite(hit) & (gap < 3e-4)
-        if not on.any():
-            continue
-        turned = normals[on][:, [0, 2]]
-        own = _trace(
-            place[on], first.flanks[int(tooth)], _turn(turned, tooth * 2 * np.pi / first.design.pinion.teeth)
+    where, weight = (where + 1) / 2, weight / 2
+    shift = gears[0].stiffness.shape[0]
+    size = shift + gears[1].stiffness.shape[0]
+    matrices, gaps, weights, owners = [], [], [], []
+    for tooth in PAIRS.tolist():
+        own, other = gears[0].chains[tooth], gears[1].chains[-tooth]
+        long = np.diff(own.ends)
+        place = (own.ends[:-1, None] + long[:, None] * where).ravel()
+        length = own.length[:, None] * weight
+        normals, gap, hit = _separation(designs, facets, place, phi1, tooth)
+        on = np.isfinite(hit) & (gap < CLOSE)
+        turned = _turn(normals[on][:, [0, 2]], tooth * pitches[0])
+        n2 = np.stack(pinion.involute_normal(designs[1], hit[on]), axis=1)
+        matrices.append(
+            _rows(own, place[on], turned, size, 0)
+            + _rows(
+                other, _place(designs[1], facets[1], hit[on]), _turn(n2, -tooth * pitches[1]), size, shift
+            )
         )
-        angle = (high**2 - hit[on] ** 2) / (high**2 - low**2) * (len(second.corners) - 1)
-        other_tooth = -int(tooth)
-        n2 = np.stack(pinion.involute_normal(second.design, hit[on]), axis=1)
-        body = _turn(n2, other_tooth * 2 * np.pi / second.design.pinion.teeth)
-        other = _trace(angle, second.flanks[other_tooth], body)
-        matrices.append(_rows(own, size, 0, -1.0) + _rows(other, size, shift, -1.0))
-        found_gaps.append(gap[on])
-        found_weights.append(weights[on])
+        gaps.append(gap[on])
+        weights.append(length.ravel()[on])
         owners.append(np.full(on.sum(), tooth))
     return (
         sp.vstack(matrices, format="csr"),
-        np.concatenate(found_gaps),
-        np.concatenate(found_weights),
+        np.concatenate(gaps),
+        np.concatenate(weights),
         np.concatenate(owners),
     )
 
@@ -178,19 +196,12 @@ def _turn(vectors: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
     return np.stack([c * vectors[:, 0] - s * vectors[:, 1], s * vectors[:, 0] + c * vectors[:, 1]], axis=1)
 
 
-def _trace(place, dofs, normal):  # type: ignore[no-untyped-def]
-    """Dof and values of normal displacement at places along a chain of facets."""
-    facets = (len(dofs) - 1) // 2
-    facet = np.clip(place.astype(np.int64), 0, facets - 1)
-    x = place - facet
+def _rows(chain: Chain, place, normal, size, shift):  # type: ignore[no-untyped-def]
+    """Minus the displacement along `normal` (n, 2) at places of a chain, as rows on all dof."""
+    facet = np.clip(np.searchsorted(chain.ends, place, side="right") - 1, 0, len(chain.ends) - 2)
+    x = (place - chain.ends[facet]) / np.diff(chain.ends)[facet]
     shapes = np.stack([(1 - x) * (1 - 2 * x), 4 * x * (1 - x), x * (2 * x - 1)], axis=1)
-    nodes = dofs[2 * facet[:, None] + np.arange(3)]
-    return nodes, shapes[:, :, None] * normal[:, None, :]
-
-
-def _rows(trace, size, shift, sign):  # type: ignore[no-untyped-def]
-    nodes, values = trace
+    nodes = chain.dofs[2 * facet[:, None] + np.arange(3)]
+    values = shapes[:, :, None] * normal[:, None, :]
     index = np.repeat(np.arange(len(nodes)), 6)
-    return sp.csr_matrix(
-        (sign * values.ravel(), (index, shift + nodes.reshape(-1))), shape=(len(nodes), size)
-    )
+    return sp.csr_matrix((-values.ravel(), (index, shift + nodes.reshape(-1))), shape=(len(nodes), size))

@@ -11,7 +11,7 @@ from facegear.provenance.stage import stage
 with stage(snakemake) as run:
     design = pair_design(parse(ToothPair, snakemake.params.tooth_pair))
     gears = (design.pinion.teeth, design.face_gear.teeth)
-    ladder = (0.054, 0.027, 0.0135)
+    ladder = (0.2, 0.1, 0.05)
     table = pd.concat([twin_study(design, teeth, ladder) for teeth in gears], ignore_index=True)
     tables.write(snakemake.output.table, table)
     run.summary(f"largest difference from brute force {table['difference_percent'].abs().max():.2f} %")
