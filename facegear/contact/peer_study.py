@@ -83,6 +83,16 @@ def peer_study(
     return pd.DataFrame(rows)
 
 
+def unrefined_model(design: PairDesign, sizes: MeshSizes) -> ContactModel:
+    """Surfaces of both gears for sector compliances; its own compliances are empty."""
+    sides = [contact_side(design, build(design, sizes)) for build in BUILDERS.values()]
+    plain, none = Refinement(), np.zeros((0, 0))
+    empty = FlankCompliance(none, none[None], (0, 0), (0, 0), plain)
+    return ContactModel(
+        design, PinionSurface(design, sides[0], plain), GearLattice(design, sides[1], plain), empty, empty
+    )
+
+
 def _chain_seconds(design, sizes, materials):  # type: ignore[no-untyped-def]
     """Seconds of both compliances of 5-tooth sectors as the chain makes them."""
     plan = ContactPlan((1.0,), 1, Refinement(), Sector(TEETH, TEETH), ContactOptions())
@@ -100,13 +110,7 @@ def _sector(design, sizes, materials):  # type: ignore[no-untyped-def]
         sector_blocks(design, tooth, material, TEETH, LOADED)
         for tooth, material in zip(teeth, materials, strict=True)
     ]
-    sides = [contact_side(design, tooth) for tooth in teeth]
-    plain = Refinement()
-    none = np.zeros((0, 0))
-    empty = FlankCompliance(none, none[None], (0, 0), (0, 0), plain)
-    model = ContactModel(
-        design, PinionSurface(design, sides[0], plain), GearLattice(design, sides[1], plain), empty, empty
-    )
+    model = unrefined_model(design, sizes)
     # everything that positions share, made now and counted with the compliances
     analyse_sector(model, *blocks, Place(0.5, 0.0, design.pinion_base_radius), (0.0, 0.0), [1.0])
     return model, blocks, time.perf_counter() - start

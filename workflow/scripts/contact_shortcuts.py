@@ -1,9 +1,12 @@
 """What the usual shortcuts do to mean and first harmonic of the mesh stiffness."""
 
+import pandas as pd
+
 from facegear.config.base import parse
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
 from facegear.contact.benchmark import Rung, shortcuts
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
+from facegear.contact.sector_study import whole_sectors
 from facegear.io import tables
 from facegear.mesh.sizes import MeshSizes
 from facegear.provenance.stage import stage
@@ -15,6 +18,9 @@ with stage(snakemake) as run:
     m = design.module
     base = Rung("full model", MeshSizes(0.4 * m, 0.85 * m, 0.8 * m), plan)
     table = shortcuts(design, base, materials(section))
+    flat = MeshSizes(0.2 * m, 1.6 * m, 1.2 * m)
+    whole = whole_sectors(design, flat, materials(section), 600.0, plan.positions)
+    table = pd.concat([table, whole], ignore_index=True)
     tables.write(snakemake.output.table, table)
     worst = table.loc[table["mean_error_percent"].abs().idxmax()]
     run.summary(
