@@ -46,13 +46,15 @@ def test_every_method_converges_to_ours(problems):
 def test_fixed_steps_lose_their_order_where_contact_switches(problems):
     kept, lost = problems[0], problems[1]
 
-    def gain(problem):
+    def gain(problem, coarsest):
         exact = ours(problem, 1e-14)
-        errors = [np.abs(rk4(problem, steps) - exact).max() for steps in (256, 512, 1024, 2048)]
+        steps = coarsest * 2 ** np.arange(4)
+        errors = [np.abs(rk4(problem, count) - exact).max() for count in steps]
         return np.mean(np.log2(np.divide(errors[:-1], errors[1:])))
 
-    assert gain(kept) == pytest.approx(4.0, abs=0.25)
-    assert gain(lost) < 3.2
+    # More steps would reach rounding where contact is kept.
+    assert gain(kept, 64) == pytest.approx(4.0, abs=0.25)
+    assert gain(lost, 256) < 3.2
 
 
 def test_the_table_lists_failures_and_interpolates_times(problems):
