@@ -10,10 +10,8 @@ CUTS = {
     "coarse_4x1x2": ("coarse", Refinement(4, 1, 2, 2.0)),
     "coarse_4x2x2": ("coarse", Refinement(4, 2, 2, 2.0)),
     "coarse_8x1x3": ("coarse", Refinement(8, 1, 3, 2.0)),
-    "medium_2x1x1": ("medium", Refinement(2, 1, 1)),
     "medium_2x1x2": ("medium", Refinement(2, 1, 2, 2.0)),
     "medium_4x1x2": ("medium", Refinement(4, 1, 2, 2.0)),
-    "fine_1x1x1": ("fine", Refinement()),
 }
 """Mesh resolution and cuts of the flank layer across the profile, along the width and in depth."""
 

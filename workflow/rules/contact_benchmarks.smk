@@ -13,7 +13,7 @@ rule contact_rung:
         "../envs/facegear.yaml"
     threads: 2
     resources:
-        mem_mb=8000,
+        mem_mb=9000,
         runtime=60,
     params:
         tooth_pair=config_slice("tooth_pair"),
