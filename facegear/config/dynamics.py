@@ -6,7 +6,7 @@ from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.plan import SweepPlan
+from facegear.dynamics.sweeps.plan import SweepPlan
 
 MAX_SPEED_RPM = 200_000
 

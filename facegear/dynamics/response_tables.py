@@ -4,10 +4,10 @@ import numpy as np
 import pandas as pd
 
 from facegear.dynamics.integrator.compiled import TAU
-from facegear.dynamics.simulate import Model, SteadyState
-from facegear.dynamics.spectra import HIGHEST, spectrum
-from facegear.dynamics.sweep import collect
-from facegear.dynamics.sweep_tables import UM, sweep_table
+from facegear.dynamics.steady_state.simulate import Model, SteadyState
+from facegear.dynamics.steady_state.spectra import HIGHEST, spectrum
+from facegear.dynamics.sweeps.sweep import collect
+from facegear.dynamics.sweeps.sweep_tables import UM, sweep_table
 from facegear.transmission.layout import Layout
 
 SHOWN_PERIODS = 32

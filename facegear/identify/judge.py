@@ -8,7 +8,7 @@ import pandas as pd
 import scipy.stats
 
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.simulate import model, static_start
+from facegear.dynamics.steady_state.simulate import model, static_start
 from facegear.identify.inputs import Inputs
 from facegear.identify.objective import coefficients
 from facegear.identify.search import Problem, inputs_of, misfit_of

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.simulate import Model, SteadyState, model, simulate, static_start
+from facegear.dynamics.steady_state.simulate import Model, SteadyState, model, simulate, static_start
 from facegear.errors import NotConverged
 from facegear.identify.resonance import jump_distance
 from facegear.identify.targets import Targets

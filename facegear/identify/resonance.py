@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.simulate import Model, simulate
+from facegear.dynamics.steady_state.simulate import Model, simulate
 
 JUMP = 0.12
 """Change of the level between neighbouring speeds that counts as a jump, relative to the higher level."""

@@ -7,7 +7,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.simulate import model, simulate
+from facegear.dynamics.steady_state.simulate import model, simulate
 from facegear.harmonics.series import Harmonics
 from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
 from facegear.load_sharing.groups import load_groups

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.simulate import Model, SteadyState, model, simulate, static_start
+from facegear.dynamics.steady_state.simulate import Model, SteadyState, model, simulate, static_start
 from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
 from facegear.load_sharing.groups import LoadGroup, load_groups
 from facegear.load_sharing.options import SharingOptions

@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 import pandas as pd
 
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.plan import SweepPlan
 from facegear.dynamics.response_tables import response_table, spectrum_table
-from facegear.dynamics.simulate import model, simulate
-from facegear.dynamics.sweep import run_chunk
-from facegear.dynamics.sweep_tables import jump_table, sweep_table
-from facegear.dynamics.whole_sweep import whole_sweep
+from facegear.dynamics.steady_state.simulate import model, simulate
+from facegear.dynamics.sweeps.plan import SweepPlan
+from facegear.dynamics.sweeps.sweep import run_chunk
+from facegear.dynamics.sweeps.sweep_tables import jump_table, sweep_table
+from facegear.dynamics.sweeps.whole_sweep import whole_sweep
 from facegear.load_sharing.collect import NOMINAL, collected
 from facegear.load_sharing.options import SharingOptions
 from facegear.load_sharing.reference import reference_table

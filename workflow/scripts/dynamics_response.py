@@ -9,8 +9,8 @@ from facegear.dynamics.response_tables import (
     spectrum_table,
     summary_of_response,
 )
-from facegear.dynamics.simulate import model, simulate
-from facegear.dynamics.summary import response_summary
+from facegear.dynamics.steady_state.simulate import model, simulate
+from facegear.dynamics.sweeps.summary import response_summary
 from facegear.io import tables
 from facegear.provenance.stage import stage
 from facegear.stiffness.tables import HARMONICS_COLUMNS, series_of

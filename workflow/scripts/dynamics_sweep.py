@@ -5,12 +5,12 @@ import pandas as pd
 from facegear.config.base import parse
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.config.transmission import Transmission, machine, tooth_numbers
-from facegear.dynamics.simulate import model
-from facegear.dynamics.spectra import ORDERS
-from facegear.dynamics.stored import SHAPES, from_arrays
-from facegear.dynamics.summary import sweep_summary
-from facegear.dynamics.sweep_tables import jump_table, resonance_table, seam_table, sweep_table
-from facegear.dynamics.whole_sweep import whole_sweep
+from facegear.dynamics.steady_state.simulate import model
+from facegear.dynamics.steady_state.spectra import ORDERS
+from facegear.dynamics.sweeps.stored import SHAPES, from_arrays
+from facegear.dynamics.sweeps.summary import sweep_summary
+from facegear.dynamics.sweeps.sweep_tables import jump_table, resonance_table, seam_table, sweep_table
+from facegear.dynamics.sweeps.whole_sweep import whole_sweep
 from facegear.io import arrays, tables
 from facegear.provenance.stage import stage
 from facegear.stiffness.tables import HARMONICS_COLUMNS, series_of

@@ -3,9 +3,9 @@
 from facegear.config.base import parse
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.config.transmission import Transmission, machine, tooth_numbers
-from facegear.dynamics.simulate import model
-from facegear.dynamics.stored import to_arrays
-from facegear.dynamics.sweep import run_chunk
+from facegear.dynamics.steady_state.simulate import model
+from facegear.dynamics.sweeps.stored import to_arrays
+from facegear.dynamics.sweeps.sweep import run_chunk
 from facegear.io import arrays, tables
 from facegear.progress import Progress
 from facegear.provenance.stage import stage

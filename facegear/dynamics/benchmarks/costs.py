@@ -15,10 +15,10 @@ from facegear.dynamics.integrator.compiled import TAU, pack
 from facegear.dynamics.integrator.periods import make_log, run_periods
 from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.orbits import require
-from facegear.dynamics.plan import SweepPlan
-from facegear.dynamics.simulate import Model, model, simulate, static_start
-from facegear.dynamics.sweep import DEFLECTION, FACTS, Piece, collect, run_speeds
+from facegear.dynamics.steady_state.orbits import require
+from facegear.dynamics.steady_state.simulate import Model, model, simulate, static_start
+from facegear.dynamics.sweeps.plan import SweepPlan
+from facegear.dynamics.sweeps.sweep import DEFLECTION, FACTS, Piece, collect, run_speeds
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.layout import Layout, Role
 from facegear.transmission.machine import Machine, balanced_torques, mesh_frequency

@@ -17,7 +17,7 @@ from facegear.dynamics.integrator.compiled import TAU, pack
 from facegear.dynamics.integrator.periods import make_log, run_periods
 from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.orbits import require
+from facegear.dynamics.steady_state.orbits import require
 
 Array = NDArray[np.float64]
 Runner = Callable[[Problem, float], Array]

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.simulate import model, simulate, static_start
-from facegear.dynamics.system import System
+from facegear.dynamics.steady_state.simulate import model, simulate, static_start
 from facegear.transmission.machine import Machine, mesh_frequency
 
 Array = NDArray[np.float64]

@@ -9,8 +9,8 @@ from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.excitation import excitation
 from facegear.dynamics.integrator.kernel import kernel
 from facegear.dynamics.integrator.lanes import LANES, load, multiply, multiply_add, splat, store
+from facegear.dynamics.integrator.system import System
 from facegear.dynamics.integrator.work import Work, make_work
-from facegear.dynamics.system import System
 
 Array = NDArray[np.float64]
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.benchmarks.methods import Method, ours
 from facegear.dynamics.benchmarks.problems import SAMPLES, Problem
-from facegear.dynamics.simulate import mesh_response
-from facegear.dynamics.statistics import moments
+from facegear.dynamics.steady_state.simulate import mesh_response
+from facegear.dynamics.steady_state.statistics import moments
 
 Array = NDArray[np.float64]
 REFERENCE = 1e-13

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.lanes import LANES
-from facegear.dynamics.system import System
+from facegear.dynamics.integrator.system import System
 
 Array = NDArray[np.float64]
 TAU = 2.0 * np.pi

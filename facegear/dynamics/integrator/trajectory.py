@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.advance import advance, move
 from facegear.dynamics.integrator.compiled import TAU, Packed, pack
+from facegear.dynamics.integrator.system import System
 from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.system import System
 from facegear.errors import NotConverged
 
 Array = NDArray[np.float64]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from facegear.dynamics.system import Piecewise, System
+from facegear.dynamics.integrator.system import Piecewise, System
 
 
 def one_degree(

@@ -10,8 +10,8 @@ from facegear.dynamics.integrator.compiled import TAU, pack
 from facegear.dynamics.integrator.roots import MAX_DEPTH, bernstein_matrix, first_root
 from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.orbits import monodromy
-from facegear.dynamics.simulate import model, simulate
+from facegear.dynamics.steady_state.orbits import monodromy
+from facegear.dynamics.steady_state.simulate import model, simulate
 from facegear.transmission.machine import mesh_frequency
 
 FINE = Settings(tolerance=1e-14, periodic_residual=1e-10)

@@ -13,8 +13,8 @@ from scipy.integrate import solve_ivp
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.trajectory import record
 from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.simulate import model, simulate, static_start, steady_state
-from facegear.dynamics.statistics import moments
+from facegear.dynamics.steady_state.simulate import model, simulate, static_start, steady_state
+from facegear.dynamics.steady_state.statistics import moments
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.layout import Role, Side
 from facegear.transmission.machine import balanced_torques, mesh_frequency

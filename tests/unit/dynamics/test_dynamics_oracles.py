@@ -9,10 +9,10 @@ from scipy.optimize import brentq
 from facegear.dynamics.integrator.compiled import pack
 from facegear.dynamics.integrator.trajectory import record
 from facegear.dynamics.integrator.work import make_work
-from facegear.dynamics.jumps import bracket, side
 from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.orbits import monodromy
-from facegear.dynamics.simulate import steady_state
+from facegear.dynamics.steady_state.orbits import monodromy
+from facegear.dynamics.steady_state.simulate import steady_state
+from facegear.dynamics.sweeps.jumps import bracket, side
 
 FINE = Settings(tolerance=1e-14, periodic_residual=1e-12, settle=20_000, longest_period=1)
 LOWER = (1.1624504362, 0.0080293418, 1.03663857, 1.16336143, 1.1, 0.04480330)

@@ -8,12 +8,12 @@ from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 
 from facegear.dynamics.integrator.compiled import TAU, pack
+from facegear.dynamics.integrator.system import System
 from facegear.dynamics.integrator.trajectory import Trajectory, record
 from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.orbits import monodromy
-from facegear.dynamics.simulate import Model, model, simulate, static_start
-from facegear.dynamics.system import System
+from facegear.dynamics.steady_state.orbits import monodromy
+from facegear.dynamics.steady_state.simulate import Model, model, simulate, static_start
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.layout import Role, Side
 from facegear.transmission.machine import OpenFlanks, mesh_frequency

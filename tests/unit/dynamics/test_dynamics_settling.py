@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from oscillators import backlash_oscillator, one_degree
 
-from facegear.dynamics.exponent import smooth_mean
 from facegear.dynamics.integrator.compiled import pack
 from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.orbits import shoot
-from facegear.dynamics.simulate import steady_state
+from facegear.dynamics.steady_state.exponent import smooth_mean
+from facegear.dynamics.steady_state.orbits import shoot
+from facegear.dynamics.steady_state.simulate import steady_state
 
 FOLD_UP = 0.82846394
 SPEED = 0.75

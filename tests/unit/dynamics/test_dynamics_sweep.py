@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 from lumped_machines import make_machine
 
-from facegear.dynamics.assemble import SeamKind, assemble
-from facegear.dynamics.campbell import resonance
-from facegear.dynamics.convergence import convergence_table, not_converged
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.plan import SweepPlan
-from facegear.dynamics.simulate import model, simulate, simulate_many
-from facegear.dynamics.stored import SHAPES, from_arrays, to_arrays
-from facegear.dynamics.sweep import DEFLECTION, Piece, collect, run_chunk, run_speeds, tighter
-from facegear.dynamics.sweep_tables import jump_table, sweep_table
-from facegear.dynamics.whole_sweep import whole_sweep
+from facegear.dynamics.steady_state.simulate import model, simulate, simulate_many
+from facegear.dynamics.sweeps.assemble import SeamKind, assemble
+from facegear.dynamics.sweeps.campbell import resonance
+from facegear.dynamics.sweeps.convergence import convergence_table, not_converged
+from facegear.dynamics.sweeps.plan import SweepPlan
+from facegear.dynamics.sweeps.stored import SHAPES, from_arrays, to_arrays
+from facegear.dynamics.sweeps.sweep import DEFLECTION, Piece, collect, run_chunk, run_speeds, tighter
+from facegear.dynamics.sweeps.sweep_tables import jump_table, sweep_table
+from facegear.dynamics.sweeps.whole_sweep import whole_sweep
 from facegear.io import arrays
 from facegear.transmission.modes import natural_modes
 

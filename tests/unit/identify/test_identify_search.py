@@ -7,7 +7,7 @@ import pytest
 
 from facegear.config.load import load_config
 from facegear.config.machines import case_machine
-from facegear.dynamics.simulate import model, static_start
+from facegear.dynamics.steady_state.simulate import model, static_start
 from facegear.harmonics.series import Harmonics
 from facegear.identify.budget import Budget
 from facegear.identify.inputs import Branch, Inputs, Meaning, Space, StiffnessLoad, Waveform

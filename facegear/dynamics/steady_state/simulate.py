@@ -7,15 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.exponent import largest_exponent
 from facegear.dynamics.integrator.compiled import TAU, Packed, pack
+from facegear.dynamics.integrator.reduction import Reduced, reduce
+from facegear.dynamics.integrator.system import System, machine_system
 from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.reduction import Reduced, reduce
-from facegear.dynamics.settle import Settled, settle
-from facegear.dynamics.statistics import drifts
-from facegear.dynamics.system import System, machine_system
-from facegear.dynamics.window import Window, run_window
+from facegear.dynamics.steady_state.exponent import largest_exponent
+from facegear.dynamics.steady_state.settle import Settled, settle
+from facegear.dynamics.steady_state.statistics import drifts
+from facegear.dynamics.steady_state.window import Window, run_window
 from facegear.errors import NotConverged
 from facegear.transmission.machine import Machine, mesh_frequency
 from facegear.transmission.matrices import mass_diagonal

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.sweep import Piece
+from facegear.dynamics.sweeps.sweep import Piece
 
 NAMES = tuple(Piece.__dataclass_fields__)
 DIMENSIONS = {

@@ -5,10 +5,10 @@ from dataclasses import asdict
 import numpy as np
 import pandas as pd
 
-from facegear.dynamics.assemble import Seam
-from facegear.dynamics.campbell import peaks, resonance
-from facegear.dynamics.sweep import DEFLECTION, FACTS, TRANSLATION, Piece
-from facegear.dynamics.whole_sweep import Direction
+from facegear.dynamics.sweeps.assemble import Seam
+from facegear.dynamics.sweeps.campbell import peaks, resonance
+from facegear.dynamics.sweeps.sweep import DEFLECTION, FACTS, TRANSLATION, Piece
+from facegear.dynamics.sweeps.whole_sweep import Direction
 from facegear.transmission.layout import Layout
 from facegear.transmission.modes import Modes
 

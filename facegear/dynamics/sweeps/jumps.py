@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.motion import State
-from facegear.dynamics.simulate import SteadyState
-from facegear.dynamics.statistics import moments
-from facegear.dynamics.sweep import DEFLECTION, FACTS, Piece
+from facegear.dynamics.steady_state.simulate import SteadyState
+from facegear.dynamics.steady_state.statistics import moments
+from facegear.dynamics.sweeps.sweep import DEFLECTION, FACTS, Piece
 
 Array = NDArray[np.float64]
 MULTIPLIER = FACTS.index("leading_multiplier")

@@ -9,7 +9,7 @@ from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.periods import make_log, run_periods
 from facegear.dynamics.integrator.work import Work
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.orbits import AFLOAT, Orbit, change, changes, require, shoot
+from facegear.dynamics.steady_state.orbits import AFLOAT, Orbit, change, changes, require, shoot
 
 Array = NDArray[np.float64]
 NO_TANGENTS = 0

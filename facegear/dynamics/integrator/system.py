@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.reduction import Reduced
+from facegear.dynamics.integrator.reduction import Reduced
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.machine import Machine, OpenFlanks
 

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.plan import SweepPlan
-from facegear.dynamics.simulate import Model, SteadyState, simulate, static_start
-from facegear.dynamics.spectra import order_spectrum, spectrum
-from facegear.dynamics.statistics import moments, view_moments
+from facegear.dynamics.steady_state.simulate import Model, SteadyState, simulate, static_start
+from facegear.dynamics.steady_state.spectra import order_spectrum, spectrum
+from facegear.dynamics.steady_state.statistics import moments, view_moments
+from facegear.dynamics.sweeps.plan import SweepPlan
 from facegear.transmission.matrices import mass_diagonal
 from facegear.transmission.modes import natural_modes
 

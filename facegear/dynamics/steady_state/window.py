@@ -9,7 +9,7 @@ from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.periods import disturbance_step, make_log, run_periods
 from facegear.dynamics.integrator.work import Work
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.orbits import require
+from facegear.dynamics.steady_state.orbits import require
 
 Array = NDArray[np.float64]
 

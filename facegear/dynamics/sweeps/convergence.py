@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.simulate import Model
-from facegear.dynamics.sweep import DEFLECTION, FACTS, Piece, collect, joined, run_speeds, tighter
+from facegear.dynamics.steady_state.simulate import Model
+from facegear.dynamics.sweeps.sweep import DEFLECTION, FACTS, Piece, collect, joined, run_speeds, tighter
 
 CONVERGED = 1e-3
 

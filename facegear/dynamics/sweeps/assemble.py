@@ -5,10 +5,10 @@ from enum import StrEnum
 
 import numpy as np
 
-from facegear.dynamics.jumps import distance
-from facegear.dynamics.plan import SweepPlan
-from facegear.dynamics.simulate import Model
-from facegear.dynamics.sweep import DEFLECTION, Piece, collect, joined, run_speeds
+from facegear.dynamics.steady_state.simulate import Model
+from facegear.dynamics.sweeps.jumps import distance
+from facegear.dynamics.sweeps.plan import SweepPlan
+from facegear.dynamics.sweeps.sweep import DEFLECTION, Piece, collect, joined, run_speeds
 
 SAME = 5e-3
 """Relative difference of the AC RMS of periodic motions that counts as the same orbit."""

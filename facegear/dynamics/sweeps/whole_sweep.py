@@ -4,11 +4,11 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
-from facegear.dynamics.assemble import Seam, assemble
-from facegear.dynamics.jumps import Jump, refine, suspects
-from facegear.dynamics.plan import SweepPlan
-from facegear.dynamics.simulate import Model, simulate
-from facegear.dynamics.sweep import Piece
+from facegear.dynamics.steady_state.simulate import Model, simulate
+from facegear.dynamics.sweeps.assemble import Seam, assemble
+from facegear.dynamics.sweeps.jumps import Jump, refine, suspects
+from facegear.dynamics.sweeps.plan import SweepPlan
+from facegear.dynamics.sweeps.sweep import Piece
 
 
 @dataclass(frozen=True, eq=False)

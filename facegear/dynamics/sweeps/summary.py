@@ -5,8 +5,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from facegear.dynamics.simulate import SteadyState
-from facegear.dynamics.whole_sweep import Direction
+from facegear.dynamics.steady_state.simulate import SteadyState
+from facegear.dynamics.sweeps.whole_sweep import Direction
 
 
 def response_summary(response: SteadyState) -> str:

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.work import Work
 from facegear.dynamics.motion import Motion, Settings
-from facegear.dynamics.window import Window, run_disturbed
+from facegear.dynamics.steady_state.window import Window, run_disturbed
 
 Array = NDArray[np.float64]
 BATCHES = 16

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.sweep import DEFLECTION, TRANSLATION, Piece
+from facegear.dynamics.sweeps.sweep import DEFLECTION, TRANSLATION, Piece
 from facegear.transmission.modes import Modes
 
 Array = NDArray[np.float64]
