@@ -3,6 +3,7 @@
 import matplotlib.pyplot as plt
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 
 from facegear.contact.rungs import LIMITS
 from facegear.plots.style import styled
@@ -29,6 +30,11 @@ def speed_against_error(table: pd.DataFrame, growth: pd.DataFrame) -> Figure:
                 )
             axis.axhline(LIMITS[name], color="k", lw=0.7, ls="--")
             axis.margins(x=0.25)
+            axis.xaxis.set(
+                major_locator=LogLocator(subs=(1, 2, 5)),
+                major_formatter=ScalarFormatter(),
+                minor_formatter=NullFormatter(),
+            )
             axis.set(xlabel="Whole time (s)", ylabel="Error against the finest (%)", title=title)
         for varied, rows in growth.groupby("varied", sort=False):
             axes[2].plot(rows[varied], rows["contact_s"], "o-", label=f"{varied}")
