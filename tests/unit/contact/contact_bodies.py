@@ -1,6 +1,7 @@
-"""Simple bodies for the contact tests: mapped blocks of 27-node hexahedra."""
+"""Bodies for the contact tests: mapped blocks of 27-node hexahedra, and the paper's pair."""
 
 from dataclasses import replace
+from math import radians
 
 import numpy as np
 import scipy.sparse as sp
@@ -11,7 +12,7 @@ from facegear.contact.layer import tied_system
 from facegear.contact.solver import solve
 from facegear.contact.substructure import condense
 from facegear.contact.surface import cell_areas, cell_points, hat_values, interpolation
-from facegear.geometry.design import Material
+from facegear.geometry.design import FaceGear, Material, PairDesign, Pinion, Relief, Shaper
 
 STEEL = Material(206e9, 0.3)
 
@@ -108,3 +109,17 @@ def hats_of(surface):
     weight = hat_values(points, shape).multiply(cell_areas(surface)[:, None]).T.tocsr()
     area = np.asarray(weight.sum(axis=1)).ravel()
     return points, sp.diags_array(1 / area) @ weight, area
+
+
+def pair_design(
+    shaper_teeth: int = 26,
+    rack_tip_radius: float = 0.1,
+    pinion_width: float = 0.030,
+    radii: tuple[float, float] = (0.250, 0.275),
+    tip_relief: Relief | None = None,
+) -> PairDesign:
+    m = 3.75e-3
+    pinion = Pinion(
+        23, pinion_width, m, 1.25 * m, rack_tip_radius * m, 0.025, tip_relief=tip_relief or Relief()
+    )
+    return PairDesign(m, radians(25), pinion, FaceGear(143, *radii, m, 0.012), Shaper(shaper_teeth, 1.25 * m))

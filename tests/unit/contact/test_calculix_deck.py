@@ -5,7 +5,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from conftest import STEEL, pair_design
+from contact_bodies import STEEL, pair_design
 
 from facegear.contact.calculix import write_deck
 from facegear.geometry.design import Assembly

@@ -6,7 +6,7 @@ from math import pi
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from conftest import STEEL, pair_design
+from contact_bodies import STEEL, pair_design
 
 from facegear.contact.candidates import PinionSurface
 from facegear.contact.compliance import flank_compliance

@@ -5,7 +5,7 @@ from math import radians
 
 import numpy as np
 import pytest
-from conftest import pair_design
+from contact_bodies import pair_design
 
 from facegear.contact.compliance import flank_compliance
 from facegear.contact.ltca import analyse
