@@ -7,7 +7,7 @@ import scipy.sparse as sp
 from numba import njit
 from numpy.typing import NDArray
 
-from facegear.contact.surface import shape_weights
+from facegear.contact.bodies.surface import averaged_interpolation
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,31 +101,7 @@ def spread(
     rows: Rows, coordinates: NDArray[np.float64], shape: tuple[int, int], linear: bool = False
 ) -> sp.csr_matrix:
     """The rows times `surface.interpolation(coordinates, shape, linear)`, (m, nu nv), in one pass."""
-    columns, values, pointer = _spread(
+    columns, values, pointer = averaged_interpolation(
         rows.pointer, rows.index, rows.weight, np.ascontiguousarray(coordinates), *shape, linear
     )
     return sp.csr_matrix((values, columns, pointer), shape=(len(rows), shape[0] * shape[1]))
-
-
-@njit(cache=True)
-def _spread(pointer, index, weight, coordinates, nu, nv, linear):  # type: ignore[no-untyped-def]
-    count = pointer.size - 1
-    columns, values = np.empty(9 * index.size, np.int32), np.empty(9 * index.size)
-    ends, slot = np.zeros(count + 1, np.int32), np.full(nu * nv, -1)
-    wu, wv = np.empty(3), np.empty(3)
-    filled = 0
-    for row in range(count):
-        first = filled
-        for k in range(pointer[row], pointer[row + 1]):
-            i = shape_weights(coordinates[index[k], 0], nu, linear, wu)
-            j = shape_weights(coordinates[index[k], 1], nv, linear, wv)
-            for a in range(3):
-                for b in range(3):
-                    node = (i + a) * nv + j + b
-                    if slot[node] < first:
-                        slot[node] = filled
-                        columns[filled], values[filled] = node, 0.0
-                        filled += 1
-                    values[slot[node]] += weight[k] * wu[a] * wv[b]
-        ends[row + 1] = filled
-    return columns[:filled].copy(), values[:filled].copy(), ends

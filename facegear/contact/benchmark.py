@@ -9,13 +9,13 @@ from typing import Any, TypeVar
 import numpy as np
 import pandas as pd
 
-from facegear.contact.compliance import FlankCompliance, coupled_compliance
-from facegear.contact.layer import tied_system
+from facegear.contact.bodies.compliance import FlankCompliance, coupled_compliance
+from facegear.contact.bodies.layer import tied_system
+from facegear.contact.bodies.substructure import condense
 from facegear.contact.ltca import LoadedPosition, analyse, even_positions
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
 from facegear.contact.pair import BUILDERS, body_compliance, contact_model, extent
 from facegear.contact.rungs import CUTS, DEFAULT, LIMITS, LINEAR, SECTORS
-from facegear.contact.substructure import condense
 from facegear.contact.teeth import piece_of
 from facegear.errors import NotConverged
 from facegear.geometry.design import Material, PairDesign

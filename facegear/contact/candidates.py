@@ -8,8 +8,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from facegear.contact.averages import Rows, hat_averages, rows_of, spread, stacked
+from facegear.contact.bodies.surface import cell_areas, cell_points, hat_values, line_points
 from facegear.contact.options import Refinement
-from facegear.contact.surface import cell_areas, cell_points, hat_values, line_points
 from facegear.contact.teeth import ContactSide, pinion_points
 from facegear.geometry.design import PairDesign
 from facegear.geometry.pinion_surface import SurfacePoints, fillet_points

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.contact.averages import hat_averages
+from facegear.contact.bodies.surface import line_points
 from facegear.contact.candidates import SMALLEST_COVER, Loads, PinionSurface
-from facegear.contact.surface import line_points
 from facegear.contact.teeth import GearLattice
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.placement import to_pinion_section

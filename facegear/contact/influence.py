@@ -5,8 +5,8 @@ import scipy.sparse as sp
 from numba import njit
 from numpy.typing import NDArray
 
+from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.candidates import Candidates
-from facegear.contact.compliance import FlankCompliance
 
 
 def influence_matrix(

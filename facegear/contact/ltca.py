@@ -8,8 +8,8 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
+from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.candidates import Candidates, PinionSurface
-from facegear.contact.compliance import FlankCompliance
 from facegear.contact.influence import displacement, influence_matrix
 from facegear.contact.options import ContactOptions
 from facegear.contact.path import pairs_to_try

@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 
+from facegear.contact.bodies.compliance import FlankCompliance, flank_compliance
 from facegear.contact.candidates import PinionSurface
-from facegear.contact.compliance import FlankCompliance, flank_compliance
 from facegear.contact.ltca import ContactModel
 from facegear.contact.options import ContactPlan, Ends
 from facegear.contact.teeth import GearLattice, contact_side, piece_of

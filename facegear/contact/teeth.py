@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from facegear.contact.body import Piece
+from facegear.contact.bodies.body import Piece
+from facegear.contact.bodies.surface import interpolation
 from facegear.contact.options import Refinement
-from facegear.contact.surface import interpolation
 from facegear.geometry import face_gear
 from facegear.geometry.design import Material, PairDesign
 from facegear.geometry.pinion_surface import SurfacePoints, fillet_points, flank_points

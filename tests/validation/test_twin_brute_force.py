@@ -4,7 +4,7 @@ from math import radians
 
 import pytest
 
-from facegear.contact.twin_study import twin_study
+from facegear.contact.validation.twin_study import twin_study
 from facegear.geometry.design import FaceGear, PairDesign, Pinion, Shaper
 
 M = 3.75e-3

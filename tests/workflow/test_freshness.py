@@ -48,7 +48,7 @@ def test_copy_of_the_sources_has_nothing_to_do(edited):
     ("module", "reruns", "spares"),
     [
         ("facegear/geometry/limits.py", {"geometry"}, {"modal"}),
-        ("facegear/contact/factor.py", {"compliance", "contact"}, {"geometry", "mesh", "modal"}),
+        ("facegear/contact/bodies/factor.py", {"compliance", "contact"}, {"geometry", "mesh", "modal"}),
         (
             "facegear/transmission/modes.py",
             {"modal"},
@@ -72,7 +72,7 @@ def test_editing_a_module_reruns_its_stages_and_those_after_it(edited, module, r
     assert not spares & planned
 
 
-@pytest.mark.parametrize("module", ["facegear/contact/factor.py", "facegear/geometry/design.py"])
+@pytest.mark.parametrize("module", ["facegear/contact/bodies/factor.py", "facegear/geometry/design.py"])
 def test_a_comment_reruns_nothing(edited, module):
     last = (ROOT / module).read_text()[-40:]
     assert edited(module, last, f"{last}# only a comment\n") == set()

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from facegear.config.base import parse
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
-from facegear.contact.peer_study import peer_study
+from facegear.contact.validation.peer_study import peer_study
 from facegear.io import tables
 from facegear.mesh.sizes import MeshSizes, named_sizes
 from facegear.provenance.stage import stage

@@ -4,7 +4,7 @@ from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
-from facegear.contact.compliance import to_arrays
+from facegear.contact.bodies.compliance import to_arrays
 from facegear.contact.pair import body_compliance
 from facegear.contact.resolution import check_resolution
 from facegear.io import arrays, tables

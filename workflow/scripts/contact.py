@@ -4,7 +4,7 @@ from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.tooth_pair import ToothPair, pair_design
-from facegear.contact.compliance import STORED, from_arrays
+from facegear.contact.bodies.compliance import STORED, from_arrays
 from facegear.contact.ltca import analyse, even_positions
 from facegear.contact.pair import contact_model
 from facegear.contact.tables import ltca_table, pressure_arrays, pressure_surface

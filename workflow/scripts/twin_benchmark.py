@@ -4,7 +4,7 @@ import pandas as pd
 
 from facegear.config.base import parse
 from facegear.config.tooth_pair import ToothPair, pair_design
-from facegear.contact.twin_study import twin_study
+from facegear.contact.validation.twin_study import twin_study
 from facegear.io import tables
 from facegear.provenance.stage import stage
 

@@ -6,12 +6,12 @@ from math import radians
 import numpy as np
 import scipy.sparse as sp
 
-from facegear.contact.body import Piece
-from facegear.contact.elements import block_hexes
-from facegear.contact.layer import tied_system
+from facegear.contact.bodies.body import Piece
+from facegear.contact.bodies.elements import block_hexes
+from facegear.contact.bodies.layer import tied_system
+from facegear.contact.bodies.substructure import condense
+from facegear.contact.bodies.surface import cell_areas, cell_points, hat_values, interpolation
 from facegear.contact.solver import solve
-from facegear.contact.substructure import condense
-from facegear.contact.surface import cell_areas, cell_points, hat_values, interpolation
 from facegear.geometry.design import FaceGear, Material, PairDesign, Pinion, Relief, Shaper
 
 STEEL = Material(206e9, 0.3)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from contact_bodies import STEEL, pair_design
 
-from facegear.contact.calculix import write_deck
+from facegear.contact.validation.calculix import write_deck
 from facegear.geometry.design import Assembly
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.mesh.sizes import MeshSizes

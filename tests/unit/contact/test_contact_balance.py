@@ -8,11 +8,11 @@ import pytest
 import scipy.sparse as sp
 from contact_bodies import STEEL, pair_design
 
+from facegear.contact.bodies.compliance import flank_compliance
+from facegear.contact.bodies.factor import solve as solve_sparse
+from facegear.contact.bodies.layer import tied_system
 from facegear.contact.candidates import PinionSurface
-from facegear.contact.compliance import flank_compliance
-from facegear.contact.factor import solve as solve_sparse
 from facegear.contact.influence import influence_matrix
-from facegear.contact.layer import tied_system
 from facegear.contact.options import ContactOptions, Refinement
 from facegear.contact.pair import BUILDERS
 from facegear.contact.search import find_candidates

@@ -7,12 +7,12 @@ from test_pair_contact import misaligned
 
 from facegear.contact import strip
 from facegear.contact.averages import Rows, rows_of, spread
+from facegear.contact.bodies.surface import interpolation
 from facegear.contact.candidates import candidates_of, hat_loads
 from facegear.contact.influence import displacement, influence_matrix
 from facegear.contact.ltca import analyse
 from facegear.contact.options import ContactOptions
 from facegear.contact.search import find_candidates
-from facegear.contact.surface import interpolation
 from facegear.geometry.separation import separation
 from facegear.geometry.unloaded import PAIRS, unloaded_contact
 

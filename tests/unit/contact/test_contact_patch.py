@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from contact_bodies import STEEL, block, hats_of
 
-from facegear.contact.compliance import flank_compliance
-from facegear.contact.layer import tied_system
+from facegear.contact.bodies.compliance import flank_compliance
+from facegear.contact.bodies.layer import tied_system
+from facegear.contact.bodies.surface import interpolation
 from facegear.contact.options import Refinement
 from facegear.contact.solver import solve
-from facegear.contact.surface import interpolation
 
 PRESSURE = 2e8
 HEIGHTS = (1.0, 0.7)

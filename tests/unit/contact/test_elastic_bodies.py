@@ -10,14 +10,14 @@ from contact_bodies import STEEL, block, half_disc, stations
 from skfem import Basis, ElementHex2, ElementVector, MeshHex
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
-from facegear.contact import factor
-from facegear.contact.assembly import stiffness_matrix
-from facegear.contact.compliance import flank_compliance, from_arrays, to_arrays
-from facegear.contact.elements import block_hexes
-from facegear.contact.layer import tied_system
+from facegear.contact.bodies import factor
+from facegear.contact.bodies.assembly import stiffness_matrix
+from facegear.contact.bodies.compliance import flank_compliance, from_arrays, to_arrays
+from facegear.contact.bodies.elements import block_hexes
+from facegear.contact.bodies.layer import tied_system
 from facegear.contact.options import Refinement
 from facegear.contact.teeth import piece_of
-from facegear.contact.twin import slab_tooth
+from facegear.contact.validation.twin import slab_tooth
 from facegear.errors import FacegearError
 from facegear.geometry.design import FaceGear, PairDesign, Pinion, Shaper
 from facegear.mesh.sector import sector

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from contact_bodies import pair_design
 
-from facegear.contact.compliance import flank_compliance
+from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.ltca import analyse
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
 from facegear.contact.pair import BUILDERS, body_compliance, contact_model

@@ -7,10 +7,10 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 
-from facegear.contact.body import Piece
-from facegear.contact.dense import cholesky, inverse
-from facegear.contact.factor import schur_complement
-from facegear.contact.layer import TiedSystem
+from facegear.contact.bodies.body import Piece
+from facegear.contact.bodies.dense import cholesky, inverse
+from facegear.contact.bodies.factor import schur_complement
+from facegear.contact.bodies.layer import TiedSystem
 
 
 @dataclass(frozen=True, eq=False)

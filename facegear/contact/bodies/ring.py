@@ -9,7 +9,7 @@ import numpy as np
 import scipy.linalg as sl
 from numpy.typing import NDArray
 
-from facegear.contact.dense import cholesky, inverse
+from facegear.contact.bodies.dense import cholesky, inverse
 from facegear.contact.options import Ends
 
 

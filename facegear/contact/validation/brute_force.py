@@ -13,9 +13,9 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from facegear.contact.brute_mesh import Chain, FlatGear, FlatMesh, flat_gear, refined
-from facegear.contact.factor import solve
-from facegear.contact.twin import involute_separation
+from facegear.contact.bodies.factor import solve
+from facegear.contact.validation.brute_mesh import Chain, FlatGear, FlatMesh, flat_gear, refined
+from facegear.contact.validation.twin import involute_separation
 from facegear.errors import NotConverged
 from facegear.geometry import pinion
 from facegear.geometry.design import Material

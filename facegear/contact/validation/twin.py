@@ -12,8 +12,8 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
+from facegear.contact.bodies.compliance import FlankCompliance, flank_compliance
 from facegear.contact.candidates import Candidates, PinionSurface, hats_over
-from facegear.contact.compliance import FlankCompliance, flank_compliance
 from facegear.contact.influence import influence_matrix
 from facegear.contact.ltca import FIRST_GUESS, LoadedPosition, Place, solve_position
 from facegear.contact.options import Ends, Refinement

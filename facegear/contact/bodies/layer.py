@@ -11,9 +11,9 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from facegear.contact.assembly import stiffness_matrix
-from facegear.contact.body import Piece
-from facegear.contact.elements import block_hexes, hex_shapes
+from facegear.contact.bodies.assembly import stiffness_matrix
+from facegear.contact.bodies.body import Piece
+from facegear.contact.bodies.elements import block_hexes, hex_shapes
 from facegear.contact.options import Element, Refinement
 
 ALL_NODES = np.arange(27).reshape(3, 3, 3).transpose(2, 1, 0)

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
-from facegear.contact.brute_force import gears_at, loaded_rotations
-from facegear.contact.brute_mesh import flat_mesh
-from facegear.contact.iso import mesh_stiffness
 from facegear.contact.options import Refinement
-from facegear.contact.twin import analyse_twin, twin_model
+from facegear.contact.validation.brute_force import gears_at, loaded_rotations
+from facegear.contact.validation.brute_mesh import flat_mesh
+from facegear.contact.validation.iso import mesh_stiffness
+from facegear.contact.validation.twin import analyse_twin, twin_model
 from facegear.geometry.design import Material, PairDesign
 from facegear.mesh.sizes import MeshSizes
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from skfem import Basis, ElementTriP2, ElementVector, MeshQuad, MeshTri
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
-from facegear.contact.twin import slab_tooth
+from facegear.contact.validation.twin import slab_tooth
 from facegear.geometry.design import Material, PairDesign
 from facegear.mesh.sector import sector
 from facegear.mesh.sizes import MeshSizes

@@ -7,11 +7,15 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from facegear.contact.body import Piece
-from facegear.contact.layer import TiedSystem, tied_system
+from facegear.contact.bodies.body import Piece
+from facegear.contact.bodies.layer import TiedSystem, tied_system
+from facegear.contact.bodies.ring import face_compliance, rest_stiffness
+from facegear.contact.bodies.substructure import Superelement, condense, held_by
 from facegear.contact.options import Element, Ends, Refinement
-from facegear.contact.ring import face_compliance, rest_stiffness
-from facegear.contact.substructure import Superelement, condense, held_by
+from facegear.progress import Progress
+
+SHARES = (1, 6, 3)
+"""Tenths of the time that assembly, factorisation and joining the teeth take at the default resolution."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,9 +56,14 @@ def flank_compliance(
     without cut faces stands for itself.
     Raises FacegearError if the body is not held, ValueError if there are too few teeth.
     """
+    progress = Progress("flank compliance", total=sum(SHARES))
     system = tied_system(piece, refinement, element)
+    progress.step(SHARES[0])
     tooth = condense(piece, system)
-    return coupled_compliance(piece, system, tooth, refinement, teeth, neighbours, ends, element)
+    progress.step(SHARES[1])
+    coupled = coupled_compliance(piece, system, tooth, refinement, teeth, neighbours, ends, element)
+    progress.step(SHARES[2])
+    return coupled
 
 
 def coupled_compliance(

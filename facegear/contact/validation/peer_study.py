@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from facegear.contact.calculix import run_deck, write_deck
+from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.candidates import PinionSurface
-from facegear.contact.compliance import FlankCompliance
 from facegear.contact.ltca import ContactModel, Place
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
 from facegear.contact.pair import BUILDERS, body_compliance
-from facegear.contact.sector_model import analyse_sector, sector_blocks
 from facegear.contact.teeth import GearLattice, contact_side
+from facegear.contact.validation.calculix import run_deck, write_deck
+from facegear.contact.validation.sector_model import analyse_sector, sector_blocks
 from facegear.geometry.design import Material, PairDesign
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.mesh.sizes import MeshSizes

@@ -57,6 +57,35 @@ def _interpolation(coordinates, nu, nv, linear):  # type: ignore[no-untyped-def]
     return columns, values
 
 
+@njit(cache=True)
+def averaged_interpolation(pointer, index, weight, coordinates, nu, nv, linear):  # type: ignore[no-untyped-def]
+    """Columns, values and row ends of averages over points (pointer, index, weight as in `averages.Rows`) times
+    `interpolation` at the points' coordinates.
+
+    It stands in this file because numba does not notice a change of `shape_weights` in another one.
+    """
+    count = pointer.size - 1
+    columns, values = np.empty(9 * index.size, np.int32), np.empty(9 * index.size)
+    ends, slot = np.zeros(count + 1, np.int32), np.full(nu * nv, -1)
+    wu, wv = np.empty(3), np.empty(3)
+    filled = 0
+    for row in range(count):
+        first = filled
+        for k in range(pointer[row], pointer[row + 1]):
+            i = shape_weights(coordinates[index[k], 0], nu, linear, wu)
+            j = shape_weights(coordinates[index[k], 1], nv, linear, wv)
+            for a in range(3):
+                for b in range(3):
+                    node = (i + a) * nv + j + b
+                    if slot[node] < first:
+                        slot[node] = filled
+                        columns[filled], values[filled] = node, 0.0
+                        filled += 1
+                    values[slot[node]] += weight[k] * wu[a] * wv[b]
+        ends[row + 1] = filled
+    return columns[:filled].copy(), values[:filled].copy(), ends
+
+
 def cell_points(shape: tuple[int, int]) -> NDArray[np.float64]:
     """Lattice coordinates of 2 x 2 Gauss points in each cell between nodes, ((nu-1) (nv-1) 4, 2)."""
     i, j = np.meshgrid(np.arange(shape[0] - 1), np.arange(shape[1] - 1), indexing="ij")

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from facegear.contact.bodies.layer import TiedSystem, tied_system
+from facegear.contact.bodies.substructure import loaded_compliance
 from facegear.contact.candidates import Candidates
 from facegear.contact.influence import product
-from facegear.contact.layer import TiedSystem, tied_system
 from facegear.contact.ltca import ContactModel, LoadedPosition, Place, solve_position
 from facegear.contact.options import ContactOptions, Refinement
 from facegear.contact.search import find_candidates
-from facegear.contact.substructure import loaded_compliance
 from facegear.contact.teeth import LOADED_SIDE, piece_of
 from facegear.geometry.design import Material, PairDesign
 from facegear.mesh.sector import sector

@@ -9,7 +9,7 @@ import scipy.sparse as sp
 from numba import njit
 from numpy.typing import NDArray
 
-from facegear.contact.elements import gauss_points, hex_shapes, subdivided, trilinear_shapes
+from facegear.contact.bodies.elements import gauss_points, hex_shapes, subdivided, trilinear_shapes
 from facegear.contact.options import Element
 from facegear.geometry.design import Material
 

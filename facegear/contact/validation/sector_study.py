@@ -8,8 +8,8 @@ import pandas as pd
 from facegear.contact.benchmark import summary, with_errors
 from facegear.contact.ltca import Place, even_positions
 from facegear.contact.pair import BUILDERS
-from facegear.contact.peer_study import LOADED, unrefined_model
-from facegear.contact.sector_model import analyse_sector, sector_blocks
+from facegear.contact.validation.peer_study import LOADED, unrefined_model
+from facegear.contact.validation.sector_model import analyse_sector, sector_blocks
 from facegear.geometry.design import Material, PairDesign
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.mesh.sizes import MeshSizes
