@@ -59,10 +59,10 @@ def _interpolation(coordinates, nu, nv, linear):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def averaged_interpolation(pointer, index, weight, coordinates, nu, nv, linear):  # type: ignore[no-untyped-def]
-    """Columns, values and row ends of averages over points (pointer, index, weight as in `averages.Rows`) times
-    `interpolation` at the points' coordinates.
+    """Columns, values and row ends of averages over points times `interpolation` at their coordinates.
 
-    It stands in this file because numba does not notice a change of `shape_weights` in another one.
+    pointer, index and weight as in `averages.Rows`. It stands here because numba does not notice a change of
+    `shape_weights` in another file.
     """
     count = pointer.size - 1
     columns, values = np.empty(9 * index.size, np.int32), np.empty(9 * index.size)
