@@ -1,11 +1,9 @@
 """A target runs only the stages it needs."""
 
-import shutil
-
 import pytest
 from projects import ROOT, Project
 
-pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
+pytestmark = pytest.mark.workflow
 
 
 def test_modes_need_no_mesh(tmp_path):
@@ -34,15 +32,3 @@ def test_dry_run_of_every_config_is_clean(tmp_path, config):
     done = Project(tmp_path).run("-n", "--configfile", str(ROOT / "config" / config))
     assert "Traceback" not in done.stderr
     assert not list((tmp_path / "results").rglob("*.csv")) if (tmp_path / "results").exists() else True
-
-
-def test_snakemake_report_holds_the_figures_and_their_captions(quick, tmp_path):
-    project = Project(tmp_path)
-    shutil.copytree(quick.folder / "results", tmp_path / "results")
-    shutil.copytree(quick.folder / ".snakemake", tmp_path / ".snakemake")
-    config = str(ROOT / "config" / "quick.yaml")
-    project.run("--report", str(tmp_path / "report.html"), "--configfile", config)
-    page = (tmp_path / "report.html").read_text()
-    for figure in ("fig06", "fig07", "fig12", "fig13", "contact_pattern"):
-        assert f"{figure}.svg" in page
-    assert "Load sharing" in page

@@ -4,7 +4,7 @@ import pandas as pd
 import pytest
 from projects import ROOT, Project
 
-pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
+pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("second_machine")]
 
 
 @pytest.fixture(scope="module")

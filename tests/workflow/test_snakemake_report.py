@@ -1,0 +1,20 @@
+"""Snakemake's own report of a finished run."""
+
+import shutil
+
+import pytest
+from projects import ROOT, Project
+
+pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
+
+
+def test_snakemake_report_holds_the_figures_and_their_captions(quick, tmp_path):
+    project = Project(tmp_path)
+    shutil.copytree(quick.folder / "results", tmp_path / "results")
+    shutil.copytree(quick.folder / ".snakemake", tmp_path / ".snakemake")
+    config = str(ROOT / "config" / "quick.yaml")
+    project.run("--report", str(tmp_path / "report.html"), "--configfile", config)
+    page = (tmp_path / "report.html").read_text()
+    for figure in ("fig06", "fig07", "fig12", "fig13", "contact_pattern"):
+        assert f"{figure}.svg" in page
+    assert "Load sharing" in page
