@@ -42,6 +42,7 @@ def work_precision_diagram(table: pd.DataFrame) -> Figure:
             axis.invert_xaxis()
         for axis in axes.flat[len(problems) :]:
             axis.set_axis_off()
-        axes[0, 0].legend(fontsize=7)
+        lines = axes[0, 0].get_legend_handles_labels()
+        figure.legend(*lines, loc="outside lower center", ncols=5, fontsize=7)
         figure.suptitle("Work and precision, median CPU times")
     return figure
