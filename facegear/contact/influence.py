@@ -84,12 +84,7 @@ def _sparse_response(seen, compliance, loads, forces):  # type: ignore[no-untype
             for t in range(forces.shape[1]):
                 nodal[place[loads[1][k]], t] += loads[2][k] * forces[i, t]
     used, place = _used(seen[1], compliance.shape[0])
-    part = np.empty((used.size, loaded.size))
-    for a in range(used.size):
-        line = compliance[used[a]]
-        for b in range(loaded.size):
-            part[a, b] = line[loaded[b]]
-    return _averaged(seen[0], place[seen[1]], seen[2], part @ nodal)
+    return _averaged(seen[0], place[seen[1]], seen[2], _gathered(compliance, used, loaded) @ nodal)
 
 
 def product(
@@ -109,13 +104,20 @@ def product(
 def _sparse_product(first, compliance, second):  # type: ignore[no-untyped-def]
     rows, row_place = _used(first[1], compliance.shape[0])
     columns, column_place = _used(second[1], compliance.shape[1])
-    part = np.empty((rows.size, columns.size))
-    for a in range(rows.size):
-        line = compliance[rows[a]]
-        for b in range(columns.size):
-            part[a, b] = line[columns[b]]
+    part = _gathered(compliance, rows, columns)
     half = _averaged(first[0], row_place[first[1]], first[2], part)
     return _averaged(second[0], column_place[second[1]], second[2], np.ascontiguousarray(half.T)).T
+
+
+@njit(cache=True)
+def _gathered(dense, rows, columns):  # type: ignore[no-untyped-def]
+    """dense[np.ix_(rows, columns)], contiguous."""
+    part = np.empty((rows.size, columns.size))
+    for a in range(rows.size):
+        line = dense[rows[a]]
+        for b in range(columns.size):
+            part[a, b] = line[columns[b]]
+    return part
 
 
 @njit(cache=True)
