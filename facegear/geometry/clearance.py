@@ -17,7 +17,6 @@ from facegear.geometry.placement import mirrored, to_pinion_section
 
 Array = NDArray[np.float64]
 
-GEAR_PARTS = ("tip edge", "flank", "fillet", "root land")
 TOOTH_NUMBERS = np.arange(-2, 3)
 
 

@@ -8,18 +8,6 @@ import pandas as pd
 
 from facegear.identify.inputs import WAVEFORM_TERMS, Waveform
 
-SET_COLUMNS = (
-    "set",
-    "meaning",
-    "phasing",
-    "phase_convention",
-    "waveform",
-    "per_input_n_m",
-    "tail_share",
-    "error_phase_deg",
-    "stiffness_torque_n_m",
-)
-
 
 def config_changes(row: Mapping[str, Any], error_um: float) -> dict[str, Any]:
     """Dotted config keys and values of one row of a sets file; `error_um` is the paper's size of e(t)."""

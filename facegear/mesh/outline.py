@@ -15,8 +15,6 @@ from facegear.geometry.design import PairDesign
 
 Array = NDArray[np.float64]
 
-SEGMENTS = ("chamfer", "flank", "fillet", "root_land")
-
 
 @dataclass(frozen=True)
 class Outline:

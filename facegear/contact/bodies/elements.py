@@ -22,12 +22,6 @@ def line_shapes(x: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]
     return values, slopes
 
 
-def face_shapes(uv: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Nine biquadratic shapes (n, 9) at `uv` (n, 2) of the unit square, node a = i + 3 j."""
-    (u, _), (v, _) = line_shapes(uv[:, 0]), line_shapes(uv[:, 1])
-    return np.einsum("nj,ni->nji", v, u).reshape(len(uv), 9)
-
-
 def hex_shapes(xyz: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Shapes (n, 27) and their reference gradients (n, 27, 3) at `xyz` (n, 3) of the unit cube."""
     (x, dx), (y, dy), (z, dz) = (line_shapes(xyz[:, axis]) for axis in range(3))
