@@ -93,6 +93,19 @@ def face_compliance(
     return np.stack([np.concatenate(planes[tooth : tooth + 2]) for tooth in range(len(planes) - 1)])
 
 
+def plane_compliance(faces: NDArray[np.float64], teeth: int) -> NDArray[np.float64]:
+    """Displacements of all cut planes of `teeth` teeth in a row, ends free, by forces on them.
+
+    Shape ((teeth + 1) s, (teeth + 1) s), m/N, planes from the left end to the right.
+    """
+    s = len(faces) // 2
+    stiffness = np.zeros(((teeth + 1) * s, (teeth + 1) * s))
+    for tooth in range(teeth):
+        own = slice(tooth * s, (tooth + 2) * s)
+        stiffness[own, own] += faces
+    return inverse(cholesky(stiffness))
+
+
 def _seen_from_end(
     stiffness: NDArray[np.float64], near: slice, far: slice, ends: Ends
 ) -> NDArray[np.float64]:

@@ -52,15 +52,6 @@ def held_by(tooth: Superelement, rest: NDArray[np.float64]) -> NDArray[np.float6
     return tooth.flank + half.T @ half
 
 
-def loaded_compliance(piece: Piece, system: TiedSystem) -> NDArray[np.float64]:
-    """Normal displacements (k, k) of the flank by unit normal forces, m/N, cut faces free.
-
-    Raises FacegearError if the body is not held.
-    """
-    stiffness, flank, _ = _turned(piece, system)
-    return inverse(cholesky(schur_complement(stiffness, flank)))
-
-
 def frames_of(normals: NDArray[np.float64], held: NDArray[np.bool_]) -> NDArray[np.float64]:
     """Orthonormal rows (n, 3, 3): the unit normal (n, 3), then the held axes (n, 3) of a node that has any.
 

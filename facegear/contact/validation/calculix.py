@@ -53,11 +53,13 @@ def write_deck(
     teeth: int,
     angles: tuple[float, float],
     turn: float,
+    slave: str = "pinion",
 ) -> int:
     """Write the deck of the pair at angles (phi1, phi2) with the pinion turned by `turn` (rad); returns its
     dof.
 
-    Both sectors have `teeth` teeth around the pairs in mesh. Lengths are in mm, stresses in MPa.
+    `slave` is the body, pinion or face_gear, on whose flank CalculiX integrates the contact pressure. Both
+    sectors have `teeth` teeth around the pairs in mesh. Lengths are in mm, stresses in MPa.
     """
     first = -(teeth // 2)
     bodies = {
@@ -94,7 +96,7 @@ def write_deck(
             deck.write(f"{1e-6 * material.young_modulus:.10g}, {material.poisson_ratio:.10g}\n")
             deck.write(f"*SOLID SECTION, ELSET={body.upper()}, MATERIAL=M_{body.upper()}\n")
             start += len(mesh.hexes)
-        deck.write(_step(reference, rotation, turn, design))
+        deck.write(_step(reference, rotation, turn, slave))
     return 3 * len(used)
 
 
@@ -145,13 +147,14 @@ def _placed(
     return {"pinion": bodies["pinion"].nodes, "face_gear": np.stack([x, y, -minus_z], axis=1)}
 
 
-def _step(reference: int, rotation: int, turn: float, design: PairDesign) -> str:
+def _step(reference: int, rotation: int, turn: float, slave: str) -> str:
     """Supports, contact and the one step: the bore turned about the pinion's axis, positive towards +x."""
+    master = "face_gear" if slave == "pinion" else "pinion"
     return f"""*RIGID BODY, NSET=H_PINION, REF NODE={reference}, ROT NODE={rotation}
 *SURFACE INTERACTION, NAME=SMOOTH
 *SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD
 *CONTACT PAIR, INTERACTION=SMOOTH, TYPE=MORTAR
-S_PINION, S_FACE_GEAR
+S_{slave.upper()}, S_{master.upper()}
 *BOUNDARY
 H_FACE_GEAR, 1, 3
 {reference}, 1, 3

@@ -1,92 +1,117 @@
-"""A sector of teeth meshed whole and condensed at once: the model that other solvers are given too.
+"""A sector of few teeth, several of them loaded, its cut faces free: the model that other solvers are given.
 
-Costs as much as general finite elements do and is used to compare with them; the chain uses `ring` instead.
+The chain instead puts each loaded tooth into the middle of a ring or sector of its own.
 """
 
+import time
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass
 from functools import partial
+from itertools import product as pairs_of
+from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
-from facegear.contact.bodies.layer import TiedSystem, tied_system
-from facegear.contact.bodies.substructure import loaded_compliance
-from facegear.contact.candidates import Candidates
+from facegear.contact.bodies.layer import tied_system
+from facegear.contact.bodies.ring import plane_compliance
+from facegear.contact.bodies.substructure import condense
+from facegear.contact.candidates import Candidates, PinionSurface
 from facegear.contact.influence import product
-from facegear.contact.ltca import ContactModel, LoadedPosition, Place, solve_position
+from facegear.contact.ltca import FIRST_GUESS, LoadedPosition, Place, solve_position
 from facegear.contact.options import ContactOptions, Refinement
+from facegear.contact.pair import BUILDERS
 from facegear.contact.search import find_candidates
-from facegear.contact.teeth import LOADED_SIDE, piece_of
+from facegear.contact.teeth import LOADED_SIDE, GearLattice, contact_side, piece_of
 from facegear.geometry.design import Material, PairDesign
-from facegear.mesh.sector import sector
+from facegear.geometry.unloaded import unloaded_contact
+from facegear.mesh.sizes import MeshSizes
 from facegear.mesh.tooth import ToothMesh
 
 Blocks = dict[tuple[int, int], NDArray[np.float64]]
 
 
-def sector_blocks(
-    design: PairDesign, tooth: ToothMesh, material: Material, teeth: int, loaded: Sequence[int]
-) -> Blocks:
-    """Flank compliance (n, n), m/N, for each pair of `loaded` teeth (seen, loaded) of a sector, cut faces
-    free.
-    """
-    merged = sector(tooth, teeth, -(teeth // 2))
-    single, side = piece_of(design, tooth, material, LOADED_SIDE[tooth.body])
-    held = np.zeros(merged.nodes.shape, dtype=bool)
-    flanks, normals = [], []
-    for j, nodes in enumerate(merged.tooth_nodes):
-        held[nodes[single.held.all(axis=1)]] = True
-        if merged.first + j in loaded:
-            flanks.append(nodes[single.flank])
-            normals.append(tooth.rotated(single.normals, (merged.first + j) * tooth.pitch))
-    size = side.nodes.size
-    piece = replace(
-        single,
-        points=merged.nodes,
-        hexes=merged.hexes,
-        held=held,
-        left=side.nodes[:0, 0],
-        right=side.nodes[:0, 0],
+@dataclass(frozen=True, eq=False)
+class SectorPair:
+    """Surfaces of both gears and the compliance blocks of their sectors, which took `seconds` to make."""
+
+    surface: PinionSurface
+    lattice: GearLattice
+    pinion: Blocks
+    gear: Blocks
+    seconds: float
+
+    def solve(self, position: float, torques: Sequence[float]) -> list[LoadedPosition]:
+        """Contact at a position (0..1 of a pitch) under torques (N m), unloaded transmission error left in.
+
+        Raises NotConverged naming position and torque.
+        """
+        design, options = self.surface.design, ContactOptions()
+        angles = angles_at(design, position)
+        loaded = np.array(sorted({seen for seen, _ in self.pinion}))
+
+        def find(limit: float) -> list[Candidates]:
+            return find_candidates(self.surface, self.lattice, *angles, loaded, limit, options)
+
+        base = design.pinion_base_radius
+        combine = partial(_influence, pinion=self.pinion, gear=self.gear)
+        return solve_position(find, combine, Place(position, 0.0, base), torques, FIRST_GUESS / base)[0]
+
+
+def angles_at(design: PairDesign, position: float) -> tuple[float, float]:
+    """Angles (rad) of the unloaded pinion and gear at a position."""
+    phi1 = (position - 0.5) * 2 * pi / design.pinion.teeth
+    return phi1, float(unloaded_contact(design, [phi1]).phi2[0])
+
+
+def sector_pair(
+    design: PairDesign,
+    sizes: MeshSizes,
+    materials: tuple[Material, Material],
+    teeth: int,
+    loaded: Sequence[int],
+    refinement: Refinement,
+) -> SectorPair:
+    """Sectors of `teeth` teeth, those `loaded` among them, flank layers cut by `refinement`."""
+    start = time.perf_counter()
+    bodies = [build(design, sizes) for build in BUILDERS.values()]
+    pinion, gear = (
+        sector_blocks(design, tooth, material, teeth, loaded, refinement)
+        for tooth, material in zip(bodies, materials, strict=True)
     )
-    system, place = _system(piece, flanks, normals)
-    whole = loaded_compliance(piece, system)[np.ix_(place, place)]
+    sides = [contact_side(design, tooth) for tooth in bodies]
+    surface = PinionSurface(design, sides[0], refinement)
+    lattice = GearLattice(design, sides[1], refinement)
+    return SectorPair(surface, lattice, pinion, gear, time.perf_counter() - start)
+
+
+def sector_blocks(
+    design: PairDesign,
+    tooth: ToothMesh,
+    material: Material,
+    teeth: int,
+    loaded: Sequence[int],
+    refinement: Refinement,
+) -> Blocks:
+    """Flank compliance (n, n), m/N, for each pair of `loaded` teeth (seen, loaded) of a sector of `teeth`
+    around tooth 0, cut faces free.
+
+    Equal to that of the sector meshed whole, from one condensed tooth.
+    """
+    piece, _ = piece_of(design, tooth, material, LOADED_SIDE[tooth.body])
+    system = tied_system(piece, refinement)
+    condensed = condense(piece, system)
+    planes = plane_compliance(condensed.faces, teeth)
+    seen = system.spread @ condensed.influence
+    own = system.spread @ condensed.flank @ system.spread.T
+    size = seen.shape[1]
+    starts = {number: size // 2 * (number + teeth // 2) for number in loaded}
+    faces = {number: slice(start, start + size) for number, start in starts.items()}
     return {
-        (seen, load): whole[i * size : (i + 1) * size, j * size : (j + 1) * size]
-        for i, seen in enumerate(sorted(loaded))
-        for j, load in enumerate(sorted(loaded))
+        (first, second): seen @ planes[faces[first], faces[second]] @ seen.T
+        + (own if first == second else 0.0)
+        for first, second in pairs_of(loaded, repeat=2)
     }
-
-
-def _system(piece, flanks, normals) -> tuple[TiedSystem, NDArray[np.int64]]:  # type: ignore[no-untyped-def]
-    """The unrefined system with the flanks of several teeth loaded, and each flank node's place in it."""
-    plain = tied_system(replace(piece, flank=flanks[0], normals=normals[0]), Refinement())
-    nodes = np.concatenate([flank.ravel() for flank in flanks])
-    _, loaded = cKDTree(plain.points).query(piece.points[nodes])
-    order = np.argsort(loaded)
-    outward = np.concatenate([normal.reshape(-1, 3) for normal in normals])
-    return replace(plain, loaded=loaded[order], loaded_normals=outward[order]), np.argsort(order)
-
-
-def analyse_sector(
-    model: ContactModel,
-    pinion: Blocks,
-    gear: Blocks,
-    place: Place,
-    angles: tuple[float, float],
-    torques: Sequence[float],
-) -> list[LoadedPosition]:
-    """Solve one position with sector compliances; surface and lattice of `model` must be unrefined."""
-    loaded = np.array(sorted({seen for seen, _ in pinion}))
-    options = ContactOptions()
-
-    def find(limit: float) -> list[Candidates]:
-        return find_candidates(model.surface, model.lattice, *angles, loaded, limit, options)
-
-    combine = partial(_influence, pinion=pinion, gear=gear)
-    results, _ = solve_position(find, combine, place, torques, 40e-6 / place.base_radius)
-    return results
 
 
 def _influence(pairs: list[Candidates], pinion: Blocks, gear: Blocks) -> NDArray[np.float64]:

@@ -10,7 +10,7 @@ from facegear.contact.validation.brute_force import gears_at, loaded_rotations
 from facegear.contact.validation.brute_mesh import flat_mesh
 from facegear.contact.validation.iso import mesh_stiffness
 from facegear.contact.validation.twin import analyse_twin, twin_model
-from facegear.geometry.design import Material, PairDesign
+from facegear.geometry.design import Assembly, Material, PairDesign, Relief
 from facegear.mesh.sizes import MeshSizes
 
 TEETH = 13
@@ -24,8 +24,22 @@ HALVINGS, RADIUS = 3, 0.2
 
 
 def twin_gears(design: PairDesign, teeth: int) -> tuple[PairDesign, PairDesign]:
-    """The design's pinion as a thin slab, and a spur gear of its module with `teeth` teeth."""
-    first = replace(design, pinion=replace(design.pinion, width=0.5 * design.module))
+    """The design's pinion as a thin slab, and a spur gear of its module with `teeth` teeth.
+
+    Both are standard gears without backlash: thinning, profile shift, chamfer and reliefs are left out.
+    """
+    part, plain = design.pinion, Relief()
+    standard = replace(
+        part,
+        width=0.5 * design.module,
+        profile_shift=0.0,
+        thinning=0.0,
+        tip_chamfer=0.0,
+        tip_relief=plain,
+        root_relief=plain,
+        lead_crowning=plain,
+    )
+    first = replace(design, pinion=standard, assembly=Assembly())
     bore = design.pinion.bore_radius + (teeth - design.pinion.teeth) * design.module / 2
     return first, replace(first, pinion=replace(first.pinion, teeth=teeth, bore_radius=bore))
 

@@ -17,11 +17,13 @@ from facegear.contact.bodies.elements import block_hexes
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.options import Refinement
 from facegear.contact.teeth import piece_of
+from facegear.contact.validation.sector_model import sector_blocks
 from facegear.contact.validation.twin import slab_tooth
 from facegear.errors import FacegearError
 from facegear.geometry.design import FaceGear, PairDesign, Pinion, Shaper
 from facegear.mesh.sector import sector
 from facegear.mesh.sizes import MeshSizes
+from facegear.mesh.tooth import pinion_tooth
 
 DISC = half_disc(0.01, np.linspace(0, 1, 5), np.linspace(0, 1, 5))
 CUTS = Refinement(3, 1, 2, 2.0)
@@ -147,6 +149,26 @@ def test_ring_of_one_condensed_tooth_is_the_ring_meshed_whole(slab, places):
     expected = moved.reshape(-1, 3)[node] @ normal
     own = compliance.own if places == 0 else compliance.block(places)
     assert own[seen_at, load_at] == pytest.approx(expected, rel=1e-8)
+
+
+def test_sector_of_one_condensed_tooth_is_the_sector_meshed_whole():
+    design = spur()
+    tooth = pinion_tooth(design, MeshSizes(1.5e-3, 2e-3, 2.5e-3))
+    piece, _ = piece_of(design, tooth, STEEL)
+    row = sector(tooth, 4, -2)
+    blocks = sector_blocks(design, tooth, STEEL, 4, (-1, 1), Refinement())
+    stiffness = stiffness_matrix(row.nodes, row.hexes, STEEL).tocsr()
+    free = np.ones((len(row.nodes), 3), dtype=bool)
+    free[row.tooth_nodes[:, piece.held.all(axis=1)].ravel()] = False
+    nodes = row.tooth_nodes[:, piece.flank.ravel()[[8, 13]]]
+    normals = [tooth.rotated(piece.normals.reshape(-1, 3)[[8, 13]], (j - 2) * tooth.pitch) for j in range(4)]
+    push = np.zeros((len(row.nodes), 3))
+    push[nodes[3, 0]] = normals[3][0]
+    moved = np.zeros(free.size)
+    moved[free.ravel()] = spl.spsolve(stiffness[free.ravel()][:, free.ravel()].tocsc(), push[free])
+    for seen in (-1, 1):
+        expected = moved.reshape(-1, 3)[nodes[seen + 2, 1]] @ normals[seen + 2][1]
+        assert blocks[seen, 1][13, 8] == pytest.approx(expected, rel=1e-8)
 
 
 def test_neighbouring_refined_teeth_move_each_other_alike(slab):
