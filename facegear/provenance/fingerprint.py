@@ -6,11 +6,19 @@ reruns when, and only when, code that it can reach has changed. Comments, docstr
 
 import ast
 import hashlib
-from collections.abc import Iterable
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 PACKAGE = "facegear"
+
+
+@dataclass(frozen=True)
+class _Source:
+    """What counts of a file: its code without docstrings, and the modules of the package that it imports."""
+
+    code: str
+    modules: tuple[str, ...]
 
 
 def fingerprint(script: str | Path, root: str | Path) -> str:
@@ -18,10 +26,11 @@ def fingerprint(script: str | Path, root: str | Path) -> str:
 
     Templates (`*.j2`) count with the package they lie in.
     """
-    digest = hashlib.sha256(_code(Path(script)).encode())
+    root = Path(root)
+    digest = hashlib.sha256(_source(Path(script), root).code.encode())
     for module in reached_modules(script, root):
-        file = _file(module, Path(root))
-        digest.update(module.encode() + b"\0" + _code(file).encode())
+        file = _file(module, root)
+        digest.update(module.encode() + b"\0" + _source(file, root).code.encode())
         if file.name == "__init__.py":
             for template in sorted(file.parent.glob("*.j2")):
                 digest.update(template.read_bytes())
@@ -32,54 +41,48 @@ def reached_modules(script: str | Path, root: str | Path) -> tuple[str, ...]:
     """Names of the package's modules that a script imports, directly or through others, sorted."""
     root = Path(root)
     reached: set[str] = set()
-    todo = list(_imported(Path(script), root))
+    todo = list(_source(Path(script), root).modules)
     while todo:
         module = todo.pop()
         if module not in reached:
             reached.add(module)
-            todo.extend(_imported(_file(module, root), root))
+            todo.extend(_source(_file(module, root), root).modules)
     return tuple(sorted(reached))
 
 
-def _imported(path: Path, root: Path) -> Iterable[str]:
-    for node in ast.walk(_tree(path, path.stat().st_mtime_ns)):
-        if isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
-            names = [node.module] + [f"{node.module}.{alias.name}" for alias in node.names]
-        else:
-            continue
-        for name in names:
-            if name.split(".")[0] == PACKAGE:
-                parents = [name.rsplit(".", depth)[0] for depth in range(name.count(".") + 1)]
-                yield from (parent for parent in parents if _exists(parent, root))
+def _source(path: Path, root: Path) -> _Source:
+    return _parsed(path, root, path.stat().st_mtime_ns)
+
+
+@cache
+def _parsed(path: Path, root: Path, modified: int) -> _Source:
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    found: set[str] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            for name in _names(node):
+                if name.split(".")[0] == PACKAGE:
+                    found.update(name.rsplit(".", depth)[0] for depth in range(name.count(".") + 1))
+        elif isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+            body = node.body
+            if body and isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Constant):
+                node.body = body[1:] or ([] if isinstance(node, ast.Module) else [ast.Pass()])
+    modules = sorted(module for module in found if _exists(module, root))
+    return _Source(ast.unparse(tree), tuple(modules))
+
+
+def _names(node: ast.Import | ast.ImportFrom) -> list[str]:
+    if isinstance(node, ast.Import):
+        return [alias.name for alias in node.names]
+    if node.module is None or node.level:
+        return []
+    return [node.module] + [f"{node.module}.{alias.name}" for alias in node.names]
 
 
 def _exists(module: str, root: Path) -> bool:
-    base = root.joinpath(*module.split("."))
-    return base.with_suffix(".py").is_file() or (base / "__init__.py").is_file()
+    return _file(module, root).is_file()
 
 
 def _file(module: str, root: Path) -> Path:
     base = root.joinpath(*module.split("."))
     return base.with_suffix(".py") if base.with_suffix(".py").is_file() else base / "__init__.py"
-
-
-def _code(path: Path) -> str:
-    return _normalised(path, path.stat().st_mtime_ns)
-
-
-@cache
-def _normalised(path: Path, modified: int) -> str:
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
-            body = node.body
-            if body and isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Constant):
-                node.body = body[1:] or ([] if isinstance(node, ast.Module) else [ast.Pass()])
-    return ast.unparse(tree)
-
-
-@cache
-def _tree(path: Path, modified: int) -> ast.Module:
-    return ast.parse(path.read_text(encoding="utf-8"))
