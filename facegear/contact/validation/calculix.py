@@ -88,15 +88,18 @@ def write_deck(
                 deck.write(", ".join(map(str, row[:11])) + ",\n" + ", ".join(map(str, row[11:])) + "\n")
             side = LOADED_SIDE[body]
             faces = [f for name in ("flank", "fillet") for f in element_faces(mesh, f"{name}_{side}")]
-            deck.write(f"*SURFACE, NAME=S_{body.upper()}, TYPE=ELEMENT\n")
-            deck.writelines(f"{start + element}, {name}\n" for element, name in faces)
+            per_tooth = len(mesh.hexes) // teeth
+            for tooth in range(teeth):
+                deck.write(f"*SURFACE, NAME={_surface(body, tooth)}, TYPE=ELEMENT\n")
+                own = [(element, name) for element, name in faces if element // per_tooth == tooth]
+                deck.writelines(f"{start + element}, {name}\n" for element, name in own)
             held = np.intersect1d(mesh.faces("bore" if body == "pinion" else "rim_back") + shift, used)
             deck.write(f"*NSET, NSET=H_{body.upper()}\n" + "".join(f"{node + 1},\n" for node in held))
             deck.write(f"*MATERIAL, NAME=M_{body.upper()}\n*ELASTIC\n")
             deck.write(f"{1e-6 * material.young_modulus:.10g}, {material.poisson_ratio:.10g}\n")
             deck.write(f"*SOLID SECTION, ELSET={body.upper()}, MATERIAL=M_{body.upper()}\n")
             start += len(mesh.hexes)
-        deck.write(_step(reference, rotation, turn, slave))
+        deck.write(_step(reference, rotation, turn, teeth, slave))
     return 3 * len(used)
 
 
@@ -147,14 +150,25 @@ def _placed(
     return {"pinion": bodies["pinion"].nodes, "face_gear": np.stack([x, y, -minus_z], axis=1)}
 
 
-def _step(reference: int, rotation: int, turn: float, slave: str) -> str:
-    """Supports, contact and the one step: the bore turned about the pinion's axis, positive towards +x."""
+def _surface(body: str, tooth: int) -> str:
+    return f"S_{body.upper()}_{tooth}"
+
+
+def _step(reference: int, rotation: int, turn: float, teeth: int, slave: str) -> str:
+    """Supports, contact and the one step: the bore turned about the pinion's axis, positive towards +x.
+
+    Each tooth is paired with its own opposite: with all flanks in one pair CalculiX also closes gaps between
+    a flank and the back of another tooth, and finds torques of many times ours.
+    """
     master = "face_gear" if slave == "pinion" else "pinion"
+    pairs = "\n".join(
+        f"*CONTACT PAIR, INTERACTION=SMOOTH, TYPE=MORTAR\n{_surface(slave, j)}, {_surface(master, j)}"
+        for j in range(teeth)
+    )
     return f"""*RIGID BODY, NSET=H_PINION, REF NODE={reference}, ROT NODE={rotation}
 *SURFACE INTERACTION, NAME=SMOOTH
 *SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD
-*CONTACT PAIR, INTERACTION=SMOOTH, TYPE=MORTAR
-S_{slave.upper()}, S_{master.upper()}
+{pairs}
 *BOUNDARY
 H_FACE_GEAR, 1, 3
 {reference}, 1, 3
