@@ -11,7 +11,7 @@ from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Se
 class RefinementSection(Section):
     """How often the layer of elements under the flank is cut."""
 
-    profile: int = Field(default=4, ge=1, le=32, description="across the profile")
+    profile: int = Field(default=3, ge=1, le=32, description="across the profile")
     width: int = Field(default=1, ge=1, le=16, description="along the face")
     depth: int = Field(default=2, ge=1, le=16, description="below the flank")
     depth_grading: float = Field(default=2.0, ge=1, le=4, description="ratio of neighbouring sizes in depth")

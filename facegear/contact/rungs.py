@@ -7,6 +7,7 @@ CUTS = {
     "coarse_2x1x1": ("coarse", Refinement(2, 1, 1)),
     "coarse_2x1x2": ("coarse", Refinement(2, 1, 2, 2.0)),
     "coarse_2x2x2": ("coarse", Refinement(2, 2, 2, 2.0)),
+    "coarse_3x1x2": ("coarse", Refinement(3, 1, 2, 2.0)),
     "coarse_4x1x2": ("coarse", Refinement(4, 1, 2, 2.0)),
     "coarse_4x2x2": ("coarse", Refinement(4, 2, 2, 2.0)),
     "coarse_8x1x3": ("coarse", Refinement(8, 1, 3, 2.0)),
@@ -15,11 +16,11 @@ CUTS = {
 }
 """Mesh resolution and cuts of the flank layer across the profile, along the width and in depth."""
 
-DEFAULT = "coarse_4x1x2"
+DEFAULT = "coarse_3x1x2"
 """The rung that the default config stands for; sectors and linear elements are measured at it."""
 
-SECTORS = {"coarse_4x1x2_sector_5": 5, "coarse_4x1x2_sector_9": 9}
-LINEAR: dict[str, Element] = {"coarse_4x1x2_hex8": "hex8", "coarse_4x1x2_tet4": "tet4"}
+SECTORS = {f"{DEFAULT}_sector_{teeth}": teeth for teeth in (5, 9)}
+LINEAR: dict[str, Element] = {f"{DEFAULT}_hex8": "hex8", f"{DEFAULT}_tet4": "tet4"}
 
 FINEST = "medium_4x1x2"
 RUNGS = (*CUTS, *SECTORS, *LINEAR)

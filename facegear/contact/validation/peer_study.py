@@ -10,7 +10,7 @@ from scipy.interpolate import PchipInterpolator
 
 from facegear.contact.options import Refinement
 from facegear.contact.pair import BUILDERS
-from facegear.contact.rungs import CUTS, DEFAULT
+from facegear.contact.rungs import CUTS
 from facegear.contact.validation.calculix import run_deck, write_deck
 from facegear.contact.validation.sector_model import SectorPair, angles_at, sector_pair
 from facegear.geometry.design import Material, PairDesign
@@ -19,6 +19,8 @@ from facegear.mesh.sizes import MeshSizes, named_sizes
 TEETH = 5
 LOADED = (-1, 0, 1, 2)
 POSITIONS = (0.0, 0.34, 0.67)
+RESOLVED = "coarse_4x1x2"
+"""The rung that the errors of both are taken from."""
 AMORTISED = 128
 """Solutions over which one compliance is shared: 32 positions at 4 loads."""
 LOADS = (0.25, 0.5, 0.75, 1.0)
@@ -40,12 +42,12 @@ def peer_study(
 
     CalculiX runs with either body's flank as the slave surface, a row each: its answer should not depend on
     it. `resolved_torque_n_m` is what the same sector takes at that turn with its contact strip resolved, by
-    our solver at the default resolution; errors are taken from it. At a given turn torques differ by some
+    our solver on the rung RESOLVED; errors are taken from it. At a given turn torques differ by some
     1.3 times what turns do at a given torque (local over average stiffness). `seconds` is ours for one
     solution with its part of the compliances of both sectors, `calculix_seconds` one run.
     Raises FacegearError if ccx is not installed or fails.
     """
-    size, cuts = CUTS[DEFAULT]
+    size, cuts = CUTS[RESOLVED]
     resolved = sector_pair(design, named_sizes(size, design.module), materials, TEETH, LOADED, cuts)
     fine = {position: _torque_by_turn(resolved, position, torque) for position in POSITIONS}
     del resolved

@@ -3,6 +3,8 @@
 import pandas as pd
 import pytest
 
+from facegear.config.contact import Contact, contact_plan
+from facegear.config.mesh import Mesh
 from facegear.contact.benchmark import cheapest, with_errors
 from facegear.contact.rungs import CUTS, DEFAULT, FINEST, RUNGS
 from facegear.errors import NotConverged
@@ -46,3 +48,7 @@ def test_ladder_without_an_accurate_rung_is_refused():
 def test_ladder_holds_the_default_and_the_finest():
     assert {DEFAULT, FINEST} <= set(CUTS)
     assert set(CUTS) < set(RUNGS)
+
+
+def test_config_without_a_refinement_gets_the_default_rung():
+    assert CUTS[DEFAULT] == (Mesh().resolution, contact_plan(Contact()).refinement)
