@@ -15,6 +15,7 @@ from facegear.contact.validation.calculix import run_deck, write_deck
 from facegear.contact.validation.sector_model import SectorPair, angles_at, sector_pair
 from facegear.geometry.design import Material, PairDesign
 from facegear.mesh.sizes import MeshSizes, named_sizes
+from facegear.progress import Progress
 
 TEETH = 5
 LOADED = (-1, 0, 1, 2)
@@ -51,6 +52,7 @@ def peer_study(
     resolved = sector_pair(design, named_sizes(size, design.module), materials, TEETH, LOADED, cuts)
     fine = {position: _torque_by_turn(resolved, position, torque) for position in POSITIONS}
     del resolved
+    progress = Progress("CalculiX", len(rungs) * len(POSITIONS) * len(BUILDERS))
     rows = []
     for name, sizes in rungs.items():
         pair = sector_pair(design, sizes, materials, TEETH, LOADED, Refinement())
@@ -67,6 +69,7 @@ def peer_study(
                     deck, design, sizes, materials, TEETH, angles_at(design, position), turn, slave
                 )
                 peer = run_deck(deck, threads, dof)
+                progress.step()
                 rows.append(
                     {
                         "rung": name,

@@ -12,6 +12,7 @@ from facegear.contact.validation.iso import mesh_stiffness
 from facegear.contact.validation.twin import analyse_twin, twin_model
 from facegear.geometry.design import Assembly, Material, PairDesign, Relief
 from facegear.mesh.sizes import MeshSizes
+from facegear.progress import Progress
 
 TEETH = 13
 """In both sectors: the loaded teeth next to the middle one must not feel the free cut faces."""
@@ -64,7 +65,8 @@ def twin_study(
     ours = analyse_twin(model, np.array(positions), list(line_loads))
     thickness, base = float(np.ptp(model.surface.side.v)), first.pinion_base_radius
     fine = [MeshSizes(size * m, 0.25 * m, 0.4 * m) for size in ladder]
-    brute = [_brute(first, second, size, sector, positions, line_loads) for size in fine]
+    progress = Progress(f"brute force, {teeth} teeth", len(ladder) * len(positions))
+    brute = [_brute(first, second, size, sector, positions, line_loads, progress) for size in fine]
     rows = []
     for result, *brute_k in zip(ours, *brute, strict=True):
         load = result.torque / base / thickness
@@ -85,7 +87,7 @@ def twin_study(
     return pd.DataFrame(rows)
 
 
-def _brute(first, second, sizes, sector, positions, line_loads):  # type: ignore[no-untyped-def]
+def _brute(first, second, sizes, sector, positions, line_loads, progress):  # type: ignore[no-untyped-def]
     """Stiffness (N/m per m) at all loads of all positions on one mesh."""
     meshes = tuple(flat_mesh(gear, sizes, sector) for gear in (first, second))
     base, found = first.pinion_base_radius, []
@@ -93,4 +95,5 @@ def _brute(first, second, sizes, sector, positions, line_loads):  # type: ignore
         gears = gears_at(meshes, position, STEEL, RADIUS * first.module, HALVINGS)
         turns = loaded_rotations(gears, position, line_loads)
         found += [load / (turn * base) for load, (turn, _) in zip(line_loads, turns, strict=True)]
+        progress.step()
     return found
