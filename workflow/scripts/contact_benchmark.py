@@ -14,6 +14,6 @@ with stage(snakemake) as run:
     growth = tables.read(snakemake.input.growth, ["varied", "positions", "loads", "contact_s"])
     table = with_errors(pd.concat(parts, ignore_index=True), FINEST)
     tables.write(snakemake.output.table, table)
-    save(speed_against_error(table, growth), snakemake.output.svg, snakemake.output.png)
+    save(speed_against_error(table, growth, DEFAULT), snakemake.output.svg, snakemake.output.png)
     best = cheapest(table)
     run.summary(f"{table['rung'].nunique()} resolutions against {FINEST}; cheapest {best}, default {DEFAULT}")
