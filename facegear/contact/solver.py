@@ -70,7 +70,7 @@ def solve(
             break
         seen.add(key)
         active = next_active
-    return _exchange(compliance, gap, arm, torque, where)
+    return _exchange(compliance, gap, arm, torque, _feasible(gap, arm, torque, bonded.force), where)
 
 
 def _first_guess(gap: NDArray[np.float64], arm: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -147,12 +147,20 @@ def kkt_residual(
     )
 
 
-def _exchange(compliance, gap, arm, torque, where):  # type: ignore[no-untyped-def]
-    """One point at a time, energy falling at every step, hence finite."""
+def _feasible(gap, arm, torque, force):  # type: ignore[no-untyped-def]
+    """Forces without tension that carry the torque: those given, or one where the gap closes first."""
+    pressing = np.maximum(force, 0.0)
+    if arm @ pressing > 0.0:
+        return pressing * (torque / (arm @ pressing))
     turns = np.where(arm > 0, gap / np.where(arm > 0, arm, 1.0), np.inf)
     first = int(np.argmin(turns))
-    force = np.zeros_like(gap)
-    force[first] = torque / arm[first]
+    alone = np.zeros_like(gap)
+    alone[first] = torque / arm[first]
+    return alone
+
+
+def _exchange(compliance, gap, arm, torque, force, where):  # type: ignore[no-untyped-def]
+    """One point at a time from feasible forces, energy falling at every step, hence finite."""
     active = force > 0.0
     limit = 20 * gap.size + 100
     for step in range(limit):

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from facegear.config.base import parse
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
-from facegear.contact.validation.peer_study import peer_study
+from facegear.contact.validation.peer_study import HAND_OVER, POSITIONS, peer_study
 from facegear.io import tables
 from facegear.mesh.sizes import MeshSizes, named_sizes
 from facegear.provenance.stage import stage
@@ -13,7 +13,11 @@ with stage(snakemake) as run:
     section = parse(ToothPair, snakemake.params.tooth_pair)
     design = pair_design(section)
     m = design.module
-    rungs = {"coarser": MeshSizes(0.2 * m, 1.07 * m, 0.8 * m), "coarse": named_sizes("coarse", m)}
+    rungs = {
+        "coarser": (MeshSizes(0.2 * m, 1.07 * m, 0.8 * m), POSITIONS),
+        "coarse": (named_sizes("coarse", m), POSITIONS),
+        "finer": (MeshSizes(0.13 * m, 0.6 * m, 0.8 * m), (HAND_OVER,)),
+    }
     folder = Path(snakemake.output.table).parent / "calculix"
     folder.mkdir(parents=True, exist_ok=True)
     table = peer_study(design, rungs, materials(section), 600.0, folder, snakemake.threads)

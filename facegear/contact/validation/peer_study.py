@@ -1,7 +1,7 @@
 """CalculiX beside the chain: the same sector on the same mesh, the pinion turned by the same angle."""
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +19,8 @@ from facegear.progress import Progress
 
 TEETH = 5
 LOADED = (-1, 0, 1, 2)
-POSITIONS = (0.0, 0.34, 0.67)
+HAND_OVER = 0.0
+POSITIONS = (HAND_OVER, 0.34, 0.67)
 RESOLVED = "coarse_4x1x2"
 """The rung that the errors of both are taken from."""
 AMORTISED = 128
@@ -32,14 +33,14 @@ AROUND = tuple(np.linspace(0.85, 1.15, 13))
 
 def peer_study(
     design: PairDesign,
-    rungs: Mapping[str, MeshSizes],
+    rungs: Mapping[str, tuple[MeshSizes, Sequence[float]]],
     materials: tuple[Material, Material],
     torque: float,
     folder: Path,
     threads: int,
 ) -> pd.DataFrame:
     """Torque (N m) that both need for the turn our sector takes under `torque`, with times (s) and memory
-    (GB).
+    (GB), for each rung at its positions (0..1 of a pitch).
 
     CalculiX runs with either body's flank as the slave surface, a row each: its answer should not depend on
     it. `resolved_torque_n_m` is what the same sector takes at that turn with its contact strip resolved, by
@@ -50,14 +51,15 @@ def peer_study(
     """
     size, cuts = CUTS[RESOLVED]
     resolved = sector_pair(design, named_sizes(size, design.module), materials, TEETH, LOADED, cuts)
-    fine = {position: _torque_by_turn(resolved, position, torque) for position in POSITIONS}
+    asked = {position for _, positions in rungs.values() for position in positions}
+    fine = {position: _torque_by_turn(resolved, position, torque) for position in asked}
     del resolved
-    progress = Progress("CalculiX", len(rungs) * len(POSITIONS) * len(BUILDERS))
+    progress = Progress("CalculiX", sum(len(positions) for _, positions in rungs.values()) * len(BUILDERS))
     rows = []
-    for name, sizes in rungs.items():
+    for name, (sizes, positions) in rungs.items():
         pair = sector_pair(design, sizes, materials, TEETH, LOADED, Refinement())
         pair.solve(0.5, (1.0,))
-        for position in POSITIONS:
+        for position in positions:
             start = time.perf_counter()
             ours = pair.solve(position, tuple(part * torque for part in LOADS))[-1]
             seconds = pair.seconds / AMORTISED + (time.perf_counter() - start) / len(LOADS)

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from facegear.contact import solver
 from facegear.contact.solver import kkt_residual, solve
 from facegear.errors import NotConverged
 
@@ -38,6 +39,18 @@ def test_solution_does_not_depend_on_the_start(seed, start):
     cold, warm = (solve(compliance, gap, arm, 1.0, begin) for begin in (None, guess))
     np.testing.assert_allclose(warm.force, cold.force, atol=1e-10 * cold.force.max())
     assert warm.rotation == pytest.approx(cold.rotation, rel=1e-12)
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 10**6), size=st.integers(2, 60))
+def test_exchanging_one_point_at_a_time_leads_to_the_same_solution(seed, size):
+    problem = random_problem(seed, size)
+    usual = solve(*problem, 1.0)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(solver, "NEWTON_STEPS", 1)
+        slow = solve(*problem, 1.0)
+    np.testing.assert_allclose(slow.force, usual.force, atol=1e-10 * usual.force.max())
+    assert slow.residual < 1e-12
 
 
 @settings(max_examples=30, deadline=None)
