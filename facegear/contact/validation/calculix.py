@@ -157,8 +157,8 @@ def _surface(body: str, tooth: int) -> str:
 def _step(reference: int, rotation: int, turn: float, teeth: int, slave: str) -> str:
     """Supports, contact and the one step: the bore turned about the pinion's axis, positive towards +x.
 
-    Each tooth is paired with its own opposite: with all flanks in one pair CalculiX also closes gaps between
-    a flank and the back of another tooth, and finds torques of many times ours.
+    Each tooth is paired with its own opposite: with all flanks in one pair and the gear's as the slave
+    CalculiX ends at torques of many times ours, as if it closed gaps between different teeth.
     """
     master = "face_gear" if slave == "pinion" else "pinion"
     pairs = "\n".join(

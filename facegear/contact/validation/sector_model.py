@@ -3,7 +3,6 @@
 The chain instead puts each loaded tooth into the middle of a ring or sector of its own.
 """
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -33,13 +32,12 @@ Blocks = dict[tuple[int, int], NDArray[np.float64]]
 
 @dataclass(frozen=True, eq=False)
 class SectorPair:
-    """Surfaces of both gears and the compliance blocks of their sectors, which took `seconds` to make."""
+    """Surfaces of both gears and the compliance blocks of their sectors."""
 
     surface: PinionSurface
     lattice: GearLattice
     pinion: Blocks
     gear: Blocks
-    seconds: float
 
     def solve(self, position: float, torques: Sequence[float]) -> list[LoadedPosition]:
         """Contact at a position (0..1 of a pitch) under torques (N m), unloaded transmission error left in.
@@ -73,7 +71,6 @@ def sector_pair(
     refinement: Refinement,
 ) -> SectorPair:
     """Sectors of `teeth` teeth, those `loaded` among them, flank layers cut by `refinement`."""
-    start = time.perf_counter()
     bodies = [build(design, sizes) for build in BUILDERS.values()]
     pinion, gear = (
         sector_blocks(design, tooth, material, teeth, loaded, refinement)
@@ -82,7 +79,7 @@ def sector_pair(
     sides = [contact_side(design, tooth) for tooth in bodies]
     surface = PinionSurface(design, sides[0], refinement)
     lattice = GearLattice(design, sides[1], refinement)
-    return SectorPair(surface, lattice, pinion, gear, time.perf_counter() - start)
+    return SectorPair(surface, lattice, pinion, gear)
 
 
 def sector_blocks(
