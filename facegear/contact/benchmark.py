@@ -139,10 +139,12 @@ def summary(results: Sequence[LoadedPosition]) -> pd.DataFrame:
 
 
 def with_errors(table: pd.DataFrame, reference: str) -> pd.DataFrame:
-    """Add the errors of mean and first harmonic, in percent of the reference rung's at the same torque."""
+    """Add the errors of mean and first harmonic of both stiffnesses (`local_*` the local one), in percent of
+    the reference rung's at the same torque.
+    """
     finest = table[table["rung"] == reference].set_index("torque_n_m")
     result = table.copy()
-    for name in ("mean", "amplitude_1"):
+    for name in ("mean", "amplitude_1", "local_mean", "local_amplitude_1"):
         column = f"{name}_n_per_m"
         result[f"{name}_error_percent"] = 100 * (table[column] / table["torque_n_m"].map(finest[column]) - 1)
     return result

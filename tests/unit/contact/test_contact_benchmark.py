@@ -19,6 +19,8 @@ def ladder(**rows):
             "total_s": seconds,
             "mean_n_per_m": mean * factor,
             "amplitude_1_n_per_m": harmonic * factor,
+            "local_mean_n_per_m": 1.3 * mean * factor,
+            "local_amplitude_1_n_per_m": harmonic * factor,
         }
         for rung, (seconds, mean, harmonic) in rows.items()
         for torque, factor in ((100.0, 1.0), (600.0, 1.5))
