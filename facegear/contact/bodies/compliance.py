@@ -88,12 +88,12 @@ def coupled_compliance(
         seen = system.spread[nodes[:: refinement.profile, :: refinement.width].ravel()] @ tooth.influence
         others = seen @ face_compliance(tooth.faces, rests) @ seen.T
         rest = rests[0][0]
-    own = _spread(system.spread, held_by(tooth, rest))
+    own = on_lattice(system.spread, held_by(tooth, rest))
     return FlankCompliance(own, others, shape, coarse_shape, refinement, element != "hex27")
 
 
-def _spread(spread: sp.csr_matrix, flank: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Bring the masters' compliance (k, k) to all lattice nodes, which mostly are masters themselves."""
+def on_lattice(spread: sp.csr_matrix, flank: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Bring the masters' compliance (k, k) by `spread` (n, k) to the n lattice nodes, mostly masters."""
     if spread.nnz == spread.shape[0] and (spread.data == 1.0).all():
         return flank[np.ix_(spread.indices, spread.indices)]
     half = spread @ flank

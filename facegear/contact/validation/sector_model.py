@@ -12,6 +12,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
+from facegear.contact.bodies.compliance import on_lattice
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.bodies.ring import plane_compliance
 from facegear.contact.bodies.substructure import condense
@@ -100,7 +101,7 @@ def sector_blocks(
     condensed = condense(piece, system)
     planes = plane_compliance(condensed.faces, teeth)
     seen = system.spread @ condensed.influence
-    own = system.spread @ condensed.flank @ system.spread.T
+    own = on_lattice(system.spread, condensed.flank)
     size = seen.shape[1]
     starts = {number: size // 2 * (number + teeth // 2) for number in loaded}
     faces = {number: slice(start, start + size) for number, start in starts.items()}

@@ -10,7 +10,7 @@ from facegear.contact.validation.brute_force import gears_at, loaded_rotations
 from facegear.contact.validation.brute_mesh import flat_mesh
 from facegear.contact.validation.iso import mesh_stiffness
 from facegear.contact.validation.twin import analyse_twin, twin_model
-from facegear.geometry.design import Assembly, Material, PairDesign, Relief
+from facegear.geometry.design import Assembly, Material, PairDesign, Pinion
 from facegear.mesh.sizes import MeshSizes
 from facegear.progress import Progress
 
@@ -29,16 +29,14 @@ def twin_gears(design: PairDesign, teeth: int) -> tuple[PairDesign, PairDesign]:
 
     Both are standard gears without backlash: thinning, profile shift, chamfer and reliefs are left out.
     """
-    part, plain = design.pinion, Relief()
-    standard = replace(
-        part,
-        width=0.5 * design.module,
-        profile_shift=0.0,
-        thinning=0.0,
-        tip_chamfer=0.0,
-        tip_relief=plain,
-        root_relief=plain,
-        lead_crowning=plain,
+    part = design.pinion
+    standard = Pinion(
+        part.teeth,
+        0.5 * design.module,
+        part.addendum,
+        part.dedendum,
+        part.rack_tip_radius,
+        part.bore_radius,
     )
     first = replace(design, pinion=standard, assembly=Assembly())
     bore = design.pinion.bore_radius + (teeth - design.pinion.teeth) * design.module / 2
