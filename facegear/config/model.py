@@ -5,7 +5,6 @@ from pydantic import Field, model_validator
 from facegear.config.base import Section, refuse
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.dynamics import Dynamics
-from facegear.config.identify import Identify, ScorecardSection
 from facegear.config.load_sharing import LoadSharing
 from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.stiffness import MeshStiffness
@@ -14,6 +13,7 @@ from facegear.config.tooth_pair import ToothPair, materials, pair_design
 from facegear.config.transmission import Transmission, layout, tooth_numbers
 from facegear.contact.resolution import check_resolution
 from facegear.errors import ConfigError
+from facegear.paper.config.sections import Identify, ScorecardSection
 
 
 class Config(Section):

@@ -4,8 +4,8 @@ from math import radians
 
 import pytest
 
-from facegear.contact.validation.twin_study import twin_gears, twin_study
 from facegear.geometry.design import FaceGear, PairDesign, Pinion, Relief, Shaper
+from facegear.validation.contact.twin_study import twin_gears, twin_study
 
 M = 3.75e-3
 

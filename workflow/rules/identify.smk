@@ -1,5 +1,5 @@
 from facegear.config.cases import design_points
-from facegear.config.identify import Identify, branches
+from facegear.paper.config.sections import Identify, branches
 
 IDENTIFY = parse_section(Identify, CONFIG["identify"]) if CONFIG["identify"] else None
 DESIGNS = list(design_points(CONFIG["identify"]))

@@ -4,10 +4,10 @@ from pathlib import Path
 
 from facegear.config.base import parse
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
-from facegear.contact.validation.peer_study import HAND_OVER, POSITIONS, peer_study
 from facegear.io import tables
 from facegear.mesh.sizes import MeshSizes, named_sizes
 from facegear.provenance.stage import stage
+from facegear.validation.contact.peer_study import HAND_OVER, POSITIONS, peer_study
 
 with stage(snakemake) as run:
     section = parse(ToothPair, snakemake.params.tooth_pair)

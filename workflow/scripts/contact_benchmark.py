@@ -2,12 +2,12 @@
 
 import pandas as pd
 
-from facegear.contact.benchmark import cheapest, with_errors
-from facegear.contact.rungs import DEFAULT, FINEST
 from facegear.io import tables
-from facegear.plots.benchmark_contact import speed_against_error
 from facegear.plots.style import save
 from facegear.provenance.stage import stage
+from facegear.validation.contact.benchmark import cheapest, with_errors
+from facegear.validation.contact.refinement_levels import DEFAULT, FINEST
+from facegear.validation.plots.contact import speed_against_error
 
 with stage(snakemake) as run:
     parts = [tables.read(path, ["rung", "torque_n_m", "mean_n_per_m"]) for path in snakemake.input.tables]

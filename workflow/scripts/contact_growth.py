@@ -3,10 +3,10 @@
 from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
-from facegear.contact.benchmark import growth, rung
-from facegear.contact.rungs import DEFAULT
 from facegear.io import tables
 from facegear.provenance.stage import stage
+from facegear.validation.contact.benchmark import growth, rung
+from facegear.validation.contact.refinement_levels import DEFAULT
 
 with stage(snakemake) as run:
     section = parse(ToothPair, snakemake.params.tooth_pair)

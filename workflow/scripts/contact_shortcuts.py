@@ -4,12 +4,12 @@ import pandas as pd
 
 from facegear.config.base import parse
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
-from facegear.contact.benchmark import Rung, shortcuts
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
-from facegear.contact.validation.sector_study import whole_sectors
 from facegear.io import tables
 from facegear.mesh.sizes import MeshSizes
 from facegear.provenance.stage import stage
+from facegear.validation.contact.benchmark import Rung, shortcuts
+from facegear.validation.contact.sector_study import whole_sectors
 
 with stage(snakemake) as run:
     section = parse(ToothPair, snakemake.params.tooth_pair)

@@ -6,13 +6,13 @@ from facegear.config.base import parse
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.config.transmission import Transmission, machine, tooth_numbers
 from facegear.dynamics.steady_state.simulate import model
-from facegear.dynamics.sweeps.convergence import convergence_table, not_converged, rerun
 from facegear.dynamics.sweeps.stored import SHAPES, from_arrays
 from facegear.dynamics.sweeps.sweep import joined
 from facegear.io import arrays, tables
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
 from facegear.stiffness.tables import HARMONICS_COLUMNS, series_of
+from facegear.validation.dynamics.convergence import convergence_table, not_converged, rerun
 
 with stage(snakemake) as run:
     params = snakemake.params

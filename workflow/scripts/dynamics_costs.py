@@ -3,11 +3,11 @@
 from facegear.config.base import parse
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.config.transmission import Transmission, machine, tooth_numbers
-from facegear.dynamics.benchmarks.costs import scaling_costs, sweep_costs
 from facegear.io import tables
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
 from facegear.stiffness.tables import HARMONICS_COLUMNS, series_of
+from facegear.validation.dynamics.costs import scaling_costs, sweep_costs
 
 with stage(snakemake) as run:
     params = snakemake.params

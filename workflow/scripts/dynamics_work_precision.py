@@ -2,20 +2,20 @@
 
 from facegear.config.base import parse
 from facegear.config.transmission import Transmission, machine, tooth_numbers
-from facegear.dynamics.benchmarks.methods import all_methods
-from facegear.dynamics.benchmarks.problems import machine_problems, oscillator_problem
-from facegear.dynamics.benchmarks.work_precision import (
+from facegear.io import tables
+from facegear.plots.style import save
+from facegear.progress import Progress
+from facegear.provenance.stage import stage
+from facegear.stiffness.tables import HARMONICS_COLUMNS, series_of
+from facegear.validation.dynamics.methods import all_methods
+from facegear.validation.dynamics.problems import machine_problems, oscillator_problem
+from facegear.validation.dynamics.work_precision import (
     Budget,
     cheapest_within_chance,
     seconds_at,
     work_precision,
 )
-from facegear.io import tables
-from facegear.plots.benchmarks import work_precision_diagram
-from facegear.plots.style import save
-from facegear.progress import Progress
-from facegear.provenance.stage import stage
-from facegear.stiffness.tables import HARMONICS_COLUMNS, series_of
+from facegear.validation.plots.work_precision import work_precision_diagram
 
 with stage(snakemake) as run:
     params, output = snakemake.params, snakemake.output

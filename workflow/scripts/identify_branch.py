@@ -1,11 +1,11 @@
 """Search one branch of the undisclosed inputs."""
 
 from facegear.config.base import parse
-from facegear.config.identify import Identify, branches, search_budget
-from facegear.config.search import search_problem
 from facegear.contact.columns import LTCA_COLUMNS
-from facegear.identify.search import search_branch
 from facegear.io import tables
+from facegear.paper.config.search import search_problem
+from facegear.paper.config.sections import Identify, branches, search_budget
+from facegear.paper.identify.search import search_branch
 from facegear.provenance.stage import stage
 
 with stage(snakemake) as run:

@@ -3,8 +3,8 @@
 from facegear.config.base import parse
 from facegear.config.stiffness import MeshStiffness
 from facegear.contact.columns import LTCA_COLUMNS
-from facegear.identify.roads import roads_table
 from facegear.io import tables
+from facegear.paper.identify.roads import roads_table
 from facegear.provenance.stage import stage
 from facegear.stiffness.curve import load_table
 

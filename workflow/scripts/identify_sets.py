@@ -4,13 +4,13 @@ import pandas as pd
 
 from facegear.config.base import parse
 from facegear.config.dynamics import Accuracy, settings
-from facegear.config.identify import Identify, search_space
-from facegear.config.search import search_problem
 from facegear.contact.columns import LTCA_COLUMNS
-from facegear.identify.judge import confirmed, judge_sets
-from facegear.identify.optima import separate_optima
 from facegear.io import tables
-from facegear.plots.identify import landscape
+from facegear.paper.config.search import search_problem
+from facegear.paper.config.sections import Identify, search_space
+from facegear.paper.identify.judge import confirmed, judge_sets
+from facegear.paper.identify.optima import separate_optima
+from facegear.paper.plots.landscape import landscape
 from facegear.plots.style import save
 from facegear.provenance.stage import stage
 

@@ -1,8 +1,8 @@
 """Figures 13 to 20: load sharing over one mesh cycle for every study."""
 
-from facegear.config.undisclosed import inputs_caption
 from facegear.io import tables
 from facegear.load_sharing.tables import SUMMARY_COLUMNS
+from facegear.paper.undisclosed import inputs_caption
 from facegear.plots.load_sharing import sharing_figure
 from facegear.plots.style import save
 from facegear.provenance.stage import stage

@@ -3,8 +3,8 @@
 from facegear.config.base import parse
 from facegear.config.tooth_pair import ToothPair, pair_design
 from facegear.io import tables
-from facegear.mesh.growth import growth_table
 from facegear.provenance.stage import stage
+from facegear.validation.mesh.growth import growth_table
 
 with stage(snakemake) as run:
     table = growth_table(pair_design(parse(ToothPair, snakemake.params.section)))

@@ -2,14 +2,14 @@
 
 import pandas as pd
 
-from facegear.config.undisclosed import undisclosed_inputs
 from facegear.io import tables
 from facegear.io.atomic import atomic_path
 from facegear.load_sharing.collect import NOMINAL, collected
+from facegear.paper.scorecard.claims import read_claims
+from facegear.paper.scorecard.page import counts, render
+from facegear.paper.scorecard.rows import OUTCOME_COLUMNS, outcome_table, scorecard
+from facegear.paper.undisclosed import undisclosed_inputs
 from facegear.provenance.stage import stage
-from facegear.scorecard.claims import read_claims
-from facegear.scorecard.page import counts, render
-from facegear.scorecard.rows import OUTCOME_COLUMNS, outcome_table, scorecard
 
 STORED = (
     *("frequencies", "tvms", "load_dependence", "response", "spectrum"),

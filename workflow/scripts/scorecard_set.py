@@ -7,10 +7,10 @@ from facegear.config.machines import case_machine
 from facegear.config.stiffness import MeshStiffness, stiffness_request
 from facegear.contact.columns import LTCA_COLUMNS
 from facegear.io import tables
+from facegear.paper.scorecard.claims import read_claims
+from facegear.paper.scorecard.rows import outcome_table
+from facegear.paper.scorecard.simulated import RunSettings, simulated_tables
 from facegear.provenance.stage import stage
-from facegear.scorecard.claims import read_claims
-from facegear.scorecard.rows import outcome_table
-from facegear.scorecard.simulated import RunSettings, simulated_tables
 from facegear.stiffness.source import stiffness_from_contact
 from facegear.stiffness.tables import series_of
 

@@ -4,9 +4,9 @@ import pandas as pd
 
 from facegear.config.base import parse
 from facegear.config.tooth_pair import ToothPair, pair_design
-from facegear.contact.validation.twin_study import twin_study
 from facegear.io import tables
 from facegear.provenance.stage import stage
+from facegear.validation.contact.twin_study import twin_study
 
 with stage(snakemake) as run:
     design = pair_design(parse(ToothPair, snakemake.params.tooth_pair))

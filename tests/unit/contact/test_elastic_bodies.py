@@ -17,13 +17,13 @@ from facegear.contact.bodies.elements import block_hexes
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.options import Refinement
 from facegear.contact.teeth import piece_of
-from facegear.contact.validation.sector_model import sector_blocks
-from facegear.contact.validation.twin import slab_tooth
 from facegear.errors import FacegearError
 from facegear.geometry.design import FaceGear, PairDesign, Pinion, Shaper
 from facegear.mesh.sector import sector
 from facegear.mesh.sizes import MeshSizes
 from facegear.mesh.tooth import pinion_tooth
+from facegear.validation.contact.sector_model import sector_blocks
+from facegear.validation.contact.twin import slab_tooth
 
 DISC = half_disc(0.01, np.linspace(0, 1, 5), np.linspace(0, 1, 5))
 CUTS = Refinement(3, 1, 2, 2.0)

@@ -8,7 +8,6 @@ from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import model, simulate, simulate_many
 from facegear.dynamics.sweeps.assemble import SeamKind, assemble
 from facegear.dynamics.sweeps.campbell import resonance
-from facegear.dynamics.sweeps.convergence import convergence_table, not_converged
 from facegear.dynamics.sweeps.plan import SweepPlan
 from facegear.dynamics.sweeps.stored import SHAPES, from_arrays, to_arrays
 from facegear.dynamics.sweeps.sweep import DEFLECTION, Piece, collect, run_chunk, run_speeds, tighter
@@ -16,6 +15,7 @@ from facegear.dynamics.sweeps.sweep_tables import jump_table, sweep_table
 from facegear.dynamics.sweeps.whole_sweep import whole_sweep
 from facegear.io import arrays
 from facegear.transmission.modes import natural_modes
+from facegear.validation.dynamics.convergence import convergence_table, not_converged
 
 SETTINGS = Settings(tolerance=1e-5, settle=256, window=64, periodic_residual=1e-7, extensions=0)
 AC_RMS = DEFLECTION.index("ac_rms")

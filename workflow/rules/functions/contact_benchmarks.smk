@@ -1,4 +1,4 @@
-from facegear.contact.rungs import RUNGS
+from facegear.validation.contact.refinement_levels import RUNGS
 
 
 def contact_benchmark_targets(case):

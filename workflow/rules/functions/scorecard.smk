@@ -3,7 +3,7 @@ import json
 import pandas as pd
 
 from facegear.config.cases import set_key
-from facegear.identify.sets import config_changes, named_set
+from facegear.paper.identify.sets import config_changes, named_set
 
 SCORECARD = CONFIG["scorecard"]
 

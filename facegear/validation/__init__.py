@@ -1,0 +1,1 @@
+"""Independent answers and speed against error: nothing of the library imports this package."""

@@ -1,0 +1,193 @@
+"""Speed against error of the contact chain, and what each shortcut does to the stiffness."""
+
+import resource
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeVar
+
+import numpy as np
+import pandas as pd
+
+from facegear.contact.bodies.compliance import FlankCompliance, coupled_compliance
+from facegear.contact.bodies.layer import tied_system
+from facegear.contact.bodies.substructure import condense
+from facegear.contact.ltca import LoadedPosition, analyse, even_positions
+from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
+from facegear.contact.pair import BUILDERS, body_compliance, contact_model, extent
+from facegear.contact.teeth import piece_of
+from facegear.errors import NotConverged
+from facegear.geometry.design import Material, PairDesign
+from facegear.harmonics.fit import fit_harmonics
+from facegear.mesh.sizes import MeshSizes, named_sizes
+from facegear.validation.contact.refinement_levels import CUTS, DEFAULT, LIMITS, LINEAR, SECTORS
+
+Result = TypeVar("Result")
+
+
+@dataclass(frozen=True)
+class Rung:
+    """A resolution to be measured: name, mesh sizes and what the plan says."""
+
+    name: str
+    sizes: MeshSizes
+    plan: ContactPlan
+
+
+def rung(name: str, design: PairDesign, plan: ContactPlan) -> Rung:
+    """A rung of the ladder with the positions and torques of `plan`. Raises KeyError for an unknown name."""
+    resolution, cuts = CUTS[DEFAULT if name in SECTORS or name in LINEAR else name]
+    changed = replace(plan, refinement=cuts, sector=Sector(), element="hex27")
+    if name in SECTORS:
+        changed = replace(changed, sector=Sector(SECTORS[name], SECTORS[name], "free"))
+    if name in LINEAR:
+        changed = replace(changed, element=LINEAR[name])
+    return Rung(name, named_sizes(resolution, design.module), changed)
+
+
+def compliances(
+    design: PairDesign, rung: Rung, materials: tuple[Material, Material]
+) -> tuple[FlankCompliance, FlankCompliance]:
+    """Both bodies of a rung."""
+    pinion, gear = (
+        body_compliance(design, body, rung.sizes, material, rung.plan)
+        for body, material in zip(BUILDERS, materials, strict=True)
+    )
+    return pinion, gear
+
+
+@dataclass
+class Stopwatch:
+    """Adds up the seconds of named steps."""
+
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    def time(self, name: str, step: Callable[..., Result], *arguments: Any) -> Result:
+        """The step's result."""
+        start = time.perf_counter()
+        result = step(*arguments)
+        self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start
+        return result
+
+
+def measure(design: PairDesign, rung: Rung, materials: tuple[Material, Material]) -> pd.DataFrame:
+    """One row a torque: free dof, times (s), memory (GB), mean and first harmonic of both stiffnesses (N/m).
+
+    Times of both bodies: assembly; factorisation down to flank and cut faces; compliance of the flanks in the
+    ring; then contact at all positions and torques, and the sum. One position is solved beforehand, so that
+    machine code is loaded. The memory is the process's largest so far, so that rungs should be measured in
+    processes of their own.
+    """
+    watch, dof, bodies, plan = Stopwatch(), 0, [], rung.plan
+    for body, material in zip(BUILDERS, materials, strict=True):
+        tooth = BUILDERS[body](design, rung.sizes)
+        piece, _ = piece_of(design, tooth, material)
+        system = watch.time("assembly_s", tied_system, piece, plan.refinement, plan.element)
+        condensed = watch.time("factorisation_s", condense, piece, system)
+        kept = extent(tooth, body, plan)
+        rest = piece, system, condensed, plan.refinement, *kept, plan.element
+        bodies.append(watch.time("compliance_s", coupled_compliance, *rest))
+        dof += int(np.count_nonzero(~system.held))
+    model = contact_model(design, rung.sizes, *bodies)
+    analyse(model, [0.3], plan.torques, plan.options)
+    run = model, even_positions(plan.positions), plan.torques, plan.options
+    results = watch.time("contact_s", analyse, *run)
+    costs = {
+        "dof": dof,
+        "flank_nodes": sum(len(body.own) for body in bodies),
+        **watch.seconds,
+        "total_s": sum(watch.seconds.values()),
+        "contact_s_per_position_and_load": watch.seconds["contact_s"] / len(results),
+        "memory_gb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e9,
+    }
+    return summary(results).assign(rung=rung.name, element=plan.element, **costs)
+
+
+def growth(
+    design: PairDesign,
+    rung: Rung,
+    materials: tuple[Material, Material],
+    positions: Sequence[int],
+    loads: Sequence[int],
+) -> pd.DataFrame:
+    """Time (s) of contact against the number of positions (at 4 torques) and of torques (at 16 positions)."""
+    model = contact_model(design, rung.sizes, *compliances(design, rung, materials))
+    low, high = min(rung.plan.torques), max(rung.plan.torques)
+    analyse(model, [0.3], rung.plan.torques, rung.plan.options)
+    cases = [("positions", n, 4) for n in positions] + [("loads", 16, n) for n in loads]
+    rows = []
+    for varied, count, number in cases:
+        watch = Stopwatch()
+        torques = np.geomspace(high, low, number)[::-1]
+        watch.time("contact_s", analyse, model, even_positions(count), torques, rung.plan.options)
+        rows.append((varied, count, number, watch.seconds["contact_s"]))
+    return pd.DataFrame(rows, columns=["varied", "positions", "loads", "contact_s"])
+
+
+def summary(results: Sequence[LoadedPosition]) -> pd.DataFrame:
+    """Mean and first harmonic (N/m) of average and local stiffness, one row a torque."""
+    rows = []
+    for torque in sorted({result.torque for result in results}):
+        chosen = [result for result in results if result.torque == torque]
+        average, local = (
+            fit_harmonics(np.array([getattr(result, name) for result in chosen])).series
+            for name in ("k_average", "k_local")
+        )
+        rows.append((torque, average.mean, average.amplitudes[1], local.mean, local.amplitudes[1]))
+    names = ["mean_n_per_m", "amplitude_1_n_per_m", "local_mean_n_per_m", "local_amplitude_1_n_per_m"]
+    return pd.DataFrame(rows, columns=["torque_n_m", *names])
+
+
+def with_errors(table: pd.DataFrame, reference: str) -> pd.DataFrame:
+    """Add the errors of mean and first harmonic of both stiffnesses (`local_*` the local one), in percent of
+    the reference rung's at the same torque.
+    """
+    finest = table[table["rung"] == reference].set_index("torque_n_m")
+    result = table.copy()
+    for name in ("mean", "amplitude_1", "local_mean", "local_amplitude_1"):
+        column = f"{name}_n_per_m"
+        result[f"{name}_error_percent"] = 100 * (table[column] / table["torque_n_m"].map(finest[column]) - 1)
+    return result
+
+
+def cheapest(table: pd.DataFrame) -> str:
+    """The quickest rung of a table with errors that is within LIMITS at all torques.
+
+    Raises NotConverged if there is none.
+    """
+    columns = [f"{name}_error_percent" for name in LIMITS]
+    inside = (table[columns].abs() <= list(LIMITS.values())).all(axis=1)
+    whole = inside.groupby(table["rung"]).all()
+    if not whole.any():
+        raise NotConverged("contact", "all resolutions of the ladder", "errors of mean and first harmonic")
+    times = table.groupby("rung")["total_s"].first()
+    return str(times[whole[whole].index].idxmin())
+
+
+def shortcuts(design: PairDesign, base: Rung, materials: tuple[Material, Material]) -> pd.DataFrame:
+    """Effect (percent) of each shortcut on mean and first harmonic against the full model at `base`."""
+    plan = base.plan
+    plain, few = ContactOptions(), Refinement()
+    cases = {"full model": base}
+    for teeth, ends in ((5, "free"), (9, "free"), (13, "free"), (5, "clamped")):
+        sector = Sector(teeth, teeth, ends)
+        cases[f"{teeth}-tooth sectors, {ends} cut faces"] = replace(base, plan=replace(plan, sector=sector))
+    for name, options in (
+        ("no coupling between neighbours", replace(plain, coupled=False)),
+        ("no fillet contact", replace(plain, fillet=False)),
+        ("no loads on tip edges", replace(plain, edges=False)),
+        ("contact on the pitch section's path only", replace(plain, path_only=True)),
+    ):
+        cases[name] = replace(base, plan=replace(plan, options=options))
+    cases["contact strip not resolved"] = replace(base, plan=replace(plan, refinement=few))
+    cases["8-node hexahedra"] = replace(base, plan=replace(plan, element="hex8"))
+    cases["4-node tetrahedra"] = replace(base, plan=replace(plan, element="tet4"))
+    rows, full = [], compliances(design, base, materials)
+    for name, rung in cases.items():
+        same_bodies = replace(rung.plan, options=plan.options) == plan
+        bodies = full if same_bodies else compliances(design, rung, materials)
+        model = contact_model(design, rung.sizes, *bodies)
+        results = analyse(model, even_positions(plan.positions), plan.torques, rung.plan.options)
+        rows.append(summary(results).assign(case=name))
+    table = pd.concat(rows, ignore_index=True)
+    return with_errors(table.rename(columns={"case": "rung"}), "full model").rename(columns={"rung": "case"})

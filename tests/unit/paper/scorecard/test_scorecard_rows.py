@@ -1,0 +1,97 @@
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from facegear.errors import ConfigErrors, FacegearError
+from facegear.paper.scorecard.claims import Claim, read_claims
+from facegear.paper.scorecard.criteria import CRITERIA
+from facegear.paper.scorecard.page import counts, render
+from facegear.paper.scorecard.rows import Verdict, outcome_table, scorecard
+
+CLAIMS = Path(__file__).parents[4] / "config" / "claims" / "paper.yaml"
+NUMBER = Claim(
+    id="period",
+    where="text",
+    claim="mesh period",
+    criterion="frequency",
+    args={"order": 2},
+    paper=100.0,
+    tolerance=1.0,
+    undisclosed=("torque per engine",),
+    reason="because",
+)
+
+
+def frequencies(value):
+    return {"frequencies": pd.DataFrame({"order": [1, 2], "frequency_hz": [0.0, value]})}
+
+
+def judged(own, *others, claim=NUMBER):
+    outcomes = [outcome_table([claim], frequencies(value)) for value in (own, *others)]
+    return scorecard([claim], outcomes[0], outcomes[1:]).iloc[0]
+
+
+def test_number_within_tolerance_is_reproduced_and_needs_no_reason():
+    row = judged(100.9)
+    assert row["verdict"] == Verdict.REPRODUCED
+    assert row["difference"] == pytest.approx(0.9)
+    assert row["reason"] == ""
+
+
+def test_number_off_with_every_set_differs():
+    row = judged(103.0, 90.0, 110.0)
+    assert row["verdict"] == Verdict.DIFFERS
+    assert (row["sets_low"], row["sets_high"]) == (90.0, 110.0)
+    assert row["sets_reproducing"] == "0 of 2"
+
+
+def test_number_that_another_set_reproduces_depends_on_the_undisclosed_input():
+    assert judged(103.0, 90.0, 100.5)["verdict"] == Verdict.DEPENDS
+
+
+def test_row_that_hangs_on_nothing_undisclosed_cannot_be_excused_by_it():
+    firm = NUMBER.model_copy(update={"undisclosed": ()})
+    assert judged(103.0, 100.0, claim=firm)["verdict"] == Verdict.DIFFERS
+
+
+def test_row_that_fails_unexplained_stops_the_scorecard():
+    silent = NUMBER.model_copy(update={"reason": ""})
+    assert judged(100.0, claim=silent)["verdict"] == Verdict.REPRODUCED
+    with pytest.raises(FacegearError, match="period"):
+        judged(103.0, claim=silent)
+
+
+def test_missing_result_names_its_row():
+    with pytest.raises(FacegearError, match="period"):
+        outcome_table([NUMBER], {})
+
+
+def test_every_claim_of_the_paper_has_a_criterion_and_failing_is_explained():
+    claims = read_claims(CLAIMS).claims
+    assert len(claims) > 100
+    for claim in claims:
+        assert claim.criterion in CRITERIA, claim.id
+        assert CRITERIA[claim.criterion].__doc__
+        assert "@" not in claim.reason, claim.id
+
+
+def test_table_2_is_covered_completely():
+    ids = {claim.id for claim in read_claims(CLAIMS).claims}
+    assert {f"frequency_{order}" for order in range(7, 29)} <= ids
+
+
+def test_claims_file_with_a_misspelt_key_is_refused(tmp_path):
+    file = tmp_path / "claims.yaml"
+    file.write_text("source: x\nclaims:\n- {id: a, where: b, clam: c, criterion: d}\n")
+    with pytest.raises(ConfigErrors, match="claim"):
+        read_claims(file)
+
+
+def test_page_shows_every_row_and_escapes_text():
+    claim = NUMBER.model_copy(update={"claim": "a < b"})
+    frame = scorecard([claim], outcome_table([claim], frequencies(103.0)), [])
+    page = render(frame, "source", ["torque per engine 1 N m"], pd.DataFrame())
+    assert "a &lt; b" in page
+    assert "differs" in page
+    assert counts(frame)[Verdict.DIFFERS] == 1
