@@ -23,29 +23,23 @@ STAGE_KEYS: dict[str, tuple[str, ...]] = {
 def expand_cases(values: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     """Case id -> validated plain config values; the first is the config's own case.
 
-    A study's case has the id `<case>/studies/<study>/<point>`, a gear design of the search for undisclosed
-    inputs `<case>/designs/<name>`. Raises ConfigErrors naming study and point.
+    A study's case has the id `<case>/studies/<study>/<point>`. Raises ConfigErrors naming study and point.
     """
     base = dict(values)
     cases = {base["case"]: base}
     for study in base["studies"]:
         for name, point in study_points(parse(Study, study)).items():
             where = f"studies.{study['name']}.{name}"
-            cases[f"{base['case']}/studies/{study['name']}/{name}"] = _changed(base, point.set, where)
-    for name, changes in design_points(base["identify"]).items():
-        cases[f"{base['case']}/designs/{name}"] = _changed(base, changes, f"identify.designs.{name}")
+            cases[f"{base['case']}/studies/{study['name']}/{name}"] = changed_values(base, point.set, where)
     return {case: {**changed, "case": case} for case, changed in cases.items()}
 
 
-def design_points(identify: Mapping[str, Any] | None) -> dict[str, dict[str, Any]]:
-    """Folder name -> the keys it sets, for the gear designs of config section `identify`."""
-    designs = identify["designs"] if identify else []
-    return {_folder_name(design["label"]): dict(design["set"]) for design in designs}
+def changed_values(base: Mapping[str, Any], changes: Mapping[str, Any], where: str) -> dict[str, Any]:
+    """The machine of a config with some dotted keys changed, validated; without studies and reproduction.
 
-
-def _changed(base: Mapping[str, Any], changes: Mapping[str, Any], where: str) -> dict[str, Any]:
-    """The base config without studies and search, with some keys changed, validated."""
-    changed = deepcopy({**base, "studies": [], "identify": None})
+    Raises ConfigErrors, led by `where`, for a key that does not stand in the config and a value it refuses.
+    """
+    changed = deepcopy({**base, "studies": [], "reproduction": None})
     try:
         for key, value in changes.items():
             set_key(changed, key, value)
@@ -62,7 +56,7 @@ def study_points(study: Study) -> dict[str, Point]:
             f"{axis.label} = {point.label}" if axis.key else point.label
             for axis, point in zip(study.axes, combination, strict=True)
         ]
-        name = "__".join(_folder_name(point.label) for point in combination)
+        name = "__".join(folder_name(point.label) for point in combination)
         if name in points:
             raise ConfigErrors("studies", [f"{study.name}: two points are both called {name!r}"])
         points[name] = Point(
@@ -90,12 +84,13 @@ def shared_source(cases: Mapping[str, Mapping[str, Any]], case: str, stage: str)
 
 
 def _position(inside: Any, part: str, key: str, value: Any) -> str | int:
-    if isinstance(inside, dict) and part in inside and part not in ("case", "studies"):
+    if isinstance(inside, dict) and part in inside and part not in ("case", "studies", "reproduction"):
         return part
     if isinstance(inside, list) and part.isdecimal() and int(part) < len(inside):
         return int(part)
     raise ConfigError(key, value, "a study may only set keys that stand in the config")
 
 
-def _folder_name(label: str) -> str:
+def folder_name(label: str) -> str:
+    """A label as the name of a folder: lower case words joined by underscores."""
     return re.sub(r"[^a-z0-9]+", "_", label.lower().replace(".", "p")).strip("_") or "point"

@@ -1,5 +1,6 @@
 """The whole config: read, merged, validated, with defaults filled in."""
 
+import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -8,6 +9,9 @@ from facegear.config.base import parse
 from facegear.config.model import Config
 from facegear.config.yaml_file import numbers, read_yaml
 from facegear.errors import ConfigErrors
+
+FILE_KEYS = (("reproduction",), ("mesh_stiffness", "csv"))
+"""Keys whose value is the name of a file; it counts from the folder of the config file that sets it."""
 
 
 def load_config(path: str | Path, overrides: Mapping[str, Any] | None = None) -> Config:
@@ -31,7 +35,7 @@ def read_layers(path: str | Path, below: Sequence[Path] = ()) -> dict[str, Any]:
     Raises ConfigErrors if that file is missing, lies elsewhere, or extends this one.
     """
     path = Path(path)
-    values = read_yaml(path)
+    values = _with_paths(read_yaml(path), path.parent)
     if "extends" not in values:
         return values
     base = values.pop("extends")
@@ -40,6 +44,21 @@ def read_layers(path: str | Path, below: Sequence[Path] = ()) -> dict[str, Any]:
         told = f"extends = {base!r}: the name of another config file in the same folder"
         raise ConfigErrors(_short(path), [told])
     return merged(read_layers(path.with_name(base), (path, *below)), values)
+
+
+def located(name: str, folder: Path) -> str:
+    """A file's name as it is read from the working directory, from its name as `folder` counts it."""
+    return name if os.path.isabs(name) else os.path.relpath(folder / name)
+
+
+def _with_paths(values: dict[str, Any], folder: Path) -> dict[str, Any]:
+    for *sections, key in FILE_KEYS:
+        inside: Any = values
+        for section in sections:
+            inside = inside.get(section) if isinstance(inside, dict) else None
+        if isinstance(inside, dict) and isinstance(inside.get(key), str):
+            inside[key] = located(inside[key], folder)
+    return values
 
 
 def merged(values: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:

@@ -13,7 +13,6 @@ from facegear.config.tooth_pair import ToothPair, materials, pair_design
 from facegear.config.transmission import Transmission, layout, tooth_numbers
 from facegear.contact.resolution import check_resolution
 from facegear.errors import ConfigError
-from facegear.paper.config.sections import Identify, ScorecardSection
 
 
 class Config(Section):
@@ -28,8 +27,11 @@ class Config(Section):
     dynamics: Dynamics = Dynamics()
     load_sharing: LoadSharing = LoadSharing()
     studies: tuple[Study, ...] = ()
-    scorecard: ScorecardSection | None = None
-    identify: Identify | None = None
+    reproduction: str | None = Field(
+        None,
+        min_length=1,
+        description="yaml file, from this file's folder: claims of a publication and what it leaves out",
+    )
 
     @model_validator(mode="after")
     def _buildable(self) -> "Config":

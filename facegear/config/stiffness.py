@@ -34,7 +34,8 @@ class MeshStiffness(Section):
     harmonics_kept: int = Field(default=8, ge=0, le=512)
     table: tuple[HarmonicSection, ...] = Field(default=(), description="for source harmonics")
     csv: str | None = Field(
-        default=None, description="for source harmonics: columns as stiffness/harmonics.csv"
+        default=None,
+        description="for source harmonics, from this file's folder: columns as stiffness/harmonics.csv",
     )
 
     @model_validator(mode="after")

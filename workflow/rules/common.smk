@@ -12,6 +12,7 @@ from facegear.config.cases import expand_cases, shared_source
 from facegear.config.load import load_values
 from facegear.errors import FacegearError
 from facegear.io.run_lock import hold
+from facegear.paper.config.reproduction import design_cases, read_reproduction
 from facegear.provenance.fingerprint import fingerprint as _fingerprint
 
 DEFAULT_CONFIGFILE = ROOT / "config" / "paper.yaml"
@@ -26,7 +27,9 @@ def stop(message):
 
 try:
     CONFIG = load_values(CONFIGFILES, workflow.config_settings.config)
+    REPRODUCTION = read_reproduction(CONFIG["reproduction"]) if CONFIG["reproduction"] else None
     CASES = expand_cases(CONFIG)
+    CASES |= design_cases(CONFIG, REPRODUCTION.identify if REPRODUCTION else None)
 except FacegearError as error:
     stop(str(error))
 

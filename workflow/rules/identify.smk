@@ -1,8 +1,8 @@
-from facegear.config.cases import design_points
-from facegear.paper.config.sections import Identify, branches
+from facegear.paper.config.reproduction import design_points
+from facegear.paper.config.sections import branches
 
-IDENTIFY = parse_section(Identify, CONFIG["identify"]) if CONFIG["identify"] else None
-DESIGNS = list(design_points(CONFIG["identify"]))
+IDENTIFY = REPRODUCTION.identify if REPRODUCTION else None
+DESIGNS = list(design_points(IDENTIFY))
 BRANCHES = [branch.name for branch in branches(IDENTIFY)] if IDENTIFY else []
 
 
@@ -26,6 +26,7 @@ rule identify_branch:
         runtime=120,
     params:
         values=lambda wildcards: CASES[wildcards.case],
+        identify=IDENTIFY.model_dump(mode="json") if IDENTIFY else None,
         code=fingerprint("identify_branch.py"),
     message:
         "search of undisclosed inputs, branch {wildcards.branch}"
@@ -56,6 +57,7 @@ rule identify_sets:
         runtime=30,
     params:
         values=lambda wildcards: CASES[wildcards.case],
+        identify=IDENTIFY.model_dump(mode="json") if IDENTIFY else None,
         code=fingerprint("identify_sets.py"),
     message:
         "separate optima of the search for undisclosed inputs"

@@ -4,7 +4,7 @@ include: "functions/scorecard.smk"
 rule scorecard_set:
     input:
         ltca=upstream("contact", "contact/ltca.csv"),
-        claims=str(ROOT / SCORECARD["claims"]) if SCORECARD else [],
+        claims=REPRODUCTION.claims if REPRODUCTION else [],
     output:
         outcomes="results/{case}/scorecard/sets/{set}.csv",
         manifest="results/{case}/scorecard/sets/{set}.provenance.json",
@@ -32,8 +32,8 @@ rule scorecard_set:
 
 rule scorecard:
     input:
-        claims=str(ROOT / SCORECARD["claims"]) if SCORECARD else [],
-        sets=str(ROOT / SCORECARD["sets"]) if SCORECARD and SCORECARD["sets"] else [],
+        claims=REPRODUCTION.claims if REPRODUCTION else [],
+        sets=REPRODUCTION.sets if REPRODUCTION and REPRODUCTION.sets else [],
         outcomes=lambda wildcards: [
             f"results/{wildcards.case}/scorecard/sets/{name}.csv" for name in stored_sets()
         ],

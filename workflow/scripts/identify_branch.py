@@ -10,9 +10,9 @@ from facegear.provenance.stage import stage
 
 with stage(snakemake) as run:
     values = snakemake.params.values
-    section = parse(Identify, values["identify"])
+    section = parse(Identify, snakemake.params.identify)
     branch = next(one for one in branches(section) if one.name == snakemake.wildcards.branch)
-    problem = search_problem(values, tables.read(snakemake.input.ltca, LTCA_COLUMNS))
+    problem = search_problem(values, section, tables.read(snakemake.input.ltca, LTCA_COLUMNS))
     found = search_branch(problem, branch, search_budget(section.budget))
     tables.write(snakemake.output.evaluations, found)
     best = found.loc[found["misfit"].idxmin()]

@@ -16,8 +16,8 @@ from facegear.provenance.stage import stage
 
 with stage(snakemake) as run:
     values, output = snakemake.params.values, snakemake.output
-    section = parse(Identify, values["identify"])
-    problem = search_problem(values, tables.read(snakemake.input.ltca, LTCA_COLUMNS))
+    section = parse(Identify, snakemake.params.identify)
+    problem = search_problem(values, section, tables.read(snakemake.input.ltca, LTCA_COLUMNS))
     found = pd.concat([tables.read(path) for path in snakemake.input.branches], ignore_index=True)
     budget = section.budget
     accuracy = settings(parse(Accuracy, values["dynamics"]["accuracy"]))

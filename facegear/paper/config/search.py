@@ -15,12 +15,11 @@ from facegear.paper.identify.stiffness import load_for_mean, scaled_stiffness
 from facegear.stiffness.curve import load_table
 
 
-def search_problem(values: Mapping[str, Any], ltca: pd.DataFrame) -> Problem:
-    """The problem from the plain values of a whole config.
+def search_problem(values: Mapping[str, Any], section: Identify, ltca: pd.DataFrame) -> Problem:
+    """The problem from the plain values of a whole config and the search asked for.
 
     Raises ConfigError if no load that was solved gives the wanted mean stiffness.
     """
-    section = parse(Identify, values["identify"])
     stiffness = parse(MeshStiffness, values["mesh_stiffness"])
     table = load_table(ltca)
     load = load_for_mean(table, stiffness.mean_n_per_m, stiffness.definition)

@@ -1,10 +1,9 @@
-"""Config sections `scorecard` and `identify`: claims of the paper, and the search for undisclosed inputs."""
+"""Section `identify` of a reproduction: the search for the inputs that the paper leaves out."""
 
 import itertools
-import re
-from typing import Annotated, Literal
+from typing import Literal
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
 from facegear.config.studies import Point
@@ -12,24 +11,6 @@ from facegear.paper.identify.budget import Budget
 from facegear.paper.identify.inputs import Branch, Meaning, Space, StiffnessLoad, Waveform
 from facegear.paper.identify.targets import BacklashTarget, Targets
 from facegear.transmission.phases import PhaseConvention
-
-DATA_FILE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_/-]*\.(yaml|csv)")
-
-
-def _data_file(path: str) -> str:
-    if not DATA_FILE.fullmatch(path):
-        raise ValueError("a relative path of a yaml or csv file without '..'")
-    return path
-
-
-DataFile = Annotated[str, AfterValidator(_data_file)]
-
-
-class ScorecardSection(Section):
-    """What the results are held against."""
-
-    claims: DataFile = Field(description="claims of the paper (yaml)")
-    sets: DataFile | None = Field(None, description="sets of undisclosed inputs that fit (csv)")
 
 
 class BacklashClaim(Section):

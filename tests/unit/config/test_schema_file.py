@@ -45,3 +45,14 @@ def test_bodies_are_optional_only_where_harmonics_are_given():
     values["mesh_stiffness"] |= {"source": "fem", "torque_n_m": 400.0, "table": []}
     with pytest.raises(ConfigErrors, match=r"tooth_pair\.pinion = null: required"):
         parse(Config, values)
+
+
+def test_files_named_in_a_config_count_from_its_folder(tmp_path, monkeypatch):
+    folder = tmp_path / "machines"
+    folder.mkdir()
+    (folder / "base.yaml").write_text("reproduction: claims/own.yaml\nmesh_stiffness: {csv: k.csv}\n")
+    (folder / "own.yaml").write_text("extends: base.yaml\nreproduction: null\n")
+    monkeypatch.chdir(tmp_path)
+    found = read_layers("machines/own.yaml")
+    assert found == {"reproduction": None, "mesh_stiffness": {"csv": "machines/k.csv"}}
+    assert read_layers(folder / "base.yaml")["reproduction"] == "machines/claims/own.yaml"
