@@ -131,10 +131,16 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
 
 def _scorecard(frame: pd.DataFrame) -> Chapter:
     text = (
-        "Every number and statement of the paper beside ours; a row that differs says why. Criteria, "
-        "tolerances and what other sets of inputs give stand in scorecard.html."
+        "Every number and statement of the paper beside ours; a row that differs says why. Numbers that the "
+        "paper repeats and remarks on other studies are left out of the totals. Criteria, tolerances and "
+        "what other sets of inputs give stand in scorecard.html."
     )
-    counts = frame["verdict"].value_counts(sort=False).rename_axis("verdict").reset_index(name="rows")
+    counts = (
+        frame.loc[frame["counted"], "verdict"]
+        .value_counts(sort=False)
+        .rename_axis("verdict")
+        .reset_index(name="rows")
+    )
     claims = frame[["where", "claim", "paper", "shown", "unit", "verdict", "reason"]]
     claims = claims.rename(columns={"shown": "ours"})
     return Chapter("Scorecard", text, (), [Table("Verdicts", counts), Table("Claims", claims, 5)])

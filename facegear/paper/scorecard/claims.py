@@ -1,7 +1,7 @@
 """What the paper claims: one record a number or statement, read from a data file."""
 
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -16,7 +16,9 @@ class Claim(Section):
 
     A claim with `paper` is a number that holds within `tolerance`; one without is a statement, which the
     criterion decides. `undisclosed` names inputs the paper leaves out that the row hangs on, `fitted` marks
-    rows that the identification used, `reason` says why ours may differ.
+    rows that the identification used, `reason` says why ours may differ. `same_as` names a row that gives the
+    same number once more: totals count it once. `about: other studies` marks a remark on models that are not
+    this one; it is judged, but apart from all totals.
     """
 
     id: str = Field(pattern=r"^[a-z0-9_]+$")
@@ -28,6 +30,8 @@ class Claim(Section):
     unit: str = ""
     tolerance: float | None = Field(None, ge=0)
     fitted: bool = False
+    same_as: str | None = None
+    about: Literal["this model", "other studies"] = "this model"
     undisclosed: tuple[str, ...] = ()
     reason: str = ""
 
@@ -36,6 +40,11 @@ class Claim(Section):
         if (self.paper is None) != (self.tolerance is None):
             refuse("tolerance", self.tolerance, "stands beside a paper value, and only there")
         return self
+
+    @property
+    def counts(self) -> bool:
+        """Whether totals count the row: it is about this model and repeats no other."""
+        return self.same_as is None and self.about == "this model"
 
     @property
     def dynamic(self) -> bool:
@@ -55,6 +64,9 @@ class Claims(Section):
         double = sorted({name for name in names if names.count(name) > 1})
         if double:
             refuse("claims", double, "each claim needs an id of its own")
+        lost = sorted({claim.same_as for claim in self.claims if claim.same_as} - set(names))
+        if lost:
+            refuse("claims", lost, "same_as names the id of another claim")
         return self
 
 

@@ -7,6 +7,11 @@ from numpy.typing import NDArray
 from facegear.paper.scorecard.outcome import Outcome, Tables, number, statement
 
 SIDES = ("lower", "upper")
+WINDOW_LINES = 2
+"""Lines on each side over which the Hann window of an irregular motion spreads a line."""
+FINE = 1.0 / 64.0
+"""Spectra with lines closer than this many orders are those of irregular motions, taken with a window: no
+periodic motion looked for is as long."""
 
 
 def synchronous(tables: Tables, a: str, b: str, lower: float) -> Outcome:
@@ -39,19 +44,22 @@ def dominant_lines(tables: Tables, pinion: str, lines: list[float]) -> Outcome:
     return statement(holds, _sides(["+".join(f"{order:g}x" for order in orders) for orders in found]))
 
 
-def line_larger(tables: Tables, pinion: str, line: float) -> Outcome:
-    """The line at the stated order is larger on the upper side than on the lower one."""
+def line_larger(tables: Tables, pinion: str, line: float, share: float) -> Outcome:
+    """The line at the stated order is larger on the upper side than on the lower one, by at least the stated
+    share of the upper side's line at 1x.
+    """
     values = [_amplitude(tables, f"{pinion}/{side}", line) for side in SIDES]
-    return statement(values[1] > values[0], _sides([f"{value:.3g} um" for value in values]))
+    least = share * _amplitude(tables, f"{pinion}/upper", 1.0)
+    return statement(values[1] - values[0] >= least > 0.0, _sides([f"{value:.3g} um" for value in values]))
 
 
 def subharmonic_content(tables: Tables, pinion: str, share: float) -> Outcome:
-    """On both sides some line below 1x has at least the stated share of the line at 1x."""
-    shares = []
-    for side in SIDES:
-        rows = _lines(tables, f"{pinion}/{side}")
-        below = rows[(rows["order"] > 0.0) & (rows["order"] < 1.0)]["amplitude_um"].max()
-        shares.append(float(below) / _amplitude(tables, f"{pinion}/{side}", 1.0) if below == below else 0.0)
+    """On both sides some line below 1x has at least the stated share of the line at 1x.
+
+    The lines beside the mean and beside 1x are not counted where the spectrum is that of an irregular motion:
+    its window spreads every line over the two beside it.
+    """
+    shares = [_below(tables, f"{pinion}/{side}") for side in SIDES]
     return statement(min(shares) >= share, _sides([f"{100 * value:.0f} % of 1x" for value in shares]))
 
 
@@ -86,6 +94,15 @@ def _amplitude(tables: Tables, mesh: str, order: float) -> float:
     rows = _lines(tables, mesh)
     close = rows[(rows["order"] - order).abs() < 0.02]["amplitude_um"]
     return float(close.max()) if len(close) else 0.0
+
+
+def _below(tables: Tables, mesh: str) -> float:
+    """Largest amplitude strictly between the mean and 1x over that at 1x; 0 where there is none."""
+    rows = _lines(tables, mesh)
+    orders = np.sort(rows["order"].to_numpy(float))
+    spread = WINDOW_LINES * orders[1] if orders[1] < FINE else 0.0
+    inside = rows[(rows["order"] > spread + 1e-9) & (rows["order"] < 1.0 - spread - 1e-9)]["amplitude_um"]
+    return float(inside.max()) / _amplitude(tables, mesh, 1.0) if len(inside) else 0.0
 
 
 def _strongest(tables: Tables, mesh: str, count: int) -> list[float]:

@@ -1,18 +1,32 @@
 """Criteria on load-sharing coefficients; tables `sharing`, `curves`, `reference`."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
 
 from facegear.paper.scorecard.outcome import Outcome, Tables, number, statement
 
 NEARLY_ONE_CARRIER = 0.02
+BOUNDS = {"inputs": 2.0, "idlers": 3.0}
+"""The coefficient where one mesh of the group carries all."""
 Point = str | float
 FLAT_SLOPE = 0.1
 FLAT_SHARE = 0.05
+MOST_UNDEFINED = 0.5
+"""A curve that is drawn over the whole cycle is not judged where this share of it or more is undefined: no
+mesh of the group carries load there.
+"""
 
 
 def sharing(tables: Tables, kind: str, column: str = "mean", study: str = "", point: Point = "") -> Outcome:
-    """A column of the load-sharing summary, averaged over the input pinions where kind is inputs."""
+    """A column of the load-sharing summary, averaged over the input pinions where kind is inputs; no number
+    where the coefficient is undefined for half the cycle or more.
+    """
+    undefined = _value(tables, kind, "undefined_share", study, point)
+    if undefined >= MOST_UNDEFINED:
+        value = _value(tables, kind, column, study, point)
+        return Outcome(None, f"{value:.4g}, but undefined for {100 * undefined:.0f} % of the cycle")
     return number(_value(tables, kind, column, study, point), 4)
 
 
@@ -24,18 +38,26 @@ def reference(tables: Tables, kind: str, quantity: str, column: str = "mean") ->
 
 
 def one_carrier_occurs(tables: Tables, study: str) -> Outcome:
-    """At every point of the study the coefficient comes within 2 % of its bound somewhere in the cycle."""
+    """Of the inputs as of the idlers, at least one curve of the study comes within 2 % of its bound somewhere
+    in the cycle.
+    """
     frame = tables["curves"]
-    rows = frame[frame["study"] == study]
-    tops = rows.groupby(["kind", "point"])["coefficient"].max()
-    bounds = tops.index.get_level_values("kind").map({"inputs": 2.0, "idlers": 3.0}).to_numpy(float)
-    reached = tops.to_numpy() > bounds * (1.0 - NEARLY_ONE_CARRIER)
-    return statement(reached.all(), f"{reached.sum()} of {reached.size} curves reach their maximum")
+    tops = frame[frame["study"] == study].groupby(["kind", "point"])["coefficient"].max()
+    bounds = tops.index.get_level_values("kind").map(BOUNDS).to_numpy(float)
+    reached = (tops > bounds * (1.0 - NEARLY_ONE_CARRIER)).groupby("kind").agg(["sum", "size"])
+    shown = ", ".join(f"{row.Index} {row.sum} of {row.size}" for row in reached.itertuples())
+    return statement((reached["sum"] > 0).all(), f"curves that reach their maximum: {shown}")
 
 
 def flat_region(tables: Tables, study: str, point: Point, kind: str) -> Outcome:
-    """For at least 5 % of the cycle the coefficient changes by less than 0.1 of its value per cycle."""
-    share = _flat_share(_curve(tables, study, point, kind))
+    """For at least 5 % of the cycle the coefficient changes by less than 0.1 of its value per cycle and lies
+    below its bound, in a curve that is defined for more than half the cycle.
+    """
+    curve = _curve(tables, study, point, kind)
+    undefined = float(np.isnan(curve).mean())
+    if undefined >= MOST_UNDEFINED:
+        return statement(False, f"undefined for {100 * undefined:.0f} % of the cycle")
+    share = _flat_share(curve, BOUNDS[kind] * (1.0 - NEARLY_ONE_CARRIER))
     return statement(share >= FLAT_SHARE, f"flat for {100 * share:.0f} % of the cycle")
 
 
@@ -48,19 +70,23 @@ def orders(
 
 
 def lowest_at(tables: Tables, study: str, kind: str, point: Point, column: str = "mean") -> Outcome:
-    """Among all points of the study the column is lowest at the named one."""
+    """Among all points of the study the column is lowest at the named one; points without a value do not
+    count, and the named one must have one.
+    """
     frame = _study(tables, study)
     points = list(dict.fromkeys(frame["point"]))
     values = [_value(tables, kind, column, study, name) for name in points]
-    return statement(points[int(np.argmin(values))] == _name(point), _listed(points, values))
+    return statement(_extreme(points, -np.array(values)) == _name(point), _listed(points, values))
 
 
 def steeper(tables: Tables, study: str, kind: str, point: Point) -> Outcome:
-    """The curve's RMS slope at the named point exceeds that at every other point of the study."""
+    """The curve's RMS slope at the named point exceeds that at every other point of the study; undefined
+    instants are left out, and a curve that is undefined for half the cycle or more is not compared.
+    """
     points = list(dict.fromkeys(_study(tables, study)["point"]))
-    slopes = [float(np.sqrt(np.mean(_slope(_curve(tables, study, name, kind)) ** 2))) for name in points]
+    slopes = [_steepness(_curve(tables, study, name, kind)) for name in points]
     return statement(
-        points[int(np.argmax(slopes))] == _name(point), f"rms slope per cycle {_listed(points, slopes)}"
+        _extreme(points, np.array(slopes)) == _name(point), f"rms slope per cycle {_listed(points, slopes)}"
     )
 
 
@@ -68,7 +94,8 @@ def differ(tables: Tables, study: str, kind: str, column: str, by: float) -> Out
     """Between the study's points the column changes by more than the stated amount."""
     points = list(dict.fromkeys(_study(tables, study)["point"]))
     values = [_value(tables, kind, column, study, name) for name in points]
-    return statement(max(values) - min(values) > by, _listed(points, values))
+    finite = [value for value in values if np.isfinite(value)]
+    return statement(len(finite) > 1 and max(finite) - min(finite) > by, _listed(points, values))
 
 
 def lost_regions_move(tables: Tables, study: str, by: float, kind: str = "") -> Outcome:
@@ -121,10 +148,25 @@ def _slope(curve: np.ndarray) -> np.ndarray:
     return 0.5 * curve.size * (np.roll(curve, -1) - np.roll(curve, 1))
 
 
-def _flat_share(curve: np.ndarray) -> float:
+def _steepness(curve: np.ndarray) -> float:
+    """RMS slope over the defined instants; NaN where half the cycle or more is undefined."""
     slope = _slope(curve)
-    flat = np.abs(slope) < FLAT_SLOPE * curve
-    return float(flat[np.isfinite(slope)].mean())
+    if np.isnan(curve).mean() >= MOST_UNDEFINED:
+        return float("nan")
+    return float(np.sqrt(np.nanmean(slope**2)))
+
+
+def _extreme(points: Sequence[str], values: np.ndarray) -> str | None:
+    """The point with the largest value, NaN left out; None where there are not two values to compare."""
+    if np.isfinite(values).sum() < 2:
+        return None
+    return points[int(np.nanargmax(values))]
+
+
+def _flat_share(curve: np.ndarray, below: float) -> float:
+    slope = _slope(curve)
+    flat = (np.abs(slope) < FLAT_SLOPE * curve) & (curve < below)
+    return float(flat.mean())
 
 
 def _listed(points: list[Point], values: list[float]) -> str:

@@ -6,29 +6,39 @@ so that none of them dominates. It is judged on the upward sweep unless said oth
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import find_peaks
 
-from facegear.paper.scorecard.outcome import Outcome, Tables, number, statement
+from facegear.paper.scorecard.outcome import Outcome, Tables, nearest, number, statement
 
-PROMINENCE = 0.05
+PROMINENCE = 0.1
+"""A peak stands out by this share of the sweep's largest level."""
+JUMP_SIZE = 0.25
+"""At a jump the RMS changes by at least this share of the larger one."""
+IRREGULAR = ("chaotic", "not settled", "undecided")
 APART = 0.1
 TRANSLATIONS = ("x_ac_rms_um", "y_ac_rms_um", "z_ac_rms_um")
 DEFLECTION = ("deflection_ac_rms_um",)
 
 
 def peak_speed(tables: Tables, parts: list[str], near: float) -> Outcome:
-    """Speed of the translations' local maximum nearest to the paper's that stands 5 % above its feet."""
+    """Speed of the translations' peak nearest to the paper's; a peak stands out by 10 % of the largest level,
+    and the motion there or at the next speed is regular.
+    """
     speeds, level = _level(tables, TRANSLATIONS, parts, "up")
-    found = speeds[_peaks(level)]
-    if not found.size:
-        return Outcome(None, "no peak")
-    return number(found[np.abs(found - near).argmin()])
+    regular = _regular(tables, speeds, "up")
+    found = [i for i in _peaks(level) if regular[i - 1 : i + 2].any()]
+    return nearest(speeds[found], near, (float(speeds[0]), float(speeds[-1])), "peak")
 
 
 def dominant_peak(tables: Tables, parts: list[str], near: float, within: float) -> Outcome:
-    """The largest translation over all speeds lies within the stated relative distance of the speed."""
+    """The largest translation over all speeds is a peak within the stated relative distance of the speed, and
+    not an end of the sweep.
+    """
     speeds, level = _level(tables, TRANSLATIONS, parts, "up")
-    top = float(speeds[level.argmax()])
-    return statement(abs(top / near - 1.0) <= within, f"largest at {top:.0f} rpm")
+    top = int(level.argmax())
+    if top in (0, level.size - 1):
+        return statement(False, f"largest at the end of the sweep, {speeds[top]:.0f} rpm")
+    return statement(abs(speeds[top] / near - 1.0) <= within, f"largest at {speeds[top]:.0f} rpm")
 
 
 def not_dominant_peak(tables: Tables, parts: list[str], near: float, within: float) -> Outcome:
@@ -38,12 +48,16 @@ def not_dominant_peak(tables: Tables, parts: list[str], near: float, within: flo
 
 
 def jump_speed(tables: Tables, near: float) -> Outcome:
-    """Speed of the jump, in either direction, nearest to the paper's."""
-    jumps = tables["jumps"]
-    if jumps.empty:
-        return Outcome(None, "no jump")
-    speeds = 0.5 * (jumps["speed_before_rpm"] + jumps["speed_after_rpm"]).to_numpy(float)
-    return number(speeds[np.abs(speeds - near).argmin()])
+    """Speed of the jump, in either direction, nearest to the paper's; at a jump the RMS of a mesh changes by
+    a quarter of the larger value or more, and the motion is regular on one side.
+    """
+    jumps, speeds = tables["jumps"], tables["sweep"]["speed_rpm"]
+    levels = jumps[["deflection_ac_rms_before_um", "deflection_ac_rms_after_um"]].to_numpy(float)
+    size = np.abs(np.diff(levels, axis=1)[:, 0]) / levels.max(axis=1)
+    regular = ~(jumps["class_before"].isin(IRREGULAR) & jumps["class_after"].isin(IRREGULAR)).to_numpy(bool)
+    middle = 0.5 * (jumps["speed_before_rpm"] + jumps["speed_after_rpm"]).to_numpy(float)
+    span = (float(speeds.min()), float(speeds.max()))
+    return nearest(middle[(size >= JUMP_SIZE) & regular], near, span, "jump")
 
 
 def jump_leans(tables: Tables, near: float, within: float, lean: str) -> Outcome:
@@ -114,15 +128,13 @@ def _bistable(tables: Tables, meshes: list[str]) -> tuple[NDArray[np.float64], N
     return speeds, np.sign(np.where(np.abs(difference) > APART, difference, 0.0)).astype(int)
 
 
+def _regular(tables: Tables, speeds: NDArray[np.float64], direction: str) -> NDArray[np.bool_]:
+    """Whether the motion at each speed (P,) of a sweep is periodic or quasi-periodic."""
+    frame = tables["sweep"]
+    rows = frame[frame["direction"] == direction].drop_duplicates("speed_rpm").set_index("speed_rpm")
+    return ~rows.loc[speeds, "class"].isin(IRREGULAR).to_numpy(bool)
+
+
 def _peaks(level: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Local maxima that stand PROMINENCE of their height above the higher of the valleys beside them."""
-    inner = np.flatnonzero((level[1:-1] > level[:-2]) & (level[1:-1] >= level[2:])) + 1
-    kept = []
-    for i in inner:
-        valleys = []
-        for side in (level[:i][::-1], level[i + 1 :]):
-            higher = np.flatnonzero(side > level[i])
-            valleys.append((side[: higher[0]] if higher.size else side).min())
-        if level[i] > (1.0 + PROMINENCE) * max(valleys):
-            kept.append(i)
-    return np.array(kept, dtype=int)
+    """Local maxima that stand PROMINENCE of the largest level above the higher of the valleys beside them."""
+    return find_peaks(level, prominence=PROMINENCE * level.max())[0]

@@ -1,9 +1,10 @@
 """What a criterion answers, and where it looks."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 Tables = Mapping[str, pd.DataFrame]
@@ -14,12 +15,30 @@ Tables = Mapping[str, pd.DataFrame]
 class Outcome:
     """Our number (None for a statement), the same in words, and whether the statement holds.
 
-    For a number `holds` is decided by the claim's tolerance and left None here.
+    For a number `holds` is decided by the claim's tolerance and left None here. A number that is the nearest
+    of several names all of them in `candidates`, and in `span` the range in which they were looked for.
     """
 
     value: float | None
     shown: str
     holds: bool | None = None
+    candidates: tuple[float, ...] = ()
+    span: tuple[float, float] | None = None
+
+    def chance(self, tolerance: float) -> float | None:
+        """Share of the span from which some candidate is within the tolerance.
+
+        With this probability a number picked at random in the span would be met. None for other outcomes.
+        """
+        if self.span is None:
+            return None
+        low, high = self.span
+        edges = np.clip([[at - tolerance, at + tolerance] for at in sorted(self.candidates)], low, high)
+        covered, end = 0.0, low
+        for left, right in edges:
+            covered += max(0.0, right - max(left, end))
+            end = max(end, right)
+        return covered / (high - low)
 
 
 Criterion = Callable[..., Outcome]
@@ -29,6 +48,15 @@ Criterion = Callable[..., Outcome]
 def number(value: float, digits: int = 6) -> Outcome:
     """Outcome of a numeric claim."""
     return Outcome(float(value), f"{value:.{digits}g}")
+
+
+def nearest(candidates: Iterable[float], near: float, span: tuple[float, float], name: str) -> Outcome:
+    """Outcome of a numeric claim that the nearest of several candidates answers."""
+    found = tuple(float(value) for value in candidates)
+    if not found:
+        return Outcome(None, f"no {name}", span=span)
+    value = min(found, key=lambda at: abs(at - near))
+    return Outcome(value, f"{value:.6g}", candidates=found, span=span)
 
 
 def statement(holds: bool, shown: str) -> Outcome:

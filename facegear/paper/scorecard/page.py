@@ -12,8 +12,9 @@ DIGITS = 5
 
 
 def counts(frame: pd.DataFrame) -> dict[str, int]:
-    """Rows by verdict, all verdicts present."""
-    return {one.value: int((frame["verdict"] == one.value).sum()) for one in Verdict}
+    """Distinct rows about this model by verdict, all verdicts present."""
+    kept = frame[frame["counted"]]
+    return {one.value: int((kept["verdict"] == one.value).sum()) for one in Verdict}
 
 
 def render(frame: pd.DataFrame, source: str, inputs: list[str], sets: pd.DataFrame) -> str:
@@ -25,6 +26,7 @@ def render(frame: pd.DataFrame, source: str, inputs: list[str], sets: pd.DataFra
         counts=counts(frame),
         fitted=counts(frame[frame["fitted"]]),
         held_out=counts(held_out),
+        left_out=int((~frame["counted"]).sum()),
         inputs=inputs,
         parts=[(where, rows.to_dict("records")) for where, rows in frame.groupby("where", sort=False)],
         sets_header=[str(name).replace("_", " ") for name in sets.columns],

@@ -11,7 +11,7 @@ from facegear.paper.scorecard.claims import Claim
 from facegear.paper.scorecard.criteria import CRITERIA
 from facegear.paper.scorecard.outcome import Outcome, Tables, describe
 
-OUTCOME_COLUMNS = ("id", "value", "shown", "holds")
+OUTCOME_COLUMNS = ("id", "value", "shown", "holds", "chance")
 
 
 class Verdict(StrEnum):
@@ -23,14 +23,18 @@ class Verdict(StrEnum):
 
 
 def outcome_table(claims: Iterable[Claim], tables: Tables) -> pd.DataFrame:
-    """What the criteria find: columns id, value, shown, holds.
+    """What the criteria find: columns id, value, shown, holds and chance.
+
+    The chance is the probability with which a number picked at random would hold, where the criterion takes
+    the nearest of several.
 
     Raises FacegearError for an unknown criterion or one that finds no result.
     """
     rows = []
     for claim in claims:
         outcome = _evaluate(claim, tables)
-        rows.append((claim.id, outcome.value, outcome.shown, _holds(claim, outcome)))
+        chance = None if claim.tolerance is None else outcome.chance(claim.tolerance)
+        rows.append((claim.id, outcome.value, outcome.shown, _holds(claim, outcome), chance))
     return pd.DataFrame(rows, columns=list(OUTCOME_COLUMNS))
 
 
@@ -87,8 +91,10 @@ def _row(claim: Claim, own: pd.DataFrame, others: Sequence[pd.DataFrame]) -> dic
         "tolerance": claim.tolerance,
         "unit": claim.unit,
         "shown": found["shown"],
+        "chance": float(found["chance"]) if pd.notna(found["chance"]) else None,
         "verdict": decided.value,
         "fitted": claim.fitted,
+        "counted": claim.counts,
         "sets_low": min(values) if values else None,
         "sets_high": max(values) if values else None,
         "sets_reproducing": f"{sum(bool(one['holds']) for one in spread)} of {len(spread)}" if spread else "",

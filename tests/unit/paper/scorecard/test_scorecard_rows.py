@@ -95,3 +95,19 @@ def test_page_shows_every_row_and_escapes_text():
     assert "a &lt; b" in page
     assert "differs" in page
     assert counts(frame)[Verdict.DIFFERS] == 1
+
+
+def test_repeated_numbers_and_remarks_on_other_studies_are_left_out_of_totals():
+    again = NUMBER.model_copy(update={"id": "again", "same_as": "period"})
+    remark = NUMBER.model_copy(update={"id": "remark", "about": "other studies"})
+    claims = [NUMBER, again, remark]
+    frame = scorecard(claims, outcome_table(claims, frequencies(103.0)), [])
+    assert len(frame) == 3
+    assert counts(frame)[Verdict.DIFFERS] == 1
+
+
+def test_claim_that_repeats_an_unknown_row_is_refused(tmp_path):
+    file = tmp_path / "claims.yaml"
+    file.write_text("source: x\nclaims:\n- {id: a, where: b, claim: c, criterion: d, same_as: z}\n")
+    with pytest.raises(ConfigErrors, match="same_as"):
+        read_claims(file)
