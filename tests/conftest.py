@@ -1,9 +1,10 @@
-"""Random examples of properties: fresh ones on a developer's machine, the same ones every time in CI."""
+"""For all tests: no windows; random examples of properties fresh on a developer's machine, fixed in CI."""
 
 import os
 
 from hypothesis import settings
 
+os.environ.setdefault("MPLBACKEND", "Agg")
 settings.register_profile("ci", derandomize=True)
 if os.environ.get("CI"):
     settings.load_profile("ci")

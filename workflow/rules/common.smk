@@ -6,7 +6,7 @@ from pathlib import Path
 
 ROOT = Path(workflow.basedir)
 sys.path.insert(0, str(ROOT))
-os.environ.update(PYTHONPATH=str(ROOT))
+os.environ.update(PYTHONPATH=str(ROOT), MPLBACKEND="Agg")
 
 from facegear.config.cases import expand_cases, shared_source
 from facegear.config.load import load_values

@@ -1,36 +1,55 @@
-"""How the hot functions are compiled, and where the machine code is kept."""
+"""How the hot functions are compiled, and by what their stored machine code is found again."""
 
 import hashlib
-import os
-import tempfile
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
-import numba
 from numba import njit
+from numba.core.caching import FunctionCache
 
 
-def cache_folder(sources: Path) -> Path:
-    """Folder for the machine code of all kernels in `sources`, named by their text.
-
-    Numba notices a change of the file a kernel stands in, but not of the kernels it calls in other files.
-    """
+def text_of(sources: Path) -> str:
+    """Hash of the text of all Python files in a folder."""
     digest = hashlib.sha256()
     for path in sorted(sources.glob("*.py")):
         digest.update(path.read_bytes())
-    given = numba.config.CACHE_DIR
-    own = sources / "__pycache__" if os.access(sources, os.W_OK) else Path(tempfile.gettempdir()) / "facegear"
-    return (Path(given) if given else own) / f"kernels-{digest.hexdigest()[:16]}"
+    return digest.hexdigest()
 
 
-numba.config.CACHE_DIR = str(cache_folder(Path(__file__).parent))
+class SourcesCache(FunctionCache):
+    """Machine code of a function, found again only while the text of all files in a folder is the same.
 
-_OPTIONS = {"cache": True, "nogil": True, "fastmath": {"contract"}, "_nrt": False}
+    Numba notices a change of the file a kernel stands in, but not of the kernels it calls in other files.
+    """
 
-kernel = njit(**_OPTIONS)
+    def __init__(self, function: Callable[..., Any], text: str) -> None:
+        super().__init__(function)
+        self._text = text
+
+    def _index_key(self, sig: Any, codegen: Any) -> tuple[Any, ...]:
+        return (*super()._index_key(sig, codegen), self._text)
+
+
+def compiler(sources: Path, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Decorator that compiles a function and stores its machine code by the text of all of `sources`."""
+    text = text_of(sources)
+
+    def compiled(function: Callable[..., Any]) -> Any:
+        dispatcher = njit(**options)(function)
+        dispatcher._cache = SourcesCache(function, text)
+        return dispatcher
+
+    return compiled
+
+
+_OPTIONS = {"nogil": True, "fastmath": {"contract"}, "_nrt": False}
+
+kernel = compiler(Path(__file__).parent, **_OPTIONS)
 """Compiled without reference counts: kernels allocate nothing, and counting every array of a Packed or Work
 at every use would cost more than the arithmetic."""
 
-inlined = njit(**_OPTIONS, forceinline=True)
+inlined = compiler(Path(__file__).parent, **_OPTIONS, forceinline=True)
 """The same for functions of a Packed and a Work: handing over these hundreds of words would cost more than
 most of the functions do.
 """

@@ -6,7 +6,6 @@ from oscillators import backlash_oscillator
 
 from facegear.dynamics.integrator.advance import advance
 from facegear.dynamics.integrator.compiled import pack
-from facegear.dynamics.integrator.kernel import cache_folder
 from facegear.dynamics.integrator.work import make_work
 
 
@@ -20,11 +19,3 @@ def test_time_moves_on_where_an_edge_is_nearer_than_time_can_tell(gap, rate):
     s = 6.0
     length = advance(packed, make_work(packed, 12), s, 2.0 * np.pi, place, velocity, 1e-6)
     assert s + length > s
-
-
-def test_machine_code_is_kept_apart_for_every_text_of_the_kernels(tmp_path):
-    (tmp_path / "a.py").write_text("x = 1\n")
-    first = cache_folder(tmp_path)
-    assert cache_folder(tmp_path) == first
-    (tmp_path / "b.py").write_text("y = 1\n")
-    assert cache_folder(tmp_path) != first

@@ -1,0 +1,45 @@
+"""Stored machine code: used again while all kernels are the same, never after one of them changed."""
+
+import os
+import subprocess
+import sys
+
+CALLED = "from own import kernel\n\n@kernel\ndef called(x):\n    return x + {added}\n"
+FILES = {
+    "own.py": (
+        "from pathlib import Path\nfrom facegear.dynamics.integrator.kernel import compiler\n"
+        "kernel = compiler(Path(__file__).parent)\n"
+    ),
+    "called.py": CALLED.format(added=1.0),
+    "caller.py": (
+        "from own import kernel\nfrom called import called\n\n"
+        "@kernel\ndef caller(x):\n    return 2.0 * called(x)\n"
+    ),
+}
+PRINT = "from caller import caller; print(caller(1.0), sum(caller.stats.cache_hits.values()))"
+
+
+def test_a_kernel_sees_a_change_of_the_kernel_it_calls_in_another_file(tmp_path):
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text)
+    path = os.pathsep.join([str(tmp_path), *sys.path])
+
+    def run():
+        command = [sys.executable, "-c", PRINT]
+        environment = {**os.environ, "PYTHONPATH": path}
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        return done.stdout.split()
+
+    assert run() == ["4.0", "0"]
+    assert run() == ["4.0", "1"]
+    (tmp_path / "called.py").write_text(CALLED.format(added=2.0))
+    assert run() == ["6.0", "0"]
+
+
+def test_importing_the_kernels_leaves_numba_as_it_was():
+    code = (
+        "import numba; before = numba.config.CACHE_DIR; import facegear.dynamics.integrator.advance; "
+        "assert numba.config.CACHE_DIR == before"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
