@@ -61,7 +61,7 @@ class Settings:
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Place (n,) and velocity (n,) by time in the reduced coordinates, at the start of a mesh period."""
+    """Displacement and velocity by time, each (n,), in the reduced coordinates at a mesh period's start."""
 
-    place: Array
+    displacement: Array
     velocity: Array

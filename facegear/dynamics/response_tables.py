@@ -52,11 +52,11 @@ def spectrum_table(layout: Layout, response: SteadyState) -> pd.DataFrame:
     return pd.concat(frames, ignore_index=True)
 
 
-def summary_of_response(ready: Model, speed_rpm: float, response: SteadyState) -> pd.DataFrame:
+def summary_of_response(model: Model, speed_rpm: float, response: SteadyState) -> pd.DataFrame:
     """Columns speed_rpm, quantity, body_or_mesh, value, class: the numbers that a sweep keeps, at one
     speed.
     """
-    table = sweep_table(ready.machine.layout, "none", collect(ready, iter([(speed_rpm, response)])))
+    table = sweep_table(model.machine.layout, "none", collect(model, iter([(speed_rpm, response)])))
     return table.drop(columns="direction")
 
 

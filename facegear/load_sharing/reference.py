@@ -7,7 +7,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import model, simulate
+from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.harmonics.series import Harmonics
 from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
 from facegear.load_sharing.groups import load_groups
@@ -50,16 +50,16 @@ def slow_forces(machine: Machine, settings: Settings, speed_rpm: float) -> NDArr
     slow = replace(
         settings, samples=POSITIONS, dwell=SLOW_PERIODS, settle=SLOW_PERIODS, window=1, refine=False
     )
-    return cycle_forces(simulate(model(machine), speed_rpm, slow))[-1:]
+    return cycle_forces(simulate(build_model(machine), speed_rpm, slow))[-1:]
 
 
 def speed_range_table(machine: Machine, settings: Settings, options: SharingOptions) -> pd.DataFrame:
     """Mean and largest coefficient of each group over a range of speeds, the state carried upward."""
     speeds = np.linspace(options.speeds.first, options.speeds.last, options.speeds.points)
     progress = Progress("load sharing over speed", speeds.size)
-    ready, state, rows = model(machine), None, []
+    model, state, rows = build_model(machine), None, []
     for speed in speeds:
-        response = simulate(ready, float(speed), settings, start=state)
+        response = simulate(model, float(speed), settings, start=state)
         state = response.state
         for group in load_groups(machine.layout):
             one = group_average(response, group, options.confidence)[2]

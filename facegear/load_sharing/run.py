@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.steady_state.simulate import Model, SteadyState, model, simulate, static_start
+from facegear.dynamics.steady_state.simulate import Model, SteadyState, build_model, simulate, static_start
 from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
 from facegear.load_sharing.groups import LoadGroup, load_groups
 from facegear.load_sharing.options import SharingOptions
@@ -50,28 +50,30 @@ def load_sharing(
     The averages belong to the first start; with several stable motions, or an irregular one, the range over
     the starts says how much that choice matters. Raises NotConverged if an integration fails.
     """
-    ready = model(machine) if isinstance(machine, Machine) else machine
+    model = build_model(machine) if isinstance(machine, Machine) else machine
     settings = replace(settings, window=options.cycles, samples=options.samples)
-    first = static_start(ready)
-    responses = [simulate(ready, speed_rpm, settings, start=first)]
+    first = static_start(model)
+    responses = [simulate(model, speed_rpm, settings, start=first)]
     random = np.random.default_rng(options.seed)
     for _ in range(options.starts - 1):
-        disturbed = disturb(ready, first, options.spread, random)
-        responses.append(simulate(ready, speed_rpm, settings, start=disturbed))
+        disturbed = disturb(model, first, options.spread, random)
+        responses.append(simulate(model, speed_rpm, settings, start=disturbed))
     groups = tuple(
-        _group(group, responses, options.confidence) for group in load_groups(ready.machine.layout)
+        _group(group, responses, options.confidence) for group in load_groups(model.machine.layout)
     )
     return Sharing(responses[0], groups, tuple(response.label for response in responses))
 
 
-def disturb(ready: Model, start: State, spread: float, random: np.random.Generator) -> State:
+def disturb(model: Model, start: State, spread: float, random: np.random.Generator) -> State:
     """A start moved by normal displacements of size `spread` (m; rotations at the mesh radius)."""
-    layout = ready.machine.layout
+    layout = model.machine.layout
     moved = spread * random.normal(size=DOF_PER_BODY * len(layout.bodies))
     pinions = DOF_PER_BODY * len(layout.pinions)
     moved[3:pinions:DOF_PER_BODY] /= layout.pinion_radius
     moved[pinions + 3 :: DOF_PER_BODY] /= layout.gear_radius
-    return replace(start, place=start.place + ready.reduced.basis.T @ (mass_diagonal(layout) * moved))
+    return replace(
+        start, displacement=start.displacement + model.reduced.basis.T @ (mass_diagonal(layout) * moved)
+    )
 
 
 def cycle_forces(response: SteadyState) -> NDArray[np.float64]:

@@ -9,8 +9,8 @@ def one_degree(
     damping, stiffness=((0.0,), (1.0,)), load=((0.0,), (0.0,)), lower=-1.0, upper=1.0, pieces=()
 ) -> System:
     return System(
-        directions=np.ones((1, 1)),
-        squares=np.zeros(1),
+        mesh_jacobian=np.ones((1, 1)),
+        omega_squared=np.zeros(1),
         damping=np.array([damping]),
         mesh_damping=np.zeros(1),
         lower=np.array([lower]),

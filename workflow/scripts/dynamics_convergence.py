@@ -5,7 +5,7 @@ import pandas as pd
 from facegear.config.base import parse
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.config.transmission import Transmission, machine, tooth_numbers
-from facegear.dynamics.steady_state.simulate import model
+from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.sweeps.stored import SHAPES, from_arrays
 from facegear.dynamics.sweeps.sweep import joined
 from facegear.io import arrays, tables
@@ -17,14 +17,16 @@ from facegear.validation.dynamics.convergence import convergence_table, not_conv
 with stage(snakemake) as run:
     params = snakemake.params
     stiffness = series_of(tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS))
-    ready = model(machine(parse(Transmission, params.section), tooth_numbers(**params.teeth), stiffness))
+    model = build_model(
+        machine(parse(Transmission, params.section), tooth_numbers(**params.teeth), stiffness)
+    )
     plan = sweep_plan(parse(Sweep, params.sweep))
     files = iter(snakemake.input.chunks)
     progress = Progress("finer sweep", len(plan.directions) * plan.points)
     found = []
     for name in plan.directions:
         piece = joined([from_arrays(arrays.read(next(files), SHAPES))[1] for _ in range(plan.chunks)])
-        again = rerun(ready, piece, plan.settings, progress.step)
+        again = rerun(model, piece, plan.settings, progress.step)
         found.append(convergence_table(name, piece, again))
     table = pd.concat(found, ignore_index=True)
     tables.write(snakemake.output.table, table)

@@ -5,7 +5,7 @@ import pandas as pd
 from facegear.config.base import parse
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.config.transmission import Transmission, machine, tooth_numbers
-from facegear.dynamics.steady_state.simulate import model
+from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.steady_state.spectra import ORDERS
 from facegear.dynamics.sweeps.stored import SHAPES, from_arrays
 from facegear.dynamics.sweeps.summary import sweep_summary
@@ -19,14 +19,16 @@ from facegear.transmission.modes import natural_modes
 with stage(snakemake) as run:
     params, output = snakemake.params, snakemake.output
     stiffness = series_of(tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS))
-    ready = model(machine(parse(Transmission, params.section), tooth_numbers(**params.teeth), stiffness))
-    plan, layout = sweep_plan(parse(Sweep, params.sweep)), ready.machine.layout
+    model = build_model(
+        machine(parse(Transmission, params.section), tooth_numbers(**params.teeth), stiffness)
+    )
+    plan, layout = sweep_plan(parse(Sweep, params.sweep)), model.machine.layout
     files = iter(snakemake.input.chunks)
     chunks = {
         name: [from_arrays(arrays.read(next(files), SHAPES)) for _ in range(plan.chunks)]
         for name in plan.directions
     }
-    found = whole_sweep(ready, plan, chunks, snakemake.threads)
+    found = whole_sweep(model, plan, chunks, snakemake.threads)
     modes = natural_modes(layout, stiffness.mean)
     tables.write(output.sweep, pd.concat([sweep_table(layout, n, d.piece) for n, d in found.items()]))
     tables.write(output.jumps, pd.concat([jump_table(layout, n, d, modes) for n, d in found.items()]))

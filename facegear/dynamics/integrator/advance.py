@@ -34,11 +34,11 @@ OPEN, DRIVE, BACK = 0, 1, -1
 
 @inlined
 def advance(
-    packed: Packed, work: Work, s: float, stop: float, place: Array, velocity: Array, tolerance: float
+    packed: Packed, work: Work, s: float, stop: float, displacement: Array, velocity: Array, tolerance: float
 ) -> float:
     """Expand the motion at s and return the step length; work.y then holds the polynomials valid over it.
 
-    place, velocity (n,) are read, not moved. The contact state is found from the motion itself.
+    displacement, velocity (n,) are read, not moved. The contact state is found from the motion itself.
     """
     piece = 0
     if packed.breaks.size > 0:
@@ -46,7 +46,7 @@ def advance(
             piece += 1
         stop = min(stop, packed.breaks[piece + 1])
     for k in range(packed.n):
-        work.y[0, k] = place[k]
+        work.y[0, k] = displacement[k]
         work.y[1, k] = velocity[k]
     excitation(packed, work, s, piece, work.order + 1)
     deflect(packed, work.y, 0, work.error, work.deflection)
@@ -213,6 +213,6 @@ def _beyond(work: Work, degree: int, root: float) -> float:
 
 
 @inlined
-def move(work: Work, length: float, place: Array, velocity: Array) -> None:
-    """Move place and velocity (n,) to the end of the step."""
-    evaluate(work.y, work.order, length, place, velocity)
+def move(work: Work, length: float, displacement: Array, velocity: Array) -> None:
+    """Move displacement and velocity (n,) to the end of the step."""
+    evaluate(work.y, work.order, length, displacement, velocity)

@@ -17,18 +17,18 @@ LEAST_CLEARANCE = 1e-12
 class Packed(NamedTuple):
     """Arrays padded to whole SIMD lanes; padded meshes and coordinates are zero and stay at rest.
 
-    n, m count the real ones. directions (n, m) and transposed (m, n). Derivatives are by s = w t: squares,
-    stiffness and load are over w^2, damping and mesh_damping over w. Fourier series are (harmonics + 1, 2,
-    width), sine part first. pieces (pieces, degree + 1, m) add to the stiffness from one of `breaks` (rad)
-    to the next; stiffness and error have one column for each of the kinds that stiffness_kind and error_kind
-    (m,) name. leverage (m,): sum of squares of a mesh's directions.
+    n, m count the real ones. mesh_jacobian (n, m) and transposed (m, n). Derivatives are by s = w t:
+    omega_squared, stiffness and load are over w^2, damping and mesh_damping over w. Fourier series are
+    (harmonics + 1, 2, width), sine part first. pieces (pieces, degree + 1, m) add to the stiffness
+    from one of `breaks` (rad) to the next; stiffness and error have one column for each of the kinds that
+    stiffness_kind and error_kind (m,) name. leverage (m,): sum of squares of a row of mesh_jacobian.
     """
 
     n: int
     m: int
-    directions: Array
+    mesh_jacobian: Array
     transposed: Array
-    squares: Array
+    omega_squared: Array
     damping: Array
     mesh_damping: Array
     lower: Array
@@ -49,10 +49,10 @@ class Packed(NamedTuple):
 
 def pack(system: System, frequency: float) -> Packed:
     """Pack a system at an angular mesh frequency w in rad/s."""
-    m, n = system.directions.shape
+    m, n = system.mesh_jacobian.shape
     wide_n, wide_m = _whole(n), _whole(m)
     transposed = np.zeros((wide_m, wide_n))
-    transposed[:m, :n] = system.directions
+    transposed[:m, :n] = system.mesh_jacobian
     breaks, pieces = _pieces(system, wide_m)
     natural, harmonics = _fastest(system)
     # A clearance within rounding of the deflections is none: its edges could not be told apart.
@@ -61,9 +61,9 @@ def pack(system: System, frequency: float) -> Packed:
     return Packed(
         n=n,
         m=m,
-        directions=np.ascontiguousarray(transposed.T),
+        mesh_jacobian=np.ascontiguousarray(transposed.T),
         transposed=transposed,
-        squares=_padded(system.squares, wide_n) / frequency**2,
+        omega_squared=_padded(system.omega_squared, wide_n) / frequency**2,
         damping=_padded(system.damping, wide_n) / frequency,
         mesh_damping=_padded(system.mesh_damping, wide_m) / frequency,
         lower=_padded(lower, wide_m),
@@ -93,9 +93,9 @@ def _fastest(system: System) -> tuple[float, float]:
         [np.abs(p.coefficients).sum() for p in system.pieces] or [0.0]
     )
     mesh = highest[system.stiffness_kind]
-    directions = system.directions
-    stiffness = np.diag(system.squares) + (directions.T * mesh) @ directions
-    damping = np.diag(system.damping) + (directions.T * system.mesh_damping) @ directions
+    mesh_jacobian = system.mesh_jacobian
+    stiffness = np.diag(system.omega_squared) + (mesh_jacobian.T * mesh) @ mesh_jacobian
+    damping = np.diag(system.damping) + (mesh_jacobian.T * system.mesh_damping) @ mesh_jacobian
     natural = np.sqrt(max(np.linalg.eigvalsh(stiffness)[-1], 0.0)) + np.linalg.eigvalsh(damping)[-1]
     share = (amplitudes / np.maximum(highest, 1e-300)[:, None]).max(axis=0)
     harmonics = (np.arange(share.size) * share ** (1.0 / 8.0)).max()

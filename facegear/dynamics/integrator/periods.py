@@ -36,7 +36,7 @@ class Log(NamedTuple):
 
 def make_log(packed: Packed, periods: int, per_period: int = 0, growth: bool = False) -> Log:
     """Allocate a log; with `growth` one tangent must be run, of length one."""
-    n = packed.squares.size
+    n = packed.omega_squared.size
     return Log(
         samples=np.zeros((periods * per_period, n)),
         ends=np.zeros((periods, 2, n)),
@@ -51,7 +51,7 @@ def make_log(packed: Packed, periods: int, per_period: int = 0, growth: bool = F
 def run_periods(
     packed: Packed,
     work: Work,
-    place: Array,
+    displacement: Array,
     velocity: Array,
     tangents: Array,
     periods: int,
@@ -60,12 +60,12 @@ def run_periods(
     log: Log,
     longest: float,
 ) -> int:
-    """Move place and velocity (n,) and the tangents (columns, 2, n) over whole periods; returns a status.
+    """Move displacement and velocity (n,) and the tangents (columns, 2, n) over whole periods.
 
-    The step is chosen for the motion, but not above `longest`: a motion at rest says nothing about what its
-    disturbances need, which is disturbance_step().
+    Returns a status. The step is chosen for the motion, but not above `longest`: a motion at rest says
+    nothing about what its disturbances need, which is disturbance_step().
     """
-    n = packed.squares.size
+    n = packed.omega_squared.size
     sample, scratch, acting = work.sample, work.scratch, work.was_acting
     for period in range(periods):
         s = 0.0
@@ -73,7 +73,7 @@ def run_periods(
         next_sample = 0
         first = period == 0
         while s < TAU:
-            length = advance(packed, work, s, min(TAU, s + longest), place, velocity, tolerance)
+            length = advance(packed, work, s, min(TAU, s + longest), displacement, velocity, tolerance)
             if tangents.shape[0] > 0:
                 if not first:
                     _switch_tangents(packed, work, acting, tangents)
@@ -91,7 +91,7 @@ def run_periods(
                 for k in range(n):
                     log.samples[period * per_period + next_sample, k] = sample[k]
                 next_sample += 1
-            move(work, length, place, velocity)
+            move(work, length, displacement, velocity)
             s += length
             if TAU - s < 1e-13:
                 s = TAU
@@ -100,11 +100,11 @@ def run_periods(
                 return TOO_MANY_STEPS
         log.steps[0] += taken
         for k in range(n):
-            log.ends[period, 0, k] = place[k]
+            log.ends[period, 0, k] = displacement[k]
             log.ends[period, 1, k] = velocity[k]
         if log.growth.size > 0:
             log.growth[period] = np.log(_shorten(packed, tangents[0]))
-        if not np.isfinite(place.sum() + velocity.sum()):
+        if not np.isfinite(displacement.sum() + velocity.sum()):
             return NOT_FINITE
     return DONE
 
@@ -167,7 +167,7 @@ def _switch_tangents(packed: Packed, work: Work, acting: Array, tangents: Array)
 @inlined
 def _move_tangents(packed: Packed, work: Work, length: float, tangents: Array) -> None:
     """Move tangent vectors over the step by the same recurrence without forcing."""
-    n = packed.squares.size
+    n = packed.omega_squared.size
     for column in range(tangents.shape[0]):
         for k in range(n):
             work.tangent[0, k] = tangents[column, 0, k]

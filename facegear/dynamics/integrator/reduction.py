@@ -23,13 +23,13 @@ RANK = 1e-10
 class Reduced:
     """The moving part in n mass-normalised coordinates y, displacements = basis y.
 
-    basis (4 bodies, n), directions (meshes, n), squares (n,) bearing frequencies squared in 1/s2,
+    basis (4 bodies, n), mesh_jacobian (meshes, n), omega_squared (n,) bearing frequencies squared in 1/s2,
     damping (n,) in 1/s, load (n,) from the torques, `free` the names of the DOF that nothing touches.
     """
 
     basis: NDArray[np.float64]
-    directions: NDArray[np.float64]
-    squares: NDArray[np.float64]
+    mesh_jacobian: NDArray[np.float64]
+    omega_squared: NDArray[np.float64]
     damping: NDArray[np.float64]
     load: NDArray[np.float64]
     free: tuple[str, ...]
@@ -40,41 +40,41 @@ def reduce(machine: Machine) -> Reduced:
     layout = machine.layout
     mass = mass_diagonal(layout)
     bearing = bearing_diagonal(layout)
-    directions = mesh_directions(layout)
+    mesh_jacobian = mesh_directions(layout)
     applied = np.zeros(mass.size)
     applied[3::DOF_PER_BODY] = machine.torques
-    basis, squares = coupled_basis(directions, mass, bearing)
-    touched = (directions != 0.0).any(axis=0) | (bearing != 0.0) | (applied != 0.0)
+    basis, omega_squared = coupled_basis(mesh_jacobian, mass, bearing)
+    touched = (mesh_jacobian != 0.0).any(axis=0) | (bearing != 0.0) | (applied != 0.0)
     names = np.array(layout.dof_names)
     return Reduced(
         basis=basis,
-        directions=directions @ basis,
-        squares=squares,
-        damping=modal_damping(machine.damping, squares),
+        mesh_jacobian=mesh_jacobian @ basis,
+        omega_squared=omega_squared,
+        damping=modal_damping(machine.damping, omega_squared),
         load=basis.T @ applied,
         free=tuple(names[~touched].tolist()),
     )
 
 
-def modal_damping(damping: Damping, squares: NDArray[np.float64]) -> NDArray[np.float64]:
+def modal_damping(damping: Damping, omega_squared: NDArray[np.float64]) -> NDArray[np.float64]:
     """lambda + beta omega^2 of each coordinate, equation (21), 1/s."""
-    return damping.mass + damping.bearing * squares
+    return damping.mass + damping.bearing * omega_squared
 
 
 def coupled_basis(
-    directions: NDArray[np.float64], mass: NDArray[np.float64], bearing: NDArray[np.float64]
+    mesh_jacobian: NDArray[np.float64], mass: NDArray[np.float64], bearing: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Basis (DOF, n) with unit modal mass of all motions that meshes couple, and their bearing omega^2
     (n,).
     """
-    squares = bearing / mass
-    scaled = directions / np.sqrt(mass)
+    omega_squared = bearing / mass
+    scaled = mesh_jacobian / np.sqrt(mass)
     size = np.linalg.norm(scaled)
     columns, kept = [], []
     remaining = np.ones(mass.size, dtype=bool)
     while remaining.any():
-        value = squares[remaining].min()
-        group = np.flatnonzero(remaining & (squares <= value * (1.0 + SAME_FREQUENCY)))
+        value = omega_squared[remaining].min()
+        group = np.flatnonzero(remaining & (omega_squared <= value * (1.0 + SAME_FREQUENCY)))
         remaining[group] = False
         _, sizes, rows = np.linalg.svd(scaled[:, group], full_matrices=False)
         for row in rows[sizes > RANK * size]:

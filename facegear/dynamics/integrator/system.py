@@ -1,6 +1,6 @@
 """What the compiled integrator sees: unit-mass oscillators coupled by meshes with clearance.
 
-    y'' + damping y' + squares y + G^T F = load(t),   F = k(t) f(d) + c d',   d = G y - e(t),
+    y'' + damping y' + omega_squared y + G^T F = load(t),   F = k(t) f(d) + c d',   d = G y - e(t),
 
 f(d) = d - upper above `upper`, d - lower below `lower`, zero between. k, e and load are Fourier series in the
 mesh phase s = 2 pi t / T, k plus an optional piecewise polynomial. One degree of freedom is a case like any
@@ -34,13 +34,13 @@ class Piecewise:
 class System:
     """n coordinates, m meshes. Fourier series are (rows, 2, harmonics + 1): sine part, cosine part.
 
-    directions (m, n); squares, damping (n,); mesh_damping, lower, upper (m,); stiffness and error of the
-    kinds of mesh that differ in phase, stiffness_kind and error_kind (m,) say which; load (n, 2, harmonics +
-    1). A mesh with lower >= upper never opens. `scale` is the length that tolerances refer to.
+    mesh_jacobian (m, n); omega_squared, damping (n,); mesh_damping, lower, upper (m,); stiffness and error
+    of the kinds of mesh that differ in phase, stiffness_kind and error_kind (m,) say which; load
+    (n, 2, harmonics + 1). A mesh with lower >= upper never opens. `scale`: the length that tolerances mean.
     """
 
-    directions: Array
-    squares: Array
+    mesh_jacobian: Array
+    omega_squared: Array
     damping: Array
     mesh_damping: Array
     lower: Array
@@ -57,7 +57,7 @@ class System:
     @property
     def size(self) -> int:
         """Number of coordinates n."""
-        return self.squares.size
+        return self.omega_squared.size
 
 
 def fourier_rows(series: list[Harmonics]) -> Array:
@@ -75,11 +75,11 @@ def machine_system(machine: Machine, reduced: Reduced) -> System:
     meshes = len(machine.layout.meshes)
     stiffness, stiffness_kind = _kinds(machine.stiffness, machine.phases)
     error, error_kind = _kinds(machine.error, machine.error_phases)
-    load = np.zeros((reduced.squares.size, 2, 1))
+    load = np.zeros((reduced.omega_squared.size, 2, 1))
     load[:, 1, 0] = reduced.load
     return System(
-        directions=reduced.directions,
-        squares=reduced.squares,
+        mesh_jacobian=reduced.mesh_jacobian,
+        omega_squared=reduced.omega_squared,
         damping=reduced.damping,
         mesh_damping=np.full(meshes, machine.damping.mesh),
         lower=np.full(meshes, -machine.half_backlash),

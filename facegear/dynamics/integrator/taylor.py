@@ -62,11 +62,11 @@ def accumulate(matrix: Array, rows: int, factors: Array, at: int, out: Array, to
 @inlined
 def deflect(packed: Packed, y: Array, row: int, error: Array, deflection: Array) -> None:
     """One row of the mesh deflections, G y - e."""
-    n, wide = packed.directions.shape
+    n, wide = packed.mesh_jacobian.shape
     minus = splat(-1.0)
     for c in range(row * wide, (row + 1) * wide, LANES):
         store(deflection, c, multiply(minus, load(error, c)))
-    accumulate(packed.directions, packed.n + packed.n % 2, y, row * n, deflection, row * wide)
+    accumulate(packed.mesh_jacobian, packed.n + packed.n % 2, y, row * n, deflection, row * wide)
 
 
 @inlined
@@ -76,7 +76,7 @@ def recurrence(packed: Packed, work: Work, error: Array, applied: Array, y: Arra
     Row 0 of deflection has the edge of the contact subtracted. work.active (m,) masks meshes in contact,
     work.acting (m,) holds the mesh damping that acts.
     """
-    n, wide = packed.directions.shape
+    n, wide = packed.mesh_jacobian.shape
     force, stiffness = work.force, work.stiffness
     minus = splat(-1.0)
     for i in range(work.order - 1):
@@ -97,7 +97,7 @@ def recurrence(packed: Packed, work: Work, error: Array, applied: Array, y: Arra
         factor = splat(1.0 / ((i + 1) * (i + 2)))
         for c in range(0, n, LANES):
             total = multiply(load(packed.damping, c), multiply(rate, load(y, (i + 1) * n + c)))
-            total = multiply_add(load(packed.squares, c), load(y, i * n + c), total)
+            total = multiply_add(load(packed.omega_squared, c), load(y, i * n + c), total)
             total = multiply_add(minus, total, load(applied, i * n + c))
             store(y, (i + 2) * n + c, multiply(factor, total))
         accumulate(packed.transposed, packed.m + packed.m % 2, force, 0, y, (i + 2) * n)
@@ -107,7 +107,7 @@ def recurrence(packed: Packed, work: Work, error: Array, applied: Array, y: Arra
 @inlined
 def step_length(packed: Packed, work: Work, tolerance: float) -> float:
     """Step at which each of the last two terms is below the tolerance times the system's length scale."""
-    n = packed.squares.size
+    n = packed.omega_squared.size
     target = tolerance * packed.scale
     longest = 1e300
     for i in range(work.order - 1, work.order + 1):
@@ -122,14 +122,14 @@ def step_length(packed: Packed, work: Work, tolerance: float) -> float:
 
 
 @inlined
-def evaluate(y: Array, order: int, ahead: float, place: Array, velocity: Array) -> None:
+def evaluate(y: Array, order: int, ahead: float, displacement: Array, velocity: Array) -> None:
     """Value and derivative by s of the Taylor polynomials, each (n,), by Horner's rule."""
-    n = place.size
+    n = displacement.size
     step = splat(ahead)
     for c in range(0, n, LANES):
         value, slope = load(y, order * n + c), splat(0.0)
         for i in range(order - 1, -1, -1):
             slope = multiply_add(slope, step, value)
             value = multiply_add(value, step, load(y, i * n + c))
-        store(place, c, value)
+        store(displacement, c, value)
         store(velocity, c, slope)

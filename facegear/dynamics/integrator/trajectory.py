@@ -65,12 +65,12 @@ def record(
     settings = settings or Settings()
     packed = pack(system, frequency)
     work = make_work(packed, settings.taylor_order)
-    place, velocity = _wide(packed, state.place), _wide(packed, state.velocity / frequency)
+    displacement, velocity = _wide(packed, state.displacement), _wide(packed, state.velocity / frequency)
     starts, lengths, coordinates, deflections, states = [], [], [], [], []
     for period in range(periods):
         s = 0.0
         while s < TAU:
-            length = advance(packed, work, s, TAU, place, velocity, settings.tolerance)
+            length = advance(packed, work, s, TAU, displacement, velocity, settings.tolerance)
             starts.append(period * TAU + s)
             lengths.append(length)
             coordinates.append(work.y[:, : packed.n].copy())
@@ -78,7 +78,7 @@ def record(
             polynomial[0] += work.edge[: packed.m]
             deflections.append(polynomial)
             states.append(work.state[: packed.m].copy())
-            move(work, length, place, velocity)
+            move(work, length, displacement, velocity)
             s += length
             if TAU - s < 1e-13:
                 s = TAU
@@ -95,6 +95,6 @@ def record(
 
 
 def _wide(packed: Packed, values: Array) -> Array:
-    wide = np.zeros(packed.squares.size)
+    wide = np.zeros(packed.omega_squared.size)
     wide[: packed.n] = values
     return wide

@@ -54,7 +54,7 @@ class Work(NamedTuple):
 
 def make_work(packed: Packed, order: int) -> Work:
     """Allocate scratch space."""
-    n, m = packed.directions.shape
+    n, m = packed.mesh_jacobian.shape
     rows = order + 1
     harmonics = max(len(packed.stiffness), len(packed.error), len(packed.load))
     widest = max(packed.stiffness.shape[2], packed.error.shape[2])

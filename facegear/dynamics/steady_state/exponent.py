@@ -16,19 +16,21 @@ NEUTRAL = 2e-3
 
 
 def largest_exponent(
-    packed: Packed, work: Work, place: Array, velocity: Array, settings: Settings
+    packed: Packed, work: Work, displacement: Array, velocity: Array, settings: Settings
 ) -> tuple[Motion, tuple[float, float], Window]:
     """Class of motion, exponent per mesh period with its 95 % half-width, and the window itself.
 
     A neutral exponent comes with the half-width of its smooth mean, any other with that of the batches.
     """
-    tangent = np.zeros((1, 2, place.size))
+    tangent = np.zeros((1, 2, displacement.size))
     tangent[0, :, : packed.n] = np.random.default_rng(0).normal(size=(2, packed.n))
     tangent /= np.sqrt(((packed.weights * tangent) ** 2).sum())
     length = max(1, settings.window // BATCHES)
     # The vector first turns into the direction of fastest growth.
-    aside = run_disturbed(packed, work, place, velocity, tangent, ALIGN * length, settings)
-    window = run_disturbed(packed, work, aside.place, aside.velocity, tangent, BATCHES * length, settings)
+    aside = run_disturbed(packed, work, displacement, velocity, tangent, ALIGN * length, settings)
+    window = run_disturbed(
+        packed, work, aside.displacement, aside.velocity, tangent, BATCHES * length, settings
+    )
     batches = window.growth.reshape(BATCHES, length).mean(axis=1)
     mean = float(batches.mean())
     half = float(2.13 * batches.std(ddof=1) / np.sqrt(BATCHES))

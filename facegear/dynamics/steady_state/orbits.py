@@ -31,7 +31,7 @@ ROUNDING = 1e-11
 
 @dataclass(frozen=True, eq=False)
 class Orbit:
-    """A periodic orbit of `period` mesh periods through place and velocity (by phase), each (padded n,).
+    """A periodic orbit of `period` mesh periods through a displacement and a velocity by phase (padded n,).
 
     residual: change over the period over the length scale, also an error estimate once Newton has settled.
     multipliers (2 n,) complex, largest first; leading (2, padded n) the direction of the first, of which
@@ -39,7 +39,7 @@ class Orbit:
     of the divergence, which is zero for an exact solution (NaN where the matrix is singular to rounding).
     """
 
-    place: Array
+    displacement: Array
     velocity: Array
     period: int
     residual: float
@@ -60,41 +60,47 @@ def changes(packed: Packed, ends: Array, longest: int) -> Array:
 
 
 def monodromy(
-    packed: Packed, work: Work, place: Array, velocity: Array, period: int, tolerance: float
+    packed: Packed, work: Work, displacement: Array, velocity: Array, period: int, tolerance: float
 ) -> tuple[Array, Array, Array, Log]:
-    """Run `period` mesh periods with all tangents: end place, end velocity, matrix (2 n, 2 n), log.
+    """Run `period` mesh periods with all tangents: end displacement, end velocity, matrix (2 n, 2 n), log.
 
     Raises NotConverged where the step fails.
     """
-    n, wide = packed.n, packed.squares.size
+    n, wide = packed.n, packed.omega_squared.size
     tangents = np.zeros((2 * n, 2, wide))
     rows = np.arange(n)
     tangents[rows, 0, rows] = 1.0
     tangents[n + rows, 1, rows] = 1.0
-    place, velocity, log = _moved(packed, work, place, velocity, tangents, period, tolerance)
+    displacement, velocity, log = _moved(packed, work, displacement, velocity, tangents, period, tolerance)
     matrix = tangents[:, :, :n].reshape(2 * n, 2 * n).T
-    return place, velocity, matrix, log
+    return displacement, velocity, matrix, log
 
 
 def _moved(
-    packed: Packed, work: Work, place: Array, velocity: Array, tangents: Array, period: int, tolerance: float
+    packed: Packed,
+    work: Work,
+    displacement: Array,
+    velocity: Array,
+    tangents: Array,
+    period: int,
+    tolerance: float,
 ) -> tuple[Array, Array, Log]:
     """A state moved over mesh periods in the steps that tangents need, with or without any."""
-    place, velocity = place.copy(), velocity.copy()
+    displacement, velocity = displacement.copy(), velocity.copy()
     log = make_log(packed, period)
     longest = disturbance_step(packed, work.order, tolerance)
-    require(run_periods(packed, work, place, velocity, tangents, period, 0, tolerance, log, longest))
-    return place, velocity, log
+    require(run_periods(packed, work, displacement, velocity, tangents, period, 0, tolerance, log, longest))
+    return displacement, velocity, log
 
 
 def require(status: int) -> None:
     """Raise NotConverged unless the status of a run is good."""
-    told = {
+    reported = {
         TOO_MANY_STEPS: f"a mesh period took more than {MOST_STEPS} steps",
         NOT_FINITE: "the motion grew beyond all bounds",
     }
     if status != DONE:
-        raise NotConverged("dynamics", "time integration", told[status])
+        raise NotConverged("dynamics", "time integration", reported[status])
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +124,13 @@ class _Tangent:
 
 
 def shoot(
-    packed: Packed, work: Work, place: Array, velocity: Array, period: int, tolerance: float, goal: float
+    packed: Packed,
+    work: Work,
+    displacement: Array,
+    velocity: Array,
+    period: int,
+    tolerance: float,
+    goal: float,
 ) -> Orbit | None:
     """Newton's method on the change over `period` mesh periods; None if it does not settle near the start.
 
@@ -127,15 +139,17 @@ def shoot(
     orbit is known to the goal.
     """
     n = packed.n
-    place, velocity = place.copy(), velocity.copy()
-    none = np.zeros((0, 2, place.size))
+    displacement, velocity = displacement.copy(), velocity.copy()
+    none = np.zeros((0, 2, displacement.size))
     best, gained = np.inf, 0.0
     tangent: _Tangent | None = None
     for _ in range(NEWTON_STEPS):
-        here = np.array([place, velocity])
+        here = np.array([displacement, velocity])
         if gained < 0.1 and tangent is not None:
-            end_place, end_velocity, log = _moved(packed, work, place, velocity, none, period, tolerance)
-            there = np.array([end_place, end_velocity])
+            end_displacement, end_velocity, log = _moved(
+                packed, work, displacement, velocity, none, period, tolerance
+            )
+            there = np.array([end_displacement, end_velocity])
         else:
             there, tangent = _linearised(packed, work, here, period, tolerance)
             log = tangent.log
@@ -144,7 +158,7 @@ def shoot(
             return None
         least = least_period(packed, here, log.ends, max(residual, goal))
         if residual <= goal and least < period:
-            return shoot(packed, work, place, velocity, least, tolerance, goal)
+            return shoot(packed, work, displacement, velocity, least, tolerance, goal)
         # Newton's method cannot do better than the steps and their rounding.
         stalled = residual > 0.5 * best and residual <= max(tolerance * tangent.slowness, ROUNDING)
         if residual <= goal * min(1.0, tangent.slowness) or stalled:
@@ -156,7 +170,7 @@ def shoot(
         gap = (there - here)[:, :n].ravel()
         # A body afloat in its backlash has a place of its own choice: least norm leaves it where it is.
         correction = np.linalg.lstsq(np.eye(2 * n) - tangent.matrix, gap, rcond=NEUTRAL)[0]
-        place[:n] += correction[:n]
+        displacement[:n] += correction[:n]
         velocity[:n] += correction[n:]
     return None
 
@@ -165,10 +179,10 @@ def _linearised(
     packed: Packed, work: Work, state: Array, period: int, tolerance: float
 ) -> tuple[Array, _Tangent]:
     """Where a state (2, n) comes to over the period, and the map near it."""
-    place, velocity, matrix, log = monodromy(packed, work, state[0], state[1], period, tolerance)
+    displacement, velocity, matrix, log = monodromy(packed, work, state[0], state[1], period, tolerance)
     multipliers, directions = np.linalg.eig(matrix)
     order = np.argsort(-np.abs(multipliers))
-    there = np.array([place, velocity])
+    there = np.array([displacement, velocity])
     return there, _Tangent(state, matrix, multipliers[order], directions[:, order], log)
 
 

@@ -25,55 +25,61 @@ TREND = 7
 
 @dataclass(frozen=True, eq=False)
 class Settled:
-    """Where a run came to rest: state by phase, period (0: none found), residual over it, periods spent."""
+    """Where a run came to rest: state by phase, period (0: none found), residual over it, periods run."""
 
-    place: Array
+    displacement: Array
     velocity: Array
     period: int
     residual: float
     orbit: Orbit | None
-    spent: int
+    periods_run: int
 
 
-def settle(packed: Packed, work: Work, place: Array, velocity: Array, settings: Settings) -> Settled:
+def settle(packed: Packed, work: Work, displacement: Array, velocity: Array, settings: Settings) -> Settled:
     """Run blocks of periods until the state repeats after 1 .. longest_period of them, or patience ends.
 
     With `refine` a motion that seems to repeat is made an orbit by Newton's method as soon as that pays. An
     unstable orbit, which exact symmetry or a slow escape may hold a run on, is left by a kick.
     """
-    place, velocity = place.copy(), velocity.copy()
+    displacement, velocity = displacement.copy(), velocity.copy()
     longest, goal = settings.longest_period, settings.periodic_residual
     block, dwell = _blocks(packed, settings)
-    tangents = np.zeros((NO_TANGENTS, 2, place.size))
-    ends = np.zeros((0, 2, place.size))
-    spent, kicks = 0, 0
+    tangents = np.zeros((NO_TANGENTS, 2, displacement.size))
+    ends = np.zeros((0, 2, displacement.size))
+    periods_run, kicks = 0, 0
     tried: dict[int, float] = {}
     while True:
         log = make_log(packed, block)
-        require(run_periods(packed, work, place, velocity, tangents, block, 0, settings.tolerance, log, TAU))
-        spent += block
+        require(
+            run_periods(
+                packed, work, displacement, velocity, tangents, block, 0, settings.tolerance, log, TAU
+            )
+        )
+        periods_run += block
         ends = np.concatenate([ends, log.ends])[-(2 * longest + BLOCK) :]
         period, residual = repeat(packed, ends, longest, goal)
-        left = spent >= settings.settle
-        if spent < dwell:
+        left = periods_run >= settings.settle
+        if periods_run < dwell:
             continue
-        pays = NEWTON_COST * period <= spent or left
+        pays = NEWTON_COST * period <= periods_run or left
         if settings.refine and pays and residual < min(TRY_NEWTON, 0.1 * tried.get(period, np.inf)):
-            orbit = _near_orbit(packed, work, place, velocity, period, residual, settings)
+            orbit = _near_orbit(packed, work, displacement, velocity, period, residual, settings)
             tried[period] = residual
             if orbit is not None and abs(orbit.multipliers[0]) <= 1.0 + AFLOAT:
-                return Settled(orbit.place, orbit.velocity, orbit.period, orbit.residual, orbit, spent)
+                return Settled(
+                    orbit.displacement, orbit.velocity, orbit.period, orbit.residual, orbit, periods_run
+                )
             if orbit is not None and kicks < MOST_KICKS and not left:
                 kicks += 1
-                place += KICK * orbit.leading[0]
+                displacement += KICK * orbit.leading[0]
                 velocity += KICK * orbit.leading[1]
                 ends = ends[:0]
                 continue
         done = settled_by_itself(packed, ends, period, residual, goal)
         if done and (not settings.refine or left):
-            return Settled(place, velocity, period, residual, None, spent)
+            return Settled(displacement, velocity, period, residual, None, periods_run)
         if left:
-            return Settled(place, velocity, 0, residual, None, spent)
+            return Settled(displacement, velocity, 0, residual, None, periods_run)
 
 
 def _blocks(packed: Packed, settings: Settings) -> tuple[int, int]:
@@ -90,9 +96,9 @@ def _blocks(packed: Packed, settings: Settings) -> tuple[int, int]:
 def repeat(packed: Packed, ends: Array, longest: int, goal: float) -> tuple[int, float]:
     """The period with the smallest change at the end of a run; a shorter one wins if nearly as good."""
     best_period, best = 1, np.inf
-    for place, last in enumerate(changes(packed, ends, longest)):
+    for index, last in enumerate(changes(packed, ends, longest)):
         if last < 0.2 * best and not best <= goal:
-            best_period, best = place + 1, float(last)
+            best_period, best = index + 1, float(last)
     return best_period, best
 
 
@@ -115,17 +121,19 @@ def settled_by_itself(packed: Packed, ends: Array, period: int, residual: float,
 def _near_orbit(
     packed: Packed,
     work: Work,
-    place: Array,
+    displacement: Array,
     velocity: Array,
     period: int,
     residual: float,
     settings: Settings,
 ) -> Orbit | None:
     """The orbit next to the state, or None if Newton's method does not settle or leads away."""
-    orbit = shoot(packed, work, place, velocity, period, settings.tolerance, settings.periodic_residual)
+    orbit = shoot(
+        packed, work, displacement, velocity, period, settings.tolerance, settings.periodic_residual
+    )
     if orbit is None:
         return None
-    moved = change(packed, np.array([place, velocity]), np.array([orbit.place, orbit.velocity]))
+    moved = change(packed, np.array([displacement, velocity]), np.array([orbit.displacement, orbit.velocity]))
     # What is left to decay is about residual / (1 - multiplier); much further away lies another orbit. The
     # error of a step moves an orbit likewise.
     slow = max(abs(1.0 - abs(orbit.multipliers[0])), 1e-3)

@@ -50,7 +50,7 @@ class SteadyState:
     multipliers: NDArray[np.complex128] | None
     liouville: float | None
     exponent: tuple[float, float] | None
-    spent: int
+    periods_run: int
     state: State
 
     @property
@@ -66,7 +66,7 @@ class SteadyState:
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """A machine made ready: its reduction and system, to be used at many speeds."""
+    """A machine made model: its reduction and system, to be used at many speeds."""
 
     machine: Machine
     reduced: Reduced
@@ -77,31 +77,31 @@ class Model:
         return response.coordinates @ self.reduced.basis.T
 
 
-def model(machine: Machine) -> Model:
+def build_model(machine: Machine) -> Model:
     """Reduce a machine once for all speeds."""
     reduced = reduce(machine)
     return Model(machine, reduced, machine_system(machine, reduced))
 
 
-def static_start(ready: Model) -> State:
+def static_start(model: Model) -> State:
     """At rest in the static equilibrium with mean stiffness."""
-    standing = static_equilibrium(ready.machine).displacements
-    place = ready.reduced.basis.T @ (mass_diagonal(ready.machine.layout) * standing)
-    return State(place, np.zeros_like(place))
+    standing = static_equilibrium(model.machine).displacements
+    displacement = model.reduced.basis.T @ (mass_diagonal(model.machine.layout) * standing)
+    return State(displacement, np.zeros_like(displacement))
 
 
 def simulate(
-    ready: Model | Machine, speed_rpm: float, settings: Settings | None = None, start: State | None = None
+    model: Model | Machine, speed_rpm: float, settings: Settings | None = None, start: State | None = None
 ) -> SteadyState:
     """Steady state at a pinion speed, from `start` or from static equilibrium.
 
     Raises NotConverged if the integration itself fails; a motion that does not settle is a result, named so.
     """
-    ready = model(ready) if isinstance(ready, Machine) else ready
-    frequency = TAU * mesh_frequency(ready.machine.layout, speed_rpm)
-    start = static_start(ready) if start is None else start
+    model = build_model(model) if isinstance(model, Machine) else model
+    frequency = TAU * mesh_frequency(model.machine.layout, speed_rpm)
+    start = static_start(model) if start is None else start
     try:
-        return steady_state(ready.system, frequency, settings or Settings(), start)
+        return steady_state(model.system, frequency, settings or Settings(), start)
     except NotConverged as error:
         raise NotConverged(error.stage, f"{speed_rpm:g} rpm", error.tried) from None
 
@@ -122,25 +122,30 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
     """Steady state of any system at an angular mesh frequency in rad/s."""
     packed = pack(system, frequency)
     work = make_work(packed, settings.taylor_order)
-    place, velocity = _widened(packed, start.place), _widened(packed, start.velocity / frequency)
-    exponent, window, spent = None, None, 0
+    displacement, velocity = (
+        _widened(packed, start.displacement),
+        _widened(packed, start.velocity / frequency),
+    )
+    exponent, window, periods_run = None, None, 0
     motion = Motion.PERIODIC
     for times in range(settings.extensions + 1):
-        patient = settings.extended(times)
-        settled = settle(packed, work, place, velocity, patient)
-        spent += settled.spent
+        extended = settings.extended(times)
+        settled = settle(packed, work, displacement, velocity, extended)
+        periods_run += settled.periods_run
         if settled.period:
             motion, exponent = Motion.PERIODIC, None
-            place, velocity = settled.place, settled.velocity
-            window = run_window(packed, work, place, velocity, settled.period, settings)
+            displacement, velocity = settled.displacement, settled.velocity
+            window = run_window(packed, work, displacement, velocity, settled.period, settings)
             break
-        motion, exponent, window = largest_exponent(packed, work, settled.place, settled.velocity, patient)
+        motion, exponent, window = largest_exponent(
+            packed, work, settled.displacement, settled.velocity, extended
+        )
         if motion is Motion.CHAOTIC and settled.residual < ESCAPING:
             motion = Motion.NOT_SETTLED
-        place, velocity = window.place, window.velocity
+        displacement, velocity = window.displacement, window.velocity
         if motion is not Motion.NOT_SETTLED:
             break
-    return _result(packed, system, frequency, settings, settled, window, motion, exponent, spent)
+    return _result(packed, system, frequency, settings, settled, window, motion, exponent, periods_run)
 
 
 def _result(
@@ -152,7 +157,7 @@ def _result(
     window: Window,
     motion: Motion,
     exponent: tuple[float, float] | None,
-    spent: int,
+    periods_run: int,
 ) -> SteadyState:
     deflections, forces = mesh_response(system, window.samples, settings.samples)
     orbit = settled.orbit
@@ -172,8 +177,8 @@ def _result(
         multipliers=orbit.multipliers if orbit else None,
         liouville=orbit.liouville if orbit else None,
         exponent=exponent,
-        spent=spent,
-        state=State(window.place[: packed.n].copy(), window.velocity[: packed.n] * frequency),
+        periods_run=periods_run,
+        state=State(window.displacement[: packed.n].copy(), window.velocity[: packed.n] * frequency),
     )
 
 
@@ -189,8 +194,8 @@ def mesh_response(system: System, coordinates: Array, per_period: int) -> tuple[
             piece.coefficients[index] * np.vander(ahead, piece.coefficients.shape[1], True)
         ).sum(1)
     stiffness = stiffness[:, system.stiffness_kind]
-    shape = (-1, per_period, len(system.directions))
-    deflections = (coordinates @ system.directions.T).reshape(shape)
+    shape = (-1, per_period, len(system.mesh_jacobian))
+    deflections = (coordinates @ system.mesh_jacobian.T).reshape(shape)
     deflections -= error
     # Without clearance everything counts from the upper edge.
     linear = system.lower >= system.upper
@@ -208,6 +213,6 @@ def series_values(series: Array, cycles: Array) -> Array:
 
 
 def _widened(packed: Packed, values: Array) -> Array:
-    wide = np.zeros(packed.squares.size)
+    wide = np.zeros(packed.omega_squared.size)
     wide[: packed.n] = values
     return wide

@@ -32,9 +32,9 @@ def order_spectrum(samples: Array, per_period: int, period: int) -> Array:
     if period:
         orders, lines = spectrum(samples, per_period, True)
         bins = np.round(orders * SEGMENT).astype(int)
-        for place, line in zip(bins, lines, strict=True):
-            if place < ORDERS.size:
-                result[:, place] = np.hypot(result[:, place], line)
+        for index, line in zip(bins, lines, strict=True):
+            if index < ORDERS.size:
+                result[:, index] = np.hypot(result[:, index], line)
         return result
     length = SEGMENT * per_period
     count = len(samples) // length

@@ -24,22 +24,22 @@ class Window:
     samples: Array
     shares: Array
     growth: Array
-    place: Array
+    displacement: Array
     velocity: Array
 
 
 def run_window(
-    packed: Packed, work: Work, place: Array, velocity: Array, periods: int, settings: Settings
+    packed: Packed, work: Work, displacement: Array, velocity: Array, periods: int, settings: Settings
 ) -> Window:
     """Run periods from a state, which is left alone. Raises NotConverged where a step fails."""
-    none = np.zeros((0, 2, place.size))
-    return _window(packed, work, place, velocity, none, periods, settings, TAU)
+    none = np.zeros((0, 2, displacement.size))
+    return _window(packed, work, displacement, velocity, none, periods, settings, TAU)
 
 
 def run_disturbed(
     packed: Packed,
     work: Work,
-    place: Array,
+    displacement: Array,
     velocity: Array,
     tangent: Array,
     periods: int,
@@ -47,24 +47,26 @@ def run_disturbed(
 ) -> Window:
     """The same with a disturbance (1, 2, n) of length one, which is moved along and turned."""
     longest = disturbance_step(packed, work.order, settings.tolerance)
-    return _window(packed, work, place, velocity, tangent, periods, settings, longest)
+    return _window(packed, work, displacement, velocity, tangent, periods, settings, longest)
 
 
 def _window(
     packed: Packed,
     work: Work,
-    place: Array,
+    displacement: Array,
     velocity: Array,
     tangents: Array,
     periods: int,
     settings: Settings,
     longest: float,
 ) -> Window:
-    place, velocity = place.copy(), velocity.copy()
+    displacement, velocity = displacement.copy(), velocity.copy()
     per_period, tolerance = settings.samples, settings.tolerance
     log = make_log(packed, periods, per_period, len(tangents) > 0)
     require(
-        run_periods(packed, work, place, velocity, tangents, periods, per_period, tolerance, log, longest)
+        run_periods(
+            packed, work, displacement, velocity, tangents, periods, per_period, tolerance, log, longest
+        )
     )
     samples, shares = log.samples[:, : packed.n], log.shares[:, : packed.m]
-    return Window(periods, samples, shares, log.growth, place, velocity)
+    return Window(periods, samples, shares, log.growth, displacement, velocity)

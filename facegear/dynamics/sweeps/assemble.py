@@ -52,7 +52,7 @@ def same_response(first: Piece, i: int, second: Piece, j: int) -> SeamKind | Non
 
 
 def assemble(
-    ready: Model, plan: SweepPlan, direction: str, chunks: list[tuple[Piece, Piece]]
+    model: Model, plan: SweepPlan, direction: str, chunks: list[tuple[Piece, Piece]]
 ) -> tuple[Piece, list[Seam]]:
     """Join (overlap, own) chunks; where a chunk started on another branch it is run again until it agrees."""
     whole = chunks[0][1]
@@ -67,7 +67,7 @@ def assemble(
         redone: list[Piece] = []
         for i in range(len(own.speeds)):
             state = (redone[-1] if redone else whole).state(-1)
-            redone.append(collect(ready, run_speeds(ready, own.speeds[i : i + 1], plan.settings, state)))
+            redone.append(collect(model, run_speeds(model, own.speeds[i : i + 1], plan.settings, state)))
             if same_response(redone[-1], -1, own, i) is not None:
                 break
         seams.append(Seam(direction, speed, SeamKind.RERUN, len(redone)))

@@ -19,7 +19,7 @@ DIMENSIONS = {
     "spectrum": 3,
     "modal": 2,
     "modal_order": 1,
-    "place": 2,
+    "displacement": 2,
     "velocity": 2,
 }
 SHAPES: dict[str, tuple[int | None, ...]] = {

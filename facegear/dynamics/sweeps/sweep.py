@@ -16,7 +16,7 @@ from facegear.transmission.modes import natural_modes
 
 Array = NDArray[np.float64]
 DEFLECTION = ("mean", "rms", "ac_rms", "least", "most", "rms_interval", "ac_rms_interval")
-FACTS = ("residual", "leading_multiplier", "exponent_per_period", "exponent_interval", "periods_spent")
+FACTS = ("residual", "leading_multiplier", "exponent_per_period", "exponent_interval", "periods_run")
 TRANSLATION = ("rms", "ac_rms", "ac_rms_interval")
 
 
@@ -29,7 +29,7 @@ class Piece:
     TRANSLATION of x, y, z, m. labels (P,): class of motion. facts (P, 5): what FACTS names, the (leading)
     multiplier and the exponent NaN where there is none. spectrum (P, M, orders), m. modal (P, modes): RMS
     velocity scale omega * coordinate of every natural mode without mean, sqrt(J). modal_order (P,): where in
-    multiples of the mesh frequency the strongest mode moves most. place, velocity (P, n).
+    multiples of the mesh frequency the strongest mode moves most. displacement, velocity (P, n).
     """
 
     speeds: Array
@@ -42,7 +42,7 @@ class Piece:
     spectrum: Array
     modal: Array
     modal_order: Array
-    place: Array
+    displacement: Array
     velocity: Array
 
     def tail(self, start: int) -> "Piece":
@@ -51,7 +51,7 @@ class Piece:
 
     def state(self, index: int) -> State:
         """State at the end of one speed."""
-        return State(self.place[index], self.velocity[index])
+        return State(self.displacement[index], self.velocity[index])
 
 
 def joined(pieces: list[Piece]) -> Piece:
@@ -61,38 +61,38 @@ def joined(pieces: list[Piece]) -> Piece:
 
 
 def run_chunk(
-    ready: Model, plan: SweepPlan, direction: str, number: int, step: Callable[[], None] = lambda: None
+    model: Model, plan: SweepPlan, direction: str, number: int, step: Callable[[], None] = lambda: None
 ) -> tuple[Piece, Piece]:
     """Overlap and own speeds of a chunk, the first speed started from static equilibrium."""
     before, own = plan.chunk(direction, number)
-    responses = run_speeds(ready, np.concatenate([before, own]), plan.settings, None, step)
-    piece = collect(ready, responses)
+    responses = run_speeds(model, np.concatenate([before, own]), plan.settings, None, step)
+    piece = collect(model, responses)
     count = len(before)
     return Piece(**{n: getattr(piece, n)[:count] for n in Piece.__dataclass_fields__}), piece.tail(count)
 
 
 def run_speeds(
-    ready: Model,
+    model: Model,
     speeds: Array,
     settings: Settings,
     start: State | None,
     step: Callable[[], None] = lambda: None,
 ) -> Iterator[tuple[float, SteadyState]]:
     """Steady states at speeds in the given order, the state carried over."""
-    state = static_start(ready) if start is None else start
+    state = static_start(model) if start is None else start
     for speed in speeds:
-        response = simulate(ready, float(speed), settings, state)
+        response = simulate(model, float(speed), settings, state)
         state = response.state
         step()
         yield float(speed), response
 
 
-def collect(ready: Model, responses: Iterator[tuple[float, SteadyState]]) -> Piece:
+def collect(model: Model, responses: Iterator[tuple[float, SteadyState]]) -> Piece:
     """Reduce responses to the numbers that a sweep keeps."""
-    machine = ready.machine
+    machine = model.machine
     modes = natural_modes(machine.layout, machine.stiffness.mean)
     to_modal = mass_diagonal(machine.layout)[:, None] * modes.shapes * (2.0 * np.pi * modes.frequencies)
-    basis = ready.reduced.basis
+    basis = model.reduced.basis
     translations = basis.reshape(-1, 4, basis.shape[1])[:, :3].reshape(-1, basis.shape[1]).T
     views = np.hstack([translations, basis.T @ to_modal])
     rows = [_row(views, translations.shape[1], speed, response) for speed, response in responses]
@@ -118,11 +118,11 @@ def _row(
         "force": np.array([response.forces.mean(axis=0), np.abs(response.forces).mean(axis=0)]),
         "shares": response.shares,
         "translation": np.array([values[:directions].reshape(-1, 3) for values in (rms, ac_rms, interval)]),
-        "facts": np.array([response.residual, leading, exponent, half, response.spent]),
+        "facts": np.array([response.residual, leading, exponent, half, response.periods_run]),
         "spectrum": order_spectrum(response.deflections, response.per_period, response.period),
         "modal": modal,
         "modal_order": orders[lines[1:, 0].argmax() + 1],
-        "place": response.state.place,
+        "displacement": response.state.displacement,
         "velocity": response.state.velocity,
     }
 

@@ -21,31 +21,31 @@ class Direction:
 
 
 def whole_sweep(
-    ready: Model,
+    model: Model,
     plan: SweepPlan,
     chunks: Mapping[str, list[tuple[Piece, Piece]]],
     threads: int = 1,
     step: Callable[[], None] = lambda: None,
 ) -> dict[str, Direction]:
     """Join the chunks of every direction and bracket their jumps to the plan's resolution."""
-    return {name: _direction(ready, plan, name, parts, threads, step) for name, parts in chunks.items()}
+    return {name: _direction(model, plan, name, parts, threads, step) for name, parts in chunks.items()}
 
 
 def _direction(
-    ready: Model,
+    model: Model,
     plan: SweepPlan,
     name: str,
     chunks: list[tuple[Piece, Piece]],
     threads: int,
     step: Callable[[], None],
 ) -> Direction:
-    piece, seams = assemble(ready, plan, name, chunks)
+    piece, seams = assemble(model, plan, name, chunks)
 
     def bracket(position: int) -> Jump:
         jump = refine(
             piece,
             position,
-            lambda speed, state: simulate(ready, speed, plan.settings, state),
+            lambda speed, state: simulate(model, speed, plan.settings, state),
             plan.jump_resolution_rpm,
         )
         step()

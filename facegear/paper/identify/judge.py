@@ -8,7 +8,7 @@ import pandas as pd
 import scipy.stats
 
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import model, static_start
+from facegear.dynamics.steady_state.simulate import build_model, static_start
 from facegear.load_sharing.run import disturb
 from facegear.paper.identify.inputs import Inputs
 from facegear.paper.identify.objective import coefficients
@@ -80,9 +80,9 @@ def _worst_mean(problem: Problem, inputs: Inputs, settings: Settings) -> float:
     machine = problem.machine(inputs)
     worst = 0.0
     for target in problem.targets.backlash:
-        ready = model(replace(machine, half_backlash=0.5 * target.backlash))
-        start = static_start(ready)
-        inputs_mean, idlers_mean, _ = coefficients(ready, problem.targets.speed, settings, start)
+        model = build_model(replace(machine, half_backlash=0.5 * target.backlash))
+        start = static_start(model)
+        inputs_mean, idlers_mean, _ = coefficients(model, problem.targets.speed, settings, start)
         worst = max(worst, abs(inputs_mean - target.inputs), abs(idlers_mean - target.idlers))
     return worst
 
@@ -115,11 +115,11 @@ def coefficients_table(
 
 def _from_starts(machine: Machine, speed: float, settings: Settings, starts: int, seed: int) -> np.ndarray:
     """Coefficients (starts, 3)."""
-    ready = model(machine)
-    first = static_start(ready)
+    model = build_model(machine)
+    first = static_start(model)
     random = np.random.default_rng(seed)
-    states = [first, *(disturb(ready, first, SPREAD, random) for _ in range(starts - 1))]
-    return np.array([coefficients(ready, speed, settings, state) for state in states])
+    states = [first, *(disturb(model, first, SPREAD, random) for _ in range(starts - 1))]
+    return np.array([coefficients(model, speed, settings, state) for state in states])
 
 
 def _half_width(values: np.ndarray) -> float:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.steady_state.simulate import Model, SteadyState, model, simulate, static_start
+from facegear.dynamics.steady_state.simulate import Model, SteadyState, build_model, simulate, static_start
 from facegear.errors import NotConverged
 from facegear.load_sharing.groups import GroupKind, load_groups
 from facegear.load_sharing.run import group_average
@@ -51,10 +51,10 @@ def misfit(machine: Machine, targets: Targets, settings: Settings, sweep: Settin
         sharing = float(np.sqrt((units**2).mean()))
         jumps = (reach,) * len(targets.jumps)
         if sharing <= SWEEP_WORTH:
-            ready = model(machine)
-            start = static_start(ready)
+            model = build_model(machine)
+            start = static_start(model)
             jumps = tuple(
-                jump_distance(ready, speed, reach, SWEEP_POINTS, sweep, start) for speed in targets.jumps
+                jump_distance(model, speed, reach, SWEEP_POINTS, sweep, start) for speed in targets.jumps
             )
     except NotConverged:
         return worst
@@ -64,20 +64,20 @@ def misfit(machine: Machine, targets: Targets, settings: Settings, sweep: Settin
 
 
 def _from_rest(machine: Machine, speed: float, settings: Settings) -> tuple[float, float, float]:
-    ready = model(machine)
-    return coefficients(ready, speed, settings, static_start(ready))
+    model = build_model(machine)
+    return coefficients(model, speed, settings, static_start(model))
 
 
-def coefficients(ready: Model, speed: float, settings: Settings, start: State) -> tuple[float, float, float]:
+def coefficients(model: Model, speed: float, settings: Settings, start: State) -> tuple[float, float, float]:
     """Means of inputs and idlers and the idlers' minimum in a cycle, at a speed in rpm."""
-    response = simulate(ready, speed, settings, start=start)
-    inputs = _averages(response, ready, GroupKind.INPUTS)
-    idlers = _averages(response, ready, GroupKind.IDLERS)
+    response = simulate(model, speed, settings, start=start)
+    inputs = _averages(response, model, GroupKind.INPUTS)
+    idlers = _averages(response, model, GroupKind.IDLERS)
     return float(inputs[:, 0].mean()), float(idlers[:, 0].mean()), float(idlers[:, 1].mean())
 
 
-def _averages(response: SteadyState, ready: Model, kind: GroupKind) -> np.ndarray:
+def _averages(response: SteadyState, model: Model, kind: GroupKind) -> np.ndarray:
     """Mean and one-cycle minimum of each group of a kind, shape (groups, 2)."""
-    groups = [group for group in load_groups(ready.machine.layout) if group.kind is kind]
+    groups = [group for group in load_groups(model.machine.layout) if group.kind is kind]
     averages = [group_average(response, group, 0.95)[2] for group in groups]
     return np.array([(one.mean, one.cycle_minimum) for one in averages])

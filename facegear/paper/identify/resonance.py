@@ -11,12 +11,12 @@ JUMP = 0.12
 
 
 def swept_levels(
-    ready: Model, speeds: NDArray[np.float64], settings: Settings, start: State
+    model: Model, speeds: NDArray[np.float64], settings: Settings, start: State
 ) -> NDArray[np.float64]:
     """RMS about the mean of the mesh deflections, averaged over the meshes, m; the state is carried along."""
     levels, state = np.empty(speeds.size), start
     for row, speed in enumerate(speeds):
-        response = simulate(ready, float(speed), settings, start=state)
+        response = simulate(model, float(speed), settings, start=state)
         levels[row] = response.deflections.std(axis=0).mean()
         state = response.state
     return levels
@@ -29,11 +29,11 @@ def jump_speeds(speeds: NDArray[np.float64], levels: NDArray[np.float64]) -> NDA
 
 
 def jump_distance(
-    ready: Model, target: float, reach: float, points: int, settings: Settings, start: State
+    model: Model, target: float, reach: float, points: int, settings: Settings, start: State
 ) -> float:
     """Relative distance from `target` (rpm) to the nearest jump of either sweep, at most `reach`."""
     speeds = target * np.linspace(1.0 - reach, 1.0 + reach, points)
-    up = swept_levels(ready, speeds, settings, start)
-    down = swept_levels(ready, speeds[::-1], settings, start)
+    up = swept_levels(model, speeds, settings, start)
+    down = swept_levels(model, speeds[::-1], settings, start)
     found = np.concatenate([jump_speeds(speeds, up), jump_speeds(speeds[::-1], down)])
     return float(np.abs(found / target - 1.0).min()) if found.size else reach

@@ -7,7 +7,7 @@ import pandas as pd
 
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.response_tables import response_table, spectrum_table
-from facegear.dynamics.steady_state.simulate import model, simulate
+from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.dynamics.sweeps.plan import SweepPlan
 from facegear.dynamics.sweeps.sweep import run_chunk
 from facegear.dynamics.sweeps.sweep_tables import jump_table, sweep_table
@@ -37,12 +37,12 @@ def simulated_tables(
     """The same tables as the workflow's stages write: response, spectrum, sweep, jumps, sharing, curves,
     reference. `studies` holds the machine of each (study, point).
     """
-    ready = model(machine)
+    model = build_model(machine)
     layout = machine.layout
-    response = simulate(ready, settings.speed, settings.settings)
+    response = simulate(model, settings.speed, settings.settings)
     plan = replace(settings.sweep, chunks=1)
-    chunks = {direction: [run_chunk(ready, plan, direction, 0)] for direction in plan.directions}
-    sweep = whole_sweep(ready, plan, chunks)
+    chunks = {direction: [run_chunk(model, plan, direction, 0)] for direction in plan.directions}
+    sweep = whole_sweep(model, plan, chunks)
     modes = natural_modes(layout, machine.stiffness.mean)
     sharing = {
         key: load_sharing(one, settings.speed, settings.settings, settings.sharing)

@@ -12,7 +12,7 @@ from facegear.dynamics.sweeps.sweep import DEFLECTION, FACTS, Piece, collect, jo
 CONVERGED = 1e-3
 
 
-def rerun(ready: Model, piece: Piece, settings: Settings, step: Callable[[], None] = lambda: None) -> Piece:
+def rerun(model: Model, piece: Piece, settings: Settings, step: Callable[[], None] = lambda: None) -> Piece:
     """Every speed of a sweep again, finer, from the state that the sweep left there.
 
     A finer sweep carried through would also choose other branches after irregular motion, which says nothing
@@ -20,7 +20,7 @@ def rerun(ready: Model, piece: Piece, settings: Settings, step: Callable[[], Non
     """
     finer = tighter(settings)
     again = [
-        collect(ready, run_speeds(ready, piece.speeds[i : i + 1], finer, piece.state(i), step))
+        collect(model, run_speeds(model, piece.speeds[i : i + 1], finer, piece.state(i), step))
         for i in range(len(piece.speeds))
     ]
     return joined(again)

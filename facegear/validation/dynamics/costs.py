@@ -14,7 +14,7 @@ from facegear.dynamics.integrator.periods import make_log, run_periods
 from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.orbits import require
-from facegear.dynamics.steady_state.simulate import Model, model, simulate, static_start
+from facegear.dynamics.steady_state.simulate import Model, build_model, simulate, static_start
 from facegear.dynamics.sweeps.plan import SweepPlan
 from facegear.dynamics.sweeps.sweep import DEFLECTION, FACTS, Piece, collect, run_speeds
 from facegear.harmonics.series import Harmonics
@@ -40,16 +40,16 @@ def sweep_costs(machine: Machine, plan: SweepPlan, step: Callable[[], None] = la
     rms_error (largest of the confirmed, relative to the largest mesh at the speed), rms_error_median,
     plain_seconds_per_speed (SciPy RK45 on NumPy for as many periods as ours ran, from a shorter run).
     """
-    ready = model(machine)
+    model = build_model(machine)
     speeds = np.linspace(plan.first_rpm, plan.last_rpm, SPEEDS)
     plain = plain_seconds_per_period(machine, speeds)
     rows = []
     for tolerance, settle, refine in itertools.product(TOLERANCES, DWELLS, (True, False)):
         settings = replace(plan.settings, tolerance=tolerance, settle=settle, refine=refine, extensions=0)
         begin = time.process_time()
-        piece = collect(ready, run_speeds(ready, speeds, settings, None))
+        piece = collect(model, run_speeds(model, speeds, settings, None))
         seconds = (time.process_time() - begin) / SPEEDS
-        periodic, errors = _rms_errors(ready, piece, plan.settings)
+        periodic, errors = _rms_errors(model, piece, plan.settings)
         rows.append(
             {
                 "tolerance": tolerance,
@@ -60,21 +60,21 @@ def sweep_costs(machine: Machine, plan: SweepPlan, step: Callable[[], None] = la
                 "not_confirmed": periodic - errors.size,
                 "rms_error": errors.max(initial=0.0),
                 "rms_error_median": np.median(errors),
-                "plain_seconds_per_speed": plain * piece.facts[:, FACTS.index("periods_spent")].mean(),
+                "plain_seconds_per_speed": plain * piece.facts[:, FACTS.index("periods_run")].mean(),
             }
         )
         step()
     return pd.DataFrame(rows)
 
 
-def _rms_errors(ready: Model, piece: Piece, settings: Settings) -> tuple[int, Array]:
+def _rms_errors(model: Model, piece: Piece, settings: Settings) -> tuple[int, Array]:
     """Number of periodic speeds, and the relative RMS errors of those that are the same motion when tight."""
     tight = replace(settings, tolerance=1e-10, order=None, periodic_residual=1e-9, extensions=0)
     row = DEFLECTION.index("ac_rms")
     periodic = [i for i, label in enumerate(piece.labels) if str(label).startswith("period-")]
     errors = []
     for i in periodic:
-        best = collect(ready, run_speeds(ready, piece.speeds[i : i + 1], tight, piece.state(i)))
+        best = collect(model, run_speeds(model, piece.speeds[i : i + 1], tight, piece.state(i)))
         if best.labels[0] == piece.labels[i]:
             found, exact = piece.deflection[i, row], best.deflection[0, row]
             errors.append(np.abs(found - exact).max() / exact.max())
@@ -83,13 +83,13 @@ def _rms_errors(ready: Model, piece: Piece, settings: Settings) -> tuple[int, Ar
 
 def plain_seconds_per_period(machine: Machine, speeds: Array) -> float:
     """Time of a mesh period with SciPy's RK45 at 1e-6 on a NumPy right-hand side, mean over three speeds."""
-    ready = model(machine)
+    model = build_model(machine)
     run = scipy_method("RK45", plain=True)
     times = []
     for speed in speeds[[len(speeds) // 4, len(speeds) // 2, -1]]:
-        state = simulate(ready, float(speed), Settings(settle=32, extensions=0, window=16)).state
+        state = simulate(model, float(speed), Settings(settle=32, extensions=0, window=16)).state
         omega = TAU * mesh_frequency(machine.layout, float(speed))
-        problem = Problem("plain", ready.system, omega, state, PLAIN_PERIODS, False)
+        problem = Problem("plain", model.system, omega, state, PLAIN_PERIODS, False)
         begin = time.process_time()
         run(problem, 1e-6)
         times.append((time.process_time() - begin) / PLAIN_PERIODS)
@@ -105,27 +105,29 @@ def scaling_costs(machine: Machine, speed_rpm: float) -> pd.DataFrame:
     sizes = [(pinions, order) for pinions in (1, 2, 5, 8, 12)] + [(5, harmonics) for harmonics in (1, 20, 40)]
     rows = []
     for pinions, harmonics in sizes:
-        ready = model(_resized(machine, pinions, harmonics))
-        seconds, steps = _period_cost(ready, TAU * mesh_frequency(machine.layout, speed_rpm))
-        rows.append((pinions, harmonics, ready.system.size, seconds, steps))
+        model = build_model(_resized(machine, pinions, harmonics))
+        seconds, steps = _period_cost(model, TAU * mesh_frequency(machine.layout, speed_rpm))
+        rows.append((pinions, harmonics, model.system.size, seconds, steps))
     names = ["pinions", "harmonics", "coordinates", "seconds_per_period", "steps_per_period"]
     return pd.DataFrame(rows, columns=names)
 
 
-def _period_cost(ready: Model, frequency: float) -> tuple[float, float]:
+def _period_cost(model: Model, frequency: float) -> tuple[float, float]:
     """CPU seconds and steps of a mesh period at the sweep's tolerance, once the start is forgotten."""
     settings = Settings(tolerance=1e-4)
-    packed = pack(ready.system, frequency)
+    packed = pack(model.system, frequency)
     work = make_work(packed, settings.taylor_order)
-    start = static_start(ready)
-    place, velocity = np.zeros((2, packed.squares.size))
-    place[: packed.n] = start.place
-    none = np.zeros((0, 2, place.size))
+    start = static_start(model)
+    displacement, velocity = np.zeros((2, packed.omega_squared.size))
+    displacement[: packed.n] = start.displacement
+    none = np.zeros((0, 2, displacement.size))
     times = []
     for periods in (100, COST_PERIODS, COST_PERIODS, COST_PERIODS):
         log = make_log(packed, periods)
         begin = time.process_time()
-        require(run_periods(packed, work, place, velocity, none, periods, 0, settings.tolerance, log, TAU))
+        require(
+            run_periods(packed, work, displacement, velocity, none, periods, 0, settings.tolerance, log, TAU)
+        )
         times.append((time.process_time() - begin) / periods)
     return min(times[1:]), float(log.steps[0]) / COST_PERIODS
 

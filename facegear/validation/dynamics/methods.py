@@ -38,9 +38,9 @@ class Method:
 def start_of(problem: Problem) -> tuple[Array, int]:
     """Padded start (2 width,) by phase, and the width."""
     n = problem.system.size
-    width = pack(problem.system, problem.frequency).squares.size
+    width = pack(problem.system, problem.frequency).omega_squared.size
     z = np.zeros(2 * width)
-    z[:n] = problem.start.place
+    z[:n] = problem.start.displacement
     z[width : width + n] = problem.start.velocity / problem.frequency
     return z, width
 
@@ -65,9 +65,11 @@ def ours(problem: Problem, tolerance: float) -> Array:
     z, width = start_of(problem)
     log = make_log(packed, problem.periods, SAMPLES)
     work = make_work(packed, settings.taylor_order)
-    place, velocity = z[:width].copy(), z[width:].copy()
+    displacement, velocity = z[:width].copy(), z[width:].copy()
     none = np.zeros((0, 2, width))
-    require(run_periods(packed, work, place, velocity, none, problem.periods, SAMPLES, tolerance, log, TAU))
+    require(
+        run_periods(packed, work, displacement, velocity, none, problem.periods, SAMPLES, tolerance, log, TAU)
+    )
     return log.samples[:, : packed.n]
 
 

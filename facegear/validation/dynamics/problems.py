@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.steady_state.simulate import model, simulate, static_start
+from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
 from facegear.transmission.machine import Machine, mesh_frequency
 
 Array = NDArray[np.float64]
@@ -50,10 +50,10 @@ def machine_problems(machine: Machine, speed_rpm: float) -> list[Problem]:
 def _problem(
     name: str, machine: Machine, speed_rpm: float, periods: int, statistical: bool
 ) -> tuple[Problem, Motion]:
-    ready = model(machine)
-    response = simulate(ready, speed_rpm, Settings(settle=128, extensions=0), static_start(ready))
+    model = build_model(machine)
+    response = simulate(model, speed_rpm, Settings(settle=128, extensions=0), static_start(model))
     frequency = TAU * mesh_frequency(machine.layout, speed_rpm)
-    return Problem(name, ready.system, frequency, response.state, periods, statistical), response.motion
+    return Problem(name, model.system, frequency, response.state, periods, statistical), response.motion
 
 
 def oscillator_problem() -> Problem:
@@ -62,8 +62,8 @@ def oscillator_problem() -> Problem:
     load = np.zeros((1, 2, 2))
     load[0, 1] = 0.1, 0.05 * speed**2
     system = System(
-        directions=np.ones((1, 1)),
-        squares=np.zeros(1),
+        mesh_jacobian=np.ones((1, 1)),
+        omega_squared=np.zeros(1),
         damping=np.array([0.1]),
         mesh_damping=np.zeros(1),
         lower=np.array([-1.0]),

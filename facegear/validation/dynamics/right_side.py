@@ -1,4 +1,4 @@
-"""The equations as a right-hand side z' = f(s, z), z = (place, velocity), for integrators that need one."""
+"""The equations as a right-hand side z' = f(s, z), z = (displacement, velocity), for other integrators."""
 
 from collections.abc import Callable
 
@@ -18,16 +18,16 @@ Array = NDArray[np.float64]
 @kernel
 def right_side(packed: Packed, work: Work, s: float, z: Array, out: Array) -> None:
     """Derivative by s of z (2 n,) into out; work must be of order 1 or more."""
-    n, wide = packed.directions.shape
+    n, wide = packed.mesh_jacobian.shape
     excitation(packed, work, s, 0, 2)
     minus = splat(-1.0)
     for c in range(0, wide, LANES):
-        place, rate = multiply(minus, load(work.error, c)), multiply(minus, load(work.error, wide + c))
+        level, rate = multiply(minus, load(work.error, c)), multiply(minus, load(work.error, wide + c))
         for k in range(packed.n):
-            direction = load(packed.directions, k * wide + c)
-            place = multiply_add(direction, splat(z[k]), place)
+            direction = load(packed.mesh_jacobian, k * wide + c)
+            level = multiply_add(direction, splat(z[k]), level)
             rate = multiply_add(direction, splat(z[n + k]), rate)
-        store(work.deflection, c, place)
+        store(work.deflection, c, level)
         store(work.deflection, wide + c, rate)
     for m in range(packed.m):
         d = work.deflection[0, m]
@@ -41,7 +41,7 @@ def right_side(packed: Packed, work: Work, s: float, z: Array, out: Array) -> No
         velocity = load(z, n + c)
         store(out, c, velocity)
         total = multiply_add(multiply(minus, load(packed.damping, c)), velocity, load(work.load, c))
-        total = multiply_add(multiply(minus, load(packed.squares, c)), load(z, c), total)
+        total = multiply_add(multiply(minus, load(packed.omega_squared, c)), load(z, c), total)
         for m in range(packed.m):
             total = multiply_add(load(packed.transposed, m * n + c), splat(-work.force[m]), total)
         store(out, n + c, total)
@@ -93,7 +93,7 @@ def plain_right_side(system: System, frequency: float, width: int) -> Callable[[
     load = system.load
 
     def derivative(s: float, z: Array) -> Array:
-        place, velocity = z[:n], z[width : width + n] * frequency
+        displacement, velocity = z[:n], z[width : width + n] * frequency
         k = stiffness[:, 0] @ np.sin(order_k * s) + stiffness[:, 1] @ np.cos(order_k * s)
         e = error[:, 0] @ np.sin(order_e * s) + error[:, 1] @ np.cos(order_e * s)
         e_rate = frequency * (
@@ -101,11 +101,14 @@ def plain_right_side(system: System, frequency: float, width: int) -> Callable[[
         )
         order_f = np.arange(load.shape[2])
         applied = load[:, 0] @ np.sin(order_f * s) + load[:, 1] @ np.cos(order_f * s)
-        d = system.directions @ place - e
+        d = system.mesh_jacobian @ displacement - e
         gap = np.where(d > system.upper, d - system.upper, np.where(d < system.lower, d - system.lower, 0.0))
-        force = k * gap + system.mesh_damping * (system.directions @ velocity - e_rate)
+        force = k * gap + system.mesh_damping * (system.mesh_jacobian @ velocity - e_rate)
         acceleration = (
-            applied - system.damping * velocity - system.squares * place - system.directions.T @ force
+            applied
+            - system.damping * velocity
+            - system.omega_squared * displacement
+            - system.mesh_jacobian.T @ force
         )
         out = np.zeros_like(z)
         out[:n] = velocity / frequency

@@ -83,8 +83,8 @@ def measure(
         try:
             coordinates = method.run(problem, setting)
         except Exception as error:  # a solver that fails is a result of the comparison
-            told = f"{type(error).__name__}: {error}".splitlines()[0][:100]
-            return np.nan, np.nan, time.process_time() - begin, told
+            reported = f"{type(error).__name__}: {error}".splitlines()[0][:100]
+            return np.nan, np.nan, time.process_time() - begin, reported
         times.append(time.process_time() - begin)
         if times[-1] > budget.longest:
             break

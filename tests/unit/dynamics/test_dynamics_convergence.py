@@ -11,7 +11,7 @@ from facegear.dynamics.integrator.roots import MAX_DEPTH, bernstein_matrix, firs
 from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.orbits import monodromy
-from facegear.dynamics.steady_state.simulate import model, simulate
+from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.transmission.machine import mesh_frequency
 
 FINE = Settings(tolerance=1e-14, periodic_residual=1e-10)
@@ -21,18 +21,20 @@ def errors(order, backlash):
     """Step length, error of the end state and of the multipliers after a period, over a ladder of
     tolerances.
     """
-    ready = model(make_machine(torque=1500.0, backlash=backlash, error=30e-6))
+    model = build_model(make_machine(torque=1500.0, backlash=backlash, error=30e-6))
     speed = 9000.0
-    state = simulate(ready, speed, FINE).state
-    omega = TAU * mesh_frequency(ready.machine.layout, speed)
-    packed = pack(ready.system, omega)
+    state = simulate(model, speed, FINE).state
+    omega = TAU * mesh_frequency(model.machine.layout, speed)
+    packed = pack(model.system, omega)
 
     def end(p, tolerance):
-        place, velocity = np.zeros((2, packed.squares.size))
-        place[: packed.n], velocity[: packed.n] = state.place, state.velocity / omega
-        place, velocity, matrix, log = monodromy(packed, make_work(packed, p), place, velocity, 1, tolerance)
+        displacement, velocity = np.zeros((2, packed.omega_squared.size))
+        displacement[: packed.n], velocity[: packed.n] = state.displacement, state.velocity / omega
+        displacement, velocity, matrix, log = monodromy(
+            packed, make_work(packed, p), displacement, velocity, 1, tolerance
+        )
         largest = np.sort(np.abs(np.linalg.eigvals(matrix)))[::-1][:6]
-        return packed.transposed @ place / packed.scale, largest, int(log.steps[0]), log.shares
+        return packed.transposed @ displacement / packed.scale, largest, int(log.steps[0]), log.shares
 
     exact, multipliers, _, shares = end(20, 1e-15)
     rows = []

@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.trajectory import record
 from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.steady_state.simulate import model, simulate, static_start, steady_state
+from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start, steady_state
 from facegear.dynamics.steady_state.statistics import moments
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.layout import Role, Side
@@ -95,26 +95,26 @@ def full_run(machine, speed, start, end):
 @pytest.mark.parametrize("name", CASES)
 def test_short_run_agrees_with_the_full_equations(name):
     machine, speed = CASES[name]
-    ready = model(machine)
-    start = static_start(ready)
+    model = build_model(machine)
+    start = static_start(model)
     kick = np.random.default_rng(1).normal(size=start.velocity.size)
-    start = replace(start, velocity=0.02 * kick / np.abs(ready.reduced.directions).max())
+    start = replace(start, velocity=0.02 * kick / np.abs(model.reduced.mesh_jacobian).max())
     omega = TAU * mesh_frequency(machine.layout, speed)
     end = min(TAU, omega * 3e-4)
-    full = np.concatenate([ready.reduced.basis @ start.place, ready.reduced.basis @ start.velocity])
+    full = np.concatenate([model.reduced.basis @ start.displacement, model.reduced.basis @ start.velocity])
     expected = full_run(machine, speed, full, end / omega)
-    run = record(ready.system, omega, start, 1, FINE)
+    run = record(model.system, omega, start, 1, FINE)
     found = run.at(np.array([end]))[1][0]
-    np.testing.assert_allclose(found, expected, atol=2e-8 * max(ready.system.scale, np.abs(expected).max()))
+    np.testing.assert_allclose(found, expected, atol=2e-8 * max(model.system.scale, np.abs(expected).max()))
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_motion_is_named_and_its_rms_holds_at_a_tighter_tolerance(name):
     machine, speed = CASES[name]
-    ready = model(machine)
+    model = build_model(machine)
     few = {"settle": 64, "dwell": 16, "window": 16, "extensions": 0} if name in SLOW else {"settle": 256}
     settings = Settings(tolerance=1e-6, **few)
-    response = simulate(ready, speed, settings)
+    response = simulate(model, speed, settings)
     assert np.isfinite(response.deflections).all()
     if response.motion is not Motion.PERIODIC:
         assert response.period == 0
@@ -123,7 +123,7 @@ def test_motion_is_named_and_its_rms_holds_at_a_tighter_tolerance(name):
         return
     assert response.residual <= settings.periodic_residual
     # The same orbit from its own state: another start may lie in another basin.
-    again = simulate(ready, speed, replace(settings, tolerance=1e-9), response.state)
+    again = simulate(model, speed, replace(settings, tolerance=1e-9), response.state)
     assert again.label == response.label
     first = moments(response.deflections, response.per_period, True)
     second = moments(again.deflections, again.per_period, True)

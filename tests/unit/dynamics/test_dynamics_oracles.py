@@ -19,17 +19,17 @@ LOWER = (1.1624504362, 0.0080293418, 1.03663857, 1.16336143, 1.1, 0.04480330)
 UPPER = (0.8338430125, 0.1640787518, 0.71634912, 1.35304199, 0.99812462, 0.22472379)
 
 
-def state(place, velocity):
-    return State(np.array([place]), np.array([velocity]))
+def state(displacement, velocity):
+    return State(np.array([displacement]), np.array([velocity]))
 
 
 @pytest.mark.parametrize("branch", [LOWER, UPPER])
 def test_backlash_oscillator_has_both_orbits_of_oracle_a(branch):
-    place, velocity, least, most, mean, ac_rms = branch
+    displacement, velocity, least, most, mean, ac_rms = branch
     system = backlash_oscillator(0.75)
-    response = steady_state(system, 0.75, FINE, state(round(place, 2), round(velocity, 2)))
+    response = steady_state(system, 0.75, FINE, state(round(displacement, 2), round(velocity, 2)))
     assert response.label == "period-1"
-    assert response.coordinates[0, 0] == pytest.approx(place, abs=2e-10)
+    assert response.coordinates[0, 0] == pytest.approx(displacement, abs=2e-10)
     assert response.state.velocity[0] == pytest.approx(velocity, abs=2e-10)
     orbit = record(system, 0.75, response.state, 1, FINE)
     assert orbit.extremes(0) == pytest.approx((least, most), abs=1e-8)
@@ -40,7 +40,7 @@ def test_backlash_oscillator_has_both_orbits_of_oracle_a(branch):
     assert np.sqrt(weights @ (values - found) ** 2 / (2 * np.pi)) == pytest.approx(ac_rms, abs=1e-8)
 
 
-def exact_multipliers(speed, place, velocity):
+def exact_multipliers(speed, displacement, velocity):
     """Piecewise-linear flow by matrix exponentials, contact switches by root finding: nothing of ours."""
     damping, period = 0.1, 2 * np.pi / speed
     force = 0.05 * speed**2
@@ -57,8 +57,8 @@ def exact_multipliers(speed, place, velocity):
             dtype=float,
         )
 
-    now, vector, product = 0.0, np.array([place, velocity, 1.0, 1.0, 0.0]), np.eye(2)
-    contact = place > 1.0
+    now, vector, product = 0.0, np.array([displacement, velocity, 1.0, 1.0, 0.0]), np.eye(2)
+    contact = displacement > 1.0
     while now < period - 1e-13:
         matrix = flow_matrix(contact)
 
@@ -123,7 +123,7 @@ def test_jump_speeds_of_oracle_b(approach, first, last, speed):
 def matrix_of(system, speed, tolerance=1e-15):
     packed = pack(system, speed)
     work = make_work(packed, 20)
-    zero = np.zeros(packed.squares.size)
+    zero = np.zeros(packed.omega_squared.size)
     return monodromy(packed, work, zero, zero, 1, tolerance)[2]
 
 

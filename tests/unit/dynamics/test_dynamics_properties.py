@@ -13,7 +13,7 @@ from facegear.dynamics.integrator.trajectory import Trajectory, record
 from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.orbits import monodromy
-from facegear.dynamics.steady_state.simulate import Model, model, simulate, static_start
+from facegear.dynamics.steady_state.simulate import Model, build_model, simulate, static_start
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.layout import Role, Side
 from facegear.transmission.machine import OpenFlanks, mesh_frequency
@@ -49,61 +49,63 @@ def machines(draw, **fixed):
 speeds = st.floats(3000, 20_000)
 
 
-def frequency(ready: Model, speed: float) -> float:
-    return TAU * mesh_frequency(ready.machine.layout, speed)
+def frequency(model: Model, speed: float) -> float:
+    return TAU * mesh_frequency(model.machine.layout, speed)
 
 
-def kicked(ready: Model, seed: int = 0) -> State:
+def kicked(model: Model, seed: int = 0) -> State:
     """Static equilibrium with a random velocity that opens contacts within a period."""
-    start = static_start(ready)
+    start = static_start(model)
     kick = np.random.default_rng(seed).normal(size=start.velocity.size)
-    reach = np.abs(ready.reduced.directions).max()
-    return replace(start, velocity=0.5 * ready.system.scale / reach * kick * 2e3)
+    reach = np.abs(model.reduced.mesh_jacobian).max()
+    return replace(start, velocity=0.5 * model.system.scale / reach * kick * 2e3)
 
 
 @settings(max_examples=12, deadline=None)
 @given(machine=machines(), speed=speeds, factor=st.floats(0.01, 100))
 def test_scaling_torques_backlash_and_error_scales_the_motion(machine, speed, factor):
-    ready = model(machine)
-    start = kicked(ready)
+    model = build_model(machine)
+    start = kicked(model)
     scaled = replace(
         machine,
         torques=factor * machine.torques,
         half_backlash=factor * machine.half_backlash,
         error=machine.error.scaled(factor),
     )
-    bigger = replace(model(scaled).system, scale=factor * ready.system.scale)
-    first = record(ready.system, frequency(ready, speed), start, 2, FINE)
+    bigger = replace(build_model(scaled).system, scale=factor * model.system.scale)
+    first = record(model.system, frequency(model, speed), start, 2, FINE)
     second = record(
-        bigger, frequency(ready, speed), State(factor * start.place, factor * start.velocity), 2, FINE
+        bigger, frequency(model, speed), State(factor * start.displacement, factor * start.velocity), 2, FINE
     )
     phases = np.linspace(0.0, 2 * TAU, 50)
     one, two = first.at(phases)[1], second.at(phases)[1]
-    np.testing.assert_allclose(two / factor, one, atol=1e-9 * ready.system.scale)
+    np.testing.assert_allclose(two / factor, one, atol=1e-9 * model.system.scale)
 
 
 @settings(max_examples=12, deadline=None)
 @given(machine=machines(), speed=speeds)
 def test_negated_torques_and_error_negate_the_motion(machine, speed):
-    ready = model(machine)
-    start = kicked(ready)
-    mirrored = model(replace(machine, torques=-machine.torques, error=machine.error.scaled(-1.0)))
-    first = record(ready.system, frequency(ready, speed), start, 2, FINE)
-    second = record(mirrored.system, frequency(ready, speed), State(-start.place, -start.velocity), 2, FINE)
+    model = build_model(machine)
+    start = kicked(model)
+    mirrored = build_model(replace(machine, torques=-machine.torques, error=machine.error.scaled(-1.0)))
+    first = record(model.system, frequency(model, speed), start, 2, FINE)
+    second = record(
+        mirrored.system, frequency(model, speed), State(-start.displacement, -start.velocity), 2, FINE
+    )
     phases = np.linspace(0.0, 2 * TAU, 50)
-    np.testing.assert_allclose(second.at(phases)[1], -first.at(phases)[1], atol=1e-9 * ready.system.scale)
+    np.testing.assert_allclose(second.at(phases)[1], -first.at(phases)[1], atol=1e-9 * model.system.scale)
 
 
 @settings(max_examples=12, deadline=None)
 @given(machine=machines(), speed=st.floats(8000, 20_000))
 def test_liouville_across_contact_switches(machine, speed):
-    ready = model(machine)
-    packed = pack(ready.system, frequency(ready, speed))
-    start = kicked(ready)
-    place, velocity = np.zeros(packed.squares.size), np.zeros(packed.squares.size)
-    place[: packed.n] = start.place
-    velocity[: packed.n] = start.velocity / frequency(ready, speed)
-    *_, matrix, log = monodromy(packed, make_work(packed, 20), place, velocity, 1, 1e-14)
+    model = build_model(machine)
+    packed = pack(model.system, frequency(model, speed))
+    start = kicked(model)
+    displacement, velocity = np.zeros(packed.omega_squared.size), np.zeros(packed.omega_squared.size)
+    displacement[: packed.n] = start.displacement
+    velocity[: packed.n] = start.velocity / frequency(model, speed)
+    *_, matrix, log = monodromy(packed, make_work(packed, 20), displacement, velocity, 1, 1e-14)
     sign, volume = np.linalg.slogdet(matrix)
     assert sign > 0
     # The determinant is known to the rounding of its smallest factor.
@@ -114,10 +116,10 @@ def test_liouville_across_contact_switches(machine, speed):
 @settings(max_examples=12, deadline=None)
 @given(machine=machines(), speed=speeds)
 def test_energy_audit_over_a_period(machine, speed):
-    ready = model(machine)
-    system: System = ready.system
-    omega = frequency(ready, speed)
-    run = record(system, omega, kicked(ready), 2, FINE)
+    model = build_model(machine)
+    system: System = model.system
+    omega = frequency(model, speed)
+    run = record(system, omega, kicked(model), 2, FINE)
     phases, weights = run.quadrature(16)
     times = weights / omega
     step = np.searchsorted(run.starts, phases, side="right") - 1
@@ -138,7 +140,7 @@ def test_energy_audit_over_a_period(machine, speed):
     acting = machine.damping.mesh * (1.0 if system.damping_when_open else np.abs(state))
     force = stiffness * beyond + acting * rate
     # d/dt of kinetic + bearing + mesh energy: torques in, damping out, k'(t) stores, e'(t) pushes.
-    power = velocity @ ready.reduced.load - velocity**2 @ system.damping - (acting * rate**2).sum(axis=1)
+    power = velocity @ model.reduced.load - velocity**2 @ system.damping - (acting * rate**2).sum(axis=1)
     power += (0.5 * slope * beyond**2).sum(axis=1) - (force * error_rate).sum(axis=1)
 
     def energy(at):
@@ -150,7 +152,7 @@ def test_energy_audit_over_a_period(machine, speed):
         d = run.at(np.array([at]))[1][0]
         gap = np.sign(d) * np.maximum(np.abs(d) - machine.half_backlash, 0.0)
         now = np.array([machine.stiffness(at / TAU - phase) for phase in machine.phases])
-        return 0.5 * v @ v + 0.5 * system.squares @ y**2 + 0.5 * now @ gap**2
+        return 0.5 * v @ v + 0.5 * system.omega_squared @ y**2 + 0.5 * now @ gap**2
 
     ends = run.starts[-1] + run.lengths[-1]
     change = energy(ends) - energy(0.0)
@@ -167,17 +169,17 @@ def derivative(series: Harmonics, cycles: np.ndarray, omega: float) -> np.ndarra
 @given(machine=machines(), speed=speeds)
 def test_torques_less_mesh_forces_change_the_spin_of_every_body(machine, speed):
     """I dw + lambda I dtheta = torque T - lever * (impulse of the mesh forces), body by body."""
-    ready = model(machine)
-    system, layout = ready.system, machine.layout
-    omega = frequency(ready, speed)
-    run = record(system, omega, kicked(ready), 2, FINE)
-    force, times = mesh_forces(ready, run, omega)
+    model = build_model(machine)
+    system, layout = model.system, machine.layout
+    omega = frequency(model, speed)
+    run = record(system, omega, kicked(model), 2, FINE)
+    force, times = mesh_forces(model, run, omega)
     ends = []
     for step, ahead in ((0, 0.0), (-1, run.lengths[-1])):
         order = np.arange(run.coordinates.shape[1])
-        place = ahead**order @ run.coordinates[step]
+        displacement = ahead**order @ run.coordinates[step]
         slope = (order[1:] * ahead ** order[:-1]) @ run.coordinates[step][1:]
-        ends.append((ready.reduced.basis @ place, omega * (ready.reduced.basis @ slope)))
+        ends.append((model.reduced.basis @ displacement, omega * (model.reduced.basis @ slope)))
     (angle, spin), (later_angle, later_spin) = ((q[3::4], v[3::4]) for q, v in ends)
     inertia = mass_diagonal(layout)[3::4]
     gained = inertia * (later_spin - spin + machine.damping.mass * (later_angle - angle))
@@ -187,9 +189,9 @@ def test_torques_less_mesh_forces_change_the_spin_of_every_body(machine, speed):
     np.testing.assert_allclose(gained, given_ - impulses.sum(axis=0), atol=1e-9 * size)
 
 
-def mesh_forces(ready: Model, run: Trajectory, omega: float) -> tuple[np.ndarray, np.ndarray]:
+def mesh_forces(model: Model, run: Trajectory, omega: float) -> tuple[np.ndarray, np.ndarray]:
     """Elastic and damping force of every mesh (K, meshes) at quadrature points, with their weights in s."""
-    machine, system = ready.machine, ready.system
+    machine, system = model.machine, model.system
     phases, weights = run.quadrature(16)
     step = np.searchsorted(run.starts, phases, side="right") - 1
     ahead = (phases - run.starts[step])[:, None]
@@ -207,10 +209,10 @@ def test_mean_mesh_forces_balance_the_torques_of_a_periodic_motion():
     for torque, speed in ((800.0, 4500.0), (1500.0, 9000.0), (1500.0, 12_000.0)):
         machine = make_machine(torque=torque)
         settings_ = Settings(tolerance=1e-12, periodic_residual=1e-9)
-        ready = model(machine)
-        response = simulate(ready, speed, settings_)
+        model = build_model(machine)
+        response = simulate(model, speed, settings_)
         assert response.period > 0
-        run = record(ready.system, response.frequency, response.state, response.period, settings_)
+        run = record(model.system, response.frequency, response.state, response.period, settings_)
         phases, weights = run.quadrature()
         deflections = run.at(phases)[1]
         gap = np.sign(deflections) * np.maximum(np.abs(deflections) - machine.half_backlash, 0.0)
@@ -225,12 +227,12 @@ def test_mean_mesh_forces_balance_the_torques_of_a_periodic_motion():
 @settings(max_examples=8, deadline=None)
 @given(torque=st.floats(100, 2000), speed=speeds, backlash=st.floats(0, 2e-4))
 def test_left_and_right_move_alike_where_the_machine_is_symmetric(torque, speed, backlash):
-    ready = model(make_machine(torque=torque, backlash=backlash))
-    run = record(ready.system, frequency(ready, speed), static_start(ready), 3, FINE)
+    model = build_model(make_machine(torque=torque, backlash=backlash))
+    run = record(model.system, frequency(model, speed), static_start(model), 3, FINE)
     deflections = run.at(np.linspace(0.0, 3 * TAU, 200))[1]
     for right, left in ((1, 4), (2, 3), (6, 9), (7, 8)):
         np.testing.assert_allclose(
-            deflections[:, right], deflections[:, left], atol=1e-9 * ready.system.scale
+            deflections[:, right], deflections[:, left], atol=1e-9 * model.system.scale
         )
 
 
@@ -238,44 +240,44 @@ def test_left_and_right_move_alike_where_the_machine_is_symmetric(torque, speed,
 @given(machine=machines(backlash=0.0, mass_damping=800.0), speed=speeds)
 def test_without_backlash_the_response_is_hills(machine, speed):
     """Harmonic balance of the linear system with periodic k, solved to rounding in the frequency domain."""
-    ready = model(machine)
-    system = ready.system
-    omega = frequency(ready, speed)
+    model = build_model(machine)
+    system = model.system
+    omega = frequency(model, speed)
     harmonics = 30
     size, orders = system.size, np.arange(-harmonics, harmonics + 1)
     matrix = np.zeros((orders.size * size, orders.size * size), dtype=complex)
     right = np.zeros(orders.size * size, dtype=complex)
-    right[harmonics * size : (harmonics + 1) * size] = ready.reduced.load
-    directions = system.directions
+    right[harmonics * size : (harmonics + 1) * size] = model.reduced.load
+    mesh_jacobian = system.mesh_jacobian
     k = np.stack([fourier(machine.stiffness, p, harmonics) for p in machine.phases], axis=1)
     e = np.stack([fourier(machine.error, p, harmonics) for p in machine.error_phases], axis=1)
     for i, n in enumerate(orders):
         rows = slice(i * size, (i + 1) * size)
         s = 1j * n * omega
-        matrix[rows, rows] += np.diag(s**2 + s * system.damping + system.squares)
-        matrix[rows, rows] += s * machine.damping.mesh * directions.T @ directions
-        right[rows] += s * machine.damping.mesh * directions.T @ e[i]
+        matrix[rows, rows] += np.diag(s**2 + s * system.damping + system.omega_squared)
+        matrix[rows, rows] += s * machine.damping.mesh * mesh_jacobian.T @ mesh_jacobian
+        right[rows] += s * machine.damping.mesh * mesh_jacobian.T @ e[i]
         for j, other in enumerate(orders):
             if abs(n - other) <= harmonics:
                 coupling = k[n - other + harmonics]
-                matrix[rows, j * size : (j + 1) * size] += (directions.T * coupling) @ directions
-                right[rows] += directions.T @ (coupling * e[j])
+                matrix[rows, j * size : (j + 1) * size] += (mesh_jacobian.T * coupling) @ mesh_jacobian
+                right[rows] += mesh_jacobian.T @ (coupling * e[j])
     solution = np.linalg.solve(matrix, right).reshape(orders.size, size)
     cycles = np.arange(64) / 64
     exact = (np.exp(2j * np.pi * np.outer(cycles, orders)) @ solution).real
     rate = (1j * omega * orders @ solution).real
-    reach = np.abs(directions).max()
+    reach = np.abs(mesh_jacobian).max()
     close = 1e-9 * max(system.scale, np.abs(exact).max() * reach)
     # Started on it, the motion follows it for a period, whether it is stable or not.
     run = record(system, omega, State(exact[0], rate), 1, FINE)
     assert np.abs(run.at(TAU * cycles)[0] - exact).max() * reach < close
     settings_ = Settings(tolerance=1e-14, periodic_residual=1e-12)
-    response = simulate(ready, speed, settings_)
+    response = simulate(model, speed, settings_)
     if response.period == 1:
         assert np.abs(response.coordinates - exact).max() * reach < close
     else:  # only a parametric resonance keeps a motion with this damping from settling
         packed = pack(system, omega)
-        rest = np.zeros(packed.squares.size)
+        rest = np.zeros(packed.omega_squared.size)
         *_, matrix, _ = monodromy(packed, make_work(packed, 20), rest, rest, 1, 1e-14)
         assert np.abs(np.linalg.eigvals(matrix)).max() > 0.97
 

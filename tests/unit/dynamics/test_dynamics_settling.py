@@ -23,9 +23,9 @@ def unstable_orbit():
     packed = pack(system, SPEED)
     work = make_work(packed, 16)
     for first, rate in itertools.product(np.linspace(0.9, 1.3, 9), np.linspace(-0.3, 0.3, 9)):
-        place, velocity = np.zeros((2, packed.squares.size))
-        place[0], velocity[0] = first, rate
-        orbit = shoot(packed, work, place, velocity, 1, 1e-12, 1e-11)
+        displacement, velocity = np.zeros((2, packed.omega_squared.size))
+        displacement[0], velocity[0] = first, rate
+        orbit = shoot(packed, work, displacement, velocity, 1, 1e-12, 1e-11)
         if orbit is not None and abs(orbit.multipliers[0]) > 1.0:
             return system, orbit
     raise AssertionError("no unstable orbit found")
@@ -33,12 +33,12 @@ def unstable_orbit():
 
 def test_a_run_started_on_an_unstable_orbit_ends_on_a_stable_one():
     system, orbit = unstable_orbit()
-    start = State(orbit.place[:1], SPEED * orbit.velocity[:1])
+    start = State(orbit.displacement[:1], SPEED * orbit.velocity[:1])
     response = steady_state(system, SPEED, Settings(tolerance=1e-10, periodic_residual=1e-9), start)
     assert response.label == "period-1"
     assert abs(response.multipliers[0]) < 1.0
-    on_lower = response.state.place[0] == pytest.approx(1.1624504362, abs=1e-7)
-    on_upper = response.state.place[0] == pytest.approx(0.8338430125, abs=1e-7)
+    on_lower = response.state.displacement[0] == pytest.approx(1.1624504362, abs=1e-7)
+    on_upper = response.state.displacement[0] == pytest.approx(0.8338430125, abs=1e-7)
     assert on_lower or on_upper
 
 

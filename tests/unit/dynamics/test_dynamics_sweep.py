@@ -5,7 +5,7 @@ import pytest
 from lumped_machines import make_machine
 
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import model, simulate, simulate_many
+from facegear.dynamics.steady_state.simulate import build_model, simulate, simulate_many
 from facegear.dynamics.sweeps.assemble import SeamKind, assemble
 from facegear.dynamics.sweeps.campbell import resonance
 from facegear.dynamics.sweeps.plan import SweepPlan
@@ -26,22 +26,22 @@ def plan(chunks, overlap=4, directions=("up", "down")):
 
 
 @pytest.fixture(scope="module")
-def ready():
-    return model(make_machine())
+def model():
+    return build_model(make_machine())
 
 
 @pytest.fixture(scope="module")
-def whole(ready):
+def whole(model):
     one = plan(1)
-    return whole_sweep(ready, one, {name: [run_chunk(ready, one, name, 0)] for name in one.directions})
+    return whole_sweep(model, one, {name: [run_chunk(model, one, name, 0)] for name in one.directions})
 
 
 def periodic(piece):
     return np.array([label.startswith("period-") for label in piece.labels])
 
 
-def test_the_resonance_of_mode_17_hardens_with_a_jump_up_beyond_the_jump_down(ready, whole):
-    modes = natural_modes(ready.machine.layout, 4.1e8)
+def test_the_resonance_of_mode_17_hardens_with_a_jump_up_beyond_the_jump_down(model, whole):
+    modes = natural_modes(model.machine.layout, 4.1e8)
     up = max(whole["up"].jumps, key=lambda jump: jump.before.max() / jump.after.max())
     down = max(whole["down"].jumps, key=lambda jump: jump.after.max() / jump.before.max())
     assert up.before.max() > 1.3 * up.after.max()
@@ -55,11 +55,11 @@ def test_the_resonance_of_mode_17_hardens_with_a_jump_up_beyond_the_jump_down(re
 
 
 @pytest.mark.parametrize("chunks", [2, 5])
-def test_chunks_joined_give_the_whole_sweep(ready, whole, chunks):
+def test_chunks_joined_give_the_whole_sweep(model, whole, chunks):
     pieces = plan(chunks)
     for name in pieces.directions:
         joined, seams = assemble(
-            ready, pieces, name, [run_chunk(ready, pieces, name, k) for k in range(chunks)]
+            model, pieces, name, [run_chunk(model, pieces, name, k) for k in range(chunks)]
         )
         reference = whole[name].piece
         np.testing.assert_array_equal(joined.speeds, reference.speeds)
@@ -71,20 +71,20 @@ def test_chunks_joined_give_the_whole_sweep(ready, whole, chunks):
         assert difference.max() < 1e-3 * reference.deflection[:, AC_RMS].max()
 
 
-def test_a_chunk_that_starts_on_another_branch_is_run_again(ready, whole):
+def test_a_chunk_that_starts_on_another_branch_is_run_again(model, whole):
     split = plan(2, overlap=0, directions=("up",))
-    chunks = [run_chunk(ready, split, "up", k) for k in range(2)]
-    joined, seams = assemble(ready, split, "up", chunks)
+    chunks = [run_chunk(model, split, "up", k) for k in range(2)]
+    joined, seams = assemble(model, split, "up", chunks)
     assert seams[0].kind is SeamKind.RERUN and seams[0].rerun >= 1
     both = periodic(joined) & periodic(whole["up"].piece)
     difference = np.abs(joined.deflection - whole["up"].piece.deflection)[both, AC_RMS]
     assert difference.max() < 1e-3 * joined.deflection[:, AC_RMS].max()
 
 
-def test_a_stored_chunk_run_again_is_the_same_file(ready, tmp_path):
+def test_a_stored_chunk_run_again_is_the_same_file(model, tmp_path):
     small = replace(plan(5), points=10)
     for name in ("first", "second"):
-        before, own = run_chunk(ready, small, "up", 2)
+        before, own = run_chunk(model, small, "up", 2)
         arrays.write(tmp_path / f"{name}.npz", **to_arrays(before, own))
     assert (tmp_path / "first.npz").read_bytes() == (tmp_path / "second.npz").read_bytes()
     _, back = from_arrays(arrays.read(tmp_path / "first.npz", SHAPES))
@@ -92,17 +92,17 @@ def test_a_stored_chunk_run_again_is_the_same_file(ready, tmp_path):
         np.testing.assert_array_equal(getattr(back, field), getattr(own, field))
 
 
-def test_two_threads_give_the_same_results_as_one(ready):
-    jobs = [(ready, speed) for speed in (4500.0, 5000.0, 6000.0, 7500.0)]
+def test_two_threads_give_the_same_results_as_one(model):
+    jobs = [(model, speed) for speed in (4500.0, 5000.0, 6000.0, 7500.0)]
     for one, two in zip(simulate_many(jobs, SETTINGS), simulate_many(jobs, SETTINGS, threads=2), strict=True):
         np.testing.assert_array_equal(one.deflections, two.deflections)
 
 
-def test_rms_of_periodic_motions_does_not_move_when_tolerance_is_halved_and_dwell_doubled(ready, whole):
+def test_rms_of_periodic_motions_does_not_move_when_tolerance_is_halved_and_dwell_doubled(model, whole):
     piece = whole["up"].piece
     for position in np.flatnonzero(periodic(piece))[::3]:
         speed = piece.speeds[position : position + 1]
-        again = collect(ready, run_speeds(ready, speed, tighter(SETTINGS), piece.state(position)))
+        again = collect(model, run_speeds(model, speed, tighter(SETTINGS), piece.state(position)))
         np.testing.assert_allclose(
             again.deflection[0, AC_RMS],
             piece.deflection[position, AC_RMS],
@@ -110,8 +110,8 @@ def test_rms_of_periodic_motions_does_not_move_when_tolerance_is_halved_and_dwel
         )
 
 
-def test_tables_name_every_mesh_and_unit(ready, whole):
-    layout = ready.machine.layout
+def test_tables_name_every_mesh_and_unit(model, whole):
+    layout = model.machine.layout
     table = sweep_table(layout, "up", whole["up"].piece)
     assert list(table.columns) == ["direction", "speed_rpm", "quantity", "body_or_mesh", "value", "class"]
     assert set(layout.mesh_names) <= set(table["body_or_mesh"])
@@ -122,16 +122,16 @@ def test_tables_name_every_mesh_and_unit(ready, whole):
     assert (jumps["speed_after_rpm"] - jumps["speed_before_rpm"]).abs().max() <= 1.0
 
 
-def test_irregular_motion_has_a_positive_exponent_and_an_interval_on_its_rms(ready):
+def test_irregular_motion_has_a_positive_exponent_and_an_interval_on_its_rms(model):
     settings = Settings(tolerance=1e-6, window=512)
-    response = simulate(ready, 7500.0, settings)
+    response = simulate(model, 7500.0, settings)
     assert response.label == "chaotic"
     assert response.exponent[0] > response.exponent[1] > 0
-    piece = collect(ready, iter([(7500.0, response)]))
+    piece = collect(model, iter([(7500.0, response)]))
     interval = piece.deflection[0, DEFLECTION.index("ac_rms_interval")]
     assert (interval > 0).all()
-    other = simulate(ready, 7500.0, settings, response.state)
-    second = collect(ready, iter([(7500.0, other)]))
+    other = simulate(model, 7500.0, settings, response.state)
+    second = collect(model, iter([(7500.0, other)]))
     gap = np.abs(second.deflection[0, AC_RMS] - piece.deflection[0, AC_RMS])
     doubt = interval + second.deflection[0, DEFLECTION.index("ac_rms_interval")]
     assert (gap < 3.0 * doubt).mean() >= 0.8
@@ -149,6 +149,8 @@ def test_convergence_names_the_speeds_that_moved_or_changed_class(whole):
     assert table["verdict"][second] == "other class"
     rest = table.drop([first, second])
     assert set(rest["verdict"]) <= {"converged", "irregular"}
-    told = not_converged(table)
-    assert f"up {piece.speeds[first]:.0f} rpm" in told and f"up {piece.speeds[second]:.0f} rpm" in told
-    assert told.count("rpm") == 2
+    reported = not_converged(table)
+    assert (
+        f"up {piece.speeds[first]:.0f} rpm" in reported and f"up {piece.speeds[second]:.0f} rpm" in reported
+    )
+    assert reported.count("rpm") == 2

@@ -14,8 +14,8 @@ from facegear.dynamics.integrator.work import make_work
 def test_time_moves_on_where_an_edge_is_nearer_than_time_can_tell(gap, rate):
     """At 10 224 rpm the paper's machine once stood for ever a rounding error before a fast contact switch."""
     packed = pack(backlash_oscillator(0.75), 0.75)
-    place, velocity = np.zeros(packed.squares.size), np.zeros(packed.squares.size)
-    place[0], velocity[0] = packed.upper[0] - gap, rate
+    displacement, velocity = np.zeros(packed.omega_squared.size), np.zeros(packed.omega_squared.size)
+    displacement[0], velocity[0] = packed.upper[0] - gap, rate
     s = 6.0
-    length = advance(packed, make_work(packed, 12), s, 2.0 * np.pi, place, velocity, 1e-6)
+    length = advance(packed, make_work(packed, 12), s, 2.0 * np.pi, displacement, velocity, 1e-6)
     assert s + length > s

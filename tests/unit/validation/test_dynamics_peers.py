@@ -25,7 +25,7 @@ def problems():
 def test_compiled_and_plain_right_hand_sides_agree(problems):
     for problem in (problems[1], problems[3]):
         packed = pack(problem.system, problem.frequency)
-        width, n = packed.squares.size, problem.system.size
+        width, n = packed.omega_squared.size, problem.system.size
         rng = np.random.default_rng(0)
         z = np.zeros(2 * width)
         z[:n], z[width : width + n] = problem.system.scale * rng.normal(size=(2, n))

@@ -7,7 +7,7 @@ import pytest
 
 from facegear.config.load import load_config
 from facegear.config.machines import case_machine
-from facegear.dynamics.steady_state.simulate import model, static_start
+from facegear.dynamics.steady_state.simulate import build_model, static_start
 from facegear.harmonics.series import Harmonics
 from facegear.paper.identify.budget import Budget
 from facegear.paper.identify.inputs import Branch, Inputs, Meaning, Space, StiffnessLoad, Waveform
@@ -34,8 +34,8 @@ def twin():
     machine = empty.machine(TRUTH)
     targets = []
     for backlash in (80e-6, 100e-6):
-        ready = model(replace(machine, half_backlash=0.5 * backlash))
-        found = coefficients(ready, 7500.0, QUICK, static_start(ready))
+        model = build_model(replace(machine, half_backlash=0.5 * backlash))
+        found = coefficients(model, 7500.0, QUICK, static_start(model))
         targets.append(BacklashTarget(backlash, *found))
     return replace(empty, targets=Targets(7500.0, tuple(targets), ()))
 
