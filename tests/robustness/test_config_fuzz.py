@@ -5,10 +5,11 @@ import random
 from pathlib import Path
 
 import pytest
-import yaml
+from ruamel.yaml import YAML
 
 from facegear.config.cases import expand_cases
 from facegear.config.load import load_values
+from facegear.config.yaml_file import read_yaml
 from facegear.errors import FacegearError
 
 CONFIGS = sorted((Path(__file__).parents[2] / "config").glob("*.yaml"))
@@ -57,13 +58,13 @@ def test_every_config_in_the_project_is_accepted(config):
 @pytest.mark.parametrize("config", CONFIGS, ids=lambda path: path.stem)
 def test_mutated_configs_are_accepted_or_refused_in_clear_lines(config, tmp_path):
     chance = random.Random(f"facegear {config.stem}")
-    original = yaml.safe_load(config.read_text())
+    original = read_yaml(config)
     refused = 0
     for other in CONFIGS:
         (tmp_path / other.name).write_bytes(other.read_bytes())
     path = tmp_path / "mutated.yaml"
     for _ in range(520 // len(CONFIGS)):
-        path.write_text(yaml.safe_dump(mutate(original, chance), allow_unicode=True))
+        YAML(typ="safe", pure=True).dump(mutate(original, chance), path)
         try:
             expand_cases(load_values([path], {}))
         except FacegearError as error:

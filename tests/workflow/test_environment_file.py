@@ -3,13 +3,13 @@
 import re
 from pathlib import Path
 
-import yaml
+from facegear.config.yaml_file import read_yaml
 
 ROOT = Path(__file__).parents[2]
 
 
 def test_conda_file_holds_the_locked_versions():
-    environment = yaml.safe_load((ROOT / "workflow" / "envs" / "facegear.yaml").read_text())
+    environment = read_yaml(ROOT / "workflow" / "envs" / "facegear.yaml")
     pinned = environment["dependencies"][-1]["pip"]
     lock = (ROOT / "requirements.lock").read_text()
     assert len(pinned) > 10

@@ -1,6 +1,8 @@
 """Config mistakes are told in one line each: key, value, what is allowed."""
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, parse, refuse
@@ -66,12 +68,19 @@ def test_all_mistakes_of_a_file_are_told_at_once():
 @pytest.mark.parametrize(
     ("text", "line"),
     [
-        ("a: 1\na: 2\n", "line 2: key 'a' stands twice"),
-        ("a: [1, 2\n", "line"),
+        ("a: 1\na: 2\n", ":2: key 'a' stands twice"),
+        ("a: [1, 2\n", ":2: not valid YAML"),
         ("- 1\n", "a config is a mapping"),
-        ("a: !!python/object/apply:os.system ['true']\n", "line 1"),
-        ("\x00", ""),
-        ("a: *b\n", "line 1"),
+        ("a: !!python/object/apply:os.system ['true']\n", ":1: tag"),
+        ("\x00", "not valid YAML"),
+        ("a: *b\n", ":1: alias *b"),
+        ("a: &x [*x]\n", ":1: alias *x"),
+        ("a:\n  b: 1\n c: 2\n", ":3: not valid YAML"),
+        ("a: 1\n---\nb: 2\n", ":2: a second document"),
+        ("a:\n- " + "[" * 3000, ":2: nested more than 32 levels deep"),
+        ("a: " + "{a: " * 3000, ":1: nested more than 32 levels deep"),
+        ("? [1, 2]\n: 3\n", ":1: a key must be text"),
+        ("a: 1\n" + "# long\n" * 100_000, "longer than 500000 bytes"),
     ],
 )
 def test_broken_yaml_ends_in_one_line(tmp_path, text, line):
@@ -88,7 +97,51 @@ def test_missing_file_is_named(tmp_path):
         read_yaml(tmp_path / "none.yaml")
 
 
-def test_numbers_without_a_dot_before_the_exponent_are_numbers(tmp_path):
+def test_a_folder_and_a_file_that_is_not_utf8_are_named_in_one_line(tmp_path):
+    with pytest.raises(ConfigErrors, match="is a directory"):
+        read_yaml(tmp_path)
+    path = tmp_path / "latin.yaml"
+    path.write_bytes("case: a\n# Getriebe für zwei\n".encode("latin-1"))
+    with pytest.raises(ConfigErrors, match=r"latin\.yaml:2: byte 0xfc is not UTF-8"):
+        read_yaml(path)
+
+
+def test_a_bomb_of_aliases_is_refused_at_once(tmp_path):
+    """Nine lists of nine aliases each, twelve levels deep, stand for 9**12 values."""
+    lines = ["a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1]"]
+    lines += [f"a{i}: &a{i} [{', '.join([f'*a{i - 1}'] * 9)}]" for i in range(1, 12)]
+    (tmp_path / "bomb.yaml").write_text("\n".join(lines))
+    with pytest.raises(ConfigErrors, match=r"bomb\.yaml:5: more than 50000 values, aliases written out"):
+        read_yaml(tmp_path / "bomb.yaml")
+
+
+def test_aliases_and_merge_keys_stand_for_what_they_name(tmp_path):
     path = tmp_path / "n.yaml"
-    path.write_text("a: 1e-8\nb: 6.5e7\nc: [4.1e8, 3]\nd: text\n")
-    assert read_yaml(path) == {"a": 1e-8, "b": 6.5e7, "c": [4.1e8, 3], "d": "text"}
+    path.write_text("a: &a {x: 1, y: 2}\nb: *a\nc: {<<: *a, y: 3}\n")
+    assert read_yaml(path) == {"a": {"x": 1, "y": 2}, "b": {"x": 1, "y": 2}, "c": {"x": 1, "y": 3}}
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        *(("1e-8", 1e-8), ("6.5e7", 6.5e7), (".5", 0.5), ("-3", -3), ("0o25", 21), ("0x1F", 31)),
+        *(("025", 25), ("1:20", "1:20"), ("yes", "yes"), ("on", "on"), ("'80'", "80"), ("1_000", "1_000")),
+        *(("2024-01-01", "2024-01-01"), ("true", True), ("~", None), (".inf", float("inf"))),
+    ],
+)
+def test_scalars_follow_yaml_1_2(tmp_path, text, value):
+    """Under the rules of YAML 1.1, 025 was 21 and 1:20 was 80."""
+    path = tmp_path / "n.yaml"
+    path.write_text(f"%YAML 1.1\n---\nvalue: {text}\n")
+    (found,) = read_yaml(path).values()
+    assert found == value and type(found) is type(value)
+
+
+@given(st.text(alphabet=st.sampled_from("ab:-?[]{}#&*!|>'\"%@`~<,. 01e\n\t\\x"), max_size=80))
+def test_any_text_is_read_or_refused_in_one_line(tmp_path_factory, text):
+    path = tmp_path_factory.mktemp("any") / "any.yaml"
+    path.write_text(text)
+    try:
+        assert isinstance(read_yaml(path), dict)
+    except ConfigErrors as error:
+        assert "\n" not in str(error)

@@ -5,11 +5,11 @@ from math import radians
 from pathlib import Path
 
 import pytest
-import yaml
 
 from facegear.config.base import parse
 from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
+from facegear.config.yaml_file import read_yaml
 from facegear.errors import ConfigErrors
 from facegear.geometry.design import Assembly
 
@@ -18,7 +18,7 @@ ROOT = Path(__file__).parents[3]
 
 @pytest.fixture
 def section():
-    return deepcopy(yaml.safe_load((ROOT / "config" / "paper.yaml").read_text())["tooth_pair"])
+    return deepcopy(read_yaml(ROOT / "config" / "paper.yaml")["tooth_pair"])
 
 
 def test_config_units_become_si(section):
