@@ -11,19 +11,57 @@ include: "workflow/rules/contact_benchmarks.smk"
 include: "workflow/rules/load_sharing.smk"
 include: "workflow/rules/scorecard.smk"
 include: "workflow/rules/identify.smk"
-include: "workflow/rules/functions/targets.smk"
 include: "workflow/rules/report.smk"
+include: "workflow/rules/defaults.smk"
 
 
 rule all:
     default_target: True
     input:
         targets(CASE),
-        f"results/{CASE}/report.html",
+        rules.report.output.html.format(case=CASE),
 
 
 rule benchmarks:
     input:
-        f"results/{CASE}/benchmarks/mesh.csv",
-        contact_benchmark_targets(CASE),
-        dynamics_benchmark_targets(CASE),
+        expand(
+            "results/{case}/benchmarks/{name}.csv",
+            case=CASE,
+            name=[
+                "mesh",
+                "contact",
+                "contact_shortcuts",
+                "twin",
+                "dynamics",
+                "dynamics_sweep",
+                "dynamics_convergence",
+            ],
+        ),
+
+
+rule peers:
+    input:
+        f"results/{CASE}/benchmarks/calculix.csv",
+
+
+rule identify:
+    input:
+        expand(f"results/{CASE}/identify/{{name}}.csv", name=["sets", "roads"] if IDENTIFY else []),
+
+
+localrules:
+    all,
+    benchmarks,
+    peers,
+    identify,
+    tooth_pair_figure,
+    contact_figures,
+    load_dependence,
+    stiffness_figures,
+    load_dependence_figure,
+    modal_figure,
+    dynamics_figures,
+    load_sharing_summary,
+    load_sharing_figures,
+    identify_roads,
+    report,

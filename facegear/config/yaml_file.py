@@ -43,8 +43,9 @@ _TAGS = {f"tag:yaml.org,2002:{name}" for name in ("map", "seq", "str", "int", "f
 def read_yaml(path: str | Path) -> dict[str, Any]:
     """Read a YAML mapping.
 
-    Numbers follow YAML 1.2: 1e-8 is a number, 025 is 25 and 1:20 is text. A key given twice, tags other than
-    the core schema's, and files beyond the bounds above are refused. Raises ConfigErrors naming file and line.
+    Numbers follow YAML 1.2: 1e-8 is a number, 025 is 25 and 1:20 is text. A key given twice, tags other
+    than the core schema's, and files beyond the bounds above are refused. Raises ConfigErrors naming file
+    and line.
     """
     text = _text(Path(path))
     try:

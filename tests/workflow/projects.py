@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
+FOLDERS = ("workflow", "profiles", "facegear", "config")
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ def environment() -> dict[str, str]:
 def copy_sources(target: Path) -> Path:
     """A copy of the tracked and new source files, with their times."""
     listed = subprocess.run(
-        ["git", "ls-files", "-co", "--exclude-standard", "Snakefile", "workflow", "facegear", "config"],
+        ["git", "ls-files", "-co", "--exclude-standard", "Snakefile", *FOLDERS],
         cwd=ROOT,
         capture_output=True,
         text=True,
@@ -69,5 +70,5 @@ def copy_sources(target: Path) -> Path:
     for name in listed:
         if (ROOT / name).is_file():
             (target / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy2(ROOT / name, target / name)
+            shutil.copy2(ROOT / name, target / name, follow_symlinks=False)
     return target

@@ -11,6 +11,8 @@ import time
 import pytest
 from projects import ROOT, Project, environment
 
+from facegear.io.run_lock import hold
+
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
 QUICK = ("--configfile", str(ROOT / "config" / "quick.yaml"))
 
@@ -75,6 +77,26 @@ def test_a_run_killed_in_the_contact_stage_resumes_and_says_so(quick, tmp_path):
     done = project.run("results/quick/contact/ltca.csv", *QUICK)
     assert "resuming a run that was stopped" in done.stderr
     assert data_files(project) == data_files(quick)
+
+
+@pytest.mark.parametrize("spelling", ["-np", "--dryrun"])
+def test_no_spelling_of_a_dry_run_changes_anything_on_disk(tmp_path, spelling):
+    project = Project(tmp_path)
+    for name in ("locks/0.input.lock", "incomplete/cmVzdWx0cw==", "facegear.lock"):
+        path = tmp_path / ".snakemake" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("of a run that was killed\n")
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    done = project.run(spelling, "results/paper/modal/frequencies.csv")
+    assert "This was a dry-run" in done.stdout + done.stderr
+    after = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    assert {path: held for path, held in after.items() if path.parent.name != "iocache"} == before
+
+
+def test_a_dry_run_beside_a_working_run_is_told_the_plan(tmp_path):
+    (tmp_path / ".snakemake").mkdir()
+    with hold(tmp_path / ".snakemake" / "facegear.lock"):
+        assert Project(tmp_path).planned("results/paper/modal/frequencies.csv") == {"modal"}
 
 
 def small_disk(folder, size, *command):

@@ -1,8 +1,9 @@
 import os
 import re
-import shutil
 import sys
 from pathlib import Path
+
+from snakemake.exceptions import WorkflowError
 
 ROOT = Path(workflow.basedir)
 sys.path.insert(0, str(ROOT))
@@ -13,7 +14,7 @@ from facegear.config.load import load_values
 from facegear.errors import FacegearError
 from facegear.io.run_lock import hold
 from facegear.paper.config.reproduction import design_cases, read_reproduction
-from facegear.provenance.fingerprint import fingerprint as _fingerprint
+from facegear.provenance.fingerprint import fingerprint
 
 DEFAULT_CONFIGFILE = ROOT / "config" / "paper.yaml"
 CONFIGFILES = [Path(file) for file in workflow.configfiles] or [DEFAULT_CONFIGFILE]
@@ -34,7 +35,6 @@ except FacegearError as error:
     stop(str(error))
 
 CASE = CONFIG["case"]
-DRY_RUN = bool({"-n", "--dry-run", "--dryrun"} & set(sys.argv))
 config["rebuild_command"] = (
     "snakemake --cores 2"
     + "".join(f" --configfile {os.path.relpath(file)}" for file in workflow.configfiles)
@@ -46,42 +46,56 @@ wildcard_constraints:
     case="|".join(re.escape(case) for case in CASES),
 
 
-# A killed run leaves Snakemake's own lock and marks of half-made jobs behind. Both can go at the next start: the
-# kernel's lock below proves that nobody is working here, and a half-made job lacks its manifest, so it is made again.
-if workflow.exec_mode.name == "DEFAULT":
-    RUN_LOCK = hold(".snakemake/facegear.lock")
-    if RUN_LOCK is not None:
-        shutil.rmtree(".snakemake/locks", ignore_errors=True)
-        Path(".snakemake/locks").mkdir(parents=True, exist_ok=True)
-        unfinished = [path for path in Path(".snakemake/incomplete").rglob("*") if path.is_file()]
-        if unfinished and not DRY_RUN:
-            print("resuming a run that was stopped: its unfinished jobs are made again", file=sys.stderr)
-        for marker in unfinished:
-            marker.unlink()
-    elif not DRY_RUN:
-        stop(f"another run is working in {os.getcwd()}; wait for it or stop it first")
+RUN_LOCKS = []  # held until this process ends
 
 
-def fingerprint(script):
-    """Hash of the code a script reaches; a rule reruns when it changes."""
-    return _fingerprint(ROOT / "workflow" / "scripts" / script, ROOT)
+# Only a run that is about to work comes here, no dry run, listing or report.
+onstart:
+    RUN_LOCKS.append(hold(".snakemake/facegear.lock"))
+    if RUN_LOCKS[-1] is None:
+        raise WorkflowError(f"another run is working in {os.getcwd()}; wait for it or stop it first")
+    if any(path.is_file() for path in Path(".snakemake/incomplete").rglob("*")):
+        print("resuming a run that was stopped: its unfinished jobs are made again", file=sys.stderr)
 
 
-def config_slice(*keys):
-    """Function of the wildcards giving the named config values of a case (dotted keys reach inside)."""
+def value_of(key):
+    """Function of the wildcards giving a value of a case's config; a dotted key reaches inside."""
 
-    def values(wildcards):
-        found = {}
-        for key in keys:
-            value = CASES[wildcards.case]
-            for part in key.split("."):
-                value = value[part] if value is not None else None
-            found[key] = value
-        return found[keys[0]] if len(keys) == 1 else found
+    def value(wildcards):
+        found = CASES[wildcards.case]
+        for part in key.split("."):
+            found = found[part] if found is not None else None
+        return found
 
-    return values
+    return value
 
 
-def upstream(stage, path):
-    """Function of the wildcards giving a file of an earlier stage, shared by all cases alike up to it."""
-    return lambda wildcards: f"results/{shared_source(CASES, wildcards.case, stage)}/{path}"
+def values_of(*keys, **renamed):
+    """Config values as params: sections under their own names, dotted keys under the names given."""
+    return {name: value_of(key) for name, key in {**dict(zip(keys, keys)), **renamed}.items()}
+
+
+def whole_config(wildcards):
+    """All values of a case's config."""
+    return CASES[wildcards.case]
+
+
+def shared(rule, output):
+    """Function of the wildcards giving an output of an earlier rule, shared by all cases alike up to it."""
+    return lambda wildcards: str(getattr(rules, rule).output[output]).format(
+        case=shared_source(CASES, wildcards.case, rule)
+    )
+
+
+def shown(name, caption):
+    """The svg of a figure, marked for Snakemake's report."""
+    category = caption.replace("_", " ").capitalize()
+    file, text = f"results/{{case}}/figures/{name}.svg", f"../report/{caption}.rst"
+    return report(file, caption=text, category=category, labels={"figure": name})
+
+
+def pictures(caption, *names):
+    """Output files `svg` and `png` where the named figures are drawn."""
+    svg = [shown(name, caption) for name in names]
+    png = [f"results/{{case}}/figures/{name}.png" for name in names]
+    return {"svg": svg[0], "png": png[0]} if len(names) == 1 else {"svg": svg, "png": png}

@@ -1,43 +1,27 @@
-from facegear.paper.config.reproduction import design_points
-from facegear.paper.config.sections import branches
-
-IDENTIFY = REPRODUCTION.identify if REPRODUCTION else None
-DESIGNS = list(design_points(IDENTIFY))
-BRANCHES = [branch.name for branch in branches(IDENTIFY)] if IDENTIFY else []
+include: "functions/identify.smk"
 
 
 rule identify_branch:
+    "Search for undisclosed inputs, one branch"
     input:
-        ltca=upstream("contact", "contact/ltca.csv"),
+        ltca=shared("contact", "ltca"),
     output:
         evaluations="results/{case}/identify/branches/{branch}.csv",
         manifest="results/{case}/identify/branches/{branch}.provenance.json",
-    log:
-        "results/{case}/logs/identify_{branch}.log",
-    benchmark:
-        "results/{case}/benchmarks/rules/identify_{branch}.tsv"
     wildcard_constraints:
         branch="[a-z_-]+",
-    conda:
-        "../envs/facegear.yaml"
-    threads: 1
-    resources:
-        mem_mb=700,
-        runtime=120,
     params:
-        values=lambda wildcards: CASES[wildcards.case],
-        identify=IDENTIFY.model_dump(mode="json") if IDENTIFY else None,
-        code=fingerprint("identify_branch.py"),
-    message:
-        "search of undisclosed inputs, branch {wildcards.branch}"
+        values=whole_config,
+        identify=IDENTIFY_VALUES,
     script:
         "../scripts/identify_branch.py"
 
 
 rule identify_sets:
+    "Separate optima of the search for undisclosed inputs"
     input:
-        ltca=upstream("contact", "contact/ltca.csv"),
-        branches=[f"results/{{case}}/identify/branches/{name}.csv" for name in BRANCHES],
+        ltca=shared("contact", "ltca"),
+        branches=expand(rules.identify_branch.output.evaluations, branch=BRANCHES, allow_missing=True),
     output:
         sets="results/{case}/identify/sets.csv",
         coefficients="results/{case}/identify/coefficients.csv",
@@ -45,53 +29,23 @@ rule identify_sets:
         svg="results/{case}/figures/identify_landscape.svg",
         png="results/{case}/figures/identify_landscape.png",
         manifest="results/{case}/identify/identify.provenance.json",
-    log:
-        "results/{case}/logs/identify_sets.log",
-    benchmark:
-        "results/{case}/benchmarks/rules/identify_sets.tsv"
-    conda:
-        "../envs/facegear.yaml"
-    threads: 1
-    resources:
-        mem_mb=700,
-        runtime=30,
     params:
-        values=lambda wildcards: CASES[wildcards.case],
-        identify=IDENTIFY.model_dump(mode="json") if IDENTIFY else None,
-        code=fingerprint("identify_sets.py"),
-    message:
-        "separate optima of the search for undisclosed inputs"
+        values=whole_config,
+        identify=IDENTIFY_VALUES,
     script:
         "../scripts/identify_sets.py"
 
 
 rule identify_roads:
+    "Load of the paper's mean stiffness for several gear designs"
     input:
-        ltca=upstream("contact", "contact/ltca.csv"),
+        ltca=shared("contact", "ltca"),
         designs=[f"results/{{case}}/designs/{name}/contact/ltca.csv" for name in DESIGNS],
     output:
         roads="results/{case}/identify/roads.csv",
         manifest="results/{case}/identify/roads.provenance.json",
-    log:
-        "results/{case}/logs/identify_roads.log",
-    benchmark:
-        "results/{case}/benchmarks/rules/identify_roads.tsv"
-    conda:
-        "../envs/facegear.yaml"
-    threads: 1
-    resources:
-        mem_mb=500,
-        runtime=5,
     params:
+        **values_of(stiffness="mesh_stiffness"),
         designs=DESIGNS,
-        stiffness=config_slice("mesh_stiffness"),
-        code=fingerprint("identify_roads.py"),
-    message:
-        "load of the paper's mean stiffness for several gear designs"
     script:
         "../scripts/identify_roads.py"
-
-
-rule identify:
-    input:
-        [f"results/{CASE}/identify/{name}.csv" for name in ("sets", "roads")] if IDENTIFY else [],

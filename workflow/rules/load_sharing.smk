@@ -2,121 +2,63 @@ include: "functions/load_sharing.smk"
 
 
 rule load_sharing:
+    "Load sharing at the nominal speed"
     input:
-        harmonics=upstream("stiffness", "stiffness/harmonics.csv"),
+        harmonics=shared("stiffness", "harmonics"),
     output:
         curve="results/{case}/load_sharing/nominal.csv",
         summary="results/{case}/load_sharing/nominal_summary.csv",
         manifest="results/{case}/load_sharing/load_sharing.provenance.json",
-    log:
-        "results/{case}/logs/load_sharing.log",
-    benchmark:
-        "results/{case}/benchmarks/rules/load_sharing.tsv"
-    conda:
-        "../envs/facegear.yaml"
-    threads: 1
-    resources:
-        mem_mb=700,
-        runtime=10,
     params:
-        section=config_slice("transmission"),
-        teeth=teeth_slice,
-        speed_rpm=config_slice("dynamics.speed_rpm"),
-        accuracy=config_slice("dynamics.accuracy"),
-        options=config_slice("load_sharing"),
-        code=fingerprint("load_sharing.py"),
-    message:
-        "load sharing of {wildcards.case}"
+        **machine_values(speed_rpm="dynamics.speed_rpm", accuracy="dynamics.accuracy", options="load_sharing"),
     script:
         "../scripts/load_sharing.py"
 
 
 rule load_sharing_reference:
+    "Load sharing at rest, running slowly and over a range of speeds"
     input:
-        harmonics=upstream("stiffness", "stiffness/harmonics.csv"),
+        harmonics=shared("stiffness", "harmonics"),
     output:
         reference="results/{case}/load_sharing/reference.csv",
         speeds="results/{case}/load_sharing/speed_range.csv",
         manifest="results/{case}/load_sharing/reference.provenance.json",
-    log:
-        "results/{case}/logs/load_sharing_reference.log",
-    benchmark:
-        "results/{case}/benchmarks/rules/load_sharing_reference.tsv"
-    conda:
-        "../envs/facegear.yaml"
-    threads: 1
-    resources:
-        mem_mb=700,
-        runtime=15,
     params:
-        section=config_slice("transmission"),
-        teeth=teeth_slice,
-        accuracy=config_slice("dynamics.accuracy"),
-        range_accuracy=config_slice("dynamics.sweep.accuracy"),
-        options=config_slice("load_sharing"),
-        code=fingerprint("load_sharing_reference.py"),
-    message:
-        "static and slow load sharing of {wildcards.case}, and its maximum over speed"
+        **machine_values(
+            accuracy="dynamics.accuracy", range_accuracy="dynamics.sweep.accuracy", options="load_sharing"
+        ),
     script:
         "../scripts/load_sharing_reference.py"
 
 
 rule load_sharing_summary:
+    "Load sharing of all studies"
     input:
-        summaries=lambda wildcards: [
-            f"results/{wildcards.case}/load_sharing/nominal_summary.csv",
-            *point_files("nominal_summary.csv")(wildcards),
-        ],
-        curves=point_files("nominal.csv"),
+        summaries=sharing_files("summary", nominal=True),
+        curves=sharing_files("curve"),
     output:
         summary="results/{case}/load_sharing/summary.csv",
         studies=[f"results/{{case}}/load_sharing/{study.name}.csv" for study in STUDIES],
         manifest="results/{case}/load_sharing/summary.provenance.json",
-    log:
-        "results/{case}/logs/load_sharing_summary.log",
-    benchmark:
-        "results/{case}/benchmarks/rules/load_sharing_summary.tsv"
-    conda:
-        "../envs/facegear.yaml"
-    threads: 1
-    resources:
-        mem_mb=500,
-        runtime=5,
     params:
         points=STUDY_POINTS,
         labels=list(STUDY_LABELS.values()),
         studies=[study.name for study in STUDIES],
-        code=fingerprint("load_sharing_summary.py"),
-    message:
-        "load sharing of all studies of {wildcards.case}"
     script:
         "../scripts/load_sharing_summary.py"
 
 
 rule load_sharing_figures:
+    "Load sharing over a mesh cycle, study by study"
     input:
-        studies=[f"results/{{case}}/load_sharing/{study.name}.csv" for study in STUDIES],
-        summary="results/{case}/load_sharing/summary.csv",
+        studies=rules.load_sharing_summary.output.studies,
+        summary=rules.load_sharing_summary.output.summary,
     output:
-        svg=report(figure_files("svg"), caption="../report/load_sharing.rst", category="Load sharing"),
-        png=figure_files("png"),
+        **pictures("load_sharing", *SHARING_FIGURES),
         manifest="results/{case}/figures/load_sharing_figures.provenance.json",
-    log:
-        "results/{case}/logs/load_sharing_figures.log",
-    benchmark:
-        "results/{case}/benchmarks/rules/load_sharing_figures.tsv"
-    conda:
-        "../envs/facegear.yaml"
-    threads: 1
-    resources:
-        mem_mb=700,
-        runtime=5,
     params:
         titles=[(study.title, study.figures is not None) for study in STUDIES],
         kinds=SHARING_KINDS,
-        values=lambda wildcards: CASES[wildcards.case],
-        code=fingerprint("load_sharing_figures.py"),
-    message:
-        "load-sharing figures of {wildcards.case}"
+        values=whole_config,
     script:
         "../scripts/load_sharing_figures.py"

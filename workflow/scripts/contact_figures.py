@@ -9,5 +9,6 @@ from facegear.provenance.stage import stage
 with stage(snakemake) as run:
     ltca = tables.read(snakemake.input.ltca, LTCA_COLUMNS)
     pressure = arrays.read(snakemake.input.pressure, PRESSURE_ARRAYS)
-    save(contact_curves(ltca), snakemake.output.curves_svg, snakemake.output.curves_png)
-    save(contact_pattern(pressure), snakemake.output.pattern_svg, snakemake.output.pattern_png)
+    drawn = (contact_curves(ltca), contact_pattern(pressure))
+    for figure, svg, png in zip(drawn, snakemake.output.svg, snakemake.output.png, strict=True):
+        save(figure, svg, png)

@@ -8,5 +8,6 @@ from facegear.provenance.stage import stage
 with stage(snakemake) as run:
     curve = tables.read(snakemake.input.tvms, ["position", "k_n_per_m", "k_series_n_per_m"])
     spectrum = tables.read(snakemake.input.spectrum, ["order", "amplitude_n_per_m"])
-    save(stiffness_curve(curve), snakemake.output.tvms_svg, snakemake.output.tvms_png)
-    save(harmonic_amplitudes(spectrum), snakemake.output.harmonics_svg, snakemake.output.harmonics_png)
+    drawn = (stiffness_curve(curve), harmonic_amplitudes(spectrum))
+    for figure, svg, png in zip(drawn, snakemake.output.svg, snakemake.output.png, strict=True):
+        save(figure, svg, png)

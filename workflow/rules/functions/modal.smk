@@ -8,4 +8,9 @@ TEETH_KEYS = {
 
 def teeth_slice(wildcards):
     """The tooth pair's numbers that the lumped model needs; its other data must not rerun modes or dynamics."""
-    return {name: config_slice(key)(wildcards) for name, key in TEETH_KEYS.items()}
+    return {name: value_of(key)(wildcards) for name, key in TEETH_KEYS.items()}
+
+
+def machine_values(**renamed):
+    """What a job needs to build the machine, and further config values under the names given."""
+    return {"teeth": teeth_slice, **values_of(section="transmission", **renamed)}

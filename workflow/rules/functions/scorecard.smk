@@ -6,11 +6,6 @@ from facegear.config.cases import set_key
 from facegear.paper.identify.sets import config_changes, named_set
 
 
-def scorecard_targets(case):
-    """Final outputs of this stage for a case."""
-    return [f"results/{case}/scorecard.{ending}" for ending in ("csv", "html")] if REPRODUCTION else []
-
-
 def stored_sets():
     """Names of the sets of undisclosed inputs that fit about as well as the recommended one, the config's own."""
     file = REPRODUCTION and REPRODUCTION.sets

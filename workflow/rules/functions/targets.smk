@@ -1,18 +1,35 @@
-def figure(case, *names):
-    """The svg of each named figure of a case."""
-    return [f"results/{case}/figures/{name}.svg" for name in names]
-
-
 def has_contact(case):
     """Whether the case solves the loaded contact itself."""
     return CASES[case]["mesh_stiffness"]["source"] != "harmonics"
 
 
-def targets(case):
-    """Results and figures of a case: only the stages that its config asks for."""
-    files = [f"results/{case}/{name}" for name in ("modal/frequencies.csv", "stiffness/harmonics.csv")]
-    files += figure(case, "fig06", "fig07", "fig08")
+def stages(case):
+    """What a run of a case consists of: only what its config asks for."""
+    found = [rules.modal, rules.modal_figure, rules.stiffness, rules.stiffness_figures]
     if has_contact(case):
-        files += [f"results/{case}/{name}" for name in ("mesh/quality.csv", "contact/ltca.csv")]
-        files += figure(case, "tooth_pair", "contact_curves", "contact_pattern", "stiffness_load")
-    return files + dynamics_targets(case) + load_sharing_targets(case) + scorecard_targets(case)
+        found += [rules.geometry, rules.tooth_pair_figure, rules.mesh]
+        found += [rules.contact, rules.contact_figures, rules.load_dependence, rules.load_dependence_figure]
+    found += [rules.dynamics_response, rules.dynamics_sweep, rules.dynamics_figures]
+    if SHARING_KINDS:
+        found += [rules.load_sharing, rules.load_sharing_summary, rules.load_sharing_reference]
+        found += [rules.load_sharing_figures] if STUDIES else []
+    return found + ([rules.scorecard] if REPRODUCTION else [])
+
+
+def targets(case):
+    """All files of a case, its report excepted."""
+    return [path.format(case=case) for stage in stages(case) for path in stage.output]
+
+
+def report_tables(wildcards):
+    """Tables that the report of a case reads."""
+    tables = [rules.modal.output.frequencies, rules.stiffness.output.harmonics]
+    tables += [rules.dynamics_sweep.output.jumps, rules.load_sharing_summary.output.summary]
+    tables += [rules.contact.output.ltca] if has_contact(wildcards.case) else []
+    tables += [rules.scorecard.output.csv] if REPRODUCTION else []
+    return [path.format(case=wildcards.case) for path in tables]
+
+
+def report_pictures(wildcards):
+    """Figures that the report of a case shows."""
+    return [file for file in targets(wildcards.case) if file.endswith(".svg")]

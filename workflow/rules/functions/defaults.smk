@@ -1,0 +1,14 @@
+def complete(job):
+    """Add what all jobs share, under names made of the rule's and its wildcards.
+
+    That is the log, the benchmark, the environment, the docstring as message, and the fingerprint of the code that
+    the script reaches, which makes a job run again when it changes.
+    """
+    wildcards = sorted(job.wildcard_names - {"case"})
+    name = "_".join([job.name, *(f"{{{wildcard}}}" for wildcard in wildcards)])
+    job.log_modifier = job.benchmark_modifier = job.output_modifier
+    job.set_log(f"results/{{case}}/logs/{name}.log")
+    job.benchmark = f"results/{{case}}/benchmarks/rules/{name}.tsv"
+    job.conda_env = "../envs/facegear.yaml"
+    job.message = f"{job.docstring}: {{wildcards}}"
+    job.set_params(code=fingerprint(ROOT / "workflow" / "scripts" / Path(job.script).name, ROOT))
