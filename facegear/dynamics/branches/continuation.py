@@ -1,0 +1,253 @@
+"""Following a branch of periodic motions through folds, with steps controlled by angle."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.branches.locate import Special, is_reversal, locate
+from facegear.dynamics.branches.period_map import PeriodMap
+from facegear.dynamics.branches.points import Point, at_parameter, solve_point
+from facegear.errors import NotConverged
+
+Array = NDArray[np.float64]
+STRAIGHT = 0.9
+"""Least cosine between neighbouring tangents."""
+CORRECTION = 0.2
+"""Largest correction over the step."""
+DRIFT = 0.3
+"""Largest change of the multipliers' moduli near the unit circle over a step."""
+SURE = 1e-3
+"""A change of parity over a longer step is tried again: the other leg of a fold may have been met."""
+
+
+class End(StrEnum):
+    """Why a branch ends."""
+
+    LIMIT = "limit of the parameter"
+    CLOSED = "closed"
+    DOUBLING = "period doubling of another branch"
+    SYMMETRY = "branch point"
+    POLE = "amplitude without bound"
+    POINTS = "number of points"
+    STEP = "step too short"
+
+
+@dataclass(frozen=True)
+class Run:
+    """How a branch is followed: range of the parameter, steps in weighted states and logarithms.
+
+    first, least, largest: step lengths. points: most points in each direction. bound: largest weighted state.
+    """
+
+    low: float
+    high: float
+    first: float = 0.02
+    least: float = 1e-7
+    largest: float = 0.3
+    points: int = 4000
+    bound: float = 1e4
+
+
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """Points in their order along the branch, what was met between them, and why it ends on both sides.
+
+    specials are sorted by `after`, the index of the point before them plus their share of the way to the
+    next.
+    """
+
+    flow: PeriodMap
+    points: list[Point]
+    specials: list[Special]
+    ends: tuple[End, End]
+    tried: str = ""
+
+    @property
+    def arc(self) -> Array:
+        """Arc length of the points, from the first, shape (points,)."""
+        steps = [np.linalg.norm(b.x - a.x) for a, b in zip(self.points, self.points[1:], strict=False)]
+        return np.concatenate([[0.0], np.cumsum(steps)])
+
+    @property
+    def values(self) -> Array:
+        """Parameter of the points, shape (points,)."""
+        return np.array([point.value for point in self.points])
+
+    def of(self, *kinds: str) -> list[Special]:
+        """Special points of some kinds, in their order along the branch."""
+        return [special for special in self.specials if special.kind in kinds]
+
+
+@dataclass(eq=False)
+class _Track:
+    points: list[Point]
+    specials: list[Special] = field(default_factory=list)
+    end: End = End.POINTS
+    tried: str = ""
+
+
+def follow(
+    flow: PeriodMap,
+    start: Point,
+    run: Run,
+    both: bool = True,
+    progress: Callable[[Point], None] = lambda point: None,
+) -> Branch:
+    """The branch through `start`, along its tangent and (with `both`) against it."""
+    ahead = _track(flow, start, run, progress)
+    if not both or ahead.end is End.CLOSED:
+        return Branch(flow, ahead.points, ahead.specials, (End.LIMIT, ahead.end), ahead.tried)
+    behind = _track(flow, turned(start), run, progress)
+    count = len(behind.points) - 1
+    points = [turned(point) for point in behind.points[:0:-1]] + ahead.points
+    specials = [replace(s, after=count - s.after) for s in behind.specials[::-1]]
+    specials += [replace(s, after=count + s.after) for s in ahead.specials]
+    tried = "; ".join(text for text in (behind.tried, ahead.tried) if text)
+    return Branch(flow, points, specials, (behind.end, ahead.end), tried)
+
+
+def turned(point: Point) -> Point:
+    """The same point looking the other way."""
+    return replace(point, tangent=-point.tangent, parity=-point.parity)
+
+
+def _track(flow: PeriodMap, start: Point, run: Run, progress: Callable[[Point], None]) -> _Track:
+    track, step, before = _Track([start]), run.first, None
+    images = _images(flow, start)
+    while len(track.points) < run.points:
+        here = track.points[-1]
+        try:
+            there = _step(flow, here, before, step)
+        except (NotConverged, np.linalg.LinAlgError) as error:
+            there, reason = None, str(error)
+        if there is not None:
+            reason = _refusal(here, there, step)
+        if reason:
+            step *= 0.5 if "converge" not in reason else 0.3
+            if step < run.least:
+                track.end, track.tried = End.STEP, f"{reason}, steps down to {run.least:g}"
+                return track
+            continue
+        outside = not np.log(run.low) <= there.u <= np.log(run.high)
+        if outside:
+            there = _onto_limit(flow, here, there, np.log(run.low if there.u < here.u else run.high))
+        closing = _closing(flow, images, here, there) if len(track.points) > 2 else None
+        there = closing or there
+        stop = _note(flow, track, here, there)
+        progress(there)
+        if stop is not None:
+            track.end = stop
+            return track
+        if closing is not None or outside:
+            track.end = End.CLOSED if closing is not None else End.LIMIT
+            return track
+        if np.abs(there.z).max() > run.bound:
+            track.end = End.POLE
+            return track
+        before = here
+        step = min(step * _growth(here, there), run.largest)
+    return track
+
+
+def _step(flow: PeriodMap, here: Point, before: Point | None, step: float) -> Point:
+    """One step along the tangent, bent as over the step before."""
+    guess = here.x + step * here.tangent
+    if before is not None:
+        last = np.linalg.norm(here.x - before.x)
+        bend = (here.tangent - before.tangent) / last
+        if np.linalg.norm(bend) * step < 0.5:
+            guess = guess + 0.5 * step**2 * bend
+    row = here.tangent
+    there = solve_point(flow, guess, row, row, here.linear)
+    if np.linalg.norm(there.x - guess) > CORRECTION * step:
+        raise NotConverged("branches", f"{flow.family.name} = {there.value:.9g}", "correction above the step")
+    return there
+
+
+def _refusal(here: Point, there: Point, step: float) -> str:
+    """Why a step is not accepted, or an empty string."""
+    if here.linear.afloat.shape != there.linear.afloat.shape:
+        return ""
+    if here.tangent @ there.tangent < STRAIGHT:
+        return "the branch turns too sharply"
+    chord = (there.x - here.x) / np.linalg.norm(there.x - here.x)
+    if min(chord @ here.tangent, chord @ there.tangent) < STRAIGHT:
+        return "the branch turns too sharply"
+    if here.parity != there.parity and step > SURE:
+        return "the branch may have been left"
+    if step > SURE and _drift(here, there) > DRIFT:
+        return "multipliers move too far"
+    return ""
+
+
+def _drift(here: Point, there: Point) -> float:
+    """Largest change of a modulus, in sorted order, among those near the unit circle."""
+    first, second = np.abs(here.multipliers), np.abs(there.multipliers)
+    if first.size != second.size:
+        return 0.0
+    near = (first > 0.6) | (second > 0.6)
+    scale = np.maximum(np.maximum(first, second), 1.0)
+    return float((np.abs(first - second) / scale)[near].max(initial=0.0))
+
+
+def _growth(here: Point, there: Point) -> float:
+    angle = np.arccos(np.clip(here.tangent @ there.tangent, -1.0, 1.0))
+    return float(np.clip(0.25 / max(angle, 1e-6), 0.5, 1.7))
+
+
+def _onto_limit(flow: PeriodMap, here: Point, there: Point, limit: float) -> Point:
+    """The point at a limit of the parameter between two points."""
+    share = (limit - here.u) / (there.u - here.u)
+    guess = here.x + share * (there.x - here.x)
+    guess[-1] = limit
+    row = np.zeros(guess.size)
+    row[-1] = 1.0
+    return solve_point(flow, guess, row, here.tangent, here.linear)
+
+
+def _images(flow: PeriodMap, start: Point) -> list[Array]:
+    return [np.append(z, start.u) for z in flow.images(start.z, start.u)]
+
+
+def _closing(flow: PeriodMap, images: list[Array], here: Point, there: Point) -> Point | None:
+    """The point at which the branch comes back to where it began, at any of its mesh periods."""
+    chord = there.x - here.x
+    length = np.linalg.norm(chord)
+    for image in images:
+        share = (image - here.x) @ chord / length**2
+        off = np.linalg.norm(image - here.x - share * chord)
+        if not 0.0 < share <= 1.0 or off > 0.2 * length:
+            continue
+        try:
+            point = solve_point(flow, here.x + share * chord, chord / length, here.tangent, here.linear)
+        except (NotConverged, np.linalg.LinAlgError):
+            continue
+        row = chord / length
+        target = solve_point(flow, image, row, here.tangent, here.linear)
+        if np.linalg.norm(point.x - target.x) < 1e-6 + 1e-3 * off:
+            return target
+    return None
+
+
+def _note(flow: PeriodMap, track: _Track, here: Point, there: Point) -> End | None:
+    """Add a point and what lies before it; an end if the branch runs into another one there."""
+    base = len(track.points) - 1
+    found = locate(flow, here, there)
+    stop = None
+    for special in found:
+        if is_reversal(flow, special):
+            stop = End.DOUBLING
+            track.points.append(special.point)
+            break
+        track.specials.append(replace(special, after=base + special.after))
+    if stop is None:
+        track.points.append(there)
+    return stop
+
+
+def branch_at(flow: PeriodMap, z: Array, value: float, run: Run) -> Branch:
+    """The whole branch through the orbit next to the weighted state z at a parameter."""
+    return follow(flow, at_parameter(flow, z, float(np.log(value))), run)

@@ -1,0 +1,80 @@
+"""Systems that depend on one positive parameter, such as the speed or the torque."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.reduction import modal_damping
+from facegear.dynamics.integrator.system import System
+from facegear.dynamics.steady_state.simulate import Model
+from facegear.transmission.machine import mesh_frequency
+
+Array = NDArray[np.float64]
+MACHINE_PARAMETERS = ("torque", "backlash", "mesh_damping", "bearing_stiffness")
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """at(value) gives the system and its angular mesh frequency (rad/s) at a value of the parameter.
+
+    The value is positive; branches are followed in its logarithm. Every system has the same length scale.
+    """
+
+    name: str
+    at: Callable[[float], tuple[System, float]]
+
+
+@dataclass(frozen=True, eq=False)
+class Plane:
+    """at(first, second): the system and its angular mesh frequency at two positive parameters."""
+
+    names: tuple[str, str]
+    at: Callable[[float, float], tuple[System, float]]
+
+    def line(self, second: float) -> Family:
+        """The family in the first parameter at a fixed second one."""
+        return Family(self.names[0], lambda first: self.at(first, second))
+
+    def across(self, first: float) -> Family:
+        """The family in the second parameter at a fixed first one."""
+        return Family(self.names[1], lambda second: self.at(first, second))
+
+
+def speed_family(ready: Model) -> Family:
+    """A machine over its pinion speed in rpm."""
+    layout = ready.machine.layout
+    return Family("speed_rpm", lambda speed: (ready.system, TAU * mesh_frequency(layout, speed)))
+
+
+def machine_plane(ready: Model, second: str) -> Plane:
+    """A machine over its pinion speed in rpm and a factor on one of MACHINE_PARAMETERS."""
+    layout = ready.machine.layout
+
+    def at(speed: float, factor: float) -> tuple[System, float]:
+        return changed(ready, second, factor), TAU * mesh_frequency(layout, speed)
+
+    return Plane(("speed_rpm", f"{second}_factor"), at)
+
+
+def changed(ready: Model, parameter: str, factor: float) -> System:
+    """The system of a machine with all torques, the backlash, the mesh damping or all bearing stiffnesses
+    multiplied, in the same coordinates. Raises ValueError for another parameter.
+    """
+    system, machine = ready.system, ready.machine
+    if factor == 1.0:
+        return system
+    if parameter == "torque":
+        return replace(system, load=system.load * factor)
+    if parameter == "backlash":
+        return replace(system, lower=system.lower * factor, upper=system.upper * factor)
+    if parameter == "mesh_damping":
+        return replace(system, mesh_damping=system.mesh_damping * factor)
+    if parameter == "bearing_stiffness":
+        squares = system.squares * factor
+        return replace(system, squares=squares, damping=modal_damping(machine.damping, squares))
+    raise ValueError(f"{parameter!r}: one of {', '.join(MACHINE_PARAMETERS)}")
+
+

@@ -1,0 +1,172 @@
+"""A periodic motion on a branch, found by Newton's method bordered by one condition."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.branches.period_map import Linear, PeriodMap
+from facegear.errors import NotConverged
+
+Array = NDArray[np.float64]
+CHORD_STEPS = 8
+NEWTON_STEPS = 6
+REAL_PAIR = 1e-6
+"""Multipliers this close to the real axis are on it: exact symmetry makes them double, rounding splits them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """x (2 n + 1,): weighted state and logarithm of the parameter. tangent (2 n + 1,) of the branch, of
+    length one. parity: sign of the bordered determinant, which changes at a branch point only. turning: see
+    PeriodMap.turning.
+    """
+
+    x: Array
+    tangent: Array
+    parity: float
+    linear: Linear
+    turning: list[tuple[Array, Array]]
+
+    @property
+    def z(self) -> Array:
+        """Weighted state (2 n,)."""
+        return self.x[:-1]
+
+    @property
+    def u(self) -> float:
+        """Logarithm of the parameter."""
+        return float(self.x[-1])
+
+    @property
+    def value(self) -> float:
+        """The parameter."""
+        return float(np.exp(self.x[-1]))
+
+    @cached_property
+    def multipliers(self) -> NDArray[np.complex128]:
+        """Floquet multipliers (2 n - k,), largest first, without the ones of k bodies afloat."""
+        values = np.linalg.eigvals(self.linear.matrix).astype(complex)
+        near_one = np.argsort(np.abs(values - 1.0))
+        values = np.delete(values, near_one[: self.linear.afloat.shape[1]])
+        return values[np.argsort(-np.abs(values), kind="stable")]
+
+    @cached_property
+    def real(self) -> Array:
+        """Real multipliers in rising order."""
+        values = self.multipliers
+        return np.sort(values[np.abs(values.imag) <= REAL_PAIR * (np.abs(values) > 0.5)].real)
+
+    @cached_property
+    def pairs(self) -> NDArray[np.complex128]:
+        """Complex multipliers with positive imaginary part, largest modulus first."""
+        values = self.multipliers
+        values = values[values.imag > REAL_PAIR * (np.abs(values) > 0.5)]
+        return values[np.argsort(-np.abs(values), kind="stable")]
+
+    @cached_property
+    def outside(self) -> tuple[int, int, int]:
+        """Real multipliers above 1, real ones below -1, complex pairs outside the unit circle."""
+        return (
+            int((self.real > 1.0).sum()),
+            int((self.real < -1.0).sum()),
+            int((np.abs(self.pairs) > 1.0).sum()),
+        )
+
+    @property
+    def stable(self) -> bool:
+        """No multiplier outside the unit circle."""
+        return self.outside == (0, 0, 0)
+
+
+def bordered(linear: Linear, row: Array) -> Array:
+    """[M - I, P_u, V; row, 0; V^T, 0, 0] with the directions V of bodies afloat."""
+    size, loose = linear.afloat.shape
+    matrix = np.zeros((size + 1 + loose, size + 1 + loose))
+    matrix[:size, :size] = linear.matrix - np.eye(size)
+    matrix[:size, size] = linear.slope
+    matrix[:size, size + 1 :] = linear.afloat
+    matrix[size, : size + 1] = row
+    matrix[size + 1 :, :size] = linear.afloat.T
+    return matrix
+
+
+def correct(flow: PeriodMap, guess: Array, row: Array, linear: Linear | None = None) -> tuple[Array, Linear]:
+    """The orbit next to `guess` (2 n + 1,) with row . (x - guess) = 0, and the map there.
+
+    A matrix from nearby serves as long as it gains a digit a step. Raises NotConverged.
+    """
+    x, goal = guess.copy(), max(3.0 * flow.tolerance, 2e-13)
+    chord = linear
+    for _ in range(NEWTON_STEPS):
+        if chord is not None:
+            x = _by_chord(flow, x, guess, row, chord, goal)
+        chord = flow.linear(x[:-1], x[-1])
+        size = np.abs(chord.gap).max()
+        if not np.isfinite(size) or size > 1e6:
+            break
+        step = _newton_step(chord, chord.gap, row, x - guess)
+        x = x + step
+        if size <= goal and np.abs(step).max() <= 1e3 * goal:
+            return x, chord
+        if np.abs(step).max() <= 1e-3 * np.sqrt(goal) and np.abs(flow.gap(x[:-1], x[-1])).max() <= goal:
+            return x, chord
+    raise NotConverged("branches", f"{flow.family.name} = {np.exp(guess[-1]):.9g}", "bordered Newton")
+
+
+def _by_chord(flow: PeriodMap, x: Array, guess: Array, row: Array, linear: Linear, goal: float) -> Array:
+    """Steps with a fixed matrix while each gains a digit; the best point reached."""
+    inverse = np.linalg.inv(bordered(linear, row))
+    best, found = np.inf, x
+    for _ in range(CHORD_STEPS):
+        gap = flow.gap(x[:-1], x[-1])
+        size = np.abs(gap).max()
+        if not size < 0.2 * best:
+            return x if size < best else found
+        best, found = size, x
+        if size <= goal:
+            return x
+        right = np.zeros(len(inverse))
+        right[: gap.size], right[gap.size] = -gap, -row @ (x - guess)
+        right[gap.size + 1 :] = -linear.afloat.T @ (x - guess)[:-1]
+        x = x + (inverse @ right)[: x.size]
+    return x
+
+
+def _newton_step(linear: Linear, gap: Array, row: Array, moved: Array) -> Array:
+    right = np.zeros(gap.size + 1 + linear.afloat.shape[1])
+    right[: gap.size], right[gap.size] = -gap, -row @ moved
+    right[gap.size + 1 :] = -linear.afloat.T @ moved[:-1]
+    return np.linalg.solve(bordered(linear, row), right)[: gap.size + 1]
+
+
+def make_point(flow: PeriodMap, x: Array, linear: Linear, forward: Array) -> Point:
+    """A point of a branch whose tangent looks along `forward` (2 n + 1,)."""
+    matrix = bordered(linear, forward)
+    right = np.zeros(len(matrix))
+    right[x.size - 1] = 1.0
+    tangent = np.linalg.solve(matrix, right)[: x.size]
+    tangent /= np.linalg.norm(tangent)
+    return Point(
+        x=x,
+        tangent=tangent,
+        parity=float(np.linalg.slogdet(matrix)[0]),
+        linear=linear,
+        turning=flow.turning(x[:-1], x[-1]),
+    )
+
+
+def solve_point(
+    flow: PeriodMap, guess: Array, row: Array, forward: Array, linear: Linear | None = None
+) -> Point:
+    """correct() and make_point() in one."""
+    x, found = correct(flow, guess, row, linear)
+    return make_point(flow, x, found, forward)
+
+
+def at_parameter(flow: PeriodMap, z: Array, u: float) -> Point:
+    """The orbit next to z at a fixed parameter, looking towards larger parameters."""
+    upward = np.zeros(z.size + 1)
+    upward[-1] = 1.0
+    return solve_point(flow, np.append(z, u), upward, upward)
