@@ -7,7 +7,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.branches.locate import Special, is_reversal, locate
+from facegear.dynamics.branches.locate import Special, locate, reversal
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point, at_parameter, solve_point
 from facegear.errors import NotConverged
@@ -233,19 +233,13 @@ def _closing(flow: PeriodMap, images: list[Array], here: Point, there: Point) ->
 
 
 def _note(flow: PeriodMap, track: _Track, here: Point, there: Point) -> End | None:
-    """Add a point and what lies before it; an end if the branch runs into another one there."""
+    """Add a point and what lies before it; an end if the branch meets its own image at a shorter period."""
+    meeting = reversal(flow, here, there)
+    before = there if meeting is None else meeting[0]
     base = len(track.points) - 1
-    found = locate(flow, here, there)
-    stop = None
-    for special in found:
-        if is_reversal(flow, special):
-            stop = End.DOUBLING
-            track.points.append(special.point)
-            break
-        track.specials.append(replace(special, after=base + special.after))
-    if stop is None:
-        track.points.append(there)
-    return stop
+    track.specials += [replace(one, after=base + one.after) for one in locate(flow, here, before)]
+    track.points += [there] if meeting is None else list(meeting)
+    return None if meeting is None else End.DOUBLING
 
 
 def branch_at(flow: PeriodMap, z: Array, value: float, run: Run) -> Branch:

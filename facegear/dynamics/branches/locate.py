@@ -111,13 +111,13 @@ def _between(segment: _Segment, low: float, high: float) -> list[Special]:
 
 def _events(flow: PeriodMap, first: Point, second: Point) -> tuple[list[_Event], bool]:
     """Changes between two points; True if more than one of a kind is among them."""
-    events = list(_contact_events(flow, first, second))
+    events, mixed = _contact_events(flow, first, second)
     ones, minus, pairs = np.subtract(second.outside, first.outside)
     folds = _turns(first, second)
     if folds:
         events.append(_Event(Kind.FOLD, lambda point: point.tangent[-1]))
     crossing = first.parity != second.parity
-    mixed = folds and crossing
+    mixed = mixed or (folds and crossing)
     collided = (abs(ones) == 2 or abs(minus) == 2) and 2 * pairs == -(ones + minus)
     if collided:
         return events, mixed
@@ -145,18 +145,25 @@ def _turns(first: Point, second: Point) -> bool:
     return bool(a * b < 0.0 and max(abs(a), abs(b)) > LEVEL)
 
 
-def _contact_events(flow: PeriodMap, first: Point, second: Point):  # noqa: ANN202
-    """Extremes of the mesh deflections that have passed an edge."""
+def _contact_events(flow: PeriodMap, first: Point, second: Point) -> tuple[list[_Event], bool]:
+    """Extremes of the mesh deflections that have passed an edge; True if some cannot be told apart yet.
+
+    Maxima less minima above an edge count its passages. A maximum and a minimum that are born together change
+    none.
+    """
+    events, mixed = [], False
     lower, upper = flow.edges(first.u)
     for mesh, (one, two) in enumerate(zip(first.turning, second.turning, strict=True)):
         for edge, level in ((-1, lower[mesh]), (1, upper[mesh])):
-            if not np.isfinite(level):
+            counts = [[np.count_nonzero(values > level) for values in side] for side in (one, two)]
+            changes = np.subtract(counts[1], counts[0])
+            if not np.isfinite(level) or changes[0] == changes[1]:
                 continue
-            for kind in (0, 1):
-                before = np.count_nonzero(one[kind] > level)
-                after = np.count_nonzero(two[kind] > level)
-                for rank in range(min(before, after), max(before, after)):
-                    yield _Event(Kind.GRAZE, _distance(flow, mesh, edge, kind, rank), mesh, edge)
+            kind = int(changes[0] == 0)
+            mixed = mixed or bool(changes.all()) or abs(changes[kind]) > 1
+            rank = min(counts[0][kind], counts[1][kind])
+            events.append(_Event(Kind.GRAZE, _distance(flow, mesh, edge, kind, rank), mesh, edge))
+    return events, mixed
 
 
 def _distance(flow: PeriodMap, mesh: int, edge: int, kind: int, rank: int) -> Test:
@@ -191,7 +198,7 @@ def _refined(segment: _Segment, low: float, high: float, event: _Event) -> Speci
     return Special(event.kind, point, multiplier, proof, share, meshes, event.edge)
 
 
-def _root(test: Callable[[float], float], low: float, high: float) -> float:
+def _root(test: Test | Callable[[float], float], low: float, high: float, goal: float = 1e-13) -> float:
     """Bracketed root, by interpolation that falls back to halving; the last point evaluated is returned."""
     at_low, at_high = test(low), test(high)
     if at_low == 0.0 or at_high == 0.0:
@@ -206,7 +213,7 @@ def _root(test: Callable[[float], float], low: float, high: float) -> float:
         if not low < share < high:
             break
         value = test(share)
-        if value == 0.0 or (abs(value) < 1e-14 and best < 1e-13):
+        if abs(value) < goal:
             return share
         best = min(best, abs(value))
         if (value > 0.0) == (at_high > 0.0):
@@ -264,12 +271,22 @@ def _together(specials: list[Special]) -> list[Special]:
     return kept
 
 
-def is_reversal(flow: PeriodMap, special: Special) -> bool:
-    """Whether a fold of a branch of several periods is where it meets its image at a shorter period."""
-    if special.kind not in (Kind.FOLD, Kind.BRANCH) or flow.period % 2:
-        return False
+def reversal(flow: PeriodMap, here: Point, there: Point) -> tuple[Point, Point] | None:
+    """Where a branch of several periods runs into its own image, shifted by half of them: the point shortly
+    before, and the orbit of half the period at which another branch doubles.
+    """
+    if flow.period % 2:
+        return None
     half = flow.over(flow.period // 2)
-    try:
-        return bool(np.abs(half.gap(special.point.z, special.point.u)).max() < 1e-4)
-    except NotConverged:
-        return False
+    shift = half.gap(here.z, here.u)
+    size = np.linalg.norm(shift)
+    if shift @ half.gap(there.z, there.u) > -0.5 * size * np.linalg.norm(half.gap(there.z, there.u)):
+        return None
+    segment = _Segment(flow, here, there)
+
+    def left(share: float) -> float:
+        point = segment.at(share)
+        return float(half.gap(point.z, point.u) @ shift) / size**2
+
+    share = _root(left, 0.0, 1.0, 1e-5)
+    return segment.at(0.95 * share), segment.at(share)

@@ -16,6 +16,10 @@ REAL_PAIR = 1e-6
 """Multipliers this close to the real axis are on it: exact symmetry makes them double, rounding splits them."""
 
 
+SINGULAR = 1e-7
+"""A direction in which the bordered matrix moves things less than this, relatively, is left alone."""
+
+
 @dataclass(frozen=True, eq=False)
 class Point:
     """x (2 n + 1,): weighted state and logarithm of the parameter. tangent (2 n + 1,) of the branch, of
@@ -117,7 +121,7 @@ def correct(flow: PeriodMap, guess: Array, row: Array, linear: Linear | None = N
 
 def _by_chord(flow: PeriodMap, x: Array, guess: Array, row: Array, linear: Linear, goal: float) -> Array:
     """Steps with a fixed matrix while each gains a digit; the best point reached."""
-    inverse = np.linalg.inv(bordered(linear, row))
+    inverse = np.linalg.pinv(bordered(linear, row), rcond=SINGULAR)
     best, found = np.inf, x
     for _ in range(CHORD_STEPS):
         gap = flow.gap(x[:-1], x[-1])
@@ -138,7 +142,12 @@ def _newton_step(linear: Linear, gap: Array, row: Array, moved: Array) -> Array:
     right = np.zeros(gap.size + 1 + linear.afloat.shape[1])
     right[: gap.size], right[gap.size] = -gap, -row @ moved
     right[gap.size + 1 :] = -linear.afloat.T @ moved[:-1]
-    return np.linalg.solve(bordered(linear, row), right)[: gap.size + 1]
+    return _solved(bordered(linear, row), right)[: gap.size + 1]
+
+
+def _solved(matrix: Array, right: Array) -> Array:
+    """Solution of least norm: at a branch point the bordered matrix is singular, and only there."""
+    return np.linalg.lstsq(matrix, right, rcond=SINGULAR)[0]
 
 
 def make_point(flow: PeriodMap, x: Array, linear: Linear, forward: Array) -> Point:
@@ -146,7 +155,7 @@ def make_point(flow: PeriodMap, x: Array, linear: Linear, forward: Array) -> Poi
     matrix = bordered(linear, forward)
     right = np.zeros(len(matrix))
     right[x.size - 1] = 1.0
-    tangent = np.linalg.solve(matrix, right)[: x.size]
+    tangent = _solved(matrix, right)[: x.size]
     tangent /= np.linalg.norm(tangent)
     return Point(
         x=x,
