@@ -120,36 +120,41 @@ def _track(flow: PeriodMap, start: Point, run: Run, progress: Callable[[Point], 
     while len(track.points) < run.points:
         here = track.points[-1]
         try:
-            there = _step(flow, here, before, step)
+            there, end = _next(flow, here, before, step, run, images if len(track.points) > 2 else [])
+            found, meeting = _between_points(flow, here, there)
         except (NotConverged, np.linalg.LinAlgError) as error:
-            there, reason = None, str(error)
-        if there is not None:
-            reason = _refusal(here, there, step)
-        if reason:
-            step *= 0.5 if "converge" not in reason else 0.3
+            step *= 0.4
             if step < run.least:
-                track.end, track.tried = End.STEP, f"{reason}, steps down to {run.least:g}"
+                track.end, track.tried = End.STEP, f"{error}; steps down to {run.least:g}"
                 return track
             continue
-        outside = not np.log(run.low) <= there.u <= np.log(run.high)
-        if outside:
-            there = _onto_limit(flow, here, there, np.log(run.low if there.u < here.u else run.high))
-        closing = _closing(flow, images, here, there) if len(track.points) > 2 else None
-        there = closing or there
-        stop = _note(flow, track, here, there)
+        base = len(track.points) - 1
+        track.specials += [replace(one, after=base + one.after) for one in found]
+        track.points += meeting or [there]
         progress(there)
-        if stop is not None:
-            track.end = stop
-            return track
-        if closing is not None or outside:
-            track.end = End.CLOSED if closing is not None else End.LIMIT
-            return track
-        if np.abs(there.z).max() > run.bound:
-            track.end = End.POLE
+        if meeting or end is not None:
+            track.end = End.DOUBLING if meeting else end
             return track
         before = here
         step = min(step * _growth(here, there), run.largest)
     return track
+
+
+def _next(
+    flow: PeriodMap, here: Point, before: Point | None, step: float, run: Run, images: list[Array]
+) -> tuple[Point, End | None]:
+    """The next point, and why the branch ends there if it does. Raises NotConverged if a step is refused."""
+    there = _step(flow, here, before, step)
+    limits = np.log([run.low, run.high])
+    end = None
+    if not limits[0] <= there.u <= limits[1]:
+        there, end = _onto_limit(flow, here, there, limits[int(there.u > here.u)]), End.LIMIT
+    closing = _closing(flow, images, here, there)
+    if closing is not None:
+        return closing, End.CLOSED
+    if np.abs(there.z).max() > run.bound:
+        end = End.POLE
+    return there, end
 
 
 def _step(flow: PeriodMap, here: Point, before: Point | None, step: float) -> Point:
@@ -162,19 +167,21 @@ def _step(flow: PeriodMap, here: Point, before: Point | None, step: float) -> Po
             guess = guess + 0.5 * step**2 * bend
     row = here.tangent
     there = solve_point(flow, guess, row, row, here.linear)
+    reason = _refusal(here, there, step)
     if np.linalg.norm(there.x - guess) > CORRECTION * step:
-        raise NotConverged("branches", f"{flow.family.name} = {there.value:.9g}", "correction above the step")
+        reason = "correction above the step"
+    if reason:
+        raise NotConverged("branches", f"{flow.family.name} = {there.value:.9g}", reason)
     return there
 
 
 def _refusal(here: Point, there: Point, step: float) -> str:
     """Why a step is not accepted, or an empty string."""
-    if here.linear.afloat.shape != there.linear.afloat.shape:
-        return ""
-    if here.tangent @ there.tangent < STRAIGHT:
-        return "the branch turns too sharply"
     chord = (there.x - here.x) / np.linalg.norm(there.x - here.x)
-    if min(chord @ here.tangent, chord @ there.tangent) < STRAIGHT:
+    straight = min(here.tangent @ there.tangent, chord @ here.tangent, chord @ there.tangent)
+    if here.linear.afloat.shape != there.linear.afloat.shape and step <= SURE:
+        return ""
+    if straight < STRAIGHT:
         return "the branch turns too sharply"
     if here.parity != there.parity and step > SURE:
         return "the branch may have been left"
@@ -232,14 +239,12 @@ def _closing(flow: PeriodMap, images: list[Array], here: Point, there: Point) ->
     return None
 
 
-def _note(flow: PeriodMap, track: _Track, here: Point, there: Point) -> End | None:
-    """Add a point and what lies before it; an end if the branch meets its own image at a shorter period."""
+def _between_points(flow: PeriodMap, here: Point, there: Point) -> tuple[list[Special], list[Point]]:
+    """Special points on the way, and the last two points if the branch meets its own image there."""
     meeting = reversal(flow, here, there)
-    before = there if meeting is None else meeting[0]
-    base = len(track.points) - 1
-    track.specials += [replace(one, after=base + one.after) for one in locate(flow, here, before)]
-    track.points += [there] if meeting is None else list(meeting)
-    return None if meeting is None else End.DOUBLING
+    if meeting is None:
+        return locate(flow, here, there), []
+    return locate(flow, here, meeting[0]), list(meeting)
 
 
 def branch_at(flow: PeriodMap, z: Array, value: float, run: Run) -> Branch:

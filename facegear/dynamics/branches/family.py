@@ -76,5 +76,3 @@ def changed(ready: Model, parameter: str, factor: float) -> System:
         squares = system.squares * factor
         return replace(system, squares=squares, damping=modal_damping(machine.damping, squares))
     raise ValueError(f"{parameter!r}: one of {', '.join(MACHINE_PARAMETERS)}")
-
-

@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import Point, solve_point
-from facegear.errors import NotConverged
+from facegear.dynamics.branches.points import Point, correct_state, solve_point
 
 Array = NDArray[np.float64]
 LEVEL = 1e-7
@@ -46,14 +45,13 @@ class Special:
     edge: int = 0
 
 
-Test = Callable[[Point], float]
-
-
 @dataclass(frozen=True, eq=False)
 class _Event:
+    """test: of a Point, at a graze of its turning points."""
+
     kind: Kind
-    test: Test
-    mesh: int = -1
+    test: Callable[..., float]
+    meshes: tuple[int, ...] = ()
     edge: int = 0
 
 
@@ -69,10 +67,21 @@ class _Segment:
     def at(self, share: float) -> Point:
         """The point of the branch at a share of the chord."""
         if share not in self.known:
-            near = self.known[min(self.known, key=lambda other: abs(other - share))]
             row = self.chord / self.length
-            self.known[share] = solve_point(self.flow, self._guess(share), row, row, near.linear)
+            linear = self._near(share).linear
+            self.known[share] = solve_point(self.flow, self._guess(share), row, row, linear)
         return self.known[share]
+
+    def turning(self, share: float) -> list[tuple[Array, Array]]:
+        """Turning points of the deflections at a share, without the matrix of the map."""
+        if share in self.known:
+            return self.known[share].turning
+        row = self.chord / self.length
+        x = correct_state(self.flow, self._guess(share), row, self._near(share).linear)
+        return self.flow.turning(x[:-1], x[-1])
+
+    def _near(self, share: float) -> Point:
+        return self.known[min(self.known, key=lambda other: abs(other - share))]
 
     def _guess(self, share: float) -> Array:
         """Cubic between the nearest known points, with their tangents."""
@@ -94,7 +103,7 @@ class _Segment:
 def locate(flow: PeriodMap, here: Point, there: Point) -> list[Special]:
     """All special points between two neighbours, in order; `after` is the share of the way."""
     segment = _Segment(flow, here, there)
-    return sorted(_together(_between(segment, 0.0, 1.0)), key=lambda special: special.after)
+    return sorted(_between(segment, 0.0, 1.0), key=lambda special: special.after)
 
 
 def _between(segment: _Segment, low: float, high: float) -> list[Special]:
@@ -149,9 +158,10 @@ def _contact_events(flow: PeriodMap, first: Point, second: Point) -> tuple[list[
     """Extremes of the mesh deflections that have passed an edge; True if some cannot be told apart yet.
 
     Maxima less minima above an edge count its passages. A maximum and a minimum that are born together change
-    none.
+    none. Meshes that symmetry moves alike make one event.
     """
-    events, mixed = [], False
+    events: dict[tuple, _Event] = {}
+    mixed = False
     lower, upper = flow.edges(first.u)
     for mesh, (one, two) in enumerate(zip(first.turning, second.turning, strict=True)):
         for edge, level in ((-1, lower[mesh]), (1, upper[mesh])):
@@ -162,16 +172,21 @@ def _contact_events(flow: PeriodMap, first: Point, second: Point) -> tuple[list[
             kind = int(changes[0] == 0)
             mixed = mixed or bool(changes.all()) or abs(changes[kind]) > 1
             rank = min(counts[0][kind], counts[1][kind])
-            events.append(_Event(Kind.GRAZE, _distance(flow, mesh, edge, kind, rank), mesh, edge))
-    return events, mixed
+            test = _distance(flow, first.u, mesh, edge, kind, rank)
+            alike = (edge, kind, *(round(test(turning), 7) for turning in (first.turning, second.turning)))
+            meshes = (*events[alike].meshes, mesh) if alike in events else (mesh,)
+            events[alike] = _Event(Kind.GRAZE, test, meshes, edge)
+    return list(events.values()), mixed
 
 
-def _distance(flow: PeriodMap, mesh: int, edge: int, kind: int, rank: int) -> Test:
+def _distance(
+    flow: PeriodMap, u: float, mesh: int, edge: int, kind: int, rank: int
+) -> Callable[[list[tuple[Array, Array]]], float]:
     """How far the extreme of a rank, counted from the largest, lies above an edge."""
+    level = float(flow.edges(u)[0 if edge < 0 else 1][mesh])
 
-    def test(point: Point) -> float:
-        level = flow.edges(point.u)[0 if edge < 0 else 1][mesh]
-        values = np.sort(point.turning[mesh][kind])[::-1]
+    def test(turning: list[tuple[Array, Array]]) -> float:
+        values = np.sort(turning[mesh][kind])[::-1]
         return float(values[rank] - level) if rank < values.size else -1.0
 
     return test
@@ -191,46 +206,53 @@ def _loosening(segment: _Segment, low: float, high: float) -> list[Special]:
 
 
 def _refined(segment: _Segment, low: float, high: float, event: _Event) -> Special:
-    share = _root(lambda t: event.test(segment.at(t)), low, high)
+    def test(share: float) -> float:
+        if event.kind is Kind.GRAZE:
+            return event.test(segment.turning(share))
+        return event.test(segment.at(share))
+
+    # At a fold the parameter stands still along the arc, so its place need not be as sharp.
+    tolerance = segment.flow.tolerance
+    goal = max(1e-3 * np.sqrt(tolerance), 1e-10) if event.kind is Kind.FOLD else max(0.1 * tolerance, 1e-13)
+    share = _root(test, low, high, goal)
     point = segment.at(share)
     multiplier, proof = _evidence(event, segment.at(low), point, segment.at(high))
-    meshes = () if event.mesh < 0 else (event.mesh,)
-    return Special(event.kind, point, multiplier, proof, share, meshes, event.edge)
+    return Special(event.kind, point, multiplier, proof, share, event.meshes, event.edge)
 
 
-def _root(test: Test | Callable[[float], float], low: float, high: float, goal: float = 1e-13) -> float:
-    """Bracketed root, by interpolation that falls back to halving; the last point evaluated is returned."""
-    at_low, at_high = test(low), test(high)
-    if at_low == 0.0 or at_high == 0.0:
-        return low if at_low == 0.0 else high
-    share, side, best = low, 0, np.inf
-    for count in range(80):
-        if high - low <= EXACT:
+def _root(test: Callable[[float], float], low: float, high: float, goal: float) -> float:
+    """Bracketed root to `goal` in the test (Chandrupatla 1997); the last place evaluated is returned."""
+    a, b = low, high
+    at_a, at_b = test(a), test(b)
+    if min(abs(at_a), abs(at_b)) <= goal:
+        return a if abs(at_a) < abs(at_b) else b
+    share = at_a / (at_a - at_b)
+    place = a
+    for _ in range(100):
+        place = a + min(max(share, 1e-3), 1.0 - 1e-3) * (b - a)
+        value = test(place)
+        if abs(value) <= goal or abs(b - a) <= EXACT:
             break
-        share = high - at_high * (high - low) / (at_high - at_low)
-        if count % 4 == 3 or not low < share < high:
-            share = 0.5 * (low + high)
-        if not low < share < high:
-            break
-        value = test(share)
-        if abs(value) < goal:
-            return share
-        best = min(best, abs(value))
-        if (value > 0.0) == (at_high > 0.0):
-            high, at_high = share, value
-            at_low = 0.5 * at_low if side == 1 else at_low
-            side = 1
+        if (value > 0.0) == (at_a > 0.0):
+            c, at_c = a, at_a
         else:
-            low, at_low = share, value
-            at_high = 0.5 * at_high if side == -1 else at_high
-            side = -1
-    return share
+            c, at_c, b, at_b = b, at_b, a, at_a
+        a, at_a = place, value
+        along, across = (a - b) / (c - b), (at_a - at_b) / (at_c - at_b)
+        share = 0.5
+        if across**2 < along and (1.0 - across) ** 2 < 1.0 - along:
+            share = at_a / (at_b - at_a) * at_c / (at_b - at_c) + (c - a) / (b - a) * at_a / (
+                at_c - at_a
+            ) * at_b / (at_c - at_b)
+    return place
 
 
 def _evidence(event: _Event, before: Point, here: Point, after: Point) -> tuple[complex, str]:
     """The critical multiplier and what proves the point."""
     if event.kind is Kind.GRAZE:
-        return complex(np.nan), f"an extreme lies {abs(event.test(here)):.1e} length scales from the edge"
+        return complex(
+            np.nan
+        ), f"an extreme lies {abs(event.test(here.turning)):.1e} length scales from the edge"
     if event.kind is Kind.FOLD:
         mu = _nearest(here.multipliers, 1.0)
         return mu, (
@@ -250,25 +272,6 @@ def _evidence(event: _Event, before: Point, here: Point, after: Point) -> tuple[
 
 def _nearest(values: NDArray[np.complex128], goal: float) -> complex:
     return complex(values[np.argmin(np.abs(values - goal))])
-
-
-def _together(specials: list[Special]) -> list[Special]:
-    """Grazes of several meshes at one place, as symmetry makes them, are one."""
-    kept: list[Special] = []
-    for special in specials:
-        same = [
-            i
-            for i, other in enumerate(kept)
-            if special.kind is other.kind is Kind.GRAZE and abs(other.after - special.after) < 1e-6
-        ]
-        if not same:
-            kept.append(special)
-            continue
-        other = kept[same[0]]
-        meshes = tuple(sorted({*other.meshes, *special.meshes}))
-        kept[same[0]] = Special(other.kind, other.point, other.multiplier, other.proof, other.after, meshes,
-                                other.edge)
-    return kept
 
 
 def reversal(flow: PeriodMap, here: Point, there: Point) -> tuple[Point, Point] | None:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.branches.family import Family
 from facegear.dynamics.branches.turning import MOST, turning_points
-from facegear.dynamics.integrator.compiled import TAU, Packed, pack
+from facegear.dynamics.integrator.compiled import Packed, pack
 from facegear.dynamics.integrator.periods import disturbance_step, make_log, run_periods
 from facegear.dynamics.integrator.work import Work, make_work
 from facegear.dynamics.motion import Settings, State
@@ -97,7 +97,7 @@ class PeriodMap:
         place, velocity, _ = self._run(packed, z / weights, none)
         return weights * np.concatenate([place, velocity]) - z
 
-    def _run(self, packed: Packed, values: Array, tangents: Array):  # noqa: ANN202
+    def _run(self, packed: Packed, values: Array, tangents: Array):
         place, velocity = _split(packed, values)
         log = make_log(packed, self.period)
         work = self.work(packed)
@@ -118,13 +118,14 @@ class PeriodMap:
         tangents[n + rows, 1, rows] = 1.0
         place, velocity, log = self._run(packed, z / weights, tangents)
         matrix = tangents[:, :, :n].reshape(2 * n, 2 * n).T * (weights[:, None] / weights)
+        gap = weights * np.concatenate([place, velocity]) - z
         step = PARAMETER_STEP
         slope = (self.gap(z, u + step) - self.gap(z, u - step)) / (2.0 * step)
         contact = (log.shares[1:, : packed.m].sum(axis=0) > 0.0) | (
             packed.lower[: packed.m] >= packed.upper[: packed.m]
         )
         return Linear(
-            gap=weights * np.concatenate([place, velocity]) - z,
+            gap=gap,
             matrix=matrix,
             slope=slope,
             contact=contact,
@@ -187,5 +188,3 @@ def _split(packed: Packed, values: Array) -> tuple[Array, Array]:
     wide = np.zeros((2, packed.squares.size))
     wide[0, : packed.n], wide[1, : packed.n] = values[: packed.n], values[packed.n :]
     return wide[0], wide[1]
-
-

@@ -10,12 +10,18 @@ from facegear.dynamics.branches.period_map import Linear, PeriodMap
 from facegear.errors import NotConverged
 
 Array = NDArray[np.float64]
-CHORD_STEPS = 8
+CHORD_STEPS = 10
+GAIN = 0.5
+"""Least gain of a step with an old matrix."""
+FARTHEST = 0.5
+"""Largest step in the parameter's logarithm."""
 NEWTON_STEPS = 6
 REAL_PAIR = 1e-6
-"""Multipliers this close to the real axis are on it: exact symmetry makes them double, rounding splits them."""
+"""Multipliers this close to the real axis are on it: symmetry makes them double, rounding splits them."""
 
 
+STALLED = 300.0
+"""Change over the period, in goals, that is accepted where Newton's method gains no more."""
 SINGULAR = 1e-7
 """A direction in which the bordered matrix moves things less than this, relatively, is left alone."""
 
@@ -99,43 +105,70 @@ def bordered(linear: Linear, row: Array) -> Array:
 def correct(flow: PeriodMap, guess: Array, row: Array, linear: Linear | None = None) -> tuple[Array, Linear]:
     """The orbit next to `guess` (2 n + 1,) with row . (x - guess) = 0, and the map there.
 
-    A matrix from nearby serves as long as it gains a digit a step. Raises NotConverged.
+    A matrix from nearby serves as long as it gains. Raises NotConverged.
     """
-    x, goal = guess.copy(), max(3.0 * flow.tolerance, 2e-13)
-    chord = linear
+    x, goal, chord, before = guess.copy(), _goal(flow), linear, np.inf
     for _ in range(NEWTON_STEPS):
         if chord is not None:
-            x = _by_chord(flow, x, guess, row, chord, goal)
+            x, _ = _by_chord(flow, x, guess, row, chord, goal)
         chord = flow.linear(x[:-1], x[-1])
-        size = np.abs(chord.gap).max()
+        size = float(np.abs(chord.gap).max())
         if not np.isfinite(size) or size > 1e6:
             break
         step = _newton_step(chord, chord.gap, row, x - guess)
-        x = x + step
+        if abs(step[-1]) > FARTHEST:
+            break
         if size <= goal and np.abs(step).max() <= 1e3 * goal:
+            return x + step, chord
+        # Where one list of steps gives way to another the map itself jumps by their errors.
+        if 0.5 * before < size <= STALLED * goal:
             return x, chord
+        x, before = x + step, size
         if np.abs(step).max() <= 1e-3 * np.sqrt(goal) and np.abs(flow.gap(x[:-1], x[-1])).max() <= goal:
             return x, chord
     raise NotConverged("branches", f"{flow.family.name} = {np.exp(guess[-1]):.9g}", "bordered Newton")
 
 
-def _by_chord(flow: PeriodMap, x: Array, guess: Array, row: Array, linear: Linear, goal: float) -> Array:
-    """Steps with a fixed matrix while each gains a digit; the best point reached."""
+def correct_state(flow: PeriodMap, guess: Array, row: Array, linear: Linear) -> Array:
+    """The orbit alone, with a matrix from nearby. Raises NotConverged where that one does not serve."""
+    x, size = _by_chord(flow, guess.copy(), guess, row, linear, _goal(flow))
+    if size > STALLED * _goal(flow):
+        x, _ = correct(flow, guess, row, linear)
+    return x
+
+
+def _goal(flow: PeriodMap) -> float:
+    """Change over the period at which an orbit is found: below the steps' errors."""
+    return max(0.1 * flow.tolerance, 2e-13)
+
+
+def _by_chord(
+    flow: PeriodMap, x: Array, guess: Array, row: Array, linear: Linear, goal: float
+) -> tuple[Array, float]:
+    """Broyden's steps from a matrix nearby while they gain: the best point reached and its change."""
     inverse = np.linalg.pinv(bordered(linear, row), rcond=SINGULAR)
-    best, found = np.inf, x
-    for _ in range(CHORD_STEPS):
+    right, step = np.zeros(len(inverse)), np.zeros(len(inverse))
+    best, found, before = np.inf, x, np.zeros(len(inverse))
+    for count in range(CHORD_STEPS):
         gap = flow.gap(x[:-1], x[-1])
-        size = np.abs(gap).max()
-        if not size < 0.2 * best:
-            return x if size < best else found
+        size = float(np.abs(gap).max())
+        if not size < GAIN * best:
+            return (x, size) if size < best else (found, best)
         best, found = size, x
         if size <= goal:
-            return x
-        right = np.zeros(len(inverse))
-        right[: gap.size], right[gap.size] = -gap, -row @ (x - guess)
-        right[gap.size + 1 :] = -linear.afloat.T @ (x - guess)[:-1]
-        x = x + (inverse @ right)[: x.size]
-    return x
+            break
+        right[: gap.size], right[gap.size] = gap, row @ (x - guess)
+        right[gap.size + 1 :] = linear.afloat.T @ (x - guess)[:-1]
+        if count > 0:
+            along = step @ inverse
+            changed = inverse @ (right - before)
+            inverse += np.outer(step - changed, along) / (along @ (right - before))
+        before = right.copy()
+        step = -inverse @ right
+        if abs(step[x.size - 1]) > FARTHEST:
+            break
+        x = x + step[: x.size]
+    return found, best
 
 
 def _newton_step(linear: Linear, gap: Array, row: Array, moved: Array) -> Array:

@@ -35,7 +35,7 @@ def turning_points(
     status of the integration.
     """
     order = work.order
-    for period in range(periods):
+    for _ in range(periods):
         s, taken = 0.0, 0
         while s < TAU:
             length = advance(packed, work, s, min(TAU, s + longest), place, velocity, tolerance)
@@ -51,9 +51,10 @@ def turning_points(
                     for i in range(order - 2, -1, -1):
                         later = later * end + work.polynomial[i]
                     if slope * later < 0.0 or (later == 0.0 and slope != 0.0):
-                        t = refine_root(
-                            work.polynomial, order - 1, end - 1.0 / PARTS, end, slope, later
-                        ) * length
+                        t = (
+                            refine_root(work.polynomial, order - 1, end - 1.0 / PARTS, end, slope, later)
+                            * length
+                        )
                         value = work.deflection[order, m]
                         for i in range(order - 1, -1, -1):
                             value = value * t + work.deflection[i, m]

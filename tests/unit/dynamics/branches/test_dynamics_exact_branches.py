@@ -1,0 +1,219 @@
+"""Exact answers for oscillators of one and two degrees of freedom: every special point, and none besides.
+
+The numbers were found in closed-form pieces with 50 digits or high-order Taylor series, their orbits
+confirmed by DOP853 with located events.
+"""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from oscillators import backlash_oscillator, meissner, one_degree, two_coordinates
+
+from facegear.dynamics.branches.continuation import Branch, End, Run, branch_at, follow, turned
+from facegear.dynamics.branches.family import Family
+from facegear.dynamics.branches.locate import Kind
+from facegear.dynamics.branches.period_map import PeriodMap
+from facegear.dynamics.branches.points import at_parameter
+from facegear.dynamics.branches.switching import broken, doubled
+from facegear.dynamics.motion import State
+
+WIDE = Run(0.5, 2.2)
+
+
+def backlash(amplitude=0.05, in_gap=None, mean=0.1, tolerance=1e-14):
+    def at(speed):
+        return backlash_oscillator(speed, 0.05, mean, amplitude, in_gap), speed
+
+    return PeriodMap(Family("W", at), 1, tolerance)
+
+
+def square_wave(in_gap=None):
+    return PeriodMap(Family("W", lambda speed: (meissner(0.05, True, in_gap), speed)), 1, 1e-14)
+
+
+def two_sided():
+    def at(speed):
+        return one_degree(0.1, load=((0.0, 0.0), (0.0, 2.0 * speed**2))), speed
+
+    return PeriodMap(Family("W", at), 1, 1e-14)
+
+
+def orbit(flow, speed, place, velocity):
+    u = float(np.log(speed))
+    return at_parameter(flow, flow.weighted(State(np.array([place]), np.array([velocity])), u), u)
+
+
+def state_of(flow, point):
+    state = flow.state(point.z, point.u)
+    return float(state.place[0]), float(state.velocity[0])
+
+
+def places(branch: Branch, *kinds: Kind):
+    return [special.point.value for special in branch.of(*kinds)]
+
+
+@cache
+def branch_a(amplitude=0.05, in_gap=None) -> Branch:
+    flow = backlash(amplitude, in_gap)
+    return branch_at(flow, np.array([1.1, 0.0]), 0.3, Run(0.25, 2.6))
+
+
+def test_oracle_a_has_two_folds_and_two_grazes():
+    branch = branch_a()
+    assert places(branch, Kind.FOLD) == pytest.approx([0.828463984388, 0.708031618722], rel=1e-9)
+    assert places(branch, Kind.GRAZE) == pytest.approx([0.820631087712, 1.407088466023], rel=1e-9)
+    assert len(branch.specials) == 4
+    assert branch.ends == (End.LIMIT, End.LIMIT)
+    for special, expected in zip(
+        branch.of(Kind.FOLD),
+        [(1.212219045727, 0.028689520565), (1.003241047571, 0.246715686858)],
+        strict=True,
+    ):
+        assert state_of(branch.flow, special.point) == pytest.approx(expected, abs=1e-8)
+        assert special.multiplier == pytest.approx(1.0, abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("speed", "state", "extremes", "multipliers"),
+    [
+        (
+            0.75,
+            (1.2287262208378, 0.1646816908020),
+            (0.833101126210, 1.315277482800),
+            (1.7871104711, 0.2421112145),
+        ),
+        (
+            0.78,
+            (1.2479943334064, 0.1062626746043),
+            (0.888176189384, 1.286916018630),
+            (1.9690045258, 0.2269411205),
+        ),
+    ],
+)
+def test_unstable_orbits_of_oracle_a(speed, state, extremes, multipliers):
+    point = orbit(backlash(), speed, round(state[0], 2), round(state[1], 2))
+    assert state_of(backlash(), point) == pytest.approx(state, abs=1e-10)
+    maxima, minima = point.turning[0]
+    assert (minima[0], maxima[0]) == pytest.approx(extremes, abs=1e-10)
+    assert point.multipliers.real == pytest.approx(multipliers, abs=1e-9)
+    assert not point.stable
+
+
+def test_oracle_b_has_its_folds_and_doublings():
+    branch = branch_a(0.1)
+    assert places(branch, Kind.FOLD) == pytest.approx([0.731361127148, 0.585331569643], rel=1e-9)
+    assert places(branch, Kind.DOUBLING) == pytest.approx([1.226700634663, 1.952684741709], rel=1e-9)
+    assert len(branch.specials) == 4 + len(branch.of(Kind.GRAZE)) == 5
+    expected = [(0.886008149142, 0.031390598949), (0.964001267987, 0.016454373324)]
+    for special, state in zip(branch.of(Kind.DOUBLING), expected, strict=True):
+        assert state_of(branch.flow, special.point) == pytest.approx(state, abs=1e-8)
+
+
+@pytest.mark.parametrize("start", [0, 1])
+def test_period_two_curve_of_oracle_b_joins_both_doublings(start):
+    parent = branch_a(0.1)
+    branch = doubled(parent.flow, parent.of(Kind.DOUBLING)[start], WIDE)
+    assert branch.ends == (End.DOUBLING, End.DOUBLING)
+    assert sorted(branch.values[[0, -1]]) == pytest.approx([1.226700634663, 1.952684741709], rel=1e-7)
+    assert sorted(places(branch, Kind.FOLD)) == pytest.approx([1.030052101340, 1.404839759900], rel=1e-9)
+    assert sorted(places(branch, Kind.DOUBLING)) == pytest.approx([1.400378957838, 1.846195450789], rel=1e-9)
+    assert sorted(places(branch, Kind.GRAZE)) == pytest.approx([1.316117205156, 1.843670922641], rel=1e-9)
+    assert len(branch.specials) == 6
+
+
+def test_unstable_period_two_orbit_of_oracle_b():
+    point = orbit(backlash(0.1).over(2), 1.2, 0.4151, -0.0089)
+    assert state_of(backlash(0.1), point) == pytest.approx((0.415105437149, -0.008886017208), abs=1e-9)
+    assert point.multipliers.real == pytest.approx((3.3609216924, 0.1044117773), abs=1e-8)
+
+
+def test_oracle_c_contact_only_damping():
+    branch = branch_a(0.05, 0.01)
+    assert places(branch, Kind.FOLD) == pytest.approx([0.828196556373, 0.625813889165], rel=1e-9)
+    assert not branch.of(Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
+    point = orbit(branch.flow, 0.75, 1.27, 0.12)
+    assert state_of(branch.flow, point) == pytest.approx((1.265801278624, 0.122418658071), abs=1e-9)
+    assert point.multipliers.real == pytest.approx((2.2526746161, 0.2628816387), abs=1e-8)
+
+
+def test_saltation_matters_where_damping_in_contact_meets_variable_stiffness():
+    flow = square_wave(0.01)
+    point = orbit(flow, 0.78, 2.714052622869, 1.718419252155)
+    assert state_of(flow, point) == pytest.approx((2.714052622869, 1.718419252155), abs=1e-9)
+    assert point.pairs[0] == pytest.approx(0.25659969 + 0.75302207j, abs=1e-7)
+
+
+def test_oracle_d_breaks_its_symmetry_at_a_branch_point():
+    flow = two_sided()
+    start = orbit(flow, 0.4, *SYMMETRIC)
+    branch = follow(flow, start, Run(0.3, 0.6))
+    assert places(branch, Kind.BRANCH) == pytest.approx([0.348540186191], rel=1e-8)
+    assert len(branch.specials) == 1
+    special = branch.specials[0]
+    assert state_of(flow, special.point) == pytest.approx((1.674260831215, 0.364887573423), abs=1e-8)
+    assert abs(special.point.tangent[-1]) > 0.1
+    aside = broken(flow, special, Run(0.345, 0.6))
+    point = aside.points[-1]
+    deepest, shallowest = point.turning[0][0][0], point.turning[0][1][0]
+    assert abs(deepest + shallowest) > 1e-3
+    assert np.abs(flow.gap(point.z, point.u)).max() < 1e-9
+
+
+SYMMETRIC = (1.674260831215, 0.364887573423)
+
+
+def test_oracle_e_square_wave_folds_and_unstable_orbit():
+    flow = square_wave()
+    branch = follow(flow, orbit(flow, 0.75, 2.901723445814, -1.084165628890), Run(0.6, 1.3))
+    assert sorted(places(branch, Kind.FOLD)) == pytest.approx([0.688016103000, 0.871223996023], rel=1e-9)
+    assert not branch.of(Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
+    point = orbit(flow, 0.75, 2.9, -1.08)
+    assert state_of(flow, point) == pytest.approx((2.901723445814, -1.084165628890), abs=1e-9)
+    assert point.multipliers.real == pytest.approx((1.7914031721, 0.2415310486), abs=1e-8)
+
+
+def test_two_coordinates_lose_stability_to_a_torus_and_regain_it():
+    flow = PeriodMap(Family("W", lambda speed: (two_coordinates(), speed)), 1, 1e-14)
+    branch = branch_at(flow, np.zeros(4), 2.0, Run(1.95, 2.6))
+    assert places(branch, Kind.TORUS) == pytest.approx([2.199391673612, 2.374997781329], rel=1e-9)
+    assert len(branch.specials) == 2
+    for special in branch.specials:
+        assert abs(special.multiplier) == pytest.approx(1.0, abs=1e-9)
+    assert branch.specials[0].multiplier == pytest.approx(-0.532627694 + 0.846349655j, abs=1e-8)
+
+
+@pytest.mark.parametrize("largest", [1.2, 0.075])
+def test_same_points_with_other_steps_from_either_end(largest):
+    flow = backlash()
+    expected = branch_a()
+    start = turned(orbit(flow, 2.2, *state_of(flow, expected.points[-1])))
+    branch = follow(flow, start, Run(0.25, 2.6, largest=largest, first=0.005))
+    again = [(s.kind, pytest.approx(s.point.value, rel=1e-9)) for s in branch.specials[::-1]]
+    assert [(s.kind, s.point.value) for s in expected.specials] == again
+
+
+def test_tolerance_moves_special_points_by_no_more_than_a_millionth():
+    lists = [
+        branch_at(backlash(tolerance=tolerance), np.array([1.1, 0.0]), 0.3, Run(0.25, 2.6)).specials
+        for tolerance in (1e-6, 1e-10)
+    ]
+    assert [s.kind for s in lists[0]] == [s.kind for s in lists[1]]
+    for loose, tight in zip(*lists, strict=True):
+        assert loose.point.value == pytest.approx(tight.point.value, rel=1e-6)
+
+
+def test_multipliers_over_two_periods_are_squares():
+    flow = backlash()
+    point = orbit(flow, 0.75, 1.2287, 0.1647)
+    twice = at_parameter(flow.over(2), point.z, point.u)
+    assert np.sort(twice.multipliers.real) == pytest.approx(np.sort(point.multipliers.real) ** 2, rel=1e-9)
+
+
+def test_a_period_two_orbit_may_be_started_at_its_other_phase():
+    flow = backlash(0.1)
+    point = orbit(flow.over(2), 1.2, 0.4151, -0.0089)
+    other = flow.over(2).images(point.z, point.u)[1]
+    again = at_parameter(flow.over(2), other, point.u)
+    assert np.abs(again.z - point.z).max() > 0.1
+    assert again.multipliers.real == pytest.approx(point.multipliers.real, rel=1e-8)
