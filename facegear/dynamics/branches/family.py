@@ -43,27 +43,27 @@ class Plane:
         return Family(self.names[1], lambda second: self.at(first, second))
 
 
-def speed_family(ready: Model) -> Family:
+def speed_family(model: Model) -> Family:
     """A machine over its pinion speed in rpm."""
-    layout = ready.machine.layout
-    return Family("speed_rpm", lambda speed: (ready.system, TAU * mesh_frequency(layout, speed)))
+    layout = model.machine.layout
+    return Family("speed_rpm", lambda speed: (model.system, TAU * mesh_frequency(layout, speed)))
 
 
-def machine_plane(ready: Model, second: str) -> Plane:
+def machine_plane(model: Model, second: str) -> Plane:
     """A machine over its pinion speed in rpm and a factor on one of MACHINE_PARAMETERS."""
-    layout = ready.machine.layout
+    layout = model.machine.layout
 
     def at(speed: float, factor: float) -> tuple[System, float]:
-        return changed(ready, second, factor), TAU * mesh_frequency(layout, speed)
+        return changed(model, second, factor), TAU * mesh_frequency(layout, speed)
 
     return Plane(("speed_rpm", f"{second}_factor"), at)
 
 
-def changed(ready: Model, parameter: str, factor: float) -> System:
+def changed(model: Model, parameter: str, factor: float) -> System:
     """The system of a machine with all torques, the backlash, the mesh damping or all bearing stiffnesses
     multiplied, in the same coordinates. Raises ValueError for another parameter.
     """
-    system, machine = ready.system, ready.machine
+    system, machine = model.system, model.machine
     if factor == 1.0:
         return system
     if parameter == "torque":
@@ -73,6 +73,6 @@ def changed(ready: Model, parameter: str, factor: float) -> System:
     if parameter == "mesh_damping":
         return replace(system, mesh_damping=system.mesh_damping * factor)
     if parameter == "bearing_stiffness":
-        squares = system.squares * factor
-        return replace(system, squares=squares, damping=modal_damping(machine.damping, squares))
+        squares = system.omega_squared * factor
+        return replace(system, omega_squared=squares, damping=modal_damping(machine.damping, squares))
     raise ValueError(f"{parameter!r}: one of {', '.join(MACHINE_PARAMETERS)}")

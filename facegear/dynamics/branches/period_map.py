@@ -52,7 +52,7 @@ class PeriodMap:
         return PeriodMap(self.family, period, self.tolerance)
 
     def packed(self, u: float) -> Packed:
-        """The system at a parameter, ready for the kernels."""
+        """The system at a parameter, model for the kernels."""
         system, frequency = self.family.at(float(np.exp(u)))
         return pack(system, frequency)
 
@@ -85,40 +85,40 @@ class PeriodMap:
     def weighted(self, state: State, u: float) -> Array:
         """Weighted state of place and velocity by time."""
         _, frequency = self.family.at(float(np.exp(u)))
-        return self.weights(self.packed(u)) * np.concatenate([state.place, state.velocity / frequency])
+        return self.weights(self.packed(u)) * np.concatenate([state.displacement, state.velocity / frequency])
 
     def gap(self, z: Array, u: float) -> Array:
         """P(z, u) - z."""
         return self._gap(self.packed(u), z)
 
     def _gap(self, packed: Packed, z: Array) -> Array:
-        none = np.zeros((0, 2, packed.squares.size))
+        none = np.zeros((0, 2, packed.omega_squared.size))
         weights = self.weights(packed)
-        place, velocity, _ = self._run(packed, z / weights, none)
-        return weights * np.concatenate([place, velocity]) - z
+        displacement, velocity, _ = self._run(packed, z / weights, none)
+        return weights * np.concatenate([displacement, velocity]) - z
 
     def _run(self, packed: Packed, values: Array, tangents: Array):
-        place, velocity = _split(packed, values)
+        displacement, velocity = _split(packed, values)
         log = make_log(packed, self.period)
         work = self.work(packed)
         longest = disturbance_step(packed, work.order, self.tolerance)
         status = run_periods(
-            packed, work, place, velocity, tangents, self.period, 0, self.tolerance, log, longest
+            packed, work, displacement, velocity, tangents, self.period, 0, self.tolerance, log, longest
         )
         require(status)
-        return place[: packed.n], velocity[: packed.n], log
+        return displacement[: packed.n], velocity[: packed.n], log
 
     def linear(self, z: Array, u: float) -> Linear:
         """The map with its matrix and its slope at a state."""
         packed = self.packed(u)
         n, weights = packed.n, self.weights(packed)
-        tangents = np.zeros((2 * n, 2, packed.squares.size))
+        tangents = np.zeros((2 * n, 2, packed.omega_squared.size))
         rows = np.arange(n)
         tangents[rows, 0, rows] = 1.0
         tangents[n + rows, 1, rows] = 1.0
-        place, velocity, log = self._run(packed, z / weights, tangents)
+        displacement, velocity, log = self._run(packed, z / weights, tangents)
         matrix = tangents[:, :, :n].reshape(2 * n, 2 * n).T * (weights[:, None] / weights)
-        gap = weights * np.concatenate([place, velocity]) - z
+        gap = weights * np.concatenate([displacement, velocity]) - z
         step = PARAMETER_STEP
         slope = (self.gap(z, u + step) - self.gap(z, u - step)) / (2.0 * step)
         contact = (log.shares[1:, : packed.m].sum(axis=0) > 0.0) | (
@@ -139,7 +139,7 @@ class PeriodMap:
         if key not in self._afloat:
             n = packed.n
             directions = packed.transposed[: packed.m, :n][contact] / np.abs(packed.transposed).max()
-            held = np.concatenate([directions, np.diag(np.sign(packed.squares[:n]))])
+            held = np.concatenate([directions, np.diag(np.sign(packed.omega_squared[:n]))])
             _, sizes, rows = np.linalg.svd(held)
             free = rows[np.count_nonzero(sizes > RIGID) :]
             shifts = np.zeros((2 * n, len(free)))
@@ -152,14 +152,14 @@ class PeriodMap:
         the one deepest in contact: maxima falling, minima rising.
         """
         packed = self.packed(u)
-        place, velocity = _split(packed, z / self.weights(packed))
+        displacement, velocity = _split(packed, z / self.weights(packed))
         values = np.zeros((packed.m, 2, MOST * self.period))
         counts = np.zeros((packed.m, 2), dtype=np.int64)
         work = self.work(packed)
         longest = disturbance_step(packed, work.order, self.tolerance)
         require(
             turning_points(
-                packed, work, place, velocity, self.period, self.tolerance, longest, values, counts
+                packed, work, displacement, velocity, self.period, self.tolerance, longest, values, counts
             )
         )
         kept = np.minimum(counts, values.shape[2])
@@ -185,6 +185,6 @@ class PeriodMap:
 
 
 def _split(packed: Packed, values: Array) -> tuple[Array, Array]:
-    wide = np.zeros((2, packed.squares.size))
+    wide = np.zeros((2, packed.omega_squared.size))
     wide[0, : packed.n], wide[1, : packed.n] = values[: packed.n], values[packed.n :]
     return wide[0], wide[1]

@@ -52,7 +52,7 @@ def _from(flow: PeriodMap, special: Special, start: Point, run: Run, end: End) -
 
 
 def through(flow: PeriodMap, state: State, value: float, run: Run) -> Branch:
-    """The branch through the orbit next to a state (place, velocity by time) at a parameter.
+    """The branch through the orbit next to a state (displacement, velocity by time) at a parameter.
 
     Raises NotConverged if Newton's method finds none. flow.period must be the orbit's own.
     """

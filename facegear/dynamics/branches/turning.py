@@ -21,7 +21,7 @@ PARTS = 4
 def turning_points(
     packed: Packed,
     work: Work,
-    place: Array,
+    displacement: Array,
     velocity: Array,
     periods: int,
     tolerance: float,
@@ -29,7 +29,7 @@ def turning_points(
     values: Array,
     counts: NDArray[np.int64],
 ) -> int:
-    """Move place and velocity over the periods; write the deflection at every change of its direction.
+    """Move displacement and velocity over the periods; write the deflection at every change of its direction.
 
     values (m, 2, most), counts (m, 2): maxima, then minima; those beyond `most` are counted only. Returns a
     status of the integration.
@@ -38,7 +38,7 @@ def turning_points(
     for _ in range(periods):
         s, taken = 0.0, 0
         while s < TAU:
-            length = advance(packed, work, s, min(TAU, s + longest), place, velocity, tolerance)
+            length = advance(packed, work, s, min(TAU, s + longest), displacement, velocity, tolerance)
             for m in range(packed.m):
                 power = length
                 for i in range(order):
@@ -63,7 +63,7 @@ def turning_points(
                             values[m, kind, counts[m, kind]] = value + work.edge[m]
                         counts[m, kind] += 1
                     slope = later
-            move(work, length, place, velocity)
+            move(work, length, displacement, velocity)
             s += length
             if TAU - s < 1e-13:
                 s = TAU

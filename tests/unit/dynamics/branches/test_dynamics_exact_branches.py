@@ -46,7 +46,7 @@ def orbit(flow, speed, place, velocity):
 
 def state_of(flow, point):
     state = flow.state(point.z, point.u)
-    return float(state.place[0]), float(state.velocity[0])
+    return float(state.displacement[0]), float(state.velocity[0])
 
 
 def places(branch: Branch, *kinds: Kind):
