@@ -66,7 +66,7 @@ class PeriodMap:
 
     def work(self, packed: Packed) -> Work:
         """Scratch space, kept for systems of one shape."""
-        key = (*packed.directions.shape, len(packed.stiffness), len(packed.error), len(packed.load))
+        key = (*packed.mesh_jacobian.shape, len(packed.stiffness), len(packed.error), len(packed.load))
         if key not in self._work:
             self._work[key] = make_work(packed, Settings(tolerance=self.tolerance).taylor_order)
         return self._work[key]
