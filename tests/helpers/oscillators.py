@@ -67,8 +67,8 @@ def two_coordinates() -> System:
     load = np.zeros((2, 2, 1))
     load[:, 1, 0] = 1.0, 0.5
     return System(
-        directions=np.array([[1.0, 0.8]]),
-        squares=np.array([0.2, 1.1]),
+        mesh_jacobian=np.array([[1.0, 0.8]]),
+        omega_squared=np.array([0.2, 1.1]),
         damping=np.full(2, 0.04),
         mesh_damping=np.zeros(1),
         lower=np.zeros(1),
