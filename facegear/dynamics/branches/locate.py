@@ -214,13 +214,13 @@ def _refined(segment: _Segment, low: float, high: float, event: _Event) -> Speci
     # At a fold the parameter stands still along the arc, so its place need not be as sharp.
     tolerance = segment.flow.tolerance
     goal = max(1e-3 * np.sqrt(tolerance), 1e-10) if event.kind is Kind.FOLD else max(0.1 * tolerance, 1e-13)
-    share = _root(test, low, high, goal)
+    share = bracketed_root(test, low, high, goal)
     point = segment.at(share)
     multiplier, proof = _evidence(event, segment.at(low), point, segment.at(high))
     return Special(event.kind, point, multiplier, proof, share, event.meshes, event.edge)
 
 
-def _root(test: Callable[[float], float], low: float, high: float, goal: float) -> float:
+def bracketed_root(test: Callable[[float], float], low: float, high: float, goal: float) -> float:
     """Bracketed root to `goal` in the test (Chandrupatla 1997); the last place evaluated is returned."""
     a, b = low, high
     at_a, at_b = test(a), test(b)
@@ -291,5 +291,5 @@ def reversal(flow: PeriodMap, here: Point, there: Point) -> tuple[Point, Point] 
         point = segment.at(share)
         return float(half.gap(point.z, point.u) @ shift) / size**2
 
-    share = _root(left, 0.0, 1.0, 1e-5)
+    share = bracketed_root(left, 0.0, 1.0, 1e-5)
     return segment.at(0.95 * share), segment.at(share)

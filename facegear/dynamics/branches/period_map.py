@@ -1,7 +1,6 @@
 """The map over whole mesh periods, its matrix and its change with the parameter, in weighted states."""
 
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,30 +45,23 @@ class PeriodMap:
     family: Family
     period: int = 1
     tolerance: float = 1e-10
+    memory: dict[tuple, Work | Array] = field(default_factory=dict, repr=False)
 
     def over(self, period: int) -> "PeriodMap":
         """The same over another number of mesh periods."""
-        return PeriodMap(self.family, period, self.tolerance)
+        return replace(self, period=period)
 
     def packed(self, u: float) -> Packed:
         """The system at a parameter, model for the kernels."""
         system, frequency = self.family.at(float(np.exp(u)))
         return pack(system, frequency)
 
-    @cached_property
-    def _work(self) -> dict[tuple[int, ...], Work]:
-        return {}
-
-    @cached_property
-    def _afloat(self) -> dict[bytes, Array]:
-        return {}
-
     def work(self, packed: Packed) -> Work:
         """Scratch space, kept for systems of one shape."""
         key = (*packed.mesh_jacobian.shape, len(packed.stiffness), len(packed.error), len(packed.load))
-        if key not in self._work:
-            self._work[key] = make_work(packed, Settings(tolerance=self.tolerance).taylor_order)
-        return self._work[key]
+        if key not in self.memory:
+            self.memory[key] = make_work(packed, Settings(tolerance=self.tolerance).taylor_order)
+        return self.memory[key]
 
     def weights(self, packed: Packed) -> Array:
         """z = weights * state, shape (2 n,)."""
@@ -135,8 +127,8 @@ class PeriodMap:
 
     def _rigid(self, packed: Packed, contact: NDArray[np.bool_], weights: Array) -> Array:
         """Shifts that neither a mesh in contact nor a bearing feels: their multiplier is one."""
-        key = contact.tobytes()
-        if key not in self._afloat:
+        key = (contact.tobytes(), weights.tobytes())
+        if key not in self.memory:
             n = packed.n
             directions = packed.transposed[: packed.m, :n][contact] / np.abs(packed.transposed).max()
             held = np.concatenate([directions, np.diag(np.sign(packed.omega_squared[:n]))])
@@ -144,8 +136,8 @@ class PeriodMap:
             free = rows[np.count_nonzero(sizes > RIGID) :]
             shifts = np.zeros((2 * n, len(free)))
             shifts[:n] = weights[:n, None] * free.T
-            self._afloat[key] = np.linalg.qr(shifts)[0]
-        return self._afloat[key]
+            self.memory[key] = np.linalg.qr(shifts)[0]
+        return self.memory[key]
 
     def turning(self, z: Array, u: float) -> list[tuple[Array, Array]]:
         """Maxima and minima of each mesh deflection over the period, over the length scale, each sorted from

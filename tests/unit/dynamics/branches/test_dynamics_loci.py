@@ -1,0 +1,77 @@
+"""Curves of folds and doublings in two parameters against exact answers, and by scaling."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oscillators import backlash_oscillator
+
+from facegear.dynamics.branches.continuation import Run, branch_at
+from facegear.dynamics.branches.family import Plane
+from facegear.dynamics.branches.loci import Corner, LocusRun, follow_locus
+from facegear.dynamics.branches.locate import Kind
+from facegear.dynamics.branches.period_map import PeriodMap
+
+
+def parent(plane, second):
+    flow = PeriodMap(plane.line(second), 1, 1e-14)
+    return flow, branch_at(flow, np.array([1.1, 0.0]), 0.5, Run(0.45, 2.1))
+
+
+@pytest.mark.parametrize(
+    ("mean", "up", "down"),
+    [
+        (0.2, 0.906152433539, 0.843270350117),
+        (0.3, 0.942820455680, 0.921792657119),
+        (0.4, 0.968919631757, 0.968911121069),
+    ],
+)
+def test_fold_locus_passes_the_folds_at_other_loads(mean, up, down):
+    plane = Plane(("W", "Fm"), lambda speed, load: (backlash_oscillator(speed, 0.05, load), speed))
+    flow, branch = parent(plane, 0.1)
+    for fold, expected in zip(branch.of(Kind.FOLD), (up, down), strict=True):
+        locus = follow_locus(plane, 0.1, fold, flow, LocusRun((0.5, 0.099), (1.2, mean)))
+        speed, load = locus.points[-1].values
+        assert load == pytest.approx(mean, rel=1e-12)
+        assert speed == pytest.approx(expected, rel=1e-8)
+
+
+def test_fold_locus_passes_its_cusp():
+    plane = Plane(("W", "Fm"), lambda speed, load: (backlash_oscillator(speed, 0.05, load), speed))
+    flow, branch = parent(plane, 0.1)
+    locus = follow_locus(plane, 0.1, branch.of(Kind.FOLD)[0], flow, LocusRun((0.6, 0.09), (1.2, 0.6)))
+    ((corner, cusp),) = locus.corners
+    assert corner is Corner.CUSP
+    assert cusp.values == pytest.approx((0.969082427114, 0.400569274852), rel=1e-8)
+    speed = cusp.values[0]
+    expected = np.array([1.572080659769, 0.399187896803 / speed])
+    assert cusp.x[:2] == pytest.approx(expected, abs=1e-8)
+
+
+def test_two_period_doublings_meet_where_their_locus_turns():
+    plane = Plane(("W", "Fa"), lambda speed, load: (backlash_oscillator(speed, 0.05, 0.1, load), speed))
+    flow, branch = parent(plane, 0.1)
+    first, second = branch.of(Kind.DOUBLING)
+    locus = follow_locus(plane, 0.1, first, flow, LocusRun((1.0, 0.05), (2.1, 0.1)))
+    ((corner, turn),) = locus.corners
+    assert corner is Corner.TURN
+    assert turn.values == pytest.approx((1.793395595815, 0.074934624334), rel=1e-8)
+    assert sorted(point.values[0] for point in (locus.points[0], locus.points[-1])) == pytest.approx(
+        [first.point.value, second.point.value], rel=1e-9
+    )
+
+
+def test_scaling_clearance_and_load_together_moves_no_fold():
+    """x / s obeys the same equation: along the locus in the common scale s the speed stays."""
+
+    def at(speed, scale):
+        system = backlash_oscillator(speed)
+        edges = {"lower": scale * system.lower, "upper": scale * system.upper}
+        return replace(system, load=scale * system.load, **edges), speed
+
+    plane = Plane(("W", "s"), at)
+    flow, branch = parent(plane, 1.0)
+    locus = follow_locus(plane, 1.0, branch.of(Kind.FOLD)[1], flow, LocusRun((0.5, 0.8), (1.2, 1.3)))
+    speeds = np.array([point.values[0] for point in locus.points])
+    assert np.ptp(np.array([point.values[1] for point in locus.points])) > 0.49
+    assert speeds == pytest.approx(branch.of(Kind.FOLD)[1].point.value, rel=1e-10)
