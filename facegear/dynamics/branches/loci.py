@@ -32,7 +32,7 @@ class Corner(StrEnum):
 
 @dataclass(frozen=True)
 class LocusRun:
-    """Range of both parameters and steps, in weighted states and logarithms; points: most in each direction."""
+    """Range of both parameters, steps in weighted states and logarithms, most points in each direction."""
 
     low: tuple[float, float]
     high: tuple[float, float]
