@@ -1,6 +1,8 @@
 """What is integrated in the comparison: three regimes of a machine, and the oscillator of oracle (a)."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,16 +19,24 @@ FACTORS = (1.0, 2.0, 1.5, 1.75, 2.5)
 PERIODS, IRREGULAR_PERIODS = 24, 400
 
 
+class Compared(StrEnum):
+    """What is held against the reference: deflections at every sample, their RMS, or the tangents' matrix."""
+
+    DEFLECTIONS = "deflections"
+    RMS = "rms"
+    TANGENTS = "tangents"
+
+
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A start and a length in mesh periods. `statistical`: only the RMS over the run is compared."""
+    """A start, a length in mesh periods, and what is compared."""
 
     name: str
     system: System
     frequency: float
     start: State
     periods: int
-    statistical: bool
+    compared: Compared
 
 
 def machine_problems(machine: Machine, speed_rpm: float) -> list[Problem]:
@@ -35,12 +45,12 @@ def machine_problems(machine: Machine, speed_rpm: float) -> list[Problem]:
     """
     regular = replace(machine, half_backlash=0.0)
     problems = [
-        _problem("contact kept", regular, speed_rpm, PERIODS, False)[0],
-        _problem("contact lost", machine, 0.6 * speed_rpm, PERIODS, False)[0],
+        _problem("contact kept", regular, speed_rpm, PERIODS, Compared.DEFLECTIONS)[0],
+        _problem("contact lost", machine, 0.6 * speed_rpm, PERIODS, Compared.DEFLECTIONS)[0],
     ]
     for factor in FACTORS:
         name = f"irregular, {factor * speed_rpm:.0f} rpm"
-        problem, motion = _problem(name, machine, factor * speed_rpm, IRREGULAR_PERIODS, True)
+        problem, motion = _problem(name, machine, factor * speed_rpm, IRREGULAR_PERIODS, Compared.RMS)
         if motion is Motion.CHAOTIC:
             problems.append(problem)
             break
@@ -48,12 +58,21 @@ def machine_problems(machine: Machine, speed_rpm: float) -> list[Problem]:
 
 
 def _problem(
-    name: str, machine: Machine, speed_rpm: float, periods: int, statistical: bool
+    name: str, machine: Machine, speed_rpm: float, periods: int, compared: Compared
 ) -> tuple[Problem, Motion]:
     model = build_model(machine)
     response = simulate(model, speed_rpm, Settings(settle=128, extensions=0), static_start(model))
     frequency = TAU * mesh_frequency(machine.layout, speed_rpm)
-    return Problem(name, model.system, frequency, response.state, periods, statistical), response.motion
+    return Problem(name, model.system, frequency, response.state, periods, compared), response.motion
+
+
+def tangent_problems(problems: Sequence[Problem]) -> list[Problem]:
+    """The map over one mesh period for each problem whose deflections are compared."""
+    return [
+        replace(problem, name=f"{problem.name}, tangents", periods=1, compared=Compared.TANGENTS)
+        for problem in problems
+        if problem.compared is Compared.DEFLECTIONS
+    ]
 
 
 def oscillator_problem() -> Problem:
@@ -76,4 +95,6 @@ def oscillator_problem() -> Problem:
         damping_when_open=True,
         scale=1.0,
     )
-    return Problem("oracle (a)", system, speed, State(np.array([0.8]), np.array([0.2])), 20, False)
+    return Problem(
+        "oracle (a)", system, speed, State(np.array([0.8]), np.array([0.2])), 20, Compared.DEFLECTIONS
+    )

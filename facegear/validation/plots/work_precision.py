@@ -3,39 +3,46 @@
 import matplotlib.pyplot as plt
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from facegear.plots.style import styled
+
+MARKERS = "osv^<>Dp*Xh"
 
 
 def work_precision_diagram(table: pd.DataFrame) -> Figure:
     """Error against time in logarithms, one panel for each problem and one curve for each method."""
     problems = list(dict.fromkeys(table["problem"]))
+    methods = list(dict.fromkeys(table["method"]))
     columns = 2
     rows = -(-len(problems) // columns)
     with styled():
         figure, axes = plt.subplots(rows, columns, figsize=(11, 4.2 * rows), squeeze=False)
         for axis, problem in zip(axes.flat, problems, strict=False):
-            for number, (method, curve) in enumerate(
-                table[table["problem"] == problem].groupby("method", sort=False)
-            ):
+            chance = table.loc[table["problem"] == problem, "interval"].median()
+            for method, curve in table[table["problem"] == problem].groupby("method", sort=False):
                 known = curve.dropna(subset="error")
-                own = method == "facegear"
+                number = methods.index(method)
                 axis.loglog(
                     known["error"].clip(lower=1e-15),
                     known["seconds"],
-                    "o-" if own else ".--",
-                    color="black" if own else f"C{number}",
-                    lw=2 if own else 1,
+                    MARKERS[number % len(MARKERS)],
+                    # Chance decides on the order of the errors where motion is irregular.
+                    linestyle="" if chance > 0.0 else "-" if number == 0 else "--",
+                    color="black" if number == 0 else f"C{number}",
+                    lw=2 if number == 0 else 1,
                     ms=4,
                     label=method,
                 )
-            chance = table.loc[table["problem"] == problem, "interval"].median()
             if chance > 0.0:
                 axis.axvline(chance, color="0.8", lw=3, zorder=0)
+                axis.xaxis.set_minor_formatter(NullFormatter())
             axis.set_title(problem, fontsize=9)
             axis.set_xlabel(
                 "error of the RMS (line: what chance leaves)"
                 if chance > 0.0
+                else "error of the tangents over the largest"
+                if "tangents" in problem
                 else "error of the deflection over the length scale"
             )
             axis.set_ylabel("time (s)")

@@ -1,17 +1,27 @@
 """The integrators of the comparison solve the same equations."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
 from lumped_machines import make_machine
 
 from facegear.dynamics.integrator.compiled import pack
-from facegear.validation.dynamics.methods import all_methods, ours, rk4
-from facegear.validation.dynamics.problems import SAMPLES, machine_problems, oscillator_problem
+from facegear.validation.dynamics.heyoka_peer import batch, scaled, trajectory
+from facegear.validation.dynamics.methods import all_methods, ours, rk4, tangent_methods
+from facegear.validation.dynamics.problems import (
+    SAMPLES,
+    machine_problems,
+    oscillator_problem,
+    tangent_problems,
+)
 from facegear.validation.dynamics.right_side import compiled_right_side, plain_right_side
 from facegear.validation.dynamics.work_precision import (
     Budget,
     cheapest_within_chance,
+    error_of,
+    reference,
     seconds_at,
     work_precision,
 )
@@ -40,7 +50,7 @@ def test_every_method_converges_to_ours(problems):
     assert exact.shape == (problem.periods * SAMPLES, 1)
     for method in all_methods():
         setting = 1024 if method.name.startswith("RK4") else 1e-6
-        assert np.abs(method.run(problem, setting) - exact).max() < 1e-3, method.name
+        assert np.abs(method.prepare(problem, setting)() - exact).max() < 1e-3, method.name
 
 
 def test_fixed_steps_lose_their_order_where_contact_switches(problems):
@@ -49,7 +59,7 @@ def test_fixed_steps_lose_their_order_where_contact_switches(problems):
     def gain(problem, coarsest):
         exact = ours(problem, 1e-14)
         steps = coarsest * 2 ** np.arange(4)
-        errors = [np.abs(rk4(problem, count) - exact).max() for count in steps]
+        errors = [np.abs(rk4(problem, count)() - exact).max() for count in steps]
         return np.mean(np.log2(np.divide(errors[:-1], errors[1:])))
 
     # More steps would reach rounding where contact is kept.
@@ -64,6 +74,28 @@ def test_the_table_lists_failures_and_interpolates_times(problems):
     assert (table["failure"] == "").all()
     time = seconds_at(table, "oracle (a)", "facegear", 1e-8)
     assert table["seconds"].min() <= time <= table["seconds"].max()
+
+
+def test_heyoka_follows_the_same_motion_through_every_switch(problems):
+    heyoka = pytest.importorskip("heyoka", reason="heyoka.py is not installed (extra `benchmark`)")
+    lost, oscillator = problems[1], problems[3]
+    runs = [(lost, trajectory(heyoka)), (oscillator, trajectory(heyoka)), (oscillator, batch(heyoka, 2))]
+    for problem, prepare in runs:
+        error, _ = error_of(problem, prepare(problem, 1e-9)(), reference(problem))
+        assert error < 1e-9, problem.name
+
+
+def test_heyoka_carries_the_same_tangents(problems):
+    pytest.importorskip("heyoka", reason="heyoka.py is not installed (extra `benchmark`)")
+    for problem in tangent_problems([problems[1], problems[3]]):
+        for method in tangent_methods():
+            error, _ = error_of(problem, method.prepare(problem, 1e-9)(), reference(problem))
+            assert error < 1e-8, (problem.name, method.name)
+
+
+def test_heyoka_is_refused_what_its_setup_leaves_out(problems):
+    with pytest.raises(ValueError, match="in contact only"):
+        scaled(replace(problems[1].system, damping_when_open=False))
 
 
 def test_an_rms_counts_as_right_only_where_every_finer_setting_is_right_too():
