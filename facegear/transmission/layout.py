@@ -10,6 +10,8 @@ from facegear.errors import ConfigError
 
 DOF_PER_BODY = 4
 DOF_LETTERS = ("x", "y", "z", "theta")
+TILT_LETTERS = ("tilt_x", "tilt_y")
+SAME_ARM = 1e-9
 
 
 class Role(StrEnum):
@@ -27,13 +29,33 @@ class Side(StrEnum):
     UPPER = "upper"
 
 
+class MeshKinematics(StrEnum):
+    """How bodies deflect a mesh: `geometric` as gears do, `printed` equation (13) to the letter."""
+
+    GEOMETRIC = "geometric"
+    PRINTED = "printed"
+
+
+@dataclass(frozen=True)
+class Tilt:
+    """Rocking of a face gear about its two diameters: moment of inertia (kg m2) and stiffness (N m/rad)."""
+
+    inertia: float
+    stiffness: float
+
+
 @dataclass(frozen=True)
 class Body:
-    """Mass (kg), moment of inertia about the own axis (kg m2), bearing stiffness along x, y, z (N/m)."""
+    """Mass (kg), moment of inertia about the own axis (kg m2), bearing stiffness along x, y, z (N/m).
+
+    `bearing_xy` couples x and y (N/m). `tilt` lets a face gear rock; without it the gear stays square.
+    """
 
     mass: float
     inertia: float
     bearing: tuple[float, float, float]
+    bearing_xy: float = 0.0
+    tilt: Tilt | None = None
 
 
 @dataclass(frozen=True)
@@ -64,6 +86,8 @@ class Layout:
     """Bodies and mesh geometry, in m and rad. Bodies are ordered pinions, then gears, as in equation (1).
 
     Meshes are ordered gear by gear and within a gear pinion by pinion: (1,6) .. (n,6), (1,7) .. (n,7).
+    `pinion_radius` and `gear_radius` are base radii where `kinematics` is geometric; equation (13) as printed
+    takes any, and multiplies both by the cosine of the pressure angle.
     """
 
     pinions: tuple[Pinion, ...]
@@ -73,6 +97,7 @@ class Layout:
     pressure_angle: float
     pinion_radius: float
     gear_radius: float
+    kinematics: MeshKinematics = MeshKinematics.GEOMETRIC
 
     def __post_init__(self) -> None:
         if not self.pinions:
@@ -84,6 +109,50 @@ class Layout:
         names = [pinion.name for pinion in self.pinions]
         if len(set(names)) != len(names):
             raise ConfigError("transmission.pinions", names, "each pinion needs a name of its own")
+        conjugate = self.pinion_radius * self.gear_teeth / self.pinion_teeth
+        if self.is_geometric and abs(self.gear_radius - conjugate) > SAME_ARM * conjugate:
+            allowed = f"{conjugate:.9g} m, as the tooth numbers say, where mesh_kinematics is geometric"
+            raise ConfigError("gear_radius", self.gear_radius, allowed)
+
+    @property
+    def is_geometric(self) -> bool:
+        """Whether meshes follow the gears' geometry and not equation (13) as printed."""
+        return self.kinematics is MeshKinematics.GEOMETRIC
+
+    @property
+    def pinion_arm(self) -> float:
+        """Torque on a pinion over the mesh force that balances it, m: the base radius, if geometric."""
+        return self.pinion_radius * (1.0 if self.is_geometric else float(np.cos(self.pressure_angle)))
+
+    @property
+    def gear_arm(self) -> float:
+        """Torque on a face gear over the mesh force that balances it, m."""
+        return self.gear_radius * (1.0 if self.is_geometric else float(np.cos(self.pressure_angle)))
+
+    @property
+    def mesh_radius(self) -> float:
+        """Distance of the meshes from the face gears' axis, m: m N2 / 2, if geometric."""
+        return self.gear_radius / (float(np.cos(self.pressure_angle)) if self.is_geometric else 1.0)
+
+    @property
+    def base_pitch(self) -> float:
+        """Way along the line of action in a mesh period, m."""
+        return 2.0 * np.pi * self.pinion_arm / self.pinion_teeth
+
+    @property
+    def tilting(self) -> tuple[int, ...]:
+        """The gears that may rock."""
+        return tuple(g for g, gear in enumerate(self.gears) if gear.body.tilt is not None)
+
+    @property
+    def dof(self) -> int:
+        """Degrees of freedom: 4 a body, then the two tilts of every gear that may rock."""
+        return DOF_PER_BODY * len(self.bodies) + 2 * len(self.tilting)
+
+    @property
+    def spins(self) -> slice:
+        """Where the rotation of every body about its own axis stands among the degrees of freedom."""
+        return slice(3, DOF_PER_BODY * len(self.bodies), DOF_PER_BODY)
 
     @property
     def bodies(self) -> tuple[Body, ...]:
@@ -97,8 +166,10 @@ class Layout:
 
     @property
     def dof_names(self) -> tuple[str, ...]:
-        """`body:letter` of each degree of freedom, 4 a body."""
-        return tuple(f"{name}:{letter}" for name in self.body_names for letter in DOF_LETTERS)
+        """`body:letter` of each degree of freedom."""
+        places = [f"{name}:{letter}" for name in self.body_names for letter in DOF_LETTERS]
+        tilts = [f"{self.gears[g].name}:{letter}" for g in self.tilting for letter in TILT_LETTERS]
+        return (*places, *tilts)
 
     @property
     def meshes(self) -> tuple[tuple[int, int], ...]:

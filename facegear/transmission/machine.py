@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
+from facegear.transmission.imperfections import Imperfections, perfect
 from facegear.transmission.layout import Layout, Role, Side
 from facegear.transmission.phases import PhaseConvention, mesh_phases
 
@@ -36,7 +37,7 @@ class Machine:
     """Layout, torques on the bodies (N m), reference mesh stiffness and error, half backlash (m).
 
     `error` is a Fourier series in m on the reference mesh; each mesh lags by its stiffness phase, or all
-    move together if `error_in_step`.
+    move together if `error_in_step`. `imperfections` default to none.
     """
 
     layout: Layout
@@ -47,8 +48,11 @@ class Machine:
     damping: Damping
     phase_convention: PhaseConvention = PhaseConvention.GEOMETRIC
     error_in_step: bool = False
+    imperfections: Imperfections = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
+        if self.imperfections is None:
+            object.__setattr__(self, "imperfections", perfect(self.layout))
         require_balance(self.layout, self.torques)
         lowest = float(self.stiffness(np.linspace(0.0, 1.0, 64 * (self.stiffness.order + 1))).min())
         if lowest <= 0.0:
@@ -57,7 +61,13 @@ class Machine:
     @property
     def phases(self) -> NDArray[np.float64]:
         """Stiffness phase of each mesh in mesh periods, shape (meshes,)."""
-        return mesh_phases(self.layout, self.phase_convention)
+        return mesh_phases(self.layout, self.phase_convention, self.imperfections.clocking)
+
+    @property
+    def half_backlashes(self) -> NDArray[np.float64]:
+        """Half backlash of each mesh, shape (meshes,), m."""
+        own = self.imperfections.half_backlash
+        return np.where(np.isnan(own), self.half_backlash, own)
 
     @property
     def error_phases(self) -> NDArray[np.float64]:

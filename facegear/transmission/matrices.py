@@ -1,30 +1,108 @@
-"""Matrices of the lumped model, equations (13) to (16)."""
+"""Matrices of the lumped model: bodies, bearings, and meshes as they are or as equation (13) says."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.transmission.layout import DOF_PER_BODY, Layout, Side
+from facegear.transmission.layout import DOF_PER_BODY, Layout, Side, Tilt
 
 
 def mass_diagonal(layout: Layout) -> NDArray[np.float64]:
-    """Diagonal of M, shape (4 bodies,): m, m, m, I for each body, kg and kg m2."""
-    return np.array([value for body in layout.bodies for value in (*3 * (body.mass,), body.inertia)])
+    """Diagonal of M, shape (dof,): m, m, m, I for each body, then the tilts' inertias, kg and kg m2."""
+    bodies = [value for body in layout.bodies for value in (*3 * (body.mass,), body.inertia)]
+    return np.array(bodies + [value for tilt in _tilts(layout) for value in 2 * (tilt.inertia,)])
 
 
 def bearing_diagonal(layout: Layout) -> NDArray[np.float64]:
-    """Diagonal of the bearing stiffness K, shape (4 bodies,): k_x, k_y, k_z, 0 for each body, N/m."""
-    return np.array([value for body in layout.bodies for value in (*body.bearing, 0.0)])
+    """Diagonal of the bearing stiffness K, shape (dof,): k_x, k_y, k_z, 0 for each body, then tilts; N/m."""
+    bodies = [value for body in layout.bodies for value in (*body.bearing, 0.0)]
+    return np.array(bodies + [value for tilt in _tilts(layout) for value in 2 * (tilt.stiffness,)])
+
+
+def bearing_matrix(layout: Layout) -> NDArray[np.float64]:
+    """Bearing stiffness K, shape (dof, dof), with the cross-coupling of x and y, N/m."""
+    matrix = np.diag(bearing_diagonal(layout))
+    for k, body in enumerate(layout.bodies):
+        x = DOF_PER_BODY * k
+        matrix[x, x + 1] = matrix[x + 1, x] = body.bearing_xy
+    return matrix
+
+
+def bearing_axes(layout: Layout) -> NDArray[np.float64]:
+    """Orthogonal columns (dof, dof) along which each body's bearing acts by itself.
+
+    The unit matrix, but for the x and y of a body whose bearing couples them.
+    """
+    axes = np.eye(layout.dof)
+    for k, body in enumerate(layout.bodies):
+        if body.bearing_xy != 0.0:
+            x = DOF_PER_BODY * k
+            coupled = [[body.bearing[0], body.bearing_xy], [body.bearing_xy, body.bearing[1]]]
+            axes[x : x + 2, x : x + 2] = np.linalg.eigh(coupled)[1]
+    return axes
 
 
 def mesh_directions(layout: Layout) -> NDArray[np.float64]:
-    """Derivative of the mesh deflections by the DOF, equation (13), shape (meshes, 4 bodies).
+    """Derivative of the drive flanks' deflections by the DOF, shape (meshes, dof).
 
     The deflection along the line of action is this times q, minus the transmission error. A pinion's x is
     tangential to the face gear and its y is along the face gear's axis.
     """
+    if layout.is_geometric:
+        tangential, separating = mesh_parts(layout)
+        return tangential + separating
+    return _printed(layout)
+
+
+def flank_directions(layout: Layout) -> NDArray[np.float64]:
+    """The same for both flanks, shape (2 meshes, dof): all drive flanks, then all back flanks.
+
+    The back flank's normal has the same separating part and the opposite tangential part; as printed it is
+    the drive flank's line of action, pulled.
+    """
+    if layout.is_geometric:
+        tangential, separating = mesh_parts(layout)
+        return np.concatenate([separating + tangential, separating - tangential])
+    printed = _printed(layout)
+    return np.concatenate([printed, -printed])
+
+
+def mesh_parts(layout: Layout) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Tangential and separating motion at the flanks by the DOF, each (meshes, dof), from the geometry.
+
+    A pinion sees the lower gear as the upper one turned half round the pinion's own axis, so its x and y
+    change sign there. Gears turn positively as the pinions drive them, and share one axial direction.
+    """
+    cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
+    tangential, separating = np.zeros((2, len(layout.meshes), layout.dof))
+    tilted = {g: DOF_PER_BODY * len(layout.bodies) + 2 * k for k, g in enumerate(layout.tilting)}
+    for row, (i, g) in enumerate(layout.meshes):
+        side = -1.0 if layout.gears[g].side is Side.LOWER else 1.0
+        along = np.array([np.cos(layout.angles[i]), np.sin(layout.angles[i])])
+        pinion, gear = DOF_PER_BODY * i, DOF_PER_BODY * (len(layout.pinions) + g)
+        tangential[row, pinion] = side * cosine
+        tangential[row, gear : gear + 2] = -side * cosine * along
+        tangential[row, [pinion + 3, gear + 3]] = layout.pinion_arm, -layout.gear_arm
+        separating[row, [pinion + 1, gear + 2]] = side * sine, -side * sine
+        if g in tilted:
+            # Tilts about x and y lift the rim at the mesh by its distance from the diameter.
+            separating[row, tilted[g] : tilted[g] + 2] = side * sine * layout.mesh_radius * along
+    return tangential, separating
+
+
+def rigid_rotation(layout: Layout) -> NDArray[np.float64]:
+    """The motion of all bodies turning together without mesh deflection, shape (dof,)."""
+    motion = np.zeros(layout.dof)
+    pinions, bodies = len(layout.pinions), len(layout.bodies)
+    motion[3 : 4 * pinions : 4] = 1.0 / layout.pinion_radius
+    motion[4 * pinions + 3 : 4 * bodies : 4] = 1.0 / layout.gear_radius
+    return motion
+
+
+def _printed(layout: Layout) -> NDArray[np.float64]:
+    """Equation (13) to the letter, shape (meshes, dof)."""
     cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
     angles = layout.angles
-    directions = np.zeros((len(layout.meshes), DOF_PER_BODY * len(layout.bodies)))
+    directions = np.zeros((len(layout.meshes), layout.dof))
     for row, (i, g) in zip(directions, layout.meshes, strict=True):
         pinion = DOF_PER_BODY * i
         gear = DOF_PER_BODY * (len(layout.pinions) + g)
@@ -37,10 +115,5 @@ def mesh_directions(layout: Layout) -> NDArray[np.float64]:
     return directions
 
 
-def rigid_rotation(layout: Layout) -> NDArray[np.float64]:
-    """The motion of all bodies turning together without mesh deflection, shape (4 bodies,)."""
-    motion = np.zeros(DOF_PER_BODY * len(layout.bodies))
-    pinions = len(layout.pinions)
-    motion[3 : 4 * pinions : 4] = 1.0 / layout.pinion_radius
-    motion[4 * pinions + 3 :: 4] = 1.0 / layout.gear_radius
-    return motion
+def _tilts(layout: Layout) -> list[Tilt]:
+    return [tilt for gear in layout.gears if (tilt := gear.body.tilt) is not None]

@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from facegear.transmission.layout import DOF_LETTERS, Layout
+from facegear.transmission.layout import Layout
 from facegear.transmission.mode_classes import ModeName
 from facegear.transmission.modes import Modes
 
@@ -25,9 +25,9 @@ def frequency_table(modes: Modes, names: tuple[ModeName, ...]) -> pd.DataFrame:
 def shape_table(layout: Layout, modes: Modes) -> pd.DataFrame:
     """Columns order, body, dof, amplitude_m_or_rad (unit modal mass), relative (to the mode's largest)."""
     rows = []
+    names = [name.rsplit(":", 1) for name in layout.dof_names]
     for order, shape in enumerate(modes.shapes.T, start=1):
         largest = shape[abs(shape).argmax()]
-        for k, amplitude in enumerate(shape):
-            body, letter = layout.body_names[k // 4], DOF_LETTERS[k % 4]
+        for (body, letter), amplitude in zip(names, shape, strict=True):
             rows.append((order, body, letter, amplitude, amplitude / largest))
     return pd.DataFrame(rows, columns=["order", "body", "dof", "amplitude_m_or_rad", "relative"])

@@ -63,19 +63,22 @@ def _name(layout: Layout, frequency: float, shapes: NDArray[np.float64]) -> Mode
 
 
 def _symbols(layout: Layout, squares: NDArray[np.float64]) -> str:
-    """Who moves and how, from the squared amplitudes of all DOF, shape (4 bodies,)."""
+    """Who moves and how, from the squared amplitudes of all DOF, shape (dof,)."""
     reach = np.ones_like(squares)
-    pinions = len(layout.pinions)
+    pinions, last = len(layout.pinions), DOF_PER_BODY * len(layout.bodies)
     reach[3 : 4 * pinions : 4] = layout.pinion_radius
-    reach[4 * pinions + 3 :: 4] = layout.gear_radius
+    reach[4 * pinions + 3 : last : 4] = layout.gear_radius
+    reach[last:] = layout.mesh_radius
     amplitudes = np.sqrt(squares) * reach
-    moves = (amplitudes > AMPLITUDE_SHARE * amplitudes.max()).reshape(-1, DOF_PER_BODY)
+    above = amplitudes > AMPLITUDE_SHARE * amplitudes.max()
+    moves = above[:last].reshape(-1, DOF_PER_BODY)
     parts: dict[str, list[str]] = {}
     for role in Role:
         rows = [i for i, pinion in enumerate(layout.pinions) if pinion.role is role]
         if motion := _motion(moves[rows].any(axis=0)):
             parts.setdefault(motion, []).append(role.value)
-    if motion := _motion(moves[pinions:].any(axis=0)):
+    motion = _motion(moves[pinions:].any(axis=0))
+    if motion := "-".join(filter(None, (motion, "tilt" if above[last:].any() else ""))):
         parts.setdefault(f"{motion} ", []).append("face gear")
     return "; ".join(f"{', '.join(who)} {motion.strip()}" for motion, who in parts.items())
 

@@ -1,4 +1,4 @@
-"""Phase of each mesh, equation (7) and the half turn between the two meshes of a pinion."""
+"""When each mesh is at which place of its cycle: from the places of the teeth, for any angle."""
 
 from enum import StrEnum
 
@@ -15,13 +15,25 @@ class PhaseConvention(StrEnum):
     PRINTED = "printed"
 
 
-def mesh_phases(layout: Layout, convention: PhaseConvention) -> NDArray[np.float64]:
-    """Lag of each mesh's stiffness behind the reference, in mesh periods within [0, 1), shape (meshes,)."""
+def mesh_phases(
+    layout: Layout, convention: PhaseConvention, clocking: NDArray[np.float64] | None = None
+) -> NDArray[np.float64]:
+    """Lag of each mesh behind the reference, in mesh periods within [0, 1), shape (meshes,).
+
+    The reference is the first pinion's mesh with the upper gear. That gear's teeth pass the pinions in the
+    order of their angles: equation (7). The other side of a pinion is half a turn of it away, and turned by
+    `clocking` (pinions,) in pitches. Where the lower gear is alone its teeth come round the other way.
+    Equation (13) as printed knows no direction of rotation.
+    """
+    upper_first = any(gear.side is Side.UPPER for gear in layout.gears) or not layout.is_geometric
+    turned = np.zeros(len(layout.pinions)) if clocking is None else clocking
     half_turn = 0.5 * layout.pinion_teeth
     phases = np.empty(len(layout.meshes))
     for row, (i, g) in enumerate(layout.meshes):
-        lag = layout.pinions[i].pitches
-        if layout.gears[g].side is Side.LOWER and (convention is PhaseConvention.GEOMETRIC or i == 0):
-            lag += half_turn
+        lag = layout.pinions[i].pitches if upper_first else -layout.pinions[i].pitches
+        if layout.gears[g].side is Side.LOWER:
+            if convention is PhaseConvention.GEOMETRIC or i == 0:
+                lag += half_turn
+            lag -= turned[i]
         phases[row] = np.mod(lag, 1.0)
     return phases

@@ -1,145 +1,194 @@
-"""Static equilibrium with backlash: who carries load when the machine stands still under torque."""
+"""Static equilibrium: who carries load when the machine stands still under torque.
 
-from collections.abc import Callable
+Every flank is a one-sided contact, every bearing a spring, with a ring of play or without: one convex problem
+at each position, solved to the accuracy of its numbers.
+"""
+
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
-import scipy.optimize
 from numpy.typing import NDArray
 
 from facegear.errors import NotConverged
-from facegear.transmission.layout import DOF_PER_BODY
+from facegear.transmission.contact_kernel import Springs, settle_all
+from facegear.transmission.flanks import (
+    constant_errors,
+    error_series,
+    flank_gaps,
+    periodic_values,
+    slow_errors,
+    stiffness_series,
+)
+from facegear.transmission.layout import DOF_PER_BODY, Layout
 from facegear.transmission.machine import Machine
-from facegear.transmission.matrices import bearing_diagonal, mesh_directions
+from facegear.transmission.matrices import bearing_diagonal, bearing_matrix, flank_directions
+from facegear.transmission.printed_statics import RESIDUAL, printed_equilibrium
 
-MAX_ITERATIONS = 200
-RESIDUAL = 1e-10
-FIRST_SPRING, LAST_SPRING, ROUNDS = 1e-2, 1e-12, 41
+Array = NDArray[np.float64]
+TOLERANCE = 1e-13
+ACCEPTED = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
-    """Displacements (4 bodies,), mesh deflections (meshes,) in m and rad, elastic mesh forces (meshes,) in N.
+    """Displacements (dof,), mesh deflections (meshes,) in m and rad, elastic mesh forces (meshes,) in N.
 
-    `residual` is the largest force imbalance over the largest applied or mesh force.
+    A mesh's force is that of its drive flank less that of its back flank, its deflection the tangential
+    part. `residual` is the largest force imbalance over the largest applied or mesh force.
     """
 
-    displacements: NDArray[np.float64]
-    deflections: NDArray[np.float64]
-    forces: NDArray[np.float64]
+    displacements: Array
+    deflections: Array
+    forces: Array
     residual: float
 
 
-def dead_zone(deflections: NDArray[np.float64], half_width: float) -> NDArray[np.float64]:
-    """f(d) of equation (19), any shape."""
-    return np.sign(deflections) * np.maximum(np.abs(deflections) - half_width, 0.0)
+@dataclass(frozen=True, eq=False)
+class Equilibria:
+    """K positions: displacements (K, dof) in m and rad, flank_forces (K, 2 meshes) in N, drive flanks first.
+
+    deflections (K, meshes): tangential, m. residual (K,): largest imbalance over the largest force.
+    """
+
+    displacements: Array
+    deflections: Array
+    flank_forces: Array
+    residual: Array
+
+    @property
+    def forces(self) -> Array:
+        """What each mesh transmits, drive flank less back flank, (K, meshes), N."""
+        drive, back = np.split(self.flank_forces, 2, axis=1)
+        return drive - back
 
 
 def static_equilibrium(machine: Machine, cycles: float | None = None) -> Equilibrium:
-    """Minimise the elastic energy less the work of the torques (convex: the dead zone only flattens it).
+    """Equilibrium at a position of the mesh cycle, or (None) with mean stiffness and no e(t).
 
-    `cycles` is the position in the mesh cycle that gives k and e; None takes mean stiffness and no error.
-    A body that is free inside its backlash is left at one of its possible positions.
-    Raises NotConverged.
+    A body that is free inside its backlash is left at one of its possible positions. Raises NotConverged.
     """
-    directions = mesh_directions(machine.layout)
-    if cycles is None:
-        stiffness = np.full(len(directions), machine.stiffness.mean)
-        error = np.zeros(len(directions))
-    else:
-        stiffness = machine.stiffness(cycles - machine.phases)
-        error = machine.error(cycles - machine.error_phases)
-    bearing = bearing_diagonal(machine.layout)
-    applied = np.zeros(bearing.size)
-    applied[3::DOF_PER_BODY] = machine.torques
-    # Rotations are scaled by the pinion radius so that all unknowns are lengths of one order.
-    scale = np.ones(bearing.size)
-    scale[3::DOF_PER_BODY] = 1.0 / machine.layout.pinion_radius
-    scaled = _Springs(
-        directions * scale, stiffness, error, bearing * scale**2, applied * scale, machine.half_backlash
-    )
-    solution = _minimise(scaled)
-    deflections, forces = scaled.deflections(solution), scaled.forces(solution)
-    size = max(np.abs(applied * scale).max(), np.abs(forces).max())
-    residual = float(np.abs(scaled.balance(solution)).max() / size) if size > 0.0 else 0.0
-    # A deflection in the dead zone's neighbourhood is known to rounding only, and so is its force.
-    rounding = 100.0 * np.finfo(float).eps * stiffness.max() * np.abs(deflections).max()
-    if residual * size > RESIDUAL * size + rounding:
+    if machine.layout.is_geometric:
+        found = mean_equilibrium(machine) if cycles is None else equilibria(machine, np.array([cycles]))
+        return Equilibrium(
+            found.displacements[0], found.deflections[0], found.forces[0], float(found.residual[0])
+        )
+    displacements, deflections, forces, residual, rounding = printed_equilibrium(machine, cycles)
+    if residual > RESIDUAL + rounding:
         where = "mean stiffness" if cycles is None else f"mesh position {cycles:.4f}"
         raise NotConverged("static equilibrium", where, f"force imbalance {residual:.2e} over {RESIDUAL:.0e}")
-    return Equilibrium(scale * solution, deflections, forces, residual)
+    return Equilibrium(displacements, deflections, forces, residual)
 
 
-@dataclass(frozen=True, eq=False)
-class _Springs:
-    """Meshes and bearings in scaled displacements q: directions (meshes, q), the rest per mesh or per q."""
-
-    directions: NDArray[np.float64]
-    stiffness: NDArray[np.float64]
-    error: NDArray[np.float64]
-    bearing: NDArray[np.float64]
-    applied: NDArray[np.float64]
-    half_width: float
-
-    def deflections(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
-        return self.directions @ q - self.error
-
-    def forces(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
-        return self.stiffness * dead_zone(self.deflections(q), self.half_width)
-
-    def balance(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
-        return self.bearing * q + self.directions.T @ self.forces(q) - self.applied
-
-    def curvature(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
-        active = np.where(np.abs(self.deflections(q)) > self.half_width, self.stiffness, 0.0)
-        return np.diag(self.bearing) + (self.directions.T * active) @ self.directions
+def equilibria(machine: Machine, cycles: Array) -> Equilibria:
+    """Equilibrium at `cycles` (K,), mesh cycles from the start, all errors in. Raises NotConverged."""
+    errors = constant_errors(machine) + periodic_values(error_series(machine), cycles)
+    if machine.imperfections.any_slow:
+        errors += slow_errors(machine, cycles)
+    stiffness = periodic_values(stiffness_series(machine), cycles)
+    return settle(machine, stiffness, errors, [f"mesh position {at:.4f}" for at in cycles])
 
 
-def _minimise(springs: _Springs) -> NDArray[np.float64]:
-    """Proximal point method: each round ties the body to its last place by a spring softer than before.
+def mean_equilibrium(machine: Machine) -> Equilibria:
+    """Equilibrium with mean stiffness and constant errors alone. Raises NotConverged."""
+    factors = np.tile(machine.imperfections.stiffness, 2)
+    errors = constant_errors(machine)
+    return settle(machine, machine.stiffness.mean * factors[None], errors[None], ["mean stiffness"])
 
-    The springs make every round strictly convex, so that bodies free inside their backlash have a place too;
-    the force in the springs goes to zero as the rounds settle.
+
+def settle(machine: Machine, stiffness: Array, errors: Array, names: list[str]) -> Equilibria:
+    """Equilibrium for stiffness and errors of every flank, each (K, 2 meshes). Raises NotConverged."""
+    springs, kept, scale = static_springs(machine)
+    gaps = errors + flank_gaps(machine)
+    start = np.zeros(kept.size)
+    places, forces, residual = settle_all(
+        springs, np.ascontiguousarray(stiffness), np.ascontiguousarray(gaps), TOLERANCE, start
+    )
+    displacements = np.zeros((len(gaps), machine.layout.dof))
+    np.add.at(displacements.T, kept, (places * scale).T)
+    _require(springs, stiffness, gaps, places, residual, names)
+    drive, back = np.split(displacements @ flank_directions(machine.layout).T - errors, 2, axis=1)
+    return Equilibria(displacements, 0.5 * (drive - back), forces, residual)
+
+
+def static_springs(machine: Machine) -> tuple[Springs, NDArray[np.int64], Array]:
+    """The compiled problem, which degrees of freedom it keeps (n,), and the m or rad of its unknowns (n,).
+
+    Left out is the pinions' motion along their own axes, which no mesh feels.
     """
-    size = np.abs(springs.applied).max()
-    stiffest = max(springs.stiffness.max(), springs.bearing.max())
-    place = np.zeros(springs.bearing.size)
-    for tie in stiffest * np.geomspace(FIRST_SPRING, LAST_SPRING, ROUNDS):
-        last = place
-        place = _newton(springs, tie, last)
-        largest = max(size, np.abs(springs.forces(place)).max())
-        if tie * np.abs(place - last).max() <= 1e-3 * RESIDUAL * largest:
-            break
-    return place
+    layout = machine.layout
+    kept, scale = _unknowns(layout)
+    bearing = bearing_matrix(layout)
+    pinions = len(layout.pinions)
+    first = 3 * pinions
+    wide = (kept.size - first) // len(layout.gears)
+    x = DOF_PER_BODY * np.arange(pinions)
+    applied = np.zeros(layout.dof)
+    applied[layout.spins] = machine.torques
+    touched = np.array(layout.meshes * 2) * [3, wide] + [0, first]
+    columns = np.concatenate([touched[:, :1] + np.arange(3), touched[:, 1:] + np.arange(wide)], axis=1)
+    directions = flank_directions(layout)[:, kept] * scale
+    return (
+        Springs(
+            jacobian=np.take_along_axis(directions, columns, axis=1),
+            pinion=touched[:, 0].copy(),
+            gear=touched[:, 1].copy(),
+            pinion_bearing=np.stack([bearing[x, x], bearing[x, x + 1], bearing[x + 1, x + 1]], axis=1),
+            clearance=machine.imperfections.clearance,
+            gear_bearing=bearing_diagonal(layout)[kept[first:]] * scale[first:] ** 2,
+            applied=applied[kept] * scale,
+        ),
+        kept,
+        scale,
+    )
 
 
-def _newton(springs: _Springs, tie: float, anchor: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Newton's method with an exact line search on the piecewise quadratic energy of one round."""
-
-    def gradient(q: NDArray[np.float64]) -> NDArray[np.float64]:
-        return springs.balance(q) + tie * (q - anchor)
-
-    place, ties = anchor, tie * np.eye(len(anchor))
-    for _ in range(MAX_ITERATIONS):
-        step = -scipy.linalg.solve(springs.curvature(place) + ties, gradient(place), assume_a="pos")
-        moved = place + step * _line_minimum(
-            lambda s, step=step, at=place: float(gradient(at + s * step) @ step)
-        )
-        if np.abs(moved - place).max() <= 1e-15 * max(np.abs(place).max(), springs.half_width):
-            return moved
-        place = moved
-    return place
+def bearing_forces(machine: Machine, found: Equilibria) -> Array:
+    """Force of every body on its bearing along x, y, z, shape (K, bodies, 3), N."""
+    layout = machine.layout
+    bodies = DOF_PER_BODY * len(layout.bodies)
+    moved = found.displacements.copy()
+    for i, play in enumerate(machine.imperfections.clearance):
+        if play > 0.0:
+            at = slice(DOF_PER_BODY * i, DOF_PER_BODY * i + 2)
+            distance = np.hypot(*moved[:, at].T)[:, None]
+            moved[:, at] *= np.maximum(1.0 - play / np.maximum(distance, play), 0.0)
+    forces = moved @ bearing_matrix(layout)
+    return forces[:, :bodies].reshape(len(forces), -1, DOF_PER_BODY)[..., :3]
 
 
-def _line_minimum(slope: Callable[[float], float]) -> float:
-    """Zero of a slope that only grows along the line, bracketed by doubling."""
-    at_low = slope(0.0)
-    if at_low >= 0.0:
-        return 0.0
-    if abs(slope(1.0)) <= 1e-12 * abs(at_low):
-        return 1.0
-    low, high = 0.0, 1.0
-    while slope(high) < 0.0:
-        low, high = high, 2.0 * high
-    return float(scipy.optimize.brentq(slope, low, high, xtol=1e-16, rtol=1e-15))
+def _unknowns(layout: Layout) -> tuple[NDArray[np.int64], Array]:
+    """Kept degrees of freedom and their lengths: turns at the mesh, tilts at the mesh radius.
+
+    If one gear may rock, another that may not is given tilts of no length.
+    """
+    kept: list[int] = []
+    scale: list[float] = []
+    pinions, bodies = len(layout.pinions), len(layout.bodies)
+    for body in range(bodies):
+        letters = (0, 1, 3) if body < pinions else (0, 1, 2, 3)
+        arm = layout.pinion_arm if body < pinions else layout.gear_arm
+        kept += [DOF_PER_BODY * body + letter for letter in letters]
+        scale += [1.0 / arm if letter == 3 else 1.0 for letter in letters]
+        if body >= pinions and layout.tilting:
+            rocks = body - pinions in layout.tilting
+            at = DOF_PER_BODY * bodies + 2 * (layout.tilting.index(body - pinions) if rocks else 0)
+            kept += [at, at + 1]
+            scale += 2 * [1.0 / layout.mesh_radius if rocks else 0.0]
+    return np.array(kept), np.array(scale)
+
+
+def _require(
+    springs: Springs, stiffness: Array, gaps: Array, places: Array, residual: Array, names: list[str]
+) -> None:
+    """Raise NotConverged for the first position whose imbalance is more than rounding explains."""
+    if (residual <= ACCEPTED).all():
+        return
+    # A flank about to close, a bearing at the rim of its play: the force is known to k times an ulp.
+    length = np.abs(places).max() + np.abs(gaps).max() + springs.clearance.max()
+    stiffest = max(stiffness.max(), springs.pinion_bearing.max(), springs.gear_bearing.max())
+    largest = max(np.abs(springs.applied).max(), (stiffness * length).min() * np.finfo(float).eps)
+    allowed = ACCEPTED + 100.0 * np.finfo(float).eps * stiffest * length / largest
+    worst = int(np.argmax(residual))
+    if not residual[worst] <= allowed:
+        tried = f"force imbalance {residual[worst]:.2e} over {allowed:.0e}"
+        raise NotConverged("static equilibrium", names[worst], tried)

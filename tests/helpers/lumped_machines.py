@@ -3,7 +3,7 @@
 import numpy as np
 
 from facegear.harmonics.series import Harmonics
-from facegear.transmission.layout import Body, FaceGear, Layout, Pinion, Role, Side
+from facegear.transmission.layout import Body, FaceGear, Layout, MeshKinematics, Pinion, Role, Side
 from facegear.transmission.machine import Damping, Machine, OpenFlanks, balanced_torques, pinion_torques
 
 PLACES = (
@@ -16,7 +16,11 @@ PLACES = (
 
 
 def make_layout(
-    places=PLACES, sides=(Side.LOWER, Side.UPPER), pinion_bearing=6.5e7, gear_bearing=8.7e9
+    places=PLACES,
+    sides=(Side.LOWER, Side.UPPER),
+    pinion_bearing=6.5e7,
+    gear_bearing=8.7e9,
+    kinematics=MeshKinematics.PRINTED,
 ) -> Layout:
     pinion = Body(1.199, 0.002, (pinion_bearing, pinion_bearing, 0.0))
     gear = Body(7.795, 0.54, (gear_bearing,) * 3)
@@ -28,7 +32,8 @@ def make_layout(
         gear_teeth=143,
         pressure_angle=angle,
         pinion_radius=3.75e-3 * 23 / 2 * np.cos(angle),
-        gear_radius=0.2625,
+        gear_radius=0.2625 if kinematics is MeshKinematics.PRINTED else 3.75e-3 * 143 / 2 * np.cos(angle),
+        kinematics=kinematics,
     )
 
 
@@ -43,6 +48,7 @@ def make_machine(
     mass_damping=800.0,
     bearing_damping=2e-6,
     open_flanks=OpenFlanks.ALWAYS,
+    imperfections=None,
 ) -> Machine:
     layout = layout or make_layout()
     stiffness = stiffness or Harmonics(np.array([0.0, 2e7, 6e6]), np.array([4.1e8, 3e7, -8e6]))
@@ -53,4 +59,5 @@ def make_machine(
         error=Harmonics(np.zeros(2), np.array([0.0, error])),
         half_backlash=backlash / 2,
         damping=Damping(mesh_damping, mass_damping, bearing_damping, open_flanks),
+        imperfections=imperfections,
     )

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.transmission.layout import DOF_PER_BODY
 from facegear.transmission.machine import Damping, Machine
 from facegear.transmission.matrices import bearing_diagonal, mass_diagonal, mesh_directions
 
@@ -42,7 +41,7 @@ def reduce(machine: Machine) -> Reduced:
     bearing = bearing_diagonal(layout)
     mesh_jacobian = mesh_directions(layout)
     applied = np.zeros(mass.size)
-    applied[3::DOF_PER_BODY] = machine.torques
+    applied[layout.spins] = machine.torques
     basis, omega_squared = coupled_basis(mesh_jacobian, mass, bearing)
     touched = (mesh_jacobian != 0.0).any(axis=0) | (bearing != 0.0) | (applied != 0.0)
     names = np.array(layout.dof_names)

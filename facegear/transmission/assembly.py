@@ -1,0 +1,78 @@
+"""Can the teeth be brought together: pinions that bridge two face gears fit at some angles only.
+
+A pinion between two counter-facing gears of N teeth sets how far their teeth are turned against each other.
+Pinions i and j set the same if 2 (P_i - P_j) is an integer, P their angles in pitches; what is left over is a
+misfit between the two meshes of a pinion, which the backlash of both takes up or the machine cannot be built.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.transmission.layout import Layout
+
+ROUNDED = 1e-3
+"""Misfit in pitches that counts as an angle given with few digits (three decimals of a degree)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Assembly:
+    """What each pinion leaves over where it bridges both gears, all (pinions,).
+
+    misfit (m along the line of action): how far the teeth of its lower mesh stand ahead of the gear's, with
+    the upper mesh in place and the lower gear where most pinions fit; positive closes the drive flank.
+    room (m): what its backlashes take up to either side. fits: whether it mounts together with the others.
+    below, above: the nearest angles that leave nothing over, in pitches.
+    """
+
+    misfit: NDArray[np.float64]
+    room: NDArray[np.float64]
+    fits: NDArray[np.bool_]
+    below: NDArray[np.float64]
+    above: NDArray[np.float64]
+
+
+def assembly(
+    layout: Layout, half_backlash: NDArray[np.float64], clocking: NDArray[np.float64] | None = None
+) -> Assembly:
+    """Check all pinions; half_backlash (meshes,) in m, clocking (pinions,) of the lower rims in pitches.
+
+    With one face gear nothing has to fit.
+    """
+    count = len(layout.pinions)
+    pitches = np.array([pinion.pitches for pinion in layout.pinions])
+    turned = np.zeros(count) if clocking is None else clocking
+    if len(layout.gears) < 2:
+        nothing = np.zeros(count)
+        return Assembly(nothing, np.full(count, np.inf), np.ones(count, bool), pitches, pitches)
+    room = half_backlash.reshape(len(layout.gears), count).sum(axis=0)
+    ahead = turned - 2.0 * pitches
+    reach = room / layout.base_pitch + 0.5 * ROUNDED
+    together = np.abs(_wrapped(ahead[:, None] - ahead)) <= reach[:, None] + reach
+    most = int(np.argmax(together.sum(axis=1)))
+    left = _wrapped(ahead - ahead[most])
+    low, high = left[together[most]].min(), left[together[most]].max()
+    fits = _all_together(left, reach, together[most])
+    middle = 0.5 * (low + high)
+    near = np.floor(2.0 * (pitches - 0.5 * (turned - ahead[most])))
+    steps = 0.5 * (turned - ahead[most] + near)
+    return Assembly((left - middle) * layout.base_pitch, room, fits, steps, steps + 0.5)
+
+
+def _wrapped(pitches: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The nearest to zero of a number of pitches and whole pitches more or less."""
+    return pitches - np.round(pitches)
+
+
+def _all_together(
+    left: NDArray[np.float64], reach: NDArray[np.float64], candidates: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Which pinions share one place of the lower gear, from the candidates outwards (pinions,)."""
+    fits = np.zeros(left.size, bool)
+    low, high = -np.inf, np.inf
+    for i in np.argsort(np.abs(left)):
+        below, above = max(low, left[i] - reach[i]), min(high, left[i] + reach[i])
+        if candidates[i] and below <= above:
+            fits[i], low, high = True, below, above
+    return fits

@@ -1,0 +1,109 @@
+"""Gap, stiffness and error of every flank: all drive flanks, then all back flanks.
+
+    drive: d = t + s - e_t - e_s,   back: d = -t + s + e_t - e_s,   force k max(d - b, 0)
+
+A pinion or tooth out of place moves both flanks by the same tangential and separating parts as a motion
+would. A tooth's own error and stiffness are the drive flank's mirror image on the back flank: f_back(p) =
+f_drive(-p), p the place of the pinion's tooth past the pitch line.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.harmonics.series import Harmonics
+from facegear.transmission.assembly import assembly
+from facegear.transmission.layout import Side
+from facegear.transmission.machine import Machine
+
+Array = NDArray[np.float64]
+
+
+def flank_gaps(machine: Machine) -> Array:
+    """Half backlash b of every flank, shape (2 meshes,), m."""
+    return np.tile(machine.half_backlashes, 2)
+
+
+def stiffness_series(machine: Machine) -> list[Harmonics]:
+    """k of every flank over the reference's mesh cycle, N/m."""
+    factors = machine.imperfections.stiffness
+    return _both([machine.stiffness.scaled(float(factor)) for factor in factors], machine.phases)
+
+
+def error_series(machine: Machine) -> list[Harmonics]:
+    """e(t) of every flank over the reference's mesh cycle, m, without what is constant or slow."""
+    own = machine.imperfections.series
+    shapes = [own.get(mesh, machine.error) for mesh in range(len(machine.layout.meshes))]
+    return _both(shapes, machine.error_phases)
+
+
+def constant_errors(machine: Machine) -> Array:
+    """Error of every flank that never changes, (2 meshes,), m: teeth, pinions out of place, assembly."""
+    layout, errors = machine.layout, machine.imperfections
+    tangential = errors.error.copy()
+    separating = np.zeros_like(tangential)
+    cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
+    misfit = assembly(layout, machine.half_backlashes, errors.clocking).misfit
+    for mesh, (i, g) in enumerate(layout.meshes):
+        lower = layout.gears[g].side is Side.LOWER
+        side = -1.0 if lower else 1.0
+        tangential[mesh] -= side * cosine * errors.position[i, 0] + (misfit[i] if lower else 0.0)
+        separating[mesh] -= side * sine * errors.position[i, 1]
+    return _flanks(tangential, separating)
+
+
+def slow_errors(machine: Machine, cycles: Array) -> Array:
+    """Error of every flank from runouts and pitch deviations, shape (K, 2 meshes), m.
+
+    `cycles` (K,) counts mesh cycles of the reference from the start.
+    """
+    layout, errors = machine.layout, machine.imperfections
+    tangential, separating = np.zeros((2, cycles.size, len(layout.meshes)))
+    cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
+    for mesh, (i, g) in enumerate(layout.meshes):
+        lower = layout.gears[g].side is Side.LOWER
+        side = -1.0 if lower else 1.0
+        runout = errors.pinion_runout[i]
+        turn = 2.0 * np.pi * cycles / layout.pinion_teeth + runout.phase
+        tangential[:, mesh] -= side * cosine * runout.amplitude * np.sin(turn)
+        separating[:, mesh] -= side * sine * runout.amplitude * np.cos(turn)
+        runout = errors.gear_runout[g]
+        turn = side * 2.0 * np.pi * cycles / layout.gear_teeth + runout.phase
+        tangential[:, mesh] += side * cosine * runout.amplitude * np.cos(turn - layout.angles[i])
+        on_pinion = cycles - (0.5 * layout.pinion_teeth if lower else 0.0)
+        on_gear = cycles - side * layout.pinions[i].pitches
+        tangential[:, mesh] -= cosine * _deviation(errors.pinion_pitch.get(i), on_pinion)
+        tangential[:, mesh] += cosine * _deviation(errors.gear_pitch.get(g), on_gear)
+    return _flanks(tangential, separating)
+
+
+def periodic_values(series: list[Harmonics], cycles: Array) -> Array:
+    """Values of Fourier series at `cycles` (K,), shape (K, series)."""
+    order = max(one.order for one in series)
+    a, b = np.zeros((2, len(series), order + 1))
+    for row, one in enumerate(series):
+        a[row, : one.order + 1], b[row, : one.order + 1] = one.a, one.b
+    angle = 2.0 * np.pi * np.outer(cycles, np.arange(order + 1))
+    return np.sin(angle) @ a.T + np.cos(angle) @ b.T
+
+
+def mirrored(series: Harmonics) -> Harmonics:
+    """The series of f(-t)."""
+    return Harmonics(-series.a, series.b)
+
+
+def _both(drive: list[Harmonics], phases: Array) -> list[Harmonics]:
+    """Drive flanks and their mirror images, each as its mesh passes through the cycle."""
+    flanks = [*drive, *(mirrored(one) for one in drive)]
+    lags = [float(lag) for lag in np.round(np.tile(phases, 2), 12)]
+    return [one.shifted(lag) for one, lag in zip(flanks, lags, strict=True)]
+
+
+def _flanks(tangential: Array, separating: Array) -> Array:
+    return np.concatenate([separating + tangential, separating - tangential], axis=-1)
+
+
+def _deviation(curve: Array | None, places: Array) -> Array:
+    """Pitch deviation between the teeth, linear from tooth to tooth, (K,)."""
+    if curve is None:
+        return np.zeros(places.size)
+    return np.interp(places, np.arange(curve.size), curve, period=curve.size)

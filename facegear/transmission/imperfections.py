@@ -1,0 +1,68 @@
+"""What makes one mesh or one body of a real gearbox differ from the others."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.harmonics.series import Harmonics
+from facegear.transmission.layout import Layout
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Runout:
+    """Eccentricity of a body's teeth: amplitude (m), and where its high point is at the start (rad).
+
+    A pinion's angle counts from the upper gear, a face gear's from the first pinion, both as the body turns.
+    """
+
+    amplitude: float = 0.0
+    phase: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Imperfections:
+    """Errors of single meshes and bodies; lengths in m.
+
+    error (meshes,): constant, along the line of action, positive where the drive flank comes late.
+    half_backlash (meshes,): nan takes the machine's. stiffness (meshes,): factor on k(t). series: e(t) of a
+    mesh by its index, in place of the common one. position (pinions, 2): x, y of the pinion's bearings.
+    clearance (pinions,): radial play of the bearings. clocking (pinions,): lower rim ahead of the upper, in
+    pitches. pinion_runout, gear_runout: one a body. pinion_pitch, gear_pitch: by the body's index, cumulative
+    pitch deviation (teeth,) along the pitch circle, positive where a tooth stands ahead as the body turns.
+    """
+
+    error: Array
+    half_backlash: Array
+    stiffness: Array
+    position: Array
+    clearance: Array
+    clocking: Array
+    pinion_runout: tuple[Runout, ...]
+    gear_runout: tuple[Runout, ...]
+    series: dict[int, Harmonics] = field(default_factory=dict)
+    pinion_pitch: dict[int, Array] = field(default_factory=dict)
+    gear_pitch: dict[int, Array] = field(default_factory=dict)
+
+    @property
+    def any_slow(self) -> bool:
+        """Whether an error changes from one mesh cycle to the next."""
+        turning = (*self.pinion_runout, *self.gear_runout)
+        return bool(self.pinion_pitch or self.gear_pitch or any(one.amplitude != 0.0 for one in turning))
+
+
+def perfect(layout: Layout) -> Imperfections:
+    """No errors at all."""
+    meshes, pinions, gears = len(layout.meshes), len(layout.pinions), len(layout.gears)
+    return Imperfections(
+        error=np.zeros(meshes),
+        half_backlash=np.full(meshes, np.nan),
+        stiffness=np.ones(meshes),
+        position=np.zeros((pinions, 2)),
+        clearance=np.zeros(pinions),
+        clocking=np.zeros(pinions),
+        pinion_runout=(Runout(),) * pinions,
+        gear_runout=(Runout(),) * gears,
+    )

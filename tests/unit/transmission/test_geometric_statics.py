@@ -1,0 +1,303 @@
+"""Static load sharing of geometric meshes against closed forms, enumeration and energy."""
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from lumped_machines import make_layout, make_machine
+
+from facegear.harmonics.series import Harmonics
+from facegear.transmission.contact_kernel import Springs, settle_all
+from facegear.transmission.imperfections import Runout, perfect
+from facegear.transmission.layout import Body, MeshKinematics, Role, Side, Tilt
+from facegear.transmission.matrices import bearing_matrix, flank_directions, rigid_rotation
+from facegear.transmission.statics import (
+    TOLERANCE,
+    bearing_forces,
+    equilibria,
+    mean_equilibrium,
+    static_equilibrium,
+    static_springs,
+)
+
+K = 4.1e8
+FLAT = Harmonics(np.zeros(1), np.array([K]))
+COSINE = np.cos(np.radians(25.0))
+SINE = np.sin(np.radians(25.0))
+HELD = 1e22
+
+
+def layout_with(bearings, roles, sides=(Side.LOWER, Side.UPPER), gear_bearing=HELD, coupled=0.0):
+    """Pinions with bearings of their own, 45 pitches apart."""
+    places = tuple((f"p{i}", role, 45.0 * i) for i, role in enumerate(roles))
+    layout = make_layout(places, sides, 1.0, gear_bearing, MeshKinematics.GEOMETRIC)
+    pinions = tuple(
+        replace(pinion, body=Body(1.2, 0.002, (k, k, 0.0), coupled * k))
+        for pinion, k in zip(layout.pinions, bearings, strict=True)
+    )
+    return replace(layout, pinions=pinions)
+
+
+def machine_with(layout, torque=800.0, tail_share=0.0, backlash=100e-6, **errors):
+    flaws = replace(perfect(layout), **{name: np.asarray(value) for name, value in errors.items()})
+    options = {"tail_share": tail_share, "stiffness": FLAT, "error": 0.0, "imperfections": flaws}
+    return make_machine(layout, torque, backlash=backlash, **options)
+
+
+def held_forces(machine):
+    """Mesh forces (meshes,) of flanks drive - back with both face gears held against turning."""
+    springs, kept, _ = static_springs(machine)
+    springs = springs._replace(gear_bearing=np.full(springs.gear_bearing.size, HELD))
+    from facegear.transmission.flanks import constant_errors, flank_gaps
+
+    gaps = (constant_errors(machine) + flank_gaps(machine))[None]
+    _, forces, residual = settle_all(springs, np.full_like(gaps, K), gaps, TOLERANCE, np.zeros(kept.size))
+    assert residual[0] < 1e-12
+    drive, back = np.split(forces[0], 2)
+    return drive - back
+
+
+@pytest.mark.parametrize("bearing", 10.0 ** np.arange(5, 13))
+@pytest.mark.parametrize("misfit", [12e-6, -7e-6])
+def test_a_floating_input_between_held_gears_shares_as_the_closed_form_says(bearing, misfit):
+    layout = layout_with([bearing], [Role.INPUT])
+    forces = held_forces(machine_with(layout, error=[misfit, 0.0]))
+    exact = K * misfit / (1.0 + 2.0 * K / bearing)
+    total = 800.0 / layout.pinion_arm
+    np.testing.assert_allclose(forces[1] - forces[0], exact, rtol=1e-10, atol=1e-10 * total)
+    np.testing.assert_allclose(forces.sum(), total, rtol=1e-12)
+
+
+def test_both_limits_of_an_inputs_bearing():
+    layout = layout_with([1e-6], [Role.INPUT])
+    floating = held_forces(machine_with(layout, error=[10e-6, 0.0]))
+    assert floating[1] - floating[0] == pytest.approx(0.0, abs=1e-6)
+    fixed = held_forces(machine_with(layout_with([1e20], [Role.INPUT]), error=[10e-6, 0.0]))
+    assert fixed[1] - fixed[0] == pytest.approx(K * 10e-6, rel=1e-10)
+
+
+LOOPS = [(k_in, 1e11) for k_in in 10.0 ** np.arange(5, 13)]
+LOOPS += [(3e7, k_id) for k_id in 2.0 * 10.0 ** np.arange(9, 16)]
+
+
+@pytest.mark.parametrize(("k_in", "k_id"), LOOPS)
+def test_the_loop_through_the_idlers_loads_the_upper_mesh_as_the_closed_form_says(k_in, k_id):
+    machine = machine_with(layout_with([k_in, k_id], [Role.INPUT, Role.IDLER]), 4000.0)
+    found = mean_equilibrium(machine)
+    # The idler works on its back flank below and on its drive flank above; nothing else touches.
+    loaded = found.flank_forces[0] > 0.0
+    np.testing.assert_array_equal(loaded, [True, False, True, True, False, True, False, False])
+    lower_in, lower_idler, upper_in, upper_idler = found.forces[0]
+    loop = 2.0 * upper_idler + 100e-6 * K + 4.0 * upper_idler * K * COSINE**2 / k_id
+    exact = loop / (1.0 + 2.0 * K / k_in)
+    assert upper_in - lower_in == pytest.approx(exact, rel=1e-10, abs=1e-10 * upper_in)
+    assert lower_idler == pytest.approx(-upper_idler, rel=1e-10)
+
+
+def test_an_input_leaves_its_bearing_alone_and_an_idler_pulls_it_with_twice_the_tangential_force():
+    machine = machine_with(layout_with([1e3, 1e10], [Role.INPUT, Role.IDLER]), 2000.0, backlash=0.0)
+    found = mean_equilibrium(machine)
+    reaction = bearing_forces(machine, found)[0]
+    idler = found.forces[0, 3]
+    assert np.abs(reaction[0]).max() < 1e-3 * idler
+    np.testing.assert_allclose(-reaction[1], [2.0 * idler * COSINE, 0.0, 0.0], atol=1e-7 * idler)
+
+
+def test_one_torque_is_one_mesh_force_over_the_base_radius_and_ratios_are_the_teeths():
+    layout = make_layout(
+        (("one", Role.INPUT, 0.0),), (Side.UPPER,), kinematics=MeshKinematics.GEOMETRIC, pinion_bearing=1e8
+    )
+    machine = machine_with(layout, 664.0)
+    base_radius = 3.75e-3 * 23 / 2 * COSINE
+    assert mean_equilibrium(machine).forces[0, 0] == pytest.approx(664.0 / base_radius, rel=1e-12)
+    assert -machine.torques[1] / machine.torques[0] == pytest.approx(143 / 23, rel=1e-12)
+    turn = rigid_rotation(layout)
+    assert turn[3] / turn[7] == pytest.approx(143 / 23, rel=1e-12)
+
+
+def test_a_squeezed_pinion_wedges_with_both_flanks_loaded():
+    bearing, pushed, half = 2e8, 180e-6, 50e-6
+    machine = machine_with(layout_with([bearing], [Role.INPUT]), 0.0, position=[[0.0, pushed]])
+    found = mean_equilibrium(machine)
+    lower_drive, upper_drive, lower_back, upper_back = found.flank_forces[0]
+    gives = -2.0 * K * SINE * (pushed * SINE - half) / (bearing + 2.0 * K * SINE**2)
+    each = K * ((pushed + gives) * SINE - half)
+    assert each > 1000.0
+    np.testing.assert_allclose([upper_drive, upper_back], each, rtol=1e-10)
+    assert lower_drive == lower_back == 0.0
+    assert np.abs(found.forces).max() < 1e-9 * each
+
+
+def random_machine(draw, most_pinions):
+    count = draw(st.integers(1, most_pinions))
+    sides = draw(st.sampled_from([(Side.LOWER, Side.UPPER), (Side.UPPER,)]))
+    bearings = [10.0 ** draw(st.floats(5, 11)) for _ in range(count)]
+    roles = [Role.INPUT, *(draw(st.sampled_from(list(Role))) for _ in range(count - 1))]
+    layout = layout_with(bearings, roles, sides, 10.0 ** draw(st.floats(7, 11)), draw(st.floats(-0.9, 0.9)))
+    if draw(st.booleans()):
+        tilt = Tilt(0.3, 10.0 ** draw(st.floats(5, 9)))
+        rocking = replace(layout.gears[0], body=replace(layout.gears[0].body, tilt=tilt))
+        layout = replace(layout, gears=(rocking, *layout.gears[1:]))
+    random = np.random.default_rng(draw(st.integers(0, 2**31)))
+    meshes = len(layout.meshes)
+    return machine_with(
+        layout,
+        draw(st.floats(50.0, 3000.0)),
+        draw(st.floats(0.0, 0.4)),
+        draw(st.floats(1e-6, 2e-4)),
+        error=draw(st.floats(0.0, 60e-6)) * random.normal(size=meshes),
+        position=draw(st.floats(0.0, 60e-6)) * random.normal(size=(count, 2)),
+        stiffness=random.uniform(0.7, 1.4, meshes),
+    )
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.data())
+def test_sharing_with_gaps_is_the_one_consistent_state_of_all_contact_states(data):
+    from facegear.transmission.flanks import constant_errors, flank_gaps
+
+    machine = random_machine(data.draw, 2)
+    layout = machine.layout
+    directions, bearing = flank_directions(layout), bearing_matrix(layout)
+    applied = np.zeros(layout.dof)
+    applied[layout.spins] = machine.torques
+    gap = constant_errors(machine) + flank_gaps(machine)
+    stiffness = K * np.tile(machine.imperfections.stiffness, 2)
+    forces = mean_equilibrium(machine).flank_forces[0]
+    scale = np.ones(layout.dof)
+    scale[layout.spins] = 1.0 / layout.pinion_radius
+    directions, bearing, applied = directions * scale, bearing * np.outer(scale, scale), applied * scale
+    size = max(np.abs(applied).max(), forces.max())
+    matching = []
+    for state in itertools.product((False, True), repeat=gap.size):
+        on = np.array(state)
+        pressed = directions[on]
+        matrix = bearing + (pressed.T * stiffness[on]) @ pressed
+        right = applied + pressed.T @ (stiffness[on] * gap[on])
+        place = np.linalg.lstsq(matrix, right, rcond=1e-15)[0]
+        place += np.linalg.lstsq(matrix, right - matrix @ place, rcond=1e-15)[0]
+        if np.abs(matrix @ place - right).max() > 1e-6 * size:
+            continue
+        over = directions @ place - gap
+        if (over[on] >= -1e-12).all() and (over[~on] <= 1e-12).all():
+            matching.append(np.where(on, stiffness * over, 0.0))
+    # Bodies that float free leave states that differ only in where lstsq puts them.
+    assert matching or _floats(machine)
+    for found in matching:
+        np.testing.assert_allclose(forces, found, atol=1e-6 * size)
+
+
+def _floats(machine):
+    """Whether a body hangs between its flanks: least squares may then put it where flanks overlap."""
+    forces = mean_equilibrium(machine).flank_forces[0]
+    return (np.add.reduce(forces.reshape(-1, len(machine.layout.pinions)), axis=0) == 0.0).any()
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.data())
+def test_every_force_is_balanced_and_no_flank_pulls_or_penetrates(data):
+    machine = random_machine(data.draw, 5)
+    random = np.random.default_rng(1)
+    count = len(machine.layout.pinions)
+    round_bearings = all(p.body.bearing_xy == 0.0 for p in machine.layout.pinions)
+    flaws = replace(
+        machine.imperfections,
+        clearance=random.uniform(0.0, 30e-6, count) * round_bearings,
+        pinion_runout=tuple(Runout(8e-6, phase) for phase in random.uniform(0, 6, count)),
+        gear_runout=tuple(Runout(2e-5, phase) for phase in random.uniform(0, 6, len(machine.layout.gears))),
+    )
+    machine = replace(machine, imperfections=flaws)
+    found = equilibria(machine, np.linspace(0.0, 200.0, 7))
+    assert (found.flank_forces >= 0.0).all()
+    layout = machine.layout
+    on_bodies = found.flank_forces @ flank_directions(layout)
+    applied = np.zeros(layout.dof)
+    applied[layout.spins] = machine.torques
+    arms = np.where(np.arange(layout.dof) % 4 == 3, layout.pinion_arm, 1.0)
+    size = max(np.abs(machine.torques / layout.pinion_arm).max(), found.flank_forces.max())
+    bodies = slice(0, 4 * len(layout.bodies))
+    missing = ((applied - on_bodies) / arms)[:, bodies].reshape(len(on_bodies), -1, 4)
+    np.testing.assert_allclose(missing[..., :3], bearing_forces(machine, found), atol=2e-11 * size)
+    assert np.abs(missing[..., 3]).max() < 2e-11 * size
+    for g, place in zip(layout.tilting, range(4 * len(layout.bodies), layout.dof, 2), strict=True):
+        moments = layout.gears[g].body.tilt.stiffness * found.displacements[:, place : place + 2]
+        np.testing.assert_allclose(
+            -on_bodies[:, place : place + 2], moments, atol=1e-10 * size * layout.mesh_radius
+        )
+
+
+def test_moving_the_whole_gearbox_loads_nothing():
+    """Sideways, along the axis, round the axis, and turning as the gears turn."""
+    layout = make_layout(kinematics=MeshKinematics.GEOMETRIC)
+    directions = flank_directions(layout)
+    pinions = len(layout.pinions)
+    sideways, lifted, turned = np.zeros((3, layout.dof))
+    sideways[: 4 * pinions : 4] = np.cos(layout.angles - 0.3)
+    sideways[4 * pinions :: 4], sideways[4 * pinions + 1 :: 4] = np.cos(0.3), np.sin(0.3)
+    lifted[1 : 4 * pinions : 4] = lifted[4 * pinions + 2 :: 4] = 1.0
+    turned[: 4 * pinions : 4] = layout.mesh_radius
+    turned[4 * pinions + 3 :: 4] = -1.0, 1.0
+    for motion in (sideways, lifted, turned, rigid_rotation(layout)):
+        assert np.abs(directions @ motion).max() < 1e-15
+
+
+def test_the_contact_problem_of_printed_meshes_is_the_dead_zone():
+    machine = make_machine(make_layout(), error=0.0, stiffness=FLAT)
+    assert not machine.layout.is_geometric
+    found = mean_equilibrium(machine)
+    np.testing.assert_allclose(found.forces[0], static_equilibrium(machine).forces, rtol=1e-7, atol=1e-4)
+
+
+def test_a_pinion_out_of_place_closes_one_mesh_by_what_it_opens_the_other():
+    layout = layout_with([1e20], [Role.INPUT])
+    moved = held_forces(machine_with(layout, position=[[10e-6, 0.0]]))
+    misfit = held_forces(machine_with(layout, error=[2.0 * 10e-6 * COSINE, 0.0]))
+    np.testing.assert_allclose(moved, misfit, rtol=1e-10)
+
+
+def test_a_gear_with_one_mesh_rocks_as_a_lever():
+    """k_tilt / (R sin a)^2 in series with the mesh along its separating part."""
+    layout = layout_with([1e20], [Role.INPUT], (Side.UPPER,))
+    stiffness = 2e7
+    tilt = Tilt(0.3, stiffness)
+    rocking = replace(
+        layout, gears=(replace(layout.gears[0], body=replace(layout.gears[0].body, tilt=tilt)),)
+    )
+    machine = machine_with(rocking, 600.0)
+    found = mean_equilibrium(machine)
+    force = found.forces[0, 0]
+    assert force == pytest.approx(600.0 / layout.pinion_arm, rel=1e-12)
+    turned = -force * layout.mesh_radius * SINE / stiffness
+    np.testing.assert_allclose(found.displacements[0, 8:], [turned, 0.0], rtol=1e-12, atol=1e-18)
+
+
+def test_tilt_of_no_give_is_the_gear_that_cannot_tilt():
+    layout = make_layout(kinematics=MeshKinematics.GEOMETRIC)
+    stiff = tuple(replace(gear, body=replace(gear.body, tilt=Tilt(0.3, 1e21))) for gear in layout.gears)
+    square, rocking = (
+        mean_equilibrium(machine_with(one, 1300.0, 0.1)) for one in (layout, replace(layout, gears=stiff))
+    )
+    np.testing.assert_allclose(rocking.forces, square.forces, rtol=1e-9, atol=1e-9 * square.forces.max())
+
+
+def test_a_pinion_inside_its_play_floats_and_beyond_it_is_held():
+    layout = layout_with([1e9], [Role.INPUT])
+    free = held_forces(machine_with(layout, error=[10e-6, 0.0], clearance=[50e-6]))
+    assert free[0] == pytest.approx(free[1], rel=1e-10)
+    play = 1e-6
+    tight = held_forces(machine_with(layout, error=[10e-6, 0.0], clearance=[play]))
+    # The pinion leans along (cos a, sin a) F_difference: the play takes 2 play off the misfit of 10 um.
+    exact = K * (10e-6 - 2.0 * play) / (1.0 + 2.0 * K / 1e9)
+    assert tight[1] - tight[0] == pytest.approx(exact, rel=1e-9)
+
+
+def test_springs_hold_no_hidden_state():
+    machine = machine_with(make_layout(kinematics=MeshKinematics.GEOMETRIC), 900.0, 0.1)
+    assert isinstance(static_springs(machine)[0], Springs)
+    cycles = np.array([3.3, 0.2, 1700.1])
+    together = equilibria(machine, cycles).flank_forces
+    alone = np.concatenate([equilibria(machine, cycles[k : k + 1]).flank_forces for k in range(3)])
+    np.testing.assert_allclose(together, alone, atol=1e-10 * together.max())
