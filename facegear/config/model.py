@@ -3,6 +3,7 @@
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
+from facegear.config.buildable import require_buildable
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.dynamics import Dynamics
 from facegear.config.load_sharing import LoadSharing
@@ -10,7 +11,7 @@ from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.stiffness import MeshStiffness
 from facegear.config.studies import NAME, Study
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
-from facegear.config.transmission import Transmission, layout, tooth_numbers
+from facegear.config.transmission import Transmission, tooth_numbers
 from facegear.contact.resolution import check_resolution
 from facegear.errors import ConfigError
 
@@ -40,7 +41,7 @@ class Config(Section):
             allowed = "required, as mesh_stiffness.source is not harmonics"
             refuse("tooth_pair.pinion", None, allowed)
         try:
-            layout(
+            require_buildable(
                 self.transmission,
                 tooth_numbers(
                     pair.pinion_teeth, pair.face_gear_teeth, pair.module_mm, pair.pressure_angle_deg

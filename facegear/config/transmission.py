@@ -1,14 +1,18 @@
 """Config section `transmission`: bodies, bearings, damping, backlash, transmission error, torques."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
+from facegear.config.bodies import GearBody, PinionBody, RunoutSection, SingleGear, SinglePinion
 from facegear.harmonics.series import Harmonics
-from facegear.transmission.layout import Body, FaceGear, Layout, Pinion, Role, Side
+from facegear.transmission.imperfections import Imperfections, Runout
+from facegear.transmission.layout import Body, FaceGear, Layout, MeshKinematics, Pinion, Role, Side, Tilt
 from facegear.transmission.machine import Damping, Machine, OpenFlanks, balanced_torques, pinion_torques
 from facegear.transmission.phases import PhaseConvention
 
@@ -33,41 +37,13 @@ class PinionPlace(Section):
         return self
 
 
-class BearingStiffness(Section):
-    """Bearing stiffness along a body's axes."""
-
-    x: float = Field(ge=0, le=1e14)
-    y: float = Field(ge=0, le=1e14)
-    z: float = Field(ge=0, le=1e14)
-
-
-class PinionBody(Section):
-    """Data shared by all pinions; x is tangential to the face gear, y along the face gear's axis."""
-
-    mass_kg: float = Field(gt=0, le=1e5)
-    inertia_kg_m2: float = Field(gt=0, le=1e5)
-    bearing_stiffness_n_per_m: BearingStiffness
-    base_radius_mm: float | None = Field(
-        None, gt=0, le=1e4, description="null: module * teeth / 2 * cos(pressure angle)"
-    )
-
-
-class GearBody(Section):
-    """Data shared by the face gears; z is their axis."""
-
-    mass_kg: float = Field(gt=0, le=1e6)
-    inertia_kg_m2: float = Field(gt=0, le=1e6)
-    bearing_stiffness_n_per_m: BearingStiffness
-    mesh_radius_mm: float = Field(gt=0, le=1e4, description="where the mesh force acts")
-
-
 class DampingSection(Section):
     """Equation (21) and the mesh damping of equation (20)."""
 
     mesh_n_s_per_m: float = Field(ge=0, le=1e7)
     mass_per_s: float = Field(ge=0, le=1e6)
     bearing_s: float = Field(ge=0, le=1e-2)
-    open_flanks: Literal["always", "contact_only"] = "always"
+    open_flanks: Literal["always", "contact_only"] = "contact_only"
 
 
 class ErrorHarmonic(Section):
@@ -88,6 +64,17 @@ class TransmissionError(Section):
     more_harmonics: tuple[ErrorHarmonic, ...] = ()
 
 
+class SingleMesh(Section):
+    """What is different in one mesh; null keeps what all meshes have."""
+
+    error_um: float = Field(
+        0.0, ge=-5000, le=5000, description="constant, positive where the drive flank comes late"
+    )
+    backlash_um: float | None = Field(None, ge=0, le=1e5)
+    stiffness_factor: float = Field(1.0, gt=0, le=100)
+    transmission_error: TransmissionError | None = None
+
+
 class Torque(Section):
     """Torque of each input pinion and the share of the input power that leaves at the tail pinions."""
 
@@ -105,8 +92,67 @@ class Transmission(Section):
     damping: DampingSection
     backlash_um: float = Field(ge=0, le=1e5, description="2b along the line of action")
     transmission_error: TransmissionError
+    mesh_kinematics: Literal["geometric", "printed"] = Field(
+        "geometric", description="printed: equation (13) of the paper to the letter, not what gears do"
+    )
     phase_convention: Literal["geometric", "printed"] = "geometric"
     torque: Torque
+    single_meshes: dict[str, SingleMesh] = Field({}, description="by `pinion/lower` or `pinion/upper`")
+    single_pinions: dict[str, SinglePinion] = Field({}, description="by the pinion's name")
+    single_gears: dict[str, SingleGear] = Field({}, description="by `lower` or `upper`")
+
+    @model_validator(mode="after")
+    def _known(self) -> "Transmission":
+        names = [place.name for place in self.pinions]
+        meshes = [f"{name}/{side}" for side in self.face_gears for name in names]
+        for key, given, known in (
+            ("single_meshes", self.single_meshes, meshes),
+            ("single_pinions", self.single_pinions, names),
+            ("single_gears", self.single_gears, list(self.face_gears)),
+        ):
+            for name in given:
+                if name not in known:
+                    refuse(f"{key}.{name}", name, f"one of {', '.join(known)}")
+        return self
+
+    @model_validator(mode="after")
+    def _kinematics(self) -> "Transmission":
+        radius = self.face_gear.mesh_radius_mm
+        if self.mesh_kinematics == "geometric":
+            for key, given in (
+                ("face_gear.mesh_radius_mm", radius),
+                ("pinion.base_radius_mm", self.pinion.base_radius_mm),
+            ):
+                if given is not None:
+                    refuse(key, given, "belongs to mesh_kinematics printed; geometric follows the teeth")
+            return self
+        if radius is None:
+            refuse("face_gear.mesh_radius_mm", None, "required by mesh_kinematics printed")
+        for key in ("single_meshes", "single_pinions", "single_gears"):
+            if given := list(getattr(self, key)):
+                refuse(key, given, "none where mesh_kinematics is printed: it knows no errors of one part")
+        for key, value in (
+            ("pinion.clearance_um", self.pinion.clearance_um or None),
+            ("pinion.runout", self.pinion.runout),
+            ("face_gear.runout", self.face_gear.runout),
+            ("face_gear.tilt", self.face_gear.tilt),
+        ):
+            if value is not None:
+                told = value if isinstance(value, float) else value.model_dump()
+                refuse(key, told, "none where mesh_kinematics is printed")
+        return self
+
+    @model_validator(mode="after")
+    def _play(self) -> "Transmission":
+        for place in self.pinions:
+            one = self.single_pinions.get(place.name, SinglePinion())
+            bearing = one.bearing_stiffness_n_per_m or self.pinion.bearing_stiffness_n_per_m
+            own = one.clearance_um is not None
+            play = one.clearance_um if own else self.pinion.clearance_um
+            key = f"single_pinions.{place.name}.clearance_um" if own else "pinion.clearance_um"
+            if play and (bearing.x <= 0.0 or bearing.x != bearing.y or bearing.xy != 0.0):
+                refuse(key, play, "0 unless the bearing is round: x = y above 0, without xy")
+        return self
 
     @model_validator(mode="after")
     def _distinct(self) -> "Transmission":
@@ -142,21 +188,30 @@ def tooth_numbers(
 
 def layout(section: Transmission, teeth: ToothNumbers) -> Layout:
     """The layout that a config describes."""
-    pinion_body = _body(section.pinion)
-    gear_body = _body(section.face_gear)
+    printed = section.mesh_kinematics == "printed"
     radius_mm = section.pinion.base_radius_mm
     sides = [side for side in Side if side.value in section.face_gears]
+    pinion_radius = teeth.pinion_base_radius if radius_mm is None else 1e-3 * radius_mm
+    conjugate = pinion_radius * teeth.gear_teeth / teeth.pinion_teeth
     return Layout(
         pinions=tuple(
-            Pinion(place.name, Role(place.role), _pitches(place, teeth.gear_teeth), pinion_body)
+            Pinion(
+                place.name,
+                Role(place.role),
+                _pitches(place, teeth.gear_teeth),
+                _body(section.pinion, section.single_pinions.get(place.name)),
+            )
             for place in section.pinions
         ),
-        gears=tuple(FaceGear(side, gear_body) for side in sides),
+        gears=tuple(
+            FaceGear(side, _body(section.face_gear, section.single_gears.get(side.value))) for side in sides
+        ),
         pinion_teeth=teeth.pinion_teeth,
         gear_teeth=teeth.gear_teeth,
         pressure_angle=teeth.pressure_angle,
-        pinion_radius=teeth.pinion_base_radius if radius_mm is None else 1e-3 * radius_mm,
-        gear_radius=1e-3 * section.face_gear.mesh_radius_mm,
+        pinion_radius=pinion_radius,
+        gear_radius=1e-3 * (section.face_gear.mesh_radius_mm or 0.0) if printed else conjugate,
+        kinematics=MeshKinematics(section.mesh_kinematics),
     )
 
 
@@ -178,6 +233,33 @@ def machine(section: Transmission, teeth: ToothNumbers, stiffness: Harmonics) ->
         ),
         phase_convention=PhaseConvention(section.phase_convention),
         error_in_step=section.transmission_error.phasing == "in_step",
+        imperfections=imperfections(section, shape),
+    )
+
+
+def imperfections(section: Transmission, shape: Layout) -> Imperfections:
+    """Errors of single meshes and bodies, in m."""
+    meshes = [section.single_meshes.get(name, SingleMesh()) for name in shape.mesh_names]
+    pinions = [section.single_pinions.get(pinion.name, SinglePinion()) for pinion in shape.pinions]
+    gears = [section.single_gears.get(gear.side.value, SingleGear()) for gear in shape.gears]
+    play = [section.pinion.clearance_um if one.clearance_um is None else one.clearance_um for one in pinions]
+    backlash = [np.nan if one.backlash_um is None else one.backlash_um for one in meshes]
+    return Imperfections(
+        error=1e-6 * np.array([one.error_um for one in meshes]),
+        half_backlash=0.5e-6 * np.array(backlash),
+        stiffness=np.array([one.stiffness_factor for one in meshes]),
+        series={
+            mesh: error_series(one.transmission_error)
+            for mesh, one in enumerate(meshes)
+            if one.transmission_error is not None
+        },
+        position=1e-6 * np.array([(one.position_um.x, one.position_um.y) for one in pinions]),
+        clearance=1e-6 * np.array(play),
+        clocking=np.array([one.clocking_deg for one in pinions]) / 360.0 * shape.pinion_teeth,
+        pinion_runout=tuple(_runout(one.runout or section.pinion.runout) for one in pinions),
+        gear_runout=tuple(_runout(one.runout or section.face_gear.runout) for one in gears),
+        pinion_pitch=_pitch_curves(pinions),
+        gear_pitch=_pitch_curves(gears),
     )
 
 
@@ -195,9 +277,32 @@ def error_series(section: TransmissionError) -> Harmonics:
     return Harmonics(a, b)
 
 
-def _body(section: PinionBody | GearBody) -> Body:
-    stiffness = section.bearing_stiffness_n_per_m
-    return Body(section.mass_kg, section.inertia_kg_m2, (stiffness.x, stiffness.y, stiffness.z))
+def _body(section: PinionBody | GearBody, own: SinglePinion | SingleGear | None) -> Body:
+    """A body from what all have and what it has of its own."""
+    own = own or SinglePinion()
+    stiffness = own.bearing_stiffness_n_per_m or section.bearing_stiffness_n_per_m
+    tilt = getattr(own, "tilt", None) or getattr(section, "tilt", None)
+    return Body(
+        section.mass_kg if own.mass_kg is None else own.mass_kg,
+        section.inertia_kg_m2 if own.inertia_kg_m2 is None else own.inertia_kg_m2,
+        (stiffness.x, stiffness.y, stiffness.z),
+        stiffness.xy,
+        Tilt(tilt.inertia_kg_m2, tilt.stiffness_n_m_per_rad) if tilt else None,
+    )
+
+
+def _runout(section: RunoutSection | None) -> Runout:
+    if section is None:
+        return Runout()
+    return Runout(1e-6 * section.eccentricity_um, float(np.radians(section.phase_deg)))
+
+
+def _pitch_curves(bodies: Sequence[SinglePinion | SingleGear]) -> dict[int, NDArray[np.float64]]:
+    return {
+        body: 1e-6 * np.array(one.cumulative_pitch_um)
+        for body, one in enumerate(bodies)
+        if one.cumulative_pitch_um
+    }
 
 
 def _pitches(place: PinionPlace, gear_teeth: int) -> float:

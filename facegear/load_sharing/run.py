@@ -67,10 +67,11 @@ def load_sharing(
 def disturb(model: Model, start: State, spread: float, random: np.random.Generator) -> State:
     """A start moved by normal displacements of size `spread` (m; rotations at the mesh radius)."""
     layout = model.machine.layout
-    moved = spread * random.normal(size=DOF_PER_BODY * len(layout.bodies))
-    pinions = DOF_PER_BODY * len(layout.pinions)
+    moved = spread * random.normal(size=layout.dof)
+    pinions, bodies = DOF_PER_BODY * len(layout.pinions), DOF_PER_BODY * len(layout.bodies)
     moved[3:pinions:DOF_PER_BODY] /= layout.pinion_radius
-    moved[pinions + 3 :: DOF_PER_BODY] /= layout.gear_radius
+    moved[pinions + 3 : bodies : DOF_PER_BODY] /= layout.gear_radius
+    moved[bodies:] /= layout.mesh_radius
     return replace(
         start, displacement=start.displacement + model.reduced.basis.T @ (mass_diagonal(layout) * moved)
     )

@@ -39,6 +39,11 @@ def undisclosed_inputs(values: Mapping[str, Any]) -> list[str]:
         f"phase {error['phase_deg']:g} deg, {phasing}" + (f", {more}" if more else ""),
         f"phases of the lower meshes {transmission['phase_convention']}",
         f"mesh stiffness source {stiffness['source']}" + mean,
-        f"mesh radius {transmission['face_gear']['mesh_radius_mm']:g} mm",
+        _kinematics(transmission),
         *teeth,
     ]
+
+
+def _kinematics(transmission: Mapping[str, Any]) -> str:
+    radius = transmission["face_gear"]["mesh_radius_mm"]
+    return "meshes geometric" if radius is None else f"meshes as printed, mesh radius {radius:g} mm"

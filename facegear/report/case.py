@@ -9,6 +9,10 @@ import pandas as pd
 from facegear.report.contents import CAPTIONS, CHAPTERS
 from facegear.report.page import Chapter, Picture, Table, render
 
+KINEMATICS = {
+    "geometric": "geometric, lever arms and signs as gears have them",
+    "printed": "printed, equation (13) of the source paper to the letter (docs/theory.md)",
+}
 LARGEST_SVG = 1_500_000
 """Bytes; a larger drawing is shown as its png."""
 
@@ -56,7 +60,8 @@ def _machine_text(values: Mapping[str, Any]) -> str:
         f"module {pair['module_mm']:g} mm, pressure angle {pair['pressure_angle_deg']:g} deg. "
         f"Each input brings {torque['per_input_n_m']:g} N m unless the table gives its own torque; "
         f"{100 * torque['tail_share']:.3g} % of the power leaves at the tail. "
-        f"Mesh stiffness: {values['mesh_stiffness']['source']}."
+        f"Mesh stiffness: {values['mesh_stiffness']['source']}. "
+        f"Mesh kinematics: {KINEMATICS[transmission['mesh_kinematics']]}."
     )
 
 

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.transmission.layout import Layout
+from facegear.transmission.imperfections import Imperfections
+from facegear.transmission.layout import Layout, Side
 
 ROUNDED = 1e-3
 """Misfit in pitches that counts as an angle given with few digits (three decimals of a degree)."""
@@ -34,11 +35,15 @@ class Assembly:
 
 
 def assembly(
-    layout: Layout, half_backlash: NDArray[np.float64], clocking: NDArray[np.float64] | None = None
+    layout: Layout,
+    half_backlash: NDArray[np.float64],
+    clocking: NDArray[np.float64] | None = None,
+    errors: Imperfections | None = None,
 ) -> Assembly:
     """Check all pinions; half_backlash (meshes,) in m, clocking (pinions,) of the lower rims in pitches.
 
-    With one face gear nothing has to fit.
+    With `errors` their constant ones count as misfit, and play of the bearings as room. With one face gear
+    nothing has to fit.
     """
     count = len(layout.pinions)
     pitches = np.array([pinion.pitches for pinion in layout.pinions])
@@ -48,6 +53,11 @@ def assembly(
         return Assembly(nothing, np.full(count, np.inf), np.ones(count, bool), pitches, pitches)
     room = half_backlash.reshape(len(layout.gears), count).sum(axis=0)
     ahead = turned - 2.0 * pitches
+    if errors is not None:
+        lower, upper = np.split(errors.error, 2)
+        cosine = np.cos(layout.pressure_angle)
+        ahead = ahead + (upper - lower - 2.0 * cosine * errors.position[:, 0]) / layout.base_pitch
+        room = room + 2.0 * cosine * errors.clearance
     reach = room / layout.base_pitch + 0.5 * ROUNDED
     together = np.abs(_wrapped(ahead[:, None] - ahead)) <= reach[:, None] + reach
     most = int(np.argmax(together.sum(axis=1)))
@@ -58,6 +68,21 @@ def assembly(
     near = np.floor(2.0 * (pitches - 0.5 * (turned - ahead[most])))
     steps = 0.5 * (turned - ahead[most] + near)
     return Assembly((left - middle) * layout.base_pitch, room, fits, steps, steps + 0.5)
+
+
+def squeezed(
+    layout: Layout, half_backlash: NDArray[np.float64], errors: Imperfections
+) -> NDArray[np.float64]:
+    """How much deeper a pinion stands in each mesh than backlash and play allow, shape (meshes,), m.
+
+    Positive where both flanks of a tooth would be pressed with the machine at rest.
+    """
+    sine = np.sin(layout.pressure_angle)
+    squeeze = np.empty(len(layout.meshes))
+    for mesh, (i, g) in enumerate(layout.meshes):
+        side = -1.0 if layout.gears[g].side is Side.LOWER else 1.0
+        squeeze[mesh] = sine * (side * errors.position[i, 1] - errors.clearance[i]) - half_backlash[mesh]
+    return squeeze
 
 
 def _wrapped(pitches: NDArray[np.float64]) -> NDArray[np.float64]:

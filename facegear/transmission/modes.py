@@ -8,7 +8,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from facegear.transmission.layout import Layout
-from facegear.transmission.matrices import bearing_diagonal, mass_diagonal, mesh_directions
+from facegear.transmission.matrices import bearing_matrix, mass_diagonal, mesh_directions
 
 EQUAL = 1e-8
 
@@ -26,10 +26,18 @@ class Modes:
 
 
 def natural_modes(layout: Layout, mesh_stiffness: float) -> Modes:
-    """All modes of the free, undamped, time-averaged system; rigid body modes come out as 0 Hz exactly."""
-    mass = mass_diagonal(layout)
+    """All modes of the free, undamped, time-averaged system with every mesh on its drive flank (N/m).
+
+    Rigid body modes come out as 0 Hz exactly.
+    """
     directions = mesh_directions(layout)
-    stiffness = np.diag(bearing_diagonal(layout)) + mesh_stiffness * directions.T @ directions
+    return modes_of(layout, mesh_stiffness * directions.T @ directions)
+
+
+def modes_of(layout: Layout, meshes: NDArray[np.float64]) -> Modes:
+    """All modes with the stiffness matrix (dof, dof) of the meshes, SI units."""
+    mass = mass_diagonal(layout)
+    stiffness = bearing_matrix(layout) + meshes
     root = np.sqrt(mass)
     squares, vectors = scipy.linalg.eigh(stiffness / np.outer(root, root))
     noise = squares.size * np.finfo(float).eps * squares[-1]

@@ -14,7 +14,7 @@ from facegear.dynamics.sweeps.whole_sweep import whole_sweep
 from facegear.io import arrays, tables
 from facegear.provenance.stage import stage
 from facegear.stiffness.tables import HARMONICS_COLUMNS, series_of
-from facegear.transmission.modes import natural_modes
+from facegear.transmission.loaded_modes import loaded_modes
 
 with stage(snakemake) as run:
     params, output = snakemake.params, snakemake.output
@@ -29,7 +29,7 @@ with stage(snakemake) as run:
         for name in plan.directions
     }
     found = whole_sweep(model, plan, chunks, snakemake.threads)
-    modes = natural_modes(layout, stiffness.mean)
+    modes = loaded_modes(model.machine)
     tables.write(output.sweep, pd.concat([sweep_table(layout, n, d.piece) for n, d in found.items()]))
     tables.write(output.jumps, pd.concat([jump_table(layout, n, d, modes) for n, d in found.items()]))
     tables.write(

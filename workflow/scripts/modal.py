@@ -1,17 +1,21 @@
 """Natural frequencies, mode shapes and their classes."""
 
+import numpy as np
+
 from facegear.config.base import parse
-from facegear.config.transmission import Transmission, layout, tooth_numbers
+from facegear.config.transmission import Transmission, machine, tooth_numbers
+from facegear.harmonics.series import Harmonics
 from facegear.io import tables
 from facegear.provenance.stage import stage
+from facegear.transmission.loaded_modes import loaded_modes
 from facegear.transmission.modal_tables import frequency_table, shape_table
 from facegear.transmission.mode_classes import name_modes
-from facegear.transmission.modes import natural_modes
 
 with stage(snakemake) as run:
     params = snakemake.params
-    shape = layout(parse(Transmission, params.section), tooth_numbers(**params.teeth))
-    modes = natural_modes(shape, params.mean_stiffness)
+    mean = Harmonics(np.zeros(1), np.array([params.mean_stiffness]))
+    whole = machine(parse(Transmission, params.section), tooth_numbers(**params.teeth), mean)
+    shape, modes = whole.layout, loaded_modes(whole)
     names = name_modes(shape, modes)
     tables.write(snakemake.output.frequencies, frequency_table(modes, names))
     tables.write(snakemake.output.shapes, shape_table(shape, modes))

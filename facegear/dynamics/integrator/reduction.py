@@ -11,8 +11,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from facegear.transmission.linear_bearings import linear_bearings
 from facegear.transmission.machine import Damping, Machine
-from facegear.transmission.matrices import bearing_diagonal, mass_diagonal, mesh_directions
+from facegear.transmission.matrices import (
+    bearing_axes,
+    bearing_diagonal,
+    bearing_matrix,
+    flank_directions,
+    mass_diagonal,
+    mesh_directions,
+)
 
 SAME_FREQUENCY = 1e-12
 RANK = 1e-10
@@ -22,7 +30,8 @@ RANK = 1e-10
 class Reduced:
     """The moving part in n mass-normalised coordinates y, displacements = basis y.
 
-    basis (4 bodies, n), mesh_jacobian (meshes, n), omega_squared (n,) bearing frequencies squared in 1/s2,
+    basis (dof, n), mesh_jacobian (meshes, n), or (2 meshes, n) by flank where meshes are geometric,
+    omega_squared (n,) bearing frequencies squared in 1/s2,
     damping (n,) in 1/s, load (n,) from the torques, `free` the names of the DOF that nothing touches.
     """
 
@@ -36,13 +45,19 @@ class Reduced:
 
 def reduce(machine: Machine) -> Reduced:
     """Reduced coordinates of a machine; torques are in balance, so the rigid rotation stays at rest."""
-    layout = machine.layout
+    layout, held = linear_bearings(machine)
     mass = mass_diagonal(layout)
-    bearing = bearing_diagonal(layout)
-    mesh_jacobian = mesh_directions(layout)
-    applied = np.zeros(mass.size)
+    mesh_jacobian = flank_directions(layout) if layout.is_geometric else mesh_directions(layout)
+    applied = held
     applied[layout.spins] = machine.torques
-    basis, omega_squared = coupled_basis(mesh_jacobian, mass, bearing)
+    bearing = bearing_diagonal(layout)
+    if any(body.bearing_xy != 0.0 for body in layout.bodies):
+        axes = bearing_axes(layout)
+        principal = np.einsum("ij,ij->j", axes, bearing_matrix(layout) @ axes)
+        basis, omega_squared = coupled_basis(mesh_jacobian @ axes, mass, principal)
+        basis = axes @ basis
+    else:
+        basis, omega_squared = coupled_basis(mesh_jacobian, mass, bearing)
     touched = (mesh_jacobian != 0.0).any(axis=0) | (bearing != 0.0) | (applied != 0.0)
     names = np.array(layout.dof_names)
     return Reduced(

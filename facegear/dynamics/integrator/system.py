@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.reduction import Reduced
 from facegear.harmonics.series import Harmonics
+from facegear.transmission.flanks import constant_errors, error_series, flank_gaps, stiffness_series
 from facegear.transmission.machine import Machine, OpenFlanks
 
 Array = NDArray[np.float64]
@@ -37,6 +38,7 @@ class System:
     mesh_jacobian (m, n); omega_squared, damping (n,); mesh_damping, lower, upper (m,); stiffness and error
     of the kinds of mesh that differ in phase, stiffness_kind and error_kind (m,) say which; load
     (n, 2, harmonics + 1). A mesh with lower >= upper never opens. `scale`: the length that tolerances mean.
+    `two_flanks`: the m are one-sided flanks, all drive flanks, then the back flanks of the same meshes.
     """
 
     mesh_jacobian: Array
@@ -52,6 +54,7 @@ class System:
     load: Array
     damping_when_open: bool
     scale: float
+    two_flanks: bool = False
     pieces: tuple[Piecewise, ...] = field(default=())
 
     @property
@@ -71,7 +74,9 @@ def fourier_rows(series: list[Harmonics]) -> Array:
 
 
 def machine_system(machine: Machine, reduced: Reduced) -> System:
-    """The system of a machine in its reduced coordinates."""
+    """The system of a machine in its reduced coordinates; runouts and pitch deviations are left out."""
+    if machine.layout.is_geometric:
+        return _flank_system(machine, reduced)
     meshes = len(machine.layout.meshes)
     stiffness, stiffness_kind = _kinds(machine.stiffness, machine.phases)
     error, error_kind = _kinds(machine.error, machine.error_phases)
@@ -94,13 +99,48 @@ def machine_system(machine: Machine, reduced: Reduced) -> System:
     )
 
 
+def _flank_system(machine: Machine, reduced: Reduced) -> System:
+    """Every flank a one-sided mesh of its own; errors that never change stand in its edge.
+
+    Damping across open flanks is shared by the two, so that turning alone meets the whole of it.
+    """
+    stiffness, stiffness_kind = _different(stiffness_series(machine))
+    error, error_kind = _different(error_series(machine))
+    load = np.zeros((reduced.omega_squared.size, 2, 1))
+    load[:, 1, 0] = reduced.load
+    flanks = len(reduced.mesh_jacobian)
+    always = machine.damping.open_flanks is OpenFlanks.ALWAYS
+    return System(
+        mesh_jacobian=reduced.mesh_jacobian,
+        omega_squared=reduced.omega_squared,
+        damping=reduced.damping,
+        mesh_damping=np.full(flanks, machine.damping.mesh * (0.5 if always else 1.0)),
+        lower=np.full(flanks, -np.inf),
+        upper=flank_gaps(machine) + constant_errors(machine),
+        stiffness=stiffness,
+        stiffness_kind=stiffness_kind,
+        error=error,
+        error_kind=error_kind,
+        load=load,
+        damping_when_open=always,
+        scale=length_scale(machine),
+        two_flanks=True,
+    )
+
+
+def _different(series: list[Harmonics]) -> tuple[Array, NDArray[np.int64]]:
+    """The different ones among Fourier series, and which one each is."""
+    rows = fourier_rows(series)
+    different, kind = np.unique(rows.reshape(len(rows), -1), axis=0, return_inverse=True)
+    return different.reshape(-1, *rows.shape[1:]), kind.ravel().astype(np.int64)
+
+
 def length_scale(machine: Machine) -> float:
     """Largest of the mesh deflection under the torques, the half backlash and the error's amplitude, m."""
     layout = machine.layout
-    lever = layout.pinion_radius * np.cos(layout.pressure_angle)
-    forces = np.abs(machine.torques[: len(layout.pinions)]) / lever
+    forces = np.abs(machine.torques[: len(layout.pinions)]) / layout.pinion_arm
     loaded = float(forces.max()) / machine.stiffness.mean
-    return max(loaded, machine.half_backlash, float(machine.error.amplitudes[1:].sum()), 1e-12)
+    return max(loaded, float(machine.half_backlashes.max()), float(machine.error.amplitudes[1:].sum()), 1e-12)
 
 
 def _kinds(series: Harmonics, phases: Array) -> tuple[Array, NDArray[np.int64]]:

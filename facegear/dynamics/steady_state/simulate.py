@@ -173,7 +173,7 @@ def _result(
         deflections=deflections,
         forces=forces,
         coordinates=window.samples,
-        shares=window.shares / (TAU * window.periods),
+        shares=mesh_shares(system, window.shares / (TAU * window.periods)),
         multipliers=orbit.multipliers if orbit else None,
         liouville=orbit.liouville if orbit else None,
         exponent=exponent,
@@ -197,6 +197,8 @@ def mesh_response(system: System, coordinates: Array, per_period: int) -> tuple[
     shape = (-1, per_period, len(system.mesh_jacobian))
     deflections = (coordinates @ system.mesh_jacobian.T).reshape(shape)
     deflections -= error
+    if system.two_flanks:
+        return flank_response(system, deflections.reshape(len(coordinates), -1), stiffness)
     # Without clearance everything counts from the upper edge.
     linear = system.lower >= system.upper
     lower, upper = (np.where(linear, system.upper, edge) for edge in (system.lower, system.upper))
@@ -204,6 +206,30 @@ def mesh_response(system: System, coordinates: Array, per_period: int) -> tuple[
     np.subtract(deflections, forces, out=forces)
     forces *= stiffness
     return deflections.reshape(len(coordinates), -1), forces.reshape(len(coordinates), -1)
+
+
+def flank_response(system: System, deflections: Array, stiffness: Array) -> tuple[Array, Array]:
+    """Tangential deflection and transmitted force of each mesh (K, meshes) from its flanks (K, 2 meshes).
+
+    stiffness (per_period, 2 meshes) repeats.
+    """
+    over = (deflections - system.upper).reshape(-1, *stiffness.shape)
+    forces = (np.maximum(over, 0.0) * stiffness).reshape(deflections.shape)
+    over = over.reshape(deflections.shape)
+    meshes = deflections.shape[1] // 2
+    tangential = 0.5 * (over[:, :meshes] - over[:, meshes:])
+    return tangential, forces[:, :meshes] - forces[:, meshes:]
+
+
+def mesh_shares(system: System, shares: Array) -> Array:
+    """Time open, on the drive and on the back flank (3, meshes) from that of each flank, where there are two.
+
+    Time with both flanks wedged counts on both, so that the three may add up to more than one.
+    """
+    if not system.two_flanks:
+        return shares
+    drive, back = np.split(shares[1], 2)
+    return np.stack([np.maximum(1.0 - drive - back, 0.0), drive, back])
 
 
 def series_values(series: Array, cycles: Array) -> Array:

@@ -11,8 +11,9 @@ from facegear.dynamics.steady_state.simulate import Model, SteadyState, simulate
 from facegear.dynamics.steady_state.spectra import order_spectrum, spectrum
 from facegear.dynamics.steady_state.statistics import moments, view_moments
 from facegear.dynamics.sweeps.plan import SweepPlan
+from facegear.transmission.layout import DOF_PER_BODY
+from facegear.transmission.loaded_modes import loaded_modes
 from facegear.transmission.matrices import mass_diagonal
-from facegear.transmission.modes import natural_modes
 
 Array = NDArray[np.float64]
 DEFLECTION = ("mean", "rms", "ac_rms", "least", "most", "rms_interval", "ac_rms_interval")
@@ -90,10 +91,11 @@ def run_speeds(
 def collect(model: Model, responses: Iterator[tuple[float, SteadyState]]) -> Piece:
     """Reduce responses to the numbers that a sweep keeps."""
     machine = model.machine
-    modes = natural_modes(machine.layout, machine.stiffness.mean)
+    modes = loaded_modes(machine)
     to_modal = mass_diagonal(machine.layout)[:, None] * modes.shapes * (2.0 * np.pi * modes.frequencies)
     basis = model.reduced.basis
-    translations = basis.reshape(-1, 4, basis.shape[1])[:, :3].reshape(-1, basis.shape[1]).T
+    bodies = basis[: DOF_PER_BODY * len(machine.layout.bodies)]
+    translations = bodies.reshape(-1, DOF_PER_BODY, basis.shape[1])[:, :3].reshape(-1, basis.shape[1]).T
     views = np.hstack([translations, basis.T @ to_modal])
     rows = [_row(views, translations.shape[1], speed, response) for speed, response in responses]
     return Piece(**{name: np.array([row[name] for row in rows]) for name in Piece.__dataclass_fields__})

@@ -17,8 +17,8 @@ from facegear.load_sharing.options import SharingOptions
 from facegear.load_sharing.reference import reference_table
 from facegear.load_sharing.run import load_sharing
 from facegear.load_sharing.tables import curve_table, summary_table
+from facegear.transmission.loaded_modes import loaded_modes
 from facegear.transmission.machine import Machine
-from facegear.transmission.modes import natural_modes
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ def simulated_tables(
     plan = replace(settings.sweep, chunks=1)
     chunks = {direction: [run_chunk(model, plan, direction, 0)] for direction in plan.directions}
     sweep = whole_sweep(model, plan, chunks)
-    modes = natural_modes(layout, machine.stiffness.mean)
+    modes = loaded_modes(machine)
     sharing = {
         key: load_sharing(one, settings.speed, settings.settings, settings.sharing)
         for key, one in {(NOMINAL, NOMINAL): machine, **studies}.items()

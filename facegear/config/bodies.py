@@ -1,0 +1,98 @@
+"""Config of the bodies: what all pinions or face gears share, and what is different in a single one."""
+
+from pydantic import Field, model_validator
+
+from facegear.config.base import Section, refuse
+
+
+class BearingStiffness(Section):
+    """Bearing stiffness along a body's axes."""
+
+    x: float = Field(ge=0, le=1e14)
+    y: float = Field(ge=0, le=1e14)
+    z: float = Field(ge=0, le=1e14)
+    xy: float = Field(0.0, ge=-1e14, le=1e14, description="couples x and y; below sqrt(x y) in size")
+
+    @model_validator(mode="after")
+    def _holds(self) -> "BearingStiffness":
+        if self.xy != 0.0 and self.xy**2 >= self.x * self.y:
+            refuse("xy", self.xy, f"less than sqrt(x y) = {(self.x * self.y) ** 0.5:g} in size")
+        return self
+
+
+class RunoutSection(Section):
+    """Eccentricity of a body's teeth, once a turn."""
+
+    eccentricity_um: float = Field(ge=0, le=1e4, description="half of the dial gauge's reading")
+    phase_deg: float = Field(
+        0.0, ge=-360, le=360, description="high point at the start, from the upper gear or the first pinion"
+    )
+
+
+class PinionBody(Section):
+    """Data shared by all pinions; x is tangential to the face gear, y along the face gear's axis."""
+
+    mass_kg: float = Field(gt=0, le=1e5)
+    inertia_kg_m2: float = Field(gt=0, le=1e5)
+    bearing_stiffness_n_per_m: BearingStiffness
+    base_radius_mm: float | None = Field(
+        None,
+        gt=0,
+        le=1e4,
+        description="for mesh_kinematics printed; null: module * teeth / 2 * cos(pressure angle)",
+    )
+    clearance_um: float = Field(0.0, ge=0, le=1e4, description="radial play of the bearings")
+    runout: RunoutSection | None = None
+
+
+class TiltSection(Section):
+    """Rocking of a face gear about its diameters."""
+
+    inertia_kg_m2: float = Field(gt=0, le=1e6, description="about a diameter")
+    stiffness_n_m_per_rad: float = Field(gt=0, le=1e14)
+
+
+class GearBody(Section):
+    """Data shared by the face gears; z is their axis."""
+
+    mass_kg: float = Field(gt=0, le=1e6)
+    inertia_kg_m2: float = Field(gt=0, le=1e6)
+    bearing_stiffness_n_per_m: BearingStiffness
+    mesh_radius_mm: float | None = Field(
+        None, gt=0, le=1e4, description="required by mesh_kinematics printed, refused by geometric"
+    )
+    tilt: TiltSection | None = Field(None, description="null: the gears stay square to their axis")
+    runout: RunoutSection | None = None
+
+
+class Position(Section):
+    """Where a pinion's bearings stand beside their nominal place."""
+
+    x: float = Field(0.0, ge=-5000, le=5000, description="as the upper gear's teeth move")
+    y: float = Field(0.0, ge=-5000, le=5000, description="towards the upper gear")
+
+
+class SinglePinion(Section):
+    """What is different in one pinion; null keeps what all pinions have."""
+
+    mass_kg: float | None = Field(None, gt=0, le=1e5)
+    inertia_kg_m2: float | None = Field(None, gt=0, le=1e5)
+    bearing_stiffness_n_per_m: BearingStiffness | None = None
+    position_um: Position = Position()
+    clearance_um: float | None = Field(None, ge=0, le=1e4)
+    clocking_deg: float = Field(
+        0.0, ge=-360, le=360, description="lower rim of a compound pinion ahead of its upper rim"
+    )
+    runout: RunoutSection | None = None
+    cumulative_pitch_um: tuple[float, ...] = Field((), description="of every tooth, ahead as it turns")
+
+
+class SingleGear(Section):
+    """What is different in one face gear; null keeps what both have."""
+
+    mass_kg: float | None = Field(None, gt=0, le=1e6)
+    inertia_kg_m2: float | None = Field(None, gt=0, le=1e6)
+    bearing_stiffness_n_per_m: BearingStiffness | None = None
+    tilt: TiltSection | None = None
+    runout: RunoutSection | None = None
+    cumulative_pitch_um: tuple[float, ...] = Field((), description="of every tooth, ahead as it turns")

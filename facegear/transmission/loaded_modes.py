@@ -1,0 +1,28 @@
+"""Modes of a machine about the place where its torques hold it: which flank works follows from statics."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.transmission.machine import Machine
+from facegear.transmission.matrices import flank_directions
+from facegear.transmission.modes import Modes, modes_of, natural_modes
+from facegear.transmission.statics import mean_equilibrium
+
+
+def working_flanks(machine: Machine) -> NDArray[np.bool_]:
+    """Flanks in contact at mean stiffness, shape (2 meshes,): all drive flanks, then all back flanks.
+
+    A mesh that carries nothing counts as closed on its drive flank. Raises NotConverged.
+    """
+    drive, back = np.split(mean_equilibrium(machine).flank_forces[0] > 0.0, 2)
+    return np.concatenate([drive | ~back, back])
+
+
+def loaded_modes(machine: Machine) -> Modes:
+    """Modes with mean mesh stiffness on the working flanks; on one line of action for printed meshes."""
+    if not machine.layout.is_geometric:
+        return natural_modes(machine.layout, machine.stiffness.mean)
+    stiffness = machine.stiffness.mean * np.tile(machine.imperfections.stiffness, 2)
+    pressed = np.where(working_flanks(machine), stiffness, 0.0)
+    directions = flank_directions(machine.layout)
+    return modes_of(machine.layout, (pressed * directions.T) @ directions)

@@ -1,0 +1,145 @@
+"""Errors of single meshes and bodies in the config: one line each, and one line of refusal."""
+
+import numpy as np
+import pytest
+from ruamel.yaml import YAML
+
+from facegear.config.base import parse
+from facegear.config.buildable import require_buildable
+from facegear.config.transmission import Transmission, machine, tooth_numbers
+from facegear.errors import ConfigError, ConfigErrors
+from facegear.harmonics.series import Harmonics
+
+TEETH = tooth_numbers(23, 143, 3.75, 25)
+STIFFNESS = Harmonics(np.array([0.0, 1e7]), np.array([4.1e8, 2e7]))
+TEXT = """
+pinions:
+  - {name: one, role: input, angle_pitches: 0}
+  - {name: two, role: input, angle_pitches: 45.5}
+  - {name: tail, role: tail, angle_deg: 125.874}
+pinion: {mass_kg: 1.2, inertia_kg_m2: 0.002, bearing_stiffness_n_per_m: {x: 6.5e7, y: 6.5e7, z: 0}}
+face_gear: {mass_kg: 7.8, inertia_kg_m2: 0.54, bearing_stiffness_n_per_m: {x: 8.7e9, y: 8.7e9, z: 8.7e9}}
+damping: {mesh_n_s_per_m: 1200, mass_per_s: 800, bearing_s: 2.0e-6}
+backlash_um: 100
+transmission_error: {amplitude_um: 10}
+torque: {per_input_n_m: 800, tail_share: 0.1}
+"""
+
+
+def section(**changes):
+    values = YAML(typ="safe").load(TEXT)
+    return {**values, **changes}
+
+
+def built(**changes):
+    return machine(parse(Transmission, section(**changes)), TEETH, STIFFNESS)
+
+
+def test_one_line_overrides_one_mesh():
+    found = built(single_meshes={"two/lower": {"error_um": 12.0}}).imperfections
+    np.testing.assert_allclose(found.error, [0, 12e-6, 0, 0, 0, 0])
+    found = built(single_meshes={"tail/upper": {"backlash_um": 60, "stiffness_factor": 1.1}})
+    np.testing.assert_allclose(found.half_backlashes, [50e-6] * 5 + [30e-6])
+    np.testing.assert_allclose(found.imperfections.stiffness, [1, 1, 1, 1, 1, 1.1])
+    own = built(single_meshes={"one/upper": {"transmission_error": {"amplitude_um": 3}}}).imperfections
+    assert own.series[3].amplitudes[1] == pytest.approx(3e-6)
+
+
+def test_one_line_overrides_one_body():
+    bearing = {"x": 2e8, "y": 3e8, "z": 0, "xy": 5e7}
+    found = built(single_pinions={"two": {"bearing_stiffness_n_per_m": bearing, "mass_kg": 2.0}})
+    assert found.layout.pinions[1].body.bearing == (2e8, 3e8, 0)
+    assert found.layout.pinions[1].body.bearing_xy == 5e7
+    assert [pinion.body.mass for pinion in found.layout.pinions] == [1.2, 2.0, 1.2]
+    gear = built(single_gears={"upper": {"runout": {"eccentricity_um": 20, "phase_deg": 90}}})
+    assert gear.imperfections.gear_runout[1].amplitude == pytest.approx(20e-6)
+    assert gear.imperfections.gear_runout[1].phase == pytest.approx(np.pi / 2)
+    assert gear.imperfections.gear_runout[0].amplitude == 0.0
+
+
+def test_what_all_pinions_have_holds_where_one_has_none_of_its_own():
+    body = {**section()["pinion"], "clearance_um": 20, "runout": {"eccentricity_um": 5}}
+    found = built(pinion=body, single_pinions={"one": {"clearance_um": 0}}).imperfections
+    np.testing.assert_allclose(found.clearance, [0, 20e-6, 20e-6])
+    np.testing.assert_allclose([one.amplitude for one in found.pinion_runout], 5e-6)
+
+
+@pytest.mark.parametrize(
+    ("changes", "line"),
+    [
+        (
+            {"single_meshes": {"three/lower": {"error_um": 1}}},
+            r"single_meshes\.three/lower.*one of one/lower",
+        ),
+        ({"single_meshes": {"one/side": {"error_um": 1}}}, r"single_meshes\.one/side"),
+        ({"single_pinions": {"six": {}}}, r"single_pinions\.six.*one of one, two, tail"),
+        (
+            {"face_gears": ["upper"], "single_gears": {"lower": {"runout": {"eccentricity_um": 3}}}},
+            r"single_gears\.lower.*one of upper",
+        ),
+        (
+            {
+                "single_pinions": {
+                    "one": {"clearance_um": 5, "bearing_stiffness_n_per_m": {"x": 0, "y": 0, "z": 0}}
+                }
+            },
+            r"single_pinions\.one\.clearance_um = 5\.0: 0 unless the bearing is round",
+        ),
+        (
+            {
+                "single_pinions": {
+                    "one": {"bearing_stiffness_n_per_m": {"x": 1e8, "y": 1e8, "z": 0, "xy": 2e8}}
+                }
+            },
+            r"xy = 200000000\.0: less than",
+        ),
+        (
+            {"face_gear": {**section()["face_gear"], "mesh_radius_mm": 262.5}},
+            r"mesh_radius_mm = 262\.5.*printed",
+        ),
+        ({"mesh_kinematics": "printed"}, r"mesh_radius_mm = null: required by mesh_kinematics printed"),
+        (
+            {
+                "mesh_kinematics": "printed",
+                "face_gear": {**section()["face_gear"], "mesh_radius_mm": 262.5},
+                "single_meshes": {"one/lower": {"error_um": 1}},
+            },
+            r"single_meshes = .*mesh_kinematics is printed",
+        ),
+    ],
+)
+def test_parts_that_are_not_there_or_cannot_be_are_refused_by_key(changes, line):
+    with pytest.raises(ConfigErrors, match=line) as caught:
+        parse(Transmission, section(**changes))
+    assert len(caught.value.lines) == 1
+
+
+@pytest.mark.parametrize(
+    ("changes", "line"),
+    [
+        (
+            {"pinions": [*section()["pinions"][:2], {"name": "tail", "role": "tail", "angle_deg": 56.0}]},
+            r"pinions\[2\]\.angle_deg = 56\.0: the teeth do not fit, -5220 um .* 100 um; nearest are 55\.38.* 56\.64",
+        ),
+        (
+            {"single_pinions": {"two": {"position_um": {"x": 150.0}}}},
+            r"single_pinions\.two = '-\d+ um between its two meshes': errors .* within the 100 um",
+        ),
+        (
+            {"single_pinions": {"two": {"position_um": {"y": 150.0}}}},
+            r"single_pinions\.two\.position_um\.y = '13\.4 um too deep in two/upper'",
+        ),
+        (
+            {"single_pinions": {"one": {"cumulative_pitch_um": [1.0, 2.0]}}},
+            r"cumulative_pitch_um = '2 values': one for each of the 23 teeth",
+        ),
+    ],
+)
+def test_machines_that_do_not_go_together_are_refused(changes, line):
+    with pytest.raises(ConfigError, match=line):
+        require_buildable(parse(Transmission, section(**changes)), TEETH)
+
+
+def test_a_machine_with_errors_within_its_backlash_is_buildable():
+    errors = {"single_pinions": {"two": {"position_um": {"x": 20.0, "y": -20.0}, "clearance_um": 20}}}
+    require_buildable(parse(Transmission, section(**errors)), TEETH)
