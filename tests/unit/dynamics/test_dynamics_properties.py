@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
@@ -15,9 +16,11 @@ from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import Model, build_model, simulate, static_start
 from facegear.harmonics.series import Harmonics
-from facegear.transmission.layout import Role, Side
+from facegear.transmission.flanks import error_series, stiffness_series
+from facegear.transmission.flanks import mirrored as backwards
+from facegear.transmission.layout import MeshKinematics, Role, Side
 from facegear.transmission.machine import OpenFlanks, mesh_frequency
-from facegear.transmission.matrices import mass_diagonal, mesh_directions
+from facegear.transmission.matrices import flank_directions, mass_diagonal, mesh_directions
 
 FINE = Settings(tolerance=1e-14)
 
@@ -31,7 +34,9 @@ def machines(draw, **fixed):
         role = Role.INPUT if i == 0 else draw(st.sampled_from(list(Role)))
         places.append((f"p{i}", role, draw(st.integers(0, 285)) / 2.0))
     sides = draw(st.sampled_from([(Side.LOWER, Side.UPPER), (Side.UPPER,)]))
-    layout = make_layout(tuple(places), sides, draw(st.floats(1e7, 1e9)), draw(st.floats(1e8, 1e10)))
+    kinematics = fixed.pop("kinematics", None) or draw(st.sampled_from(list(MeshKinematics)))
+    bearings = draw(st.floats(1e7, 1e9)), draw(st.floats(1e8, 1e10))
+    layout = make_layout(tuple(places), sides, *bearings, kinematics)
     swing = draw(st.floats(0.0, 0.25))
     options = {
         "torque": draw(st.floats(50, 2000)),
@@ -44,6 +49,30 @@ def machines(draw, **fixed):
         "open_flanks": draw(st.sampled_from(list(OpenFlanks))),
     }
     return make_machine(layout, **(options | fixed))
+
+
+def contacts(machine):
+    """k and e of each contact of the system: meshes as printed, flanks where meshes are geometric."""
+    if machine.layout.is_geometric:
+        return stiffness_series(machine), error_series(machine)
+    stiffness = [machine.stiffness.shifted(float(phase)) for phase in machine.phases]
+    return stiffness, [machine.error.shifted(float(phase)) for phase in machine.error_phases]
+
+
+def pressed(system, deflection, state):
+    """Deflection beyond the edge of the flank in contact, 0 where none is."""
+    lower = np.where(np.isfinite(system.lower), system.lower, 0.0)
+    edge = np.where(state > 0, system.upper, lower)
+    return np.where(state == 0, 0.0, deflection - edge)
+
+
+def state_of(system, deflection):
+    """1 beyond the upper edge, -1 below the lower one, else 0."""
+    return np.where(deflection > system.upper, 1, np.where(deflection < system.lower, -1, 0))
+
+
+def acting_damping(system, state):
+    return system.mesh_damping * (1.0 if system.damping_when_open else np.abs(state))
 
 
 speeds = st.floats(3000, 20_000)
@@ -83,7 +112,7 @@ def test_scaling_torques_backlash_and_error_scales_the_motion(machine, speed, fa
 
 
 @settings(max_examples=12, deadline=None)
-@given(machine=machines(), speed=speeds)
+@given(machine=machines(kinematics=MeshKinematics.PRINTED), speed=speeds)
 def test_negated_torques_and_error_negate_the_motion(machine, speed):
     model = build_model(machine)
     start = kicked(model)
@@ -94,6 +123,30 @@ def test_negated_torques_and_error_negate_the_motion(machine, speed):
     )
     phases = np.linspace(0.0, 2 * TAU, 50)
     np.testing.assert_allclose(second.at(phases)[1], -first.at(phases)[1], atol=1e-9 * model.system.scale)
+
+
+@settings(max_examples=12, deadline=None)
+@given(machine=machines(kinematics=MeshKinematics.GEOMETRIC), speed=speeds)
+def test_in_a_mirror_drive_and_back_flanks_change_places(machine, speed):
+    """Angles, torques and the waveforms' direction mirrored; at half pitches the teeth stand as before."""
+    model = build_model(machine)
+    layout = machine.layout
+    turned = tuple(replace(pinion, pitches=-pinion.pitches) for pinion in layout.pinions)
+    mirrored = build_model(
+        replace(
+            machine,
+            layout=replace(layout, pinions=turned),
+            torques=-machine.torques,
+            stiffness=backwards(machine.stiffness),
+            error=backwards(machine.error),
+        )
+    )
+    run = record(model.system, frequency(model, speed), static_start(model), 3, FINE)
+    other = record(mirrored.system, frequency(mirrored, speed), static_start(mirrored), 3, FINE)
+    phases = np.linspace(0.0, 3 * TAU, 50)
+    drive, back = np.split(run.at(phases)[1], 2, axis=1)
+    swapped = np.concatenate([back, drive], axis=1)
+    np.testing.assert_allclose(other.at(phases)[1], swapped, atol=1e-8 * model.system.scale)
 
 
 @settings(max_examples=12, deadline=None)
@@ -130,14 +183,12 @@ def test_energy_audit_over_a_period(machine, speed):
     deflection = np.einsum("kp,kpm->km", powers, run.deflections[step])
     rate = omega * np.einsum("kp,kpm->km", rates, run.deflections[step][:, 1:])
     cycles = phases / TAU
-    stiffness = np.stack([machine.stiffness(cycles - phase) for phase in machine.phases], axis=1)
-    slope = np.stack([derivative(machine.stiffness, cycles - p, omega) for p in machine.phases], axis=1)
-    error_rate = np.stack(
-        [derivative(machine.error, cycles - p, omega) for p in machine.error_phases], axis=1
-    )
+    springs, errors = contacts(machine)
+    stiffness = np.stack([series(cycles) for series in springs], axis=1)
+    slope = np.stack([derivative(series, cycles, omega) for series in springs], axis=1)
+    error_rate = np.stack([derivative(series, cycles, omega) for series in errors], axis=1)
     state = run.states[step]
-    beyond = np.where(state == 0, 0.0, deflection - state * machine.half_backlash)
-    acting = machine.damping.mesh * (1.0 if system.damping_when_open else np.abs(state))
+    beyond, acting = pressed(system, deflection, state), acting_damping(system, state)
     force = stiffness * beyond + acting * rate
     # d/dt of kinetic + bearing + mesh energy: torques in, damping out, k'(t) stores, e'(t) pushes.
     power = velocity @ model.reduced.load - velocity**2 @ system.damping - (acting * rate**2).sum(axis=1)
@@ -150,8 +201,8 @@ def test_energy_audit_over_a_period(machine, speed):
         order = np.arange(1, run.coordinates.shape[1])
         v = omega * (order * ahead_at ** (order - 1)) @ run.coordinates[k][1:]
         d = run.at(np.array([at]))[1][0]
-        gap = np.sign(d) * np.maximum(np.abs(d) - machine.half_backlash, 0.0)
-        now = np.array([machine.stiffness(at / TAU - phase) for phase in machine.phases])
+        gap = pressed(system, d, state_of(system, d))
+        now = np.array([float(series(at / TAU)) for series in springs])
         return 0.5 * v @ v + 0.5 * system.omega_squared @ y**2 + 0.5 * now @ gap**2
 
     ends = run.starts[-1] + run.lengths[-1]
@@ -183,7 +234,8 @@ def test_torques_less_mesh_forces_change_the_spin_of_every_body(machine, speed):
     (angle, spin), (later_angle, later_spin) = ((q[3::4], v[3::4]) for q, v in ends)
     inertia = mass_diagonal(layout)[3::4]
     gained = inertia * (later_spin - spin + machine.damping.mass * (later_angle - angle))
-    impulses = mesh_directions(layout)[:, 3::4] * (times @ force)[:, None]
+    directions = flank_directions(layout) if layout.is_geometric else mesh_directions(layout)
+    impulses = directions[:, 3::4] * (times @ force)[:, None]
     given_ = machine.torques * times.sum()
     size = np.abs(given_).max() + np.abs(impulses).max() + np.abs(inertia * spin).max()
     np.testing.assert_allclose(gained, given_ - impulses.sum(axis=0), atol=1e-9 * size)
@@ -199,15 +251,16 @@ def mesh_forces(model: Model, run: Trajectory, omega: float) -> tuple[np.ndarray
     deflection = np.einsum("kp,kpm->km", ahead**order, run.deflections[step])
     slope = np.einsum("kp,kpm->km", order[1:] * ahead ** order[:-1], run.deflections[step][:, 1:])
     state = run.states[step]
-    beyond = np.where(state == 0, 0.0, deflection - state * machine.half_backlash)
-    acting = machine.damping.mesh * (1.0 if system.damping_when_open else np.abs(state))
-    stiffness = np.stack([machine.stiffness(phases / TAU - phase) for phase in machine.phases], axis=1)
+    beyond, acting = pressed(system, deflection, state), acting_damping(system, state)
+    stiffness = np.stack([series(phases / TAU) for series in contacts(machine)[0]], axis=1)
     return stiffness * beyond + acting * omega * slope, weights / omega
 
 
-def test_mean_mesh_forces_balance_the_torques_of_a_periodic_motion():
+@pytest.mark.parametrize("kinematics", MeshKinematics)
+def test_mean_mesh_forces_balance_the_torques_of_a_periodic_motion(kinematics):
     for torque, speed in ((800.0, 4500.0), (1500.0, 9000.0), (1500.0, 12_000.0)):
-        machine = make_machine(torque=torque)
+        error = 50e-6 if kinematics is MeshKinematics.PRINTED else 5e-6
+        machine = make_machine(make_layout(kinematics=kinematics), torque=torque, error=error)
         settings_ = Settings(tolerance=1e-12, periodic_residual=1e-9)
         model = build_model(machine)
         response = simulate(model, speed, settings_)
@@ -215,19 +268,27 @@ def test_mean_mesh_forces_balance_the_torques_of_a_periodic_motion():
         run = record(model.system, response.frequency, response.state, response.period, settings_)
         phases, weights = run.quadrature()
         deflections = run.at(phases)[1]
-        gap = np.sign(deflections) * np.maximum(np.abs(deflections) - machine.half_backlash, 0.0)
-        stiffness = np.stack([machine.stiffness(phases / TAU - p) for p in machine.phases], axis=1)
+        gap = pressed(model.system, deflections, state_of(model.system, deflections))
+        stiffness = np.stack([series(phases / TAU) for series in contacts(machine)[0]], axis=1)
+        damping = acting_damping(model.system, state_of(model.system, deflections))
         mean = weights @ (stiffness * gap) / weights.sum()
+        # Open and closed alike the damper's mean is nought; in contact only, the two flanks share it.
+        assert np.ptp(damping) == 0.0
         layout = machine.layout
-        lever = layout.pinion_radius * np.cos(layout.pressure_angle)
-        carried = mean.reshape(2, 5).sum(axis=0) * lever
+        directions = flank_directions(layout) if layout.is_geometric else mesh_directions(layout)
+        carried = (mean @ directions)[3:20:4]
         np.testing.assert_allclose(carried, machine.torques[:5], atol=1e-7 * torque)
 
 
 @settings(max_examples=8, deadline=None)
-@given(torque=st.floats(100, 2000), speed=speeds, backlash=st.floats(0, 2e-4))
-def test_left_and_right_move_alike_where_the_machine_is_symmetric(torque, speed, backlash):
-    model = build_model(make_machine(torque=torque, backlash=backlash))
+@given(
+    torque=st.floats(100, 2000),
+    speed=speeds,
+    backlash=st.floats(0, 2e-4),
+    kinematics=st.sampled_from(list(MeshKinematics)),
+)
+def test_left_and_right_move_alike_where_the_machine_is_symmetric(torque, speed, backlash, kinematics):
+    model = build_model(make_machine(make_layout(kinematics=kinematics), torque=torque, backlash=backlash))
     run = record(model.system, frequency(model, speed), static_start(model), 3, FINE)
     deflections = run.at(np.linspace(0.0, 3 * TAU, 200))[1]
     for right, left in ((1, 4), (2, 3), (6, 9), (7, 8)):
@@ -237,7 +298,7 @@ def test_left_and_right_move_alike_where_the_machine_is_symmetric(torque, speed,
 
 
 @settings(max_examples=12, deadline=None)
-@given(machine=machines(backlash=0.0, mass_damping=800.0), speed=speeds)
+@given(machine=machines(kinematics=MeshKinematics.PRINTED, backlash=0.0, mass_damping=800.0), speed=speeds)
 def test_without_backlash_the_response_is_hills(machine, speed):
     """Harmonic balance of the linear system with periodic k, solved to rounding in the frequency domain."""
     model = build_model(machine)
