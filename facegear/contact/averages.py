@@ -7,7 +7,7 @@ import scipy.sparse as sp
 from numba import njit
 from numpy.typing import NDArray
 
-from facegear.contact.bodies.surface import averaged_interpolation
+from facegear.contact.bodies.surface import face_functions
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,9 +29,9 @@ class Rows:
         return np.add.reduceat(self.weight * values[self.index], self.pointer[:-1])
 
     def heaviest(self) -> NDArray[np.int64]:
-        """The point (m,) with the largest weight of each row."""
+        """The point (m,) with the largest weight of each row, the first of those alike to rounding."""
         row = np.repeat(np.arange(len(self)), np.diff(self.pointer))
-        return self.index[np.lexsort((-self.weight, row))[self.pointer[:-1]]]
+        return self.index[np.lexsort((-np.round(self.weight, 12), row))[self.pointer[:-1]]]
 
     def only(self, keep: NDArray[np.bool_]) -> "Rows":
         """The rows marked (m,)."""
@@ -101,7 +101,29 @@ def spread(
     rows: Rows, coordinates: NDArray[np.float64], shape: tuple[int, int], linear: bool = False
 ) -> sp.csr_matrix:
     """The rows times `surface.interpolation(coordinates, shape, linear)`, (m, nu nv), in one pass."""
-    columns, values, pointer = averaged_interpolation(
-        rows.pointer, rows.index, rows.weight, np.ascontiguousarray(coordinates), *shape, linear
-    )
-    return sp.csr_matrix((values, columns, pointer), shape=(len(rows), shape[0] * shape[1]))
+    nodes, values, _ = face_functions(coordinates, shape, linear)
+    count = shape[0] * shape[1]
+    spread_to, load, pointer = _averaged(rows.pointer, rows.index, rows.weight, nodes, values, count)
+    return sp.csr_matrix((load, spread_to, pointer), shape=(len(rows), count))
+
+
+@njit(cache=True)
+def _averaged(pointer, index, weight, nodes, values, count):  # type: ignore[no-untyped-def]
+    """Columns, values and row ends of averages over points times rows of `values` at the columns `nodes`."""
+    width = nodes.shape[1]
+    columns, result = np.empty(width * index.size, np.int32), np.empty(width * index.size)
+    ends, slot = np.zeros(pointer.size, np.int32), np.full(count, -1)
+    filled = 0
+    for row in range(pointer.size - 1):
+        first = filled
+        for k in range(pointer[row], pointer[row + 1]):
+            point = index[k]
+            for a in range(width):
+                node = nodes[point, a]
+                if slot[node] < first:
+                    slot[node] = filled
+                    columns[filled], result[filled] = node, 0.0
+                    filled += 1
+                result[slot[node]] += weight[k] * values[point, a]
+        ends[row + 1] = filled
+    return columns[:filled].copy(), result[:filled].copy(), ends

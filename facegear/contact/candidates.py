@@ -6,9 +6,10 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
+from skfem import Basis
 
 from facegear.contact.averages import Rows, hat_averages, rows_of, spread, stacked
-from facegear.contact.bodies.surface import cell_areas, cell_points, hat_values, line_points
+from facegear.contact.bodies.surface import cell_areas, cell_points, edge_hats, hat_values, pressure_basis
 from facegear.contact.options import Refinement
 from facegear.contact.teeth import ContactSide, pinion_points
 from facegear.geometry.design import PairDesign
@@ -41,8 +42,12 @@ class PinionSurface:
         return (nu - 1) * self.refinement.profile + 1, (nv - 1) * self.refinement.width + 1
 
     @cached_property
+    def pressure(self) -> Basis:
+        return pressure_basis(self.shape)
+
+    @cached_property
     def lattice(self) -> NDArray[np.float64]:
-        return cell_points(self.shape)
+        return cell_points(self.pressure)
 
     @cached_property
     def points(self) -> SurfacePoints:
@@ -52,7 +57,7 @@ class PinionSurface:
     def area(self) -> NDArray[np.float64]:
         nodes = np.stack(np.meshgrid(*map(np.arange, self.shape), indexing="ij"), axis=-1).reshape(-1, 2)
         surface = pinion_points(self.design, self.side, self.refinement, nodes.astype(float)).position
-        return cell_areas(surface.reshape(*self.shape, 3))
+        return cell_areas(surface.reshape(*self.shape, 3), self.pressure)
 
     @cached_property
     def arm(self) -> NDArray[np.float64]:
@@ -61,7 +66,7 @@ class PinionSurface:
 
     @cached_property
     def hats(self) -> sp.csr_matrix:
-        return hat_values(self.lattice, self.shape)
+        return hat_values(self.pressure)
 
     @cached_property
     def full_area(self) -> NDArray[np.float64]:
@@ -83,7 +88,7 @@ class PinionSurface:
     @cached_property
     def tip(self) -> tuple[NDArray[np.float64], SurfacePoints]:
         """Lattice coordinates (q, 2) of points along the tip edge, and the points."""
-        along = line_points(self.shape[1])
+        along, _, _ = edge_hats(self.shape[1])
         coordinates = np.stack([np.zeros(along.size), along], axis=1)
         return coordinates, pinion_points(self.design, self.side, self.refinement, coordinates)
 

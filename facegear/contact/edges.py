@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.contact.averages import hat_averages
-from facegear.contact.bodies.surface import line_points
+from facegear.contact.bodies.surface import edge_hats
 from facegear.contact.candidates import SMALLEST_COVER, Loads, PinionSurface
 from facegear.contact.teeth import GearLattice
 from facegear.geometry import face_gear, pinion
@@ -50,7 +50,7 @@ def gear_edge_gaps(
     design = surface.design
     gear = design.face_gear
     columns = (lattice.side.shape[1] - 1) * lattice.refinement.width + 1
-    along = line_points(columns)
+    along, _, _ = edge_hats(columns)
     radius = gear.inner_radius + along / (columns - 1) * (gear.outer_radius - gear.inner_radius)
     roll, psi = face_gear.roll_and_psi_at_height(design, radius, np.full(radius.shape, design.gear_tip_plane))
     points = face_gear.flank_point(design, roll, psi) * np.array([-1.0, 1.0, 1.0])
@@ -100,18 +100,16 @@ def pinion_edge(
 
 
 def _edge_loads(surface: PinionSurface, edge: EdgeGaps, columns: int, spacing: float) -> Loads | None:
-    """Hats along an edge of `columns` nodes, `spacing` (m) apart, over points of `line_points`."""
+    """Hats along an edge of `columns` nodes, `spacing` (m) apart, over points of `edge_hats`."""
     if edge.index.size == 0:
         return None
-    along = line_points(columns)[edge.index]
-    base = np.floor(along).astype(np.int64)
-    share = along - base
+    _, hats_here, values = edge_hats(columns)
     least = np.full(columns, SMALLEST_COVER)
     least[[0, -1]] *= 0.5
     rows, hats, length = hat_averages(
-        np.stack([base, base + 1], axis=1),
-        np.stack([1 - share, share], axis=1),
-        np.full(share.size, 0.5),
+        hats_here[edge.index],
+        values[edge.index],
+        np.full(edge.index.size, 0.5),
         least,
     )
     if hats.size == 0:

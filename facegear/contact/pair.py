@@ -6,7 +6,7 @@ from facegear.contact.bodies.compliance import FlankCompliance, flank_compliance
 from facegear.contact.candidates import PinionSurface
 from facegear.contact.ltca import ContactModel
 from facegear.contact.options import ContactPlan, Ends
-from facegear.contact.teeth import GearLattice, contact_side, piece_of
+from facegear.contact.teeth import GearLattice, contact_side, elastic_tooth
 from facegear.errors import ConfigError
 from facegear.geometry.design import Material, PairDesign
 from facegear.mesh.sizes import MeshSizes
@@ -30,9 +30,9 @@ def body_compliance(
     factorised.
     """
     tooth = BUILDERS[body](design, sizes)
-    piece, _ = piece_of(design, tooth, material)
+    elastic, _ = elastic_tooth(design, tooth, material)
     teeth, neighbours, ends = extent(tooth, body, plan)
-    return flank_compliance(piece, plan.refinement, teeth, neighbours, ends, plan.element)
+    return flank_compliance(elastic, plan.refinement, teeth, neighbours, ends, plan.element)
 
 
 def extent(tooth: ToothMesh, body: str, plan: ContactPlan) -> tuple[int, int, Ends]:

@@ -7,13 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from facegear.contact.bodies.body import Piece
+from facegear.contact.bodies.body import ElasticBody
 from facegear.contact.bodies.surface import interpolation
 from facegear.contact.options import Refinement
 from facegear.geometry import face_gear
 from facegear.geometry.design import Material, PairDesign
 from facegear.geometry.pinion_surface import SurfacePoints, fillet_points, flank_points
 from facegear.geometry.separation import FILLET, FLANK, TIP_LAND, Separation
+from facegear.mesh.hexahedra import hex_mesh
 from facegear.mesh.tooth import ToothMesh
 
 LOADED_SIDE = {"pinion": "right", "face_gear": "left"}
@@ -67,10 +68,10 @@ def contact_side(design: PairDesign, tooth: ToothMesh, side: str | None = None) 
     )
 
 
-def piece_of(
+def elastic_tooth(
     design: PairDesign, tooth: ToothMesh, material: Material, side: str | None = None
-) -> tuple[Piece, ContactSide]:
-    """The tooth as an elastic piece, bore or rim back clamped, and its contact surface."""
+) -> tuple[ElasticBody, ContactSide]:
+    """The tooth as an elastic body, bore or rim back clamped, and its contact surface."""
     surface = contact_side(design, tooth, side)
     rows = surface.flank_rows
     if tooth.body == "pinion":
@@ -82,21 +83,20 @@ def piece_of(
     normals = np.concatenate([flank, fillet])
     if (side or LOADED_SIDE[tooth.body]) == "left":
         normals = normals * np.array([-1.0, 1.0, 1.0])
+    mesh, number = hex_mesh(tooth.nodes, tooth.hexes)
     held = np.zeros(tooth.nodes.shape, dtype=bool)
-    held[tooth.faces["bore" if tooth.body == "pinion" else "rim_back"]] = True
-    turn = tooth.rotated(np.eye(3), tooth.pitch).T
-    piece = Piece(
-        tooth.nodes,
-        tooth.hexes,
-        material,
-        surface.nodes,
-        normals,
-        held,
-        tooth.cut_left,
-        tooth.cut_right,
-        turn,
+    held[number[tooth.faces["bore" if tooth.body == "pinion" else "rim_back"]]] = True
+    body = ElasticBody(
+        mesh=mesh,
+        material=material,
+        flank=number[surface.nodes],
+        normals=normals,
+        held=held,
+        left=number[tooth.cut_left],
+        right=number[tooth.cut_right],
+        turn=tooth.rotated(np.eye(3), tooth.pitch).T,
     )
-    return piece, surface
+    return body, surface
 
 
 def pinion_points(

@@ -5,12 +5,12 @@ from math import radians
 
 import numpy as np
 import scipy.sparse as sp
+from skfem import MeshHex1, MeshHex2
 
-from facegear.contact.bodies.body import Piece
-from facegear.contact.bodies.elements import block_hexes
+from facegear.contact.bodies.body import ElasticBody
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.bodies.substructure import condense
-from facegear.contact.bodies.surface import cell_areas, cell_points, hat_values, interpolation
+from facegear.contact.bodies.surface import cell_areas, cell_points, hat_values, interpolation, pressure_basis
 from facegear.contact.solver import solve
 from facegear.geometry.design import FaceGear, Material, PairDesign, Pinion, Relief, Shaper
 
@@ -37,13 +37,15 @@ def block(x, y, z, mapping=None, held=None, normal=(0.0, 1.0, 0.0)):
     """Block with element ends x, y, z; the contact surface is the face of largest y, profile along x, width
     z.
     """
-    grid = np.stack(np.meshgrid(stations(x), stations(y), stations(z), indexing="ij"), axis=-1)
-    nodes = np.arange(grid[..., 0].size).reshape(grid.shape[:3])
-    reference = grid.reshape(-1, 3)
-    points = reference if mapping is None else mapping(reference)
-    flank = nodes[:, -1, :]
+    mesh = MeshHex2.from_mesh(MeshHex1.init_tensor(x, y, z))
+    reference = mesh.doflocs.T
+    top = np.flatnonzero(reference[:, 1] == reference[:, 1].max())
+    shape = len(stations(x)), len(stations(z))
+    flank = top[np.lexsort(np.round(reference[top][:, [2, 0]].T, 12))].reshape(shape)
     normals = np.broadcast_to(np.array(normal), (*flank.shape, 3)).copy()
-    return Piece(points, block_hexes(nodes), STEEL, flank, normals, held(reference))
+    if mapping is not None:
+        mesh = replace(mesh, doflocs=np.ascontiguousarray(mapping(reference).T))
+    return ElasticBody(mesh, STEEL, flank, normals, held(reference))
 
 
 def half_disc(radius, elements_x, elements_y):
@@ -78,17 +80,17 @@ def quarter_space(size, total, loaded, ratio=2.0):
         far = (p[:, 1] < -total * 0.999999) | (p[:, 0] > total * 0.999999) | (p[:, 2] > total * 0.999999)
         return np.stack([far | (p[:, 0] < 1e-15), far, far | (p[:, 2] < 1e-15)], axis=1)
 
-    piece = block(ends, depth, ends, held=held)
+    body = block(ends, depth, ends, held=held)
     rows = slice(0, 2 * loaded + 1)
-    return replace(piece, flank=piece.flank[rows, rows], normals=piece.normals[rows, rows])
+    return replace(body, flank=body.flank[rows, rows], normals=body.normals[rows, rows])
 
 
-def pressed(piece, refinement, gap_of, force, reach=None):
+def pressed(body, refinement, gap_of, force, reach=None):
     """Press a rigid surface, `gap_of` (n, 3) points, on a body; returns the contact, pressures and hat
     centres.
     """
-    system = tied_system(piece, refinement)
-    flank = condense(piece, system).flank
+    system = tied_system(body, refinement)
+    flank = condense(body, system).flank
     shape = system.surface.shape[:2]
     compliance = system.spread @ flank @ system.spread.T
     points, weight, area = hats_of(system.surface)
@@ -105,8 +107,9 @@ def pressed(piece, refinement, gap_of, force, reach=None):
 def hats_of(surface):
     """Integration points of a lattice (nu, nv, 3), unit hats at them (n, q), and the hats' areas."""
     shape = surface.shape[:2]
-    points = cell_points(shape)
-    weight = hat_values(points, shape).multiply(cell_areas(surface)[:, None]).T.tocsr()
+    basis = pressure_basis(shape)
+    points = cell_points(basis)
+    weight = hat_values(basis).multiply(cell_areas(surface, basis)[:, None]).T.tocsr()
     area = np.asarray(weight.sum(axis=1)).ravel()
     return points, sp.diags_array(1 / area) @ weight, area
 

@@ -1,60 +1,56 @@
-"""Stiffness of linear elastic hexahedra, assembled in batches.
+"""Stiffness of linear elastic bodies: scikit-fem's bases, contracted to element matrices in batches.
 
 scikit-fem's form assembly gives the same matrix to rounding and is the reference in the tests; for the
 27-node element it is about ten times slower, which would make it the longest part of a compliance job.
 """
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 import scipy.sparse as sp
 from numba import njit
 from numpy.typing import NDArray
+from skfem import Basis, Mesh, MeshHex2
+from skfem.assembly import Dofs
+from skfem.models.elasticity import lame_parameters
 
-from facegear.contact.bodies.elements import gauss_points, hex_shapes, subdivided, trilinear_shapes
+from facegear.contact.bodies.elements import KINDS, mesh_of
 from facegear.contact.options import Element
 from facegear.geometry.design import Material
 
-ELEMENTS_AT_ONCE = 256
+ELEMENTS_AT_ONCE = 512
 
 
-def lame_constants(material: Material) -> tuple[float, float]:
-    """First Lame constant and shear modulus, Pa."""
-    shear = material.young_modulus / (2 * (1 + material.poisson_ratio))
-    return 2 * shear * material.poisson_ratio / (1 - 2 * material.poisson_ratio), shear
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Elements (m,) of a mesh, and the node of the whole system that each of the mesh's nodes is, (n,)."""
+
+    mesh: MeshHex2
+    elements: NDArray[np.int64]
+    nodes: NDArray[np.int64]
 
 
-def element_stiffness(
-    corners: NDArray[np.float64], material: Material, element: Element = "hex27"
-) -> NDArray[np.float64]:
-    """Stiffness (m, 3 a, 3 a) of elements with node positions (m, a, 3), fully integrated.
+def element_stiffness(basis: Basis, material: Material) -> NDArray[np.float64]:
+    """Stiffness (m, 3 a, 3 a) of a scalar basis' elements, each of their a functions taken for x, y and z.
 
-    Dof 3 n + i is the displacement of local node n along axis i. Raises ValueError for an inverted element.
+    Dof 3 n + i is the displacement of local node n along axis i. Raises ValueError for an element that is
+    turned inside out anywhere.
     """
-    reference, weight = _integration(element)
-    jacobian = np.einsum("qad,mai->mqid", reference, corners)
-    volume = np.linalg.det(jacobian)
-    if (volume <= 0).any():
-        raise ValueError(f"{int((volume <= 0).any(axis=1).sum())} elements are inverted")
-    gradient = np.einsum("qad,mqdi->mqai", reference, np.linalg.inv(jacobian), optimize=True)
-    scaled = gradient * np.sqrt(weight * volume)[:, :, None, None]
-    nodes = corners.shape[1]
-    flat = scaled.reshape(len(corners), len(weight), 3 * nodes)
-    outer = (flat.transpose(0, 2, 1) @ flat).reshape(-1, nodes, 3, nodes, 3)
-    lame, shear = lame_constants(material)
+    turned = np.sign(basis.mapping.detDF(basis.X, basis.tind))
+    inverted = (turned != turned[:, :1]).any(axis=1)
+    if inverted.any():
+        raise ValueError(f"{np.count_nonzero(inverted)} elements are inverted")
+    gradient = np.stack([function[0].grad for function in basis.basis])
+    nodes, axes, elements, points = gradient.shape
+    scaled = (gradient * np.sqrt(basis.dx)).transpose(2, 3, 0, 1).reshape(elements, points, nodes * axes)
+    outer = (scaled.transpose(0, 2, 1) @ scaled).reshape(elements, nodes, axes, nodes, axes)
+    lame, shear = lame_parameters(material.young_modulus, material.poisson_ratio)
     stiffness = lame * outer + shear * outer.transpose(0, 1, 4, 3, 2)
     trace = shear * np.einsum("maibi->mab", outer)
-    for axis in range(3):
+    for axis in range(axes):
         stiffness[:, :, axis, :, axis] += trace
-    return stiffness.reshape(-1, 3 * nodes, 3 * nodes)
-
-
-def _integration(element: Element) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Reference gradients (q, a, 3) and weights (q,)."""
-    if element == "tet4":
-        corner = np.array([[-1.0, -1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-        return corner[None], np.array([1 / 6])
-    where, weight = gauss_points(3 if element == "hex27" else 2, 3)
-    shapes = hex_shapes if element == "hex27" else trilinear_shapes
-    return shapes(where)[1], weight
+    return stiffness.reshape(elements, nodes * axes, nodes * axes)
 
 
 @njit(cache=True)
@@ -72,23 +68,39 @@ def _scatter(elements, blocks, indptr, indices, data):  # type: ignore[no-untype
 
 
 def stiffness_matrix(
-    points: NDArray[np.float64], hexes: NDArray[np.int64], material: Material, element: Element = "hex27"
+    parts: Sequence[Part], count: int, material: Material, element: Element = "hex27"
 ) -> sp.bsr_matrix:
-    """Stiffness (3n, 3n) in N/m of a mesh with points (n, 3) in m; dof 3 p + i is point p along axis i.
+    """Stiffness (3n, 3n) in N/m on `count` nodes; dof 3 k + i is the displacement of node k along axis i.
 
-    `hexes` (m, 27) are cut into the smaller hexahedra or tetrahedra of `element` on the same nodes.
+    `element` other than hex27 puts linear elements on the same nodes.
     """
-    hexes = subdivided(hexes, element)
-    count, nodes = len(points), hexes.shape[1]
+    pieces = [_pieces(part, element) for part in parts]
+    touched = np.concatenate([nodes for _, _, nodes in pieces])
     touches = sp.csr_matrix(
-        (np.ones(hexes.size, dtype=np.int32), (np.repeat(np.arange(len(hexes)), nodes), hexes.ravel())),
-        shape=(len(hexes), count),
+        (
+            np.ones(touched.size, dtype=np.int32),
+            (np.repeat(np.arange(len(touched)), touched.shape[1]), touched.ravel()),
+        ),
+        shape=(len(touched), count),
     )
     pattern = (touches.T @ touches).tocsr()
     pattern.sort_indices()
     data = np.zeros((pattern.nnz, 3, 3))
-    for start in range(0, len(hexes), ELEMENTS_AT_ONCE):
-        batch = hexes[start : start + ELEMENTS_AT_ONCE]
-        blocks = element_stiffness(points[batch], material, element)
-        _scatter(batch, blocks, pattern.indptr, pattern.indices, data)
+    for mesh, elements, nodes in pieces:
+        kind, degree = KINDS[element]
+        shared = {"mapping": mesh.mapping(), "dofs": Dofs(mesh, kind()), "disable_doflocs": True}
+        for start in range(0, len(elements), ELEMENTS_AT_ONCE):
+            batch = slice(start, start + ELEMENTS_AT_ONCE)
+            basis = Basis(mesh, kind(), intorder=degree, elements=elements[batch], **shared)
+            blocks = element_stiffness(basis, material)
+            _scatter(nodes[batch], blocks, pattern.indptr, pattern.indices, data)
     return sp.bsr_matrix((data, pattern.indices, pattern.indptr), shape=(3 * count, 3 * count))
+
+
+def _pieces(part: Part, element: Element) -> tuple[Mesh, NDArray[np.int64], NDArray[np.int64]]:
+    """Mesh and elements of the wanted kind, and the nodes (m, a) of the system that each element has."""
+    mesh = mesh_of(part.mesh, element)
+    copies, whole = mesh.nelements // part.mesh.nelements, part.mesh.nelements
+    elements = (part.elements + whole * np.arange(copies)[:, None]).ravel()
+    nodes = mesh.dofs.element_dofs[:, elements].T
+    return mesh, elements, part.nodes[nodes]

@@ -1,26 +1,27 @@
-"""One repeating piece of a gear (a tooth with its share of the rim), or any body with one contact surface."""
+"""One repeating part of a gear (a tooth with its share of the rim), or any body with one contact surface."""
 
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+from skfem import MeshHex2
 
 from facegear.geometry.design import Material
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
-    """Mesh of 27-node hexahedra (tensor node order) with its contact surface, supports and cut faces.
+class ElasticBody:
+    """Mesh of 27-node hexahedra with its contact surface, supports and cut faces.
 
-    `flank` (2a+1, 2b+1) holds the nodes of the contact surface, axis 0 across the profile and axis 1 along
-    the width; `normals` (2a+1, 2b+1, 3) point out of the body there. `held` (n, 3) marks dof kept at zero.
-    `left` and `right` (s,) are the nodes of the two cut faces: the rotation `turn` (3, 3) by one pitch about
-    the gear's axis takes the left ones to the right ones, in this order. Both are empty for a body that does
-    not repeat.
+    Nodes are those of the mesh in scikit-fem's numbering: displacement i of node k is dof 3 k + i of
+    `ElementVector(ElementHex2())`. `flank` (2a+1, 2b+1) holds the nodes of the contact surface, axis 0 across
+    the profile and axis 1 along the width; `normals` (2a+1, 2b+1, 3) point out of the body there. `held`
+    (n, 3) marks dof kept at zero. `left` and `right` (s,) are the nodes of the two cut faces: the rotation
+    `turn` (3, 3) by one pitch about the gear's axis takes the left ones to the right ones, in this order.
+    Both are empty for a body that does not repeat.
     """
 
-    points: NDArray[np.float64]
-    hexes: NDArray[np.int64]
+    mesh: MeshHex2
     material: Material
     flank: NDArray[np.int64]
     normals: NDArray[np.float64]
@@ -36,3 +37,8 @@ class Piece:
             gap = np.abs(self.points[self.left] @ self.turn.T - self.points[self.right]).max()
             if gap > 1e-9 * np.abs(self.points).max():
                 raise ValueError(f"the cut faces do not match after one pitch: {gap:.1e} m apart")
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """Positions (n, 3) of the nodes, m."""
+        return self.mesh.doflocs.T

@@ -7,7 +7,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from facegear.contact.bodies.body import Piece
+from facegear.contact.bodies.body import ElasticBody
 from facegear.contact.bodies.layer import TiedSystem, tied_system
 from facegear.contact.bodies.ring import face_compliance, rest_stiffness
 from facegear.contact.bodies.substructure import Superelement, condense, held_by
@@ -42,32 +42,32 @@ class FlankCompliance:
 
 
 def flank_compliance(
-    piece: Piece,
+    body: ElasticBody,
     refinement: Refinement,
     teeth: int = 1,
     neighbours: int = 2,
     ends: Ends = "ring",
     element: Element = "hex27",
 ) -> FlankCompliance:
-    """Compliance of a body of `teeth` copies of a piece; `neighbours` on each side of the loaded one are
+    """Compliance of `teeth` copies of a body with cut faces; `neighbours` of the loaded one on each side are
     kept.
 
-    All teeth are refined alike, so that one factorisation serves the loaded tooth and its neighbours. A piece
+    All teeth are refined alike, so that one factorisation serves the loaded tooth and its neighbours. A body
     without cut faces stands for itself.
     Raises FacegearError if the body is not held, ValueError if there are too few teeth.
     """
     progress = Progress("flank compliance", total=sum(SHARES))
-    system = tied_system(piece, refinement, element)
+    system = tied_system(body, refinement, element)
     progress.step(SHARES[0])
-    tooth = condense(piece, system)
+    tooth = condense(body, system)
     progress.step(SHARES[1])
-    coupled = coupled_compliance(piece, system, tooth, refinement, teeth, neighbours, ends, element)
+    coupled = coupled_compliance(body, system, tooth, refinement, teeth, neighbours, ends, element)
     progress.step(SHARES[2])
     return coupled
 
 
 def coupled_compliance(
-    piece: Piece,
+    body: ElasticBody,
     system: TiedSystem,
     tooth: Superelement,
     refinement: Refinement,
@@ -80,9 +80,9 @@ def coupled_compliance(
 
     Raises ValueError if there are too few teeth.
     """
-    shape, coarse_shape = system.surface.shape[:2], piece.flank.shape
-    others, rest = np.zeros((1, piece.flank.size, piece.flank.size)), np.zeros((0, 0))
-    if piece.left.size:
+    shape, coarse_shape = system.surface.shape[:2], body.flank.shape
+    others, rest = np.zeros((1, body.flank.size, body.flank.size)), np.zeros((0, 0))
+    if body.left.size:
         rests = rest_stiffness(tooth.faces, neighbours, teeth, ends)
         nodes = np.arange(shape[0] * shape[1]).reshape(shape)
         seen = system.spread[nodes[:: refinement.profile, :: refinement.width].ravel()] @ tooth.influence

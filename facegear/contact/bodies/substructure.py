@@ -1,4 +1,4 @@
-"""One piece of a gear condensed onto what is loaded and what is shared with its neighbours."""
+"""One tooth of a gear condensed onto what is loaded and what is shared with its neighbours."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 
-from facegear.contact.bodies.body import Piece
+from facegear.contact.bodies.body import ElasticBody
 from facegear.contact.bodies.dense import cholesky, inverse
 from facegear.contact.bodies.factor import schur_complement
 from facegear.contact.bodies.layer import TiedSystem
@@ -28,12 +28,12 @@ class Superelement:
     faces: NDArray[np.float64]
 
 
-def condense(piece: Piece, system: TiedSystem) -> Superelement:
+def condense(body: ElasticBody, system: TiedSystem) -> Superelement:
     """Eliminate everything but the normal displacements of the flank and the cut faces.
 
     Raises FacegearError if the body is not held, ValueError if the flank touches a held or a cut face.
     """
-    stiffness, flank, faces = _turned(piece, system)
+    stiffness, flank, faces = _turned(body, system)
     schur = schur_complement(stiffness, np.concatenate([flank, faces]))
     k = flank.size
     lower = cholesky(schur[:k, :k])
@@ -66,7 +66,9 @@ def frames_of(normals: NDArray[np.float64], held: NDArray[np.bool_]) -> NDArray[
     return np.stack([normals, first, np.cross(normals, first)], axis=1)
 
 
-def _turned(piece: Piece, system: TiedSystem) -> tuple[sp.csr_matrix, NDArray[np.int64], NDArray[np.int64]]:
+def _turned(
+    body: ElasticBody, system: TiedSystem
+) -> tuple[sp.csr_matrix, NDArray[np.int64], NDArray[np.int64]]:
     """Stiffness on the free dof, flank nodes turned to their normals and right faces to the left's frame.
 
     Also the positions of the flank's normal dof and of the faces' dof (left, then right) in it.
@@ -76,8 +78,8 @@ def _turned(piece: Piece, system: TiedSystem) -> tuple[sp.csr_matrix, NDArray[np
     held = system.held.copy()
     frames[system.loaded] = frames_of(system.loaded_normals, held[system.loaded])
     held[system.loaded] = held[system.loaded].sum(axis=1)[:, None] > np.array([3, 0, 1])
-    left, right = system.coarse[piece.left], system.coarse[piece.right]
-    frames[right] = piece.turn.T
+    left, right = system.coarse[body.left], system.coarse[body.right]
+    frames[right] = body.turn.T
     turn = sp.bsr_matrix(
         (frames, np.arange(count), np.arange(count + 1)), shape=(3 * count, 3 * count)
     ).tocsr()

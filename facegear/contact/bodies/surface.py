@@ -1,125 +1,87 @@
 """The refined contact surface: quadratic displacement, piecewise bilinear pressure, loads consistent with
 both.
 
-The displacement lives on a lattice of nodes (nu, nv), two nodes an element both ways. The pressure is a sum
-of bilinear hats, one a node, so that a hat's nodal loads, its mean gap and its mean displacement follow from
-one matrix. Lattice coordinates count nodes: 0..nu-1 across the profile, 0..nv-1 along the width.
+The displacement lives on a lattice of nodes (nu, nv), two nodes an element both ways: the faces of 27-node
+hexahedra (`ElementQuad2`). The pressure is a sum of bilinear hats, one a node (`ElementQuad1` between nodes),
+so that a hat's nodal loads, its mean gap and its mean displacement follow from one matrix. Lattice
+coordinates count nodes: 0..nu-1 across the profile, 0..nv-1 along the width; node (i, j) has the number
+i nv + j.
 """
 
 import numpy as np
 import scipy.sparse as sp
-from numba import njit
 from numpy.typing import NDArray
+from skfem import Basis, ElementLineP1, ElementQuad1, ElementQuad2, MeshLine, MeshQuad
 
-GAUSS = 0.5 / np.sqrt(3.0)
+TWO_POINTS = 3
+"""Degree that two Gauss points integrate exactly."""
 
 
-@njit(cache=True)
-def shape_weights(s, count, linear, weights):  # type: ignore[no-untyped-def]
-    """Fill `weights` (3,) at lattice coordinate s; returns the first of the three nodes."""
-    element = min(max(int(s // 2), 0), (count - 3) // 2)
-    x = (s - 2 * element) / 2
-    if linear:
-        weights[0], weights[2] = max(1 - 2 * x, 0.0), max(2 * x - 1, 0.0)
-        weights[1] = 1 - weights[0] - weights[2]
-    else:
-        weights[0], weights[1], weights[2] = (1 - x) * (1 - 2 * x), 4 * x * (1 - x), x * (2 * x - 1)
-    return 2 * element
+def face_functions(
+    coordinates: NDArray[np.float64], shape: tuple[int, int], linear: bool = False
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    """Nodes (n, a) of the faces at lattice coordinates (n, 2), values (n, a) and gradients (n, a, 2) there.
+
+    Biquadratic over faces of hexahedra; with `linear` bilinear between neighbouring nodes, as 8-node
+    hexahedra on the same nodes are. Gradients are by lattice coordinate.
+    """
+    element, size = (ElementQuad1(), 1) if linear else (ElementQuad2(), 2)
+    last = np.array(shape) - 1 - size
+    corner = size * np.clip(coordinates // size, 0, last // size)
+    local = ((coordinates - corner) / size).T
+    functions = [element.lbasis(local, i) for i in range(len(element.doflocs))]
+    steps = np.rint(size * element.doflocs)
+    nodes = ((corner[:, None] + steps) @ np.array([shape[1], 1])).astype(np.int64)
+    values = np.stack([value for value, _ in functions], axis=1)
+    return nodes, values, np.stack([gradient.T for _, gradient in functions], axis=1) / size
 
 
 def interpolation(
     coordinates: NDArray[np.float64], shape: tuple[int, int], linear: bool = False
 ) -> sp.csr_matrix:
-    """Interpolation (n, nu nv) from lattice nodes to lattice coordinates (n, 2), biquadratic over elements.
+    """Interpolation (n, nu nv) from lattice nodes to lattice coordinates (n, 2), see `face_functions`."""
+    nodes, values, _ = face_functions(coordinates, shape, linear)
+    return _rows(nodes, values, shape[0] * shape[1])
 
-    `linear` interpolates between neighbouring nodes instead, as 8-node hexahedra on the same nodes do.
+
+def pressure_basis(shape: tuple[int, int]) -> Basis:
+    """Bilinear hats in lattice coordinates with 2 x 2 Gauss points in each cell between nodes."""
+    mesh = MeshQuad.init_tensor(*(np.arange(float(count)) for count in shape))
+    return Basis(mesh, ElementQuad1(), intorder=TWO_POINTS)
+
+
+def cell_points(basis: Basis) -> NDArray[np.float64]:
+    """Lattice coordinates (q, 2) of a pressure basis' Gauss points, cell by cell."""
+    return np.asarray(basis.global_coordinates()).reshape(2, -1).T.copy()
+
+
+def hat_values(basis: Basis) -> sp.csr_matrix:
+    """Bilinear hats (q, nu nv) of a pressure basis at its Gauss points, four a point."""
+    return _rows(*_by_point(basis), basis.N)
+
+
+def edge_hats(nodes: int) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
+    """Two Gauss points (q,) in each interval between `nodes` nodes on a line, and the two hats there.
+
+    Hats (q, 2) by their nodes, and their values (q, 2).
     """
-    columns, values = _interpolation(np.ascontiguousarray(coordinates), *shape, linear)
-    pointer = np.arange(0, columns.size + 1, 9)
-    return sp.csr_matrix(
-        (values.ravel(), columns.ravel(), pointer), shape=(len(coordinates), shape[0] * shape[1])
-    )
+    basis = Basis(MeshLine(np.arange(float(nodes))), ElementLineP1(), intorder=TWO_POINTS)
+    return np.asarray(basis.global_coordinates()).ravel(), *_by_point(basis)
 
 
-@njit(cache=True)
-def _interpolation(coordinates, nu, nv, linear):  # type: ignore[no-untyped-def]
-    count = coordinates.shape[0]
-    columns = np.empty((count, 9), dtype=np.int64)
-    values = np.empty((count, 9))
-    wu, wv = np.empty(3), np.empty(3)
-    for n in range(count):
-        i = shape_weights(coordinates[n, 0], nu, linear, wu)
-        j = shape_weights(coordinates[n, 1], nv, linear, wv)
-        for a in range(3):
-            for b in range(3):
-                columns[n, 3 * a + b] = (i + a) * nv + j + b
-                values[n, 3 * a + b] = wu[a] * wv[b]
-    return columns, values
+def cell_areas(surface: NDArray[np.float64], basis: Basis) -> NDArray[np.float64]:
+    """Area (m2) that each Gauss point of the pressure basis stands for, surface nodes (nu, nv, 3)."""
+    nodes, _, gradients = face_functions(cell_points(basis), surface.shape[:2])
+    tangents = np.einsum("qad,qai->dqi", gradients, surface.reshape(-1, 3)[nodes])
+    return np.linalg.norm(np.cross(*tangents), axis=1) * basis.dx.ravel()
 
 
-@njit(cache=True)
-def averaged_interpolation(pointer, index, weight, coordinates, nu, nv, linear):  # type: ignore[no-untyped-def]
-    """Columns, values and row ends of averages over points times `interpolation` at their coordinates.
-
-    pointer, index and weight as in `averages.Rows`. It stands here because numba does not notice a change of
-    `shape_weights` in another file.
-    """
-    count = pointer.size - 1
-    columns, values = np.empty(9 * index.size, np.int32), np.empty(9 * index.size)
-    ends, slot = np.zeros(count + 1, np.int32), np.full(nu * nv, -1)
-    wu, wv = np.empty(3), np.empty(3)
-    filled = 0
-    for row in range(count):
-        first = filled
-        for k in range(pointer[row], pointer[row + 1]):
-            i = shape_weights(coordinates[index[k], 0], nu, linear, wu)
-            j = shape_weights(coordinates[index[k], 1], nv, linear, wv)
-            for a in range(3):
-                for b in range(3):
-                    node = (i + a) * nv + j + b
-                    if slot[node] < first:
-                        slot[node] = filled
-                        columns[filled], values[filled] = node, 0.0
-                        filled += 1
-                    values[slot[node]] += weight[k] * wu[a] * wv[b]
-        ends[row + 1] = filled
-    return columns[:filled].copy(), values[:filled].copy(), ends
+def _by_point(basis: Basis) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Nodes (q, a) and values (q, a) of a scalar basis' functions at all its quadrature points."""
+    values = np.stack([function[0].value.ravel() for function in basis.basis], axis=1)
+    return np.repeat(basis.element_dofs.T, basis.X.shape[1], axis=0).astype(np.int64), values
 
 
-def cell_points(shape: tuple[int, int]) -> NDArray[np.float64]:
-    """Lattice coordinates of 2 x 2 Gauss points in each cell between nodes, ((nu-1) (nv-1) 4, 2)."""
-    i, j = np.meshgrid(np.arange(shape[0] - 1), np.arange(shape[1] - 1), indexing="ij")
-    middle = np.stack([i.ravel() + 0.5, j.ravel() + 0.5], axis=-1)
-    offsets = GAUSS * np.array([[-1, -1], [-1, 1], [1, -1], [1, 1]])
-    return (middle[:, None, :] + offsets).reshape(-1, 2)
-
-
-def line_points(nodes: int) -> NDArray[np.float64]:
-    """Two Gauss points in each interval between `nodes` nodes on a line, (2 (nodes - 1),)."""
-    middle = np.arange(nodes - 1) + 0.5
-    return np.stack([middle - GAUSS, middle + GAUSS], axis=-1).ravel()
-
-
-def hat_values(points: NDArray[np.float64], shape: tuple[int, int]) -> sp.csr_matrix:
-    """Bilinear hats (n, nu nv) at lattice coordinates (n, 2)."""
-    base = np.minimum(np.floor(points).astype(np.int64), np.array(shape) - 2)
-    x, y = (points - base).T
-    columns = (base[:, 0] * shape[1] + base[:, 1])[:, None] + np.array([0, 1, shape[1], shape[1] + 1])
-    values = np.stack([(1 - x) * (1 - y), (1 - x) * y, x * (1 - y), x * y], axis=-1)
-    return sp.csr_matrix(
-        (values.ravel(), columns.ravel(), np.arange(0, columns.size + 1, 4)),
-        shape=(len(points), shape[0] * shape[1]),
-    )
-
-
-def cell_areas(surface: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Area (m2) that each point of `cell_points` stands for, surface nodes (nu, nv, 3)."""
-    shape = surface.shape[:2]
-    points = cell_points(shape)
-    flat = surface.reshape(-1, 3)
-    step = 1e-3
-    along = [
-        (interpolation(points + shift, shape) - interpolation(points - shift, shape)) @ flat / (2 * step)
-        for shift in (np.array([step, 0.0]), np.array([0.0, step]))
-    ]
-    return 0.25 * np.linalg.norm(np.cross(*along), axis=1)
+def _rows(nodes: NDArray[np.int64], values: NDArray[np.float64], count: int) -> sp.csr_matrix:
+    pointer = np.arange(0, nodes.size + 1, nodes.shape[1])
+    return sp.csr_matrix((values.ravel(), nodes.ravel(), pointer), shape=(len(nodes), count))

@@ -15,7 +15,7 @@ from facegear.contact.bodies.substructure import condense
 from facegear.contact.ltca import LoadedPosition, analyse, even_positions
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
 from facegear.contact.pair import BUILDERS, body_compliance, contact_model, extent
-from facegear.contact.teeth import piece_of
+from facegear.contact.teeth import elastic_tooth
 from facegear.errors import NotConverged
 from facegear.geometry.design import Material, PairDesign
 from facegear.harmonics.fit import fit_harmonics
@@ -81,11 +81,11 @@ def measure(design: PairDesign, rung: Rung, materials: tuple[Material, Material]
     watch, dof, bodies, plan = Stopwatch(), 0, [], rung.plan
     for body, material in zip(BUILDERS, materials, strict=True):
         tooth = BUILDERS[body](design, rung.sizes)
-        piece, _ = piece_of(design, tooth, material)
-        system = watch.time("assembly_s", tied_system, piece, plan.refinement, plan.element)
-        condensed = watch.time("factorisation_s", condense, piece, system)
+        elastic, _ = elastic_tooth(design, tooth, material)
+        system = watch.time("assembly_s", tied_system, elastic, plan.refinement, plan.element)
+        condensed = watch.time("factorisation_s", condense, elastic, system)
         kept = extent(tooth, body, plan)
-        rest = piece, system, condensed, plan.refinement, *kept, plan.element
+        rest = elastic, system, condensed, plan.refinement, *kept, plan.element
         bodies.append(watch.time("compliance_s", coupled_compliance, *rest))
         dof += int(np.count_nonzero(~system.held))
     model = contact_model(design, rung.sizes, *bodies)

@@ -22,7 +22,7 @@ from facegear.contact.ltca import FIRST_GUESS, LoadedPosition, Place, solve_posi
 from facegear.contact.options import ContactOptions, Refinement
 from facegear.contact.pair import BUILDERS
 from facegear.contact.search import find_candidates
-from facegear.contact.teeth import LOADED_SIDE, GearLattice, contact_side, piece_of
+from facegear.contact.teeth import LOADED_SIDE, GearLattice, contact_side, elastic_tooth
 from facegear.geometry.design import Material, PairDesign
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.mesh.sizes import MeshSizes
@@ -96,9 +96,9 @@ def sector_blocks(
 
     Equal to that of the sector meshed whole, from one condensed tooth.
     """
-    piece, _ = piece_of(design, tooth, material, LOADED_SIDE[tooth.body])
-    system = tied_system(piece, refinement)
-    condensed = condense(piece, system)
+    elastic, _ = elastic_tooth(design, tooth, material, LOADED_SIDE[tooth.body])
+    system = tied_system(elastic, refinement)
+    condensed = condense(elastic, system)
     planes = plane_compliance(condensed.faces, teeth)
     seen = system.spread @ condensed.influence
     own = on_lattice(system.spread, condensed.flank)

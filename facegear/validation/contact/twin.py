@@ -17,7 +17,7 @@ from facegear.contact.candidates import Candidates, PinionSurface, hats_over
 from facegear.contact.influence import influence_matrix
 from facegear.contact.ltca import FIRST_GUESS, LoadedPosition, Place, solve_position
 from facegear.contact.options import Ends, Refinement
-from facegear.contact.teeth import ContactSide, piece_of
+from facegear.contact.teeth import ContactSide, elastic_tooth
 from facegear.geometry import pinion
 from facegear.geometry.design import Material, PairDesign
 from facegear.geometry.unloaded import PAIRS
@@ -51,11 +51,11 @@ def twin_model(
     layer = replace(refinement, width=1)
     for design, size, material in zip((pinion_design, gear_design), sizes, materials, strict=True):
         tooth = slab_tooth(design, size)
-        piece, side = piece_of(design, tooth, material, "right")
-        held = piece.held.copy()
+        elastic, side = elastic_tooth(design, tooth, material, "right")
+        held = elastic.held.copy()
         held[:, 1] = True
         number = teeth or design.pinion.teeth
-        compliances.append(flank_compliance(replace(piece, held=held), layer, number, 2, ends))
+        compliances.append(flank_compliance(replace(elastic, held=held), layer, number, 2, ends))
         sides.append(side)
     surface = PinionSurface(pinion_design, sides[0], layer)
     return TwinModel(pinion_design, gear_design, surface, sides[1], *compliances)

@@ -17,7 +17,7 @@ from facegear.contact.options import ContactOptions, Refinement
 from facegear.contact.pair import BUILDERS
 from facegear.contact.search import find_candidates
 from facegear.contact.solver import solve
-from facegear.contact.teeth import GearLattice, piece_of
+from facegear.contact.teeth import GearLattice, elastic_tooth
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.mesh.sizes import MeshSizes
 
@@ -27,15 +27,15 @@ TORQUE = 400.0
 
 @pytest.fixture(scope="module")
 def pressed_teeth():
-    """One tooth of each gear, cut faces free: pieces, elements, the pair's contact and what made it."""
+    """One tooth of each gear, cut faces free: teeth, elements, the pair's contact and what made it."""
     design, none = pair_design(), np.zeros(0, dtype=np.int64)
-    pieces, sides = zip(
-        *(piece_of(design, B(design, MeshSizes(1.5e-3, 6e-3, 3e-3)), STEEL) for B in BUILDERS.values()),
+    teeth, sides = zip(
+        *(elastic_tooth(design, B(design, MeshSizes(1.5e-3, 6e-3, 3e-3)), STEEL) for B in BUILDERS.values()),
         strict=True,
     )
-    pieces = [replace(piece, left=none, right=none) for piece in pieces]
-    bodies = [flank_compliance(piece, CUTS) for piece in pieces]
-    systems = [tied_system(piece, CUTS) for piece in pieces]
+    teeth = [replace(tooth, left=none, right=none) for tooth in teeth]
+    bodies = [flank_compliance(tooth, CUTS) for tooth in teeth]
+    systems = [tied_system(tooth, CUTS) for tooth in teeth]
     phi1 = -0.1 * 2 * pi / design.pinion.teeth
     phi2 = float(unloaded_contact(design, [phi1]).phi2[0])
     surfaces = PinionSurface(design, sides[0], CUTS), GearLattice(design, sides[1], CUTS)

@@ -30,7 +30,7 @@ def pressed_blocks(lower, upper, cuts):
     """Pressures (n,) at the lower block's hats over the exact one, and approach over the exact one."""
     first, second = column(HEIGHTS[0], lower), column(HEIGHTS[1], upper)
     bodies = [
-        flank_compliance(piece, refinement) for piece, refinement in ((first, cuts), (second, Refinement()))
+        flank_compliance(body, refinement) for body, refinement in ((first, cuts), (second, Refinement()))
     ]
     surface = tied_system(first, cuts).surface
     shape = surface.shape[:2]

@@ -6,19 +6,20 @@ from math import radians
 import numpy as np
 import pytest
 import scipy.sparse.linalg as spl
-from contact_bodies import STEEL, block, half_disc, stations
-from skfem import Basis, ElementHex2, ElementVector, MeshHex
+from contact_bodies import STEEL, block, half_disc
+from skfem import Basis, ElementHex1, ElementHex2, ElementTetP1, ElementVector, MeshHex1, MeshHex2
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from facegear.contact.bodies import factor
-from facegear.contact.bodies.assembly import stiffness_matrix
+from facegear.contact.bodies.assembly import Part, stiffness_matrix
 from facegear.contact.bodies.compliance import flank_compliance, from_arrays, to_arrays
-from facegear.contact.bodies.elements import block_hexes
+from facegear.contact.bodies.elements import mesh_of
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.options import Refinement
-from facegear.contact.teeth import piece_of
+from facegear.contact.teeth import contact_side, elastic_tooth
 from facegear.errors import FacegearError
 from facegear.geometry.design import FaceGear, PairDesign, Pinion, Shaper
+from facegear.mesh.hexahedra import hex_mesh
 from facegear.mesh.sector import sector
 from facegear.mesh.sizes import MeshSizes
 from facegear.mesh.tooth import pinion_tooth
@@ -37,29 +38,62 @@ def spur(teeth=17):
 
 @pytest.fixture(scope="module")
 def slab():
-    """A plane-strain spur tooth, coarse, and its piece."""
+    """A plane-strain spur tooth, coarse, and its body."""
     tooth = slab_tooth(spur(), MeshSizes(1.5e-3, 2e-3, 2.5e-3))
-    piece, _ = piece_of(spur(), tooth, STEEL, "right")
-    held = piece.held.copy()
+    elastic, _ = elastic_tooth(spur(), tooth, STEEL, "right")
+    held = elastic.held.copy()
     held[:, 1] = True
-    return tooth, replace(piece, held=held)
+    return tooth, replace(elastic, held=held)
 
 
-def test_batched_assembly_is_scikit_fem_s_to_rounding():
+def whole(mesh, element="hex27"):
+    """Stiffness of all elements of a mesh on its own nodes."""
+    count = mesh.doflocs.shape[1]
+    part = Part(mesh, np.arange(mesh.nelements), np.arange(count))
+    return stiffness_matrix([part], count, STEEL, element).tocsr()
+
+
+def in_tooth_order(mesh, number):
+    """Stiffness with its dof in the order of the nodes of which `number` are the mesh's."""
+    order = (3 * number[:, None] + np.arange(3)).ravel()
+    return whole(mesh)[order][:, order]
+
+
+def bent(points):
+    x, y, z = points
+    return np.stack([x + 0.1 * y * z, y * (1 + 0.2 * x), z + 0.1 * x**2])
+
+
+@pytest.mark.parametrize(
+    ("element", "kind"), [("hex27", ElementHex2), ("hex8", ElementHex1), ("tet4", ElementTetP1)]
+)
+def test_batched_assembly_is_scikit_fem_s_own_form_to_rounding(element, kind):
     ends = np.linspace(0, 1, 3)
-    ticks = (ends, ends**1.3, ends)
-    basis = Basis(MeshHex.init_tensor(*ticks), ElementVector(ElementHex2()))
-    reference = linear_elasticity(*lame_parameters(STEEL.young_modulus, STEEL.poisson_ratio)).assemble(basis)
-    grid = np.stack(np.meshgrid(*map(stations, ticks), indexing="ij"), axis=-1)
-    points = grid.reshape(-1, 3)
-    ours = stiffness_matrix(points, block_hexes(np.arange(125).reshape(5, 5, 5)), STEEL).tocsr()
-    place = {tuple(np.round(point, 9)): index for index, point in enumerate(points)}
-    component = np.empty(basis.N, dtype=int)
-    for dofs in (basis.nodal_dofs, basis.edge_dofs, basis.facet_dofs, basis.interior_dofs):
-        component[dofs] = np.arange(3)[:, None]
-    order = 3 * np.array([place[tuple(np.round(p, 9))] for p in basis.doflocs.T]) + component
-    difference = ours[order][:, order] - reference
-    assert np.abs(difference.data).max() < 1e-12 * np.abs(reference.data).max()
+    straight = MeshHex2.from_mesh(MeshHex1.init_tensor(ends, ends**1.3, ends))
+    mesh = replace(straight, doflocs=bent(straight.doflocs))
+    degree = {"hex27": 5, "hex8": 3, "tet4": 1}[element]
+    basis = Basis(mesh_of(mesh, element), ElementVector(kind()), intorder=degree)
+    form = linear_elasticity(*lame_parameters(STEEL.young_modulus, STEEL.poisson_ratio))
+    difference = whole(mesh, element) - form.assemble(basis)
+    assert np.abs(difference.data).max() < 1e-13 * np.abs(whole(mesh, element).data).max()
+
+
+@pytest.mark.parametrize("element", ["hex8", "tet4"])
+def test_linear_elements_of_a_tooth_fill_it_without_gaps_between_them(element):
+    tooth = slab_tooth(spur(), MeshSizes(1.5e-3, 2e-3, 2.5e-3))
+    mesh, _ = hex_mesh(tooth.nodes, tooth.hexes)
+    parts = mesh_of(mesh, element)
+    facets_on_a_face = {"hex8": 4, "tet4": 8}[element]
+    assert len(parts.boundary_facets()) == facets_on_a_face * len(mesh.boundary_facets())
+    np.testing.assert_array_equal(parts.doflocs, mesh.doflocs)
+
+
+def test_an_element_turned_inside_out_is_refused():
+    mesh = MeshHex2.from_mesh(MeshHex1())
+    corner = mesh.doflocs.copy()
+    corner[:, 0] = [0.9, 0.9, 0.9]
+    with pytest.raises(ValueError, match="1 elements are inverted"):
+        whole(replace(mesh, doflocs=corner))
 
 
 @pytest.mark.parametrize("cuts", [Refinement(), CUTS, Refinement(2, 2, 3, 1.5)])
@@ -131,21 +165,23 @@ def test_body_that_nothing_holds_is_refused_in_one_line():
 
 @pytest.mark.parametrize("places", [0, 1, -2])
 def test_ring_of_one_condensed_tooth_is_the_ring_meshed_whole(slab, places):
-    tooth, piece = slab
-    compliance = flank_compliance(piece, Refinement(), tooth.teeth, 2, "ring")
+    tooth, elastic = slab
+    compliance = flank_compliance(elastic, Refinement(), tooth.teeth, 2, "ring")
     ring = sector(tooth, tooth.teeth)
     assert ring.closed
-    stiffness = stiffness_matrix(ring.nodes, ring.hexes, STEEL).tocsr()
+    stiffness = in_tooth_order(*hex_mesh(ring.nodes, ring.hexes))
+    flank = contact_side(spur(), tooth, "right").nodes.ravel()
+    normals = elastic.normals.reshape(-1, 3)
     free = np.ones((len(ring.nodes), 3), dtype=bool)
     free[:, 1] = False
-    free[ring.tooth_nodes[:, piece.held.all(axis=1)].ravel()] = False
+    free[ring.tooth_nodes[:, tooth.faces["bore"]].ravel()] = False
     load_at, seen_at = 5 * 3 + 1, 9 * 3 + 2
     rhs = np.zeros((len(ring.nodes), 3))
-    rhs[ring.tooth_nodes[0][piece.flank.ravel()[load_at]]] = piece.normals.reshape(-1, 3)[load_at]
+    rhs[ring.tooth_nodes[0][flank[load_at]]] = normals[load_at]
     moved = np.zeros(free.size)
     moved[free.ravel()] = spl.spsolve(stiffness[free.ravel()][:, free.ravel()].tocsc(), rhs[free])
-    node = ring.tooth_nodes[places % tooth.teeth][piece.flank.ravel()[seen_at]]
-    normal = tooth.rotated(piece.normals.reshape(-1, 3)[seen_at], places * tooth.pitch)
+    node = ring.tooth_nodes[places % tooth.teeth][flank[seen_at]]
+    normal = tooth.rotated(normals[seen_at], places * tooth.pitch)
     expected = moved.reshape(-1, 3)[node] @ normal
     own = compliance.own if places == 0 else compliance.block(places)
     assert own[seen_at, load_at] == pytest.approx(expected, rel=1e-8)
@@ -154,14 +190,16 @@ def test_ring_of_one_condensed_tooth_is_the_ring_meshed_whole(slab, places):
 def test_sector_of_one_condensed_tooth_is_the_sector_meshed_whole():
     design = spur()
     tooth = pinion_tooth(design, MeshSizes(1.5e-3, 2e-3, 2.5e-3))
-    piece, _ = piece_of(design, tooth, STEEL)
+    elastic, side = elastic_tooth(design, tooth, STEEL)
     row = sector(tooth, 4, -2)
     blocks = sector_blocks(design, tooth, STEEL, 4, (-1, 1), Refinement())
-    stiffness = stiffness_matrix(row.nodes, row.hexes, STEEL).tocsr()
+    stiffness = in_tooth_order(*hex_mesh(row.nodes, row.hexes))
     free = np.ones((len(row.nodes), 3), dtype=bool)
-    free[row.tooth_nodes[:, piece.held.all(axis=1)].ravel()] = False
-    nodes = row.tooth_nodes[:, piece.flank.ravel()[[8, 13]]]
-    normals = [tooth.rotated(piece.normals.reshape(-1, 3)[[8, 13]], (j - 2) * tooth.pitch) for j in range(4)]
+    free[row.tooth_nodes[:, tooth.faces["bore"]].ravel()] = False
+    nodes = row.tooth_nodes[:, side.nodes.ravel()[[8, 13]]]
+    normals = [
+        tooth.rotated(elastic.normals.reshape(-1, 3)[[8, 13]], (j - 2) * tooth.pitch) for j in range(4)
+    ]
     push = np.zeros((len(row.nodes), 3))
     push[nodes[3, 0]] = normals[3][0]
     moved = np.zeros(free.size)
@@ -173,18 +211,18 @@ def test_sector_of_one_condensed_tooth_is_the_sector_meshed_whole():
 
 def test_neighbouring_refined_teeth_move_each_other_alike(slab):
     """Maxwell's reciprocity between teeth, at the unrefined nodes."""
-    tooth, piece = slab
-    compliance = flank_compliance(piece, CUTS, tooth.teeth, 2)
+    tooth, elastic = slab
+    compliance = flank_compliance(elastic, CUTS, tooth.teeth, 2)
     for places in (1, 2):
         there, back = compliance.block(places), compliance.block(-places)
         np.testing.assert_allclose(there, back.T, atol=1e-10 * np.abs(there).max())
 
 
 def test_sectors_bracket_the_ring_and_close_in_on_it(slab):
-    tooth, piece = slab
-    rigid = [flank_compliance(piece, Refinement(), n, 1, "clamped").own.trace() for n in (5, 9)]
-    loose = [flank_compliance(piece, Refinement(), n, 1, "free").own.trace() for n in (5, 9)]
-    ring = flank_compliance(piece, Refinement(), tooth.teeth, 1, "ring").own.trace()
+    tooth, elastic = slab
+    rigid = [flank_compliance(elastic, Refinement(), n, 1, "clamped").own.trace() for n in (5, 9)]
+    loose = [flank_compliance(elastic, Refinement(), n, 1, "free").own.trace() for n in (5, 9)]
+    ring = flank_compliance(elastic, Refinement(), tooth.teeth, 1, "ring").own.trace()
     assert rigid[0] < rigid[1] < ring < loose[1] < loose[0]
 
 

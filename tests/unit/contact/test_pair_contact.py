@@ -11,7 +11,7 @@ from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.ltca import analyse
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
 from facegear.contact.pair import BUILDERS, body_compliance, contact_model
-from facegear.contact.teeth import LOADED_SIDE, piece_of
+from facegear.contact.teeth import LOADED_SIDE, elastic_tooth
 from facegear.geometry.clearance import smallest_gaps
 from facegear.geometry.design import Assembly, Material, Relief
 from facegear.geometry.unloaded import unloaded_contact
@@ -83,8 +83,8 @@ def test_opposite_flank_is_as_compliant_by_mirror_symmetry(model_of, body):
     tooth = BUILDERS[body](design, MeshSizes(1.5e-3, 6e-3, 3e-3))
     both = {}
     for side in ("left", "right"):
-        piece, _ = piece_of(design, tooth, Material(206e9, 0.3), side)
-        both[side] = flank_compliance(piece, Refinement(2, 1, 1), tooth.teeth, 1)
+        elastic, _ = elastic_tooth(design, tooth, Material(206e9, 0.3), side)
+        both[side] = flank_compliance(elastic, Refinement(2, 1, 1), tooth.teeth, 1)
     loaded = LOADED_SIDE[body]
     other = both["left" if loaded == "right" else "right"]
     scale = both[loaded].own.max()
@@ -101,8 +101,8 @@ def test_contact_of_the_opposite_flanks_is_the_mirror_image_s():
         for name, mirrored in (("drive", False), ("back", True)):
             side = LOADED_SIDE[body]
             side = {"left": "right", "right": "left"}[side] if mirrored else side
-            piece, _ = piece_of(design, tooth, Material(206e9, 0.3), side)
-            sides[name][body] = flank_compliance(piece, cuts, tooth.teeth, 2)
+            elastic, _ = elastic_tooth(design, tooth, Material(206e9, 0.3), side)
+            sides[name][body] = flank_compliance(elastic, cuts, tooth.teeth, 2)
     drive = contact_model(design, sizes, *sides["drive"].values())
     # seen in the mirror, the tooth to the right is the one to the left
     back = [replace(body, others=body.others[::-1]) for body in sides["back"].values()]

@@ -1,0 +1,21 @@
+"""27-node hexahedra in tensor order as scikit-fem meshes, whose nodes are vertices, edges, facets, cells."""
+
+import numpy as np
+from numpy.typing import NDArray
+from skfem import ElementHex2, MeshHex2
+
+TENSOR = (2 * ElementHex2.doflocs @ np.array([1, 3, 9])).astype(np.int64)
+"""Index i + 3 j + 9 k in tensor order of each local node of scikit-fem's element."""
+
+
+def hex_mesh(nodes: NDArray[np.float64], hexes: NDArray[np.int64]) -> tuple[MeshHex2, NDArray[np.int64]]:
+    """Mesh of hexahedra (m, 27) in tensor order on nodes (n, 3), and the number (n,) of each node in it.
+
+    Displacement i of a node with the number k has the dof 3 k + i of `ElementVector(ElementHex2())`. Nodes
+    that no element uses have the number -1.
+    """
+    local = hexes[:, TENSOR].T
+    mesh = MeshHex2(np.ascontiguousarray(nodes.T), np.ascontiguousarray(local))
+    numbers = np.full(len(nodes), -1, dtype=np.int64)
+    numbers[local] = mesh.dofs.element_dofs
+    return mesh, numbers
