@@ -1,11 +1,16 @@
 """27-node hexahedra in tensor order as scikit-fem meshes, whose nodes are vertices, edges, facets, cells."""
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
-from skfem import ElementHex2, MeshHex2
+from skfem import Element, ElementHex2, FacetBasis, MeshHex2
 
 TENSOR = (2 * ElementHex2.doflocs @ np.array([1, 3, 9])).astype(np.int64)
 """Index i + 3 j + 9 k in tensor order of each local node of scikit-fem's element."""
+
+FOUND = 1e-7
+"""Last step of Newton's method, in elements and summed over the points, at which a point counts as found."""
 
 
 def hex_mesh(nodes: NDArray[np.float64], hexes: NDArray[np.int64]) -> tuple[MeshHex2, NDArray[np.int64]]:
@@ -19,3 +24,15 @@ def hex_mesh(nodes: NDArray[np.float64], hexes: NDArray[np.int64]) -> tuple[Mesh
     numbers = np.full(len(nodes), -1, dtype=np.int64)
     numbers[local] = mesh.dofs.element_dofs
     return mesh, numbers
+
+
+def facet_basis(mesh: MeshHex2, element: Element, facets: NDArray[np.int64], degree: int) -> FacetBasis:
+    """Basis of `element` on facets, with a quadrature exact to `degree` in each direction.
+
+    scikit-fem finds the facets' points in the elements by Newton's method to 1e-12 of an element. Rounding of
+    coordinates alone is more where elements of 0.1 mm lie 250 mm from the origin, hence the wider tolerance:
+    the last step of Newton's method is far smaller.
+    """
+    mapping = mesh.mapping()
+    mapping.invF = partial(mapping.invF, newton_tol=FOUND)
+    return FacetBasis(mesh, element, mapping=mapping, facets=facets, intorder=degree)

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from skfem import ElementHex2, FacetBasis
+from skfem import ElementHex2
 
 from facegear.geometry import face_gear, pinion
-from facegear.mesh.hexahedra import hex_mesh
+from facegear.mesh.hexahedra import facet_basis, hex_mesh
 from facegear.mesh.quality import scaled_jacobians, volume
 from facegear.mesh.sizes import LADDER, named_sizes
 from facegear.mesh.tooth import CORNERS, gear_tooth, pinion_tooth
@@ -58,9 +58,13 @@ def test_boundary_groups_close_the_tooth(tooth):
     mesh, number = hex_mesh(tooth.nodes, tooth.hexes)
     outside = mesh.boundary_facets()
     assert set(number[faces[:, 4]]) == set(mesh.dofs.facet_dofs[0, outside])
-    basis = FacetBasis(mesh, ElementHex2(), facets=outside, intorder=5)
+    basis = facet_basis(mesh, ElementHex2(), outside, 5)
     flux = (basis.normals * basis.dx).sum(axis=(1, 2))
     assert np.linalg.norm(flux) < 1e-15
+    position = np.asarray(basis.global_coordinates())
+    assert (position * basis.normals * basis.dx).sum() / 3 == pytest.approx(
+        volume(tooth.nodes, tooth.hexes), rel=1e-9
+    )
 
 
 def test_elements_are_conforming(tooth):
