@@ -7,7 +7,7 @@ from copy import deepcopy
 from typing import Any
 
 from facegear.config.base import parse
-from facegear.config.model import Config
+from facegear.config.model import Config, resolved
 from facegear.config.studies import Point, Study
 from facegear.errors import ConfigError, ConfigErrors
 
@@ -26,16 +26,17 @@ def expand_cases(values: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     A study's case has the id `<case>/studies/<study>/<point>`. Raises ConfigErrors naming study and point.
     """
     base = dict(values)
-    cases = {base["case"]: base}
+    cases = {base["case"]: resolved(parse(Config, base))}
     for study in base["studies"]:
         for name, point in study_points(parse(Study, study)).items():
             where = f"studies.{study['name']}.{name}"
-            cases[f"{base['case']}/studies/{study['name']}/{name}"] = changed_values(base, point.set, where)
+            changed = changed_values(base, point.set, where)
+            cases[f"{base['case']}/studies/{study['name']}/{name}"] = changed
     return {case: {**changed, "case": case} for case, changed in cases.items()}
 
 
 def changed_values(base: Mapping[str, Any], changes: Mapping[str, Any], where: str) -> dict[str, Any]:
-    """The machine of a config with some dotted keys changed, validated; without studies and reproduction.
+    """The machine of a config with some dotted keys changed, `resolved`; without studies and reproduction.
 
     Raises ConfigErrors, led by `where`, for a key that does not stand in the config and a value it refuses.
     """
@@ -43,9 +44,11 @@ def changed_values(base: Mapping[str, Any], changes: Mapping[str, Any], where: s
     try:
         for key, value in changes.items():
             set_key(changed, key, value)
+        if "mesh_stiffness.csv" in changes:
+            changed["mesh_stiffness"]["table"] = []
     except ConfigError as error:
         raise ConfigErrors(where, [str(error)]) from None
-    return parse(Config, changed, source=where).model_dump(mode="json")
+    return resolved(parse(Config, changed, source=where))
 
 
 def study_points(study: Study) -> dict[str, Point]:

@@ -38,8 +38,8 @@ class Accuracy(Section):
 class Sweep(Section):
     """Speeds run up and down with the state carried over."""
 
-    from_rpm: float = Field(200, gt=0, le=MAX_SPEED_RPM)
-    to_rpm: float = Field(20_000, gt=0, le=MAX_SPEED_RPM)
+    from_rpm: float = Field(200, ge=1, le=MAX_SPEED_RPM)
+    to_rpm: float = Field(20_000, ge=1, le=MAX_SPEED_RPM)
     points: int = Field(400, ge=2, le=100_000)
     directions: tuple[Literal["up", "down"], ...] = Field(("up", "down"), min_length=1, max_length=2)
     chunks: int = Field(2, ge=1, le=1000, description="independent pieces of each direction")
@@ -70,7 +70,7 @@ class Sweep(Section):
 class Dynamics(Section):
     """Time response of the lumped model."""
 
-    speed_rpm: float = Field(7500, gt=0, le=MAX_SPEED_RPM, description="nominal pinion speed")
+    speed_rpm: float = Field(7500, ge=1, le=MAX_SPEED_RPM, description="nominal pinion speed")
     accuracy: Accuracy = Accuracy()
     sweep: Sweep = Sweep()
 

@@ -1,7 +1,7 @@
 """The whole config: read, merged, validated, with defaults filled in."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -56,9 +56,29 @@ def _with_paths(values: dict[str, Any], folder: Path) -> dict[str, Any]:
         inside: Any = values
         for section in sections:
             inside = inside.get(section) if isinstance(inside, dict) else None
-        if isinstance(inside, dict) and isinstance(inside.get(key), str):
-            inside[key] = located(inside[key], folder)
+        _place(inside, key, folder)
+    for point in _study_points(values):
+        for *sections, key in FILE_KEYS:
+            _place(point, ".".join([*sections, key]), folder)
+            _place(point.get(sections[0]) if sections else None, key, folder)
     return values
+
+
+def _place(inside: Any, key: str, folder: Path) -> None:
+    if isinstance(inside, dict) and isinstance(inside.get(key), str):
+        inside[key] = located(inside[key], folder)
+
+
+def _study_points(values: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    """What the points of all studies set, as far as they have the form of studies at all."""
+    for study in _dicts(values.get("studies")):
+        for axis in _dicts(study.get("axes")):
+            for point in _dicts(axis.get("points")):
+                yield from _dicts([point.get("set")])
+
+
+def _dicts(values: Any) -> list[dict[str, Any]]:
+    return [value for value in values if isinstance(value, dict)] if isinstance(values, list) else []
 
 
 def merged(values: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:

@@ -9,8 +9,8 @@ from facegear.load_sharing.options import SharingOptions, SpeedRange
 class SpeedRangeSection(Section):
     """Speeds over which the largest coefficients are looked for."""
 
-    from_rpm: float = Field(200.0, gt=0, le=1e5)
-    to_rpm: float = Field(20000.0, gt=0, le=1e5)
+    from_rpm: float = Field(200.0, ge=1, le=1e5)
+    to_rpm: float = Field(20000.0, ge=1, le=1e5)
     points: int = Field(100, ge=2, le=2000)
 
     @model_validator(mode="after")
@@ -29,7 +29,7 @@ class LoadSharing(Section):
     start_spread_um: float = Field(20.0, ge=0, le=1e4, description="size of the random disturbance")
     seed: int = Field(0, ge=0, le=2**31, description="of the random disturbance")
     confidence: float = Field(0.95, gt=0.5, lt=1.0)
-    quasi_static_rpm: float = Field(10.0, gt=0, le=1000, description="speed of the slow run")
+    quasi_static_rpm: float = Field(10.0, ge=1, le=1000, description="speed of the slow run")
     speed_range: SpeedRangeSection = SpeedRangeSection()
 
 

@@ -1,9 +1,20 @@
 """The whole config and the checks that reach across its sections."""
 
+from typing import Any
+
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
 from facegear.config.buildable import require_buildable
+from facegear.config.checks import (
+    check_load,
+    check_places,
+    check_studies,
+    check_torques,
+    geometric_backlash,
+    pair_teeth,
+    with_backlash,
+)
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.dynamics import Dynamics
 from facegear.config.load_sharing import LoadSharing
@@ -11,7 +22,7 @@ from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.stiffness import MeshStiffness
 from facegear.config.studies import NAME, Study
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
-from facegear.config.transmission import Transmission, tooth_numbers
+from facegear.config.transmission import Transmission
 from facegear.contact.resolution import check_resolution
 from facegear.errors import ConfigError
 
@@ -23,8 +34,10 @@ class Config(Section):
     tooth_pair: ToothPair
     mesh: Mesh = Mesh()
     contact: Contact = Contact()
-    mesh_stiffness: MeshStiffness
-    transmission: Transmission
+    mesh_stiffness: MeshStiffness = MeshStiffness()
+    transmission: Transmission | None = Field(
+        None, description="null: geometry, contact and stiffness only; modes, dynamics, load sharing need it"
+    )
     dynamics: Dynamics = Dynamics()
     load_sharing: LoadSharing = LoadSharing()
     studies: tuple[Study, ...] = ()
@@ -36,21 +49,54 @@ class Config(Section):
 
     @model_validator(mode="after")
     def _buildable(self) -> "Config":
-        pair = self.tooth_pair
-        if pair.pinion is None and self.mesh_stiffness.source != "harmonics":
-            allowed = "required, as mesh_stiffness.source is not harmonics"
-            refuse("tooth_pair.pinion", None, allowed)
         try:
-            require_buildable(
-                self.transmission,
-                tooth_numbers(
-                    pair.pinion_teeth, pair.face_gear_teeth, pair.module_mm, pair.pressure_angle_deg
-                ),
-            )
-            if self.mesh_stiffness.source != "harmonics":
-                design = pair_design(pair)
-                sizes = mesh_sizes(self.mesh, design.module)
-                check_resolution(design, materials(pair), sizes, contact_plan(self.contact))
+            self._check_pair()
+            self._check_machine()
+            check_studies(self.studies)
         except ConfigError as error:
             refuse(error.key, error.value, error.allowed)
         return self
+
+    def _check_pair(self) -> None:
+        pair = self.tooth_pair
+        check_load(self.mesh_stiffness, self.contact)
+        if pair.pinion is not None:
+            geometric_backlash(pair)
+        elif self.mesh_stiffness.source != "harmonics":
+            allowed = "required, as mesh_stiffness.source is not harmonics"
+            raise ConfigError("tooth_pair.pinion", None, allowed)
+        if self.mesh_stiffness.source != "harmonics":
+            design = pair_design(pair)
+            sizes = mesh_sizes(self.mesh, design.module)
+            check_resolution(design, materials(pair), sizes, contact_plan(self.contact))
+
+    def _check_machine(self) -> None:
+        pair, machine = self.tooth_pair, self.transmission
+        if machine is None:
+            for key in ("studies", "reproduction"):
+                if getattr(self, key):
+                    raise ConfigError("transmission", None, f"required by {key}")
+            return
+        check_places(pair, machine)
+        check_torques(pair, machine)
+        if machine.backlash_um is None and pair.pinion is None:
+            allowed = "required, as tooth_pair has no bodies that it could be taken from"
+            raise ConfigError("transmission.backlash_um", None, allowed)
+        require_buildable(with_backlash(pair, machine), pair_teeth(pair))
+
+
+def resolved(config: Config) -> dict[str, Any]:
+    """Plain values of a config with what follows from other keys filled in.
+
+    That is the mean stiffness where order 0 of the harmonics gives it, the torque at which k is taken, and
+    the backlash of the dynamics.
+    """
+    filled = config.model_dump(mode="json")
+    stiffness = filled["mesh_stiffness"]
+    stiffness["mean_n_per_m"] = config.mesh_stiffness.mean
+    if stiffness["source"] != "harmonics" and stiffness["torque_n_m"] is None:
+        stiffness["torque_n_m"] = config.contact.torques_n_m[-1]
+    if config.transmission is not None:
+        whole = with_backlash(config.tooth_pair, config.transmission)
+        filled["transmission"]["backlash_um"] = whole.backlash_um
+    return filled

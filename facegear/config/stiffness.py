@@ -1,69 +1,173 @@
 """Config section `mesh_stiffness`: where the lumped model's k(t) comes from."""
 
-from typing import Literal
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
+from facegear.config.csv_file import CsvFault, Row, read_numbers
 from facegear.harmonics.series import Harmonics
 from facegear.stiffness.request import StiffnessRequest
 
+HIGHEST_ORDER = 512
+SAME_MEAN = 1e-6
+"""Relative difference up to which two given means count as one."""
+
+Amplitude = Annotated[float, Field(ge=-1e12, le=1e12)]
+
 
 class HarmonicSection(Section):
-    """One order of k(t) = sum a sin(order w t) + b cos(order w t)."""
+    """One order of k(t) = sum a sin(order w t) + b cos(order w t); order 0 is the mean, its a is 0."""
 
-    order: int = Field(ge=1, le=512)
-    a_n_per_m: float = 0.0
-    b_n_per_m: float = 0.0
+    order: int = Field(ge=0, le=HIGHEST_ORDER)
+    a_n_per_m: Amplitude = 0.0
+    b_n_per_m: Amplitude = 0.0
+
+
+COLUMNS = tuple(HarmonicSection.model_fields)
 
 
 class MeshStiffness(Section):
     """Source of the mesh stiffness, its mean, and what is kept of its shape."""
 
     source: Literal["fem", "fem_scaled", "harmonics"] = Field(
+        default="fem",
         description="fem: as computed at torque_n_m; fem_scaled: that shape with the mean given here; "
-        "harmonics: given below"
+        "harmonics: given below",
     )
-    mean_n_per_m: float = Field(gt=0, le=1e12, description="used by the modes, and by all sources but fem")
+    mean_n_per_m: float | None = Field(
+        default=None,
+        gt=0,
+        le=1e12,
+        description="fem_scaled: required; harmonics: required unless order 0 gives it; fem: for the modes "
+        "only, which take the computed mean without it",
+    )
     torque_n_m: float | None = Field(
-        default=None, gt=0, le=1e7, description="load on the pinion per mesh at which k is taken"
+        default=None,
+        gt=0,
+        le=1e7,
+        description="load on the pinion per mesh at which k is taken, within contact.torques_n_m; null: the "
+        "largest of them",
     )
     definition: Literal["average", "local"] = Field(
         default="average", description="F / deflection, or its slope dF / d deflection at that load"
     )
-    harmonics_kept: int = Field(default=8, ge=0, le=512)
-    table: tuple[HarmonicSection, ...] = Field(default=(), description="for source harmonics")
+    harmonics_kept: int = Field(default=8, ge=0, le=HIGHEST_ORDER)
+    table: tuple[HarmonicSection, ...] = Field(
+        default=(), max_length=HIGHEST_ORDER + 1, description="for source harmonics: orders rising"
+    )
     csv: str | None = Field(
         default=None,
-        description="for source harmonics, from this file's folder: columns as stiffness/harmonics.csv",
+        min_length=1,
+        description="for source harmonics, instead of table: a file with the columns order, a_n_per_m, "
+        "b_n_per_m; its path counts from this file's folder",
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _read(cls, values: Any) -> Any:
+        """A csv is read here, so that a fault in it is told with all others before any work."""
+        if not isinstance(values, Mapping):
+            return values
+        if isinstance(values.get("table"), list):
+            values = {**values, "table": tuple(values["table"])}
+        if not isinstance(name := values.get("csv"), str):
+            return values
+        if values.get("table"):
+            refuse("csv", name, "either csv or table, not both")
+        if values.get("source") != "harmonics":
+            refuse("csv", name, "only with source harmonics")
+        try:
+            table = _harmonics(read_numbers(name, COLUMNS))
+        except CsvFault as fault:
+            refuse("csv", name, str(fault))
+        return {**values, "csv": None, "table": table}
 
     @model_validator(mode="after")
     def _complete(self) -> "MeshStiffness":
-        given = bool(self.table) + (self.csv is not None)
-        if self.source == "harmonics" and given != 1:
-            refuse("table", len(self.table), "source harmonics needs either table or csv")
-        if self.source != "harmonics" and given:
-            refuse("source", self.source, "harmonics, as a table or csv is given")
-        if self.source != "harmonics" and self.torque_n_m is None:
-            refuse("torque_n_m", None, f"source {self.source} needs the load at which k is taken")
-        orders = [row.order for row in self.table]
-        if orders != sorted(set(orders)):
-            refuse("table", orders, "orders rising, each once")
+        if self.source != "harmonics" and self.table:
+            refuse("source", self.source, "harmonics, as a table is given")
+        if self.source == "fem_scaled" and self.mean_n_per_m is None:
+            refuse("mean_n_per_m", None, "required, as source fem_scaled scales the curve to it")
+        if self.source != "harmonics":
+            return self
+        if not self.table:
+            refuse("table", [], "source harmonics needs either table or csv")
+        for number, (one, following) in enumerate(pairwise(self.table)):
+            if following.order <= one.order:
+                refuse(f"table[{number + 1}].order", following.order, "orders rise, each once")
+        _check_mean(self.mean_n_per_m, self.table[0])
+        lowest = given_series(self).kept(self.harmonics_kept).minimum
+        if lowest <= 0.0:
+            told = "harmonics so small beside the mean that k(t) stays positive"
+            refuse("table", f"k(t) falls to {lowest:.4g} N/m", told)
         return self
+
+    @property
+    def mean(self) -> float | None:
+        """The mean that is given, N/m: by its key, or by order 0 of the harmonics."""
+        zeroth = self.table[0].b_n_per_m if self.table and self.table[0].order == 0 else None
+        return self.mean_n_per_m if zeroth is None else zeroth
+
+
+def given_series(section: MeshStiffness) -> Harmonics:
+    """The series written in the config (N/m), its mean included."""
+    order = max((row.order for row in section.table), default=0)
+    a, b = [0.0] * (order + 1), [0.0] * (order + 1)
+    for row in section.table:
+        a[row.order], b[row.order] = row.a_n_per_m, row.b_n_per_m
+    b[0] = section.mean or 0.0
+    return Harmonics(a, b)
 
 
 def stiffness_request(section: MeshStiffness) -> StiffnessRequest:
-    """What is asked of the stiffness stage, with the series written in the config (N/m) if there is one."""
-    order = max((row.order for row in section.table), default=0)
-    a, b = [0.0] * (order + 1), [section.mean_n_per_m] + [0.0] * order
-    for row in section.table:
-        a[row.order], b[row.order] = row.a_n_per_m, row.b_n_per_m
+    """What is asked of the stiffness stage, with the series written in the config if there is one."""
     return StiffnessRequest(
         source=section.source,
-        mean=section.mean_n_per_m,
+        mean=section.mean,
         torque=section.torque_n_m,
         definition=section.definition,
         kept=section.harmonics_kept,
-        given=Harmonics(a, b),
+        given=given_series(section),
     )
+
+
+def _check_mean(mean: float | None, first: HarmonicSection) -> None:
+    """The mean comes from the key or from order 0 of the harmonics; where both stand, they agree."""
+    if first.order > 0:
+        if mean is None:
+            refuse("mean_n_per_m", None, "required, as the harmonics have no order 0, which is the mean")
+        return
+    if first.a_n_per_m != 0.0 or first.b_n_per_m <= 0.0:
+        given = [first.a_n_per_m, first.b_n_per_m]
+        refuse("table", given, "order 0 has a_n_per_m = 0 and the mean, above 0, as b_n_per_m")
+    if mean is not None and abs(mean / first.b_n_per_m - 1.0) > SAME_MEAN:
+        told = f"the same as order 0 of the harmonics, {first.b_n_per_m:.10g}, or left out"
+        refuse("mean_n_per_m", mean, told)
+
+
+def _harmonics(rows: Sequence[Row]) -> tuple[dict[str, Any], ...]:
+    """Rows of `table` from those of a csv, in any order there."""
+    lines: dict[int, int] = {}
+    table = []
+    for row in rows:
+        table.append(_harmonic(row))
+        order = table[-1]["order"]
+        if order in lines:
+            raise CsvFault(f"line {row.line}: order {order} already stands in line {lines[order]}")
+        lines[order] = row.line
+    return tuple(sorted(table, key=lambda harmonic: harmonic["order"]))
+
+
+def _harmonic(row: Row) -> dict[str, Any]:
+    order = row.values["order"]
+    if order != round(order) or not 0 <= order <= HIGHEST_ORDER:
+        raise CsvFault(
+            f"line {row.line}: order = {order:.10g} is not a whole number from 0 to {HIGHEST_ORDER}"
+        )
+    for name in COLUMNS[1:]:
+        if abs(row.values[name]) > 1e12:
+            raise CsvFault(f"line {row.line}: {name} = {row.values[name]:g} is beyond 1e12")
+    return {**row.values, "order": int(order)}

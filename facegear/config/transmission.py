@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
 from facegear.config.bodies import GearBody, PinionBody, RunoutSection, SingleGear, SinglePinion
+from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.imperfections import Imperfections, Runout
 from facegear.transmission.layout import Body, FaceGear, Layout, MeshKinematics, Pinion, Role, Side, Tilt
@@ -25,9 +26,9 @@ class PinionPlace(Section):
     name: str = Field(min_length=1, max_length=40)
     role: Literal["input", "idler", "tail"]
     angle_pitches: float | None = Field(
-        None, description="distribution angle in angular pitches of the face gear"
+        None, ge=-2000, le=2000, description="distribution angle in angular pitches of the face gear"
     )
-    angle_deg: float | None = Field(None, description="distribution angle in degrees")
+    angle_deg: float | None = Field(None, ge=-360, le=360, description="distribution angle in degrees")
     torque_n_m: float | None = Field(None, ge=-1e6, le=1e6, description="overrides the torque of the role")
 
     @model_validator(mode="after")
@@ -90,7 +91,9 @@ class Transmission(Section):
     pinion: PinionBody
     face_gear: GearBody
     damping: DampingSection
-    backlash_um: float = Field(ge=0, le=1e5, description="2b along the line of action")
+    backlash_um: float | None = Field(
+        None, ge=0, le=1e5, description="2b along the line of action; null: that of the teeth as assembled"
+    )
     transmission_error: TransmissionError
     mesh_kinematics: Literal["geometric", "printed"] = Field(
         "geometric", description="printed: equation (13) of the paper to the letter, not what gears do"
@@ -218,13 +221,14 @@ def layout(section: Transmission, teeth: ToothNumbers) -> Layout:
 def machine(section: Transmission, teeth: ToothNumbers, stiffness: Harmonics) -> Machine:
     """The machine that a config describes, with the reference mesh stiffness from its own stage."""
     shape = layout(section, teeth)
-    on_pinions = pinion_torques(shape, section.torque.per_input_n_m, section.torque.tail_share)
-    given = np.array([np.nan if p.torque_n_m is None else p.torque_n_m for p in section.pinions])
-    on_pinions = np.where(np.isnan(given), on_pinions, given)
     damping = section.damping
+    if section.backlash_um is None:
+        raise ConfigError(
+            "transmission.backlash_um", None, "a number, as facegear.config.model.resolved gives"
+        )
     return Machine(
         layout=shape,
-        torques=balanced_torques(shape, on_pinions),
+        torques=balanced_torques(shape, given_torques(section, shape)),
         stiffness=stiffness,
         error=error_series(section.transmission_error),
         half_backlash=0.5e-6 * section.backlash_um,
@@ -261,6 +265,13 @@ def imperfections(section: Transmission, shape: Layout) -> Imperfections:
         pinion_pitch=_pitch_curves(pinions),
         gear_pitch=_pitch_curves(gears),
     )
+
+
+def given_torques(section: Transmission, shape: Layout) -> NDArray[np.float64]:
+    """Torque on each pinion by its role, or its own where it has one; shape (pinions,), N m."""
+    by_role = pinion_torques(shape, section.torque.per_input_n_m, section.torque.tail_share)
+    own = np.array([np.nan if place.torque_n_m is None else place.torque_n_m for place in section.pinions])
+    return np.where(np.isnan(own), by_role, own)
 
 
 def error_series(section: TransmissionError) -> Harmonics:

@@ -41,6 +41,14 @@ class Harmonics:
         return float(self.b[0])
 
     @property
+    def minimum(self) -> float:
+        """Smallest value at 64 (H+1) even points of a period, N/m."""
+        points = 64 * (self.order + 1)
+        halves = 0.5 * (self.b - 1j * self.a)
+        halves[0] = self.b[0]
+        return float(np.fft.irfft(points * halves, points).min())
+
+    @property
     def amplitudes(self) -> NDArray[np.float64]:
         """Amplitude of each order, shape (H+1,), N/m; the first entry is the mean."""
         return np.hypot(self.a, self.b)

@@ -10,10 +10,13 @@ Definition = Literal["average", "local"]
 
 @dataclass(frozen=True, eq=False)
 class StiffnessRequest:
-    """Source of k(t); `mean` N/m, `torque` N m on the pinion per mesh, orders `kept`, the series `given`."""
+    """Source of k(t); `mean` N/m where it is given, `torque` N m on the pinion per mesh, orders `kept`.
+
+    `given` is the series of the config; zero for the other sources.
+    """
 
     source: Literal["fem", "fem_scaled", "harmonics"]
-    mean: float
+    mean: float | None
     torque: float | None
     definition: Definition
     kept: int

@@ -6,7 +6,6 @@ import numpy as np
 import pandas as pd
 
 from facegear.harmonics.fit import LEVELS, fit_harmonics
-from facegear.harmonics.series import Harmonics
 from facegear.stiffness.curve import load_table
 from facegear.stiffness.request import StiffnessRequest
 from facegear.stiffness.tables import curve_table, harmonics_table
@@ -35,7 +34,10 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
     table = load_table(ltca)
     samples = table.at(request.torque, request.definition)
     fit = fit_harmonics(samples)
-    scale = request.mean / fit.series.mean if request.source == "fem_scaled" else 1.0
+    scale = 1.0
+    if request.source == "fem_scaled":
+        assert request.mean is not None
+        scale = request.mean / fit.series.mean
     whole = fit.series.scaled(scale)
     series = whole.kept(request.kept)
     reach = ", ".join(f"{100 * level:g} %: {fit.orders_within(level)}" for level in LEVELS)
@@ -53,9 +55,9 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
     )
 
 
-def stiffness_given(own: Harmonics | None, request: StiffnessRequest) -> Stiffness:
-    """Curve of a given series: `own` (read from the user's file), its mean included, or the config's."""
-    whole = request.given if own is None else own
+def stiffness_given(request: StiffnessRequest) -> Stiffness:
+    """Curve of the series that the config gives."""
+    whole = request.given
     series = whole.kept(request.kept)
     positions = np.arange(DRAWN) / DRAWN
     return Stiffness(

@@ -54,7 +54,7 @@ class Machine:
         if self.imperfections is None:
             object.__setattr__(self, "imperfections", perfect(self.layout))
         require_balance(self.layout, self.torques)
-        lowest = float(self.stiffness(np.linspace(0.0, 1.0, 64 * (self.stiffness.order + 1))).min())
+        lowest = self.stiffness.minimum
         if lowest <= 0.0:
             raise ConfigError("mesh_stiffness", f"{lowest:.3g} N/m", "positive everywhere in the mesh cycle")
 

@@ -6,7 +6,6 @@ from facegear.contact.columns import LTCA_COLUMNS
 from facegear.io import tables
 from facegear.provenance.stage import stage
 from facegear.stiffness.source import stiffness_from_contact, stiffness_given
-from facegear.stiffness.tables import HARMONICS_COLUMNS, series_of
 
 with stage(snakemake) as run:
     request = stiffness_request(parse(MeshStiffness, snakemake.params.section))
@@ -14,8 +13,7 @@ with stage(snakemake) as run:
     if "ltca" in inputs:
         result = stiffness_from_contact(tables.read(inputs["ltca"], LTCA_COLUMNS), request)
     else:
-        own = series_of(tables.read(inputs["given"], HARMONICS_COLUMNS[:3])) if "given" in inputs else None
-        result = stiffness_given(own, request)
+        result = stiffness_given(request)
     tables.write(snakemake.output.tvms, result.curve)
     tables.write(snakemake.output.harmonics, result.harmonics)
     tables.write(snakemake.output.spectrum, result.spectrum)

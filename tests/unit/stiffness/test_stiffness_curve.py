@@ -63,7 +63,7 @@ def test_written_harmonics_are_those_kept():
 def test_harmonics_given_in_the_config_need_no_contact():
     table = [{"order": 1, "a_n_per_m": 2e7, "b_n_per_m": 1e7}, {"order": 3, "b_n_per_m": -5e6}]
     asked = request(source="harmonics", table=table, torque_n_m=None)
-    series = series_of(stiffness_given(None, asked).harmonics)
+    series = series_of(stiffness_given(asked).harmonics)
     np.testing.assert_allclose(series.a, [0, 2e7, 0, 0])
     np.testing.assert_allclose(series.b, [4.1e8, 1e7, 0, -5e6])
 
@@ -80,7 +80,7 @@ def test_load_dependence_lists_both_stiffnesses_at_every_load():
     "changes",
     [
         {"source": "harmonics"},
-        {"torque_n_m": None},
+        {"source": "fem_scaled", "mean_n_per_m": None},
         {"table": [{"order": 1}]},
         {"source": "harmonics", "table": [{"order": 2}, {"order": 1}]},
         {"mean_n_per_m": -1.0},

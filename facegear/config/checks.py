@@ -1,0 +1,120 @@
+"""What the sections of a config demand of one another."""
+
+from collections.abc import Sequence
+from math import atan, degrees, pi
+
+import numpy as np
+
+from facegear.config.contact import Contact
+from facegear.config.stiffness import MeshStiffness
+from facegear.config.studies import Study
+from facegear.config.tooth_pair import ToothPair, pair_design
+from facegear.config.transmission import ToothNumbers, Transmission, given_torques, layout, tooth_numbers
+from facegear.errors import ConfigError, NotConverged
+
+MOST_POINTS = 200
+"""Points of all studies of a config together: each is a case of its own with some five jobs."""
+JAM = 1e-8
+"""Negative backlash (m) that is rounding."""
+TAKEN_NAMES = ("nominal", "nominal_summary", "summary", "reference", "speed_range")
+"""Files that load sharing writes beside those of the studies."""
+
+
+def pair_teeth(pair: ToothPair) -> ToothNumbers:
+    """What the lumped model takes from a config's tooth pair."""
+    return tooth_numbers(pair.pinion_teeth, pair.face_gear_teeth, pair.module_mm, pair.pressure_angle_deg)
+
+
+def with_backlash(pair: ToothPair, section: Transmission) -> Transmission:
+    """The section with the backlash of the teeth as assembled where it gives none. Raises ConfigError."""
+    if section.backlash_um is not None:
+        return section
+    return section.model_copy(update={"backlash_um": round(geometric_backlash(pair), 6)})
+
+
+def check_load(stiffness: MeshStiffness, contact: Contact) -> None:
+    """The stiffness is taken at a load between those solved. Raises ConfigError."""
+    low, high = contact.torques_n_m[0], contact.torques_n_m[-1]
+    torque = stiffness.torque_n_m
+    if stiffness.source != "harmonics" and torque is not None and not low <= torque <= high:
+        allowed = f"within contact.torques_n_m, {low:g} to {high:g}"
+        raise ConfigError("mesh_stiffness.torque_n_m", torque, allowed)
+
+
+def check_places(pair: ToothPair, section: Transmission) -> None:
+    """Pinions stand at angles within a turn, far enough apart for their bodies. Raises ConfigError."""
+    found = layout(section, pair_teeth(pair))
+    for number, (pinion, place) in enumerate(zip(found.pinions, section.pinions, strict=True)):
+        if abs(pinion.pitches) > found.gear_teeth:
+            key = f"transmission.pinions[{number}].angle_pitches"
+            allowed = f"within a turn, -{found.gear_teeth} to {found.gear_teeth}"
+            raise ConfigError(key, place.angle_pitches, allowed)
+    radius, inner_end = _pinion_body(pair)
+    needed = 2.0 * atan(radius / inner_end)
+    angles = np.mod(found.angles, 2.0 * pi)
+    order = np.argsort(angles)
+    for one, following in zip(order, np.roll(order, -1), strict=True):
+        apart = float(np.mod(angles[following] - angles[one], 2.0 * pi))
+        if one != following and apart < needed * (1.0 - 1e-9):
+            names = [found.pinions[i].name for i in (one, following)]
+            told = (
+                f"{degrees(apart):.4g} deg apart, at least {degrees(needed):.4g}: their bodies would overlap"
+            )
+            raise ConfigError("transmission.pinions", names, told)
+
+
+def check_torques(pair: ToothPair, section: Transmission) -> None:
+    """Something loads the machine. Raises ConfigError."""
+    if not given_torques(section, layout(section, pair_teeth(pair))).any():
+        allowed = "not 0 where no pinion has a torque of its own: nothing would be loaded"
+        if not any(place.role == "input" for place in section.pinions):
+            raise ConfigError("transmission.pinions", "no input", "at least one input, or a torque_n_m")
+        raise ConfigError("transmission.torque.per_input_n_m", section.torque.per_input_n_m, allowed)
+
+
+def geometric_backlash(pair: ToothPair) -> float:
+    """Backlash of the pair as assembled, um. Raises ConfigError for a pair that jams or does not mesh."""
+    # Imported here: only a pair with assembly errors needs compiled geometry to read its config.
+    from facegear.geometry.backlash import normal_backlash
+
+    assembly = pair.assembly.model_dump()
+    try:
+        backlash = normal_backlash(pair_design(pair))
+    except NotConverged:
+        raise ConfigError("tooth_pair.assembly", assembly, "errors so small that the flanks meet") from None
+    if backlash < -JAM:
+        least = (pair.pinion.thinning_um if pair.pinion else 0.0) - 1e6 * backlash
+        allowed = (
+            f"at least {least:.1f}: with these assembly errors the pair jams by {-1e6 * backlash:.1f} um"
+        )
+        raise ConfigError("tooth_pair.pinion.thinning_um", pair.pinion and pair.pinion.thinning_um, allowed)
+    return 1e6 * max(backlash, 0.0)
+
+
+def check_studies(studies: Sequence[Study]) -> None:
+    """Studies and their files do not meet, and are few enough. Raises ConfigError."""
+    names = [study.name for study in studies]
+    figures = [number for study in studies for number in study.figures or ()]
+    for number, name in enumerate(names):
+        if name in names[:number]:
+            raise ConfigError(f"studies[{number}].name", name, "a name of its own for each study")
+        if name in TAKEN_NAMES:
+            raise ConfigError(f"studies[{number}].name", name, "a name that load sharing has no file of")
+    if len(set(figures)) < len(figures):
+        raise ConfigError("studies.figures", figures, "each number once")
+    points = sum(int(np.prod([len(axis.resolved()) for axis in study.axes])) for study in studies)
+    if points > MOST_POINTS:
+        told = f"at most {MOST_POINTS} in all: fewer values, several configs, or a loop in Python"
+        raise ConfigError("studies", f"{points} points", told)
+
+
+def _pinion_body(pair: ToothPair) -> tuple[float, float]:
+    """Radius (m) of the pinions and the gear radius where their bodies begin.
+
+    Without bodies in the config, what is certain: the pitch radii of pinion and gear.
+    """
+    if pair.pinion is None:
+        half = 0.5e-3 * pair.module_mm
+        return half * pair.pinion_teeth, half * pair.face_gear_teeth
+    design = pair_design(pair)
+    return design.pinion_tip_radius, design.mean_radius - 0.5 * design.pinion.width

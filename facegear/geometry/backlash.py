@@ -1,0 +1,27 @@
+"""Backlash of a pair as assembled, before anything is meshed."""
+
+from functools import lru_cache
+from math import pi
+
+import numpy as np
+
+from facegear.geometry.design import Assembly, PairDesign
+from facegear.geometry.placement import mirrored
+from facegear.geometry.unloaded import unloaded_contact
+
+POSITIONS = 4
+
+
+@lru_cache(maxsize=256)
+def normal_backlash(design: PairDesign) -> float:
+    """Backlash (m) along the line of action, smallest of a few positions of a pitch; negative where it jams.
+
+    Without assembly errors it is the thinning of the pinion's teeth. Raises NotConverged where the flanks
+    do not face each other.
+    """
+    if design.assembly == Assembly():
+        return design.pinion.thinning
+    phi1 = ((np.arange(POSITIONS) + 0.5) / POSITIONS - 0.5) * 2 * pi / design.pinion.teeth
+    drive = unloaded_contact(design, phi1)
+    back = drive if design.assembly.offset == 0 else unloaded_contact(mirrored(design), phi1)
+    return float(((-back.phi2[::-1] - drive.phi2) * design.gear_base_radius).min())

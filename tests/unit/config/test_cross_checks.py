@@ -1,0 +1,137 @@
+"""What the sections of a config demand of one another, told before any work."""
+
+from copy import deepcopy
+from pathlib import Path
+
+import pytest
+
+from facegear.config.base import parse
+from facegear.config.cases import expand_cases
+from facegear.config.load import load_values
+from facegear.config.model import Config, resolved
+from facegear.errors import ConfigErrors
+
+ROOT = Path(__file__).parents[3]
+QUICK = load_values([ROOT / "config" / "quick.yaml"], {})
+TWO = load_values([ROOT / "config" / "two_pinion.yaml"], {})
+
+
+def changed(values, **keys):
+    """The config with dotted keys (two underscores) set."""
+    values = deepcopy(values)
+    for key, value in keys.items():
+        *sections, last = key.split("__")
+        inside = values
+        for section in sections:
+            inside = inside[int(section) if section.isdecimal() else section]
+        inside[last] = value
+    return values
+
+
+def told(values):
+    with pytest.raises(ConfigErrors) as refused:
+        expand_cases(parse(Config, values).model_dump(mode="json"))
+    (line,) = refused.value.lines
+    return line
+
+
+STUDY = {
+    "name": "one",
+    "title": "One",
+    "axes": [{"label": "2b", "key": "transmission.backlash_um", "values": [1]}],
+}
+
+
+@pytest.mark.parametrize(
+    ("changes", "line"),
+    [
+        (
+            {"mesh_stiffness__torque_n_m": 2000.0},
+            "mesh_stiffness.torque_n_m = 2000.0: within contact.torques",
+        ),
+        ({"dynamics__speed_rpm": 1e-9}, "dynamics.speed_rpm = 1e-09: should be greater than or equal to 1"),
+        ({"load_sharing__quasi_static_rpm": 1e-9}, "quasi_static_rpm = 1e-09: should be greater"),
+        ({"dynamics__sweep__from_rpm": 1e-9}, "sweep.from_rpm = 1e-09: should be greater"),
+        ({"load_sharing__speed_range__from_rpm": 1e-9}, "from_rpm = 1e-09: should be greater"),
+        ({"transmission__pinions__1__angle_pitches": 1e18}, "angle_pitches = 1e+18: should be less than"),
+        ({"transmission__pinions__1__angle_pitches": 150.0}, "within a turn, -143 to 143"),
+        ({"transmission__pinions__1__angle_pitches": 143.0}, "0 deg apart, at least"),
+        ({"transmission__pinions__1__angle_pitches": 3.0}, "their bodies would overlap"),
+        ({"transmission__torque__per_input_n_m": 0.0}, "nothing would be loaded"),
+        ({"studies": [STUDY, STUDY]}, 'studies[1].name = "one": a name of its own for each study'),
+        ({"studies": [{**STUDY, "name": "summary"}]}, 'studies[0].name = "summary"'),
+        (
+            {"studies": [{**STUDY, "figures": [13, 14]}, {**STUDY, "name": "two", "figures": [14, 15]}]},
+            "each number once",
+        ),
+    ],
+)
+def test_what_cannot_be_run_is_refused_in_one_line(changes, line):
+    assert line in told(changed(QUICK, **changes))
+
+
+def test_points_of_all_studies_are_counted_before_they_are_made():
+    axis = {"label": "2b", "key": "transmission.backlash_um", "values": [float(i) for i in range(1, 1501)]}
+    line = told(changed(QUICK, studies=[{**STUDY, "axes": [axis]}]))
+    assert line.startswith('studies = "1500 points": at most 200 in all')
+
+
+def test_a_misaligned_pair_without_backlash_is_refused_with_the_amount_by_which_it_jams():
+    values = changed(TWO, tooth_pair__pinion__thinning_um=0.0, tooth_pair__assembly__axial_shift_um=-50.0)
+    line = told(values)
+    assert "tooth_pair.pinion.thinning_um = 0.0: at least " in line
+    assert "the pair jams by " in line
+    least = float(line.split("at least ")[1].split(":")[0])
+    assert parse(Config, changed(values, tooth_pair__pinion__thinning_um=least + 0.1))
+
+
+def test_the_dynamics_take_the_backlash_of_the_teeth_as_assembled():
+    """Of the pair of docs/second_machine.md: 120 um of thinning, moved apart by the assembly errors."""
+    found = resolved(parse(Config, changed(TWO, transmission__backlash_um=None, studies=[])))
+    assert found["transmission"]["backlash_um"] == pytest.approx(130.518, abs=0.01)
+    nominal = resolved(parse(Config, changed(QUICK, transmission__backlash_um=None, studies=[])))
+    assert nominal["transmission"]["backlash_um"] == 100.0
+
+
+def test_a_study_of_the_teeth_moves_the_backlash_of_the_dynamics_with_them():
+    axis = {"label": "thinning", "key": "tooth_pair.pinion.thinning_um", "values": [80, 90]}
+    values = changed(QUICK, transmission__backlash_um=None, studies=[{**STUDY, "axes": [axis]}])
+    cases = expand_cases(parse(Config, values).model_dump(mode="json"))
+    assert [case["transmission"]["backlash_um"] for case in cases.values()] == [100.0, 80.0, 90.0]
+
+
+def test_a_tooth_pair_alone_is_a_config():
+    """Some twenty keys of the transmission had to be invented by whoever wanted tooth contact only."""
+    found = resolved(parse(Config, {"case": "teeth", "tooth_pair": QUICK["tooth_pair"]}))
+    assert found["transmission"] is None
+    assert found["mesh_stiffness"]["torque_n_m"] == found["contact"]["torques_n_m"][-1]
+
+
+@pytest.mark.parametrize("key", ["studies", "reproduction"])
+def test_what_needs_a_transmission_says_so(key):
+    values = {
+        "case": "teeth",
+        "tooth_pair": QUICK["tooth_pair"],
+        "studies": [STUDY],
+        "reproduction": "a.yaml",
+    }
+    other = {"studies": "reproduction", "reproduction": "studies"}[key]
+    del values[other]
+    assert told(values) == f"transmission = null: required by {key}"
+
+
+def test_a_csv_named_by_a_study_counts_from_the_folder_of_the_config(tmp_path, monkeypatch):
+    (tmp_path / "soft.csv").write_text("order,a_n_per_m,b_n_per_m\n0,0,3e8\n1,1e7,0\n")
+    (tmp_path / "own.yaml").write_text(
+        "extends: base.yaml\n"
+        "studies:\n"
+        "  - name: stiffness\n"
+        "    title: Stiffness\n"
+        "    axes: [{label: k, points: [{label: soft, set: {mesh_stiffness.csv: soft.csv, "
+        "mesh_stiffness.mean_n_per_m: null}}]}]\n"
+    )
+    for name, target in (("base.yaml", "harmonics_only.yaml"), ("paper.yaml", "paper.yaml")):
+        (tmp_path / name).write_bytes((ROOT / "config" / target).read_bytes())
+    monkeypatch.chdir(ROOT)
+    cases = expand_cases(load_values([tmp_path / "own.yaml"], {}))
+    assert [case["mesh_stiffness"]["mean_n_per_m"] for case in cases.values()] == [4.1e8, 3e8]

@@ -1,0 +1,114 @@
+"""Given harmonics: one rule for a table and a csv, and every fault told when the config is read."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from facegear.config.base import parse
+from facegear.config.stiffness import MeshStiffness, stiffness_request
+from facegear.errors import ConfigErrors
+from facegear.stiffness.source import stiffness_given
+
+HEADER = "order,a_n_per_m,b_n_per_m\n"
+
+
+def section(tmp_path, text, **changes):
+    path = tmp_path / "own.csv"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return parse(MeshStiffness, {"source": "harmonics", "csv": str(path), **changes})
+
+
+def told(tmp_path, text, **changes):
+    with pytest.raises(ConfigErrors) as refused:
+        section(tmp_path, text, **changes)
+    (line,) = refused.value.lines
+    return line
+
+
+def test_order_0_of_a_csv_is_the_mean_in_the_config_and_in_the_series(tmp_path):
+    """Without this rule a mean in the config and order 0 of a csv gave modes and dynamics different means."""
+    own = section(tmp_path, HEADER + "0,0,4.1e8\n1,2e7,-1e7\n")
+    assert own.mean == 4.1e8
+    assert stiffness_given(stiffness_request(own)).harmonics["b_n_per_m"][0] == 4.1e8
+
+
+def test_a_csv_without_order_0_takes_the_mean_of_the_config(tmp_path):
+    """It was dropped in silence, and the dynamics ran on a mean of zero."""
+    own = section(tmp_path, HEADER + "1,2e7,-1e7\n", mean_n_per_m=4.1e8)
+    assert stiffness_given(stiffness_request(own)).harmonics["b_n_per_m"].to_list() == [4.1e8, -1e7]
+
+
+def test_table_and_csv_follow_the_same_rule(tmp_path):
+    rows = [{"order": 0, "b_n_per_m": 4e8}, {"order": 2, "a_n_per_m": 1e7}]
+    table = parse(MeshStiffness, {"source": "harmonics", "table": rows})
+    own = section(tmp_path, HEADER + "2,1e7,0\n\n0,0,4e8\n")
+    assert own == table
+
+
+def test_a_dumped_section_no_longer_needs_its_csv(tmp_path):
+    own = section(tmp_path, HEADER + "0,0,4.1e8\n1,2e7,-1e7\n")
+    (tmp_path / "own.csv").unlink()
+    assert parse(MeshStiffness, own.model_dump(mode="json")) == own
+
+
+@pytest.mark.parametrize(
+    ("text", "changes", "line"),
+    [
+        (HEADER + "1,2e7,0\n", {}, "mean_n_per_m = null: required, as the harmonics have no order 0"),
+        (HEADER + "0,0,4e8\n", {"mean_n_per_m": 4.1e8}, "the same as order 0 of the harmonics, 400000000"),
+        (HEADER + "0,1,4e8\n", {}, "order 0 has a_n_per_m = 0"),
+        (HEADER + "0,0,4e8\n1,5e8,0\n", {}, "k(t) falls to -1"),
+        (HEADER + "0,0,4e8\n1,soft,0\n", {}, "line 3: a_n_per_m = 'soft' is not a finite number"),
+        (HEADER + "0,0,4e8\n1,,0\n", {}, "line 3: a_n_per_m = '' is not"),
+        (HEADER + "0,0,nan\n", {}, "line 2: b_n_per_m = 'nan'"),
+        (HEADER + "0,0,4e8\n1,1,1\n1,2,2\n", {}, "line 4: order 1 already stands in line 3"),
+        (HEADER + "0,0,4e8\n1.5,1,1\n", {}, "line 3: order = 1.5 is not a whole number from 0 to 512"),
+        (HEADER + "0,0,4e8\n-1,1,1\n", {}, "line 3: order = -1"),
+        (HEADER + "0,0,4e8\n1e18,1,1\n", {}, "line 3: order = 1e+18"),
+        (HEADER + "0,0,4e8\n1,1e300,1\n", {}, "line 3: a_n_per_m = 1e+300 is beyond 1e12"),
+        (HEADER + "0,0\n", {}, "line 2: 2 values under 3 column names"),
+        (HEADER, {}, "it holds no numbers"),
+        ("", {}, "column order must stand once"),
+        ("order;a_n_per_m;b_n_per_m\n0;0;4e8\n", {}, "separated by commas; it has order;a_n_per_m"),
+        ("order,a_n_per_m\n0,0\n", {}, "column b_n_per_m must stand once"),
+        (HEADER.encode() + b"0,0,4e8\n# \xfc\n", {}, "line 3: byte 0xfc is not UTF-8"),
+        (HEADER + "0,0,4e8\n", {"source": "fem"}, "only with source harmonics"),
+        (HEADER + "0,0,4e8\n", {"table": [{"order": 0, "b_n_per_m": 4e8}]}, "either csv or table, not both"),
+    ],
+)
+def test_a_fault_of_a_csv_is_one_line_without_advice_to_rebuild_the_users_file(tmp_path, text, changes, line):
+    found = told(tmp_path, text, **changes)
+    assert line in found
+    assert "snakemake" not in found
+
+
+def test_a_csv_of_any_length_is_refused_at_once(tmp_path):
+    assert "longer than 2000000 bytes" in told(tmp_path, HEADER + "0,0,4e8\n" * 300_000)
+
+
+def test_a_missing_csv_and_a_directory_are_told(tmp_path):
+    for path, line in ((tmp_path / "none.csv", "no such file"), (tmp_path, "a directory")):
+        with pytest.raises(ConfigErrors, match=line):
+            parse(MeshStiffness, {"source": "harmonics", "csv": str(path)})
+
+
+def test_orders_of_a_table_rise():
+    rows = [{"order": 0, "b_n_per_m": 4e8}, {"order": 2}, {"order": 2}]
+    with pytest.raises(ConfigErrors, match=r"table\[2\].order = 2: orders rise, each once"):
+        parse(MeshStiffness, {"source": "harmonics", "table": rows})
+
+
+CELLS = st.sampled_from(
+    ["0", "1", "2", "1.5", "-1", "600", "4e8", "1e7", "", "x", "1e400", "inf", '"', "é", ",", "\x00"]
+)
+
+
+@given(st.lists(st.lists(CELLS, max_size=4).map(",".join), max_size=5).map("\n".join), st.booleans())
+def test_any_csv_is_used_or_refused_in_one_line(tmp_path_factory, text, headed):
+    folder = tmp_path_factory.mktemp("any")
+    try:
+        own = section(folder, HEADER + text if headed else text)
+    except ConfigErrors as error:
+        assert len(error.lines) == 1
+    else:
+        assert stiffness_request(own).given.kept(own.harmonics_kept).minimum > 0.0
