@@ -5,7 +5,7 @@ from math import pi, radians
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
-from facegear.errors import ConfigError, GeometryError
+from facegear.errors import ConfigError, GeometryError, NotConverged
 from facegear.geometry.design import (
     Assembly,
     FaceGear,
@@ -98,6 +98,8 @@ class ToothPair(Section):
 
     @model_validator(mode="after")
     def _possible(self) -> "ToothPair":
+        if self.face_gear_teeth <= self.pinion_teeth:
+            refuse("face_gear_teeth", self.face_gear_teeth, f"more than the pinion's {self.pinion_teeth}")
         bodies = {name: getattr(self, name) for name in ("pinion", "face_gear", "shaper")}
         missing = [name for name, body in bodies.items() if body is None]
         if len(missing) == len(bodies):
@@ -108,6 +110,8 @@ class ToothPair(Section):
             check(pair_design(self))
         except GeometryError as error:
             refuse(error.key, error.value, error.allowed)
+        except NotConverged as error:
+            refuse("face_gear", self.face_gear_teeth, f"other teeth or radii: {error}")
         return self
 
 

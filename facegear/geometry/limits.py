@@ -7,7 +7,28 @@ from math import acos, atan, cos, hypot, pi, sin, sqrt, tan
 from scipy.optimize import brentq, minimize_scalar
 
 from facegear.errors import GeometryError, NotConverged
+from facegear.geometry import face_gear
 from facegear.geometry.design import PairDesign
+
+THINNEST_LAND = 0.05
+"""Thinnest tip or root land, in modules: less cannot be cut, nor meshed."""
+
+
+@dataclass(frozen=True)
+class FaceRange:
+    """Gear radii (m) between which a face may lie, and what limits it on either side."""
+
+    inner: float
+    outer: float
+    inner_reason: str
+    outer_reason: str
+
+    def __str__(self) -> str:
+        """The range in mm, as a refusal tells it."""
+        return (
+            f"between {1e3 * self.inner:.3f} ({self.inner_reason}) and {1e3 * self.outer:.3f} "
+            f"({self.outer_reason})"
+        )
 
 
 @dataclass(frozen=True)
@@ -26,6 +47,53 @@ def radius_limits(design: PairDesign) -> RadiusLimits:
     Pointing: the two flanks meet on the tip plane. Raises GeometryError if they do so at every radius.
     """
     return RadiusLimits(undercut_radius(design), *_pointing_radii(design))
+
+
+def face_range(design: PairDesign, limits: RadiusLimits) -> FaceRange:
+    """Where the teeth can be cut with a fillet and a tip land; needs neither radius of the face.
+
+    Raises GeometryError if there is no such place.
+    """
+    tip_undercut = tip_plane_radius(design)
+    inner, inner_reason = max((limits.inner, "undercut"), (tip_undercut * (1 + 1e-9), "tip undercut"))
+    if limits.outer <= inner:
+        raise _no_face(design, "the teeth are pointed where they are no longer undercut")
+    rolls_off = design.shaper_tip_radius / design.shaper_ratio
+    candidates = [
+        (_last(_land_left, design, inner, limits.outer), f"tips pointed at {1e3 * limits.outer:.3f}"),
+        (_last(_fillet_left, design, inner, rolls_off), "the shaper's tip leaves no fillet further out"),
+    ]
+    outer, outer_reason = min(candidates)
+    if outer - inner < 0.5 * design.module:
+        raise _no_face(design, "less than half a module lies between undercut and the outer limit")
+    return FaceRange(inner, outer, inner_reason, outer_reason)
+
+
+def _no_face(design: PairDesign, reason: str) -> GeometryError:
+    tip = round(design.face_gear.addendum / design.module, 6)
+    return GeometryError("face_gear.addendum_modules", tip, f"no face width is possible: {reason}")
+
+
+def _last(room: Callable[[PairDesign, float], float], design: PairDesign, low: float, high: float) -> float:
+    """The largest radius (m) with room left; room falls outwards."""
+    low, high = low * (1 + 1e-9), high * (1 - 1e-6)
+    if high <= low or room(design, low) <= 0:
+        return low
+    if room(design, high) >= 0:
+        return high
+    return float(brentq(lambda radius: room(design, radius), low, high, xtol=1e-9))
+
+
+def _land_left(design: PairDesign, radius: float) -> float:
+    """Width (m) of the tip land beyond the thinnest."""
+    roll, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
+    return 2 * float(face_gear.flank_point(design, roll, psi)[..., 0]) - THINNEST_LAND * design.module
+
+
+def _fillet_left(design: PairDesign, radius: float) -> float:
+    """Length (m) of the fillet's arc beyond the shortest."""
+    arc = -float(face_gear.fillet_end(design, radius)) * design.shaper_tip_radius
+    return arc - THINNEST_LAND * design.module
 
 
 def undercut_radius(design: PairDesign) -> float:

@@ -7,10 +7,12 @@ import numpy as np
 from facegear.errors import GeometryError
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign, Relief
-from facegear.geometry.limits import RadiusLimits, radius_limits, tip_plane_radius
+from facegear.geometry.limits import THINNEST_LAND, RadiusLimits, face_range, radius_limits
 
-THINNEST_LAND = 0.05
-"""Thinnest tip or root land, in modules: less cannot be cut, nor meshed."""
+MOST_RELIEF = 0.05
+"""Largest relief or crowning, in modules: some three times what the heaviest load asks for."""
+NARROWEST = 0.5
+"""Narrowest pinion over the gear's face."""
 
 
 def check(design: PairDesign) -> RadiusLimits:
@@ -84,12 +86,15 @@ def _check_relief(design: PairDesign) -> None:
         ("root_relief", part.root_relief, flank),
         ("lead_crowning", part.lead_crowning, inf),
     ):
-        _check_modification(name, relief, room)
+        _check_modification(name, relief, room, MOST_RELIEF * design.module)
 
 
-def _check_modification(name: str, relief: Relief, room: float) -> None:
+def _check_modification(name: str, relief: Relief, room: float, most: float) -> None:
     if relief.amount == 0:
         return
+    if relief.amount > most:
+        allowed = f"at most {1e6 * most:.1f}, {MOST_RELIEF:g} modules"
+        _refuse(f"pinion.{name}.amount_um", 1e6 * relief.amount, allowed)
     if relief.length <= 0:
         _refuse(f"pinion.{name}.length_mm", 1e3 * relief.length, "greater than 0 where an amount is given")
     if relief.start + relief.length > room:
@@ -127,10 +132,10 @@ def _check_gear(design: PairDesign) -> RadiusLimits:
     if gear.rim_thickness < 0.5 * m:
         _refuse("face_gear.rim_thickness_mm", 1e3 * gear.rim_thickness, f"at least {500 * m:.3f}")
     limits = radius_limits(design)
-    allowed = f"between {1e3 * limits.inner:.3f} (undercut) and {1e3 * limits.outer:.3f} (pointing)"
+    face = face_range(design, limits)
     for key, value in (("inner_radius_mm", gear.inner_radius), ("outer_radius_mm", gear.outer_radius)):
-        if not limits.inner <= value <= limits.outer:
-            _refuse(f"face_gear.{key}", 1e3 * value, allowed)
+        if not face.inner <= value <= face.outer:
+            _refuse(f"face_gear.{key}", 1e3 * value, str(face))
     if gear.outer_radius - gear.inner_radius < 0.5 * m:
         least = 1e3 * (gear.inner_radius + 0.5 * m)
         _refuse(
@@ -138,13 +143,7 @@ def _check_gear(design: PairDesign) -> RadiusLimits:
             1e3 * gear.outer_radius,
             f"at least {least:.3f}, half a module of face",
         )
-    reached = tip_plane_radius(design)
-    if gear.inner_radius <= reached:
-        _refuse(
-            "face_gear.inner_radius_mm",
-            1e3 * gear.inner_radius,
-            f"more than {1e3 * reached:.3f}: tip undercut",
-        )
+    _check_width(design)
     radius = np.linspace(gear.inner_radius, gear.outer_radius, 33)
     highest = face_gear.flank_point(design, 0.0, face_gear.psi_at(design, radius, 0.0))[:, 2].min()
     if design.gear_tip_plane > highest:
@@ -154,21 +153,17 @@ def _check_gear(design: PairDesign) -> RadiusLimits:
             gear.addendum / m,
             f"less than {most / m:.4f}: no involute generates it",
         )
-    roll, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
+    roll, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
     if np.max(roll) >= design.shaper_tip_roll:
         _refuse("face_gear.addendum_modules", gear.addendum / m, "more: the flank has no height")
-    land = 2 * face_gear.flank_point(design, roll, psi)[:, 0].min()
-    if land < THINNEST_LAND * m:
-        _refuse(
-            "face_gear.outer_radius_mm",
-            1e3 * gear.outer_radius,
-            f"less: the tip land would be {1e3 * land:.3f} mm wide; {allowed}",
-        )
-    if np.max(face_gear.fillet_end(design, radius)) * design.shaper_tip_radius > -THINNEST_LAND * m:
-        most = 1e3 * design.shaper_tip_radius / design.shaper_ratio
-        _refuse(
-            "face_gear.outer_radius_mm",
-            1e3 * gear.outer_radius,
-            f"well below {most:.3f}, where the shaper's tip rolls off without leaving a fillet; {allowed}",
-        )
     return limits
+
+
+def _check_width(design: PairDesign) -> None:
+    gear, width = design.face_gear, design.pinion.width
+    least, most = NARROWEST * (gear.outer_radius - gear.inner_radius), 2 * design.mean_radius
+    if width < least:
+        allowed = f"at least {1e3 * least:.3f}, half the gear's face"
+        _refuse("pinion.width_mm", 1e3 * width, allowed)
+    if width >= most:
+        _refuse("pinion.width_mm", 1e3 * width, f"less than {1e3 * most:.3f}: it reaches the gear's axis")

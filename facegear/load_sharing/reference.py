@@ -18,6 +18,9 @@ from facegear.load_sharing.statistics import average
 from facegear.progress import Progress
 from facegear.transmission.machine import Machine
 
+SHARES = ("maximum", "lost_share", "undefined_share")
+REFERENCE_COLUMNS = ("quantity", "group", "kind", "mean", "minimum", *SHARES)
+SPEED_COLUMNS = ("speed_rpm", "group", "kind", "mean", "half_width", *SHARES, "motion")
 POSITIONS = 64
 SLOW_PERIODS = 4
 
@@ -39,7 +42,7 @@ def reference_table(machine: Machine, settings: Settings, options: SharingOption
         "no_error_no_backlash": static_forces(tight, POSITIONS),
     }
     rows = [row for quantity, forces in cases.items() for row in _rows(machine, quantity, forces)]
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows, columns=list(REFERENCE_COLUMNS))
 
 
 def slow_forces(machine: Machine, settings: Settings, speed_rpm: float) -> NDArray[np.float64]:
@@ -54,7 +57,12 @@ def slow_forces(machine: Machine, settings: Settings, speed_rpm: float) -> NDArr
 
 
 def speed_range_table(machine: Machine, settings: Settings, options: SharingOptions) -> pd.DataFrame:
-    """Mean and largest coefficient of each group over a range of speeds, the state carried upward."""
+    """Mean and largest coefficient of each group over a range of speeds, the state carried upward.
+
+    No rows, and no run, where no meshes share a load.
+    """
+    if not load_groups(machine.layout):
+        return pd.DataFrame(columns=list(SPEED_COLUMNS))
     speeds = np.linspace(options.speeds.first, options.speeds.last, options.speeds.points)
     progress = Progress("load sharing over speed", speeds.size)
     model, state, rows = build_model(machine), None, []
@@ -77,7 +85,7 @@ def speed_range_table(machine: Machine, settings: Settings, options: SharingOpti
                 }
             )
         progress.step()
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows, columns=list(SPEED_COLUMNS))
 
 
 def _rows(machine: Machine, quantity: str, forces: NDArray[np.float64]) -> list[dict[str, object]]:

@@ -38,9 +38,11 @@ SUMMARY_COLUMNS = (
 def curve_table(sharing: Sharing) -> pd.DataFrame:
     """One mesh cycle of each group with the envelope over all cycles; empty cells where undefined.
 
-    `lost_share` is the share of cycles with a path out of contact at that instant.
+    `lost_share` is the share of cycles with a path out of contact at that instant. No rows where no meshes
+    share a load.
     """
-    return pd.concat([_curve(group, sharing.period) for group in sharing.groups], ignore_index=True)
+    curves = [_curve(group, sharing.period) for group in sharing.groups]
+    return pd.concat(curves, ignore_index=True) if curves else pd.DataFrame(columns=list(CURVE_COLUMNS))
 
 
 def _curve(found: GroupSharing, period: float) -> pd.DataFrame:
@@ -87,4 +89,4 @@ def summary_table(sharing: Sharing) -> pd.DataFrame:
             motions,
         )
         rows.append(dict(zip(SUMMARY_COLUMNS, values, strict=True)))
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS))

@@ -44,11 +44,19 @@ def test_a_body_may_have_its_own_material(section):
     ("part", "key", "value", "line"),
     [
         ("face_gear", "inner_radius_mm", 240.0, "face_gear.inner_radius_mm = 240.0: between 245.800"),
-        ("face_gear", "outer_radius_mm", 310.0, "and 301.436 (pointing)"),
+        (
+            "face_gear",
+            "outer_radius_mm",
+            310.0,
+            "and 293.208 (the shaper's tip leaves no fillet further out)",
+        ),
         ("face_gear", "iner_radius_mm", 250.0, "did you mean 'inner_radius_mm'?"),
         ("pinion", "rack_tip_radius_modules", 0.5, "pinion.rack_tip_radius_modules = 0.5: at most"),
         ("pinion", "width_mm", -1.0, "pinion.width_mm = -1.0: should be greater than 0"),
         ("shaper", "teeth", 30, "shaper.teeth = 30: from 23 (line contact) to 26"),
+        ("pinion", "width_mm", 1.0, "pinion.width_mm = 1.0: at least 12.500, half the gear's face"),
+        ("pinion", "width_mm", 600.0, "pinion.width_mm = 600.0: less than 525.000"),
+        ("pinion", "tip_relief", {"amount_um": 400, "length_mm": 2}, "amount_um = 400.0: at most 187.5"),
     ],
 )
 def test_a_wrong_value_is_one_line_with_key_and_what_is_allowed(section, part, key, value, line):
@@ -66,3 +74,9 @@ def test_mesh_sizes_by_rung_and_by_number():
     assert (sizes.profile, sizes.width, sizes.thickness) == pytest.approx((3e-4, 1.5e-3, 2e-3))
     with pytest.raises(ConfigErrors, match="should be 'coarse', 'medium', 'fine' or 'finest'"):
         parse(Mesh, {"resolution": "superb"})
+
+
+def test_the_gear_has_more_teeth_than_the_pinion(section):
+    section |= {"pinion_teeth": 150, "pinion": None, "face_gear": None, "shaper": None}
+    with pytest.raises(ConfigErrors, match="face_gear_teeth = 143: more than the pinion's 150"):
+        parse(ToothPair, section)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from facegear.errors import GeometryError
 from facegear.geometry.design import FaceGear, PairDesign, Pinion, Relief, Shaper
+from facegear.geometry.limits import face_range, radius_limits
 from facegear.geometry.outline import pinion_outline
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.geometry.validate import check
@@ -55,8 +56,27 @@ def test_impossible_designs_name_the_key(pair, change, key):
 
 
 def test_a_gear_outside_its_limits_is_told_both(pair):
-    with pytest.raises(GeometryError, match=r"245\.800 .* 301\.436"):
+    with pytest.raises(GeometryError, match=r"between 245\.800 \(undercut\) and 293\.208 \("):
         check(changed(pair(26), face_gear__inner_radius=0.24))
+
+
+@pytest.mark.parametrize("shaper_addendum", [1.05, 1.15, 1.25])
+def test_the_range_of_a_refusal_is_the_range_that_is_accepted(pair, shaper_addendum):
+    """Two ranges that contradict each other were told: well below one radius, and up to a larger one."""
+    design = changed(pair(26), shaper__addendum=shaper_addendum * 3.75e-3)
+    told = face_range(design, radius_limits(design))
+    step = 1e-6
+    fits = changed(
+        design, face_gear__inner_radius=told.inner + step, face_gear__outer_radius=told.outer - step
+    )
+    assert check(changed(fits, pinion__width=told.outer - told.inner))
+    for change in (
+        {"face_gear__outer_radius": told.outer + step},
+        {"face_gear__inner_radius": told.inner - step},
+    ):
+        with pytest.raises(GeometryError, match=r"between .* and ") as refused:
+            check(changed(fits, **change))
+        assert str(told) in str(refused.value)
 
 
 @st.composite

@@ -1,0 +1,129 @@
+"""Any layout that the schema accepts goes through modes, dynamics and load sharing to its tables."""
+
+from math import atan, degrees
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, Phase, example, given, settings
+from hypothesis import strategies as st
+
+from facegear.config.base import parse
+from facegear.config.cases import expand_cases
+from facegear.config.dynamics import Dynamics
+from facegear.config.dynamics import settings as accuracy
+from facegear.config.load import load_values
+from facegear.config.load_sharing import LoadSharing, sharing_options
+from facegear.config.machines import case_machine
+from facegear.config.model import Config
+from facegear.config.stiffness import MeshStiffness, given_series
+from facegear.dynamics.response_tables import response_table
+from facegear.load_sharing.collect import NOMINAL, collected
+from facegear.load_sharing.groups import load_groups
+from facegear.load_sharing.reference import (
+    REFERENCE_COLUMNS,
+    SPEED_COLUMNS,
+    reference_table,
+    speed_range_table,
+)
+from facegear.load_sharing.run import load_sharing
+from facegear.load_sharing.tables import CURVE_COLUMNS, SUMMARY_COLUMNS, curve_table, summary_table
+from facegear.transmission.modal_tables import frequency_table, shape_table
+from facegear.transmission.mode_classes import name_modes
+from facegear.transmission.modes import natural_modes
+
+CONFIG = Path(__file__).parents[3] / "config" / "harmonics_only.yaml"
+SHORT = {"dwell_periods": 16, "settle_periods": 16, "window_periods": 16, "extensions": 0}
+APART = degrees(2 * atan(43.125 / 262.5)) + 0.1
+
+
+def values(places, gears, tail_share):
+    own = load_values([CONFIG], {})
+    own["transmission"] |= {"pinions": places, "face_gears": gears}
+    own["transmission"]["torque"] = {"per_input_n_m": 500.0, "tail_share": tail_share}
+    own["dynamics"]["accuracy"] |= SHORT
+    own["load_sharing"] |= {"cycles": 20, "starts": 2, "samples_per_cycle": 32, "quasi_static_rpm": 500.0}
+    own["load_sharing"]["speed_range"] |= {"from_rpm": 3000.0, "points": 2}
+    return parse(Config, own).model_dump(mode="json")
+
+
+def chain(own):
+    """Modes, nominal response, load sharing: what the stages of the workflow compute and write."""
+    (case,) = expand_cases(own).values()
+    machine = case_machine(case, given_series(parse(MeshStiffness, case["mesh_stiffness"])))
+    modes = natural_modes(machine.layout, machine.stiffness.mean)
+    frequencies = frequency_table(modes, name_modes(machine.layout, modes))
+    assert len(frequencies) == 4 * len(machine.layout.bodies)
+    assert len(shape_table(machine.layout, modes)) == len(frequencies) ** 2
+    settings = accuracy(parse(Dynamics, case["dynamics"]).accuracy)
+    options = sharing_options(parse(LoadSharing, case["load_sharing"]))
+    sharing = load_sharing(machine, case["dynamics"]["speed_rpm"], settings, options)
+    assert len(response_table(machine.layout, sharing.response))
+    tables = {
+        CURVE_COLUMNS: curve_table(sharing),
+        SUMMARY_COLUMNS: summary_table(sharing),
+        REFERENCE_COLUMNS: reference_table(machine, settings, options),
+        SPEED_COLUMNS: speed_range_table(machine, settings, options),
+    }
+    for columns, table in tables.items():
+        assert tuple(table.columns) == columns
+    groups = load_groups(machine.layout)
+    found = collected({(NOMINAL, NOMINAL): tables[SUMMARY_COLUMNS]})
+    assert found["group"].to_list() == [group.name for group in groups]
+    return sharing, found
+
+
+@pytest.mark.parametrize(
+    ("roles", "gears"),
+    [(["input"], ["upper"]), (["input"], ["lower"]), (["input", "idler"], ["upper"])],
+)
+def test_where_no_meshes_share_a_load_the_tables_have_no_rows(roles, gears):
+    """The plainest machines ended in `No objects to concatenate`, after all the contact work."""
+    places = [{"name": f"{i}", "role": role, "angle_deg": 90.0 * i} for i, role in enumerate(roles)]
+    sharing, found = chain(values(places, gears, 0.0))
+    assert found.empty
+    assert np.isfinite(sharing.response.forces).all()
+
+
+@st.composite
+def layouts(draw):
+    count = draw(st.integers(1, 8))
+    roles = [draw(st.sampled_from(["input", "idler", "tail"])) for _ in range(count)]
+    if "input" not in roles:
+        roles[0] = "input"
+    free = 360.0 / count - APART
+    places = [
+        {
+            "name": f"p{i}",
+            "role": role,
+            "angle_deg": 360.0 * i / count + draw(st.floats(0.0, free)),
+            "torque_n_m": draw(st.sampled_from([None, None, 0.0, -50.0])) if i else None,
+        }
+        for i, role in enumerate(roles)
+    ]
+    gears = draw(st.sampled_from([["upper"], ["lower"], ["lower", "upper"]]))
+    return places, gears, draw(st.sampled_from([0.0, 0.3])) if "tail" in roles else 0.0
+
+
+@settings(
+    max_examples=6,
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow],
+    phases=[Phase.explicit, Phase.reuse, Phase.generate],
+)
+@example(
+    (
+        [
+            {"name": "p0", "role": "input", "angle_deg": 128.962295982284, "torque_n_m": None},
+            {"name": "p1", "role": "input", "angle_deg": 330.5954349305716, "torque_n_m": None},
+        ],
+        ["upper"],
+        0.0,
+    )
+).via("the line search of the static equilibrium ended in a RuntimeError of scipy")
+@given(layouts())
+def test_any_layout_runs_to_its_tables(layout):
+    sharing, found = chain(values(*layout))
+    assert np.isfinite(sharing.response.forces).all()
+    means = found["mean"].dropna()
+    assert (means >= 1.0 - 1e-9).all() and (means <= 8.0).all()
