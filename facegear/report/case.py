@@ -53,11 +53,17 @@ def _picture(path: Path, name: str) -> Picture:
 
 def _machine_text(values: Mapping[str, Any]) -> str:
     pair, transmission = values["tooth_pair"], values["transmission"]
+    teeth = f"module {pair['module_mm']:g} mm, pressure angle {pair['pressure_angle_deg']:g} deg. "
+    if transmission is None:
+        return (
+            f"A pinion of {pair['pinion_teeth']} teeth and a face gear of {pair['face_gear_teeth']} teeth, "
+            f"{teeth}Mesh stiffness: {values['mesh_stiffness']['source']}. No transmission is configured: "
+            "teeth, contact and stiffness alone."
+        )
     torque = transmission["torque"]
     return (
         f"{_count(transmission['pinions'], 'pinion')} of {pair['pinion_teeth']} teeth and "
-        f"{_count(transmission['face_gears'], 'face gear')} of {pair['face_gear_teeth']} teeth, "
-        f"module {pair['module_mm']:g} mm, pressure angle {pair['pressure_angle_deg']:g} deg. "
+        f"{_count(transmission['face_gears'], 'face gear')} of {pair['face_gear_teeth']} teeth, {teeth}"
         f"Each input brings {torque['per_input_n_m']:g} N m unless the table gives its own torque; "
         f"{100 * torque['tail_share']:.3g} % of the power leaves at the tail. "
         f"Mesh stiffness: {values['mesh_stiffness']['source']}. "
@@ -74,9 +80,12 @@ def _machine_tables(values: Mapping[str, Any]) -> list[Table]:
     rows = [
         row for section in sections for row in _flat(section, values[section]) if row[1] not in (None, "")
     ]
-    pinions = pd.DataFrame(values["transmission"]["pinions"]).dropna(axis=1, how="all")
     keys = pd.DataFrame([row for row in rows if ".pinions" not in row[0]], columns=["key", "value"])
-    return [Table("Pinions", pinions), Table("Config, defaults included", keys, folded=True)]
+    config = Table("Config, defaults included", keys, folded=True)
+    if values["transmission"] is None:
+        return [config]
+    pinions = pd.DataFrame(values["transmission"]["pinions"]).dropna(axis=1, how="all")
+    return [Table("Pinions", pinions), config]
 
 
 def _flat(key: str, value: Any) -> list[tuple[str, Any]]:

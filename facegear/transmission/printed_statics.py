@@ -128,4 +128,4 @@ def _line_minimum(slope: Callable[[float], float]) -> float:
     low, high = 0.0, 1.0
     while slope(high) < 0.0:
         low, high = high, 2.0 * high
-    return float(scipy.optimize.brentq(slope, low, high, xtol=1e-16, rtol=1e-15))
+    return float(scipy.optimize.brentq(slope, low, high, xtol=1e-16, rtol=1e-15, disp=False))

@@ -3,6 +3,8 @@ include: "functions/modal.smk"
 
 rule modal:
     "Natural frequencies and mode shapes"
+    input:
+        unpack(modal_input),
     output:
         frequencies="results/{case}/modal/frequencies.csv",
         shapes="results/{case}/modal/shapes.csv",

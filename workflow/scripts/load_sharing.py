@@ -24,4 +24,4 @@ with stage(snakemake) as run:
     tables.write(snakemake.output.curve, curve_table(sharing))
     tables.write(snakemake.output.summary, summary)
     means = ", ".join(f"{row.group} {row.mean:.3f}" for row in summary.itertuples())
-    run.summary(f"{sharing.response.label}; mean coefficients: {means}")
+    run.summary(f"{sharing.response.label}; mean coefficients: {means or 'no meshes share a load'}")

@@ -18,5 +18,8 @@ with stage(snakemake) as run:
     speeds = speed_range_table(built, settings(parse(Accuracy, params.range_accuracy)), options)
     tables.write(snakemake.output.reference, reference)
     tables.write(snakemake.output.speeds, speeds)
-    worst = speeds.loc[speeds["mean"].idxmax()]
-    run.summary(f"largest mean {worst['mean']:.2f} ({worst['group']}) at {worst['speed_rpm']:.0f} rpm")
+    if speeds["mean"].notna().any():
+        worst = speeds.loc[speeds["mean"].idxmax()]
+        run.summary(f"largest mean {worst['mean']:.2f} ({worst['group']}) at {worst['speed_rpm']:.0f} rpm")
+    else:
+        run.summary("no meshes share a load")

@@ -7,7 +7,7 @@ STUDY_LABELS = {
     (study.name, name): point.label for study in STUDIES for name, point in study_points(study).items()
 }
 STUDY_POINTS = list(STUDY_LABELS)
-SHARING_KINDS = group_kinds(CONFIG)
+SHARING_KINDS = group_kinds(CONFIG) if CONFIG["transmission"] else []
 
 
 def sharing_figures(study):

@@ -1,6 +1,4 @@
 def stiffness_input(wildcards):
-    """Contact results, or the user's own file, or nothing when the harmonics stand in the config."""
-    section = value_of("mesh_stiffness")(wildcards)
-    if section["source"] != "harmonics":
-        return {"ltca": shared("contact", "ltca")(wildcards)}
-    return {"given": section["csv"]} if section["csv"] else {}
+    """Contact results, or nothing when the harmonics stand in the config."""
+    given = value_of("mesh_stiffness.source")(wildcards) == "harmonics"
+    return {} if given else {"ltca": shared("contact", "ltca")(wildcards)}

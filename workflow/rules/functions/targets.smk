@@ -5,10 +5,13 @@ def has_contact(case):
 
 def stages(case):
     """What a run of a case consists of: only what its config asks for."""
-    found = [rules.modal, rules.modal_figure, rules.stiffness, rules.stiffness_figures]
+    found = [rules.stiffness, rules.stiffness_figures]
     if has_contact(case):
         found += [rules.geometry, rules.tooth_pair_figure, rules.mesh]
         found += [rules.contact, rules.contact_figures, rules.load_dependence, rules.load_dependence_figure]
+    if CASES[case]["transmission"] is None:
+        return found
+    found += [rules.modal, rules.modal_figure]
     found += [rules.dynamics_response, rules.dynamics_sweep, rules.dynamics_figures]
     if SHARING_KINDS:
         found += [rules.load_sharing, rules.load_sharing_summary, rules.load_sharing_reference]
@@ -23,8 +26,10 @@ def targets(case):
 
 def report_tables(wildcards):
     """Tables that the report of a case reads."""
-    tables = [rules.modal.output.frequencies, rules.stiffness.output.harmonics]
-    tables += [rules.dynamics_sweep.output.jumps, rules.load_sharing_summary.output.summary]
+    tables = [rules.stiffness.output.harmonics]
+    if CASES[wildcards.case]["transmission"]:
+        tables += [rules.modal.output.frequencies, rules.dynamics_sweep.output.jumps]
+    tables += [rules.load_sharing_summary.output.summary] if SHARING_KINDS else []
     tables += [rules.contact.output.ltca] if has_contact(wildcards.case) else []
     tables += [rules.scorecard.output.csv] if REPRODUCTION else []
     return [path.format(case=wildcards.case) for path in tables]

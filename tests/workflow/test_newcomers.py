@@ -1,0 +1,49 @@
+"""Machines and mistakes of people who run facegear for the first time."""
+
+import pandas as pd
+import pytest
+from projects import ROOT, Project
+
+pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("newcomers")]
+
+PLAINEST = """
+case: plain
+tooth_pair: {pinion_teeth: 23, face_gear_teeth: 143, module_mm: 3.75, pressure_angle_deg: 25}
+mesh_stiffness: {source: harmonics, table: [{order: 0, b_n_per_m: 4.1e8}, {order: 1, a_n_per_m: 2.0e7}]}
+transmission:
+  pinions: [{name: input, role: input, angle_deg: 0}]
+  face_gears: [upper]
+  pinion: {mass_kg: 1.2, inertia_kg_m2: 0.002, bearing_stiffness_n_per_m: {x: 6.5e7, y: 6.5e7, z: 0}}
+  face_gear:
+    mass_kg: 7.8
+    inertia_kg_m2: 0.54
+    bearing_stiffness_n_per_m: {x: 8.7e9, y: 8.7e9, z: 8.7e9}
+    mesh_radius_mm: 262.5
+  damping: {mesh_n_s_per_m: 1200, mass_per_s: 800, bearing_s: 2.0e-6}
+  backlash_um: 100
+  transmission_error: {amplitude_um: 5}
+  torque: {per_input_n_m: 600, tail_share: 0}
+dynamics: {sweep: {points: 8, from_rpm: 2000, directions: [up], chunks: 1}}
+"""
+
+
+def test_the_plainest_machine_runs_to_its_report(tmp_path):
+    """One input pinion on one face gear ended in `No objects to concatenate`, after all the contact work."""
+    config = tmp_path / "plain.yaml"
+    config.write_text(PLAINEST)
+    Project(tmp_path).run("--configfile", str(config))
+    results = tmp_path / "results" / "plain"
+    assert "1 pinion of 23 teeth and 1 face gear" in (results / "report.html").read_text()
+    assert pd.read_csv(results / "dynamics" / "response.csv")["deflection_um"].notna().all()
+
+
+def test_teeth_alone_plan_geometry_contact_stiffness_and_a_report(tmp_path):
+    config = str(ROOT / "config" / "teeth_only.yaml")
+    planned = Project(tmp_path).planned("--configfile", config)
+    assert {"geometry", "contact", "stiffness", "report"} <= planned
+    assert not {"modal", "dynamics_response", "load_sharing"} & planned
+    asked = ("-n", "--configfile", config, "--", "results/teeth_only/modal/frequencies.csv")
+    done = Project(tmp_path).run(*asked, check=False)
+    assert done.returncode == 1
+    told = "transmission = null: required for modes, dynamics and load sharing of teeth_only"
+    assert done.stderr.splitlines()[-1] == told
