@@ -18,6 +18,7 @@ from facegear.config.machines import case_machine
 from facegear.config.model import Config
 from facegear.config.stiffness import MeshStiffness, given_series
 from facegear.dynamics.response_tables import response_table
+from facegear.load_sharing import reference
 from facegear.load_sharing.collect import NOMINAL, collected
 from facegear.load_sharing.groups import load_groups
 from facegear.load_sharing.reference import (
@@ -35,6 +36,14 @@ from facegear.transmission.modes import natural_modes
 CONFIG = Path(__file__).parents[3] / "config" / "harmonics_only.yaml"
 SHORT = {"dwell_periods": 16, "settle_periods": 16, "window_periods": 16, "extensions": 0}
 APART = degrees(2 * atan(43.125 / 262.5)) + 0.1
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _few_positions():
+    """Four positions of the mesh cycle at rest instead of 64: whether they run, not how fine they are."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(reference, "POSITIONS", 4)
+        yield
 
 
 def values(places, gears, tail_share):
