@@ -18,7 +18,6 @@ transmission:
     mass_kg: 7.8
     inertia_kg_m2: 0.54
     bearing_stiffness_n_per_m: {x: 8.7e9, y: 8.7e9, z: 8.7e9}
-    mesh_radius_mm: 262.5
   damping: {mesh_n_s_per_m: 1200, mass_per_s: 800, bearing_s: 2.0e-6}
   backlash_um: 100
   transmission_error: {amplitude_um: 5}

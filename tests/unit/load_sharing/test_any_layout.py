@@ -35,7 +35,8 @@ from facegear.transmission.modes import natural_modes
 
 CONFIG = Path(__file__).parents[3] / "config" / "harmonics_only.yaml"
 SHORT = {"dwell_periods": 16, "settle_periods": 16, "window_periods": 16, "extensions": 0}
-APART = degrees(2 * atan(43.125 / 262.5)) + 0.1
+TEETH = 143
+APART = degrees(2 * atan(23 / TEETH)) + 360.0 / TEETH
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -101,16 +102,19 @@ def layouts(draw):
     if "input" not in roles:
         roles[0] = "input"
     free = 360.0 / count - APART
+    gears = draw(st.sampled_from([["upper"], ["lower"], ["lower", "upper"]]))
+    angles = [360.0 * i / count + draw(st.floats(0.0, free)) for i in range(count)]
+    if len(gears) == 2:  # between two gears the teeth fit at whole pitches from the first pinion
+        angles = [int(angle * TEETH / 360.0) * 360.0 / TEETH for angle in angles]
     places = [
         {
             "name": f"p{i}",
             "role": role,
-            "angle_deg": 360.0 * i / count + draw(st.floats(0.0, free)),
+            "angle_deg": angles[i],
             "torque_n_m": draw(st.sampled_from([None, None, 0.0, -50.0])) if i else None,
         }
         for i, role in enumerate(roles)
     ]
-    gears = draw(st.sampled_from([["upper"], ["lower"], ["lower", "upper"]]))
     return places, gears, draw(st.sampled_from([0.0, 0.3])) if "tail" in roles else 0.0
 
 
