@@ -4,16 +4,18 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.locked
 CORES ?= 2
 
-.PHONY: all env check test lint benchmarks peers identify lock clean
+.PHONY: all env check test lint docs notebooks benchmarks peers identify lock clean
 
 all: check
 	$(BIN)/snakemake --cores $(CORES)
 
 env: $(READY)
 
-$(READY): requirements.lock
+# The repository installs itself editable, so that notebooks and scripts find it from any folder.
+$(READY): requirements.lock pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
+	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
 	touch $@
 
 check: env
@@ -37,7 +39,6 @@ identify: check
 	$(BIN)/snakemake --cores $(CORES) identify
 
 lock: env
-	$(BIN)/python -m pip install --quiet uv
 	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --extra dev --extra benchmark pyproject.toml -o requirements.lock
 
 clean:

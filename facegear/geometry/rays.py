@@ -35,7 +35,7 @@ class Blank(NamedTuple):
     root_start: float
     pitch: float
     aside: float
-    """Largest |x| (m) of points looked at."""
+    """Largest distance from the tooth's middle plane, abs(x) in m, of points looked at."""
     fillet_top: float
     """Height (m) that no point of the fillet exceeds."""
 

@@ -1,0 +1,31 @@
+"""How Sphinx builds the documentation: `make docs`."""
+
+import sys
+import tomllib
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT))
+
+project = "facegear"
+author = "the facegear authors"
+release = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.apidoc", "sphinx.ext.viewcode"]
+exclude_patterns = ["build"]
+default_role = "literal"  # docstrings write names in single backticks
+myst_enable_extensions = ["dollarmath", "colon_fence"]
+myst_heading_anchors = 4
+apidoc_modules = [
+    {
+        "path": "../facegear",
+        "destination": "api",
+        "exclude_patterns": ["../facegear/paper", "../facegear/validation", "../facegear/data"],
+        "separate_modules": True,
+        "module_first": True,
+        "include_private": False,
+    }
+]
+autodoc_typehints = "description"
+autodoc_member_order = "bysource"
+html_theme = "alabaster"
+html_theme_options = {"page_width": "1100px", "sidebar_width": "240px"}
