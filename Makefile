@@ -22,12 +22,20 @@ check: env
 	@$(BIN)/python -m facegear.system_check
 
 test: check
+	$(BIN)/python -m facegear.compile
 	$(BIN)/python -m pytest -n $(CORES) --dist loadgroup
 
 lint: env
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/snakefmt --check Snakefile workflow
+	$(BIN)/mypy
+
+docs: env
+	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet docs docs/build
+
+notebooks: env
+	$(BIN)/jupyter execute --inplace examples/*.ipynb
 
 benchmarks: check
 	$(BIN)/snakemake --cores $(CORES) benchmarks
