@@ -22,7 +22,6 @@ check: env
 	@$(BIN)/python -m facegear.system_check
 
 test: check
-	$(BIN)/python -m facegear.compile
 	$(BIN)/python -m pytest -n $(CORES) --dist loadgroup
 
 lint: env
