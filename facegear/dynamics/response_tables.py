@@ -53,9 +53,7 @@ def spectrum_table(layout: Layout, response: SteadyState) -> pd.DataFrame:
 
 
 def summary_of_response(model: Model, speed_rpm: float, response: SteadyState) -> pd.DataFrame:
-    """Columns speed_rpm, quantity, body_or_mesh, value, class: the numbers that a sweep keeps, at one
-    speed.
-    """
+    """The numbers that a sweep keeps, at one speed: its columns but for the direction."""
     table = sweep_table(model.machine.layout, "none", collect(model, iter([(speed_rpm, response)])))
     return table.drop(columns="direction")
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 
+from facegear.dynamics.motion import Motion
 from facegear.load_sharing.run import GroupSharing, Sharing
 
 CURVE_COLUMNS = (
@@ -32,6 +33,7 @@ SUMMARY_COLUMNS = (
     "starts_low",
     "starts_high",
     "motions_from_starts",
+    "periodic",
 )
 
 
@@ -87,6 +89,7 @@ def summary_table(sharing: Sharing) -> pd.DataFrame:
             found.starts_low,
             found.starts_high,
             motions,
+            sharing.response.motion is Motion.PERIODIC,
         )
         rows.append(dict(zip(SUMMARY_COLUMNS, values, strict=True)))
     return pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS))

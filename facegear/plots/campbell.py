@@ -47,8 +47,8 @@ def _mark(axis: plt.Axes, rows: pd.DataFrame, speed: str, teeth: int, symbol: st
     if rows.empty:
         return
     unique = rows.drop_duplicates([speed, "resonance"])
-    order = unique["resonance"].str.extract(r"at ([\d.]+)x")[0].astype(float)
-    axis.plot(unique[speed], order * teeth * unique[speed] / 60.0, symbol, color="black", ms=4, label=label)
+    frequency = unique["order"] * teeth * unique[speed] / 60.0
+    axis.plot(unique[speed], frequency, symbol, color="black", ms=4, label=label)
 
 
 def waterfall(spectra: Mapping[str, NDArray[np.float64]], mesh: int, mesh_name: str, teeth: int) -> Figure:

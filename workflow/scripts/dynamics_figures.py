@@ -16,8 +16,8 @@ with stage(snakemake) as run:
     typical = [name for i, name in enumerate(pinions) if roles[i] not in roles[:i]]
     sides = [side for side in ("upper", "lower") if side in params.gears]
     sweep = tables.read(given.sweep, SWEEP)
-    jumps = tables.read(given.jumps, ["direction", "speed_after_rpm", "resonance"], allow_empty=True)
-    peaks = tables.read(given.resonances, ["speed_rpm", "resonance"], allow_empty=True)
+    jumps = tables.read(given.jumps, ["direction", "speed_after_rpm", "resonance", "order"], allow_empty=True)
+    peaks = tables.read(given.resonances, ["speed_rpm", "resonance", "order"], allow_empty=True)
     response = tables.read(given.response, ["mesh_cycle", "mesh", "deflection_um"])
     spectrum = tables.read(given.spectrum, ["mesh", "order", "amplitude_um"])
     frequencies = tables.read(given.frequencies, ["frequency_hz", "class"])

@@ -19,7 +19,5 @@ with stage(snakemake) as run:
         own = {key: tables.read(path, ["cycle_fraction"], allow_empty=True) for key, path in paths.items()}
         tables.write(output, collected(own, labels))
     tables.write(snakemake.output.summary, summary)
-    irregular = summary.loc[
-        ~summary["motion"].astype(str).str.startswith("period-"), ["study", "point"]
-    ].drop_duplicates()
+    irregular = summary.loc[~summary["periodic"].astype(bool), ["study", "point"]].drop_duplicates()
     run.summary(f"{len(frames)} cases, {len(irregular)} of them not periodic")

@@ -8,7 +8,7 @@ import numpy as np
 from facegear.dynamics.steady_state.simulate import Model
 from facegear.dynamics.sweeps.jumps import distance
 from facegear.dynamics.sweeps.plan import SweepPlan
-from facegear.dynamics.sweeps.sweep import DEFLECTION, Piece, collect, joined, run_speeds
+from facegear.dynamics.sweeps.sweep import Piece, collect, joined, run_speeds
 
 SAME = 5e-3
 """Relative difference of the AC RMS of periodic motions that counts as the same orbit."""
@@ -38,17 +38,15 @@ class Seam:
 
 def same_response(first: Piece, i: int, second: Piece, j: int) -> SeamKind | None:
     """Whether two responses at one speed are the same motion; None if not."""
-    label, other = str(first.labels[i]), str(second.labels[j])
-    rms, interval = DEFLECTION.index("ac_rms"), DEFLECTION.index("ac_rms_interval")
-    periodic = label.startswith("period-"), other.startswith("period-")
+    rms, other = first.deflection_ac_rms[i], second.deflection_ac_rms[j]
+    periodic = first.periodic[i], second.periodic[j]
     if all(periodic):
-        near = distance(first.deflection[i, rms], second.deflection[j, rms]) <= SAME
-        return SeamKind.AGREED if near and label == other else None
+        near = distance(rms, other) <= SAME
+        return SeamKind.AGREED if near and first.period[i] == second.period[j] else None
     if any(periodic):
         return None
-    doubt = first.deflection[i, interval] + second.deflection[j, interval]
-    gap = np.abs(first.deflection[i, rms] - second.deflection[j, rms])
-    return SeamKind.IRREGULAR if (gap <= 2.0 * doubt + SAME * first.deflection[i, rms]).all() else None
+    doubt = first.deflection_ac_rms_interval[i] + second.deflection_ac_rms_interval[j]
+    return SeamKind.IRREGULAR if (np.abs(rms - other) <= 2.0 * doubt + SAME * rms).all() else None
 
 
 def assemble(

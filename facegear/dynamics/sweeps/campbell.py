@@ -4,12 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import find_peaks
 
-from facegear.dynamics.sweeps.sweep import DEFLECTION, TRANSLATION, Piece
+from facegear.dynamics.sweeps.sweep import Piece
 from facegear.transmission.modes import Modes
 
 Array = NDArray[np.float64]
 PROMINENT = 1.15
+SMALL = 0.1
+"""Maxima below this share of the largest do not count."""
 
 
 @dataclass(frozen=True)
@@ -49,29 +52,19 @@ def peaks(piece: Piece) -> list[tuple[str, int, int, float]]:
     A maximum counts if it stands 15 % over the lowest value on either side before a higher one comes.
     """
     found = []
-    ac_rms = piece.deflection[:, DEFLECTION.index("ac_rms")]
-    for mesh in range(ac_rms.shape[1]):
-        found += [("deflection", mesh, i, float(ac_rms[i, mesh])) for i in _maxima(ac_rms[:, mesh])]
-    moved = piece.translation[:, TRANSLATION.index("ac_rms")]
+    for mesh, curve in enumerate(piece.deflection_ac_rms.T):
+        found += [("deflection", mesh, i, float(curve[i])) for i in maxima(curve)]
+    moved = piece.translation_ac_rms
     for body in range(moved.shape[1]):
         for axis, letter in enumerate("xyz"):
             curve = moved[:, body, axis]
             if curve.max() > 1e-12:
-                found += [(letter, body, i, float(curve[i])) for i in _maxima(curve)]
+                found += [(letter, body, i, float(curve[i])) for i in maxima(curve)]
     return found
 
 
-def _maxima(curve: Array) -> list[int]:
-    inner = np.flatnonzero((curve[1:-1] > curve[:-2]) & (curve[1:-1] >= curve[2:])) + 1
-    kept = []
-    for i in inner:
-        left = curve[:i][::-1]
-        right = curve[i + 1 :]
-        valleys = []
-        for side in (left, right):
-            higher = np.flatnonzero(side > curve[i])
-            reach = side[: higher[0]] if higher.size else side
-            valleys.append(reach.min() if reach.size else curve[i])
-        if curve[i] > PROMINENT * max(valleys) and curve[i] > 0.1 * curve.max():
-            kept.append(int(i))
-    return kept
+def maxima(curve: Array) -> list[int]:
+    """Positions of the maxima that are PROMINENT times the higher of the valleys beside them."""
+    found, facts = find_peaks(curve, height=SMALL * curve.max(), prominence=0.0)
+    valleys = curve[found] - facts["prominences"]
+    return [int(i) for i in found[curve[found] > PROMINENT * valleys]]

@@ -9,10 +9,9 @@ from numpy.typing import NDArray
 from facegear.dynamics.motion import State
 from facegear.dynamics.steady_state.simulate import SteadyState
 from facegear.dynamics.steady_state.statistics import moments
-from facegear.dynamics.sweeps.sweep import DEFLECTION, FACTS, Piece
+from facegear.dynamics.sweeps.sweep import Piece
 
 Array = NDArray[np.float64]
-MULTIPLIER = FACTS.index("leading_multiplier")
 LEAST_CHANGE = 0.1
 """Relative change of a mesh's AC RMS between neighbouring speeds that may be a jump."""
 ABRUPT = 3.0
@@ -24,46 +23,45 @@ Respond = Callable[[float, State], SteadyState]
 
 
 @dataclass(frozen=True, eq=False)
+class Side:
+    """Response on one side of a jump: AC RMS of the mesh deflections (meshes,), m, its class and state.
+
+    period: 0 where the motion is not periodic. multiplier: the leading one, NaN where there is none.
+    """
+
+    speed: float
+    ac_rms: Array
+    label: str
+    period: int
+    multiplier: float
+    state: State
+
+
+@dataclass(frozen=True, eq=False)
 class Jump:
     """The response leaves its branch between two speeds (in the order of running).
 
-    before, after: AC RMS of every mesh deflection, m, with their classes of motion. mesh: where the relative
-    change is largest. multiplier: the leading one on the branch that ends, NaN if it is not periodic.
-    largest: the sweep's position next to the jump with the larger response.
+    before, after: what is found on both sides. mesh: where the relative change is largest. largest: the
+    sweep's position next to the jump with the larger response.
     """
 
-    speed_before: float
-    speed_after: float
-    before: Array
-    after: Array
-    label_before: str
-    label_after: str
+    before: Side
+    after: Side
     mesh: int
-    multiplier: float
     largest: int
 
     @property
     def abrupt(self) -> bool:
         """Whether a jump is left in the refined bracket, and not a steep but smooth change or noise."""
-        regular = self.label_before.startswith("period-") or self.label_after.startswith("period-")
-        return distance(self.before, self.after) > np.log1p(LEAST_CHANGE if regular else 3.0 * LEAST_CHANGE)
-
-
-@dataclass(frozen=True, eq=False)
-class Side:
-    """Response on one side of a jump: AC RMS of the mesh deflections (meshes,), class, multiplier, state."""
-
-    speed: float
-    ac_rms: Array
-    label: str
-    multiplier: float
-    state: State
+        regular = self.before.period > 0 or self.after.period > 0
+        return distance(self.before.ac_rms, self.after.ac_rms) > np.log1p(
+            LEAST_CHANGE if regular else 3.0 * LEAST_CHANGE
+        )
 
 
 def suspects(piece: Piece) -> list[int]:
     """Positions i where the response jumps on the way from speed i to i + 1."""
-    ac_rms = piece.deflection[:, DEFLECTION.index("ac_rms")]
-    interval = piece.deflection[:, DEFLECTION.index("ac_rms_interval")]
+    ac_rms, interval = piece.deflection_ac_rms, piece.deflection_ac_rms_interval
     floor = FLOOR * ac_rms.max()
     logs = np.log(np.maximum(ac_rms, floor))
     doubt = interval / np.maximum(ac_rms, floor)
@@ -78,35 +76,23 @@ def suspects(piece: Piece) -> list[int]:
 
 def refine(piece: Piece, position: int, respond: Respond, resolution: float) -> Jump:
     """Bisect between two speeds of a sweep, each time from the state on the branch that ends."""
-    row = DEFLECTION.index("ac_rms")
-    before = Side(
-        float(piece.speeds[position]),
-        piece.deflection[position, row],
-        str(piece.labels[position]),
-        float(piece.facts[position, MULTIPLIER]),
-        piece.state(position),
-    )
-    after = Side(
-        float(piece.speeds[position + 1]),
-        piece.deflection[position + 1, row],
-        str(piece.labels[position + 1]),
-        float(piece.facts[position + 1, MULTIPLIER]),
-        piece.state(position + 1),
-    )
+    before, after = (_stored_side(piece, i) for i in (position, position + 1))
     before, after = bracket(before, after, respond, resolution)
     floor = np.full_like(before.ac_rms, 1e-300)
     ratio = np.log(np.maximum(after.ac_rms, floor) / np.maximum(before.ac_rms, floor))
     mesh = int(np.argmax(np.abs(ratio)))
-    return Jump(
-        before.speed,
-        after.speed,
-        before.ac_rms,
-        after.ac_rms,
-        before.label,
-        after.label,
-        mesh,
-        before.multiplier,
-        position + int(ratio[mesh] > 0.0),
+    return Jump(before=before, after=after, mesh=mesh, largest=position + int(ratio[mesh] > 0.0))
+
+
+def _stored_side(piece: Piece, position: int) -> Side:
+    """What a sweep has found at one of its speeds."""
+    return Side(
+        speed=float(piece.speeds[position]),
+        ac_rms=piece.deflection_ac_rms[position],
+        label=piece.labels[position],
+        period=int(piece.period[position]),
+        multiplier=float(piece.leading_multiplier[position]),
+        state=piece.state(position),
     )
 
 
@@ -126,7 +112,14 @@ def side(speed: float, response: SteadyState) -> Side:
     """What bisection compares, from a response."""
     ac_rms = moments(response.deflections, response.per_period, response.period > 0).ac_rms
     multiplier = np.nan if response.multipliers is None else float(abs(response.multipliers[0]))
-    return Side(speed, ac_rms, response.label, multiplier, response.state)
+    return Side(
+        speed=speed,
+        ac_rms=ac_rms,
+        label=response.label,
+        period=response.period,
+        multiplier=multiplier,
+        state=response.state,
+    )
 
 
 def distance(first: Array, second: Array) -> float:

@@ -1,4 +1,7 @@
-"""Chunks of a sweep as named arrays and back; numbers that do not exist (NaN) go into a mask."""
+"""Chunks of a sweep as named arrays and back: the one writer and reader of their files.
+
+Files hold finite numbers; where a number may not exist (NaN) an array `..._known` says where it does.
+"""
 
 from collections.abc import Mapping
 
@@ -8,33 +11,28 @@ from numpy.typing import NDArray
 from facegear.dynamics.sweeps.sweep import Piece
 
 NAMES = tuple(Piece.__dataclass_fields__)
+MAY_LACK = ("leading_multiplier", "exponent_per_period", "exponent_interval")
+PER_SPEED = ("speeds", "motion", "period", "residual", "periods_run", "modal_order", *MAY_LACK)
 DIMENSIONS = {
-    "speeds": 1,
-    "labels": 1,
-    "deflection": 3,
-    "force": 3,
-    "shares": 3,
-    "translation": 4,
-    "facts": 2,
+    **dict.fromkeys(NAMES, 2),
+    **{name: 3 for name in NAMES if name.startswith("translation_")},
+    **dict.fromkeys(PER_SPEED, 1),
     "spectrum": 3,
-    "modal": 2,
-    "modal_order": 1,
-    "displacement": 2,
-    "velocity": 2,
 }
 SHAPES: dict[str, tuple[int | None, ...]] = {
     f"{part}_{name}": (None,) * DIMENSIONS[name] for part in ("before", "own") for name in NAMES
-}
+} | {f"{part}_{name}_known": (None,) for part in ("before", "own") for name in MAY_LACK}
 
 
 def to_arrays(before: Piece, own: Piece) -> dict[str, NDArray]:
     """Arrays of a chunk's overlap and own speeds."""
     arrays: dict[str, NDArray] = {}
     for part, piece in (("before", before), ("own", own)):
-        for name in NAMES:
-            arrays[f"{part}_{name}"] = getattr(piece, name)
-        arrays[f"{part}_facts_known"] = ~np.isnan(piece.facts)
-        arrays[f"{part}_facts"] = np.nan_to_num(piece.facts)
+        arrays |= {f"{part}_{name}": getattr(piece, name) for name in NAMES}
+        for name in MAY_LACK:
+            values = getattr(piece, name)
+            arrays[f"{part}_{name}_known"] = ~np.isnan(values)
+            arrays[f"{part}_{name}"] = np.nan_to_num(values)
     return arrays
 
 
@@ -43,6 +41,7 @@ def from_arrays(arrays: Mapping[str, NDArray]) -> tuple[Piece, Piece]:
     pieces = []
     for part in ("before", "own"):
         values = {name: arrays[f"{part}_{name}"] for name in NAMES}
-        values["facts"] = np.where(arrays[f"{part}_facts_known"], values["facts"], np.nan)
+        for name in MAY_LACK:
+            values[name] = np.where(arrays[f"{part}_{name}_known"], values[name], np.nan)
         pieces.append(Piece(**values))
     return pieces[0], pieces[1]

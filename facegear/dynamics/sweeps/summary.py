@@ -28,9 +28,7 @@ def sweep_summary(directions: Mapping[str, Direction]) -> str:
     """Jumps and counts of the classes of motion in each direction, and seams that have not forgotten."""
     parts = []
     for name, direction in directions.items():
-        classes = Counter(
-            "periodic" if label.startswith("period-") else label for label in direction.piece.labels
-        )
+        classes = Counter(direction.piece.motion.tolist())
         counts = ", ".join(f"{count} {label}" for label, count in classes.most_common())
         irregular = sum(seam.kind.value == "irregular" for seam in direction.seams)
         rerun = sum(seam.rerun for seam in direction.seams)

@@ -17,7 +17,6 @@ from facegear.transmission.matrices import mass_diagonal
 
 Array = NDArray[np.float64]
 DEFLECTION = ("mean", "rms", "ac_rms", "least", "most", "rms_interval", "ac_rms_interval")
-FACTS = ("residual", "leading_multiplier", "exponent_per_period", "exponent_interval", "periods_run")
 TRANSLATION = ("rms", "ac_rms", "ac_rms_interval")
 
 
@@ -25,30 +24,64 @@ TRANSLATION = ("rms", "ac_rms", "ac_rms_interval")
 class Piece:
     """Results of one chunk in the order of running; P speeds, M meshes, B bodies, n coordinates.
 
-    deflection (P, 7, M): the moments named in DEFLECTION, m. force (P, 2, M): mean and mean magnitude of the
-    elastic mesh force, N. shares (P, 3, M): open, drive, back. translation (P, 3, B, 3): the moments named in
-    TRANSLATION of x, y, z, m. labels (P,): class of motion. facts (P, 5): what FACTS names, the (leading)
-    multiplier and the exponent NaN where there is none. spectrum (P, M, orders), m. modal (P, modes): RMS
-    velocity scale omega * coordinate of every natural mode without mean, sqrt(J). modal_order (P,): where in
-    multiples of the mesh frequency the strongest mode moves most. displacement, velocity (P, n).
+    motion (P,): class of motion, period (P,) its mesh periods where it is periodic, else 0. deflection_*
+    (P, M): moments of the mesh deflections, m. mean_force, mean_force_magnitude (P, M) of the elastic mesh
+    forces, N. open_share, drive_share, back_share (P, M) of the time. translation_* (P, B, 3): moments of x,
+    y, z, m. residual, periods_run (P,); leading_multiplier, exponent_per_period, exponent_interval (P,): NaN
+    where there is none. spectrum (P, M, orders), m. modal (P, modes): RMS velocity scale omega * coordinate
+    of every natural mode without mean, sqrt(J). modal_order (P,): where in multiples of the mesh frequency
+    the strongest mode moves most. displacement, velocity (P, n).
     """
 
     speeds: Array
-    labels: NDArray[np.str_]
-    deflection: Array
-    force: Array
-    shares: Array
-    translation: Array
-    facts: Array
+    motion: NDArray[np.str_]
+    period: NDArray[np.int64]
+    deflection_mean: Array
+    deflection_rms: Array
+    deflection_ac_rms: Array
+    deflection_least: Array
+    deflection_most: Array
+    deflection_rms_interval: Array
+    deflection_ac_rms_interval: Array
+    mean_force: Array
+    mean_force_magnitude: Array
+    open_share: Array
+    drive_share: Array
+    back_share: Array
+    translation_rms: Array
+    translation_ac_rms: Array
+    translation_ac_rms_interval: Array
+    residual: Array
+    leading_multiplier: Array
+    exponent_per_period: Array
+    exponent_interval: Array
+    periods_run: Array
     spectrum: Array
     modal: Array
     modal_order: Array
     displacement: Array
     velocity: Array
 
+    @property
+    def periodic(self) -> NDArray[np.bool_]:
+        """Whether the motion at each speed (P,) is periodic."""
+        return self.period > 0
+
+    @property
+    def labels(self) -> list[str]:
+        """`period-n` or the class of motion at each speed."""
+        return [
+            f"period-{period}" if period else str(motion)
+            for motion, period in zip(self.motion, self.period, strict=True)
+        ]
+
+    def part(self, speeds: slice) -> "Piece":
+        """Some of the speeds."""
+        return Piece(**{name: getattr(self, name)[speeds] for name in self.__dataclass_fields__})
+
     def tail(self, start: int) -> "Piece":
         """The speeds from position `start` on."""
-        return Piece(**{name: getattr(self, name)[start:] for name in self.__dataclass_fields__})
+        return self.part(slice(start, None))
 
     def state(self, index: int) -> State:
         """State at the end of one speed."""
@@ -68,8 +101,7 @@ def run_chunk(
     before, own = plan.chunk(direction, number)
     responses = run_speeds(model, np.concatenate([before, own]), plan.settings, None, step)
     piece = collect(model, responses)
-    count = len(before)
-    return Piece(**{n: getattr(piece, n)[:count] for n in Piece.__dataclass_fields__}), piece.tail(count)
+    return piece.part(slice(len(before))), piece.tail(len(before))
 
 
 def run_speeds(
@@ -113,14 +145,21 @@ def _row(
     orders, lines = spectrum(strongest - strongest.mean(), response.per_period, periodic)
     exponent, half = response.exponent or (np.nan, np.nan)
     leading = np.nan if response.multipliers is None else abs(response.multipliers[0])
+    moved = (values[:directions].reshape(-1, 3) for values in (rms, ac_rms, interval))
+    force = np.array([response.forces.mean(axis=0), np.abs(response.forces).mean(axis=0)])
     return {
         "speeds": speed,
-        "labels": response.label,
-        "deflection": np.array([getattr(meshes, name) for name in DEFLECTION]),
-        "force": np.array([response.forces.mean(axis=0), np.abs(response.forces).mean(axis=0)]),
-        "shares": response.shares,
-        "translation": np.array([values[:directions].reshape(-1, 3) for values in (rms, ac_rms, interval)]),
-        "facts": np.array([response.residual, leading, exponent, half, response.periods_run]),
+        "motion": response.motion.value,
+        "period": response.period,
+        **{f"deflection_{name}": getattr(meshes, name) for name in DEFLECTION},
+        **dict(zip(("mean_force", "mean_force_magnitude"), force, strict=True)),
+        **dict(zip(("open_share", "drive_share", "back_share"), response.shares, strict=True)),
+        **dict(zip((f"translation_{name}" for name in TRANSLATION), moved, strict=True)),
+        "residual": response.residual,
+        "leading_multiplier": leading,
+        "exponent_per_period": exponent,
+        "exponent_interval": half,
+        "periods_run": float(response.periods_run),
         "spectrum": order_spectrum(response.deflections, response.per_period, response.period),
         "modal": modal,
         "modal_order": orders[lines[1:, 0].argmax() + 1],

@@ -6,19 +6,29 @@ import numpy as np
 import pandas as pd
 
 from facegear.dynamics.sweeps.assemble import Seam
-from facegear.dynamics.sweeps.campbell import peaks, resonance
-from facegear.dynamics.sweeps.sweep import DEFLECTION, FACTS, TRANSLATION, Piece
+from facegear.dynamics.sweeps.campbell import Resonance, peaks, resonance
+from facegear.dynamics.sweeps.sweep import DEFLECTION, TRANSLATION, Piece
 from facegear.dynamics.sweeps.whole_sweep import Direction
 from facegear.transmission.layout import Layout
 from facegear.transmission.modes import Modes
 
 UM = 1e6
-SHARES = ("open_share", "drive_share", "back_share")
+PER_MESH = {
+    **{f"deflection_{name}_um": (UM, f"deflection_{name}") for name in DEFLECTION},
+    "mean_force_n": (1.0, "mean_force"),
+    "mean_force_magnitude_n": (1.0, "mean_force_magnitude"),
+    **{name: (1.0, name) for name in ("open_share", "drive_share", "back_share")},
+}
+"""Quantity of the table: factor to its unit, and field of a Piece."""
+PER_SPEED = ("residual", "leading_multiplier", "exponent_per_period", "exponent_interval", "periods_run")
 
 
 def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
-    """Columns direction, speed_rpm, quantity, body_or_mesh, value, class; the unit stands in the quantity."""
-    order = np.argsort(piece.speeds)
+    """Columns direction, speed_rpm, quantity, body_or_mesh, value, class, periodic.
+
+    The unit stands in the quantity.
+    """
+    order, labels = np.argsort(piece.speeds), np.array(piece.labels)
     frames = []
 
     def add(quantity: str, item: str, values: np.ndarray) -> None:
@@ -30,25 +40,22 @@ def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
                     "quantity": quantity,
                     "body_or_mesh": item,
                     "value": values[order],
-                    "class": piece.labels[order],
+                    "class": labels[order],
+                    "periodic": piece.periodic[order],
                 }
             )
         )
 
     for m, mesh in enumerate(layout.mesh_names):
-        for row, name in enumerate(DEFLECTION):
-            add(f"deflection_{name}_um", mesh, UM * piece.deflection[:, row, m])
-        add("mean_force_n", mesh, piece.force[:, 0, m])
-        add("mean_force_magnitude_n", mesh, piece.force[:, 1, m])
-        for row, name in enumerate(SHARES):
-            add(name, mesh, piece.shares[:, row, m])
+        for quantity, (factor, field) in PER_MESH.items():
+            add(quantity, mesh, factor * getattr(piece, field)[:, m])
     for b, body in enumerate(layout.body_names):
         for axis, letter in enumerate("xyz"):
-            if piece.translation[:, 0, b, axis].max() > 0.0:
-                for row, name in enumerate(TRANSLATION):
-                    add(f"{letter}_{name}_um", body, UM * piece.translation[:, row, b, axis])
-    for row, name in enumerate(FACTS):
-        add(name, "machine", piece.facts[:, row])
+            if piece.translation_rms[:, b, axis].max() > 0.0:
+                for name in TRANSLATION:
+                    add(f"{letter}_{name}_um", body, UM * getattr(piece, f"translation_{name}")[:, b, axis])
+    for name in PER_SPEED:
+        add(name, "machine", getattr(piece, name))
     return pd.concat(frames, ignore_index=True).dropna(subset="value")
 
 
@@ -65,6 +72,10 @@ JUMP_COLUMNS = (
     "resonance",
     "resonance_rpm",
     "energy_share",
+    "mode",
+    "order",
+    "periodic_before",
+    "periodic_after",
 )
 RESONANCE_COLUMNS = (
     "direction",
@@ -76,53 +87,68 @@ RESONANCE_COLUMNS = (
     "resonance",
     "resonance_rpm",
     "energy_share",
+    "mode",
+    "order",
+    "periodic",
 )
 
 
 def jump_table(layout: Layout, name: str, direction: Direction, modes: Modes) -> pd.DataFrame:
-    """One row for each jump: bracket, mesh that changes most, AC RMS, classes, multiplier, resonance."""
+    """One row for each jump: bracket, mesh that changes most, AC RMS, classes, multiplier, resonance.
+
+    order: multiple of the mesh frequency at which the mode moves most.
+    """
     rows = []
     for jump in direction.jumps:
-        belongs = resonance(direction.piece, jump.largest, modes, layout.pinion_teeth)
+        before, after = jump.before, jump.after
         rows.append(
-            (
-                name,
-                jump.speed_before,
-                jump.speed_after,
-                layout.mesh_names[jump.mesh],
-                UM * jump.before[jump.mesh],
-                UM * jump.after[jump.mesh],
-                jump.label_before,
-                jump.label_after,
-                jump.multiplier,
-                belongs.name,
-                belongs.predicted_rpm,
-                belongs.share,
-            )
+            {
+                "direction": name,
+                "speed_before_rpm": before.speed,
+                "speed_after_rpm": after.speed,
+                "mesh": layout.mesh_names[jump.mesh],
+                "deflection_ac_rms_before_um": UM * before.ac_rms[jump.mesh],
+                "deflection_ac_rms_after_um": UM * after.ac_rms[jump.mesh],
+                "class_before": before.label,
+                "class_after": after.label,
+                "leading_multiplier_before": before.multiplier,
+                **_belongs(resonance(direction.piece, jump.largest, modes, layout.pinion_teeth)),
+                "periodic_before": before.period > 0,
+                "periodic_after": after.period > 0,
+            }
         )
     return pd.DataFrame(rows, columns=list(JUMP_COLUMNS))
 
 
 def resonance_table(layout: Layout, direction: str, piece: Piece, modes: Modes) -> pd.DataFrame:
     """Local maxima of the AC RMS, each with the mode it belongs to."""
-    rows = []
+    rows, labels = [], piece.labels
     for quantity, item, position, value in peaks(piece):
-        belongs = resonance(piece, position, modes, layout.pinion_teeth)
         names = layout.mesh_names if quantity == "deflection" else layout.body_names
         rows.append(
-            (
-                direction,
-                piece.speeds[position],
-                f"{quantity}_ac_rms_um",
-                names[item],
-                UM * value,
-                piece.labels[position],
-                belongs.name,
-                belongs.predicted_rpm,
-                belongs.share,
-            )
+            {
+                "direction": direction,
+                "speed_rpm": piece.speeds[position],
+                "quantity": f"{quantity}_ac_rms_um",
+                "body_or_mesh": names[item],
+                "value": UM * value,
+                "class": labels[position],
+                **_belongs(resonance(piece, position, modes, layout.pinion_teeth)),
+                "periodic": piece.periodic[position],
+            }
         )
     return pd.DataFrame(rows, columns=list(RESONANCE_COLUMNS))
+
+
+def _belongs(found: Resonance) -> dict[str, str | int | float]:
+    """Columns that name a resonance."""
+    return {
+        "resonance": found.name,
+        "resonance_rpm": found.predicted_rpm,
+        "energy_share": found.share,
+        "mode": found.mode,
+        "order": found.order,
+    }
 
 
 def seam_table(seams: list[Seam]) -> pd.DataFrame:

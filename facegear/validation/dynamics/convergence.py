@@ -7,7 +7,7 @@ import pandas as pd
 
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import Model
-from facegear.dynamics.sweeps.sweep import DEFLECTION, FACTS, Piece, collect, joined, run_speeds, tighter
+from facegear.dynamics.sweeps.sweep import Piece, collect, joined, run_speeds, tighter
 
 CONVERGED = 1e-3
 
@@ -34,31 +34,28 @@ def convergence_table(direction: str, piece: Piece, finer: Piece) -> pd.DataFram
     the leading ones of refined orbits. Verdicts: `converged`; `moved` (same class, more than 1e-3);
     `other class` (periodic in one of the two, or with another period); `irregular` (periodic in neither).
     """
-    row, multiplier = DEFLECTION.index("ac_rms"), FACTS.index("leading_multiplier")
-    first, second = piece.deflection[:, row], finer.deflection[:, row]
+    first, second = piece.deflection_ac_rms, finer.deflection_ac_rms
     change = np.abs(first - second).max(axis=1) / np.maximum(first.max(axis=1), 1e-300)
-    verdicts = [
-        _verdict(str(a), str(b), c) for a, b, c in zip(piece.labels, finer.labels, change, strict=True)
-    ]
+    verdicts = [_verdict(a, b, c) for a, b, c in zip(piece.period, finer.period, change, strict=True)]
     return pd.DataFrame(
         {
             "direction": direction,
             "speed_rpm": piece.speeds,
             "class": piece.labels,
             "class_finer": finer.labels,
-            "multiplier": piece.facts[:, multiplier],
-            "multiplier_finer": finer.facts[:, multiplier],
+            "multiplier": piece.leading_multiplier,
+            "multiplier_finer": finer.leading_multiplier,
             "rms_change": change,
             "verdict": verdicts,
         }
     )
 
 
-def _verdict(label: str, finer: str, change: float) -> str:
-    periodic = label.startswith("period-"), finer.startswith("period-")
-    if not any(periodic):
+def _verdict(period: int, finer: int, change: float) -> str:
+    """What a speed's periods (0: not periodic) in the two runs and the change of its RMS say."""
+    if not period and not finer:
         return "irregular"
-    if label != finer:
+    if period != finer:
         return "other class"
     return "converged" if change <= CONVERGED else "moved"
 

@@ -16,7 +16,7 @@ from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.orbits import require
 from facegear.dynamics.steady_state.simulate import Model, build_model, simulate, static_start
 from facegear.dynamics.sweeps.plan import SweepPlan
-from facegear.dynamics.sweeps.sweep import DEFLECTION, FACTS, Piece, collect, run_speeds
+from facegear.dynamics.sweeps.sweep import Piece, collect, run_speeds
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.layout import Layout, Role
 from facegear.transmission.machine import Machine, balanced_torques, mesh_frequency
@@ -60,7 +60,7 @@ def sweep_costs(machine: Machine, plan: SweepPlan, step: Callable[[], None] = la
                 "not_confirmed": periodic - errors.size,
                 "rms_error": errors.max(initial=0.0),
                 "rms_error_median": np.median(errors),
-                "plain_seconds_per_speed": plain * piece.facts[:, FACTS.index("periods_run")].mean(),
+                "plain_seconds_per_speed": plain * piece.periods_run.mean(),
             }
         )
         step()
@@ -70,13 +70,12 @@ def sweep_costs(machine: Machine, plan: SweepPlan, step: Callable[[], None] = la
 def _rms_errors(model: Model, piece: Piece, settings: Settings) -> tuple[int, Array]:
     """Number of periodic speeds, and the relative RMS errors of those that are the same motion when tight."""
     tight = replace(settings, tolerance=1e-10, order=None, periodic_residual=1e-9, extensions=0)
-    row = DEFLECTION.index("ac_rms")
-    periodic = [i for i, label in enumerate(piece.labels) if str(label).startswith("period-")]
+    periodic = np.flatnonzero(piece.periodic)
     errors = []
     for i in periodic:
         best = collect(model, run_speeds(model, piece.speeds[i : i + 1], tight, piece.state(i)))
-        if best.labels[0] == piece.labels[i]:
-            found, exact = piece.deflection[i, row], best.deflection[0, row]
+        if best.period[0] == piece.period[i]:
+            found, exact = piece.deflection_ac_rms[i], best.deflection_ac_rms[0]
             errors.append(np.abs(found - exact).max() / exact.max())
     return len(periodic), np.array(errors)
 

@@ -1,24 +1,28 @@
 from dataclasses import replace
 
+import hypothesis.extra.numpy as hnp
 import numpy as np
+import pandas as pd
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from lumped_machines import make_machine
 
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate, simulate_many
 from facegear.dynamics.sweeps.assemble import SeamKind, assemble
-from facegear.dynamics.sweeps.campbell import resonance
+from facegear.dynamics.sweeps.campbell import maxima, resonance
 from facegear.dynamics.sweeps.plan import SweepPlan
 from facegear.dynamics.sweeps.stored import SHAPES, from_arrays, to_arrays
-from facegear.dynamics.sweeps.sweep import DEFLECTION, Piece, collect, run_chunk, run_speeds, tighter
-from facegear.dynamics.sweeps.sweep_tables import jump_table, sweep_table
+from facegear.dynamics.sweeps.sweep import Piece, collect, run_chunk, run_speeds, tighter
+from facegear.dynamics.sweeps.sweep_tables import jump_table, resonance_table, sweep_table
 from facegear.dynamics.sweeps.whole_sweep import whole_sweep
 from facegear.io import arrays
+from facegear.plots.campbell import campbell
 from facegear.transmission.modes import natural_modes
 from facegear.validation.dynamics.convergence import convergence_table, not_converged
 
 SETTINGS = Settings(tolerance=1e-5, settle=256, window=64, periodic_residual=1e-7, extensions=0)
-AC_RMS = DEFLECTION.index("ac_rms")
 
 
 def plan(chunks, overlap=4, directions=("up", "down")):
@@ -36,19 +40,15 @@ def whole(model):
     return whole_sweep(model, one, {name: [run_chunk(model, one, name, 0)] for name in one.directions})
 
 
-def periodic(piece):
-    return np.array([label.startswith("period-") for label in piece.labels])
-
-
 def test_the_resonance_of_mode_17_hardens_with_a_jump_up_beyond_the_jump_down(model, whole):
     modes = natural_modes(model.machine.layout, 4.1e8)
-    up = max(whole["up"].jumps, key=lambda jump: jump.before.max() / jump.after.max())
-    down = max(whole["down"].jumps, key=lambda jump: jump.after.max() / jump.before.max())
-    assert up.before.max() > 1.3 * up.after.max()
-    assert up.speed_before > down.speed_after
-    assert abs(up.speed_after - up.speed_before) <= 1.0
+    up = max(whole["up"].jumps, key=lambda jump: jump.before.ac_rms.max() / jump.after.ac_rms.max())
+    down = max(whole["down"].jumps, key=lambda jump: jump.after.ac_rms.max() / jump.before.ac_rms.max())
+    assert up.before.ac_rms.max() > 1.3 * up.after.ac_rms.max()
+    assert up.before.speed > down.after.speed
+    assert abs(up.after.speed - up.before.speed) <= 1.0
     # The branch ends in a fold: periodic with a multiplier near one, or passing slowly where the orbit was.
-    assert up.multiplier > 0.95 or up.label_before == "not settled"
+    assert up.before.multiplier > 0.95 or up.before.label == "not settled"
     found = resonance(whole["up"].piece, up.largest, modes, 23)
     assert (found.mode, found.order) == (17, 1.0)
     assert found.share > 0.8
@@ -63,12 +63,12 @@ def test_chunks_joined_give_the_whole_sweep(model, whole, chunks):
         )
         reference = whole[name].piece
         np.testing.assert_array_equal(joined.speeds, reference.speeds)
-        both = periodic(joined) & periodic(reference)
-        assert (periodic(joined) == periodic(reference)).all() or any(
+        both = joined.periodic & reference.periodic
+        assert (joined.periodic == reference.periodic).all() or any(
             seam.kind is SeamKind.IRREGULAR for seam in seams
         )
-        difference = np.abs(joined.deflection - reference.deflection)[both, AC_RMS]
-        assert difference.max() < 1e-3 * reference.deflection[:, AC_RMS].max()
+        difference = np.abs(joined.deflection_ac_rms - reference.deflection_ac_rms)[both]
+        assert difference.max() < 1e-3 * reference.deflection_ac_rms.max()
 
 
 def test_a_chunk_that_starts_on_another_branch_is_run_again(model, whole):
@@ -76,9 +76,9 @@ def test_a_chunk_that_starts_on_another_branch_is_run_again(model, whole):
     chunks = [run_chunk(model, split, "up", k) for k in range(2)]
     joined, seams = assemble(model, split, "up", chunks)
     assert seams[0].kind is SeamKind.RERUN and seams[0].rerun >= 1
-    both = periodic(joined) & periodic(whole["up"].piece)
-    difference = np.abs(joined.deflection - whole["up"].piece.deflection)[both, AC_RMS]
-    assert difference.max() < 1e-3 * joined.deflection[:, AC_RMS].max()
+    both = joined.periodic & whole["up"].piece.periodic
+    difference = np.abs(joined.deflection_ac_rms - whole["up"].piece.deflection_ac_rms)[both]
+    assert difference.max() < 1e-3 * joined.deflection_ac_rms.max()
 
 
 def test_a_stored_chunk_run_again_is_the_same_file(model, tmp_path):
@@ -100,20 +100,22 @@ def test_two_threads_give_the_same_results_as_one(model):
 
 def test_rms_of_periodic_motions_does_not_move_when_tolerance_is_halved_and_dwell_doubled(model, whole):
     piece = whole["up"].piece
-    for position in np.flatnonzero(periodic(piece))[::3]:
+    for position in np.flatnonzero(piece.periodic)[::3]:
         speed = piece.speeds[position : position + 1]
         again = collect(model, run_speeds(model, speed, tighter(SETTINGS), piece.state(position)))
         np.testing.assert_allclose(
-            again.deflection[0, AC_RMS],
-            piece.deflection[position, AC_RMS],
-            atol=1e-3 * piece.deflection[position, AC_RMS].max(),
+            again.deflection_ac_rms[0],
+            piece.deflection_ac_rms[position],
+            atol=1e-3 * piece.deflection_ac_rms[position].max(),
         )
 
 
 def test_tables_name_every_mesh_and_unit(model, whole):
     layout = model.machine.layout
     table = sweep_table(layout, "up", whole["up"].piece)
-    assert list(table.columns) == ["direction", "speed_rpm", "quantity", "body_or_mesh", "value", "class"]
+    columns = ["direction", "speed_rpm", "quantity", "body_or_mesh", "value", "class", "periodic"]
+    assert list(table.columns) == columns
+    assert (table["periodic"] == table["class"].str.startswith("period-")).all()
     assert set(layout.mesh_names) <= set(table["body_or_mesh"])
     shares = table[table["quantity"].isin(["open_share", "drive_share", "back_share"])]
     total = shares.groupby(["speed_rpm", "body_or_mesh"])["value"].sum()
@@ -122,28 +124,58 @@ def test_tables_name_every_mesh_and_unit(model, whole):
     assert (jumps["speed_after_rpm"] - jumps["speed_before_rpm"]).abs().max() <= 1.0
 
 
+def test_the_campbell_diagram_marks_a_resonance_at_its_order_of_the_mesh_frequency(model, whole):
+    layout, modes = model.machine.layout, natural_modes(model.machine.layout, 4.1e8)
+    jumps = jump_table(layout, "up", whole["up"], modes)
+    found = resonance(whole["up"].piece, whole["up"].jumps[0].largest, modes, layout.pinion_teeth)
+    assert (jumps["mode"][0], jumps["order"][0]) == (found.mode, found.order)
+    assert jumps["periodic_before"][0] == (whole["up"].jumps[0].before.period > 0)
+    peaks = resonance_table(layout, "up", whole["up"].piece, modes)
+    frequencies = pd.DataFrame({"frequency_hz": [750.0], "class": ["pinion"]})
+    # The text of a name is for readers: the marks come from the numbers beside it.
+    figure = campbell(frequencies, peaks.assign(order=2.0), jumps.iloc[:0], layout.pinion_teeth, 5600.0)
+    marks = next(line for line in figure.axes[0].lines if line.get_label() == "peaks of the sweep")
+    np.testing.assert_allclose(
+        marks.get_ydata(), 2.0 * layout.pinion_teeth * np.asarray(marks.get_xdata()) / 60.0
+    )
+
+
+@given(hnp.arrays(float, st.integers(3, 30), elements=st.integers(0, 9).map(float)))
+def test_a_maximum_stands_15_percent_over_the_lowest_value_on_either_side_before_a_higher_one(curve):
+    curve = curve + 1e-3 * np.arange(curve.size) ** 0.5  # no plateaus
+    expected = []
+    for i in range(1, curve.size - 1):
+        sides = [curve[:i][::-1], curve[i + 1 :]]
+        higher = [np.append(np.flatnonzero(side > curve[i]), side.size)[0] for side in sides]
+        reached = [side[:count] for side, count in zip(sides, higher, strict=True)]
+        valley = max(part.min() if part.size else curve[i] for part in reached)
+        if curve[i] > 1.15 * valley and curve[i] > 0.1 * curve.max():
+            expected.append(i)
+    assert maxima(curve) == expected
+
+
 def test_irregular_motion_has_a_positive_exponent_and_an_interval_on_its_rms(model):
     settings = Settings(tolerance=1e-6, window=512)
     response = simulate(model, 7500.0, settings)
     assert response.label == "chaotic"
     assert response.exponent[0] > response.exponent[1] > 0
     piece = collect(model, iter([(7500.0, response)]))
-    interval = piece.deflection[0, DEFLECTION.index("ac_rms_interval")]
+    interval = piece.deflection_ac_rms_interval[0]
     assert (interval > 0).all()
     other = simulate(model, 7500.0, settings, response.state)
     second = collect(model, iter([(7500.0, other)]))
-    gap = np.abs(second.deflection[0, AC_RMS] - piece.deflection[0, AC_RMS])
-    doubt = interval + second.deflection[0, DEFLECTION.index("ac_rms_interval")]
+    gap = np.abs(second.deflection_ac_rms[0] - piece.deflection_ac_rms[0])
+    doubt = interval + second.deflection_ac_rms_interval[0]
     assert (gap < 3.0 * doubt).mean() >= 0.8
 
 
 def test_convergence_names_the_speeds_that_moved_or_changed_class(whole):
     piece = whole["up"].piece
-    first, second = np.flatnonzero(periodic(piece))[:2]
-    deflection, labels = piece.deflection.copy(), piece.labels.astype("<U16")
-    deflection[first] *= 1.02
-    labels[second] = "period-7"
-    table = convergence_table("up", piece, replace(piece, deflection=deflection, labels=labels))
+    first, second = np.flatnonzero(piece.periodic)[:2]
+    ac_rms, period = piece.deflection_ac_rms.copy(), piece.period.copy()
+    ac_rms[first] *= 1.02
+    period[second] = 7
+    table = convergence_table("up", piece, replace(piece, deflection_ac_rms=ac_rms, period=period))
     assert table["verdict"][first] == "moved"
     assert table["rms_change"][first] == pytest.approx(0.02)
     assert table["verdict"][second] == "other class"
