@@ -8,6 +8,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from facegear.contact.bodies.surface import face_functions
+from facegear.contact.options import Refinement
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,6 +106,37 @@ def spread(
     count = shape[0] * shape[1]
     spread_to, load, pointer = _averaged(rows.pointer, rows.index, rows.weight, nodes, values, count)
     return sp.csr_matrix((load, spread_to, pointer), shape=(len(rows), count))
+
+
+@dataclass(frozen=True)
+class Lattice:
+    """Nodes of a contact surface: their numbers before refinement both ways, and how they are refined.
+
+    `linear` where the body is of elements linear between nodes.
+    """
+
+    coarse: tuple[int, int]
+    refinement: Refinement
+    linear: bool = False
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Numbers of nodes across the profile and along the width, refined."""
+        nu, nv = self.coarse
+        return (nu - 1) * self.refinement.profile + 1, (nv - 1) * self.refinement.width + 1
+
+    @property
+    def factors(self) -> NDArray[np.int64]:
+        """Refined nodes a coarse one, both ways."""
+        return np.array([self.refinement.profile, self.refinement.width])
+
+    def loads(self, rows: Rows, at: NDArray[np.float64]) -> tuple[sp.csr_matrix, sp.csr_matrix]:
+        """Nodal loads of unit forces, spread by `rows` over points at refined coordinates (q, 2).
+
+        On the refined nodes (m, n) and on the coarse ones.
+        """
+        fine, coarse = ((at, self.shape), (at / self.factors, self.coarse))
+        return spread(rows, *fine, self.linear), spread(rows, *coarse, self.linear)
 
 
 @njit(cache=True)

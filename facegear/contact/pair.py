@@ -3,10 +3,10 @@
 from collections.abc import Callable
 
 from facegear.contact.bodies.compliance import FlankCompliance, flank_compliance
-from facegear.contact.candidates import PinionSurface
+from facegear.contact.flanks import flank_pair
 from facegear.contact.ltca import ContactModel
 from facegear.contact.options import ContactPlan, Ends
-from facegear.contact.teeth import GearLattice, contact_side, elastic_tooth
+from facegear.contact.teeth import contact_side, elastic_tooth
 from facegear.errors import ConfigError
 from facegear.geometry.design import Material, PairDesign
 from facegear.mesh.sizes import MeshSizes
@@ -53,11 +53,6 @@ def contact_model(
     design: PairDesign, sizes: MeshSizes, pinion: FlankCompliance, gear: FlankCompliance
 ) -> ContactModel:
     """The pair with compliances made for the same design and sizes."""
-    sides = [contact_side(design, build(design, sizes)) for build in BUILDERS.values()]
-    return ContactModel(
-        design,
-        PinionSurface(design, sides[0], pinion.refinement, pinion.linear),
-        GearLattice(design, sides[1], gear.refinement),
-        pinion,
-        gear,
-    )
+    first, second = (contact_side(design, build(design, sizes)) for build in BUILDERS.values())
+    cuts = pinion.refinement, gear.refinement
+    return ContactModel(flank_pair(design, (first, second), cuts, pinion.linear), pinion, gear)

@@ -3,76 +3,57 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.contact.candidates import Candidates, Loads, PinionSurface, candidates_of, hat_loads
-from facegear.contact.edges import FARTHEST, gear_edge, gear_edge_gaps, pinion_edge
+from facegear.contact.candidates import Candidates, candidates_of
+from facegear.contact.flanks import FlankPair
+from facegear.contact.loads import pair_loads
 from facegear.contact.options import ContactOptions
-from facegear.contact.teeth import GearLattice
-from facegear.geometry.pinion_surface import SurfacePoints
+from facegear.geometry.opposite import gear_hits, tip_edge_feet
+from facegear.geometry.pinion_surface import joined
 from facegear.geometry.separation import separation
 
 SAG = 10e-6
 """By how much (m) a gap between probes may be less than at the nearest of them."""
 
+FARTHEST = 1e-3
+"""Gap or depth (m) beyond which the surfaces of both teeth do not see each other."""
+
 
 def find_candidates(
-    surface: PinionSurface,
-    lattice: GearLattice,
-    phi1: float,
-    phi2: float,
+    pair: FlankPair,
+    placement: tuple[float, float],
     teeth: NDArray[np.int64],
     limit: float,
     options: ContactOptions,
 ) -> list[Candidates]:
     """Hats and edges of the pairs `teeth` that a turn of the pinion by `limit` (rad) would close.
 
-    phi1, phi2 (rad) place the unloaded gears. Pairs without any are left out.
+    placement: angles phi1, phi2 (rad) of the unloaded gears. Pairs without any are left out.
     """
-    probes, elements = surface.probes
-    fillet = options.fillet
-    seen = separation(surface.design, probes, phi1, phi2, teeth, reach=FARTHEST)
-    depth = limit * surface.design.pinion_base_radius
+    design, pinion, gear = pair.design, pair.pinion, pair.gear
+    near = _near(pair, placement, teeth, limit * design.pinion_base_radius + SAG)
+    curve = pinion.fillet_curve if options.fillet else None
+    feet = tip_edge_feet(design, gear.tip[1], placement, teeth, curve, FARTHEST)
+    # the pinion's tip edge is looked at together with its flank, and only where that comes near
+    hits = [
+        gear_hits(design, joined(pinion.points.only(points), pinion.tip[1]), *placement, int(tooth), FARTHEST)
+        if points.size
+        else None
+        for points, tooth in zip(near, teeth, strict=True)
+    ]
     found = []
-    edges = gear_edge_gaps(surface, lattice, phi1, phi2, teeth, fillet)
-    if not options.edges:
-        edges = [None] * len(teeth)
-    # a gear's edge may lie between a probe and the points that touch: the flank is taken to go on there
-    gaps = np.minimum(seen.gap, seen.continued)
-    for tooth, gap, edge in zip(teeth, gaps, edges, strict=True):
-        near = (gap[elements] < depth + SAG).any(axis=1)
-        points = np.flatnonzero(near[surface.element])
-        place = (phi1, phi2, int(tooth))
-        parts = [gear_edge(surface, lattice, edge)] if edge is not None else []
-        if points.size:
-            parts.append(_facing_hats(surface, lattice, place, points, fillet))
-            if options.edges:
-                parts.append(pinion_edge(surface, lattice, place, fillet))
-        pair = candidates_of(
-            surface,
-            lattice.side.shape,
-            lattice.refinement,
-            int(tooth),
-            [part for part in parts if part is not None],
-            limit,
-        )
-        if pair is not None:
-            found.append(pair)
+    for row, tooth in enumerate(teeth.tolist()):
+        loads = pair_loads(pair, near[row], hits[row], feet[row], options)
+        found += candidates_of(pinion.lattice, gear.lattice, tooth, loads, limit)
     return found
 
 
-def _facing_hats(
-    surface: PinionSurface,
-    lattice: GearLattice,
-    place: tuple[float, float, int],
-    points: NDArray[np.int64],
-    fillet: bool,
-) -> Loads | None:
-    where = SurfacePoints(surface.points.position[points], surface.points.normal[points])
-    seen = separation(surface.design, where, *place[:2], place[2], reach=FARTHEST)
-    edge = 0.1 * surface.design.module
-    coordinates = lattice.coordinates(seen, fillet, edge)[0]
-    usable = np.isfinite(coordinates).all(axis=1) & np.isfinite(seen.gap[0])
-    if not fillet:
-        usable &= surface.lattice[points, 0] <= (surface.side.flank_rows - 1) * surface.refinement.profile
-    if not usable.any():
-        return None
-    return hat_loads(surface, points[usable], seen.gap[0][usable], coordinates[usable])
+def _near(
+    pair: FlankPair, placement: tuple[float, float], teeth: NDArray[np.int64], depth: float
+) -> list[NDArray[np.int64]]:
+    """Integration points in those elements of each pinion tooth that a probe finds within `depth` (m)."""
+    probes, elements = pair.pinion.probes
+    seen = separation(pair.design, probes, *placement, teeth, FARTHEST)
+    # a gear's edge may lie between a probe and the points that touch: the flank is taken to go on there
+    gaps = np.minimum(seen.gap, seen.continued)
+    close = (gaps[:, elements] < depth).any(axis=2)
+    return [np.flatnonzero(row[pair.pinion.element]) for row in close]

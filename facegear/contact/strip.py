@@ -7,12 +7,13 @@ strip alone is many times cheaper, and one product shows whether the rest stays 
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from facegear.contact.candidates import Candidates
-from facegear.contact.solver import TOLERANCE, Contact, solve
+from facegear.contact.solver import TOLERANCE, ContactSolution, solve_contact
 
 LOWEST, BAND = 0.8, 0.2
 """Parts of the rigid approach within which contact is sought: the least gap of a column of hats (the bodies
@@ -21,11 +22,20 @@ give way by the rest) and, above that, the gap of the others in it (the strip's 
 START_LOWEST, START_BAND = 0.6, 0.09
 """The same parts for the first guess of what touches."""
 
-Combine = Callable[[list[Candidates]], NDArray[np.float64]]
-"""Influence matrix (m, m) of candidates."""
 
-Displace = Callable[[list[Candidates], list[Candidates], NDArray[np.float64]], NDArray[np.float64]]
-"""Approach (k, t) at the first candidates by forces (m, t) on the second."""
+class Bodies(Protocol):
+    """How two elastic bodies answer loads; with `in_strip`, a solution is sought in a strip and checked."""
+
+    @property
+    def in_strip(self) -> bool: ...
+
+    def influence(self, pairs: list[Candidates]) -> NDArray[np.float64]:
+        """Influence matrix (m, m) of candidates, m/N."""
+
+    def approach(
+        self, seen: list[Candidates], pairs: list[Candidates], forces: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Approach (k, t) m at the k candidates `seen` by forces (m, t) N on those of `pairs`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,8 +52,8 @@ class _Turns:
 def _turns(pairs: list[Candidates]) -> _Turns:
     own, low = [], []
     for pair in pairs:
-        forward = pair.arm > 0
-        turn = np.where(forward, pair.gap / np.where(forward, pair.arm, 1.0), np.inf)
+        forward = pair.lever_arm > 0
+        turn = np.where(forward, pair.gap / np.where(forward, pair.lever_arm, 1.0), np.inf)
         least = np.full(pair.column.max() + 1, np.inf)
         np.minimum.at(least, pair.column, turn)
         own.append(turn)
@@ -62,48 +72,49 @@ def solve_torques(
     pairs: list[Candidates],
     limit: float,
     torques: Sequence[float],
-    combine: Combine,
-    displace: Displace | None,
+    bodies: Bodies,
     where: Callable[[float], str],
-) -> list[Contact]:
+) -> list[ContactSolution]:
     """Contact (forces (n,) of all candidates) under torques (N m), the largest first.
 
     `pairs` are those that a turn by `limit` (rad) would close. If the first torque turns further, only its
-    contact is returned. Without `displace`, all candidates take part in the solution.
+    contact is returned. Unless `bodies.in_strip`, all candidates take part in the solution.
     Raises NotConverged with `where(torque)`.
     """
-    gap, arm = (np.concatenate([getattr(pair, name) for pair in pairs]) for name in ("gap", "arm"))
+    gap, lever_arm = (
+        np.concatenate([getattr(pair, name) for pair in pairs]) for name in ("gap", "lever_arm")
+    )
     turns = _turns(pairs)
-    keep = turns.within(LOWEST * limit, BAND * limit) if displace else np.ones(len(gap), dtype=bool)
-    if not (keep & (arm > 0)).any():
+    keep = turns.within(LOWEST * limit, BAND * limit) if bodies.in_strip else np.ones(len(gap), dtype=bool)
+    if not (keep & (lever_arm > 0)).any():
         keep[:] = True
     while True:
         chosen = only(pairs, keep)
-        matrix = combine(chosen)
-        contacts: list[Contact] = []
+        matrix = bodies.influence(chosen)
+        contacts: list[ContactSolution] = []
         turn = limit
         for torque in torques:
             if contacts:
                 turn = contacts[-1].rotation * torque / contacts[-1].torque
             start = turns.within(START_LOWEST * turn, START_BAND * turn)[keep]
-            contacts.append(solve(matrix, gap[keep], arm[keep], torque, start, where(torque)))
+            contacts.append(solve_contact(matrix, gap[keep], lever_arm[keep], torque, start, where(torque)))
             if contacts[0].rotation > limit:
                 break
-        left = ~keep & (gap < contacts[0].rotation * arm)
+        left = ~keep & (gap < contacts[0].rotation * lever_arm)
         worst = np.zeros(len(contacts))
         if left.any():
             forces = np.stack([contact.force for contact in contacts], axis=1)
             turned = np.array([contact.rotation for contact in contacts])
-            moved = displace(only(pairs, left), chosen, forces)
-            distance = gap[left, None] + moved - arm[left, None] * turned
-            worst = -distance.min(axis=0) / (turned * np.abs(arm).max())
+            moved = bodies.approach(only(pairs, left), chosen, forces)
+            distance = gap[left, None] + moved - lever_arm[left, None] * turned
+            worst = -distance.min(axis=0) / (turned * np.abs(lever_arm).max())
             if worst.max() > TOLERANCE:
                 keep |= left
                 continue
         return [_whole(contact, keep, value) for contact, value in zip(contacts, worst, strict=True)]
 
 
-def _whole(contact: Contact, keep: NDArray[np.bool_], worst: float) -> Contact:
+def _whole(contact: ContactSolution, keep: NDArray[np.bool_], worst: float) -> ContactSolution:
     force = np.zeros(len(keep))
     force[keep] = contact.force
     return replace(contact, force=force, residual=max(contact.residual, float(worst)))

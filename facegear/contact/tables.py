@@ -6,10 +6,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from facegear.contact.candidates import PinionSurface
 from facegear.contact.columns import LTCA_COLUMNS
-from facegear.contact.ltca import LoadedPosition
-from facegear.contact.teeth import pinion_points
+from facegear.contact.flanks import PinionSurface
+from facegear.contact.position import LoadedPosition
 
 
 def ltca_table(results: Sequence[LoadedPosition]) -> pd.DataFrame:
@@ -53,10 +52,8 @@ def pressure_arrays(results: Sequence[LoadedPosition], surface: PinionSurface) -
             rows["force_n"].append(spot.force)
             rows["pressure_pa"].append(spot.pressure)
             rows["whole"].append(spot.whole)
-    nodes = np.stack(np.meshgrid(*map(np.arange, surface.shape), indexing="ij"), axis=-1).reshape(-1, 2)
-    points = pinion_points(surface.design, surface.side, surface.refinement, nodes.astype(float)).position
     arrays = {name: np.concatenate(parts) for name, parts in rows.items()}
-    return arrays | {"shape": np.array(surface.shape), "point_m": points, "area_m2": surface.full_area}
+    return arrays | {"shape": np.array(surface.shape), "point_m": surface.nodes, "area_m2": surface.full_area}
 
 
 def pressure_surface(

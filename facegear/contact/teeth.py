@@ -1,11 +1,9 @@
 """The contact side of a tooth mesh: which surface is loaded, its exact points, where the body is held."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from facegear.contact.bodies.body import ElasticBody
 from facegear.contact.bodies.surface import interpolation
@@ -13,7 +11,6 @@ from facegear.contact.options import Refinement
 from facegear.geometry import face_gear
 from facegear.geometry.design import Material, PairDesign
 from facegear.geometry.pinion_surface import SurfacePoints, fillet_points, flank_points
-from facegear.geometry.separation import FILLET, FLANK, TIP_LAND, Separation
 from facegear.mesh.hexahedra import hex_mesh
 from facegear.mesh.tooth import ToothMesh
 
@@ -115,59 +112,3 @@ def pinion_points(
     return SurfacePoints(
         np.where(where, flank.position, fillet.position), np.where(where, flank.normal, fillet.normal)
     )
-
-
-@dataclass(frozen=True, eq=False)
-class GearLattice:
-    """From what a pinion normal hits on the gear to refined lattice coordinates of the gear's surface."""
-
-    design: PairDesign
-    side: ContactSide
-    refinement: Refinement
-
-    @cached_property
-    def _tip_roll(self) -> CubicSpline:
-        gear = self.design.face_gear
-        radius = np.linspace(gear.inner_radius, gear.outer_radius, 65)
-        roll, _ = face_gear.roll_and_psi_at_height(self.design, radius, self.design.gear_tip_plane)
-        return CubicSpline(radius, roll)
-
-    @cached_property
-    def _fillet_share(self) -> NDArray[np.float64]:
-        """chi over its value at the flank's end, at the fillet rows' nodes (the same on all planes)."""
-        end = face_gear.fillet_end(self.design, self.side.v[-1])[0]
-        return np.concatenate([[1.0], self.side.u[self.side.flank_rows :, 0] / end])
-
-    def coordinates(self, found: Separation, fillet: bool, edge: float) -> NDArray[np.float64]:
-        """Lattice coordinates (p, n, 2), nan where nothing that can touch is hit.
-
-        With `fillet`, the fillet and the tip land within `edge` (m) of the flank count too; the latter moves
-        as the tip edge does.
-        """
-        face, rows = self.design.face_gear, self.side.flank_rows
-        row = np.full(found.gap.shape, np.nan)
-        radius = np.full(found.gap.shape, np.nan)
-        on = found.part == FLANK
-        point = face_gear.flank_point(self.design, found.u[on], found.v[on])
-        radius[on] = np.hypot(point[:, 0], point[:, 1])
-        tip = self._tip_roll(radius[on])
-        row[on] = (found.u[on] - tip) / (self.design.shaper_tip_roll - tip) * (rows - 1)
-        if fillet and len(self._fillet_share) > 1:
-            on = found.part == FILLET
-            radius[on] = found.v[on]
-            share = found.u[on] / face_gear.fillet_end(self.design, found.v[on])
-            known = share >= self._fillet_share[-1]
-            at = np.interp(-share, -self._fillet_share, np.arange(len(self._fillet_share)))
-            row[on] = np.where(known, rows - 1 + at, np.nan)
-        if fillet:
-            on = found.part == TIP_LAND
-            roll, psi = face_gear.roll_and_psi_at_height(
-                self.design, found.v[on], np.full(on.sum(), self.design.gear_tip_plane)
-            )
-            tip_edge = face_gear.flank_point(self.design, roll, psi)
-            beyond = found.v[on] * (np.arctan2(tip_edge[:, 0], tip_edge[:, 1]) - found.u[on])
-            radius[on] = found.v[on]
-            row[on] = np.where(beyond <= edge, 0.0, np.nan)
-        along = (radius - face.inner_radius) / (face.outer_radius - face.inner_radius)
-        column = along * (self.side.shape[1] - 1)
-        return np.stack([row * self.refinement.profile, column * self.refinement.width], axis=-1)

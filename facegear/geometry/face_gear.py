@@ -6,8 +6,11 @@ normal. Source: shaper-generated face gears (Litvin and Fuentes, Gear Geometry a
 with the contact condition solved for the axial coordinate: q = r_b / (m2s cos psi).
 """
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import CubicSpline
 
 from facegear.errors import NotConverged
 from facegear.geometry.design import PairDesign
@@ -104,6 +107,19 @@ def roll_and_psi_at_height(design: PairDesign, radius: ArrayLike, z: ArrayLike) 
 
     psi = _newton(residual, local_pressure_angle(design, radius), "flank at a height")
     return (height - np.cos(psi)) / np.sin(psi), psi
+
+
+def tip_edge(design: PairDesign, radius: ArrayLike) -> Array:
+    """Points (..., 3) of the flank's tip edge at gear radii (m)."""
+    return flank_point(design, *roll_and_psi_at_height(design, radius, design.gear_tip_plane))
+
+
+@lru_cache(maxsize=16)
+def tip_roll(design: PairDesign) -> CubicSpline:
+    """th (rad) of the flank's tip edge by gear radius (m)."""
+    gear = design.face_gear
+    radius = np.linspace(gear.inner_radius, gear.outer_radius, 65)
+    return CubicSpline(radius, roll_and_psi_at_height(design, radius, design.gear_tip_plane)[0])
 
 
 def _newton(residual, psi: Array, where: str) -> Array:

@@ -9,7 +9,6 @@ from scipy.spatial import cKDTree
 
 from facegear.geometry import pinion
 from facegear.geometry.design import PairDesign
-from facegear.geometry.relief import removed
 
 Array = NDArray[np.float64]
 
@@ -103,5 +102,5 @@ def signed_distance(
     corner = (along > 0.02 * design.module) & (normal > 0)
     signed = np.where(corner, distance, normal)
     modified = np.isin(outline.part[nearest], _MODIFIED)
-    signed = signed + np.where(modified, removed(design, outline.roll[nearest], section[..., 2]), 0.0)
+    signed = signed + np.where(modified, pinion.removed(design, outline.roll[nearest], section[..., 2]), 0.0)
     return np.where(far, np.inf, signed), nearest

@@ -1,4 +1,4 @@
-"""The pinion's section: involute, tip chamfer and the root trochoid cut by a rack with a rounded tip.
+"""The pinion's section: involute, tip chamfer, the root trochoid cut by a rack with a rounded tip, reliefs.
 
 Everything is for the right flank of tooth 0 in the pinion body frame (see `design`): polar angle a from the
 tooth's centre line, so x = r sin a, z = -r cos a. The left flank is the mirror image a -> -a.
@@ -11,7 +11,7 @@ from math import cos, pi, sin, tan
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from facegear.geometry.design import PairDesign
+from facegear.geometry.design import PairDesign, Relief
 
 Array = NDArray[np.float64]
 
@@ -83,3 +83,32 @@ def cartesian(radius: ArrayLike, angle: ArrayLike, y: ArrayLike) -> Array:
     """Points (..., 3) of the pinion body frame."""
     x, z, y = np.broadcast_arrays(radius * np.sin(angle), -radius * np.cos(angle), y)
     return np.stack([x, y, z], axis=-1)
+
+
+def removed(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> Array:
+    """Material (m) taken off along the normal at roll angle `roll` (rad) and axial position `y` (m).
+
+    Beyond the ends of the involute (in the fillet) the root relief keeps its full amount.
+    """
+    part, base = design.pinion, design.pinion_base_radius
+    roll = np.asarray(roll, float)
+    from_tip = base * (design.pinion_tip_roll - roll)
+    from_root = base * (roll - junction_roll(design))
+    from_middle = np.abs(np.asarray(y, float) - design.mean_radius)
+    return (
+        _linear(part.tip_relief, from_tip)
+        + _linear(part.root_relief, from_root)
+        + _parabola(part.lead_crowning, from_middle)
+    )
+
+
+def _linear(relief: Relief, from_end: Array) -> Array:
+    if relief.amount == 0:
+        return np.zeros_like(from_end)
+    return relief.amount * np.clip((relief.start + relief.length - from_end) / relief.length, 0, 1)
+
+
+def _parabola(relief: Relief, from_middle: Array) -> Array:
+    if relief.amount == 0:
+        return np.zeros_like(from_middle)
+    return relief.amount * np.maximum((from_middle - relief.start) / relief.length, 0) ** 2

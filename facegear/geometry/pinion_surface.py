@@ -7,7 +7,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from facegear.geometry import pinion
 from facegear.geometry.design import PairDesign
-from facegear.geometry.relief import removed
 
 Array = NDArray[np.float64]
 
@@ -23,6 +22,23 @@ class SurfacePoints:
         """The same points as (n, 3) arrays."""
         return SurfacePoints(self.position.reshape(-1, 3), self.normal.reshape(-1, 3))
 
+    def only(self, index: NDArray[np.int64]) -> "SurfacePoints":
+        """Those of n points at `index`."""
+        return SurfacePoints(self.position[index], self.normal[index])
+
+    @property
+    def lever_arm(self) -> Array:
+        """Of the normals about the pinion's axis (m): speed along the normal per rotation."""
+        x, z = self.position[..., 0], self.position[..., 2]
+        return x * self.normal[..., 2] - z * self.normal[..., 0]
+
+
+def joined(first: SurfacePoints, second: SurfacePoints) -> SurfacePoints:
+    """The points (n, 3) of one after those of the other."""
+    return SurfacePoints(
+        np.concatenate([first.position, second.position]), np.concatenate([first.normal, second.normal])
+    )
+
 
 def flank_points(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> SurfacePoints:
     """Involute at roll angle (rad) and y (m), broadcast together.
@@ -32,7 +48,7 @@ def flank_points(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> SurfacePo
     roll, y = np.broadcast_arrays(np.asarray(roll, float), np.asarray(y, float))
     position = pinion.cartesian(*pinion.involute_point(design, roll), y)
     normal = _normals(*pinion.involute_normal(design, roll))
-    return SurfacePoints(position - removed(design, roll, y)[..., None] * normal, normal)
+    return SurfacePoints(position - pinion.removed(design, roll, y)[..., None] * normal, normal)
 
 
 def fillet_points(design: PairDesign, gamma: ArrayLike, y: ArrayLike) -> SurfacePoints:
@@ -40,7 +56,7 @@ def fillet_points(design: PairDesign, gamma: ArrayLike, y: ArrayLike) -> Surface
     gamma, y = np.broadcast_arrays(np.asarray(gamma, float), np.asarray(y, float))
     position = pinion.cartesian(*pinion.trochoid_point(design, gamma), y)
     normal = _normals(*pinion.trochoid_normal(design, gamma))
-    depth = removed(design, pinion.junction_roll(design), y)
+    depth = pinion.removed(design, pinion.junction_roll(design), y)
     return SurfacePoints(position - depth[..., None] * normal, normal)
 
 

@@ -11,7 +11,7 @@ from facegear.contact.bodies.body import ElasticBody
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.bodies.substructure import condense
 from facegear.contact.bodies.surface import cell_areas, cell_points, hat_values, interpolation, pressure_basis
-from facegear.contact.solver import solve
+from facegear.contact.solver import solve_contact
 from facegear.geometry.design import FaceGear, Material, PairDesign, Pinion, Relief, Shaper
 
 STEEL = Material(206e9, 0.3)
@@ -100,7 +100,7 @@ def pressed(body, refinement, gap_of, force, reach=None):
     near = np.flatnonzero(gap <= (np.inf if reach is None else reach))
     loads = matrix[near]
     influence = loads @ (loads @ compliance).T
-    contact = solve(influence, gap[near], np.ones(near.size), force)
+    contact = solve_contact(influence, gap[near], np.ones(near.size), force)
     return contact, contact.force / area[near], surface[near]
 
 

@@ -5,7 +5,7 @@ from facegear.config.contact import Contact, contact_plan
 from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.tooth_pair import ToothPair, pair_design
 from facegear.contact.bodies.compliance import STORED, from_arrays
-from facegear.contact.ltca import analyse, even_positions
+from facegear.contact.ltca import even_positions, loaded_contact
 from facegear.contact.pair import contact_model
 from facegear.contact.tables import ltca_table, pressure_arrays, pressure_surface
 from facegear.io import arrays, tables
@@ -18,8 +18,8 @@ with stage(snakemake) as run:
     sizes = mesh_sizes(parse(Mesh, snakemake.params.mesh), design.module)
     bodies = [from_arrays(arrays.read(snakemake.input[name], STORED)) for name in ("pinion", "face_gear")]
     model = contact_model(design, sizes, *bodies)
-    results = analyse(model, even_positions(plan.positions), plan.torques, plan.options)
-    table, pressures = ltca_table(results), pressure_arrays(results, model.surface)
+    results = loaded_contact(model, even_positions(plan.positions), plan.torques, plan.options)
+    table, pressures = ltca_table(results), pressure_arrays(results, model.flanks.pinion)
     tables.write(snakemake.output.ltca, table)
     arrays.write(snakemake.output.pressure, **pressures)
     write_vtu(snakemake.output.vtu, *pressure_surface(pressures))

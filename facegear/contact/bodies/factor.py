@@ -42,7 +42,7 @@ def schur_complement(matrix: sp.csr_matrix, kept: NDArray[np.int64]) -> NDArray[
     return schur
 
 
-def solve(matrix: sp.csr_matrix, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
+def solve_sparse(matrix: sp.csr_matrix, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
     """Solve a symmetric positive definite system for right-hand sides (n, m).
 
     Raises FacegearError if the factorisation fails.

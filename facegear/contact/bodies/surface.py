@@ -8,6 +8,8 @@ coordinates count nodes: 0..nu-1 across the profile, 0..nv-1 along the width; no
 i nv + j.
 """
 
+from functools import lru_cache
+
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
@@ -60,6 +62,7 @@ def hat_values(basis: Basis) -> sp.csr_matrix:
     return _rows(*_by_point(basis), basis.N)
 
 
+@lru_cache(maxsize=16)
 def edge_hats(nodes: int) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
     """Two Gauss points (q,) in each interval between `nodes` nodes on a line, and the two hats there.
 
@@ -78,7 +81,7 @@ def cell_areas(surface: NDArray[np.float64], basis: Basis) -> NDArray[np.float64
 
 def _by_point(basis: Basis) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Nodes (q, a) and values (q, a) of a scalar basis' functions at all its quadrature points."""
-    values = np.stack([function[0].value.ravel() for function in basis.basis], axis=1)
+    values = np.stack([np.asarray(function[0]).ravel() for function in basis.basis], axis=1)
     return np.repeat(basis.element_dofs.T, basis.X.shape[1], axis=0).astype(np.int64), values
 
 

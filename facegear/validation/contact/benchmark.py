@@ -12,9 +12,10 @@ import pandas as pd
 from facegear.contact.bodies.compliance import FlankCompliance, coupled_compliance
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.bodies.substructure import condense
-from facegear.contact.ltca import LoadedPosition, analyse, even_positions
+from facegear.contact.ltca import even_positions, loaded_contact
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
 from facegear.contact.pair import BUILDERS, body_compliance, contact_model, extent
+from facegear.contact.position import LoadedPosition
 from facegear.contact.teeth import elastic_tooth
 from facegear.errors import NotConverged
 from facegear.geometry.design import Material, PairDesign
@@ -89,9 +90,9 @@ def measure(design: PairDesign, rung: Rung, materials: tuple[Material, Material]
         bodies.append(watch.time("compliance_s", coupled_compliance, *rest))
         dof += int(np.count_nonzero(~system.held))
     model = contact_model(design, rung.sizes, *bodies)
-    analyse(model, [0.3], plan.torques, plan.options)
+    loaded_contact(model, [0.3], plan.torques, plan.options)
     run = model, even_positions(plan.positions), plan.torques, plan.options
-    results = watch.time("contact_s", analyse, *run)
+    results = watch.time("contact_s", loaded_contact, *run)
     costs = {
         "dof": dof,
         "flank_nodes": sum(len(body.own) for body in bodies),
@@ -113,13 +114,13 @@ def growth(
     """Time (s) of contact against the number of positions (at 4 torques) and of torques (at 16 positions)."""
     model = contact_model(design, rung.sizes, *compliances(design, rung, materials))
     low, high = min(rung.plan.torques), max(rung.plan.torques)
-    analyse(model, [0.3], rung.plan.torques, rung.plan.options)
+    loaded_contact(model, [0.3], rung.plan.torques, rung.plan.options)
     cases = [("positions", n, 4) for n in positions] + [("loads", 16, n) for n in loads]
     rows = []
     for varied, count, number in cases:
         watch = Stopwatch()
         torques = np.geomspace(high, low, number)[::-1]
-        watch.time("contact_s", analyse, model, even_positions(count), torques, rung.plan.options)
+        watch.time("contact_s", loaded_contact, model, even_positions(count), torques, rung.plan.options)
         rows.append((varied, count, number, watch.seconds["contact_s"]))
     return pd.DataFrame(rows, columns=["varied", "positions", "loads", "contact_s"])
 
@@ -187,7 +188,7 @@ def shortcuts(design: PairDesign, base: Rung, materials: tuple[Material, Materia
         same_bodies = replace(rung.plan, options=plan.options) == plan
         bodies = full if same_bodies else compliances(design, rung, materials)
         model = contact_model(design, rung.sizes, *bodies)
-        results = analyse(model, even_positions(plan.positions), plan.torques, rung.plan.options)
+        results = loaded_contact(model, even_positions(plan.positions), plan.torques, rung.plan.options)
         rows.append(summary(results).assign(case=name))
     table = pd.concat(rows, ignore_index=True)
     return with_errors(table.rename(columns={"case": "rung"}), "full model").rename(columns={"rung": "case"})

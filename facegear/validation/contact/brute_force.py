@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 from skfem import ElementLineP2
 from skfem.quadrature import get_quadrature
 
-from facegear.contact.bodies.factor import solve
+from facegear.contact.bodies.factor import solve_sparse
 from facegear.errors import NotConverged
 from facegear.geometry import pinion
 from facegear.geometry.design import Material
@@ -106,7 +106,7 @@ def _newton_step(stiffness, rows, springs, depth, state, torque):  # type: ignor
     tangent = (stiffness + part.T @ scaled[:, :-1]).tocsr()
     push = part.T @ (springs * lever)
     missing = -stiffness @ state[:-1] + part.T @ (springs * depth)
-    both = solve(tangent, np.stack([push, missing], axis=1))
+    both = solve_sparse(tangent, np.stack([push, missing], axis=1))
     short = torque + lever @ (springs * depth)
     turn = (short - push @ both[:, 1]) / (lever @ (springs * lever) - push @ both[:, 0])
     return np.append(both[:, 1] - turn * both[:, 0], turn)

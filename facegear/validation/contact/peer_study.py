@@ -100,5 +100,5 @@ def peer_study(
 def _torque_by_turn(pair: SectorPair, position: float, torque: float) -> PchipInterpolator:
     """Torque (N m) against the turn (rad) of the pinion around `torque`."""
     torques = tuple(part * torque for part in AROUND)
-    turns = [result.ste / pair.surface.design.pinion_base_radius for result in pair.solve(position, torques)]
+    turns = [result.ste / pair.flanks.design.pinion_base_radius for result in pair.solve(position, torques)]
     return PchipInterpolator(turns, torques, extrapolate=False)

@@ -5,7 +5,6 @@ The chain instead puts each loaded tooth into the middle of a ring or sector of 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from itertools import product as pairs_of
 from math import pi
 
@@ -16,13 +15,14 @@ from facegear.contact.bodies.compliance import on_lattice
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.bodies.ring import plane_compliance
 from facegear.contact.bodies.substructure import condense
-from facegear.contact.candidates import Candidates, PinionSurface
+from facegear.contact.candidates import Candidates
+from facegear.contact.flanks import FlankPair, flank_pair
 from facegear.contact.influence import product
-from facegear.contact.ltca import FIRST_GUESS, LoadedPosition, Place, solve_position
 from facegear.contact.options import ContactOptions, Refinement
 from facegear.contact.pair import BUILDERS
+from facegear.contact.position import FIRST_GUESS, LoadedPosition, solve_position
 from facegear.contact.search import find_candidates
-from facegear.contact.teeth import LOADED_SIDE, GearLattice, contact_side, elastic_tooth
+from facegear.contact.teeth import LOADED_SIDE, contact_side, elastic_tooth
 from facegear.geometry.design import Material, PairDesign
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.mesh.sizes import MeshSizes
@@ -35,8 +35,7 @@ Blocks = dict[tuple[int, int], NDArray[np.float64]]
 class SectorPair:
     """Surfaces of both gears and the compliance blocks of their sectors."""
 
-    surface: PinionSurface
-    lattice: GearLattice
+    flanks: FlankPair
     pinion: Blocks
     gear: Blocks
 
@@ -45,16 +44,36 @@ class SectorPair:
 
         Raises NotConverged naming position and torque.
         """
-        design, options = self.surface.design, ContactOptions()
-        angles = angles_at(design, position)
-        loaded = np.array(sorted({seen for seen, _ in self.pinion}))
+        pair = _SectorAtPosition(self, position)
+        return solve_position(pair, torques, FIRST_GUESS / pair.base_radius)[0]
 
-        def find(limit: float) -> list[Candidates]:
-            return find_candidates(self.surface, self.lattice, *angles, loaded, limit, options)
 
-        base = design.pinion_base_radius
-        combine = partial(_influence, pinion=self.pinion, gear=self.gear)
-        return solve_position(find, combine, Place(position, 0.0, base), torques, FIRST_GUESS / base)[0]
+@dataclass(frozen=True, eq=False)
+class _SectorAtPosition:
+    """`facegear.contact.position.PairAtPosition` of two sectors."""
+
+    sectors: SectorPair
+    position: float
+    unloaded = 0.0
+    in_strip = False
+
+    @property
+    def base_radius(self) -> float:
+        return self.sectors.flanks.design.pinion_base_radius
+
+    def candidates(self, limit: float) -> list[Candidates]:
+        flanks = self.sectors.flanks
+        loaded = np.array(sorted({seen for seen, _ in self.sectors.pinion}))
+        placement = angles_at(flanks.design, self.position)
+        return find_candidates(flanks, placement, loaded, limit, ContactOptions())
+
+    def influence(self, pairs: list[Candidates]) -> NDArray[np.float64]:
+        return _influence(pairs, self.sectors.pinion, self.sectors.gear)
+
+    def approach(
+        self, seen: list[Candidates], pairs: list[Candidates], forces: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        return _approach(seen, pairs, self.sectors.pinion, self.sectors.gear) @ forces
 
 
 def angles_at(design: PairDesign, position: float) -> tuple[float, float]:
@@ -77,10 +96,8 @@ def sector_pair(
         sector_blocks(design, tooth, material, teeth, loaded, refinement)
         for tooth, material in zip(bodies, materials, strict=True)
     )
-    sides = [contact_side(design, tooth) for tooth in bodies]
-    surface = PinionSurface(design, sides[0], refinement)
-    lattice = GearLattice(design, sides[1], refinement)
-    return SectorPair(surface, lattice, pinion, gear)
+    first, second = (contact_side(design, tooth) for tooth in bodies)
+    return SectorPair(flank_pair(design, (first, second), (refinement, refinement)), pinion, gear)
 
 
 def sector_blocks(
@@ -113,14 +130,21 @@ def sector_blocks(
 
 
 def _influence(pairs: list[Candidates], pinion: Blocks, gear: Blocks) -> NDArray[np.float64]:
-    matrix = np.block(
+    matrix = _approach(pairs, pairs, pinion, gear)
+    return 0.5 * (matrix + matrix.T)
+
+
+def _approach(
+    seen: list[Candidates], pairs: list[Candidates], pinion: Blocks, gear: Blocks
+) -> NDArray[np.float64]:
+    """Approach (k, m) at the first candidates by unit forces on the second, m/N."""
+    return np.block(
         [
             [
                 product(first.pinion, pinion[first.tooth, second.tooth], second.pinion)
                 + product(first.gear, gear[first.tooth, second.tooth], second.gear)
                 for second in pairs
             ]
-            for first in pairs
+            for first in seen
         ]
     )
-    return 0.5 * (matrix + matrix.T)

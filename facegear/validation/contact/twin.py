@@ -6,17 +6,19 @@ distance.
 """
 
 from dataclasses import dataclass, replace
-from functools import partial
 from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
 
+from facegear.contact.averages import Lattice
 from facegear.contact.bodies.compliance import FlankCompliance, flank_compliance
-from facegear.contact.candidates import Candidates, PinionSurface, hats_over
-from facegear.contact.influence import influence_matrix
-from facegear.contact.ltca import FIRST_GUESS, LoadedPosition, Place, solve_position
+from facegear.contact.candidates import Candidates, candidates_of
+from facegear.contact.flanks import PinionSurface
+from facegear.contact.influence import displacement, influence_matrix
+from facegear.contact.loads import facing, flank_loads
 from facegear.contact.options import Ends, Refinement
+from facegear.contact.position import FIRST_GUESS, LoadedPosition, solve_position
 from facegear.contact.teeth import ContactSide, elastic_tooth
 from facegear.geometry import pinion
 from facegear.geometry.design import Material, PairDesign
@@ -27,7 +29,10 @@ from facegear.mesh.tooth import ToothMesh, pinion_tooth
 
 @dataclass(frozen=True, eq=False)
 class TwinModel:
-    """Both gears (their own `pinion` counts), the pinion's surface and both compliances of one slab."""
+    """Both gears (their own `pinion` counts), the pinion's surface and both compliances of one slab.
+
+    The blocks of the gear's compliance are ordered as the pinion's teeth are.
+    """
 
     pinion: PairDesign
     gear: PairDesign
@@ -57,8 +62,15 @@ def twin_model(
         number = teeth or design.pinion.teeth
         compliances.append(flank_compliance(replace(elastic, held=held), layer, number, 2, ends))
         sides.append(side)
-    surface = PinionSurface(pinion_design, sides[0], layer)
-    return TwinModel(pinion_design, gear_design, surface, sides[1], *compliances)
+    gear = replace(compliances[1], others=compliances[1].others[::-1])
+    return TwinModel(
+        pinion=pinion_design,
+        gear=gear_design,
+        surface=PinionSurface(pinion_design, sides[0], Lattice(sides[0].shape, layer)),
+        gear_side=sides[1],
+        pinion_compliance=compliances[0],
+        gear_compliance=gear,
+    )
 
 
 def slab_tooth(design: PairDesign, sizes: MeshSizes) -> ToothMesh:
@@ -91,15 +103,37 @@ def analyse_twin(
     thickness = float(np.ptp(model.surface.side.v))
     base = model.pinion.pinion_base_radius
     torques = [load * thickness * base for load in line_loads]
-    gear = replace(model.gear_compliance, others=model.gear_compliance.others[::-1])
-    combine = partial(influence_matrix, pinion=model.pinion_compliance, gear=gear)
     guess, results = FIRST_GUESS / base, []
     for position in positions:
-        phi1 = (float(position) - 0.5) * 2 * pi / model.pinion.pinion.teeth
-        find = partial(_candidates, model, phi1)
-        solved, guess = solve_position(find, combine, Place(float(position), 0.0, base), torques, guess)
+        solved, guess = solve_position(_TwinAtPosition(model, float(position)), torques, guess)
         results += solved
     return results
+
+
+@dataclass(frozen=True, eq=False)
+class _TwinAtPosition:
+    """`facegear.contact.position.PairAtPosition` of the twin."""
+
+    model: TwinModel
+    position: float
+    unloaded = 0.0
+    in_strip = False
+
+    @property
+    def base_radius(self) -> float:
+        return self.model.pinion.pinion_base_radius
+
+    def candidates(self, limit: float) -> list[Candidates]:
+        phi1 = (self.position - 0.5) * 2 * pi / self.model.pinion.pinion.teeth
+        return _candidates(self.model, phi1, limit)
+
+    def influence(self, pairs: list[Candidates]) -> NDArray[np.float64]:
+        return influence_matrix(pairs, self.model.pinion_compliance, self.model.gear_compliance)
+
+    def approach(
+        self, seen: list[Candidates], pairs: list[Candidates], forces: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        return displacement(seen, pairs, forces, self.model.pinion_compliance, self.model.gear_compliance)
 
 
 def involute_separation(
@@ -146,22 +180,18 @@ def _turned(vectors: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
 
 def _candidates(model: TwinModel, phi1: float, limit: float) -> list[Candidates]:
     surface, side = model.surface, model.gear_side
-    factors = np.array([surface.refinement.profile, 1])
-    on_flank = surface.lattice[:, 0] <= (surface.side.flank_rows - 1) * factors[0]
+    lattice = Lattice(side.shape, surface.lattice.refinement)
+    on_flank = surface.on_flank(surface.at)
     low, high = pinion.junction_roll(model.gear), model.gear.pinion_tip_roll
-    reach = 3 * limit * model.pinion.pinion_base_radius + 20e-6
+    depth = 3 * limit * model.pinion.pinion_base_radius + 20e-6
     found = []
-    for tooth in PAIRS:
+    for tooth in PAIRS.tolist():
         gap, roll = involute_separation(
-            model.pinion, model.gear, surface.points.position, surface.points.normal, phi1, int(tooth)
+            model.pinion, model.gear, surface.points.position, surface.points.normal, phi1, tooth
         )
-        points = np.flatnonzero(on_flank & np.isfinite(roll) & (gap < reach))
-        fraction = (high**2 - roll[points] ** 2) / (high**2 - low**2)
-        row = fraction * (side.flank_rows - 1) * factors[0]
-        coordinates = np.stack([row, surface.lattice[points, 1]], axis=1)
-        pair = hats_over(
-            surface, side.shape, surface.refinement, int(tooth), points, gap[points], coordinates, limit
-        )
-        if pair is not None:
-            found.append(pair)
+        fraction = (high**2 - roll**2) / (high**2 - low**2)
+        row = fraction * (side.flank_rows - 1) * lattice.refinement.profile
+        near = np.where(on_flank & (gap < depth), gap, np.inf)
+        points = facing(near, surface.lever_arm, surface.at, np.stack([row, surface.at[:, 1]], axis=1))
+        found += candidates_of(surface.lattice, lattice, tooth, flank_loads(surface, points), limit)
     return found

@@ -9,15 +9,15 @@ import scipy.sparse as sp
 from contact_bodies import STEEL, pair_design
 
 from facegear.contact.bodies.compliance import flank_compliance
-from facegear.contact.bodies.factor import solve as solve_sparse
+from facegear.contact.bodies.factor import solve_sparse
 from facegear.contact.bodies.layer import tied_system
-from facegear.contact.candidates import PinionSurface
+from facegear.contact.flanks import flank_pair
 from facegear.contact.influence import influence_matrix
 from facegear.contact.options import ContactOptions, Refinement
 from facegear.contact.pair import BUILDERS
 from facegear.contact.search import find_candidates
-from facegear.contact.solver import solve
-from facegear.contact.teeth import GearLattice, elastic_tooth
+from facegear.contact.solver import solve_contact
+from facegear.contact.teeth import elastic_tooth
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.mesh.sizes import MeshSizes
 
@@ -38,9 +38,9 @@ def pressed_teeth():
     systems = [tied_system(tooth, CUTS) for tooth in teeth]
     phi1 = -0.1 * 2 * pi / design.pinion.teeth
     phi2 = float(unloaded_contact(design, [phi1]).phi2[0])
-    surfaces = PinionSurface(design, sides[0], CUTS), GearLattice(design, sides[1], CUTS)
-    pairs = find_candidates(*surfaces, phi1, phi2, np.array([0]), 4e-3, ContactOptions())
-    contact = solve(influence_matrix(pairs, *bodies), pairs[0].gap, pairs[0].arm, TORQUE)
+    flanks = flank_pair(design, sides, (CUTS, CUTS))
+    pairs = find_candidates(flanks, (phi1, phi2), np.array([0]), 4e-3, ContactOptions())
+    contact = solve_contact(influence_matrix(pairs, *bodies), pairs[0].gap, pairs[0].lever_arm, TORQUE)
     return systems, bodies, pairs[0], contact
 
 
@@ -86,8 +86,8 @@ def test_flanks_displaced_by_the_finite_elements_just_touch_where_pressed(presse
         normal = system.spread @ np.sum(moved[system.loaded] * system.loaded_normals, axis=1)
         np.testing.assert_allclose(-normal, body.own @ nodal, atol=1e-9 * np.abs(normal).max())
         approach -= loads @ normal
-    clearance = pair.gap + approach - contact.rotation * pair.arm
-    largest = contact.rotation * pair.arm.max()
+    clearance = pair.gap + approach - contact.rotation * pair.lever_arm
+    largest = contact.rotation * pair.lever_arm.max()
     np.testing.assert_allclose(clearance[contact.active], 0.0, atol=1e-9 * largest)
     assert clearance.min() > -1e-9 * largest
 

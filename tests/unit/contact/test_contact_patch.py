@@ -8,7 +8,7 @@ from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.bodies.surface import interpolation
 from facegear.contact.options import Refinement
-from facegear.contact.solver import solve
+from facegear.contact.solver import solve_contact
 
 PRESSURE = 2e8
 HEIGHTS = (1.0, 0.7)
@@ -40,7 +40,9 @@ def pressed_blocks(lower, upper, cuts):
         weight @ interpolation(where, grid) for where, grid in ((points, shape), (share, second.flank.shape))
     ]
     matrix = sum(load @ (load @ body.own).T for load, body in zip(loads, bodies, strict=True))
-    contact = solve(0.5 * (matrix + matrix.T), np.zeros(len(area)), np.ones(len(area)), PRESSURE * area.sum())
+    contact = solve_contact(
+        0.5 * (matrix + matrix.T), np.zeros(len(area)), np.ones(len(area)), PRESSURE * area.sum()
+    )
     exact = PRESSURE * sum(HEIGHTS) / STEEL.young_modulus
     return contact.force / area / PRESSURE, contact.rotation / exact
 

@@ -8,12 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from facegear.contact import solver
-from facegear.contact.solver import kkt_residual, solve
+from facegear.contact.solver import kkt_residual, solve_contact
 from facegear.errors import NotConverged
 
 
 def random_problem(seed, size):
-    """Compliance like a layer's (decaying influence), wavy gaps, arms near one."""
+    """Compliance like a layer's (decaying influence), wavy gaps, lever_arms near one."""
     rng = np.random.default_rng(seed)
     x = np.sort(rng.uniform(0, 1, size))
     compliance = np.exp(-6 * np.abs(x[:, None] - x)) + 0.05 * np.eye(size)
@@ -24,19 +24,19 @@ def random_problem(seed, size):
 @settings(max_examples=60, deadline=None)
 @given(seed=st.integers(0, 10**6), size=st.integers(1, 60), torque=st.floats(1e-4, 1e4))
 def test_solution_meets_all_contact_conditions_to_rounding(seed, size, torque):
-    compliance, gap, arm = random_problem(seed, size)
-    contact = solve(compliance, gap, arm, torque)
+    compliance, gap, lever_arm = random_problem(seed, size)
+    contact = solve_contact(compliance, gap, lever_arm, torque)
     assert contact.residual < 1e-12
-    assert kkt_residual(compliance, gap, arm, torque, contact.force, contact.rotation) < 1e-12
-    assert arm @ contact.force == pytest.approx(torque, rel=1e-12)
+    assert kkt_residual(compliance, gap, lever_arm, torque, contact.force, contact.rotation) < 1e-12
+    assert lever_arm @ contact.force == pytest.approx(torque, rel=1e-12)
 
 
 @settings(max_examples=40, deadline=None)
 @given(seed=st.integers(0, 10**6), start=st.integers(0, 2**20 - 1))
 def test_solution_does_not_depend_on_the_start(seed, start):
-    compliance, gap, arm = random_problem(seed, 20)
+    compliance, gap, lever_arm = random_problem(seed, 20)
     guess = np.array([bool(start >> bit & 1) for bit in range(20)])
-    cold, warm = (solve(compliance, gap, arm, 1.0, begin) for begin in (None, guess))
+    cold, warm = (solve_contact(compliance, gap, lever_arm, 1.0, begin) for begin in (None, guess))
     np.testing.assert_allclose(warm.force, cold.force, atol=1e-10 * cold.force.max())
     assert warm.rotation == pytest.approx(cold.rotation, rel=1e-12)
 
@@ -45,10 +45,10 @@ def test_solution_does_not_depend_on_the_start(seed, start):
 @given(seed=st.integers(0, 10**6), size=st.integers(2, 60))
 def test_exchanging_one_point_at_a_time_leads_to_the_same_solution(seed, size):
     problem = random_problem(seed, size)
-    usual = solve(*problem, 1.0)
+    usual = solve_contact(*problem, 1.0)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(solver, "NEWTON_STEPS", 1)
-        slow = solve(*problem, 1.0)
+        slow = solve_contact(*problem, 1.0)
     np.testing.assert_allclose(slow.force, usual.force, atol=1e-10 * usual.force.max())
     assert slow.residual < 1e-12
 
@@ -56,8 +56,8 @@ def test_exchanging_one_point_at_a_time_leads_to_the_same_solution(seed, size):
 @settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 10**6))
 def test_solution_is_the_best_of_all_active_sets(seed):
-    compliance, gap, arm = random_problem(seed, 6)
-    contact = solve(compliance, gap, arm, 0.7)
+    compliance, gap, lever_arm = random_problem(seed, 6)
+    contact = solve_contact(compliance, gap, lever_arm, 0.7)
 
     def energy(force):
         return 0.5 * force @ compliance @ force + gap @ force
@@ -67,7 +67,10 @@ def test_solution_is_the_best_of_all_active_sets(seed):
         for chosen in itertools.combinations(range(6), count):
             rows = np.array(chosen)
             system = np.block(
-                [[compliance[np.ix_(rows, rows)], -arm[rows, None]], [arm[None, rows], np.zeros((1, 1))]]
+                [
+                    [compliance[np.ix_(rows, rows)], -lever_arm[rows, None]],
+                    [lever_arm[None, rows], np.zeros((1, 1))],
+                ]
             )
             force = np.zeros(6)
             force[rows] = np.linalg.solve(system, np.append(-gap[rows], 0.7))[:-1]
@@ -77,23 +80,25 @@ def test_solution_is_the_best_of_all_active_sets(seed):
 
 
 def test_slope_is_the_change_of_rotation_with_torque():
-    compliance, gap, arm = random_problem(7, 40)
-    contact, more = (solve(compliance, gap, arm, torque) for torque in (2.0, 2.0 + 1e-6))
+    compliance, gap, lever_arm = random_problem(7, 40)
+    contact, more = (solve_contact(compliance, gap, lever_arm, torque) for torque in (2.0, 2.0 + 1e-6))
     assert np.array_equal(contact.active, more.active)
     assert (more.rotation - contact.rotation) / 1e-6 == pytest.approx(contact.slope, rel=1e-6)
 
 
 def test_without_gaps_rotation_grows_in_proportion_to_torque():
-    compliance, _, arm = random_problem(3, 30)
-    one, many = (solve(compliance, np.zeros(30), arm, torque).rotation for torque in (1.0, 1000.0))
+    compliance, _, lever_arm = random_problem(3, 30)
+    one, many = (
+        solve_contact(compliance, np.zeros(30), lever_arm, torque).rotation for torque in (1.0, 1000.0)
+    )
     assert many == pytest.approx(1000.0 * one, rel=1e-12)
 
 
 def test_no_point_that_can_carry_the_torque_is_told_with_its_place():
     with pytest.raises(NotConverged, match=r"position 0\.25, torque 600 N m"):
-        solve(np.eye(3), np.zeros(3), -np.ones(3), 600.0, where="position 0.25, torque 600 N m")
+        solve_contact(np.eye(3), np.zeros(3), -np.ones(3), 600.0, where="position 0.25, torque 600 N m")
 
 
 def test_torque_that_does_not_drive_is_refused():
     with pytest.raises(ValueError, match="torque"):
-        solve(np.eye(3), np.zeros(3), np.ones(3), 0.0)
+        solve_contact(np.eye(3), np.zeros(3), np.ones(3), 0.0)

@@ -8,7 +8,8 @@ import pytest
 from contact_bodies import pair_design
 
 from facegear.contact.bodies.compliance import flank_compliance
-from facegear.contact.ltca import analyse
+from facegear.contact.flanks import FlankPair
+from facegear.contact.ltca import loaded_contact
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
 from facegear.contact.pair import BUILDERS, body_compliance, contact_model
 from facegear.contact.teeth import LOADED_SIDE, elastic_tooth
@@ -23,8 +24,8 @@ TORQUES = [100.0, 600.0]
 def misaligned(model, **errors):
     """The same elastic bodies in another assembly."""
     design = replace(model.design, assembly=Assembly(**errors))
-    surface, lattice = replace(model.surface, design=design), replace(model.lattice, design=design)
-    return replace(model, design=design, surface=surface, lattice=lattice)
+    pinion, gear = (replace(flank, design=design) for flank in (model.flanks.pinion, model.flanks.gear))
+    return replace(model, flanks=FlankPair(pinion, gear))
 
 
 def sound(results):
@@ -40,12 +41,12 @@ def sound(results):
 
 
 def test_forces_balance_the_torque_and_two_or_three_pairs_carry(model_of):
-    results = sound(analyse(model_of(), np.arange(8) / 8, TORQUES))
+    results = sound(loaded_contact(model_of(), np.arange(8) / 8, TORQUES))
     assert {result.pairs_in_contact for result in results if result.torque == 600.0} <= {2, 3}
 
 
 def test_stiffness_grows_with_load_and_the_local_one_is_larger(model_of):
-    light, heavy = analyse(model_of(), [0.3], TORQUES)
+    light, heavy = loaded_contact(model_of(), [0.3], TORQUES)
     assert heavy.k_average > light.k_average
     for result in (light, heavy):
         assert result.k_local > result.k_average
@@ -53,7 +54,7 @@ def test_stiffness_grows_with_load_and_the_local_one_is_larger(model_of):
 
 def test_unloaded_transmission_error_is_the_geometry_s(model_of):
     model = misaligned(model_of(), offset=50e-6, shaft_angle_error=radians(0.02))
-    result = analyse(model, [0.3], [600.0])[0]
+    result = loaded_contact(model, [0.3], [600.0])[0]
     assert result.ste - result.unloaded > 0
     assert result.k_average == pytest.approx(
         600.0 / model.design.pinion_base_radius / (result.ste - result.unloaded), rel=1e-12
@@ -61,9 +62,9 @@ def test_unloaded_transmission_error_is_the_geometry_s(model_of):
 
 
 def test_result_does_not_depend_on_the_order_of_loads_or_positions(model_of):
-    together = analyse(model_of(), [0.1, 0.6], [100.0, 300.0, 600.0])
-    alone = analyse(model_of(), [0.6], [300.0])[0]
-    backwards = analyse(model_of(), [0.6, 0.1], [600.0, 300.0, 100.0])
+    together = loaded_contact(model_of(), [0.1, 0.6], [100.0, 300.0, 600.0])
+    alone = loaded_contact(model_of(), [0.6], [300.0])[0]
+    backwards = loaded_contact(model_of(), [0.6, 0.1], [600.0, 300.0, 100.0])
     expected = together[4]
     assert (expected.position, expected.torque) == (0.6, 300.0)
     for other in (alone, backwards[1]):
@@ -72,7 +73,7 @@ def test_result_does_not_depend_on_the_order_of_loads_or_positions(model_of):
 
 
 def test_result_repeats_after_a_pitch_with_the_next_tooth(model_of):
-    first, second = analyse(model_of(), [0.0, 1.0], [600.0])
+    first, second = loaded_contact(model_of(), [0.0, 1.0], [600.0])
     assert second.ste == pytest.approx(first.ste, rel=1e-8)
     np.testing.assert_allclose(second.share[:-1], first.share[1:], atol=1e-8)
 
@@ -109,7 +110,7 @@ def test_contact_of_the_opposite_flanks_is_the_mirror_image_s():
     for errors in ({}, {"offset": 0.1e-3, "shaft_angle_error": radians(0.05)}):
         here = misaligned(drive, **errors)
         there = replace(here, pinion=back[0], gear=back[1])
-        for one, other in zip(*(analyse(m, [0.1, 0.7], TORQUES) for m in (here, there)), strict=True):
+        for one, other in zip(*(loaded_contact(m, [0.1, 0.7], TORQUES) for m in (here, there)), strict=True):
             assert other.ste == pytest.approx(one.ste, rel=1e-8)
             assert other.k_local == pytest.approx(one.k_local, rel=1e-8)
             np.testing.assert_allclose(other.share, one.share, atol=1e-8)
@@ -119,7 +120,8 @@ def test_contact_of_the_opposite_flanks_is_the_mirror_image_s():
 def test_contact_on_the_path_only_is_softer_near_hand_over(model_of):
     positions = np.arange(8) / 8
     full, path = (
-        analyse(model_of(), positions, [600.0], ContactOptions(path_only=only)) for only in (False, True)
+        loaded_contact(model_of(), positions, [600.0], ContactOptions(path_only=only))
+        for only in (False, True)
     )
     for everywhere, on_path in zip(full, path, strict=True):
         assert on_path.k_average <= everywhere.k_average * (1 + 1e-9)
@@ -129,14 +131,14 @@ def test_contact_on_the_path_only_is_softer_near_hand_over(model_of):
 
 
 def test_leaving_out_the_coupling_of_neighbours_makes_the_mesh_stiffer(model_of):
-    coupled = analyse(model_of(), [0.3], [600.0])[0]
-    alone = analyse(model_of(), [0.3], [600.0], ContactOptions(coupled=False))[0]
+    coupled = loaded_contact(model_of(), [0.3], [600.0])[0]
+    alone = loaded_contact(model_of(), [0.3], [600.0], ContactOptions(coupled=False))[0]
     assert 1.01 < alone.k_average / coupled.k_average < 1.15
 
 
 @pytest.mark.parametrize("torque", [1.0, 5000.0])
 def test_very_small_and_very_large_torques_converge(model_of, torque):
-    results = sound(analyse(model_of(), np.arange(4) / 4, [torque]))
+    results = sound(loaded_contact(model_of(), np.arange(4) / 4, [torque]))
     assert all(result.ste > 0 for result in results)
 
 
@@ -144,8 +146,8 @@ def test_line_contact_pair_spreads_its_load_over_the_face(model_of):
     line, crowned = model_of(shaper_teeth=23), model_of()
     reach = {}
     for name, model in (("line", line), ("crowned", crowned)):
-        result = sound(analyse(model, [0.5], [100.0]))[0]
-        columns = np.concatenate([spot.hats % model.surface.shape[1] for spot in result.spots])
+        result = sound(loaded_contact(model, [0.5], [100.0]))[0]
+        columns = np.concatenate([spot.hats % model.flanks.pinion.shape[1] for spot in result.spots])
         reach[name] = np.unique(columns).size
     assert reach["line"] > 1.3 * reach["crowned"]
 
@@ -161,13 +163,13 @@ def test_line_contact_pair_spreads_its_load_over_the_face(model_of):
     ],
 )
 def test_misaligned_pair_touches_at_an_edge_and_converges(model_of, errors):
-    sound(analyse(misaligned(model_of(), **errors), np.arange(4) / 4, TORQUES))
+    sound(loaded_contact(misaligned(model_of(), **errors), np.arange(4) / 4, TORQUES))
 
 
 def test_gear_pressed_into_the_pinion_still_drives_while_its_back_sides_overlap(model_of):
     """The drive side alone is solved; the overlap is the geometry check's to refuse."""
     model = misaligned(model_of(), axial_shift=-0.3e-3)
-    for result in sound(analyse(model, np.arange(4) / 4, TORQUES)):
+    for result in sound(loaded_contact(model, np.arange(4) / 4, TORQUES)):
         along = model.design.assembly.axial_shift * np.sin(model.design.pressure_angle)
         assert result.unloaded == pytest.approx(along, rel=0.15)
     touching = unloaded_contact(model.design, [0.0])
@@ -178,13 +180,13 @@ def test_gear_pressed_into_the_pinion_still_drives_while_its_back_sides_overlap(
 
 @pytest.mark.parametrize(("width", "radii"), [(0.005, (0.262, 0.267)), (0.046, (0.250, 0.290))])
 def test_narrow_and_wide_faces_converge(model_of, width, radii):
-    results = sound(analyse(model_of(pinion_width=width, radii=radii), np.arange(4) / 4, TORQUES))
+    results = sound(loaded_contact(model_of(pinion_width=width, radii=radii), np.arange(4) / 4, TORQUES))
     assert all(result.k_average < 2e9 for result in results)
 
 
 def test_tip_relief_takes_load_off_the_pair_that_comes_into_contact(model_of):
-    plain = analyse(model_of(), np.arange(8) / 8, [600.0])
-    relieved = sound(analyse(model_of(tip_relief=Relief(20e-6, 0.0, 2e-3)), np.arange(8) / 8, [600.0]))
+    plain = loaded_contact(model_of(), np.arange(8) / 8, [600.0])
+    relieved = sound(loaded_contact(model_of(tip_relief=Relief(20e-6, 0.0, 2e-3)), np.arange(8) / 8, [600.0]))
     assert min(r.k_average for r in relieved) < min(r.k_average for r in plain)
     assert max(r.edge_pressure for r in relieved) <= max(r.edge_pressure for r in plain)
 
@@ -192,23 +194,23 @@ def test_tip_relief_takes_load_off_the_pair_that_comes_into_contact(model_of):
 def test_interfering_pair_is_stiffened_by_its_fillets_and_the_switch_shows_it(model_of):
     model = model_of(rack_tip_radius=0.25)
     positions = np.arange(8) / 8
-    with_fillet = sound(analyse(model, positions, [600.0]))
-    without = sound(analyse(model, positions, [600.0], ContactOptions(fillet=False)))
+    with_fillet = sound(loaded_contact(model, positions, [600.0]))
+    without = sound(loaded_contact(model, positions, [600.0], ContactOptions(fillet=False)))
     gain = np.mean([r.k_average for r in with_fillet]) / np.mean([r.k_average for r in without])
     assert gain > 1.005
 
 
 def test_stiffness_is_continuous_through_a_hand_over(model_of):
     positions = np.linspace(0, 1, 17)
-    shares = [result.share for result in analyse(model_of(), positions, [300.0])]
+    shares = [result.share for result in loaded_contact(model_of(), positions, [300.0])]
     change = [i for i in range(16) if np.count_nonzero(shares[i]) != np.count_nonzero(shares[i + 1])]
     low, high = positions[change[0]], positions[change[0] + 1]
     count = np.count_nonzero(shares[change[0]])
     while high - low > 1e-6:
         middle = 0.5 * (low + high)
-        here = np.count_nonzero(analyse(model_of(), [middle], [300.0])[0].share)
+        here = np.count_nonzero(loaded_contact(model_of(), [middle], [300.0])[0].share)
         low, high = (middle, high) if here == count else (low, middle)
-    before, after = sound(analyse(model_of(), [low, high], [300.0]))
+    before, after = sound(loaded_contact(model_of(), [low, high], [300.0]))
     assert after.pairs_in_contact != before.pairs_in_contact
     assert after.ste == pytest.approx(before.ste, rel=1e-4)
 
@@ -220,7 +222,7 @@ def test_linear_elements_on_the_same_nodes_are_too_stiff(model_of):
     for element in ("hex27", "hex8", "tet4"):
         plan = ContactPlan((600.0,), 4, Refinement(2, 1, 1), Sector(), ContactOptions(), element)
         bodies = [body_compliance(design, body, sizes, steel, plan) for body in BUILDERS]
-        results = analyse(contact_model(design, sizes, *bodies), [0.1, 0.6], [600.0])
+        results = loaded_contact(contact_model(design, sizes, *bodies), [0.1, 0.6], [600.0])
         stiffness[element] = np.mean([result.k_average for result in results])
     assert 1.003 < stiffness["hex8"] / stiffness["hex27"] < 1.03
     assert 1.03 < stiffness["tet4"] / stiffness["hex27"] < 1.15

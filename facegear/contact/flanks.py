@@ -1,0 +1,200 @@
+"""Both flanks of a pair as contact sees them: lattices of nodes on exact surfaces."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from skfem import Basis
+
+from facegear.contact.averages import Lattice
+from facegear.contact.bodies.surface import cell_areas, cell_points, edge_hats, hat_values, pressure_basis
+from facegear.contact.options import Refinement
+from facegear.contact.teeth import ContactSide, pinion_points
+from facegear.geometry import face_gear
+from facegear.geometry.design import PairDesign
+from facegear.geometry.opposite import FilletCurve, GearHits, fillet_curve
+from facegear.geometry.pinion_surface import SurfacePoints
+
+
+@dataclass(frozen=True, eq=False)
+class PinionSurface:
+    """The pinion's pressure hats and the exact points their integrals are taken at.
+
+    For q points: `at` (q, 2) on the refined lattice, `points`, `area` (q,) m2, `lever_arm` (q,) m (speed
+    along the normal per rotation), `hats` (q, n) their values, four a point; `element` (q,) the flat index of
+    the unrefined element (ne_u, ne_v) a point belongs to.
+    """
+
+    design: PairDesign
+    side: ContactSide
+    lattice: Lattice
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Refined lattice."""
+        return self.lattice.shape
+
+    def exact(self, at: NDArray[np.float64]) -> SurfacePoints:
+        """Points at refined lattice coordinates (n, 2)."""
+        return pinion_points(self.design, self.side, self.lattice.refinement, at)
+
+    @cached_property
+    def nodes(self) -> NDArray[np.float64]:
+        """Positions (n, 3) of the refined nodes, m."""
+        at = np.stack(np.meshgrid(*map(np.arange, self.shape), indexing="ij"), axis=-1).reshape(-1, 2)
+        return self.exact(at.astype(float)).position
+
+    @cached_property
+    def pressure(self) -> Basis:
+        return pressure_basis(self.shape)
+
+    @cached_property
+    def at(self) -> NDArray[np.float64]:
+        return cell_points(self.pressure)
+
+    @cached_property
+    def points(self) -> SurfacePoints:
+        return self.exact(self.at)
+
+    @cached_property
+    def area(self) -> NDArray[np.float64]:
+        return cell_areas(self.nodes.reshape(*self.shape, 3), self.pressure)
+
+    @cached_property
+    def lever_arm(self) -> NDArray[np.float64]:
+        return self.points.lever_arm
+
+    @cached_property
+    def hats(self) -> sp.csr_matrix:
+        return hat_values(self.pressure)
+
+    @cached_property
+    def full_area(self) -> NDArray[np.float64]:
+        """Area (n,) of each hat where nothing is cut off."""
+        return self.hats.T @ self.area
+
+    @cached_property
+    def row_height(self) -> float:
+        """Mean distance (m) of node rows: the height that a pressure at an edge is averaged over."""
+        return float(self.area.sum()) / self.width / (self.shape[0] - 1)
+
+    @property
+    def width(self) -> float:
+        """Along the tooth, m."""
+        return float(np.ptp(self.side.v[0]))
+
+    @cached_property
+    def element(self) -> NDArray[np.int64]:
+        row, column = np.floor(self.at / (2 * self.lattice.factors)).astype(np.int64).T
+        return row * ((self.side.shape[1] - 1) // 2) + column
+
+    @cached_property
+    def tip(self) -> tuple[NDArray[np.float64], SurfacePoints]:
+        """Lattice coordinates (q, 2) of points along the tip edge, and the points."""
+        along, _, _ = edge_hats(self.shape[1])
+        coordinates = np.stack([np.zeros(along.size), along], axis=1)
+        return coordinates, self.exact(coordinates)
+
+    @cached_property
+    def fillet_nodes(self) -> NDArray[np.float64]:
+        """Angles gamma (rad) of the fillet's rows before refinement, from the flank's last on."""
+        return np.concatenate([self.side.junction[:1], self.side.u[self.side.flank_rows :, 0]])
+
+    @cached_property
+    def fillet_curve(self) -> FilletCurve | None:
+        """The part of the fillet's section that can touch, None where none can."""
+        ends = self.fillet_nodes
+        return fillet_curve(self.design, ends[0], ends[-1]) if ends.size > 1 else None
+
+    @cached_property
+    def probes(self) -> tuple[SurfacePoints, NDArray[np.int64]]:
+        """Points of the lattice before refinement, and the nodes (elements, 9) of its elements."""
+        nu, nv = self.side.shape
+        nodes = np.arange(nu * nv).reshape(nu, nv)
+        coarse = np.stack(np.meshgrid(np.arange(nu), np.arange(nv), indexing="ij"), axis=-1).reshape(-1, 2)
+        points = self.exact(coarse * self.lattice.factors.astype(float))
+        corners = [nodes[a : nu - 2 + a : 2, b : nv - 2 + b : 2].ravel() for a in range(3) for b in range(3)]
+        return points, np.stack(corners, axis=-1)
+
+    def on_flank(self, at: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Which refined coordinates (n, 2) lie on the flank, not on the fillet."""
+        return at[:, 0] <= (self.side.flank_rows - 1) * self.lattice.refinement.profile
+
+    def coordinates(
+        self, flank: NDArray[np.float64], fillet: NDArray[np.float64], y: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Refined lattice coordinates (n, 2) of feet as in `EdgeFeet`, nan beside the pinion's ends."""
+        rows, columns = self.side.flank_rows, self.shape[1] - 1
+        gammas = self.fillet_nodes
+        beyond = rows - 1 + np.interp(fillet, gammas, np.arange(gammas.size))
+        row = np.where(np.isnan(flank), beyond, flank * (rows - 1)) * self.lattice.refinement.profile
+        column = (y - self.side.v[0, 0]) / self.width * columns
+        return np.stack([row, np.where((column >= 0) & (column <= columns), column, np.nan)], axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class GearSurface:
+    """The gear's contact surface: from what a pinion normal hits to refined lattice coordinates."""
+
+    design: PairDesign
+    side: ContactSide
+    lattice: Lattice
+
+    @cached_property
+    def tip(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Lattice coordinates (q, 2) of points of the left tip edge, and the points (q, 3) of tooth 0, m."""
+        gear, columns = self.design.face_gear, self.lattice.shape[1]
+        along, _, _ = edge_hats(columns)
+        radius = gear.inner_radius + along / (columns - 1) * (gear.outer_radius - gear.inner_radius)
+        points = face_gear.tip_edge(self.design, radius) * np.array([-1.0, 1.0, 1.0])
+        return np.stack([np.zeros(along.size), along], axis=1), points
+
+    @cached_property
+    def _fillet_nodes(self) -> NDArray[np.float64]:
+        """chi over its value at the flank's end, at the fillet rows' nodes (the same on all planes)."""
+        end = face_gear.fillet_end(self.design, self.side.v[-1])[0]
+        return np.concatenate([[1.0], self.side.u[self.side.flank_rows :, 0] / end])
+
+    def coordinates(
+        self, hits: GearHits, fillet: bool, edge: float | NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Lattice coordinates (p, n, 2), nan where nothing that can touch is hit.
+
+        With `fillet`, the fillet and the tip land within `edge` (m) of the flank count too; the latter moves
+        as the tip edge does.
+        """
+        face, rows, known = self.design.face_gear, self.side.flank_rows, self._fillet_nodes
+        row = hits.flank * (rows - 1)
+        if fillet and known.size > 1:
+            on = hits.fillet >= known[-1]
+            row = np.where(on, rows - 1 + np.interp(-hits.fillet, -known, np.arange(known.size)), row)
+        if fillet:
+            row = np.where(hits.beyond <= edge, 0.0, row)
+        along = (hits.radius - face.inner_radius) / (face.outer_radius - face.inner_radius)
+        column = along * (self.side.shape[1] - 1)
+        return np.stack([row, column], axis=-1) * self.lattice.factors
+
+
+@dataclass(frozen=True, eq=False)
+class FlankPair:
+    """The flanks of a pair that touch when the pinion drives."""
+
+    pinion: PinionSurface
+    gear: GearSurface
+
+    @property
+    def design(self) -> PairDesign:
+        return self.pinion.design
+
+
+def flank_pair(
+    design: PairDesign,
+    sides: tuple[ContactSide, ContactSide],
+    cuts: tuple[Refinement, Refinement],
+    linear: bool = False,
+) -> FlankPair:
+    """Contact surfaces of pinion and gear, each refined by its own cuts."""
+    first, second = (Lattice(side.shape, cut, linear) for side, cut in zip(sides, cuts, strict=True))
+    return FlankPair(PinionSurface(design, sides[0], first), GearSurface(design, sides[1], second))

@@ -1,0 +1,161 @@
+"""The contact of a pair at one position, at every torque."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.contact.candidates import Candidates
+from facegear.contact.solver import ContactSolution
+from facegear.contact.strip import Bodies, solve_torques
+from facegear.errors import NotConverged
+from facegear.geometry.unloaded import PAIRS
+
+FIRST_GUESS = 40e-6
+"""Approach (m) that the candidates of the first solution must cover; later ones follow the solutions."""
+
+MARGIN = 1.15
+
+ENLARGEMENTS = 12
+
+
+class PairAtPosition(Bodies, Protocol):
+    """Two gears at one position: what the solution of their contact has to know about them.
+
+    `position` 0..1 of a pitch; `unloaded` transmission error (m) there; the pinion's `base_radius` (m).
+    """
+
+    @property
+    def position(self) -> float: ...
+
+    @property
+    def unloaded(self) -> float: ...
+
+    @property
+    def base_radius(self) -> float: ...
+
+    def candidates(self, limit: float) -> list[Candidates]:
+        """Loads of all pairs of teeth that a turn of the pinion by `limit` (rad) would close."""
+
+
+@dataclass(frozen=True, eq=False)
+class Spot:
+    """Loaded hats of one pair at one position and torque: lattice node, force (N), pressure (Pa).
+
+    `whole` marks hats that no edge of either tooth cuts.
+    """
+
+    tooth: int
+    hats: NDArray[np.int64]
+    force: NDArray[np.float64]
+    pressure: NDArray[np.float64]
+    whole: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedPosition:
+    """One position at one torque.
+
+    `position` 0..1 of a pitch; `torque` N m on the pinion; transmission errors (m) along the line of action,
+    the pinion ahead of the gear positive, `ste` loaded and `unloaded`; stiffnesses (N/m) on the line of
+    action; `share` (5,) of the torque carried by the pairs -2..2; `residual` of the contact conditions.
+    """
+
+    position: float
+    torque: float
+    ste: float
+    unloaded: float
+    k_average: float
+    k_local: float
+    share: NDArray[np.float64]
+    residual: float
+    steps: int
+    candidates: int
+    spots: tuple[Spot, ...]
+
+    @property
+    def pairs_in_contact(self) -> int:
+        return int(np.count_nonzero(self.share))
+
+    @property
+    def peak_pressure(self) -> float:
+        """Largest pressure away from edges, Pa."""
+        return max((float(spot.pressure[spot.whole].max(initial=0.0)) for spot in self.spots), default=0.0)
+
+    @property
+    def edge_pressure(self) -> float:
+        """Largest pressure at an edge, Pa; without relief it grows as the mesh is refined."""
+        return max((float(spot.pressure[~spot.whole].max(initial=0.0)) for spot in self.spots), default=0.0)
+
+
+def solve_position(
+    pair: PairAtPosition, torques: Sequence[float], guess: float
+) -> tuple[list[LoadedPosition], float]:
+    """All torques (N m) of a position.
+
+    `guess` is a first guess of the largest turn (rad); the largest turn found is returned with the results,
+    as the next guess. Raises NotConverged naming position and torque.
+    """
+    limit = MARGIN * guess
+    order = np.argsort(torques)[::-1]
+
+    def where(torque: float) -> str:
+        return f"position {pair.position:.6f}, torque {torque:g} N m"
+
+    for _ in range(ENLARGEMENTS):
+        candidates = pair.candidates(limit)
+        if not candidates:
+            limit *= 4.0
+            continue
+        loads = [float(torques[index]) for index in order]
+        contacts = solve_torques(candidates, limit, loads, pair, where)
+        if contacts[0].rotation <= limit:
+            break
+        limit = MARGIN * contacts[0].rotation
+    else:
+        tried = f"candidates of {ENLARGEMENTS} turns up to {limit:.2e} rad"
+        raise NotConverged("contact", where(max(torques)), tried)
+    results = [_result(pair, candidates, contacts[i]) for i in np.argsort(order)]
+    return results, contacts[0].rotation
+
+
+def _result(
+    pair: PairAtPosition,
+    candidates: list[Candidates],
+    contact: ContactSolution,
+) -> LoadedPosition:
+    base = pair.base_radius
+    share = np.zeros(len(PAIRS))
+    spots, start = [], 0
+    for loads in candidates:
+        rows = slice(start, start + len(loads.hats))
+        start = rows.stop
+        force = contact.force[rows]
+        share[np.searchsorted(PAIRS, loads.tooth)] = force @ loads.lever_arm / contact.torque
+        on = force > 0.0
+        if on.any():
+            spots.append(
+                Spot(
+                    tooth=loads.tooth,
+                    hats=loads.hats[on],
+                    force=force[on],
+                    pressure=force[on] / loads.area[on],
+                    whole=loads.whole[on],
+                )
+            )
+    approach = base * contact.rotation
+    return LoadedPosition(
+        position=pair.position,
+        torque=contact.torque,
+        ste=pair.unloaded + approach,
+        unloaded=pair.unloaded,
+        k_average=contact.torque / base / approach,
+        k_local=1.0 / (base**2 * contact.slope),
+        share=share,
+        residual=contact.residual,
+        steps=contact.steps,
+        candidates=len(contact.force),
+        spots=tuple(spots),
+    )

@@ -1,0 +1,161 @@
+"""What of the gear's tooth stands opposite points of the pinion, and the reverse for the gear's tip edge."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from facegear.geometry import face_gear, pinion
+from facegear.geometry.design import PairDesign
+from facegear.geometry.pinion_surface import SurfacePoints, fillet_points
+from facegear.geometry.placement import to_pinion_section
+from facegear.geometry.separation import FILLET, FLANK, TIP_LAND, Separation, separation
+
+Array = NDArray[np.float64]
+
+FILLET_SAMPLES = 2000
+
+
+@dataclass(frozen=True)
+class GearHits:
+    """Where the normals of n pinion points meet a gear tooth at p placements, all (p, n), nan where not.
+
+    gap (m); radius: gear radius (m). One of three says how far from the flank's tip edge: on the flank
+    `flank`, 0..1 of its roll angles there, on the fillet `fillet`, 1..0, chi over its value at the flank's
+    end, on the tip land `beyond` (m) the edge, around the gear.
+    """
+
+    gap: Array
+    radius: Array
+    flank: Array
+    fillet: Array
+    beyond: Array
+
+
+@dataclass(frozen=True)
+class EdgeFeet:
+    """Where pinion normals through n points of the gear's tip edge stand on a pinion tooth, all (n,).
+
+    gap (m), inf where there is none; lever_arm (m) of the normal about the pinion's axis; y (m). Either
+    `flank`, 0..1 in the square of the roll angle from tip to fillet, or `fillet`, the angle gamma (rad)
+    there, is not nan.
+    """
+
+    gap: Array
+    lever_arm: Array
+    y: Array
+    flank: Array
+    fillet: Array
+
+
+@dataclass(frozen=True, eq=False)
+class FilletCurve:
+    """Points (n, 2) of the pinion's fillet in its section (x, -z), outward normals (n, 2), gamma (n,) rad."""
+
+    points: Array
+    normals: Array
+    gamma: Array
+
+
+def fillet_curve(design: PairDesign, first: float, last: float) -> FilletCurve:
+    """Many points of the pinion's fillet between two angles gamma (rad)."""
+    gamma = np.linspace(first, last, FILLET_SAMPLES)
+    found = fillet_points(design, gamma, design.mean_radius)
+    points, normals = (part[:, [0, 2]] * np.array([1.0, -1.0]) for part in (found.position, found.normal))
+    return FilletCurve(points, normals, gamma)
+
+
+def gear_hits(
+    design: PairDesign,
+    points: SurfacePoints,
+    phi1: ArrayLike,
+    phi2: ArrayLike,
+    tooth: ArrayLike,
+    search_radius: float,
+) -> GearHits:
+    """Cut the normals of the pinion's points with the gear; arguments as in `separation`."""
+    return located(design, separation(design, points, phi1, phi2, tooth, search_radius))
+
+
+def located(design: PairDesign, seen: Separation) -> GearHits:
+    """Where on the gear's tooth a separation ends."""
+    radius, flank, fillet, beyond = (np.full(seen.gap.shape, np.nan) for _ in range(4))
+    on = seen.part == FLANK
+    point = face_gear.flank_point(design, seen.u[on], seen.v[on])
+    radius[on] = np.hypot(point[:, 0], point[:, 1])
+    tip = face_gear.tip_roll(design)(radius[on])
+    flank[on] = (seen.u[on] - tip) / (design.shaper_tip_roll - tip)
+    on = seen.part == FILLET
+    radius[on] = seen.v[on]
+    fillet[on] = seen.u[on] / face_gear.fillet_end(design, seen.v[on])
+    on = seen.part == TIP_LAND
+    radius[on] = seen.v[on]
+    edge = face_gear.tip_edge(design, seen.v[on])
+    beyond[on] = seen.v[on] * (np.arctan2(edge[:, 0], edge[:, 1]) - seen.u[on])
+    return GearHits(seen.gap, radius, flank, fillet, beyond)
+
+
+def tip_edge_feet(
+    design: PairDesign,
+    points: Array,
+    placement: tuple[float, float],
+    teeth: NDArray[np.int64],
+    fillet: FilletCurve | None,
+    search_radius: float,
+) -> list[EdgeFeet]:
+    """Points (n, 3) of the gear's left tip edge (tooth 0, body frame) against the flanks of pinion teeth.
+
+    placement: phi1, phi2 (rad). Beside the flank the fillet is looked at, unless that is None.
+    """
+    phi1, phi2 = (np.array([angle]) for angle in placement)
+    found = []
+    for section in to_pinion_section(design, points, phi1, phi2, np.asarray(teeth))[0]:
+        feet = _flank_feet(design, section)
+        if fillet is not None:
+            beside = ~np.isfinite(feet.gap)
+            there = _fillet_feet(design, section[beside], fillet, search_radius)
+            feet.gap[beside], feet.fillet[beside], feet.lever_arm[beside] = there
+        found.append(feet)
+    return found
+
+
+def _flank_feet(design: PairDesign, section: Array) -> EdgeFeet:
+    """Where the involute's normals through points (q, 3) meet it.
+
+    All normals touch the base circle, so that the distance along them is that of two parallel involutes.
+    """
+    base = design.pinion_base_radius
+    ratio = np.hypot(section[:, 0], section[:, 1]) / base
+    roll = np.sqrt(np.maximum(ratio**2 - 1, 0.0))
+    start = np.arctan2(section[:, 0], section[:, 1]) + roll - np.arctan(roll)
+    turn = start - design.pinion_half_base_angle
+    foot = roll - turn
+    top, bottom = design.pinion_tip_roll, pinion.junction_roll(design)
+    on = (ratio > 1) & (foot <= top) & (foot >= bottom) & (np.abs(turn) * base < design.module)
+    gap = base * turn + pinion.removed(design, foot, section[:, 2])
+    return EdgeFeet(
+        gap=np.where(on, gap, np.inf),
+        lever_arm=np.full(on.shape, base),
+        y=section[:, 2],
+        flank=np.where(on, (top**2 - foot**2) / (top**2 - bottom**2), np.nan),
+        fillet=np.full(on.shape, np.nan),
+    )
+
+
+def _fillet_feet(
+    design: PairDesign, section: Array, fillet: FilletCurve, search_radius: float
+) -> tuple[Array, Array, Array]:
+    """Gap (inf: none), gamma and lever arm at the nearest of many points of the fillet, its ends left out."""
+    curve, normal = fillet.points, fillet.normals
+    gap, gamma, lever_arm = (np.full(len(section), value) for value in (np.inf, np.nan, 0.0))
+    low, high = curve.min(axis=0) - search_radius, curve.max(axis=0) + search_radius
+    close = np.flatnonzero(((section[:, :2] > low) & (section[:, :2] < high)).all(axis=1))
+    here = section[close]
+    nearest = np.argmin(np.linalg.norm(here[:, None, :2] - curve, axis=2), axis=1)
+    apart = np.sum((here[:, :2] - curve[nearest]) * normal[nearest], axis=1)
+    apart += pinion.removed(design, pinion.junction_roll(design), here[:, 2])
+    on = (nearest > 0) & (nearest < len(curve) - 1) & (np.abs(apart) < search_radius)
+    close, nearest = close[on], nearest[on]
+    gap[close], gamma[close] = apart[on], fillet.gamma[nearest]
+    lever_arm[close] = curve[nearest, 1] * normal[nearest, 0] - curve[nearest, 0] * normal[nearest, 1]
+    return gap, gamma, lever_arm
