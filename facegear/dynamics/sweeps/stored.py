@@ -19,9 +19,11 @@ DIMENSIONS = {
     **dict.fromkeys(PER_SPEED, 1),
     "spectrum": 3,
 }
-SHAPES: dict[str, tuple[int | None, ...]] = {
-    f"{part}_{name}": (None,) * DIMENSIONS[name] for part in ("before", "own") for name in NAMES
-} | {f"{part}_{name}_known": (None,) for part in ("before", "own") for name in MAY_LACK}
+_PER_PART: dict[str, tuple[int | None, ...]] = {
+    **{name: (None,) * DIMENSIONS[name] for name in NAMES},
+    **{f"{name}_known": (None,) for name in MAY_LACK},
+}
+SHAPES = {f"{part}_{name}": shape for part in ("before", "own") for name, shape in _PER_PART.items()}
 
 
 def to_arrays(before: Piece, own: Piece) -> dict[str, NDArray]:

@@ -73,7 +73,7 @@ def _rms_errors(model: Model, piece: Piece, settings: Settings) -> tuple[int, Ar
     periodic = np.flatnonzero(piece.periodic)
     errors = []
     for i in periodic:
-        best = collect(model, run_speeds(model, piece.speeds[i : i + 1], tight, piece.state(i)))
+        best = collect(model, run_speeds(model, piece.speeds[i : i + 1], tight, piece.state(int(i))))
         if best.period[0] == piece.period[i]:
             found, exact = piece.deflection_ac_rms[i], best.deflection_ac_rms[0]
             errors.append(np.abs(found - exact).max() / exact.max())
