@@ -1,0 +1,69 @@
+"""Quasi-static load sharing until every tooth has met every other: the machine turned slowly under torque."""
+
+from dataclasses import dataclass
+from math import lcm
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.load_sharing.coefficients import sharing_coefficient
+from facegear.load_sharing.groups import LoadGroup, load_groups
+from facegear.transmission.machine import Machine
+from facegear.transmission.statics import Equilibria, bearing_forces, equilibria
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class HuntingCycle:
+    """K = mesh cycles x positions of the quasi-static motion.
+
+    cycles (K,) mesh cycles since the start; found holds flank forces and displacements; bearings (K, bodies,
+    3) the force of each body on its bearing along x, y, z, N.
+    """
+
+    machine: Machine
+    positions: int
+    cycles: Array
+    found: Equilibria
+    bearings: Array
+
+    @property
+    def loads(self) -> Array:
+        """Load of each mesh (K, meshes), N: its more heavily loaded flank."""
+        drive, back = np.split(self.found.flank_forces, 2, axis=1)
+        return np.maximum(drive, back)
+
+    @property
+    def groups(self) -> tuple[LoadGroup, ...]:
+        """Meshes that share one load."""
+        return load_groups(self.machine.layout)
+
+    def coefficients(self, group: LoadGroup) -> Array:
+        """Largest load of a group over its mean (K,); nan where none carries any."""
+        return sharing_coefficient(self.loads[:, list(group.meshes)])
+
+    def path_factors(self, group: LoadGroup) -> Array:
+        """K_gamma of each path (meshes of the group,): its largest load over an even share of the mean."""
+        loads = self.loads[:, list(group.meshes)]
+        even = loads.mean()
+        return loads.max(axis=0) / even if even > 0.0 else np.full(loads.shape[1], np.nan)
+
+
+def hunting_length(machine: Machine) -> int:
+    """Mesh cycles until the pattern repeats: 1 without runouts and pitch errors."""
+    errors, layout = machine.imperfections, machine.layout
+    pinions = bool(errors.pinion_pitch) or any(one.amplitude != 0.0 for one in errors.pinion_runout)
+    gears = bool(errors.gear_pitch) or any(one.amplitude != 0.0 for one in errors.gear_runout)
+    return lcm(layout.pinion_teeth if pinions else 1, layout.gear_teeth if gears else 1)
+
+
+def hunting_cycle(machine: Machine, positions: int = 16, every: int = 1) -> HuntingCycle:
+    """Equilibrium at `positions` of every mesh cycle until the pattern repeats, or of every so many of them.
+
+    The limit of slow running: damping and inertia vanish. Raises NotConverged.
+    """
+    whole = np.arange(0, hunting_length(machine), every)
+    cycles = (whole[:, None] + np.arange(positions) / positions).ravel()
+    found = equilibria(machine, cycles)
+    return HuntingCycle(machine, positions, cycles, found, bearing_forces(machine, found))

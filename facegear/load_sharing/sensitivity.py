@@ -1,0 +1,132 @@
+"""How load sharing answers to every single error, and to the stiffness of the bearings."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+
+from facegear.load_sharing.hunting import HuntingCycle, hunting_cycle, hunting_length
+from facegear.transmission.imperfections import Imperfections, Runout, perfect
+from facegear.transmission.layout import Layout, MeshKinematics, Role
+from facegear.transmission.machine import Machine, balanced_torques
+
+STEP = 0.5e-6
+POSITIONS = 8
+BEARINGS = np.geomspace(1e6, 1e11, 26)
+
+
+def worst_factor(run: HuntingCycle, kind: str | None = None) -> float:
+    """Largest K_gamma of all paths, or of the groups of one kind; nan where there is none."""
+    factors = [run.path_factors(one).max() for one in run.groups if kind in (None, one.kind.value)]
+    return max(factors, default=float("nan"))
+
+
+def sensitivities(machine: Machine, every: int = 7) -> pd.DataFrame:
+    """Change of K_gamma per um of each error, one row an error and group, largest first.
+
+    Columns error, group, per_um. Central differences of half a micrometre about the machine as it is; sizes
+    that cannot be negative count from where they are. Where something turns slowly one position is taken in
+    `every` mesh cycle of so many, which meets all places of pinion and gear as evenly as taking all.
+    """
+    rows = []
+    for name, low, high, width in _changes(machine):
+        ends = [_coarse_cycle(replace(machine, imperfections=one), every) for one in (low, high)]
+        for group in ends[0].groups:
+            before, after = (run.path_factors(group).max() for run in ends)
+            rows.append((name, group.name, 1e-6 * (after - before) / width))
+    frame = pd.DataFrame(rows, columns=["error", "group", "per_um"])
+    return frame.sort_values("per_um", key=np.abs, ascending=False, ignore_index=True)
+
+
+def _coarse_cycle(machine: Machine, every: int) -> HuntingCycle:
+    slow = hunting_length(machine) > 1
+    return hunting_cycle(machine, 1 if slow else POSITIONS, every if slow else 1)
+
+
+def bearing_scan(machine: Machine) -> pd.DataFrame:
+    """K_gamma of each kind of group against bearing stiffness of inputs or idlers, both kinematics.
+
+    Columns kinematics, varied, stiffness_n_per_m, kind, k_gamma; over one mesh cycle, with constant errors of
+    meshes only.
+    """
+    rows = []
+    for kinematics in MeshKinematics:
+        based = _with_kinematics(machine, kinematics)
+        for varied, roles in (("inputs", (Role.INPUT,)), ("idlers", (Role.IDLER, Role.TAIL))):
+            for stiffness in BEARINGS:
+                run = hunting_cycle(_with_bearings(based, roles, float(stiffness)), POSITIONS)
+                for kind in dict.fromkeys(group.kind.value for group in run.groups):
+                    rows.append((kinematics.value, varied, stiffness, kind, worst_factor(run, kind)))
+    columns = ["kinematics", "varied", "stiffness_n_per_m", "kind", "k_gamma"]
+    return pd.DataFrame(rows, columns=columns)
+
+
+def _changes(machine: Machine) -> Iterator[tuple[str, Imperfections, Imperfections, float]]:
+    """Name, errors a little smaller and larger, their distance (m)."""
+    layout, base = machine.layout, machine.imperfections
+    own = replace(base, half_backlash=machine.half_backlashes)
+    for mesh, name in enumerate(layout.mesh_names):
+        yield f"error {name}", *_moved(own, "error", mesh), 2 * STEP
+        low, high = _moved(own, "half_backlash", mesh)
+        yield f"backlash {name}", low, high, 4 * STEP
+    for i, pinion in enumerate(layout.pinions):
+        for k, letter in enumerate("xy"):
+            yield f"position {letter} {pinion.name}", *_moved(own, "position", (i, k)), 2 * STEP
+        if own.clearance[i] > STEP:
+            yield f"clearance {pinion.name}", *_moved(own, "clearance", i), 2 * STEP
+    for key, names in (
+        ("pinion_runout", [pinion.name for pinion in layout.pinions]),
+        ("gear_runout", [gear.name for gear in layout.gears]),
+    ):
+        for body, name in enumerate(names):
+            runouts = list(getattr(own, key))
+            now = runouts[body]
+            ends = []
+            for amplitude in (max(now.amplitude - STEP, 0.0), now.amplitude + STEP):
+                runouts[body] = Runout(amplitude, now.phase)
+                ends.append(replace(own, **{key: tuple(runouts)}))
+            yield f"runout {name}", *ends, now.amplitude + STEP - max(now.amplitude - STEP, 0.0)
+
+
+def _moved(base: Imperfections, key: str, index: int | tuple[int, int]) -> list[Imperfections]:
+    ends = []
+    for change in (-STEP, STEP):
+        values = getattr(base, key).copy()
+        values[index] += change
+        ends.append(replace(base, **{key: values}))
+    return ends
+
+
+def _with_kinematics(machine: Machine, kinematics: MeshKinematics) -> Machine:
+    """The machine with the other way of counting deflections, keeping mesh errors, backlash and stiffness."""
+    layout = machine.layout
+    conjugate = layout.pinion_radius * layout.gear_teeth / layout.pinion_teeth
+    radius = conjugate / np.cos(layout.pressure_angle)
+    if kinematics is MeshKinematics.GEOMETRIC:
+        radius = conjugate
+    gears = tuple(replace(gear, body=replace(gear.body, tilt=None)) for gear in layout.gears)
+    other = replace(layout, gear_radius=float(radius), kinematics=kinematics, gears=gears)
+    kept = machine.imperfections
+    errors = replace(
+        perfect(other), error=kept.error, half_backlash=kept.half_backlash, stiffness=kept.stiffness
+    )
+    torques = balanced_torques(other, machine.torques[: len(layout.pinions)])
+    return replace(machine, layout=other, torques=torques, imperfections=errors)
+
+
+def _with_bearings(machine: Machine, roles: tuple[Role, ...], stiffness: float) -> Machine:
+    return replace(machine, layout=_stiffened(machine.layout, roles, stiffness))
+
+
+def _stiffened(layout: Layout, roles: tuple[Role, ...], stiffness: float) -> Layout:
+    pinions = tuple(
+        replace(
+            pinion,
+            body=replace(pinion.body, bearing=(stiffness, stiffness, pinion.body.bearing[2]), bearing_xy=0.0),
+        )
+        if pinion.role in roles
+        else pinion
+        for pinion in layout.pinions
+    )
+    return replace(layout, pinions=pinions)

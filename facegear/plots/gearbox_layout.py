@@ -1,0 +1,103 @@
+"""The machine seen from above, to scale: where pinions stand, which way bodies turn, what meshes carry."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle, FancyArrowPatch, Polygon
+
+from facegear.plots.style import styled
+from facegear.transmission.layout import Layout, Role, Side
+
+ROLE_COLOUR = {Role.INPUT: "tab:blue", Role.IDLER: "0.55", Role.TAIL: "tab:purple"}
+MESH, BEARING = "tab:red", "tab:green"
+LONGEST = 0.55
+"""Longest arrow over the mesh radius."""
+HALF_FACE = 0.06
+"""Half of the drawn face width over the mesh radius."""
+
+
+def layout_figure(layout: Layout, meshes: pd.DataFrame, bearings: pd.DataFrame) -> Figure:
+    """One panel a face gear, upper first; tables as the hunting cycle's.
+
+    Red: mean tangential force of each pinion on the gear; green: mean force on bearings, of the pinions
+    (tangential) outside the upper gear, of the gear from its centre.
+    """
+    loads = meshes.set_index("mesh")
+    forces = bearings.set_index("body")
+    cosine = np.cos(layout.pressure_angle)
+    largest = max(loads["mean_n"].max() * cosine, forces[["mean_x_n", "mean_y_n"]].abs().to_numpy().max())
+    order = sorted(range(len(layout.gears)), key=lambda g: layout.gears[g].side is Side.LOWER)
+    with styled():
+        figure, axes = plt.subplots(1, len(order), figsize=(5.4 * len(order), 6.0), squeeze=False)
+        for axis, g in zip(axes[0], order, strict=True):
+            _panel(axis, layout, g, loads, forces, layout.mesh_radius * LONGEST / max(largest, 1e-300))
+        handles = [
+            plt.Line2D(
+                [], [], color=MESH, lw=2, label=f"mesh force on the gear, largest {_kilo(largest)} kN"
+            ),
+            plt.Line2D([], [], color=BEARING, lw=2, label="force on bearings, same scale"),
+            *(plt.Line2D([], [], color=c, lw=6, label=f"{r.value} pinion") for r, c in ROLE_COLOUR.items()),
+        ]
+        figure.legend(handles=handles, loc="outside lower center", ncols=2)
+    return figure
+
+
+def _panel(
+    axis: Axes, layout: Layout, g: int, loads: pd.DataFrame, forces: pd.DataFrame, metres: float
+) -> None:
+    gear, radius = layout.gears[g], layout.mesh_radius
+    turns = -1.0 if gear.side is Side.LOWER else 1.0
+    for edge in (1.0 - HALF_FACE, 1.0 + HALF_FACE):
+        axis.add_patch(Circle((0.0, 0.0), edge * radius, fill=False, color="0.6", lw=1.0))
+    _turn_arrow(axis, 0.55 * radius, turns)
+    half_width = 0.5 * layout.mesh_radius * layout.pinion_teeth / layout.gear_teeth
+    for i, pinion in enumerate(layout.pinions):
+        angle = layout.angles[i]
+        along = np.array([np.cos(angle), np.sin(angle)])
+        outwards = np.array([np.sin(angle), -np.cos(angle)])
+        middle = radius * outwards
+        corners = [
+            middle + a * half_width * along + b * HALF_FACE * radius * outwards
+            for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+        ]
+        axis.add_patch(Polygon(corners, color=ROLE_COLOUR[pinion.role], alpha=0.55, lw=0))
+        row = loads.loc[layout.mesh_names[layout.mesh_index(i, gear.side)]]
+        drives = 1.0 if row["drive_share"] >= row["back_share"] else -1.0
+        force = turns * drives * row["mean_n"] * np.cos(layout.pressure_angle) * along
+        _arrow(axis, middle, metres * force, MESH)
+        if gear.side is Side.UPPER or len(layout.gears) == 1:
+            outside = (1.0 + 2.5 * HALF_FACE) * radius * outwards
+            _arrow(axis, outside, metres * forces.loc[pinion.name, "mean_x_n"] * along, BEARING)
+        place = 1.42 * radius * outwards
+        told = f"{pinion.name}\n{np.degrees(angle):.2f} deg\n{_kilo(row['mean_n'])} kN"
+        axis.text(*place, told, ha="center", va="center", fontsize=8)
+    own = forces.loc[gear.name]
+    _arrow(axis, np.zeros(2), metres * own[["mean_x_n", "mean_y_n"]].to_numpy(float), BEARING)
+    told = f"axial on its bearing {own['mean_z_n'] / 1e3:+.1f} kN"
+    axis.set_title(f"{gear.name.capitalize()}, seen from above\n{told}")
+    reach = 1.62 * radius
+    axis.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
+    axis.text(0.0, 0.3 * radius, f"mesh radius\n{1e3 * radius:.1f} mm", ha="center", va="center", fontsize=8)
+    axis.set_axis_off()
+
+
+def _turn_arrow(axis: Axes, radius: float, turns: float) -> None:
+    ends = np.radians([200.0, 250.0]) if turns > 0.0 else np.radians([250.0, 200.0])
+    start, stop = ((radius * np.cos(a), radius * np.sin(a)) for a in ends)
+    bend = f"arc3,rad={0.25 * turns}"
+    arrow = FancyArrowPatch(start, stop, connectionstyle=bend, arrowstyle="-|>", mutation_scale=18, color="k")
+    axis.add_patch(arrow)
+
+
+def _arrow(axis: Axes, start: np.ndarray, vector: np.ndarray, colour: str) -> None:
+    if np.hypot(*vector) > 0.0:
+        arrow = FancyArrowPatch(
+            start, start + vector, arrowstyle="-|>", mutation_scale=12, color=colour, lw=2
+        )
+        axis.add_patch(arrow)
+
+
+def _kilo(newtons: float) -> str:
+    return f"{newtons / 1e3:.1f}"
