@@ -31,6 +31,9 @@ class LoadSharing(Section):
     confidence: float = Field(0.95, gt=0.5, lt=1.0)
     quasi_static_rpm: float = Field(10.0, ge=1, le=1000, description="speed of the slow run")
     speed_range: SpeedRangeSection = SpeedRangeSection()
+    hunting_positions: int = Field(
+        16, ge=1, le=256, description="positions of each mesh cycle in the quasi-static hunting cycle"
+    )
 
 
 def sharing_options(section: LoadSharing) -> SharingOptions:

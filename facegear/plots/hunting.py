@@ -42,7 +42,7 @@ def hunting_figure(cycles: pd.DataFrame, meshes: pd.DataFrame, torque: float) ->
 
 
 def bearing_figure(scan: pd.DataFrame, torque: float) -> Figure:
-    """K_gamma against the bearing stiffness of the inputs (left) and of the idlers (right), both kinematics."""
+    """K_gamma against bearing stiffness of the inputs (left) and of the idlers (right), both kinematics."""
     kinds = list(scan["kind"].unique())
     with styled():
         figure, axes = plt.subplots(1, 2, figsize=(8.2, 4.2), sharey=True)

@@ -14,6 +14,10 @@ CAPTIONS = {
     "fig11": "Figure 11: RMS of the face gears' translations over speed.",
     "fig12": "Figure 12: RMS of the mesh deflections, speed rising and falling; ticks mark jumps.",
     "waterfall": "Spectra over speed.",
+    "layout": "The machine to scale: directions of rotation, mean forces of meshes and on bearings, at rest.",
+    "hunting": "Share of each mesh in its group's load over the hunting cycle, quasi-static.",
+    "bearing_stiffness": "K_gamma against the bearing stiffness of inputs and idlers, both kinematics.",
+    "sensitivity": "Change of K_gamma per micrometre of each error, largest first.",
 }
 
 CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
@@ -36,6 +40,12 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "The state is carried over from speed to speed, upwards and downwards. A class of motion stands "
         "beside every number; where the motion is not periodic the number is an average.",
         ("fig09", "fig10", "fig11", "fig12", "waterfall"),
+    ),
+    (
+        "Load sharing at rest",
+        "Every position of the hunting cycle as one contact problem with gaps, clearances and all errors. "
+        "K_gamma is a path's largest load over an even share of the group's mean; it falls with torque.",
+        ("layout", "hunting", "bearing_stiffness", "sensitivity"),
     ),
     (
         "Load sharing",

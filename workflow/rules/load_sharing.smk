@@ -31,6 +31,42 @@ rule load_sharing_reference:
         "../scripts/load_sharing_reference.py"
 
 
+rule hunting:
+    "Quasi-static load sharing over the hunting cycle"
+    input:
+        harmonics=shared("stiffness", "harmonics"),
+    output:
+        meshes="results/{case}/load_sharing/hunting_meshes.csv",
+        groups="results/{case}/load_sharing/hunting_groups.csv",
+        bearings="results/{case}/load_sharing/bearings.csv",
+        cycles="results/{case}/load_sharing/hunting_cycles.csv",
+        scan="results/{case}/load_sharing/bearing_stiffness.csv",
+        sensitivity="results/{case}/load_sharing/sensitivity.csv",
+        manifest="results/{case}/load_sharing/hunting.provenance.json",
+    params:
+        **machine_values(positions="load_sharing.hunting_positions"),
+    script:
+        "../scripts/hunting.py"
+
+
+rule hunting_figures:
+    "Layout of the machine with its forces, load sharing over the hunting cycle"
+    input:
+        meshes=rules.hunting.output.meshes,
+        groups=rules.hunting.output.groups,
+        bearings=rules.hunting.output.bearings,
+        cycles=rules.hunting.output.cycles,
+        scan=rules.hunting.output.scan,
+        sensitivity=rules.hunting.output.sensitivity,
+    output:
+        **pictures("load_sharing", "layout", "hunting", "bearing_stiffness", "sensitivity"),
+        manifest="results/{case}/figures/hunting_figures.provenance.json",
+    params:
+        **machine_values(),
+    script:
+        "../scripts/hunting_figures.py"
+
+
 rule load_sharing_summary:
     "Load sharing of all studies"
     input:

@@ -16,6 +16,8 @@ def stages(case):
     if SHARING_KINDS:
         found += [rules.load_sharing, rules.load_sharing_summary, rules.load_sharing_reference]
         found += [rules.load_sharing_figures] if STUDIES else []
+    if SHARING_KINDS and CASES[case]["transmission"]["mesh_kinematics"] == "geometric":
+        found += [rules.hunting, rules.hunting_figures]
     return found + ([rules.scorecard] if REPRODUCTION else [])
 
 

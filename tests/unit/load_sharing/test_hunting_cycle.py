@@ -1,0 +1,116 @@
+"""Quasi-static load sharing over the hunting cycle: length, balance, slow limit of the dynamics."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from lumped_machines import make_layout, make_machine
+
+from facegear.dynamics.motion import Settings
+from facegear.dynamics.steady_state.simulate import simulate
+from facegear.load_sharing.hunting import hunting_cycle, hunting_length
+from facegear.load_sharing.hunting_tables import bearing_table, cycle_table, group_table, mesh_table
+from facegear.load_sharing.sensitivity import bearing_scan, sensitivities
+from facegear.transmission.imperfections import Runout, perfect
+from facegear.transmission.layout import MeshKinematics
+
+LAYOUT = make_layout(kinematics=MeshKinematics.GEOMETRIC)
+
+
+def machine_with(torque=1500.0, **errors):
+    flaws = replace(perfect(LAYOUT), **errors)
+    return make_machine(LAYOUT, torque, tail_share=0.05, error=4e-6, imperfections=flaws)
+
+
+RUNOUTS = {"pinion_runout": (Runout(8e-6, 0.4),) * 5, "gear_runout": (Runout(15e-6, 1.0),) * 2}
+CONSTANT = {
+    "error": 1e-6 * np.array([4.0, -3, 6, 0, 2, -5, 1, 3, 0, -2]),
+    "position": 1e-6 * np.array([[3.0, 2], [-4, 1], [0, 5], [6, -2], [1, 1]]),
+}
+
+
+def test_the_pattern_repeats_after_the_teeth_in_common():
+    assert hunting_length(machine_with(**CONSTANT)) == 1
+    assert hunting_length(machine_with(pinion_runout=RUNOUTS["pinion_runout"])) == 23
+    assert hunting_length(machine_with(gear_runout=RUNOUTS["gear_runout"])) == 143
+    assert hunting_length(machine_with(**RUNOUTS)) == 23 * 143
+    whole = machine_with(gear_pitch={1: np.zeros(143)}, pinion_pitch={0: np.zeros(23)})
+    assert hunting_length(whole) == 3289
+
+
+def test_the_hunting_cycle_balances_every_torque_to_rounding():
+    run = hunting_cycle(machine_with(clearance=np.full(5, 20e-6), **RUNOUTS, **CONSTANT), 16, 100)
+    assert run.found.residual.max() < 1e-12
+    net = run.found.forces.reshape(len(run.cycles), 2, 5).sum(axis=1)
+    torques = np.broadcast_to(run.machine.torques[:5], net.shape)
+    np.testing.assert_allclose(net * LAYOUT.pinion_arm, torques, atol=2e-12 * np.abs(torques).max())
+
+
+def test_a_pitch_curve_that_is_a_runout_gives_the_runouts_shares():
+    """A gear's teeth displaced by e cos(angle) along the pitch circle are an eccentric gear."""
+    eccentric = hunting_cycle(machine_with(gear_runout=(Runout(), Runout(15e-6, 0.0))), 4)
+    teeth = np.arange(143)
+    curve = 15e-6 * np.cos(2.0 * np.pi * teeth / 143)
+    pitched = hunting_cycle(machine_with(gear_pitch={1: curve}), 4)
+    whole = slice(None, None, 4)
+    np.testing.assert_allclose(
+        pitched.found.forces[whole], eccentric.found.forces[whole], atol=1e-3 * eccentric.loads.max()
+    )
+
+
+def test_the_same_pattern_returns_after_the_hunting_cycle():
+    from facegear.transmission.statics import equilibria
+
+    machine = machine_with(**RUNOUTS)
+    first = equilibria(machine, np.array([0.3, 11.7])).flank_forces
+    again = equilibria(machine, np.array([0.3, 11.7]) + 3289).flank_forces
+    np.testing.assert_allclose(first, again, rtol=1e-9, atol=1e-9 * first.max())
+
+
+def test_statics_is_the_slow_limit_of_the_dynamics():
+    machine = machine_with(**CONSTANT)
+    samples = 32
+    still = hunting_cycle(machine, samples).found.forces
+    gaps = []
+    for speed in (80.0, 20.0):
+        settings = Settings(samples=samples, dwell=2, settle=2, window=1, refine=False)
+        moving = simulate(machine, speed, settings).forces[:samples]
+        gaps.append(np.abs(moving - still).max() / np.abs(still).max())
+    assert gaps[1] < 1e-3 and gaps[1] < 0.5 * gaps[0]
+
+
+def test_tables_tell_loads_factors_and_bearings_of_every_part():
+    run = hunting_cycle(machine_with(**CONSTANT), 8)
+    meshes, groups, bearings = mesh_table(run), group_table(run), bearing_table(run)
+    assert list(meshes["mesh"]) == list(LAYOUT.mesh_names)
+    assert list(bearings["body"]) == list(LAYOUT.body_names)
+    assert (meshes["drive_share"] + meshes["back_share"] + meshes["open_share"]).to_numpy() == pytest.approx(
+        1
+    )
+    inputs = groups[groups["kind"] == "inputs"]
+    assert ((inputs["largest"] >= 1.0) & (inputs["largest"] <= 2.0)).all()
+    mean = cycle_table(run).drop(columns="cycle").to_numpy()[0]
+    np.testing.assert_allclose(mean, meshes["mean_n"])
+    # All axial and tangential forces on the bearings come from the torques' meshes and close in themselves.
+    assert bearings["mean_z_n"].sum() == pytest.approx(-bearings["mean_y_n"][:5].sum(), rel=1e-9)
+
+
+def test_sharing_falls_with_torque_and_floats_only_with_true_signs():
+    factors = [group_table(hunting_cycle(machine_with(t), 4))["k_gamma"].max() for t in (1500.0, 6000.0)]
+    assert factors[1] < factors[0]
+    scan = bearing_scan(machine_with(**CONSTANT)).set_index(["kinematics", "varied", "kind"])["k_gamma"]
+    assert np.ptp(scan["printed", "inputs", "inputs"]) < 1e-9
+    soft_to_stiff = scan["geometric", "inputs", "inputs"].to_numpy()
+    assert (np.diff(soft_to_stiff) > -1e-9).all() and soft_to_stiff[-1] > soft_to_stiff[0] + 0.3
+
+
+def test_a_sensitivity_is_the_closed_forms_slope():
+    """Between held gears K = 1 + |F_u - F_l| / (F_u + F_l) and d(F_u - F_l)/dm = k / (1 + 2 k / k_in)."""
+    table = sensitivities(machine_with(6000.0)).set_index(["error", "group"])["per_um"]
+    own = abs(table["error right input/lower", "right input"])
+    total = 6000.0 / LAYOUT.pinion_arm
+    closed = 1e-6 * 4.1e8 / (1.0 + 2.0 * 4.1e8 / 6.5e7) / total
+    assert 0.3 * closed < own < 1.2 * closed
+    assert table["position x right input", "right input"] == pytest.approx(
+        2.0 * np.cos(np.radians(25)) * table["error right input/lower", "right input"], rel=1e-3
+    )
