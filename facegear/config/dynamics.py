@@ -19,16 +19,18 @@ class Accuracy(Section):
     )
     dwell_periods: int = Field(32, ge=16, le=1_000_000, description="run before anything is judged")
     settle_periods: int = Field(
-        512, ge=16, le=10_000_000, description="run before a motion counts as not periodic"
+        8192, ge=16, le=10_000_000, description="watched before a motion counts as not periodic"
     )
     window_periods: int = Field(
         256, ge=16, le=1_000_000, description="measured where the motion is not periodic"
     )
-    longest_period: int = Field(8, ge=1, le=64, description="longest period looked for")
+    longest_period: int = Field(64, ge=1, le=1024, description="longest period looked for")
     periodic_residual: float = Field(
         1e-7, ge=1e-13, le=1e-2, description="change over a period, over the scale"
     )
-    samples_per_period: int = Field(64, ge=16, le=4096)
+    samples_per_period: int = Field(
+        64, ge=16, le=4096, description="at least; more are taken where the motion needs them"
+    )
     refine: bool = Field(True, description="periodic orbits to rounding, with Floquet multipliers")
     extensions: int = Field(
         2, ge=0, le=10, description="doublings of patience for a motion that is undecided"
@@ -48,9 +50,9 @@ class Sweep(Section):
     accuracy: Accuracy = Accuracy(
         tolerance=1e-4,
         dwell_periods=32,
-        settle_periods=128,
-        window_periods=128,
-        longest_period=32,
+        settle_periods=256,
+        window_periods=160,
+        longest_period=64,
         periodic_residual=1e-5,
         extensions=1,
         samples_per_period=32,

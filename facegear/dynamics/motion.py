@@ -1,6 +1,6 @@
 """Kinds of motion and how a run is settled."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
@@ -23,18 +23,20 @@ class Settings:
     """How a steady state is sought. Lengths of time are in mesh periods.
 
     tolerance: local error of a step over the system's length scale. order: of the Taylor steps, None: from
-    the tolerance. settle: most periods before the motion is judged as not periodic (at least `dwell`).
-    longest_period: m, the longest period looked for. periodic_residual: change over a period that counts as
-    periodic, over the length scale. window: periods over which a motion that is not periodic is measured.
-    samples: per period. refine: find periodic orbits to rounding by Newton's method, with Floquet
-    multipliers.
+    the tolerance. dwell: periods before anything is judged. settle: periods for which a motion is watched
+    before it counts as not periodic. longest_period: m, the longest period looked for. periodic_residual:
+    change over a period that counts as periodic, over the length scale. window: periods over which a motion
+    that is not periodic is measured, and before that its exponent. samples: least number per period; more are
+    taken where the motion needs them. refine: find periodic orbits to rounding by Newton's method, with
+    Floquet multipliers. extensions: times that the window of an undecided exponent is doubled, and that a
+    motion is watched again whose exponent and window do not agree.
     """
 
-    tolerance: float = 1e-6
+    tolerance: float = 1e-8
     order: int | None = None
     dwell: int = 32
-    settle: int = 512
-    longest_period: int = 8
+    settle: int = 8192
+    longest_period: int = 64
     periodic_residual: float = 1e-7
     window: int = 256
     samples: int = 64
@@ -47,16 +49,6 @@ class Settings:
         if self.order is not None:
             return self.order
         return int(np.clip(round(4.0 - 1.0 * np.log10(self.tolerance)), 6, 20))
-
-    def extended(self, times: int) -> "Settings":
-        """The same with patience, window and longest period doubled `times` times."""
-        factor = 2**times
-        return replace(
-            self,
-            settle=factor * self.settle,
-            window=factor * self.window,
-            longest_period=factor * self.longest_period,
-        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -53,7 +53,8 @@ def slow_forces(machine: Machine, settings: Settings, speed_rpm: float) -> NDArr
     slow = replace(
         settings, samples=POSITIONS, dwell=SLOW_PERIODS, settle=SLOW_PERIODS, window=1, refine=False
     )
-    return cycle_forces(simulate(build_model(machine), speed_rpm, slow))[-1:]
+    forces = cycle_forces(simulate(build_model(machine), speed_rpm, slow))[-1:]
+    return forces[:, :: forces.shape[1] // POSITIONS]
 
 
 def speed_range_table(machine: Machine, settings: Settings, options: SharingOptions) -> pd.DataFrame:

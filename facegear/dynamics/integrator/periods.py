@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from facegear.dynamics.integrator.advance import advance, move
 from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.kernel import inlined, kernel
+from facegear.dynamics.integrator.sums import Sums, add_step, make_sums, start_sums
 from facegear.dynamics.integrator.taylor import deflect, evaluate, recurrence
 from facegear.dynamics.integrator.work import Work
 
@@ -21,9 +22,9 @@ class Log(NamedTuple):
 
     samples (periods * per_period, n): y at equally spaced phases from the start of each period.
     ends (periods, 2, n): y and dy/ds at the end of each period. shares (3, m): phase spent open, on the
-    drive and on the back flank, rad, added up with samples or tangents. divergence (1,): integral of the
-    trace, added up with tangents. growth (periods,): logarithm of the first tangent's length in each period,
-    brought back to one after it. steps (1,): added up.
+    drive and on the back flank, rad, added up with samples, sums or tangents. divergence (1,): integral
+    of the trace, added up with tangents. growth (periods,): logarithm of the first tangent's length in each
+    period, brought back to one after it. steps (1,): added up. sums: integrals and extremes.
     """
 
     samples: Array
@@ -32,10 +33,13 @@ class Log(NamedTuple):
     divergence: Array
     growth: Array
     steps: NDArray[np.int64]
+    sums: Sums
 
 
-def make_log(packed: Packed, periods: int, per_period: int = 0, growth: bool = False) -> Log:
-    """Allocate a log; with `growth` one tangent must be run, of length one."""
+def make_log(
+    packed: Packed, periods: int, per_period: int = 0, growth: bool = False, batches: int = 0
+) -> Log:
+    """Allocate a log; with `growth` one tangent must be run, of length one. `batches`: of the sums."""
     n = packed.omega_squared.size
     return Log(
         samples=np.zeros((periods * per_period, n)),
@@ -44,6 +48,7 @@ def make_log(packed: Packed, periods: int, per_period: int = 0, growth: bool = F
         divergence=np.zeros(1),
         growth=np.zeros(periods if growth else 0),
         steps=np.zeros(1, dtype=np.int64),
+        sums=make_sums(packed, batches),
     )
 
 
@@ -67,6 +72,7 @@ def run_periods(
     """
     n = packed.omega_squared.size
     sample, scratch, acting = work.sample, work.scratch, work.was_acting
+    batches = log.sums.coordinates.shape[0]
     for period in range(periods):
         s = 0.0
         taken = 0
@@ -81,8 +87,12 @@ def run_periods(
                     acting[m] = work.acting[m]
                 _move_tangents(packed, work, length, tangents)
                 log.divergence[0] -= length * _trace(packed, work)
+            if batches > 0:
+                if first:
+                    start_sums(packed, work, log.sums)
+                add_step(packed, work, length, log.sums, period * batches // periods)
             first = False
-            if per_period > 0 or tangents.shape[0] > 0:
+            if per_period > 0 or batches > 0 or tangents.shape[0] > 0:
                 for m in range(packed.m):
                     log.shares[work.state[m], m] += length
             while next_sample < per_period and TAU * next_sample / per_period < s + length:

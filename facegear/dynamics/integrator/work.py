@@ -17,7 +17,8 @@ class Work(NamedTuple):
 
     edge, active, acting, state, at_edge describe the contact of each mesh during the step. powers (rows,
     harmonics) holds the Taylor coefficients of cos(j s) (even rows) and sin(j s) (odd rows) at 0; parts and
-    kinds are used by Fourier series. bernstein holds the deflections' Bernstein coefficients over the step.
+    kinds are used by Fourier series. bernstein holds the deflections' Bernstein coefficients over the step,
+    least and most their bounds. nodes: of the rule that integrates products of polynomials.
     """
 
     order: int
@@ -50,6 +51,7 @@ class Work(NamedTuple):
     was_acting: Array
     least: Array
     most: Array
+    nodes: Array
 
 
 def make_work(packed: Packed, order: int) -> Work:
@@ -89,7 +91,14 @@ def make_work(packed: Packed, order: int) -> Work:
         was_acting=np.zeros(m),
         least=np.zeros(m),
         most=np.zeros(m),
+        nodes=_gauss(order // 2 + 1),
     )
+
+
+def _gauss(count: int) -> Array:
+    """Nodes and weights of Gauss's rule on [0, 1], shape (2, count)."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    return np.array([0.5 + 0.5 * nodes, 0.5 * weights])
 
 
 def _powers(harmonics: int, rows: int) -> Array:

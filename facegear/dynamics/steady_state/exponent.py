@@ -1,45 +1,77 @@
 """Largest Lyapunov exponent of a motion that did not turn out periodic, and what class that makes it."""
 
+from dataclasses import dataclass
+from enum import StrEnum
+
 import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.work import Work
-from facegear.dynamics.motion import Motion, Settings
-from facegear.dynamics.steady_state.window import Window, run_disturbed
+from facegear.dynamics.motion import Settings
+from facegear.dynamics.steady_state.averages import BATCHES, mean_interval
+from facegear.dynamics.steady_state.window import run_disturbed
 
 Array = NDArray[np.float64]
-BATCHES = 16
 ALIGN = 2
 NEUTRAL = 2e-3
 """An exponent known to lie within this of zero, per mesh period, is neutral."""
 
 
-def largest_exponent(
-    packed: Packed, work: Work, displacement: Array, velocity: Array, settings: Settings
-) -> tuple[Motion, tuple[float, float], Window]:
-    """Class of motion, exponent per mesh period with its 95 % half-width, and the window itself.
+class Growth(StrEnum):
+    """What becomes of a small disturbance."""
+
+    GROWS = "grows"
+    NEUTRAL = "neutral"
+    SHRINKS = "shrinks"
+    UNKNOWN = "unknown"
+
+
+@dataclass(frozen=True, eq=False)
+class Exponent:
+    """Exponent per mesh period with its 95 % half-width, what it says, and the run's ends (periods, 2, n).
 
     A neutral exponent comes with the half-width of its smooth mean, any other with that of the batches.
     """
-    tangent = np.zeros((1, 2, displacement.size))
+
+    growth: Growth
+    value: float
+    half_width: float
+    ends: Array
+
+
+def largest_exponent(packed: Packed, work: Work, state: Array, settings: Settings) -> Exponent:
+    """Largest exponent from a state (2, n) by phase, by one tangent vector over the settings' window.
+
+    While it cannot be told from zero the window is doubled, up to `extensions` times.
+    """
+    tangent = np.zeros((1, *state.shape))
     tangent[0, :, : packed.n] = np.random.default_rng(0).normal(size=(2, packed.n))
     tangent /= np.sqrt(((packed.weights * tangent) ** 2).sum())
     length = max(1, settings.window // BATCHES)
     # The vector first turns into the direction of fastest growth.
-    aside = run_disturbed(packed, work, displacement, velocity, tangent, ALIGN * length, settings)
-    window = run_disturbed(
-        packed, work, aside.displacement, aside.velocity, tangent, BATCHES * length, settings
-    )
-    batches = window.growth.reshape(BATCHES, length).mean(axis=1)
-    mean = float(batches.mean())
-    half = float(2.13 * batches.std(ddof=1) / np.sqrt(BATCHES))
+    ends, _ = run_disturbed(packed, work, state, tangent, ALIGN * length, settings)
+    rates = np.zeros(0)
+    for times in range(settings.extensions + 1):
+        periods = BATCHES * length * 2 ** max(times - 1, 0)
+        more, grown = run_disturbed(packed, work, ends[-1], tangent, periods, settings)
+        ends, rates = np.concatenate([ends, more]), np.concatenate([rates, grown])
+        growth, value, half_width = _judged(rates)
+        if growth is not Growth.UNKNOWN:
+            break
+    return Exponent(growth, value, half_width, ends)
+
+
+def _judged(rates: Array) -> tuple[Growth, float, float]:
+    """What growth rates (periods,) say, their mean and its half-width."""
+    batches = rates.reshape(BATCHES, -1).mean(axis=1)
+    mean, half = float(batches.mean()), float(mean_interval(batches))
     if mean - half > NEUTRAL:
-        return Motion.CHAOTIC, (mean, half), window
-    smooth, doubt = smooth_mean(window.growth)
+        return Growth.GROWS, mean, half
+    smooth, doubt = smooth_mean(rates)
     if abs(smooth) + doubt <= NEUTRAL:
-        return Motion.QUASI_PERIODIC, (smooth, doubt), window
-    return Motion.NOT_SETTLED, (mean, half), window
+        return Growth.NEUTRAL, smooth, doubt
+    return Growth.SHRINKS if mean + half < -NEUTRAL else Growth.UNKNOWN, mean, half
 
 
 def smooth_mean(rates: Array) -> tuple[float, float]:

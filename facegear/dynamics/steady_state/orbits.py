@@ -25,6 +25,8 @@ NEUTRAL = 1e-9
 """Directions in which the change over a period moves less than this, relatively, are left alone by Newton."""
 AFLOAT = 1e-6
 """A multiplier may exceed one by this: it is one for a body afloat inside its backlash."""
+RETURNS = 3
+"""Returns in succession that must follow an orbit's multipliers."""
 ROUNDING = 1e-11
 """Change over a period, over the length scale, that rounding alone may leave."""
 
@@ -34,9 +36,9 @@ class Orbit:
     """A periodic orbit of `period` mesh periods through a displacement and a velocity by phase (padded n,).
 
     residual: change over the period over the length scale, also an error estimate once Newton has settled.
-    multipliers (2 n,) complex, largest first; leading (2, padded n) the direction of the first, of which
-    change() is one. liouville: log det of the monodromy matrix less the integral
-    of the divergence, which is zero for an exact solution (NaN where the matrix is singular to rounding).
+    multipliers (2 n,) complex, largest first, vectors (2 n, 2 n) their directions, by column. liouville: log
+    det of the monodromy matrix less the integral of the divergence, which is zero for an exact solution (NaN
+    where the matrix is singular to rounding).
     """
 
     displacement: Array
@@ -44,8 +46,23 @@ class Orbit:
     period: int
     residual: float
     multipliers: NDArray[np.complex128]
-    leading: Array
+    vectors: NDArray[np.complex128]
     liouville: float
+
+    def parts(self, packed: Packed, off: Array) -> NDArray[np.complex128]:
+        """Components (..., 2 n) of states (..., 2, padded n) off the orbit along its own directions."""
+        flat = off[..., : packed.n].reshape(*off.shape[:-2], -1)
+        return np.linalg.lstsq(self.vectors, np.atleast_2d(flat).T.astype(complex), rcond=None)[0].T.reshape(
+            flat.shape
+        )
+
+    def leaving(self, packed: Packed, off: Array) -> Array:
+        """A state (2, padded n) of change() one along the leading direction, to the side of `off`."""
+        side = self.parts(packed, off)[0]
+        along = self.vectors[:, 0] * (side / abs(side) if abs(side) > ROUNDING * packed.scale else 1.0)
+        leading = np.zeros_like(off)
+        leading[:, : packed.n] = along.real.reshape(2, -1)
+        return leading / change(packed, leading, 0.0 * leading)
 
 
 def change(packed: Packed, first: Array, second: Array) -> float:
@@ -196,12 +213,39 @@ def least_period(packed: Packed, start: Array, ends: Array, residual: float) -> 
 
 def _orbit(packed: Packed, state: Array, period: int, residual: float, tangent: _Tangent) -> Orbit:
     multipliers = tangent.multipliers
-    leading = np.zeros_like(state)
-    leading[:, : packed.n] = tangent.directions[:, 0].real.reshape(2, -1)
-    leading /= change(packed, leading, 0.0 * leading)
     sign, volume = np.linalg.slogdet(tangent.matrix)
     condition_lost = np.log(np.finfo(float).eps) * 0.9 > np.log(
         max(abs(multipliers[-1]), 1e-300) / max(abs(multipliers[0]), 1e-300)
     )
     liouville = np.nan if condition_lost or sign <= 0 else float(volume - tangent.log.divergence[0])
-    return Orbit(state[0], state[1], period, residual, multipliers, leading, liouville)
+    return Orbit(
+        displacement=state[0],
+        velocity=state[1],
+        period=period,
+        residual=residual,
+        multipliers=multipliers,
+        vectors=tangent.directions,
+        liouville=liouville,
+    )
+
+
+def drawn_in(packed: Packed, orbit: Orbit, ends: Array, since: int, tolerance: float) -> bool:
+    """Whether nothing can lead a run away from a stable orbit any more.
+
+    ends (periods, 2, n) of the run, the last of them `since` periods after one that belongs to the orbit's
+    state. Each return must be what the multipliers make of the one before, but for less than half of what
+    they take away; then the distance, measured along the orbit's own directions, falls for ever, as what the
+    multipliers leave out falls faster still. Within the error of the steps there is no more to ask.
+    """
+    back = ends[len(ends) - 1 - since :: -orbit.period][: RETURNS + 1][::-1]
+    if len(back) < RETURNS + 1:
+        return False
+    off = back - np.array([orbit.displacement, orbit.velocity])
+    moving = np.abs(1.0 - np.abs(orbit.multipliers)) > AFLOAT
+    slow = 1.0 - float(np.abs(orbit.multipliers[moving]).max(initial=0.0))
+    distance = (packed.weights * np.abs(off[-1])).max() / packed.scale
+    if distance <= min(10.0 * tolerance / slow, 0.1 * slow):
+        return True
+    parts = orbit.parts(packed, off)[:, moving]
+    missed = np.linalg.norm(parts[1:] - orbit.multipliers[moving] * parts[:-1], axis=1)
+    return bool((missed < 0.5 * slow * np.linalg.norm(parts[:-1], axis=1)).all())

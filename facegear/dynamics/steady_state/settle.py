@@ -1,4 +1,4 @@
-"""From any start to a steady state that is shown to be one."""
+"""From any start to the periodic motion that the run itself comes to, if it does."""
 
 from dataclasses import dataclass
 
@@ -9,77 +9,177 @@ from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.periods import make_log, run_periods
 from facegear.dynamics.integrator.work import Work
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.orbits import AFLOAT, Orbit, change, changes, require, shoot
+from facegear.dynamics.steady_state.closing import TREND, Closing, closed, closing
+from facegear.dynamics.steady_state.orbits import AFLOAT, Orbit, change, drawn_in, require, shoot
 
 Array = NDArray[np.float64]
-NO_TANGENTS = 0
-TRY_NEWTON = 0.02
 NEWTON_COST = 20
-"""Periods that a run may take for each period of an orbit before Newton's method is the cheaper way."""
-BLOCK = 16
-KICK = 0.1
-"""Disturbance of an unstable orbit along its leading direction, as a change."""
+"""Mesh periods that cost as much time as one with all tangents."""
+NEWTON_STEPS = 2
+"""Times that Newton's method usually needs them."""
+BLOCK, LONG_BLOCK = 16, 128
+"""A block is half of what was run before, within these: each call of the kernels has a price."""
+KICK = 0.01
+"""How far a run that rests on an unstable orbit is moved along its leading direction, as a change."""
 MOST_KICKS = 2
-TREND = 7
+LONGER = 4
+"""A run that comes nearer and nearer is watched for so many times as long."""
 
 
 @dataclass(frozen=True, eq=False)
 class Settled:
-    """Where a run came to rest: state by phase, period (0: none found), residual over it, periods run."""
+    """Where a run came to rest: state (2, n) by phase, period (0: none found), residual over it, periods run.
 
-    displacement: Array
-    velocity: Array
+    ends (periods, 2, n): the last states at the end of a period. orbit: with its multipliers, if refined.
+    """
+
+    state: Array
     period: int
     residual: float
     orbit: Orbit | None
     periods_run: int
+    ends: Array
 
 
-def settle(packed: Packed, work: Work, displacement: Array, velocity: Array, settings: Settings) -> Settled:
-    """Run blocks of periods until the state repeats after 1 .. longest_period of them, or patience ends.
+def settle(
+    packed: Packed, work: Work, state: Array, settings: Settings, ends: Array | None = None
+) -> Settled:
+    """Run until the state repeats after 1 .. longest_period periods, or patience ends without a sign of it.
 
-    With `refine` a motion that seems to repeat is made an orbit by Newton's method as soon as that pays. An
-    unstable orbit, which exact symmetry or a slow escape may hold a run on, is left by a kick.
+    With `refine` the orbit that the run tends to is found by Newton's method as soon as that pays, and is
+    taken only once the run is drawn in by it. An unstable orbit, on which exact symmetry may hold a run, is
+    left by a kick. `ends`: states that the run passed through before, oldest first.
     """
-    displacement, velocity = displacement.copy(), velocity.copy()
-    longest, goal = settings.longest_period, settings.periodic_residual
-    block, dwell = _blocks(packed, settings)
-    tangents = np.zeros((NO_TANGENTS, 2, displacement.size))
-    ends = np.zeros((0, 2, displacement.size))
-    periods_run, kicks = 0, 0
-    tried: dict[int, float] = {}
-    while True:
-        log = make_log(packed, block)
-        require(
-            run_periods(
-                packed, work, displacement, velocity, tangents, block, 0, settings.tolerance, log, TAU
-            )
-        )
-        periods_run += block
-        ends = np.concatenate([ends, log.ends])[-(2 * longest + BLOCK) :]
-        period, residual = repeat(packed, ends, longest, goal)
-        left = periods_run >= settings.settle
-        if periods_run < dwell:
-            continue
-        pays = NEWTON_COST * period <= periods_run or left
-        if settings.refine and pays and residual < min(TRY_NEWTON, 0.1 * tried.get(period, np.inf)):
-            orbit = _near_orbit(packed, work, displacement, velocity, period, residual, settings)
-            tried[period] = residual
-            if orbit is not None and abs(orbit.multipliers[0]) <= 1.0 + AFLOAT:
-                return Settled(
-                    orbit.displacement, orbit.velocity, orbit.period, orbit.residual, orbit, periods_run
-                )
-            if orbit is not None and kicks < MOST_KICKS and not left:
-                kicks += 1
-                displacement += KICK * orbit.leading[0]
-                velocity += KICK * orbit.leading[1]
-                ends = ends[:0]
+    return _Run(packed, work, state, settings, ends).settled()
+
+
+class _Run:
+    """A run under way. `found` is the orbit that Newton's method last came to, `found_at` the period of it.
+
+    Newton's method, whose cost is counted in mesh periods, may take as long as the run itself.
+    """
+
+    def __init__(
+        self, packed: Packed, work: Work, state: Array, settings: Settings, ends: Array | None
+    ) -> None:
+        self.packed, self.work, self.settings = packed, work, settings
+        self.state = state.copy()
+        self.ends = np.zeros((0, *state.shape)) if ends is None else ends
+        self.known = len(self.ends)
+        self.periods_run = self.kicks = self.newton_cost = 0
+        self.found: Orbit | None = None
+        self.found_at = 0
+        self.tried: dict[int, float] = {}
+        self.block, self.dwell = _blocks(packed, settings)
+
+    def settled(self) -> Settled:
+        """Go on, block by block, until the run has settled or patience ends."""
+        while True:
+            self._advance()
+            if self.periods_run < self.dwell and not self.known:
                 continue
-        done = settled_by_itself(packed, ends, period, residual, goal)
-        if done and (not settings.refine or left):
-            return Settled(displacement, velocity, period, residual, None, periods_run)
-        if left:
-            return Settled(displacement, velocity, 0, residual, None, periods_run)
+            last = self.periods_run >= self.settings.settle
+            near = closing(self.packed, self.ends, self.settings)
+            result = self._refined(near, last) if self.settings.refine else None
+            if result is None:
+                result = self._by_itself(near)
+            if result is not None:
+                return result
+            closer = near.shrinking and near.trend < 1.0
+            if last and not (closer and self.periods_run < LONGER * self.settings.settle):
+                return self._result(0, near.residual, None)
+
+    def _advance(self) -> None:
+        settings = self.settings
+        block = min(max(self.block, self.periods_run // 2), max(self.block, LONG_BLOCK))
+        log = make_log(self.packed, block)
+        none = np.zeros((0, *self.state.shape))
+        displacement, velocity = self.state
+        status = run_periods(
+            self.packed, self.work, displacement, velocity, none, block, 0, settings.tolerance, log, TAU
+        )
+        require(status)
+        self.periods_run += block
+        kept = 4 * settings.longest_period + 2 * TREND + LONG_BLOCK
+        self.ends = np.concatenate([self.ends, log.ends])[-kept:]
+
+    def _refined(self, near: Closing, last: bool) -> Settled | None:
+        """The orbit that draws the run in, if there is one; looked for where it saves time."""
+        if self._worth_trying(near, last):
+            self.tried[near.period] = near.residual
+            orbit = self._shot(near.period)
+            if orbit is not None:
+                self.found, self.found_at = orbit, self.periods_run
+        if self.found is None:
+            return None
+        if abs(self.found.multipliers[0]) > 1.0 + AFLOAT:
+            self._kick(near)
+            return None
+        since = (self.periods_run - self.found_at) % self.found.period
+        if drawn_in(self.packed, self.found, self.ends, since, self.settings.tolerance):
+            return self._result(self.found.period, self.found.residual, self.found)
+        return None
+
+    def _worth_trying(self, near: Closing, last: bool) -> bool:
+        """Whether Newton's method is the cheaper way to go on, and has not failed here before."""
+        again = near.residual < 0.1 * self.tried.get(near.period, np.inf)
+        cost = NEWTON_STEPS * NEWTON_COST * near.period
+        cheap = self.newton_cost + cost <= self.periods_run or last
+        slow = near.periods_left(self.settings.periodic_residual) > NEWTON_COST * near.period
+        worth = near.shrinking and again and cheap and (slow or last)
+        self.newton_cost += cost * worth
+        return worth
+
+    def _shot(self, period: int) -> Orbit | None:
+        settings = self.settings
+        displacement, velocity = self.state
+        return shoot(
+            self.packed,
+            self.work,
+            displacement,
+            velocity,
+            period,
+            settings.tolerance,
+            settings.periodic_residual,
+        )
+
+    def _by_itself(self, near: Closing) -> Settled | None:
+        """The motion that the run has closed on without help, with its multipliers if they are wanted."""
+        period = closed(self.packed, self.ends, near, self.settings)
+        if not period:
+            return None
+        orbit = self._shot(period) if self.settings.refine else None
+        if orbit is not None and abs(orbit.multipliers[0]) > 1.0 + AFLOAT and self.kicks < MOST_KICKS:
+            self.found, self.found_at = orbit, self.periods_run
+            self._kick(near)
+            return None
+        if orbit is not None and not self._is_here(orbit):
+            orbit = None
+        return self._result(period if orbit is None else orbit.period, near.residual, orbit)
+
+    def _is_here(self, orbit: Orbit) -> bool:
+        """Whether an orbit is the one that the run stands on: what is left to decay, and errors of steps."""
+        moved = change(self.packed, self.state, np.array([orbit.displacement, orbit.velocity]))
+        settings, slow = self.settings, max(1.0 - abs(orbit.multipliers[0]), 1e-3)
+        return moved <= max(20.0 * settings.periodic_residual, 10.0 * settings.tolerance) / slow
+
+    def _kick(self, near: Closing) -> None:
+        """Move a run that an unstable orbit holds along the way by which it is leaving already, if it is."""
+        orbit = self.found
+        assert orbit is not None
+        held = near.period % orbit.period == 0 and near.residual <= 100.0 * self.settings.periodic_residual
+        if not held or self.kicks >= MOST_KICKS:
+            return
+        self.kicks += 1
+        off = self.state - np.array([orbit.displacement, orbit.velocity])
+        self.state += KICK * orbit.leaving(self.packed, off)
+        self.ends, self.found, self.tried = self.ends[:0], None, {}
+        self.known = 0
+
+    def _result(self, period: int, residual: float, orbit: Orbit | None) -> Settled:
+        state = self.state if orbit is None else np.array([orbit.displacement, orbit.velocity])
+        residual = residual if orbit is None else orbit.residual
+        return Settled(state, period, residual, orbit, self.periods_run, self.ends)
 
 
 def _blocks(packed: Packed, settings: Settings) -> tuple[int, int]:
@@ -91,51 +191,3 @@ def _blocks(packed: Packed, settings: Settings) -> tuple[int, int]:
     forgotten = int(np.ceil(30.0 / rate)) if rate > 0.0 else settings.dwell
     block = max(min(BLOCK, forgotten), 2)
     return block, min(settings.dwell, max(block, forgotten))
-
-
-def repeat(packed: Packed, ends: Array, longest: int, goal: float) -> tuple[int, float]:
-    """The period with the smallest change at the end of a run; a shorter one wins if nearly as good."""
-    best_period, best = 1, np.inf
-    for index, last in enumerate(changes(packed, ends, longest)):
-        if last < 0.2 * best and not best <= goal:
-            best_period, best = index + 1, float(last)
-    return best_period, best
-
-
-def settled_by_itself(packed: Packed, ends: Array, period: int, residual: float, goal: float) -> bool:
-    """Whether the change over the period is small and what is still to come of it is too.
-
-    A run that creeps past the place where an orbit has just vanished, or off an unstable one, changes little
-    too, but not less and less: so the largest change of the last TREND periods is held against that of the
-    TREND before them.
-    """
-    if residual > goal or len(ends) < 2 * TREND + period:
-        return False
-    kept = ends[-2 * TREND - period :]
-    gaps = (packed.weights * np.abs(kept[period:] - kept[:-period])).max(axis=(1, 2))
-    early, late = gaps[:TREND].max(), gaps[TREND:].max()
-    rate = (late / early) ** (1.0 / TREND) if early > 0.0 else 0.0
-    return residual <= 10.0 * goal * max(1.0 - rate, 1e-3)
-
-
-def _near_orbit(
-    packed: Packed,
-    work: Work,
-    displacement: Array,
-    velocity: Array,
-    period: int,
-    residual: float,
-    settings: Settings,
-) -> Orbit | None:
-    """The orbit next to the state, or None if Newton's method does not settle or leads away."""
-    orbit = shoot(
-        packed, work, displacement, velocity, period, settings.tolerance, settings.periodic_residual
-    )
-    if orbit is None:
-        return None
-    moved = change(packed, np.array([displacement, velocity]), np.array([orbit.displacement, orbit.velocity]))
-    # What is left to decay is about residual / (1 - multiplier); much further away lies another orbit. The
-    # error of a step moves an orbit likewise.
-    slow = max(abs(1.0 - abs(orbit.multipliers[0])), 1e-3)
-    reach = max(20.0 * residual, 10.0 * settings.tolerance) / slow
-    return orbit if moved <= max(reach, 10.0 * settings.periodic_residual) else None

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,9 @@ from facegear.dynamics.integrator.reduction import Reduced, reduce
 from facegear.dynamics.integrator.system import System, machine_system
 from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.steady_state.exponent import largest_exponent
+from facegear.dynamics.steady_state.averages import Averages, Moments, sampled
+from facegear.dynamics.steady_state.closing import FALLING, SMALL, closing
+from facegear.dynamics.steady_state.exponent import Exponent, Growth, largest_exponent
 from facegear.dynamics.steady_state.settle import Settled, settle
 from facegear.dynamics.steady_state.statistics import drifts
 from facegear.dynamics.steady_state.window import Window, run_window
@@ -22,6 +24,7 @@ from facegear.transmission.matrices import mass_diagonal
 from facegear.transmission.statics import static_equilibrium
 
 Array = NDArray[np.float64]
+CLASSES = {Growth.GROWS: Motion.CHAOTIC, Growth.NEUTRAL: Motion.QUASI_PERIODIC}
 ESCAPING = 1e-3
 """Growing disturbances of a motion that repeats as closely as this tell of its end, not of chaos."""
 
@@ -30,11 +33,12 @@ ESCAPING = 1e-3
 class SteadyState:
     """The response over `periods` mesh periods (the orbit's own period, else the window), sampled evenly.
 
-    samples K = periods * per_period; deflections (K, meshes) in m with e(t) taken off, forces (K, meshes)
+    samples K = periods * per_period: deflections (K, meshes) in m with e(t) taken off, forces (K, meshes)
     elastic mesh forces k f(d) in N, coordinates (K, n); displacements(machine) gives all DOF. shares (3,
     meshes): fraction of time open, on the drive flank, on the back flank. residual: change over the period,
     over the length scale. multipliers (2 n,) of a refined periodic orbit. exponent: largest Lyapunov
-    exponent per mesh period with its 95 % half-width, for motions that are not periodic.
+    exponent per mesh period with its 95 % half-width, for motions that are not periodic. periods_run: for how
+    many mesh periods the motion was watched in all before it was named so. averages: over the whole response.
     """
 
     motion: Motion
@@ -46,6 +50,7 @@ class SteadyState:
     deflections: Array
     forces: Array
     coordinates: Array
+    averages: Averages
     shares: Array
     multipliers: NDArray[np.complex128] | None
     liouville: float | None
@@ -57,6 +62,16 @@ class SteadyState:
     def label(self) -> str:
         """`period-n` or the class of motion."""
         return f"period-{self.period}" if self.motion is Motion.PERIODIC else self.motion.value
+
+    @property
+    def moments(self) -> Moments:
+        """Mean, RMS, extremes of the mesh deflections, m, exact for the steps' polynomials."""
+        return self.averages.meshes(self.motion is Motion.PERIODIC)
+
+    @property
+    def mean_forces(self) -> Array:
+        """Mean and mean magnitude (2, meshes) of the elastic mesh forces, N."""
+        return self.averages.force
 
     @property
     def phases(self) -> Array:
@@ -119,67 +134,69 @@ def simulate_many(
 
 
 def steady_state(system: System, frequency: float, settings: Settings, start: State) -> SteadyState:
-    """Steady state of any system at an angular mesh frequency in rad/s."""
+    """Steady state of any system at an angular mesh frequency in rad/s.
+
+    A run that shows no sign of closing while it is watched gets its largest exponent, then is watched once
+    more over the window that it is measured on. What these do not agree on is watched for longer.
+    """
     packed = pack(system, frequency)
     work = make_work(packed, settings.taylor_order)
-    displacement, velocity = (
-        _widened(packed, start.displacement),
-        _widened(packed, start.velocity / frequency),
-    )
-    exponent, window, periods_run = None, None, 0
-    motion = Motion.PERIODIC
-    for times in range(settings.extensions + 1):
-        extended = settings.extended(times)
-        settled = settle(packed, work, displacement, velocity, extended)
+    state, ends = _by_phase(packed, start, frequency), None
+    periods_run = 0
+    for _ in range(settings.extensions + 1):
+        settled = settle(packed, work, state, settings, ends)
         periods_run += settled.periods_run
         if settled.period:
-            motion, exponent = Motion.PERIODIC, None
-            displacement, velocity = settled.displacement, settled.velocity
-            window = run_window(packed, work, displacement, velocity, settled.period, settings)
+            window = run_window(packed, work, settled.state, settled.period, settings)
+            response = mesh_response(system, window.samples, window.per_period)
+            exponent, motion = None, Motion.PERIODIC
             break
-        motion, exponent, window = largest_exponent(
-            packed, work, settled.displacement, settled.velocity, extended
-        )
-        if motion is Motion.CHAOTIC and settled.residual < ESCAPING:
-            motion = Motion.NOT_SETTLED
-        displacement, velocity = window.displacement, window.velocity
-        if motion is not Motion.NOT_SETTLED:
+        exponent = largest_exponent(packed, work, settled.state, settings)
+        window = run_window(packed, work, exponent.ends[-1], settings.window, settings)
+        response = mesh_response(system, window.samples, window.per_period)
+        motion = _class(packed, settled, exponent, window, response[0], settings)
+        periods_run += len(exponent.ends) + window.periods
+        if motion is not Motion.NOT_SETTLED or exponent.growth is Growth.UNKNOWN:
             break
-    return _result(packed, system, frequency, settings, settled, window, motion, exponent, periods_run)
-
-
-def _result(
-    packed: Packed,
-    system: System,
-    frequency: float,
-    settings: Settings,
-    settled: Settled,
-    window: Window,
-    motion: Motion,
-    exponent: tuple[float, float] | None,
-    periods_run: int,
-) -> SteadyState:
-    deflections, forces = mesh_response(system, window.samples, settings.samples)
-    orbit = settled.orbit
-    if motion in (Motion.CHAOTIC, Motion.QUASI_PERIODIC) and drifts(deflections, settings.samples):
-        motion = Motion.NOT_SETTLED
+        state, ends = window.ends[-1], np.concatenate([exponent.ends, window.ends])
+    orbit, end = settled.orbit, window.ends[-1][:, : packed.n]
     return SteadyState(
         motion=motion,
         period=settled.period,
         frequency=frequency,
         residual=settled.residual,
         periods=window.periods,
-        per_period=settings.samples,
-        deflections=deflections,
-        forces=forces,
+        per_period=window.per_period,
+        deflections=response[0],
+        forces=response[1],
         coordinates=window.samples,
-        shares=mesh_shares(system, window.shares / (TAU * window.periods)),
+        averages=mesh_averages(system, frequency, window, *response),
+        shares=mesh_shares(system, window.shares),
         multipliers=orbit.multipliers if orbit else None,
         liouville=orbit.liouville if orbit else None,
-        exponent=exponent,
+        exponent=(exponent.value, exponent.half_width) if exponent else None,
         periods_run=periods_run,
-        state=State(window.displacement[: packed.n].copy(), window.velocity[: packed.n] * frequency),
+        state=State(end[0].copy(), end[1] * frequency),
     )
+
+
+def _class(
+    packed: Packed,
+    settled: Settled,
+    exponent: Exponent,
+    window: Window,
+    deflections: Array,
+    settings: Settings,
+) -> Motion:
+    """Class of a motion that was watched without closing, by its exponent and the window after it."""
+    motion = CLASSES.get(exponent.growth, Motion.NOT_SETTLED)
+    near = closing(packed, window.ends, settings)
+    escaping = motion is Motion.CHAOTIC and min(settled.residual, near.residual) < ESCAPING
+    by_period = deflections.reshape(window.periods, window.per_period, -1).std(axis=1)
+    converging = near.residual < SMALL and near.trend < FALLING
+    if escaping or converging or drifts(window.averages, by_period):
+        return Motion.NOT_SETTLED
+    return motion
 
 
 def mesh_response(system: System, coordinates: Array, per_period: int) -> tuple[Array, Array]:
@@ -232,13 +249,24 @@ def mesh_shares(system: System, shares: Array) -> Array:
     return np.stack([np.maximum(1.0 - drive - back, 0.0), drive, back])
 
 
+def mesh_averages(
+    system: System, frequency: float, window: Window, deflections: Array, forces: Array
+) -> Averages:
+    """Averages by mesh, forces in N; where a mesh has two flanks its deflection is known from samples alone."""
+    if system.two_flanks:
+        return sampled(window.averages, deflections, forces, window.per_period)
+    return replace(window.averages, force=window.averages.force * frequency**2)
+
+
 def series_values(series: Array, cycles: Array) -> Array:
     """Values of Fourier rows (kinds, 2, harmonics + 1) at times in mesh periods, shape (times, kinds)."""
     angle = TAU * np.outer(cycles, np.arange(series.shape[2]))
     return np.sin(angle) @ series[:, 0].T + np.cos(angle) @ series[:, 1].T
 
 
-def _widened(packed: Packed, values: Array) -> Array:
-    wide = np.zeros(packed.omega_squared.size)
-    wide[: packed.n] = values
+def _by_phase(packed: Packed, state: State, frequency: float) -> Array:
+    """A state as the kernels count it, (2, padded n), velocity by phase."""
+    wide = np.zeros((2, packed.omega_squared.size))
+    wide[0, : packed.n] = state.displacement
+    wide[1, : packed.n] = state.velocity / frequency
     return wide

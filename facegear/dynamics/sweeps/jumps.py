@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.motion import State
 from facegear.dynamics.steady_state.simulate import SteadyState
-from facegear.dynamics.steady_state.statistics import moments
 from facegear.dynamics.sweeps.sweep import Piece
 
 Array = NDArray[np.float64]
@@ -110,7 +109,7 @@ def bracket(before: Side, after: Side, respond: Respond, resolution: float) -> t
 
 def side(speed: float, response: SteadyState) -> Side:
     """What bisection compares, from a response."""
-    ac_rms = moments(response.deflections, response.per_period, response.period > 0).ac_rms
+    ac_rms = response.moments.ac_rms
     multiplier = np.nan if response.multipliers is None else float(abs(response.multipliers[0]))
     return Side(
         speed=speed,

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.simulate import Model, SteadyState, simulate, static_start
 from facegear.dynamics.steady_state.spectra import order_spectrum, spectrum
-from facegear.dynamics.steady_state.statistics import moments, view_moments
 from facegear.dynamics.sweeps.plan import SweepPlan
 from facegear.transmission.layout import DOF_PER_BODY
 from facegear.transmission.loaded_modes import loaded_modes
@@ -138,21 +137,20 @@ def _row(
 ) -> dict[str, Array | float | str]:
     """Numbers of one response; views (n, directions + modes) takes coordinates to translations and modes."""
     periodic = response.period > 0
-    meshes = moments(response.deflections, response.per_period, periodic)
-    rms, ac_rms, interval = view_moments(response.coordinates, views, response.per_period, periodic)
+    meshes = response.moments
+    rms, ac_rms, interval = response.averages.views(views, periodic)
     modal = ac_rms[directions:]
     strongest = response.coordinates @ views[:, [directions + modal.argmax()]]
     orders, lines = spectrum(strongest - strongest.mean(), response.per_period, periodic)
     exponent, half = response.exponent or (np.nan, np.nan)
     leading = np.nan if response.multipliers is None else abs(response.multipliers[0])
     moved = (values[:directions].reshape(-1, 3) for values in (rms, ac_rms, interval))
-    force = np.array([response.forces.mean(axis=0), np.abs(response.forces).mean(axis=0)])
     return {
         "speeds": speed,
         "motion": response.motion.value,
         "period": response.period,
         **{f"deflection_{name}": getattr(meshes, name) for name in DEFLECTION},
-        **dict(zip(("mean_force", "mean_force_magnitude"), force, strict=True)),
+        **dict(zip(("mean_force", "mean_force_magnitude"), response.mean_forces, strict=True)),
         **dict(zip(("open_share", "drive_share", "back_share"), response.shares, strict=True)),
         **dict(zip((f"translation_{name}" for name in TRANSLATION), moved, strict=True)),
         "residual": response.residual,

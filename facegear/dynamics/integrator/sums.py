@@ -1,0 +1,154 @@
+"""Integrals and extremes of the motion, taken from the step polynomials themselves.
+
+Products of two polynomials are integrated by Gauss's rule with half the order's number of nodes, whose error
+lies far below that of the step; extremes are the polynomials' own turning points. So nothing depends on how
+densely the motion is sampled.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.integrator.compiled import Packed
+from facegear.dynamics.integrator.kernel import inlined
+from facegear.dynamics.integrator.lanes import (
+    LANES,
+    add,
+    load,
+    magnitude,
+    multiply,
+    multiply_add,
+    splat,
+    spread,
+    store,
+)
+from facegear.dynamics.integrator.taylor import evaluate
+from facegear.dynamics.integrator.work import Work
+
+Array = NDArray[np.float64]
+LOOKS = 8
+"""Parts of a step between whose ends a turning point is looked for."""
+TURNS = 4
+
+
+class Sums(NamedTuple):
+    """Integrals over the mesh phase, in B batches of whole periods; B = 0 leaves them out.
+
+    coordinates (B, n) of y and products (B, n, n) of y y^T, both about `origin` (n,); deflections and squares
+    (B, m) about `level` (m,); forces (2, m): elastic mesh force over w^2 and its magnitude. lowest, highest
+    (m,): extremes of the deflections.
+    """
+
+    origin: Array
+    level: Array
+    coordinates: Array
+    products: Array
+    deflections: Array
+    squares: Array
+    forces: Array
+    lowest: Array
+    highest: Array
+
+
+def make_sums(packed: Packed, batches: int) -> Sums:
+    """Allocate sums; with no batches they take nothing."""
+    m, n = packed.transposed.shape
+    return Sums(
+        origin=np.zeros(n),
+        level=np.zeros(m),
+        coordinates=np.zeros((batches, n)),
+        products=np.zeros((batches, n, n)),
+        deflections=np.zeros((batches, m)),
+        squares=np.zeros((batches, m)),
+        forces=np.zeros((2, m)),
+        lowest=np.full(m, np.inf),
+        highest=np.full(m, -np.inf),
+    )
+
+
+@inlined
+def start_sums(packed: Packed, work: Work, sums: Sums) -> None:
+    """Count coordinates and deflections from where the motion starts, so that squares keep their digits."""
+    for k in range(packed.n):
+        sums.origin[k] = work.y[0, k]
+    for m in range(packed.m):
+        sums.level[m] = work.deflection[0, m] + work.edge[m]
+
+
+@inlined
+def add_step(packed: Packed, work: Work, length: float, sums: Sums, batch: int) -> None:
+    """Add a step to the batch."""
+    for node in range(work.nodes.shape[1]):
+        ahead, weight = length * work.nodes[0, node], length * work.nodes[1, node]
+        evaluate(work.y, work.order, ahead, work.sample, work.scratch)
+        _add_coordinates(packed, work.sample, weight, sums, batch)
+        _add_meshes(work, ahead, weight, sums, batch)
+    for m in range(packed.m):
+        edge = work.edge[m]
+        if work.most[m] + edge > sums.highest[m]:
+            sums.highest[m] = max(sums.highest[m], edge + _highest(work, m, length, 1.0))
+        if work.least[m] + edge < sums.lowest[m]:
+            sums.lowest[m] = min(sums.lowest[m], edge - _highest(work, m, length, -1.0))
+
+
+@inlined
+def _add_coordinates(packed: Packed, y: Array, weight: float, sums: Sums, batch: int) -> None:
+    n = packed.omega_squared.size
+    minus, heavy = splat(-1.0), splat(weight)
+    for c in range(0, n, LANES):
+        off = multiply_add(minus, load(sums.origin, c), load(y, c))
+        store(y, c, off)
+        store(
+            sums.coordinates, batch * n + c, multiply_add(heavy, off, load(sums.coordinates, batch * n + c))
+        )
+    for k in range(packed.n):
+        factor = multiply(heavy, spread(y, k))
+        row = (batch * n + k) * n
+        for c in range(0, n, LANES):
+            store(sums.products, row + c, multiply_add(factor, load(y, c), load(sums.products, row + c)))
+
+
+@inlined
+def _add_meshes(work: Work, ahead: float, weight: float, sums: Sums, batch: int) -> None:
+    wide = work.edge.size
+    step, heavy, minus = splat(ahead), splat(weight), splat(-1.0)
+    for c in range(0, wide, LANES):
+        value, stiffness = splat(0.0), splat(0.0)
+        for i in range(work.order, -1, -1):
+            value = multiply_add(value, step, load(work.deflection, i * wide + c))
+            stiffness = multiply_add(stiffness, step, load(work.stiffness, i * wide + c))
+        force = multiply(multiply(load(work.active, c), stiffness), value)
+        off = add(value, multiply_add(minus, load(sums.level, c), load(work.edge, c)))
+        at = batch * wide + c
+        store(sums.deflections, at, multiply_add(heavy, off, load(sums.deflections, at)))
+        store(sums.squares, at, multiply_add(multiply(heavy, off), off, load(sums.squares, at)))
+        store(sums.forces, c, multiply_add(heavy, force, load(sums.forces, c)))
+        store(sums.forces, wide + c, multiply_add(heavy, magnitude(force), load(sums.forces, wide + c)))
+
+
+@inlined
+def _highest(work: Work, m: int, length: float, sign: float) -> float:
+    """Largest value of sign times deflection m (from its edge) over a step: the best of a few points, then
+    Newton's method on the slope between that point's neighbours.
+    """
+    best, at = -np.inf, 0.0
+    for look in range(LOOKS + 1):
+        t = length * look / LOOKS
+        value = 0.0
+        for i in range(work.order, -1, -1):
+            value = value * t + sign * work.deflection[i, m]
+        if value > best:
+            best, at = value, t
+    low, high = max(0.0, at - length / LOOKS), min(length, at + length / LOOKS)
+    for _ in range(TURNS):
+        value, slope, bend = 0.0, 0.0, 0.0
+        for i in range(work.order, -1, -1):
+            bend = bend * at + 2.0 * slope
+            slope = slope * at + value
+            value = value * at + sign * work.deflection[i, m]
+        best = max(best, value)
+        if not bend < 0.0:
+            break
+        at = min(max(at - slope / bend, low), high)
+    return best

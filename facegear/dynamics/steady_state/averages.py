@@ -1,0 +1,158 @@
+"""Averages of a response over time, exact for its step polynomials, and how far chance goes."""
+
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import t as student
+
+from facegear.dynamics.integrator.compiled import TAU, Packed
+from facegear.dynamics.integrator.sums import Sums
+
+Array = NDArray[np.float64]
+BATCHES = 16
+CONFIDENCE = 0.95
+
+
+@dataclass(frozen=True, eq=False)
+class Moments:
+    """Of each column: mean, RMS with mean, RMS without mean, smallest, largest, and the 95 % half-widths of
+    the RMS.
+
+    The half-widths come from the spread between batches of periods; they are zero for a periodic motion.
+    """
+
+    mean: Array
+    rms: Array
+    ac_rms: Array
+    least: Array
+    most: Array
+    rms_interval: Array
+    ac_rms_interval: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Averages:
+    """Time averages over B batches of a window; M meshes, n coordinates.
+
+    deflection (B, M) mean, m, and square (B, M) mean square about `level` (M,); lowest, highest (M,);
+    force (2, M): mean and mean magnitude of the elastic mesh force, over the squared mesh frequency as the
+    kernels count it, in N in a response; centre (B, n) and products (B, n, n): means of y and y y^T about `origin` (n,). weight (B,): of a batch,
+    its periods.
+    """
+
+    weight: Array
+    level: Array
+    deflection: Array
+    square: Array
+    lowest: Array
+    highest: Array
+    force: Array
+    origin: Array
+    centre: Array
+    products: Array
+
+    def meshes(self, periodic: bool) -> Moments:
+        """Moments of the mesh deflections."""
+        off = self._whole(self.deflection)
+        variance = np.maximum(self._whole(self.square) - off**2, 0.0)
+        mean = self.level + off
+        rms, ac_rms = np.sqrt(variance + mean**2), np.sqrt(variance)
+        moved = self.deflection - off
+        centred = self.square - 2.0 * off * self.deflection + off**2
+        return Moments(
+            mean=mean,
+            rms=rms,
+            ac_rms=ac_rms,
+            least=self.lowest,
+            most=self.highest,
+            rms_interval=_root_interval(centred + 2.0 * mean * moved, rms, periodic),
+            ac_rms_interval=_root_interval(centred, ac_rms, periodic),
+        )
+
+    def views(self, views: Array, periodic: bool) -> tuple[Array, Array, Array]:
+        """Of y @ views (n, columns): RMS, RMS without mean and its 95 % half-width, each (columns,)."""
+        off = self._whole(self.centre)
+        cross = off[:, None] * self.centre[:, None, :]
+        about_mean = self.products - cross - cross.transpose(0, 2, 1) + np.outer(off, off)
+        variances = np.maximum(((about_mean @ views) * views).sum(axis=1), 0.0)
+        variance = self._whole(variances)
+        ac_rms = np.sqrt(variance)
+        mean = (self.origin + off) @ views
+        return np.sqrt(variance + mean**2), ac_rms, _root_interval(variances, ac_rms, periodic)
+
+    def part(self, batches: slice) -> "Averages":
+        """The averages over some of the batches; extremes and forces stay those of all."""
+        names = ("weight", "deflection", "square", "centre", "products")
+        return replace(self, **{name: getattr(self, name)[batches] for name in names})
+
+    def _whole(self, batches: Array) -> Array:
+        return np.average(batches, axis=0, weights=self.weight)
+
+
+def averages(packed: Packed, sums: Sums, periods: int) -> Averages:
+    """Means from the integrals over a run of `periods` mesh periods."""
+    n, m = packed.n, packed.m
+    batches = len(sums.coordinates)
+    weight = np.bincount(np.arange(periods) * batches // periods, minlength=batches).astype(float)
+    phase = TAU * weight[:, None]
+    return Averages(
+        weight=weight,
+        level=sums.level[:m],
+        deflection=sums.deflections[:, :m] / phase,
+        square=sums.squares[:, :m] / phase,
+        lowest=sums.lowest[:m],
+        highest=sums.highest[:m],
+        force=sums.forces[:, :m] / (TAU * periods),
+        origin=sums.origin[:n],
+        centre=sums.coordinates[:, :n] / phase,
+        products=sums.products[:, :n, :n] / phase[:, None],
+    )
+
+
+def sampled(known: Averages, deflections: Array, forces: Array, per_period: int) -> Averages:
+    """The same with the meshes' averages from samples (K, M) over whole periods, forces in N."""
+    periods = len(deflections) // per_period
+    batch = np.arange(periods) * len(known.weight) // periods
+    by_period = deflections.reshape(periods, per_period, -1)
+
+    def batches(values: Array) -> Array:
+        sums = np.zeros((len(known.weight), values.shape[2]))
+        np.add.at(sums, batch, values.mean(axis=1))
+        return sums / known.weight[:, None]
+
+    return replace(
+        known,
+        level=np.zeros(deflections.shape[1]),
+        deflection=batches(by_period),
+        square=batches(by_period**2),
+        lowest=deflections.min(axis=0),
+        highest=deflections.max(axis=0),
+        force=np.array([forces.mean(axis=0), np.abs(forces).mean(axis=0)]),
+    )
+
+
+def mean_interval(batches: Array, confidence: float = CONFIDENCE) -> Array:
+    """Half-width (columns,) of the confidence interval of a mean from the means of batches (B, columns).
+
+    Periods follow each other and are not independent, batches of many nearly are: Student's distribution
+    with B - 1 degrees of freedom. Zero from a single batch, which says nothing.
+    """
+    count = len(batches)
+    if count < 2:
+        return np.zeros(batches.shape[1:])
+    return _student(count - 1, confidence) * batches.std(axis=0, ddof=1) / np.sqrt(count)
+
+
+def _root_interval(squares: Array, root: Array, periodic: bool) -> Array:
+    """95 % half-width (columns,) of a root mean square from batch means of what differs from its square."""
+    if periodic:
+        return np.zeros(root.size)
+    return mean_interval(squares) / (2.0 * np.where(root > 0.0, root, 1.0))
+
+
+@cache
+def _student(freedom: int, confidence: float) -> float:
+    """Two-sided quantile of Student's distribution."""
+    return float(student.ppf(0.5 + 0.5 * confidence, freedom))
