@@ -36,10 +36,10 @@ class Moments:
 class Averages:
     """Time averages over B batches of a window; M meshes, n coordinates.
 
-    deflection (B, M) mean, m, and square (B, M) mean square about `level` (M,); lowest, highest (M,);
-    force (2, M): mean and mean magnitude of the elastic mesh force, over the squared mesh frequency as the
-    kernels count it, in N in a response; centre (B, n) and products (B, n, n): means of y and y y^T about `origin` (n,). weight (B,): of a batch,
-    its periods.
+    deflection (B, M) mean, m, and square (B, M) mean square about `level` (M,); lowest, highest (M,); force
+    (2, M): mean and mean magnitude of the elastic mesh force, in N in a response, over the squared mesh
+    frequency as the kernels count it; centre (B, n) and products (B, n, n): means of y and y y^T about
+    `origin` (n,). weight (B,): of a batch, its periods.
     """
 
     weight: Array

@@ -252,7 +252,7 @@ def mesh_shares(system: System, shares: Array) -> Array:
 def mesh_averages(
     system: System, frequency: float, window: Window, deflections: Array, forces: Array
 ) -> Averages:
-    """Averages by mesh, forces in N; where a mesh has two flanks its deflection is known from samples alone."""
+    """Averages by mesh, forces in N; those of a mesh with two flanks come from the samples."""
     if system.two_flanks:
         return sampled(window.averages, deflections, forces, window.per_period)
     return replace(window.averages, force=window.averages.force * frequency**2)
