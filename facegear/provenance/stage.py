@@ -16,15 +16,15 @@ from facegear.provenance.manifest import write_manifest
 
 
 class Run:
-    """What a script may tell about its stage."""
+    """What a script may tell about its stage; `name` leads its line on the terminal."""
 
-    def __init__(self) -> None:
-        self.text = ""
+    def __init__(self, name: str) -> None:
+        self.name, self.text = name, ""
 
     def summary(self, text: str) -> None:
         """Print and record the stage's one-line summary of what it found."""
         self.text = text
-        print(f"summary: {text}", file=sys.stderr, flush=True)
+        print(f"{self.name}: {text}", file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -34,7 +34,10 @@ def stage(snakemake: Any) -> Iterator[Run]:
     A FacegearError or a full disk ends the script with one line, the log's path and exit code 1, without a
     traceback. The manifest goes to the output whose name ends in `.provenance.json` and covers all others.
     """
-    run, start = Run(), time.perf_counter()
+    run, start = (
+        Run(" ".join([snakemake.rule, *dict(snakemake.wildcards.items()).values()])),
+        time.perf_counter(),
+    )
     outputs = [Path(output) for output in snakemake.output]
     manifests = [output for output in outputs if output.name.endswith(MANIFEST_SUFFIX)]
     log = Path(snakemake.log[0])

@@ -1,8 +1,12 @@
 """Machines and mistakes of people who run facegear for the first time."""
 
+import signal
+import subprocess
+import time
+
 import pandas as pd
 import pytest
-from projects import ROOT, Project
+from projects import ROOT, Project, environment
 
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("newcomers")]
 
@@ -46,3 +50,25 @@ def test_teeth_alone_plan_geometry_contact_stiffness_and_a_report(tmp_path):
     assert done.returncode == 1
     told = "transmission = null: required for modes, dynamics and load sharing of teeth_only"
     assert done.stderr.splitlines()[-1] == told
+
+
+def test_an_interrupted_run_ends_in_one_line_within_three_seconds(tmp_path):
+    """It ended in some 500 lines of tracebacks, the jobs' own among them."""
+    config = str(ROOT / "config" / "harmonics_only.yaml")
+    target = "results/harmonics_only/dynamics/sweep.csv"
+    process = subprocess.Popen(
+        Project(tmp_path).command("--configfile", config, "--", target),
+        env=environment(),
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    log = tmp_path / "results" / "harmonics_only" / "logs" / "stiffness.log"
+    while not log.exists() and process.poll() is None:
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    told = process.communicate(timeout=60)[1].splitlines()
+    assert process.returncode == 130
+    assert told[-1] == "stopped; the same command goes on from here"
+    assert len(told) <= 5, told
+    assert not list((tmp_path / "results").rglob(".[0-9]*"))

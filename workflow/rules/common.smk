@@ -46,6 +46,11 @@ wildcard_constraints:
     case="|".join(re.escape(case) for case in CASES),
 
 
+include: "functions/terminal.smk"
+
+
+if workflow.exec_mode.name == "DEFAULT":
+    quieten()
 RUN_LOCKS = []  # held until this process ends
 
 
@@ -56,6 +61,12 @@ onstart:
         raise WorkflowError(f"another run is working in {os.getcwd()}; wait for it or stop it first")
     if any(path.is_file() for path in Path(".snakemake/incomplete").rglob("*")):
         print("resuming a run that was stopped: its unfinished jobs are made again", file=sys.stderr)
+    stop_at_once()
+
+
+onsuccess:
+    report = Path(f"results/{CASE}/report.html")
+    print(f"done{f': {report}' if report.exists() else ''}", file=sys.stderr)
 
 
 def value_of(key):

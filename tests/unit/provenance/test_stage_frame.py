@@ -34,14 +34,14 @@ def test_manifest_records_what_made_the_outputs(job, tmp_path, capsys):
     assert made["summary"] == "mean stiffness 4.1e8 N/m"
     assert made["files"]["a.csv"]["bytes"] == 4
     assert {"python", "numpy"} <= set(made["versions"])
-    assert "summary: mean stiffness" in capsys.readouterr().err
+    assert ": mean stiffness" in capsys.readouterr().err
     assert "mean stiffness" in (tmp_path / "a.log").read_text()
 
 
 def test_a_stage_without_findings_of_its_own_ends_with_the_files_it_wrote(job, tmp_path, capsys):
     with stage(job):
         (tmp_path / "a.csv").write_text("x\n1\n")
-    assert capsys.readouterr().err == "summary: wrote a.csv\n"
+    assert capsys.readouterr().err == "contact paper: wrote a.csv\n"
 
 
 def test_solver_failure_is_one_line_with_case_and_log(job, tmp_path, capsys):
@@ -69,6 +69,6 @@ def test_no_room_for_the_log_is_one_line_as_well(job, tmp_path, capsys):
         run.summary("mean stiffness 4.1e8 N/m")
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
     told = capsys.readouterr().err.splitlines()
-    assert told[0] == "summary: mean stiffness 4.1e8 N/m"
+    assert told[0] == "contact paper: mean stiffness 4.1e8 N/m"
     (line,) = told[1:]
     assert "no space left on the disk; free some and run again" in line
