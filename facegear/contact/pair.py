@@ -1,12 +1,13 @@
-"""Both gears of a pair, meshed, condensed and put together for contact."""
+"""Both gears of a pair: meshed and condensed one by one, put together for contact."""
 
 from collections.abc import Callable
 
-from facegear.contact.bodies.compliance import FlankCompliance, flank_compliance
+from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.flanks import flank_pair
+from facegear.contact.gear_flank import GearFlank
 from facegear.contact.ltca import ContactModel
 from facegear.contact.options import ContactPlan, Ends
-from facegear.contact.teeth import contact_side, elastic_tooth
+from facegear.contact.teeth import elastic_tooth
 from facegear.errors import ConfigError
 from facegear.geometry.design import Material, PairDesign
 from facegear.mesh.sizes import MeshSizes
@@ -21,18 +22,19 @@ BUILDERS: dict[str, Callable[[PairDesign, MeshSizes], ToothMesh]] = {
 }
 
 
-def body_compliance(
+def gear_flank(
     design: PairDesign, body: str, sizes: MeshSizes, material: Material, plan: ContactPlan
-) -> FlankCompliance:
-    """Flank compliance of the pinion or the face gear.
+) -> GearFlank:
+    """Contact surface and flank compliance of the pinion or the face gear.
 
     Raises ConfigError for a sector with more teeth than the gear, FacegearError if the mesh cannot be
     factorised.
     """
     tooth = BUILDERS[body](design, sizes)
-    elastic, _ = elastic_tooth(design, tooth, material)
+    elastic, side = elastic_tooth(design, tooth, material)
     teeth, neighbours, ends = extent(tooth, body, plan)
-    return flank_compliance(elastic, plan.refinement, teeth, neighbours, ends, plan.element)
+    found = flank_compliance(elastic, plan.refinement, teeth, neighbours, ends, plan.element)
+    return GearFlank(side, found)
 
 
 def extent(tooth: ToothMesh, body: str, plan: ContactPlan) -> tuple[int, int, Ends]:
@@ -49,10 +51,8 @@ def extent(tooth: ToothMesh, body: str, plan: ContactPlan) -> tuple[int, int, En
     return wanted, min(NEIGHBOURS, (wanted - 3) // 2), sector.cut_faces
 
 
-def contact_model(
-    design: PairDesign, sizes: MeshSizes, pinion: FlankCompliance, gear: FlankCompliance
-) -> ContactModel:
-    """The pair with compliances made for the same design and sizes."""
-    first, second = (contact_side(design, build(design, sizes)) for build in BUILDERS.values())
-    cuts = pinion.refinement, gear.refinement
-    return ContactModel(flank_pair(design, (first, second), cuts, pinion.linear), pinion, gear)
+def contact_model(design: PairDesign, pinion: GearFlank, gear: GearFlank) -> ContactModel:
+    """The pair with flanks made for the same design."""
+    first, second = pinion.compliance, gear.compliance
+    cuts = first.refinement, second.refinement
+    return ContactModel(flank_pair(design, (pinion.side, gear.side), cuts, first.linear), first, second)

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
 from facegear.errors import NotConverged
+from facegear.geometry import closed_forms
 from facegear.geometry.design import PairDesign
 
 Array = NDArray[np.float64]
@@ -30,44 +31,31 @@ def shaper_numbers(design: PairDesign) -> tuple[float, float, float, float]:
 
 def flank_point(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
     """Points (..., 3) in m at roll th and normal slope psi (rad), broadcast together."""
-    base, ratio, space, lift = shaper_numbers(design)
-    roll, psi = np.broadcast_arrays(np.asarray(roll, float), np.asarray(psi, float))
-    turn = ratio * (psi - roll - space)
-    p = base * (np.sin(psi) - roll * np.cos(psi))
-    q = base / (ratio * np.cos(psi))
-    x = p * np.cos(turn) - q * np.sin(turn)
-    y = p * np.sin(turn) + q * np.cos(turn)
-    return np.stack([x, y, lift - base * (np.cos(psi) + roll * np.sin(psi))], axis=-1)
+    return _stacked(*_flank_frame(design, roll, psi)[:3])
 
 
 def flank_normal(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
     """Outward unit normals (..., 3)."""
     _, ratio, space, _ = shaper_numbers(design)
-    roll, psi = np.broadcast_arrays(np.asarray(roll, float), np.asarray(psi, float))
-    turn = ratio * (psi - roll - space)
-    return np.stack([np.cos(psi) * np.cos(turn), np.cos(psi) * np.sin(turn), np.sin(psi)], axis=-1)
+    return _stacked(*closed_forms.flank_normal(ratio, space, *_together(roll, psi)))
 
 
 def flank_tangents(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, Array]:
     """Exact derivatives (..., 3) of the position with respect to th and psi (m/rad)."""
-    base, ratio, space, _ = shaper_numbers(design)
-    roll, psi = np.broadcast_arrays(np.asarray(roll, float), np.asarray(psi, float))
-    turn = ratio * (psi - roll - space)
-    cos_turn, sin_turn = np.cos(turn), np.sin(turn)
-    p = base * (np.sin(psi) - roll * np.cos(psi))
-    q = base / (ratio * np.cos(psi))
-    across = np.stack([-p * sin_turn - q * cos_turn, p * cos_turn - q * sin_turn, np.zeros_like(p)], axis=-1)
-    p_psi, q_psi = base * (np.cos(psi) + roll * np.sin(psi)), q * np.tan(psi)
-    along_roll = np.stack([-cos_turn * np.cos(psi), -sin_turn * np.cos(psi), -np.sin(psi)], axis=-1) * base
-    along_psi = np.stack(
-        [
-            p_psi * cos_turn - q_psi * sin_turn,
-            p_psi * sin_turn + q_psi * cos_turn,
-            base * (np.sin(psi) - roll * np.cos(psi)),
-        ],
-        axis=-1,
-    )
-    return along_roll - ratio * across, along_psi + ratio * across
+    frame = _flank_frame(design, roll, psi)
+    return _stacked(*frame[3:6]), _stacked(*frame[6:])
+
+
+def _flank_frame(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, ...]:
+    return closed_forms.flank_frame(*shaper_numbers(design), *_together(roll, psi))
+
+
+def _together(first: ArrayLike, second: ArrayLike) -> tuple[Array, Array]:
+    return np.broadcast_arrays(np.asarray(first, float), np.asarray(second, float))
+
+
+def _stacked(x: Array, y: Array, z: Array) -> Array:
+    return np.stack([x, y, z], axis=-1)
 
 
 def local_pressure_angle(design: PairDesign, radius: ArrayLike) -> Array:
@@ -81,12 +69,10 @@ def psi_at(design: PairDesign, radius: ArrayLike, roll: ArrayLike) -> Array:
     Raises NotConverged where the cylinder does not cut the flank there.
     """
     base, ratio, _, _ = shaper_numbers(design)
-    radius, roll = np.broadcast_arrays(np.asarray(radius, float), np.asarray(roll, float))
+    radius, roll = _together(radius, roll)
 
     def residual(psi):
-        p, q = base * (np.sin(psi) - roll * np.cos(psi)), base / (ratio * np.cos(psi))
-        slope = 2 * p * base * (np.cos(psi) + roll * np.sin(psi)) + 2 * q * q * np.tan(psi)
-        return p * p + q * q - radius**2, slope
+        return closed_forms.radius_at_roll(base, ratio, radius, roll, psi)
 
     return _newton(residual, local_pressure_angle(design, radius), "psi at a gear radius")
 
@@ -97,16 +83,14 @@ def roll_and_psi_at_height(design: PairDesign, radius: ArrayLike, z: ArrayLike) 
     Raises NotConverged where the cylinder does not cut the flank there.
     """
     base, ratio, _, lift = shaper_numbers(design)
-    radius, z = np.broadcast_arrays(np.asarray(radius, float), np.asarray(z, float))
+    radius, z = _together(radius, z)
     height = (lift - z) / base
 
     def residual(psi):
-        p, q = base * (1 - height * np.cos(psi)) / np.sin(psi), base / (ratio * np.cos(psi))
-        p_psi = base * (height - np.cos(psi)) / np.sin(psi) ** 2
-        return p * p + q * q - radius**2, 2 * p * p_psi + 2 * q * q * np.tan(psi)
+        return closed_forms.radius_at_height(base, ratio, radius, height, psi)
 
     psi = _newton(residual, local_pressure_angle(design, radius), "flank at a height")
-    return (height - np.cos(psi)) / np.sin(psi), psi
+    return closed_forms.roll_at_height(height, psi), psi
 
 
 def tip_edge(design: PairDesign, radius: ArrayLike) -> Array:
@@ -146,10 +130,8 @@ def fillet_section(design: PairDesign, radius: ArrayLike, chi: ArrayLike) -> tup
 
     chi is taken from the vertical, from `fillet_end` to 0, where the fillet touches the root plane.
     """
-    chi = np.asarray(chi, float)
-    tip, edge = design.shaper_tip_radius, design.shaper_tip_radius * np.sin(chi)
-    beta = np.arcsin(edge / np.asarray(radius, float)) - design.shaper_ratio * (chi - edge_start(design))
-    return beta, design.shaper_lift - tip * np.cos(chi)
+    x, y, z = _fillet_frame(design, chi, radius)[:3]
+    return np.arctan2(x, y), z
 
 
 def fillet_end(design: PairDesign, radius: ArrayLike) -> Array:
@@ -159,18 +141,13 @@ def fillet_end(design: PairDesign, radius: ArrayLike) -> Array:
 
 def fillet_frame(design: PairDesign, chi: ArrayLike, radius: ArrayLike) -> tuple[Array, Array, Array]:
     """Point (..., 3) of the fillet and its exact derivatives with respect to chi and gear radius."""
-    radius, chi = np.broadcast_arrays(np.asarray(radius, float), np.asarray(chi, float))
-    tip, ratio = design.shaper_tip_radius, design.shaper_ratio
-    edge = tip * np.sin(chi)
-    beta, z = fillet_section(design, radius, chi)
-    reach = np.sqrt(radius**2 - edge**2)
-    beta_chi, beta_radius = tip * np.cos(chi) / reach - ratio, -edge / (radius * reach)
-    radial = np.stack([np.sin(beta), np.cos(beta), np.zeros_like(beta)], axis=-1)
-    around = np.stack([np.cos(beta), -np.sin(beta), np.zeros_like(beta)], axis=-1) * radius[..., None]
-    up = np.stack([np.zeros_like(beta), np.zeros_like(beta), np.ones_like(beta)], axis=-1)
-    along_chi = around * beta_chi[..., None] + up * edge[..., None]
-    along_radius = radial + around * beta_radius[..., None]
-    return radial * radius[..., None] + up * z[..., None], along_chi, along_radius
+    frame = _fillet_frame(design, chi, radius)
+    return _stacked(*frame[:3]), _stacked(*frame[3:6]), _stacked(*frame[6:])
+
+
+def _fillet_frame(design: PairDesign, chi: ArrayLike, radius: ArrayLike) -> tuple[Array, ...]:
+    numbers = design.shaper_tip_radius, design.shaper_ratio, design.shaper_lift, edge_start(design)
+    return closed_forms.fillet_frame(*numbers, *_together(chi, radius))
 
 
 def fillet_normal(design: PairDesign, radius: ArrayLike, chi: ArrayLike) -> Array:

@@ -1,21 +1,34 @@
 """Rays cut with the face gear's surfaces, compiled: flank, fillet, tip land, root land, the first one hit.
 
-The closed forms are those of `facegear.geometry.face_gear`, written for single rays. All angles in rad, all
-lengths in m, for the right side of tooth 0 in the gear's body frame.
+The closed forms are those of `facegear.geometry.closed_forms`, compiled for single rays. All angles in rad,
+all lengths in m, for the right side of tooth 0 in the gear's body frame.
 """
 
-from math import atan, atan2, cos, hypot, inf, isfinite, isnan, nan, pi, sin, sqrt, tan
+from math import atan, atan2, hypot, inf, isfinite, isnan, nan, pi, sin, sqrt
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from facegear.geometry import face_gear
+from facegear.geometry import closed_forms, face_gear
 from facegear.geometry.design import PairDesign
+from facegear.machine_code import compiler
 
 NONE, FLANK, FILLET, TIP_LAND, ROOT_LAND = range(5)
 NEWTON_STEPS = 40
 LARGEST_STEP = 0.2
+PSI_STEPS = 60
+
+compiled = compiler(Path(__file__).parent)
+inlined = compiler(Path(__file__).parent, forceinline=True)
+
+flank_frame = inlined(closed_forms.flank_frame)
+flank_normal = inlined(closed_forms.flank_normal)
+fillet_frame = inlined(closed_forms.fillet_frame)
+radius_at_roll = inlined(closed_forms.radius_at_roll)
+radius_at_height = inlined(closed_forms.radius_at_height)
+roll_at_height = inlined(closed_forms.roll_at_height)
+first_psi = inlined(closed_forms.first_psi)
 
 
 class Blank(NamedTuple):
@@ -61,7 +74,7 @@ def blank(design: PairDesign) -> Blank:
     )
 
 
-@njit(cache=True)
+@compiled
 def cut(blank, position, normal, reach, points, normals, rolls, psis, inner, spacing):  # type: ignore[no-untyped-def]
     """Cut rays (n, 3), unit `normal` (n, 3), with the gear; surfaces further than `reach` do not count.
 
@@ -116,7 +129,7 @@ def cut(blank, position, normal, reach, points, normals, rolls, psis, inner, spa
     return gap, part, u, v, continued, lost
 
 
-@njit(cache=True)
+@compiled
 def _flank(blank, p, n, inside):  # type: ignore[no-untyped-def]
     """From the generating section that the point lies in."""
     cosine = blank.base / (blank.ratio * inside)
@@ -126,18 +139,18 @@ def _flank(blank, p, n, inside):  # type: ignore[no-untyped-def]
     return _flank_from(blank, p, n, roll, atan2(sine, cosine))
 
 
-@njit(cache=True)
+@compiled
 def _flank_from(blank, p, n, roll, psi):  # type: ignore[no-untyped-def]
     roll, psi, distance, x, y, z, done = _newton(blank, False, p, n, roll, psi)
-    turn = blank.ratio * (psi - roll - blank.space)
-    facing = cos(psi) * (n[0] * cos(turn) + n[1] * sin(turn)) + n[2] * sin(psi)
+    nx, ny, nz = flank_normal(blank.ratio, blank.space, roll, psi)
+    facing = n[0] * nx + n[1] * ny + n[2] * nz
     straight = distance if done and facing < 0 else inf
     inside = blank.inner <= hypot(x, y) <= blank.outer and roll <= blank.tip_roll
     distance = straight if inside and z <= blank.tip_plane + 1e-12 else inf
     return distance, straight, roll, psi, done
 
 
-@njit(cache=True)
+@compiled
 def _nearest(p, n, reach, points, normals, spacing):  # type: ignore[no-untyped-def]
     """The sampled flank point that the ray passes closest, if it does so within `spacing`, else -1."""
     least, best = spacing * spacing, -1
@@ -151,7 +164,7 @@ def _nearest(p, n, reach, points, normals, spacing):  # type: ignore[no-untyped-
     return best
 
 
-@njit(cache=True)
+@compiled
 def _fillet(blank, p, n, radius):  # type: ignore[no-untyped-def]
     cosine = min(max((blank.lift - p[2]) / blank.tip_radius, 0.5), 1.0)
     chi = -atan2(sqrt(max(1 - cosine * cosine, 0.0)), cosine)
@@ -165,7 +178,7 @@ def _fillet(blank, p, n, radius):  # type: ignore[no-untyped-def]
     return (distance if chi >= end else inf), chi, radius
 
 
-@njit(cache=True)
+@compiled
 def _land(blank, p, n, height):  # type: ignore[no-untyped-def]
     """Distance, gear angle and radius where the ray meets the plane, inf beside the blank."""
     if not n[2] < -1e-9:
@@ -178,80 +191,49 @@ def _land(blank, p, n, height):  # type: ignore[no-untyped-def]
     return distance, atan2(x, y), radius
 
 
-@njit(cache=True)
+@compiled
 def _tip_angle(blank, radius):  # type: ignore[no-untyped-def]
     """Gear angle of the tip edge at a gear radius."""
     height = (blank.lift - blank.tip_plane) / blank.base
-    cosine = blank.base / (blank.ratio * radius)
-    psi = atan2(sqrt(1 - cosine * cosine), cosine)
-    for _ in range(60):
-        p = blank.base * (1 - height * cos(psi)) / sin(psi)
-        q = blank.base / (blank.ratio * cos(psi))
-        slope = 2 * p * blank.base * (height - cos(psi)) / sin(psi) ** 2 + 2 * q * q * tan(psi)
-        step = min(max((p * p + q * q - radius * radius) / slope, -0.1), 0.1)
+    psi = first_psi(blank.base, blank.ratio, radius)
+    for _ in range(PSI_STEPS):
+        value, slope = radius_at_height(blank.base, blank.ratio, radius, height, psi)
+        step = min(max(value / slope, -0.1), 0.1)
         psi -= step
         if abs(step) < 1e-14:
             break
     if not abs(step) < 1e-12:
         return nan
-    roll = (height - cos(psi)) / sin(psi)
-    x, y, _, _, _, _, _, _, _ = _flank_frame(blank, roll, psi)
+    x, y, _, _, _, _, _, _, _ = _flank_frame(blank, roll_at_height(height, psi), psi)
     return atan2(x, y)
 
 
-@njit(cache=True)
+@compiled
 def _psi_at(blank, radius, roll):  # type: ignore[no-untyped-def]
-    cosine = blank.base / (blank.ratio * radius)
-    psi = atan2(sqrt(1 - cosine * cosine), cosine)
-    for _ in range(60):
-        p = blank.base * (sin(psi) - roll * cos(psi))
-        q = blank.base / (blank.ratio * cos(psi))
-        slope = 2 * p * blank.base * (cos(psi) + roll * sin(psi)) + 2 * q * q * tan(psi)
-        step = min(max((p * p + q * q - radius * radius) / slope, -0.1), 0.1)
+    psi = first_psi(blank.base, blank.ratio, radius)
+    for _ in range(PSI_STEPS):
+        value, slope = radius_at_roll(blank.base, blank.ratio, radius, roll, psi)
+        step = min(max(value / slope, -0.1), 0.1)
         psi -= step
         if abs(step) < 1e-14:
             return psi
     return psi if abs(step) < 1e-12 else nan
 
 
-@njit(cache=True)
+@compiled
 def _flank_frame(blank, roll, psi):  # type: ignore[no-untyped-def]
-    """Point and derivatives with respect to roll and psi."""
-    base, ratio = blank.base, blank.ratio
-    turn = ratio * (psi - roll - blank.space)
-    ct, st, cp, sp = cos(turn), sin(turn), cos(psi), sin(psi)
-    p, q = base * (sp - roll * cp), base / (ratio * cp)
-    x, y = p * ct - q * st, p * st + q * ct
-    p_psi, q_psi = base * (cp + roll * sp), q * sp / cp
-    return (
-        x,
-        y,
-        blank.lift - base * (cp + roll * sp),
-        -base * ct * cp + ratio * y,
-        -base * st * cp - ratio * x,
-        -base * sp,
-        p_psi * ct - q_psi * st - ratio * y,
-        p_psi * st + q_psi * ct + ratio * x,
-        p,
-    )
+    return flank_frame(blank.base, blank.ratio, blank.space, blank.lift, roll, psi)
 
 
-@njit(cache=True)
+@compiled
 def _fillet_frame(blank, chi, radius):  # type: ignore[no-untyped-def]
     """Point and derivatives with respect to chi and gear radius; nan where the locus does not reach."""
-    edge = blank.tip_radius * sin(chi)
-    if not radius > abs(edge):
+    if not radius > abs(blank.tip_radius * sin(chi)):
         return nan, nan, nan, nan, nan, nan, nan, nan, nan
-    reach = sqrt(radius * radius - edge * edge)
-    beta = atan2(edge, reach) - blank.ratio * (chi - blank.edge_start)
-    c, s = cos(beta), sin(beta)
-    by_chi = radius * (blank.tip_radius * cos(chi) / reach - blank.ratio)
-    by_radius = -edge / reach
-    z = blank.lift - blank.tip_radius * cos(chi)
-    return radius * s, radius * c, z, c * by_chi, -s * by_chi, edge, s + c * by_radius, c - s * by_radius, 0.0
+    return fillet_frame(blank.tip_radius, blank.ratio, blank.lift, blank.edge_start, chi, radius)
 
 
-@njit(cache=True)
+@compiled
 def _newton(blank, fillet, p, n, a, b):  # type: ignore[no-untyped-def]
     """Cut a ray with X(a, b): a, b, distance along the ray, the point hit, and whether it converged."""
     length = hypot(n[0], n[2])

@@ -6,10 +6,11 @@ from pathlib import Path
 import pytest
 
 PACKAGE = Path(__file__).parents[2] / "facegear"
-FOUNDATION = {"errors", "progress", "io"}
+FOUNDATION = {"errors", "progress", "io", "machine_code"}
 MAY_IMPORT = {
     "errors": set(),
     "progress": set(),
+    "machine_code": set(),
     "io": {"errors"},
     "provenance": {"errors", "io"},
     "geometry": {"errors"},

@@ -9,7 +9,7 @@ rule contact:
         vtu="results/{case}/contact/pressure.vtu",
         manifest="results/{case}/contact/contact.provenance.json",
     params:
-        **values_of("tooth_pair", "mesh", "contact"),
+        **values_of("tooth_pair", "contact"),
     script:
         "../scripts/contact.py"
 

@@ -4,8 +4,8 @@ from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
-from facegear.contact.bodies.compliance import to_arrays
-from facegear.contact.pair import body_compliance
+from facegear.contact.gear_flank import to_arrays
+from facegear.contact.pair import gear_flank
 from facegear.contact.resolution import check_resolution
 from facegear.io import arrays, tables
 from facegear.provenance.stage import stage
@@ -18,6 +18,6 @@ with stage(snakemake) as run:
     sizes = mesh_sizes(parse(Mesh, snakemake.params.mesh), design.module)
     check_resolution(design, materials(section), sizes, plan)
     material = dict(zip(("pinion", "face_gear"), materials(section), strict=True))[body]
-    compliance = body_compliance(design, body, sizes, material, plan)
-    arrays.write(snakemake.output.arrays, **to_arrays(compliance))
-    run.summary(f"{len(compliance.own)} flank nodes, {len(compliance.others)} teeth coupled")
+    flank = gear_flank(design, body, sizes, material, plan)
+    arrays.write(snakemake.output.arrays, **to_arrays(flank))
+    run.summary(f"{len(flank.compliance.own)} flank nodes, {len(flank.compliance.others)} teeth coupled")

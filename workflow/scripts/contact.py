@@ -2,9 +2,8 @@
 
 from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
-from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.tooth_pair import ToothPair, pair_design
-from facegear.contact.bodies.compliance import STORED, from_arrays
+from facegear.contact.gear_flank import STORED, from_arrays
 from facegear.contact.ltca import even_positions, loaded_contact
 from facegear.contact.pair import contact_model
 from facegear.contact.tables import ltca_table, pressure_arrays, pressure_surface
@@ -15,9 +14,8 @@ from facegear.provenance.stage import stage
 with stage(snakemake) as run:
     design = pair_design(parse(ToothPair, snakemake.params.tooth_pair))
     plan = contact_plan(parse(Contact, snakemake.params.contact))
-    sizes = mesh_sizes(parse(Mesh, snakemake.params.mesh), design.module)
     bodies = [from_arrays(arrays.read(snakemake.input[name], STORED)) for name in ("pinion", "face_gear")]
-    model = contact_model(design, sizes, *bodies)
+    model = contact_model(design, *bodies)
     results = loaded_contact(model, even_positions(plan.positions), plan.torques, plan.options)
     table, pressures = ltca_table(results), pressure_arrays(results, model.flanks.pinion)
     tables.write(snakemake.output.ltca, table)

@@ -9,12 +9,13 @@ from typing import Any, TypeVar
 import numpy as np
 import pandas as pd
 
-from facegear.contact.bodies.compliance import FlankCompliance, coupled_compliance
+from facegear.contact.bodies.compliance import coupled_compliance
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.bodies.substructure import condense
+from facegear.contact.gear_flank import GearFlank
 from facegear.contact.ltca import even_positions, loaded_contact
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
-from facegear.contact.pair import BUILDERS, body_compliance, contact_model, extent
+from facegear.contact.pair import BUILDERS, contact_model, extent, gear_flank
 from facegear.contact.position import LoadedPosition
 from facegear.contact.teeth import elastic_tooth
 from facegear.errors import NotConverged
@@ -48,10 +49,10 @@ def rung(name: str, design: PairDesign, plan: ContactPlan) -> Rung:
 
 def compliances(
     design: PairDesign, rung: Rung, materials: tuple[Material, Material]
-) -> tuple[FlankCompliance, FlankCompliance]:
+) -> tuple[GearFlank, GearFlank]:
     """Both bodies of a rung."""
     pinion, gear = (
-        body_compliance(design, body, rung.sizes, material, rung.plan)
+        gear_flank(design, body, rung.sizes, material, rung.plan)
         for body, material in zip(BUILDERS, materials, strict=True)
     )
     return pinion, gear
@@ -82,20 +83,20 @@ def measure(design: PairDesign, rung: Rung, materials: tuple[Material, Material]
     watch, dof, bodies, plan = Stopwatch(), 0, [], rung.plan
     for body, material in zip(BUILDERS, materials, strict=True):
         tooth = BUILDERS[body](design, rung.sizes)
-        elastic, _ = elastic_tooth(design, tooth, material)
+        elastic, side = elastic_tooth(design, tooth, material)
         system = watch.time("assembly_s", tied_system, elastic, plan.refinement, plan.element)
         condensed = watch.time("factorisation_s", condense, elastic, system)
         kept = extent(tooth, body, plan)
         rest = elastic, system, condensed, plan.refinement, *kept, plan.element
-        bodies.append(watch.time("compliance_s", coupled_compliance, *rest))
+        bodies.append(GearFlank(side, watch.time("compliance_s", coupled_compliance, *rest)))
         dof += int(np.count_nonzero(~system.held))
-    model = contact_model(design, rung.sizes, *bodies)
+    model = contact_model(design, *bodies)
     loaded_contact(model, [0.3], plan.torques, plan.options)
     run = model, even_positions(plan.positions), plan.torques, plan.options
     results = watch.time("contact_s", loaded_contact, *run)
     costs = {
         "dof": dof,
-        "flank_nodes": sum(len(body.own) for body in bodies),
+        "flank_nodes": sum(len(body.compliance.own) for body in bodies),
         **watch.seconds,
         "total_s": sum(watch.seconds.values()),
         "contact_s_per_position_and_load": watch.seconds["contact_s"] / len(results),
@@ -112,7 +113,7 @@ def growth(
     loads: Sequence[int],
 ) -> pd.DataFrame:
     """Time (s) of contact against the number of positions (at 4 torques) and of torques (at 16 positions)."""
-    model = contact_model(design, rung.sizes, *compliances(design, rung, materials))
+    model = contact_model(design, *compliances(design, rung, materials))
     low, high = min(rung.plan.torques), max(rung.plan.torques)
     loaded_contact(model, [0.3], rung.plan.torques, rung.plan.options)
     cases = [("positions", n, 4) for n in positions] + [("loads", 16, n) for n in loads]
@@ -187,7 +188,7 @@ def shortcuts(design: PairDesign, base: Rung, materials: tuple[Material, Materia
     for name, rung in cases.items():
         same_bodies = replace(rung.plan, options=plan.options) == plan
         bodies = full if same_bodies else compliances(design, rung, materials)
-        model = contact_model(design, rung.sizes, *bodies)
+        model = contact_model(design, *bodies)
         results = loaded_contact(model, even_positions(plan.positions), plan.torques, rung.plan.options)
         rows.append(summary(results).assign(case=name))
     table = pd.concat(rows, ignore_index=True)

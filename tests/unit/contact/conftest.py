@@ -7,7 +7,7 @@ from contact_bodies import STEEL, pair_design
 
 from facegear.contact.ltca import ContactModel
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
-from facegear.contact.pair import body_compliance, contact_model
+from facegear.contact.pair import contact_model, gear_flank
 from facegear.geometry.design import PairDesign
 from facegear.mesh.sizes import MeshSizes
 
@@ -17,8 +17,8 @@ CUTS = Refinement(4, 2, 2, 2.0)
 
 def build_model(design: PairDesign, cuts: Refinement = CUTS, sizes: MeshSizes = SIZES) -> ContactModel:
     plan = ContactPlan((600.0,), 4, cuts, Sector(), ContactOptions())
-    bodies = [body_compliance(design, body, sizes, STEEL, plan) for body in ("pinion", "face_gear")]
-    return contact_model(design, sizes, *bodies)
+    bodies = [gear_flank(design, body, sizes, STEEL, plan) for body in ("pinion", "face_gear")]
+    return contact_model(design, *bodies)
 
 
 @pytest.fixture(scope="session")

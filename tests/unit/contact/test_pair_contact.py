@@ -9,9 +9,10 @@ from contact_bodies import pair_design
 
 from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.flanks import FlankPair
+from facegear.contact.gear_flank import GearFlank
 from facegear.contact.ltca import loaded_contact
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
-from facegear.contact.pair import BUILDERS, body_compliance, contact_model
+from facegear.contact.pair import BUILDERS, contact_model, gear_flank
 from facegear.contact.teeth import LOADED_SIDE, elastic_tooth
 from facegear.geometry.clearance import smallest_gaps
 from facegear.geometry.design import Assembly, Material, Relief
@@ -102,11 +103,12 @@ def test_contact_of_the_opposite_flanks_is_the_mirror_image_s():
         for name, mirrored in (("drive", False), ("back", True)):
             side = LOADED_SIDE[body]
             side = {"left": "right", "right": "left"}[side] if mirrored else side
-            elastic, _ = elastic_tooth(design, tooth, Material(206e9, 0.3), side)
-            sides[name][body] = flank_compliance(elastic, cuts, tooth.teeth, 2)
-    drive = contact_model(design, sizes, *sides["drive"].values())
+            elastic, surface = elastic_tooth(design, tooth, Material(206e9, 0.3), side)
+            sides[name][body] = GearFlank(surface, flank_compliance(elastic, cuts, tooth.teeth, 2))
+    drive = contact_model(design, *sides["drive"].values())
     # seen in the mirror, the tooth to the right is the one to the left
-    back = [replace(body, others=body.others[::-1]) for body in sides["back"].values()]
+    mirrored = [flank.compliance for flank in sides["back"].values()]
+    back = [replace(body, others=body.others[::-1]) for body in mirrored]
     for errors in ({}, {"offset": 0.1e-3, "shaft_angle_error": radians(0.05)}):
         here = misaligned(drive, **errors)
         there = replace(here, pinion=back[0], gear=back[1])
@@ -221,8 +223,8 @@ def test_linear_elements_on_the_same_nodes_are_too_stiff(model_of):
     stiffness = {}
     for element in ("hex27", "hex8", "tet4"):
         plan = ContactPlan((600.0,), 4, Refinement(2, 1, 1), Sector(), ContactOptions(), element)
-        bodies = [body_compliance(design, body, sizes, steel, plan) for body in BUILDERS]
-        results = loaded_contact(contact_model(design, sizes, *bodies), [0.1, 0.6], [600.0])
+        bodies = [gear_flank(design, body, sizes, steel, plan) for body in BUILDERS]
+        results = loaded_contact(contact_model(design, *bodies), [0.1, 0.6], [600.0])
         stiffness[element] = np.mean([result.k_average for result in results])
     assert 1.003 < stiffness["hex8"] / stiffness["hex27"] < 1.03
     assert 1.03 < stiffness["tet4"] / stiffness["hex27"] < 1.15

@@ -7,7 +7,7 @@ import sys
 CALLED = "from own import kernel\n\n@kernel\ndef called(x):\n    return x + {added}\n"
 FILES = {
     "own.py": (
-        "from pathlib import Path\nfrom facegear.dynamics.integrator.kernel import compiler\n"
+        "from pathlib import Path\nfrom facegear.machine_code import compiler\n"
         "kernel = compiler(Path(__file__).parent)\n"
     ),
     "called.py": CALLED.format(added=1.0),

@@ -1,0 +1,55 @@
+"""The loaded flank of one gear as the contact analysis takes it: its surface and its compliance."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.contact.bodies import compliance
+from facegear.contact.bodies.compliance import FlankCompliance
+from facegear.contact.teeth import ContactSide
+
+
+@dataclass(frozen=True, eq=False)
+class GearFlank:
+    """Contact surface of a tooth, and how the gear's flanks give way."""
+
+    side: ContactSide
+    compliance: FlankCompliance
+
+
+STORED = {
+    **compliance.STORED,
+    "flank_nodes": (None, None),
+    "flank_u": (None, None),
+    "flank_v": (None, None),
+    "flank_rows": (1,),
+    "junction": (None,),
+}
+"""Names and shapes of the arrays of a stored flank; u, v and junction as in `ContactSide`."""
+
+
+def to_arrays(flank: GearFlank) -> dict[str, NDArray]:
+    """Named arrays from which `from_arrays` rebuilds the flank."""
+    side = flank.side
+    return {
+        **compliance.to_arrays(flank.compliance),
+        "flank_nodes": side.nodes,
+        "flank_u": side.u,
+        "flank_v": side.v,
+        "flank_rows": np.array([side.flank_rows]),
+        "junction": side.junction,
+    }
+
+
+def from_arrays(arrays: Mapping[str, NDArray]) -> GearFlank:
+    """Inverse of `to_arrays`."""
+    side = ContactSide(
+        nodes=arrays["flank_nodes"],
+        u=arrays["flank_u"],
+        v=arrays["flank_v"],
+        flank_rows=int(arrays["flank_rows"][0]),
+        junction=arrays["junction"],
+    )
+    return GearFlank(side, compliance.from_arrays(arrays))
