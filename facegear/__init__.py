@@ -1,1 +1,27 @@
-"""Face gear transmissions from tooth geometry to dynamic load sharing."""
+"""Spur pinions and face gears: from tooth geometry to loaded contact, dynamics and load sharing.
+
+>>> import facegear
+>>> gearbox = facegear.example()
+>>> gearbox.modes().table()["frequency_hz"].round(1).to_list()[6:9]
+[594.4, 1064.9, 1065.2]
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from facegear.gearbox import Gearbox, example, load
+
+__all__ = ["Gearbox", "example", "load"]
+
+
+def __getattr__(name: str) -> Any:
+    # Everything behind the door is imported when it is first asked for. The module's name is text, as the
+    # fingerprints of the stages follow imports: this file belongs to each of them, what lies behind does not.
+    if name in __all__:
+        return getattr(import_module("facegear.gearbox"), name)
+    raise AttributeError(f"module 'facegear' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])

@@ -36,7 +36,12 @@ def expand_cases(values: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
 
 
 def changed_values(base: Mapping[str, Any], changes: Mapping[str, Any], where: str) -> dict[str, Any]:
-    """The machine of a config with some dotted keys changed, `resolved`; without studies and reproduction.
+    """`changed_config` with what follows from other keys filled in."""
+    return resolved(changed_config(base, changes, where))
+
+
+def changed_config(base: Mapping[str, Any], changes: Mapping[str, Any], where: str) -> Config:
+    """The machine of a config with some dotted keys changed; without studies and reproduction.
 
     Raises ConfigErrors, led by `where`, for a key that does not stand in the config and a value it refuses.
     """
@@ -48,7 +53,7 @@ def changed_values(base: Mapping[str, Any], changes: Mapping[str, Any], where: s
             changed["mesh_stiffness"]["table"] = []
     except ConfigError as error:
         raise ConfigErrors(where, [str(error)]) from None
-    return resolved(parse(Config, changed, source=where))
+    return parse(Config, changed, source=where)
 
 
 def study_points(study: Study) -> dict[str, Point]:
@@ -91,7 +96,7 @@ def _position(inside: Any, part: str, key: str, value: Any) -> str | int:
         return part
     if isinstance(inside, list) and part.isdecimal() and int(part) < len(inside):
         return int(part)
-    raise ConfigError(key, value, "a study may only set keys that stand in the config")
+    raise ConfigError(key, value, "a dotted key of the config, but not case, studies or reproduction")
 
 
 def folder_name(label: str) -> str:

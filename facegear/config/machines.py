@@ -1,27 +1,25 @@
-"""The machine of a case from its plain config values."""
+"""The lumped machine from plain config values: the one place that puts it together."""
 
 from collections.abc import Mapping
 from typing import Any
 
+import pandas as pd
+
 from facegear.config.base import parse
-from facegear.config.transmission import ToothNumbers, Transmission, layout, machine, tooth_numbers
+from facegear.config.transmission import TEETH, Transmission, machine, tooth_numbers
 from facegear.harmonics.series import Harmonics
-from facegear.load_sharing.groups import load_groups
+from facegear.stiffness.tables import series_of
 from facegear.transmission.machine import Machine
 
-TEETH = ("pinion_teeth", "face_gear_teeth", "module_mm", "pressure_angle_deg")
+
+def wired_machine(
+    transmission: Mapping[str, Any], teeth: Mapping[str, Any], stiffness: Harmonics | pd.DataFrame
+) -> Machine:
+    """The machine of section `transmission`; the mesh stiffness as a series or as the table of its stage."""
+    series = stiffness if isinstance(stiffness, Harmonics) else series_of(stiffness)
+    return machine(parse(Transmission, transmission), tooth_numbers(**teeth), series)
 
 
-def case_machine(values: Mapping[str, Any], stiffness: Harmonics) -> Machine:
-    """The lumped machine of a whole config, with the mesh stiffness from its own stage."""
-    return machine(parse(Transmission, values["transmission"]), _teeth(values), stiffness)
-
-
-def group_kinds(values: Mapping[str, Any]) -> list[str]:
-    """Kinds of groups of meshes that share a load: inputs and idlers for the paper's machine."""
-    groups = load_groups(layout(parse(Transmission, values["transmission"]), _teeth(values)))
-    return list(dict.fromkeys(group.kind.value for group in groups))
-
-
-def _teeth(values: Mapping[str, Any]) -> ToothNumbers:
-    return tooth_numbers(**{name: values["tooth_pair"][name] for name in TEETH})
+def case_machine(values: Mapping[str, Any], stiffness: Harmonics | pd.DataFrame) -> Machine:
+    """The machine of a whole config."""
+    return wired_machine(values["transmission"], {key: values["tooth_pair"][key] for key in TEETH}, stiffness)

@@ -1,10 +1,13 @@
 """The section tooth_pair: teeth, blanks, tools, material and assembly of one pinion and face gear."""
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from math import pi, radians
+from typing import Any
 
 from pydantic import Field, model_validator
 
-from facegear.config.base import Section, refuse
+from facegear.config.base import Section, parse, refuse
 from facegear.errors import ConfigError, GeometryError, NotConverged
 from facegear.geometry.design import (
     Assembly,
@@ -159,6 +162,27 @@ def materials(section: ToothPair) -> tuple[Material, Material]:
     own = [body.material if body else None for body in (section.pinion, section.face_gear)]
     pinion, gear = (_material(material or section.material) for material in own)
     return pinion, gear
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A tooth pair in SI units; materials of pinion and face gear."""
+
+    design: PairDesign
+    materials: tuple[Material, Material]
+
+    def material(self, body: str) -> Material:
+        """Material of `pinion` or `face_gear`."""
+        return self.materials[("pinion", "face_gear").index(body)]
+
+
+def pair(values: Mapping[str, Any]) -> Pair:
+    """The pair from the plain values of config section `tooth_pair`, the one place that puts it together.
+
+    Raises ConfigErrors for values that no pair can have, ConfigError for a section without bodies.
+    """
+    section = parse(ToothPair, values)
+    return Pair(pair_design(section), materials(section))
 
 
 def _material(section: MaterialSection) -> Material:

@@ -19,6 +19,9 @@ from facegear.transmission.phases import PhaseConvention
 
 MAX_PINIONS = 60
 
+TEETH = ("pinion_teeth", "face_gear_teeth", "module_mm", "pressure_angle_deg")
+"""Keys of tooth_pair that the lumped model needs; its other data must not rerun modes or dynamics."""
+
 
 class PinionPlace(Section):
     """One pinion: where it stands, what it does, and its torque if not the role's."""

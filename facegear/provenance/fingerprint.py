@@ -6,11 +6,13 @@ reruns when, and only when, code that it can reach has changed. Comments, docstr
 
 import ast
 import hashlib
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 PACKAGE = "facegear"
+STAGES = "facegear.stages."
 
 
 @dataclass(frozen=True)
@@ -24,11 +26,25 @@ class _Source:
 def fingerprint(script: str | Path, root: str | Path) -> str:
     """Hash of a script's own code and of all package modules below `root` that it reaches by imports.
 
-    Templates (`*.j2`) count with the package they lie in.
+    Templates (`*.j2`) count with the package they lie in. If the script calls a stage of `facegear.stages`,
+    the stage's own fingerprint follows after a dot, so that its results can be known without the script.
     """
+    root, script = Path(root), Path(script)
+    code = _source(script, root)
+    own = _hash(code.code, reached_modules(script, root), root)
+    stages = [module for module in code.modules if module.startswith(STAGES)]
+    return ".".join([own, *(stage_fingerprint(module, root) for module in stages)])
+
+
+def stage_fingerprint(module: str, root: str | Path) -> str:
+    """Hash of a module of the package (by its dotted name) and of all that it reaches by imports."""
     root = Path(root)
-    digest = hashlib.sha256(_source(Path(script), root).code.encode())
-    for module in reached_modules(script, root):
+    return _hash("", reached_modules(_file(module, root), root), root, module)
+
+
+def _hash(code: str, modules: Iterable[str], root: Path, *more: str) -> str:
+    digest = hashlib.sha256(code.encode())
+    for module in sorted({*modules, *more}):
         file = _file(module, root)
         digest.update(module.encode() + b"\0" + _source(file, root).code.encode())
         if file.name == "__init__.py":
@@ -58,7 +74,7 @@ def _source(path: Path, root: Path) -> _Source:
 def _parsed(path: Path, root: Path, modified: int) -> _Source:
     tree = ast.parse(path.read_text(encoding="utf-8"))
     found: set[str] = set()
-    for node in ast.walk(tree):
+    for node in _executed(tree):
         if isinstance(node, ast.Import | ast.ImportFrom):
             for name in _names(node):
                 if name.split(".")[0] == PACKAGE:
@@ -69,6 +85,14 @@ def _parsed(path: Path, root: Path, modified: int) -> _Source:
                 node.body = body[1:] or ([] if isinstance(node, ast.Module) else [ast.Pass()])
     modules = sorted(module for module in found if _exists(module, root))
     return _Source(ast.unparse(tree), tuple(modules))
+
+
+def _executed(tree: ast.AST) -> Iterator[ast.AST]:
+    """A node and all inside it, but those that only a type checker reads."""
+    if not (isinstance(tree, ast.If) and ast.unparse(tree.test) == "TYPE_CHECKING"):
+        yield tree
+        for node in ast.iter_child_nodes(tree):
+            yield from _executed(node)
 
 
 def _names(node: ast.Import | ast.ImportFrom) -> list[str]:

@@ -18,13 +18,17 @@ LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pypardiso", "num
 def write_manifest(
     path: str | Path,
     outputs: Iterable[str | Path],
+    inputs: Iterable[str | Path],
     params: Mapping[str, Any],
     rule: str,
     seconds: float,
     summary: str,
     rebuild: str,
 ) -> None:
-    """Write versions, config slice, fingerprint, machine, time and the checksum of every output."""
+    """Write versions, config slice, fingerprint, machine, time and the checksum of every input and output.
+
+    Inputs are named as the folder of the manifest counts them.
+    """
     documents.write(
         path,
         {
@@ -37,6 +41,7 @@ def write_manifest(
             "params": {key: value for key, value in params.items() if key != "code"},
             "code": params.get("code"),
             "rebuild": rebuild,
+            "inputs": {os.path.relpath(name, Path(path).parent): sha256(name) for name in inputs},
             "files": {
                 Path(output).name: {"sha256": sha256(output), "bytes": Path(output).stat().st_size}
                 for output in outputs

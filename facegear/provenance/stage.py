@@ -55,6 +55,7 @@ def stage(snakemake: Any) -> Iterator[Run]:
                 write_manifest(
                     manifest,
                     [output for output in outputs if output not in manifests],
+                    list(snakemake.input),
                     dict(snakemake.params.items()),
                     snakemake.rule,
                     time.perf_counter() - start,

@@ -6,7 +6,6 @@ from numpy.typing import NDArray
 from facegear.transmission.machine import Machine
 from facegear.transmission.matrices import flank_directions
 from facegear.transmission.modes import Modes, modes_of, natural_modes
-from facegear.transmission.statics import mean_equilibrium
 
 
 def working_flanks(machine: Machine) -> NDArray[np.bool_]:
@@ -14,6 +13,8 @@ def working_flanks(machine: Machine) -> NDArray[np.bool_]:
 
     A mesh that carries nothing counts as closed on its drive flank. Raises NotConverged.
     """
+    from facegear.transmission.statics import mean_equilibrium  # compiled; printed meshes do without
+
     drive, back = np.split(mean_equilibrium(machine).flank_forces[0] > 0.0, 2)
     return np.concatenate([drive | ~back, back])
 

@@ -23,6 +23,11 @@ MAY_IMPORT = {
     "load_sharing": {"dynamics", "transmission", "harmonics"},
     "plots": {"geometry", "contact", "stiffness", "harmonics", "transmission", "dynamics", "load_sharing"},
     "report": set(),
+    "stages": {
+        *("config", "geometry", "mesh", "contact", "stiffness", "harmonics"),
+        *("transmission", "dynamics", "load_sharing"),
+    },
+    "results": {"contact", "load_sharing", "plots", "report"},
 }
 TENANTS = ("paper", "validation")
 """Packages that use the library; no module of the library, nor the other tenant, imports them."""
@@ -55,6 +60,14 @@ def test_the_library_never_imports_its_tenants(tenant):
     for module in MODULES:
         if module.relative_to(PACKAGE).parts[0] != tenant:
             assert not any(name.startswith(f"facegear.{tenant}") for name in imported(module)), module
+
+
+def test_nothing_stands_on_the_door():
+    for module in MODULES:
+        inside = module.relative_to(PACKAGE).parts
+        if inside[0] not in ("__init__.py", "gearbox.py", "results"):
+            reached = {name.split(".")[1] for name in imported(module) if name.startswith("facegear.")}
+            assert not {"gearbox", "results"} & reached, module
 
 
 def test_no_module_of_the_package_knows_the_workflow_engine():

@@ -11,6 +11,7 @@ os.environ.update(PYTHONPATH=str(ROOT), MPLBACKEND="Agg")
 
 from facegear.config.cases import expand_cases, shared_source
 from facegear.config.load import load_values
+from facegear.config.needs import NEEDS, stage_needs
 from facegear.errors import FacegearError
 from facegear.io.run_lock import hold
 from facegear.paper.config.reproduction import design_cases, read_reproduction
@@ -31,6 +32,7 @@ try:
     REPRODUCTION = read_reproduction(CONFIG["reproduction"]) if CONFIG["reproduction"] else None
     CASES = expand_cases(CONFIG)
     CASES |= design_cases(CONFIG, REPRODUCTION.identify if REPRODUCTION else None)
+    CASES[CONFIG["case"]]["reproduction"] = None  # read above; where its file lies decides nothing
 except FacegearError as error:
     stop(str(error))
 
@@ -84,6 +86,18 @@ def value_of(key):
 def values_of(*keys, **renamed):
     """Config values as params: sections under their own names, dotted keys under the names given."""
     return {name: value_of(key) for name, key in {**dict(zip(keys, keys)), **renamed}.items()}
+
+
+def needs(rule):
+    """Function of the wildcards giving all that a stage takes from a case's config."""
+
+    def values(wildcards):
+        try:
+            return stage_needs(rule, CASES[wildcards.case])
+        except FacegearError as error:
+            stop(f"{error} of {wildcards.case}")
+
+    return values
 
 
 def whole_config(wildcards):

@@ -7,7 +7,5 @@ rule compliance:
         manifest="results/{case}/compliance/{body}.provenance.json",
     wildcard_constraints:
         body="pinion|face_gear",
-    params:
-        **values_of("tooth_pair", "mesh", "contact"),
     script:
         "../scripts/compliance.py"

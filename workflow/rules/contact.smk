@@ -8,8 +8,6 @@ rule contact:
         pressure="results/{case}/contact/pressure.npz",
         vtu="results/{case}/contact/pressure.vtu",
         manifest="results/{case}/contact/contact.provenance.json",
-    params:
-        **values_of("tooth_pair", "contact"),
     script:
         "../scripts/contact.py"
 

@@ -11,8 +11,6 @@ rule dynamics_response:
         summary="results/{case}/dynamics/summary.csv",
         multipliers="results/{case}/dynamics/multipliers.csv",
         manifest="results/{case}/dynamics/response.provenance.json",
-    params:
-        **machine_values(speed_rpm="dynamics.speed_rpm", accuracy="dynamics.accuracy"),
     script:
         "../scripts/dynamics_response.py"
 
@@ -27,8 +25,6 @@ rule dynamics_sweep_chunk:
     wildcard_constraints:
         direction="up|down",
         number=r"\d+",
-    params:
-        **machine_values(sweep="dynamics.sweep"),
     script:
         "../scripts/dynamics_sweep_chunk.py"
 
@@ -45,8 +41,6 @@ rule dynamics_sweep:
         seams="results/{case}/dynamics/seams.csv",
         waterfall="results/{case}/dynamics/waterfall.npz",
         manifest="results/{case}/dynamics/sweep.provenance.json",
-    params:
-        **machine_values(sweep="dynamics.sweep"),
     script:
         "../scripts/dynamics_sweep.py"
 

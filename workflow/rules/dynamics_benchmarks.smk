@@ -8,7 +8,8 @@ rule dynamics_work_precision:
         png="results/{case}/figures/dynamics_work_precision.png",
         manifest="results/{case}/benchmarks/dynamics.provenance.json",
     params:
-        **machine_values(speed_rpm="dynamics.speed_rpm"),
+        **values_of(speed_rpm="dynamics.speed_rpm"),
+        machine=needs("machine"),
     script:
         "../scripts/dynamics_work_precision.py"
 
@@ -22,7 +23,8 @@ rule dynamics_costs:
         scaling="results/{case}/benchmarks/dynamics_scaling.csv",
         manifest="results/{case}/benchmarks/dynamics_costs.provenance.json",
     params:
-        **machine_values(speed_rpm="dynamics.speed_rpm", sweep="dynamics.sweep"),
+        **values_of(speed_rpm="dynamics.speed_rpm", sweep="dynamics.sweep"),
+        machine=needs("machine"),
     script:
         "../scripts/dynamics_costs.py"
 
@@ -36,6 +38,7 @@ rule dynamics_convergence:
         table="results/{case}/benchmarks/dynamics_convergence.csv",
         manifest="results/{case}/benchmarks/dynamics_convergence.provenance.json",
     params:
-        **machine_values(sweep="dynamics.sweep"),
+        **values_of(sweep="dynamics.sweep"),
+        machine=needs("machine"),
     script:
         "../scripts/dynamics_convergence.py"

@@ -5,8 +5,6 @@ rule geometry:
         flanks="results/{case}/geometry/flanks.npz",
         contact="results/{case}/geometry/contact.npz",
         manifest="results/{case}/geometry/geometry.provenance.json",
-    params:
-        **values_of(section="tooth_pair"),
     script:
         "../scripts/geometry.py"
 

@@ -9,8 +9,6 @@ rule load_sharing:
         curve="results/{case}/load_sharing/nominal.csv",
         summary="results/{case}/load_sharing/nominal_summary.csv",
         manifest="results/{case}/load_sharing/load_sharing.provenance.json",
-    params:
-        **machine_values(speed_rpm="dynamics.speed_rpm", accuracy="dynamics.accuracy", options="load_sharing"),
     script:
         "../scripts/load_sharing.py"
 
@@ -23,10 +21,6 @@ rule load_sharing_reference:
         reference="results/{case}/load_sharing/reference.csv",
         speeds="results/{case}/load_sharing/speed_range.csv",
         manifest="results/{case}/load_sharing/reference.provenance.json",
-    params:
-        **machine_values(
-            accuracy="dynamics.accuracy", range_accuracy="dynamics.sweep.accuracy", options="load_sharing"
-        ),
     script:
         "../scripts/load_sharing_reference.py"
 
@@ -44,7 +38,8 @@ rule hunting:
         sensitivity="results/{case}/load_sharing/sensitivity.csv",
         manifest="results/{case}/load_sharing/hunting.provenance.json",
     params:
-        **machine_values(positions="load_sharing.hunting_positions"),
+        **values_of(positions="load_sharing.hunting_positions"),
+        machine=needs("machine"),
     script:
         "../scripts/hunting.py"
 
@@ -62,7 +57,7 @@ rule hunting_figures:
         **pictures("load_sharing", "layout", "hunting", "bearing_stiffness", "sensitivity"),
         manifest="results/{case}/figures/hunting_figures.provenance.json",
     params:
-        **machine_values(),
+        machine=needs("machine"),
     script:
         "../scripts/hunting_figures.py"
 

@@ -11,8 +11,6 @@ rule mesh:
         face_gear_inp="results/{case}/mesh/face_gear.inp",
         quality="results/{case}/mesh/quality.csv",
         manifest="results/{case}/mesh/mesh.provenance.json",
-    params:
-        **values_of("tooth_pair", "mesh"),
     script:
         "../scripts/mesh.py"
 
@@ -23,6 +21,6 @@ rule mesh_growth:
         table="results/{case}/benchmarks/mesh.csv",
         manifest="results/{case}/benchmarks/mesh.provenance.json",
     params:
-        **values_of(section="tooth_pair"),
+        **values_of("tooth_pair"),
     script:
         "../scripts/mesh_growth.py"

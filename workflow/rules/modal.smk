@@ -9,8 +9,6 @@ rule modal:
         frequencies="results/{case}/modal/frequencies.csv",
         shapes="results/{case}/modal/shapes.csv",
         manifest="results/{case}/modal/modal.provenance.json",
-    params:
-        **machine_values(mean_stiffness="mesh_stiffness.mean_n_per_m"),
     script:
         "../scripts/modal.py"
 

@@ -10,8 +10,6 @@ rule stiffness:
         harmonics="results/{case}/stiffness/harmonics.csv",
         spectrum="results/{case}/stiffness/spectrum.csv",
         manifest="results/{case}/stiffness/stiffness.provenance.json",
-    params:
-        **values_of(section="mesh_stiffness"),
     script:
         "../scripts/stiffness.py"
 

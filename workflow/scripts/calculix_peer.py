@@ -2,16 +2,15 @@
 
 from pathlib import Path
 
-from facegear.config.base import parse
-from facegear.config.tooth_pair import ToothPair, materials, pair_design
+from facegear.config.tooth_pair import pair
 from facegear.io import tables
 from facegear.mesh.sizes import MeshSizes, named_sizes
 from facegear.provenance.stage import stage
 from facegear.validation.contact.peer_study import HAND_OVER, POSITIONS, peer_study
 
 with stage(snakemake) as run:
-    section = parse(ToothPair, snakemake.params.tooth_pair)
-    design = pair_design(section)
+    teeth = pair(snakemake.params.tooth_pair)
+    design = teeth.design
     m = design.module
     rungs = {
         "coarser": (MeshSizes(0.2 * m, 1.07 * m, 0.8 * m), POSITIONS),
@@ -20,7 +19,7 @@ with stage(snakemake) as run:
     }
     folder = Path(snakemake.output.table).parent / "calculix"
     folder.mkdir(parents=True, exist_ok=True)
-    table = peer_study(design, rungs, materials(section), 600.0, folder, snakemake.threads)
+    table = peer_study(design, rungs, teeth.materials, 600.0, folder, snakemake.threads)
     tables.write(snakemake.output.table, table)
     run.summary(
         f"largest difference {table['difference_percent'].abs().max():.1f} %, time ratio "

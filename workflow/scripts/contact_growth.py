@@ -2,17 +2,17 @@
 
 from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
-from facegear.config.tooth_pair import ToothPair, materials, pair_design
+from facegear.config.tooth_pair import pair
 from facegear.io import tables
 from facegear.provenance.stage import stage
 from facegear.validation.contact.benchmark import growth, rung
 from facegear.validation.contact.refinement_levels import DEFAULT
 
 with stage(snakemake) as run:
-    section = parse(ToothPair, snakemake.params.tooth_pair)
-    design = pair_design(section)
+    teeth = pair(snakemake.params.tooth_pair)
+    design = teeth.design
     plan = contact_plan(parse(Contact, snakemake.params.contact))
     base = rung(DEFAULT, design, plan)
-    table = growth(design, base, materials(section), (8, 16, 32, 64), (1, 2, 4, 8, 16))
+    table = growth(design, base, teeth.materials, (8, 16, 32, 64), (1, 2, 4, 8, 16))
     tables.write(snakemake.output.table, table)
     run.summary(f"{len(table)} runs, the longest {table['contact_s'].max():.1f} s")

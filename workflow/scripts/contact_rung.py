@@ -2,16 +2,16 @@
 
 from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
-from facegear.config.tooth_pair import ToothPair, materials, pair_design
+from facegear.config.tooth_pair import pair
 from facegear.io import tables
 from facegear.provenance.stage import stage
 from facegear.validation.contact.benchmark import measure, rung
 
 with stage(snakemake) as run:
-    section = parse(ToothPair, snakemake.params.tooth_pair)
-    design = pair_design(section)
+    teeth = pair(snakemake.params.tooth_pair)
+    design = teeth.design
     plan = contact_plan(parse(Contact, snakemake.params.contact))
-    table = measure(design, rung(snakemake.wildcards.rung, design, plan), materials(section))
+    table = measure(design, rung(snakemake.wildcards.rung, design, plan), teeth.materials)
     tables.write(snakemake.output.table, table)
     row = table.iloc[-1]
     run.summary(f"{row['dof']} dof, mean {row['mean_n_per_m']:.4g} N/m at {row['torque_n_m']:g} N m")

@@ -2,8 +2,7 @@
 
 import pandas as pd
 
-from facegear.config.base import parse
-from facegear.config.tooth_pair import ToothPair, materials, pair_design
+from facegear.config.tooth_pair import pair
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
 from facegear.io import tables
 from facegear.mesh.sizes import MeshSizes
@@ -12,14 +11,14 @@ from facegear.validation.contact.benchmark import Rung, shortcuts
 from facegear.validation.contact.sector_study import whole_sectors
 
 with stage(snakemake) as run:
-    section = parse(ToothPair, snakemake.params.tooth_pair)
-    design = pair_design(section)
+    teeth = pair(snakemake.params.tooth_pair)
+    design = teeth.design
     plan = ContactPlan((600.0,), 16, Refinement(4, 2, 2, 2.0), Sector(), ContactOptions())
     m = design.module
     base = Rung("full model", MeshSizes(0.4 * m, 0.85 * m, 0.8 * m), plan)
-    table = shortcuts(design, base, materials(section))
+    table = shortcuts(design, base, teeth.materials)
     flat = MeshSizes(0.2 * m, 1.6 * m, 1.2 * m)
-    whole = whole_sectors(design, flat, materials(section), 600.0, plan.positions)
+    whole = whole_sectors(design, flat, teeth.materials, 600.0, plan.positions)
     table = pd.concat([table, whole], ignore_index=True)
     tables.write(snakemake.output.table, table)
     worst = table.loc[table["mean_error_percent"].abs().idxmax()]

@@ -4,22 +4,20 @@ import pandas as pd
 
 from facegear.config.base import parse
 from facegear.config.dynamics import Sweep, sweep_plan
-from facegear.config.transmission import Transmission, machine, tooth_numbers
+from facegear.config.machines import wired_machine
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.sweeps.stored import SHAPES, from_arrays
 from facegear.dynamics.sweeps.sweep import joined
 from facegear.io import arrays, tables
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
-from facegear.stiffness.tables import HARMONICS_COLUMNS, series_of
+from facegear.stiffness.tables import HARMONICS_COLUMNS
 from facegear.validation.dynamics.convergence import convergence_table, not_converged, rerun
 
 with stage(snakemake) as run:
     params = snakemake.params
-    stiffness = series_of(tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS))
-    model = build_model(
-        machine(parse(Transmission, params.section), tooth_numbers(**params.teeth), stiffness)
-    )
+    harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
+    model = build_model(wired_machine(**params.machine, stiffness=harmonics))
     plan = sweep_plan(parse(Sweep, params.sweep))
     files = iter(snakemake.input.chunks)
     progress = Progress("finer sweep", len(plan.directions) * plan.points)

@@ -2,17 +2,17 @@
 
 from facegear.config.base import parse
 from facegear.config.dynamics import Sweep, sweep_plan
-from facegear.config.transmission import Transmission, machine, tooth_numbers
+from facegear.config.machines import wired_machine
 from facegear.io import tables
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
-from facegear.stiffness.tables import HARMONICS_COLUMNS, series_of
+from facegear.stiffness.tables import HARMONICS_COLUMNS
 from facegear.validation.dynamics.costs import scaling_costs, sweep_costs
 
 with stage(snakemake) as run:
     params = snakemake.params
-    stiffness = series_of(tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS))
-    built = machine(parse(Transmission, params.section), tooth_numbers(**params.teeth), stiffness)
+    harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
+    built = wired_machine(**params.machine, stiffness=harmonics)
     costs = sweep_costs(built, sweep_plan(parse(Sweep, params.sweep)), Progress("settings", 20).step)
     tables.write(snakemake.output.sweep, costs)
     tables.write(snakemake.output.scaling, scaling_costs(built, params.speed_rpm))

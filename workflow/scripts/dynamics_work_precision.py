@@ -2,13 +2,12 @@
 
 import pandas as pd
 
-from facegear.config.base import parse
-from facegear.config.transmission import Transmission, machine, tooth_numbers
+from facegear.config.machines import wired_machine
 from facegear.io import tables
 from facegear.plots.style import save
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
-from facegear.stiffness.tables import HARMONICS_COLUMNS, series_of
+from facegear.stiffness.tables import HARMONICS_COLUMNS
 from facegear.validation.dynamics.methods import all_methods, tangent_methods
 from facegear.validation.dynamics.problems import machine_problems, oscillator_problem, tangent_problems
 from facegear.validation.dynamics.work_precision import (
@@ -20,8 +19,8 @@ from facegear.validation.plots.work_precision import work_precision_diagram
 
 with stage(snakemake) as run:
     params, output = snakemake.params, snakemake.output
-    stiffness = series_of(tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS))
-    built = machine(parse(Transmission, params.section), tooth_numbers(**params.teeth), stiffness)
+    harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
+    built = wired_machine(**params.machine, stiffness=harmonics)
     problems = [*machine_problems(built, params.speed_rpm), oscillator_problem()]
     comparisons = [(problems, all_methods()), (tangent_problems(problems[:-1]), tangent_methods())]
     step = Progress("methods", sum(len(first) * len(second) for first, second in comparisons)).step

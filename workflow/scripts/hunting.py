@@ -1,18 +1,17 @@
 """Quasi-static load sharing over the hunting cycle, against bearing stiffness, and error by error."""
 
-from facegear.config.base import parse
-from facegear.config.transmission import Transmission, machine, tooth_numbers
+from facegear.config.machines import wired_machine
 from facegear.io import tables
 from facegear.load_sharing.hunting import hunting_cycle
 from facegear.load_sharing.hunting_tables import bearing_table, cycle_table, group_table, mesh_table
 from facegear.load_sharing.sensitivity import bearing_scan, sensitivities
 from facegear.provenance.stage import stage
-from facegear.stiffness.tables import HARMONICS_COLUMNS, series_of
+from facegear.stiffness.tables import HARMONICS_COLUMNS
 
 with stage(snakemake) as run:
     params, output = snakemake.params, snakemake.output
-    stiffness = series_of(tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS))
-    built = machine(parse(Transmission, params.section), tooth_numbers(**params.teeth), stiffness)
+    harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
+    built = wired_machine(**params.machine, stiffness=harmonics)
     found = hunting_cycle(built, params.positions)
     groups = group_table(found)
     tables.write(output.meshes, mesh_table(found))

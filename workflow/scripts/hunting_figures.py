@@ -10,7 +10,9 @@ from facegear.provenance.stage import stage
 
 with stage(snakemake) as run:
     params, given = snakemake.params, snakemake.input
-    shape = layout(parse(Transmission, params.section), tooth_numbers(**params.teeth))
+    shape = layout(
+        parse(Transmission, params.machine["transmission"]), tooth_numbers(**params.machine["teeth"])
+    )
     meshes = tables.read(given.meshes, ["mean_n", "drive_share", "back_share"], text=["mesh", "group"])
     bearings = tables.read(given.bearings, ["body", "mean_x_n", "mean_y_n", "mean_z_n"], text=["body"])
     groups = tables.read(given.groups, ["torque_n_m"], text=["group", "kind"])

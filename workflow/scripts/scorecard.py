@@ -8,8 +8,8 @@ from facegear.load_sharing.collect import NOMINAL, collected
 from facegear.paper.scorecard.claims import read_claims
 from facegear.paper.scorecard.page import counts, render
 from facegear.paper.scorecard.rows import OUTCOME_COLUMNS, outcome_table, scorecard
-from facegear.paper.undisclosed import undisclosed_inputs
 from facegear.provenance.stage import stage
+from facegear.report.inputs import inputs_in_words
 
 STORED = (
     *("frequencies", "tvms", "load_dependence", "response", "spectrum"),
@@ -31,7 +31,7 @@ with stage(snakemake) as run:
     frame = scorecard(claims.claims, own, others)
     tables.write(snakemake.output.csv, frame)
     sets = pd.read_csv(files.sets) if files.sets else pd.DataFrame()
-    page = render(frame, claims.source, undisclosed_inputs(snakemake.params.values), sets)
+    page = render(frame, claims.source, inputs_in_words(snakemake.params.values), sets)
     with atomic_path(snakemake.output.html) as temporary:
         temporary.write_text(page, encoding="utf-8")
     run.summary(", ".join(f"{number} rows {name}" for name, number in counts(frame).items()))

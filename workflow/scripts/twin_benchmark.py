@@ -2,14 +2,13 @@
 
 import pandas as pd
 
-from facegear.config.base import parse
-from facegear.config.tooth_pair import ToothPair, pair_design
+from facegear.config.tooth_pair import pair
 from facegear.io import tables
 from facegear.provenance.stage import stage
 from facegear.validation.contact.twin_study import twin_study
 
 with stage(snakemake) as run:
-    design = pair_design(parse(ToothPair, snakemake.params.tooth_pair))
+    design = pair(snakemake.params.tooth_pair).design
     gears = (design.pinion.teeth, design.face_gear.teeth)
     ladder = (0.2, 0.1, 0.05)
     table = pd.concat([twin_study(design, teeth, ladder) for teeth in gears], ignore_index=True)

@@ -8,12 +8,15 @@ from types import SimpleNamespace
 import pytest
 
 from facegear.errors import NotConverged
+from facegear.io.checksums import sha256
 from facegear.provenance.stage import stage
 
 
 @pytest.fixture
 def job(tmp_path):
+    (tmp_path / "given.csv").write_text("x\n2\n")
     return SimpleNamespace(
+        input=[str(tmp_path / "given.csv")],
         output=[str(tmp_path / "a.csv"), str(tmp_path / "a.provenance.json")],
         log=[str(tmp_path / "a.log")],
         params={"code": "c0de", "section": {"teeth": 23}},
@@ -33,6 +36,7 @@ def test_manifest_records_what_made_the_outputs(job, tmp_path, capsys):
     assert made["params"] == {"section": {"teeth": 23}}
     assert made["summary"] == "mean stiffness 4.1e8 N/m"
     assert made["files"]["a.csv"]["bytes"] == 4
+    assert made["inputs"] == {"given.csv": sha256(tmp_path / "given.csv")}
     assert {"python", "numpy"} <= set(made["versions"])
     assert ": mean stiffness" in capsys.readouterr().err
     assert "mean stiffness" in (tmp_path / "a.log").read_text()

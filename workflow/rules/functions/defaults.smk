@@ -1,8 +1,9 @@
 def complete(job):
     """Add what all jobs share, under names made of the rule's and its wildcards.
 
-    That is the log, the benchmark, the environment, the docstring as message, and the fingerprint of the code that
-    the script reaches, which makes a job run again when it changes.
+    That is the log, the benchmark, the environment, the docstring as message, the fingerprint of the code that the
+    script reaches, and for a stage all that it takes from the config. Where one of the last two changes, a job runs
+    again.
     """
     wildcards = sorted(job.wildcard_names - {"case"})
     name = "_".join([job.name, *(f"{{{wildcard}}}" for wildcard in wildcards)])
@@ -11,4 +12,6 @@ def complete(job):
     job.benchmark = f"results/{{case}}/benchmarks/rules/{name}.tsv"
     job.conda_env = "../envs/facegear.yaml"
     job.message = f"{job.docstring}: {{wildcards}}"
+    if job.name in NEEDS:
+        job.set_params(needs=needs(job.name))
     job.set_params(code=fingerprint(ROOT / "workflow" / "scripts" / Path(job.script).name, ROOT))

@@ -1,5 +1,5 @@
 from facegear.config.cases import study_points
-from facegear.config.machines import group_kinds
+from facegear.config.sharing_groups import group_kinds
 from facegear.config.studies import Study
 
 STUDIES = [parse_section(Study, study) for study in CONFIG["studies"]]

@@ -18,7 +18,7 @@ def stored_sets():
 def set_cases(wildcards):
     """Cases of the config with a set put in: the machine itself and every study's points."""
     row = named_set(pd.read_csv(REPRODUCTION.sets), wildcards.set)
-    values = json.loads(json.dumps(CONFIG))
+    values = json.loads(json.dumps({**CONFIG, "reproduction": None}))
     size = values["transmission"]["transmission_error"]["amplitude_um"]
     for key, value in config_changes(row, size).items():
         set_key(values, key, value)

@@ -1,0 +1,65 @@
+"""What each stage needs of a config: the exact slices that its results depend on.
+
+The names are those of the rules (and `machine`, for those that measure it); the keys of a slice are the
+arguments of the stage's function in `facegear.stages`.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+from facegear.config.transmission import TEETH
+from facegear.errors import ConfigError
+
+Slice = dict[str, str | tuple[str, ...]]
+
+_PAIR: Slice = {"tooth_pair": "tooth_pair"}
+_MESH: Slice = {**_PAIR, "mesh": "mesh"}
+_COMPLIANCE: Slice = {**_MESH, "contact": "contact"}
+_MACHINE: Slice = {"transmission": "transmission", "teeth": tuple(f"tooth_pair.{key}" for key in TEETH)}
+_ACCURACY: Slice = {"accuracy": "dynamics.accuracy"}
+
+NEEDS: dict[str, Slice] = {
+    "geometry": _PAIR,
+    "mesh": _MESH,
+    "compliance": _COMPLIANCE,
+    "contact": {**_PAIR, "contact": "contact"},
+    "stiffness": {"mesh_stiffness": "mesh_stiffness"},
+    "modal": {**_MACHINE, "mean_stiffness": "mesh_stiffness.mean_n_per_m"},
+    "dynamics_response": {**_MACHINE, **_ACCURACY, "speed_rpm": "dynamics.speed_rpm"},
+    "dynamics_sweep_chunk": {**_MACHINE, "sweep": "dynamics.sweep"},
+    "dynamics_sweep": {**_MACHINE, "sweep": "dynamics.sweep"},
+    "load_sharing": {
+        **_MACHINE,
+        **_ACCURACY,
+        "speed_rpm": "dynamics.speed_rpm",
+        "options": "load_sharing",
+    },
+    "machine": _MACHINE,
+    "load_sharing_reference": {
+        **_MACHINE,
+        **_ACCURACY,
+        "range_accuracy": "dynamics.sweep.accuracy",
+        "options": "load_sharing",
+    },
+}
+
+
+def stage_needs(rule: str, values: Mapping[str, Any]) -> dict[str, Any]:
+    """The arguments of a stage from the plain values of a whole config.
+
+    Raises ConfigError for modes, dynamics and load sharing of a config of tooth contact alone.
+    """
+    if "transmission" in NEEDS[rule] and values["transmission"] is None:
+        raise ConfigError("transmission", None, "required for modes, dynamics and load sharing")
+    return {
+        name: _value(values, keys)
+        if isinstance(keys, str)
+        else {key.rsplit(".", 1)[-1]: _value(values, key) for key in keys}
+        for name, keys in NEEDS[rule].items()
+    }
+
+
+def _value(values: Any, key: str) -> Any:
+    for part in key.split("."):
+        values = values[part] if values is not None else None
+    return values

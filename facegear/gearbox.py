@@ -1,0 +1,392 @@
+"""The front door: one object that answers for a machine, from its teeth to its load sharing."""
+
+import json
+import warnings
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cache, cached_property
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from facegear.config.cases import changed_config
+from facegear.config.load import load_config
+from facegear.config.model import Config, resolved
+from facegear.config.needs import NEEDS, stage_needs
+from facegear.errors import CorruptFile
+from facegear.results.base import Result
+
+if TYPE_CHECKING:
+    from facegear.contact.gear_flank import GearFlank
+    from facegear.results.contact import ContactResult
+    from facegear.results.geometry import GeometryResult
+    from facegear.results.load_sharing import LoadSharingResult
+    from facegear.results.modal import ModesResult
+    from facegear.results.response import ResponseResult
+    from facegear.results.stiffness import StiffnessResult
+    from facegear.results.sweep import SweepResult
+    from facegear.stages.outcome import Outcome
+
+Found = TypeVar("Found", bound=Result)
+Value = TypeVar("Value")
+ROOT = Path(__file__).parents[1]
+
+
+def load(config: str | Path, results: str | Path | None = "results") -> "Gearbox":
+    """The gearbox of a config file.
+
+    `results`: folder that the workflow writes to; a relative one is looked for here and beside the config's
+    folder, None computes everything anew. Raises ConfigErrors with one line for every mistake in the file.
+
+    >>> import facegear
+    >>> facegear.load("config/harmonics_only.yaml").values["tooth_pair"]["pinion_teeth"]
+    23
+    """
+    read = load_config(config)
+    return Gearbox(read, None if results is None else _case_folder(config, results, read.case))
+
+
+@cache
+def example() -> "Gearbox":
+    """A gearbox that needs no file: five pinions between two face gears, coarse enough to take seconds.
+
+    It is the machine of config/paper.yaml with geometric meshes; what it computes is kept for the session.
+
+    >>> import facegear
+    >>> facegear.example().values["tooth_pair"]["face_gear_teeth"]
+    143
+    """
+    return Gearbox(load_config(str(files("facegear") / "example.yaml")))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Gearbox:
+    """A machine as its config describes it; every answer is computed once, or read where it is stored.
+
+    `config` is validated, `folder` holds what the workflow stored. A stored result is used if it was made
+    from the same part of the config, by the same code, from inputs of which the same holds; `source` of each
+    result says which it is.
+
+    >>> import facegear
+    >>> gearbox = facegear.example().with_values({"transmission.backlash_um": 120})
+    >>> gearbox.modes().source
+    'computed'
+    """
+
+    config: Config
+    folder: Path | None = None
+    _known: dict[str, Any] = field(default_factory=dict)
+
+    @cached_property
+    def values(self) -> dict[str, Any]:
+        """The config as plain values, complete, with what follows from other keys filled in."""
+        return resolved(self.config)
+
+    def with_values(self, changes: Mapping[str, Any]) -> "Gearbox":
+        """A changed copy; what the changes do not touch is not computed again.
+
+        `changes`: dotted config keys (list positions as numbers) and their values. Raises ConfigErrors with
+        one line for every mistake.
+
+        >>> import facegear
+        >>> stiffer = facegear.example().with_values({"mesh_stiffness.mean_n_per_m": 5e8})
+        >>> stiffer.values["mesh_stiffness"]["mean_n_per_m"]
+        500000000.0
+        """
+        return self._changed("with_values", changes)
+
+    def geometry(self) -> "GeometryResult":
+        """Limits, contact path, backlash and smallest gaps of the unloaded pair.
+
+        Raises ConfigError for a pair without bodies.
+
+        >>> import facegear
+        >>> facegear.example().geometry().summary.split(",")[0]
+        'contact ratio 1.548'
+        """
+        from facegear.results.geometry import GeometryResult
+
+        def compute() -> "Outcome":
+            from facegear.stages.geometry import geometry
+
+            return geometry(**self._needs("geometry"))
+
+        return self._result("geometry", GeometryResult, compute)
+
+    def contact(
+        self, torques: float | Iterable[float] | None = None, positions: int | None = None
+    ) -> "ContactResult":
+        """Loaded tooth contact at every position and torque.
+
+        `torques`: N m on the pinion for one mesh, rising; `positions`: number of positions in a pitch; both
+        as in the config unless given. Raises ConfigErrors for values that the config would refuse,
+        NotConverged naming position and torque.
+
+        >>> import facegear
+        >>> table = facegear.example().contact(torques=[600]).table()
+        >>> float(table["kkt_residual"].max()) < 1e-12
+        True
+        """
+        changes = _given({"contact.torques_n_m": torques, "contact.positions_per_pitch": positions})
+        if torques is not None:
+            changes["contact.torques_n_m"] = torques if isinstance(torques, Iterable) else [torques]
+            changes["mesh_stiffness.torque_n_m"] = None  # need not lie within these
+        gearbox = self._changed("contact", changes)
+
+        from facegear.results.contact import ContactResult
+
+        return gearbox._result("contact", ContactResult, gearbox._contact)
+
+    def stiffness(self) -> "StiffnessResult":
+        """k(t) of one mesh at the config's load, or from given harmonics.
+
+        Raises ConfigError for a load outside those of the contact analysis.
+
+        >>> import facegear
+        >>> facegear.example().stiffness().table()["b_n_per_m"].round(-3).to_list()[0]
+        410000000.0
+        """
+        from facegear.results.stiffness import StiffnessResult
+
+        return self._result("stiffness", StiffnessResult, self._stiffness)
+
+    def modes(self) -> "ModesResult":
+        """Natural frequencies, classes and shapes; needs neither mesh nor contact.
+
+        >>> import facegear
+        >>> int((facegear.example().modes().table()["class"] == "rigid body").sum())
+        6
+        """
+        from facegear.results.modal import ModesResult
+
+        def compute() -> "Outcome":
+            from facegear.stages.modal import modal
+
+            given = self.values["mesh_stiffness"]["mean_n_per_m"] is not None
+            return modal(**self._needs("modal"), harmonics=None if given else self._harmonics())
+
+        return self._result("modal", ModesResult, compute)
+
+    def response(self, speed_rpm: float | None = None) -> "ResponseResult":
+        """Steady state at a pinion speed, the config's unless given.
+
+        Raises ConfigErrors for a speed that the config would refuse, NotConverged naming the speed.
+
+        >>> import facegear
+        >>> facegear.example().response(1000).table()["class"].iloc[0]
+        'period-1'
+        """
+        from facegear.results.response import ResponseResult
+
+        gearbox = self._changed("response", _given({"dynamics.speed_rpm": speed_rpm}))
+
+        def compute() -> "Outcome":
+            from facegear.stages.dynamics_response import dynamics_response
+
+            return dynamics_response(gearbox._harmonics(), **gearbox._needs("dynamics_response"))
+
+        return gearbox._result("dynamics_response", ResponseResult, compute)
+
+    def sweep(
+        self,
+        from_rpm: float | None = None,
+        to_rpm: float | None = None,
+        points: int | None = None,
+        directions: Sequence[str] | None = None,
+        threads: int = 1,
+    ) -> "SweepResult":
+        """Steady states over speed with the state carried over, with jumps and resonances.
+
+        Speeds and `directions` (up, down) as in the config unless given. Raises ConfigErrors for values that
+        the config would refuse, NotConverged naming the speed.
+
+        >>> import facegear
+        >>> found = facegear.example().sweep(1000, 1200, points=3, directions=["up"])
+        >>> found.table()["deflection_ac_rms_um"].dims
+        ('direction', 'speed_rpm', 'mesh')
+        """
+        given = {"from_rpm": from_rpm, "to_rpm": to_rpm, "points": points, "directions": directions}
+        changes = _given({f"dynamics.sweep.{key}": value for key, value in given.items()})
+        if points is not None and points < self.values["dynamics"]["sweep"]["chunks"]:
+            changes["dynamics.sweep.chunks"] = 1
+        gearbox = self._changed("sweep", changes)
+
+        from facegear.results.sweep import SweepResult
+
+        found = gearbox._result("dynamics_sweep", SweepResult, lambda: gearbox._sweep(threads))
+        return replace(found, content={**found.content, "frequencies": gearbox.modes().table()})
+
+    def load_sharing(self, speed_rpm: float | None = None) -> "LoadSharingResult":
+        """Load-sharing coefficients at a pinion speed, the config's unless given, averaged as section
+        `load_sharing` asks.
+
+        Raises ConfigErrors for a speed that the config would refuse, NotConverged naming the speed.
+
+        >>> import facegear
+        >>> facegear.example().load_sharing().table()["group"].to_list()
+        ['right input', 'left input', 'idlers']
+        """
+        from facegear.results.load_sharing import LoadSharingResult
+
+        gearbox = self._changed("load_sharing", _given({"dynamics.speed_rpm": speed_rpm}))
+
+        def compute() -> "Outcome":
+            from facegear.stages.load_sharing import load_sharing
+
+            return load_sharing(gearbox._harmonics(), **gearbox._needs("load_sharing"))
+
+        return gearbox._result("load_sharing", LoadSharingResult, compute)
+
+    def __repr__(self) -> str:
+        pair, machine = self.config.tooth_pair, self.config.transmission
+        pinions, gears = (len(machine.pinions), len(machine.face_gears)) if machine else (1, 1)
+        return (
+            f"Gearbox({self.config.case}: pinions {pinions} x {pair.pinion_teeth} teeth, "
+            f"face gears {gears} x {pair.face_gear_teeth} teeth)"
+        )
+
+    def _changed(self, where: str, changes: Mapping[str, Any]) -> "Gearbox":
+        if not changes:
+            return self
+        plain = {key: _plain(value) for key, value in changes.items()}
+        config = changed_config(self.config.model_dump(mode="json"), plain, where)
+        return Gearbox(config, self.folder, self._known)
+
+    def _needs(self, rule: str) -> dict[str, Any]:
+        return stage_needs(rule, self.values)
+
+    def _contact(self) -> "Outcome":
+        from facegear.stages.contact import contact
+
+        pinion, face_gear = self._compliance("pinion"), self._compliance("face_gear")
+        return contact(pinion, face_gear, **self._needs("contact"))
+
+    def _compliance(self, body: str) -> "GearFlank":
+        def find() -> "GearFlank":
+            from facegear.contact.gear_flank import STORED, from_arrays
+            from facegear.io import arrays
+            from facegear.stages.compliance import compliance
+
+            path = None if self.folder is None else self.folder / "compliance" / f"{body}.npz"
+            if path is not None and self._current_manifest(path):
+                stored = _unless_corrupt(lambda: arrays.read(path, STORED))
+                if stored is not None:
+                    return from_arrays(stored)
+            return compliance(body, **self._needs("compliance"))
+
+        return self._once(("compliance", body), find)
+
+    def _stiffness(self) -> "Outcome":
+        from facegear.stages.stiffness import stiffness
+
+        section = self.values["mesh_stiffness"]
+        given = section["source"] == "harmonics"
+        return stiffness(section, ltca=None if given else self.contact().content["ltca"])
+
+    def _harmonics(self) -> Any:
+        return self.stiffness().content["harmonics"]
+
+    def _sweep(self, threads: int) -> "Outcome":
+        from facegear.stages.dynamics_sweep import dynamics_sweep
+        from facegear.stages.dynamics_sweep_chunk import dynamics_sweep_chunk
+
+        needs, harmonics = self._needs("dynamics_sweep"), self._harmonics()
+        plan = needs["sweep"]
+        chunks = [
+            dynamics_sweep_chunk(direction, number, harmonics, **needs).content["chunk"]
+            for direction in plan["directions"]
+            for number in range(plan["chunks"])
+        ]
+        return dynamics_sweep(chunks, harmonics, **needs, threads=threads)
+
+    def _result(self, rule: str, kind: type[Found], compute: Callable[[], "Outcome"]) -> Found:
+        """Known already, else stored and up to date, else computed."""
+
+        def find() -> Found:
+            stored = self._stored(kind)
+            if stored is not None:
+                return stored
+            found = compute()
+            return kind(found.content, found.summary, "computed", self.values)
+
+        return self._once((rule,), find)
+
+    def _once(self, name: tuple[str, ...], find: Callable[[], Value]) -> Value:
+        """What `find` gives, kept under the part of the config that it depends on."""
+        rules = _before(name[0], self.values)
+        key = json.dumps([name, [stage_needs(rule, self.values) for rule in rules]])
+        if key not in self._known:
+            self._known[key] = find()
+        return self._known[key]
+
+    def _stored(self, kind: type[Found]) -> Found | None:
+        if self.folder is None:
+            return None
+        folder, summary = self.folder, ""
+        for kept in kind.FILES.values():
+            manifest = self._current_manifest(folder / kept.path)
+            if manifest is None:
+                return None
+            summary = manifest["summary"]
+        content = _unless_corrupt(lambda: {name: kept.read(folder) for name, kept in kind.FILES.items()})
+        return None if content is None else kind(content, summary, "stored", self.values)
+
+    def _current_manifest(self, path: Path) -> Mapping[str, Any] | None:
+        from facegear.provenance.current import current_manifest
+        from facegear.provenance.fingerprint import stage_fingerprint
+
+        return current_manifest(
+            path,
+            lambda rule: self._needs(rule) if rule in NEEDS else None,
+            lambda rule: stage_fingerprint(f"facegear.stages.{rule}", ROOT),
+        )
+
+
+UPSTREAM = {
+    "contact": ("compliance",),
+    "stiffness": ("contact",),
+    "dynamics_response": ("stiffness",),
+    "dynamics_sweep": ("stiffness",),
+    "load_sharing": ("stiffness",),
+}
+
+
+def _before(rule: str, values: Mapping[str, Any]) -> list[str]:
+    """A rule and all whose results it uses."""
+    stiffness = values["mesh_stiffness"]
+    if rule == "stiffness" and stiffness["source"] == "harmonics":
+        return [rule]
+    if rule == "modal" and stiffness["mean_n_per_m"] is None:
+        return [rule, *_before("stiffness", values)]
+    return [rule, *(other for near in UPSTREAM.get(rule, ()) for other in _before(near, values))]
+
+
+def _case_folder(config: str | Path, results: str | Path, case: str) -> Path | None:
+    places = [Path(results), Path(config).resolve().parents[1] / results]
+    return next((place / case for place in places if (place / case).is_dir()), None)
+
+
+def _unless_corrupt(read: Callable[[], Value]) -> Value | None:
+    """What is stored; None, with a warning, if it is damaged."""
+    try:
+        return read()
+    except CorruptFile as error:
+        warnings.warn(f"{error}; computed anew", stacklevel=5)
+        return None
+
+
+def _given(changes: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in changes.items() if value is not None}
+
+
+def _plain(value: Any) -> Any:
+    """NumPy numbers and arrays, tuples and other iterables as YAML would hold them."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items()}
+    return (
+        [_plain(item) for item in value]
+        if isinstance(value, Iterable) and not isinstance(value, str)
+        else value
+    )

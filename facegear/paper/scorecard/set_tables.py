@@ -1,0 +1,48 @@
+"""The dynamic tables of a case and its studies, by the stages that the workflow runs, in memory."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+
+from facegear.config.needs import stage_needs
+from facegear.load_sharing.collect import NOMINAL, collected
+from facegear.stages.dynamics_response import dynamics_response
+from facegear.stages.dynamics_sweep import dynamics_sweep
+from facegear.stages.dynamics_sweep_chunk import dynamics_sweep_chunk
+from facegear.stages.load_sharing import load_sharing
+from facegear.stages.load_sharing_reference import load_sharing_reference
+from facegear.stages.stiffness import stiffness
+
+Values = Mapping[str, Any]
+
+
+def set_tables(base: Values, points: Mapping[tuple[str, str], Values], ltca: pd.DataFrame) -> dict[str, Any]:
+    """Tables by name, as the criteria read them, from plain config values and the contact table.
+
+    `points`: config values of each (study, point). All share the case's mesh stiffness.
+    """
+    harmonics = stiffness(**stage_needs("stiffness", base), ltca=ltca).content["harmonics"]
+    response = dynamics_response(harmonics, **stage_needs("dynamics_response", base))
+    sharing = {
+        key: load_sharing(harmonics, **stage_needs("load_sharing", values))
+        for key, values in {(NOMINAL, NOMINAL): base, **points}.items()
+    }
+    reference = load_sharing_reference(harmonics, **stage_needs("load_sharing_reference", base))
+    return {
+        **response.content,
+        **_sweep(base, harmonics),
+        "sharing": collected({key: one.content["summary"] for key, one in sharing.items()}),
+        "curves": collected({key: one.content["curve"] for key, one in sharing.items()}),
+        "reference": reference.content["reference"],
+    }
+
+
+def _sweep(base: Values, harmonics: pd.DataFrame) -> Mapping[str, Any]:
+    needs = stage_needs("dynamics_sweep", base)
+    needs["sweep"] = {**needs["sweep"], "chunks": 1}
+    chunks = [
+        dynamics_sweep_chunk(direction, 0, harmonics, **needs).content["chunk"]
+        for direction in needs["sweep"]["directions"]
+    ]
+    return dynamics_sweep(chunks, harmonics, **needs).content

@@ -1,0 +1,66 @@
+"""The figures of a speed sweep by name, from its tables alone."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from facegear.plots.campbell import campbell, waterfall
+from facegear.plots.sweep import mesh_sweeps, translations
+
+
+@dataclass(frozen=True)
+class Machine:
+    """What the figures show of a machine: pinions (names), one of each role, sides of its gears, teeth."""
+
+    pinions: tuple[str, ...]
+    typical: tuple[str, ...]
+    sides: tuple[str, ...]
+    teeth: int
+
+    @property
+    def gears(self) -> list[str]:
+        """Names of the face gears, lower one first."""
+        return [f"{side} face gear" for side in reversed(self.sides)]
+
+    @property
+    def meshes(self) -> list[str]:
+        """Names of the meshes in the order of the arrays."""
+        return [f"{name}/{side}" for side in reversed(self.sides) for name in self.pinions]
+
+
+def drawn_machine(
+    pinions: Sequence[Mapping[str, Any]], face_gears: Sequence[str], pinion_teeth: int
+) -> Machine:
+    """From the plain values of the config's keys `pinions` and `face_gears`."""
+    names = [place["name"] for place in pinions]
+    roles = [place["role"] for place in pinions]
+    typical = [name for i, name in enumerate(names) if roles[i] not in roles[:i]]
+    sides = [side for side in ("upper", "lower") if side in face_gears]
+    return Machine(tuple(names), tuple(typical), tuple(sides), pinion_teeth)
+
+
+def _waterfall(found: Mapping[str, Any], machine: Machine) -> Figure:
+    shown = f"{machine.typical[-1]}/{machine.sides[0]}"
+    return waterfall(found["waterfall"], machine.meshes.index(shown), shown, machine.teeth)
+
+
+def _campbell(found: Mapping[str, Any], machine: Machine) -> Figure:
+    last = found["sweep"]["speed_rpm"].max()
+    return campbell(found["frequencies"], found["resonances"], found["jumps"], machine.teeth, last)
+
+
+SWEEP_FIGURES: dict[str, Callable[[Mapping[str, Any], Machine], Figure]] = {
+    "pinions": lambda found, machine: translations(found["sweep"], machine.typical, "xy"),
+    "gears": lambda found, machine: translations(found["sweep"], machine.gears, "xyz"),
+    "meshes": lambda found, machine: mesh_sweeps(
+        found["sweep"], found["jumps"], machine.typical, machine.sides
+    ),
+    "campbell": _campbell,
+    "waterfall": _waterfall,
+}
+"""Figure by name: RMS of pinions, of face gears, of the meshes (with jumps), Campbell diagram, waterfall.
+
+`found` holds the tables sweep, jumps, resonances, frequencies and the arrays waterfall.
+"""

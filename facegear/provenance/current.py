@@ -1,0 +1,48 @@
+"""Whether a stored result is what its stage would give now."""
+
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from facegear.io.checksums import MANIFEST_SUFFIX, sha256
+
+Manifest = Mapping[str, Any]
+
+
+def current_manifest(
+    path: Path, needs: Callable[[str], Mapping[str, Any] | None], code: Callable[[str], str]
+) -> Manifest | None:
+    """The manifest of a stored file if the file is up to date, else None.
+
+    It is if its stage ran with the same slice of the config and the same code, on inputs that are the same
+    files now and up to date themselves. `needs` and `code` give slice and stage fingerprint of a rule; None
+    for a rule that they do not know. The bytes of the file itself are left to its reader.
+    """
+    manifest = _manifest(path)
+    if manifest is None:
+        return None
+    try:
+        wanted = needs(manifest["rule"])
+        if wanted is None or manifest["params"].get("needs") != wanted:
+            return None
+        if code(manifest["rule"]) not in manifest["code"].split("."):
+            return None
+        inputs = {path.parent / name: digest for name, digest in manifest["inputs"].items()}
+    except (KeyError, TypeError, AttributeError):
+        return None
+    same = all(name.is_file() and sha256(name) == digest for name, digest in inputs.items())
+    made = [name for name in inputs if same and _manifest(name) is not None]
+    return manifest if same and all(current_manifest(name, needs, code) for name in made) else None
+
+
+def _manifest(path: Path) -> Manifest | None:
+    """The readable manifest that covers a file."""
+    for candidate in sorted(path.parent.glob(f"*{MANIFEST_SUFFIX}")):
+        try:
+            found = json.loads(candidate.read_text(encoding="utf-8"))
+            if path.name in found["files"]:
+                return found
+        except (OSError, ValueError, KeyError, TypeError):
+            continue
+    return None

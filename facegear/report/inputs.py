@@ -1,0 +1,43 @@
+"""The inputs of a machine that shape its dynamics and that publications tend to leave out, in words."""
+
+from collections.abc import Mapping
+from typing import Any
+
+
+def inputs_in_words(values: Mapping[str, Any]) -> list[str]:
+    """One phrase an input, from the plain values of a config."""
+    transmission, pair = values["transmission"], values["tooth_pair"]
+    torque, error = transmission["torque"], transmission["transmission_error"]
+    gear, pinion, shaper = pair["face_gear"], pair["pinion"], pair["shaper"]
+    stiffness = values["mesh_stiffness"]
+    more = "; ".join(
+        f"harmonic {term['order']}: {term['amplitude_um']:g} um" for term in error["more_harmonics"]
+    )
+    mean = "" if stiffness["source"] == "fem" else f", mean {stiffness['mean_n_per_m']:.3g} N/m"
+    phasing = "in step at all meshes" if error["phasing"] == "in_step" else "shifted like the mesh stiffness"
+    teeth = (
+        []
+        if pinion is None
+        else [
+            f"face width {gear['inner_radius_mm']:g} to {gear['outer_radius_mm']:g} mm, "
+            f"rim {gear['rim_thickness_mm']:g} mm, bore {pinion['bore_radius_mm']:g} mm, "
+            f"shaper teeth {shaper['teeth']}"
+        ]
+    )
+    own = [pinion for pinion in transmission["pinions"] if pinion.get("torque_n_m") is not None]
+    given = "".join(f", {pinion['name']} {pinion['torque_n_m']:g} N m" for pinion in own)
+    return [
+        f"torque per engine {torque['per_input_n_m']:g} N m{given}",
+        f"share of the power at the tail {100 * torque['tail_share']:.3g} %",
+        f"e(t): {error['amplitude_um']:g} um read as its {error['meaning']}, cosine, "
+        f"phase {error['phase_deg']:g} deg, {phasing}" + (f", {more}" if more else ""),
+        f"phases of the lower meshes {transmission['phase_convention']}",
+        f"mesh stiffness source {stiffness['source']}" + mean,
+        _kinematics(transmission),
+        *teeth,
+    ]
+
+
+def _kinematics(transmission: Mapping[str, Any]) -> str:
+    radius = transmission["face_gear"]["mesh_radius_mm"]
+    return "meshes geometric" if radius is None else f"meshes as printed, mesh radius {radius:g} mm"

@@ -1,0 +1,59 @@
+"""What all results share: their content, where it came from, and the files they are kept in."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, ClassVar, Literal
+
+from facegear.errors import FacegearError
+from facegear.io import arrays, documents, tables
+from facegear.io.files import write_all
+
+
+@dataclass(frozen=True)
+class Kept:
+    """The file of one part of a result below a case's folder, and what its reader asks of it.
+
+    `holds`: columns of a table, shapes of arrays, keys of a record.
+    """
+
+    path: str
+    holds: Mapping[str, tuple[int | None, ...]] | Sequence[str] = ()
+    may_be_empty: bool = False
+
+    def read(self, folder: Path) -> Any:
+        """The part as stored. Raises CorruptFile if it is missing, altered or lacks something."""
+        path = folder / self.path
+        if path.suffix == ".npz":
+            return arrays.read(path, self.holds if isinstance(self.holds, Mapping) else {})
+        if path.suffix == ".json":
+            return documents.read(path, tuple(self.holds))
+        return tables.read(path, tuple(self.holds), self.may_be_empty)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Result:
+    """One stage's results; `source` says whether they were computed now or stored by the workflow."""
+
+    FILES: ClassVar[dict[str, Kept]] = {}
+
+    content: Mapping[str, Any]
+    summary: str
+    source: Literal["computed", "stored"]
+    values: Mapping[str, Any] = field(repr=False)
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write the files that the workflow writes for this stage, below `folder`; returns their paths."""
+        paths = {name: Path(folder) / kept.path for name, kept in self.FILES.items()}
+        write_all(self.content, paths)
+        return list(paths.values())
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.source}: {self.summary})"
+
+
+def chosen(name: str, allowed: Sequence[str], what: str) -> str:
+    """`name` if it is one of `allowed`; raises FacegearError with one line otherwise."""
+    if name not in allowed:
+        raise FacegearError(f"{what} = {name!r}: one of {', '.join(allowed)}")
+    return name

@@ -1,0 +1,41 @@
+"""Exact geometry of the pair."""
+
+from typing import TYPE_CHECKING, ClassVar
+
+import pandas as pd
+
+from facegear.results.base import Kept, Result
+
+if TYPE_CHECKING:
+    from facegear.plots.style import Figure
+
+
+class GeometryResult(Result):
+    """Limits, contact path, backlash and smallest gaps of the unloaded pair."""
+
+    FILES: ClassVar = {
+        "pair": Kept("geometry/pair.json", ("design_si", "radii_mm", "limits_mm", "smallest_gap")),
+        "flanks": Kept("geometry/flanks.npz", {"pinion_section": (None, 2), "gear_flank": (None, None, 3)}),
+        "contact": Kept("geometry/contact.npz", {"contour_gap": (None, None), "path_roll": (None,)}),
+    }
+
+    def table(self) -> pd.DataFrame:
+        """Columns quantity and value; the unit stands at the end of a quantity's name."""
+        rows = [
+            (f"{section}.{name}" if section else name, value)
+            for section, found in _sections(self.content["pair"])
+            for name, value in found.items()
+            if isinstance(value, int | float | str)
+        ]
+        return pd.DataFrame(rows, columns=["quantity", "value"])
+
+    def plot(self) -> "Figure":
+        """The pair in mesh, its sections, and the gap around the contact point."""
+        from facegear.plots.tooth_pair import tooth_pair
+
+        return tooth_pair(self.content["pair"], self.content["flanks"], self.content["contact"])
+
+
+def _sections(record: dict) -> list[tuple[str, dict]]:
+    inner = [(name, value) for name, value in record.items() if isinstance(value, dict)]
+    return [("", record), *inner]

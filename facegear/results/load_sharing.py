@@ -1,0 +1,58 @@
+"""Load sharing at one speed."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, ClassVar
+
+import pandas as pd
+
+from facegear.errors import FacegearError
+from facegear.results.base import Kept, Result, chosen
+
+if TYPE_CHECKING:
+    from facegear.plots.style import Figure
+
+STUDY = "compared"
+
+
+class LoadSharingResult(Result):
+    """Load-sharing coefficients of every group of meshes that share a load."""
+
+    FILES: ClassVar = {
+        "curve": Kept("load_sharing/nominal.csv", ("cycle_fraction",), may_be_empty=True),
+        "summary": Kept("load_sharing/nominal_summary.csv", ("group", "kind"), may_be_empty=True),
+    }
+
+    def table(self) -> pd.DataFrame:
+        """One row a group: mean and its half_width, extremes, lost contact, class of motion."""
+        return self.content["summary"].copy()
+
+    def curve(self) -> pd.DataFrame:
+        """Coefficient of every group over one mesh cycle, with the envelope over all cycles."""
+        return self.content["curve"].copy()
+
+    def plot(
+        self,
+        kind: str | None = None,
+        label: str = "as configured",
+        beside: "Mapping[str, LoadSharingResult] | None" = None,
+        title: str = "Load sharing",
+    ) -> "Figure":
+        """Coefficient over one mesh cycle, of one kind of group (the first one unless named).
+
+        `beside`: results of other gearboxes by label, drawn in the same axes.
+        """
+        from facegear.load_sharing.collect import collected
+        from facegear.plots.load_sharing import sharing_figure
+        from facegear.report.inputs import inputs_in_words
+
+        results = {label: self, **(beside or {})}
+        frames = {
+            part: collected({(STUDY, name): one.content[part] for name, one in results.items()})
+            for part in ("curve", "summary")
+        }
+        kinds = tuple(dict.fromkeys(self.content["summary"]["kind"]))
+        if not kinds:
+            raise FacegearError(f"{self.values['case']}: no meshes share a load, there is nothing to draw")
+        shown = kinds[0] if kind is None else chosen(kind, kinds, "kind")
+        caption = "Inputs of the base case: " + "; ".join(inputs_in_words(self.values))
+        return sharing_figure(frames["curve"], frames["summary"], shown, title, caption)

@@ -1,0 +1,33 @@
+"""Natural modes."""
+
+from typing import TYPE_CHECKING, ClassVar
+
+import pandas as pd
+
+from facegear.results.base import Kept, Result
+
+if TYPE_CHECKING:
+    from facegear.plots.style import Figure
+
+
+class ModesResult(Result):
+    """Natural frequencies, classes and shapes with the mean mesh stiffness."""
+
+    FILES: ClassVar = {
+        "frequencies": Kept("modal/frequencies.csv", ("order", "frequency_hz", "symbols", "class")),
+        "shapes": Kept("modal/shapes.csv", ("order", "body", "dof", "relative")),
+    }
+
+    def table(self) -> pd.DataFrame:
+        """One row a mode: order, frequency_hz, what moves (symbols), class."""
+        return self.content["frequencies"].copy()
+
+    def shapes(self) -> pd.DataFrame:
+        """One row a mode, body and degree of freedom."""
+        return self.content["shapes"].copy()
+
+    def plot(self) -> "Figure":
+        """Typical mode shapes, one panel for each kind of mode."""
+        from facegear.plots.modal import mode_shapes
+
+        return mode_shapes(self.content["frequencies"], self.content["shapes"])

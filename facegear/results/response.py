@@ -1,0 +1,37 @@
+"""Response at one speed."""
+
+from typing import TYPE_CHECKING, ClassVar
+
+import pandas as pd
+
+from facegear.results.base import Kept, Result
+
+if TYPE_CHECKING:
+    from facegear.plots.style import Figure
+
+
+class ResponseResult(Result):
+    """Steady state at one speed: mesh deflections and forces, their spectrum, class of motion."""
+
+    FILES: ClassVar = {
+        "response": Kept("dynamics/response.csv", ("mesh_cycle", "mesh", "deflection_um")),
+        "spectrum": Kept("dynamics/spectrum.csv", ("mesh", "order", "amplitude_um")),
+        "summary": Kept("dynamics/summary.csv"),
+        "multipliers": Kept("dynamics/multipliers.csv", (), may_be_empty=True),
+    }
+
+    def table(self) -> pd.DataFrame:
+        """The numbers that a sweep keeps: quantity (unit at its end), body_or_mesh, value, class."""
+        return self.content["summary"].copy()
+
+    def history(self) -> pd.DataFrame:
+        """Deflection (um) and elastic force (N) of every mesh over at most 32 mesh periods."""
+        return self.content["response"].copy()
+
+    def plot(self) -> "Figure":
+        """Deflections along the line of action against time, and their spectra."""
+        from facegear.plots.response import deflections
+
+        pinions = [place["name"] for place in self.values["transmission"]["pinions"]]
+        speed = self.values["dynamics"]["speed_rpm"]
+        return deflections(self.content["response"], self.content["spectrum"], pinions, speed)

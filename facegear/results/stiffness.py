@@ -1,0 +1,38 @@
+"""Mesh stiffness over a pitch and its harmonics."""
+
+from typing import TYPE_CHECKING, ClassVar
+
+import pandas as pd
+
+from facegear.results.base import Kept, Result, chosen
+
+if TYPE_CHECKING:
+    from facegear.plots.style import Figure
+
+HARMONICS = ("order", "a_n_per_m", "b_n_per_m", "amplitude_n_per_m")
+
+
+class StiffnessResult(Result):
+    """k(t) that the lumped model uses."""
+
+    FILES: ClassVar = {
+        "tvms": Kept("stiffness/tvms.csv", ("position", "k_n_per_m", "k_series_n_per_m")),
+        "harmonics": Kept("stiffness/harmonics.csv", HARMONICS),
+        "spectrum": Kept("stiffness/spectrum.csv", ("order", "amplitude_n_per_m")),
+    }
+
+    def table(self) -> pd.DataFrame:
+        """Orders kept of k = sum a sin(j w t) + b cos(j w t), with the errors of cutting and sampling."""
+        return self.content["harmonics"].copy()
+
+    def curve(self) -> pd.DataFrame:
+        """k over a pitch and the series kept of it, N/m."""
+        return self.content["tvms"].copy()
+
+    def plot(self, what: str = "curve") -> "Figure":
+        """`curve` over a mesh period, or amplitudes of its `harmonics`."""
+        from facegear.plots.stiffness import harmonic_amplitudes, stiffness_curve
+
+        if chosen(what, ("curve", "harmonics"), "plot") == "curve":
+            return stiffness_curve(self.content["tvms"])
+        return harmonic_amplitudes(self.content["spectrum"])

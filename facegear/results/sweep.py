@@ -1,0 +1,51 @@
+"""Speed sweep."""
+
+from typing import TYPE_CHECKING, ClassVar
+
+import pandas as pd
+
+from facegear.results.base import Kept, Result, chosen
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from facegear.plots.style import Figure
+
+SWEEP = ("direction", "speed_rpm", "quantity", "body_or_mesh", "value", "class")
+
+
+class SweepResult(Result):
+    """Steady states over speed, up and down, with jumps and resonances."""
+
+    FILES: ClassVar = {
+        "sweep": Kept("dynamics/sweep.csv", SWEEP),
+        "jumps": Kept("dynamics/jumps.csv", ("direction", "speed_after_rpm"), may_be_empty=True),
+        "resonances": Kept("dynamics/resonances.csv", ("speed_rpm", "resonance"), may_be_empty=True),
+        "seams": Kept("dynamics/seams.csv", (), may_be_empty=True),
+        "waterfall": Kept("dynamics/waterfall.npz", {"orders": (None,)}),
+    }
+
+    def table(self) -> "xr.Dataset":
+        """Every quantity (unit at the end of its name) over direction, speed_rpm and mesh or body.
+
+        `class` is the class of motion; a value that does not exist at a speed is NaN.
+        """
+        from facegear.results.sweep_dataset import sweep_dataset
+
+        return sweep_dataset(self.content["sweep"])
+
+    def jumps(self) -> pd.DataFrame:
+        """One row a jump: its bracket of speeds (rpm), classes of motion, the resonance it belongs to."""
+        return self.content["jumps"].copy()
+
+    def resonances(self) -> pd.DataFrame:
+        """One row a peak of the RMS without mean, with the mode it belongs to."""
+        return self.content["resonances"].copy()
+
+    def plot(self, what: str = "meshes") -> "Figure":
+        """RMS of `meshes`, `pinions` or `gears` over speed, `campbell` diagram or `waterfall`."""
+        from facegear.plots.dynamics import SWEEP_FIGURES, drawn_machine
+
+        draw = SWEEP_FIGURES[chosen(what, tuple(SWEEP_FIGURES), "plot")]
+        machine, teeth = self.values["transmission"], self.values["tooth_pair"]["pinion_teeth"]
+        return draw(self.content, drawn_machine(machine["pinions"], machine["face_gears"], teeth))

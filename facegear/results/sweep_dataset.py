@@ -1,0 +1,45 @@
+"""The tidy table of a sweep as a labelled dataset."""
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+KEYS = ["direction", "speed_rpm"]
+NO_ITEM = "machine"
+"""What stands for body or mesh in rows that belong to the whole machine."""
+
+
+def sweep_dataset(table: pd.DataFrame) -> xr.Dataset:
+    """Quantities over direction, speed_rpm and mesh, body or nothing, in the order of the table.
+
+    The names of meshes hold a stroke, `pinion/side`, those of bodies do not.
+    """
+    axes: dict[str, list] = {
+        "direction": list(dict.fromkeys(table["direction"])),
+        "speed_rpm": np.unique(table["speed_rpm"]).tolist(),
+    }
+    names = [str(name) for name in dict.fromkeys(table["body_or_mesh"]) if name != NO_ITEM]
+    items = {
+        "mesh": [name for name in names if "/" in name],
+        "body": [name for name in names if "/" not in name],
+    }
+    speeds = table.drop_duplicates(KEYS)
+    found = {"class": _filled(speeds, "class", axes, ""), "periodic": _filled(speeds, "periodic", axes, "")}
+    for quantity, rows in table.groupby("quantity", sort=False):
+        kind = _kind(rows["body_or_mesh"].iloc[0])
+        own = {**axes, kind: items[kind]} if kind else axes
+        found[str(quantity)] = _filled(rows.rename(columns={"body_or_mesh": kind}), "value", own, np.nan)
+    return xr.Dataset(found)
+
+
+def _kind(name: str) -> str:
+    """Whether a name is that of a mesh, of a body, or of the machine (no text)."""
+    return "" if name == NO_ITEM else "mesh" if "/" in name else "body"
+
+
+def _filled(rows: pd.DataFrame, column: str, axes: dict[str, list], nothing: object) -> xr.DataArray:
+    """One column over its axes; `nothing` where the table has no row."""
+    values = np.full([len(axis) for axis in axes.values()], nothing, dtype=object if nothing == "" else float)
+    places = tuple(pd.Index(axis).get_indexer(rows[name]) for name, axis in axes.items())
+    values[places] = rows[column].to_numpy()
+    return xr.DataArray(values, coords=axes, dims=list(axes))

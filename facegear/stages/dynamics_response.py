@@ -1,0 +1,39 @@
+"""Response at one speed: time history, spectrum, statistics, multipliers."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+
+from facegear.config.base import parse
+from facegear.config.dynamics import Accuracy, settings
+from facegear.config.machines import wired_machine
+from facegear.dynamics.response_tables import (
+    multiplier_table,
+    response_table,
+    spectrum_table,
+    summary_of_response,
+)
+from facegear.dynamics.steady_state.simulate import build_model, simulate
+from facegear.dynamics.sweeps.summary import response_summary
+from facegear.stages.outcome import Outcome
+
+
+def dynamics_response(
+    harmonics: pd.DataFrame,
+    transmission: Mapping[str, Any],
+    teeth: Mapping[str, Any],
+    accuracy: Mapping[str, Any],
+    speed_rpm: float,
+) -> Outcome:
+    """`response`, `spectrum`, `summary` and `multipliers` (tables). Raises NotConverged naming the speed."""
+    model = build_model(wired_machine(transmission, teeth, harmonics))
+    found = simulate(model, speed_rpm, settings(parse(Accuracy, accuracy)))
+    layout = model.machine.layout
+    content = {
+        "response": response_table(layout, found),
+        "spectrum": spectrum_table(layout, found),
+        "summary": summary_of_response(model, speed_rpm, found),
+        "multipliers": multiplier_table(found),
+    }
+    return Outcome(content, response_summary(found))

@@ -1,0 +1,55 @@
+"""The whole sweep from its chunks: table, jumps, resonances, seams, waterfall."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import pandas as pd
+from numpy.typing import NDArray
+
+from facegear.config.base import parse
+from facegear.config.dynamics import Sweep, sweep_plan
+from facegear.config.machines import wired_machine
+from facegear.dynamics.steady_state.simulate import build_model
+from facegear.dynamics.steady_state.spectra import ORDERS
+from facegear.dynamics.sweeps.stored import from_arrays
+from facegear.dynamics.sweeps.summary import sweep_summary
+from facegear.dynamics.sweeps.sweep_tables import jump_table, resonance_table, seam_table, sweep_table
+from facegear.dynamics.sweeps.whole_sweep import Direction, whole_sweep
+from facegear.stages.outcome import Outcome
+from facegear.transmission.loaded_modes import loaded_modes
+
+
+def dynamics_sweep(
+    chunks: Iterable[Mapping[str, NDArray]],
+    harmonics: pd.DataFrame,
+    transmission: Mapping[str, Any],
+    teeth: Mapping[str, Any],
+    sweep: Mapping[str, Any],
+    threads: int = 1,
+) -> Outcome:
+    """`sweep`, `jumps`, `resonances`, `seams` (tables) and `waterfall` (arrays).
+
+    `chunks`: the arrays of all chunks, direction by direction in the order of the config.
+    """
+    model = build_model(wired_machine(transmission, teeth, harmonics))
+    plan, layout = sweep_plan(parse(Sweep, sweep)), model.machine.layout
+    stored = iter(chunks)
+    pieces = {name: [from_arrays(next(stored)) for _ in range(plan.chunks)] for name in plan.directions}
+    found = whole_sweep(model, plan, pieces, threads)
+    modes = loaded_modes(model.machine)
+    content = {
+        "sweep": pd.concat([sweep_table(layout, n, d.piece) for n, d in found.items()]),
+        "jumps": pd.concat([jump_table(layout, n, d, modes) for n, d in found.items()]),
+        "resonances": pd.concat([resonance_table(layout, n, d.piece, modes) for n, d in found.items()]),
+        "seams": seam_table([seam for d in found.values() for seam in d.seams]),
+        "waterfall": _waterfall(found),
+    }
+    return Outcome(content, sweep_summary(found))
+
+
+def _waterfall(found: Mapping[str, Direction]) -> dict[str, NDArray]:
+    arrays = {"orders": ORDERS}
+    for name, direction in found.items():
+        arrays[f"{name}_speed_rpm"] = direction.piece.speeds
+        arrays[f"{name}_amplitude_m"] = direction.piece.spectrum
+    return arrays

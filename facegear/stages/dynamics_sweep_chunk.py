@@ -1,0 +1,33 @@
+"""One chunk of a speed sweep in one direction."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+
+from facegear.config.base import parse
+from facegear.config.dynamics import Sweep, sweep_plan
+from facegear.config.machines import wired_machine
+from facegear.dynamics.steady_state.simulate import build_model
+from facegear.dynamics.sweeps.stored import to_arrays
+from facegear.dynamics.sweeps.sweep import run_chunk
+from facegear.progress import Progress
+from facegear.stages.outcome import Outcome
+
+
+def dynamics_sweep_chunk(
+    direction: str,
+    number: int,
+    harmonics: pd.DataFrame,
+    transmission: Mapping[str, Any],
+    teeth: Mapping[str, Any],
+    sweep: Mapping[str, Any],
+) -> Outcome:
+    """`chunk` (arrays). Raises NotConverged naming the speed."""
+    plan = sweep_plan(parse(Sweep, sweep))
+    total = sum(map(len, plan.chunk(direction, number)))
+    progress = Progress(f"sweep {direction}, chunk {number}", total)
+    model = build_model(wired_machine(transmission, teeth, harmonics))
+    before, own = run_chunk(model, plan, direction, number, progress.step)
+    told = f"{len(own.speeds)} speeds {direction}, {len(before.speeds)} for overlap"
+    return Outcome({"chunk": to_arrays(before, own)}, told)

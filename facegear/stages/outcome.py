@@ -1,0 +1,13 @@
+"""What a stage hands back."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """`content` of the stage's files by name (tables, mappings of arrays, records), and one line about it."""
+
+    content: Mapping[str, Any]
+    summary: str

@@ -1,0 +1,119 @@
+"""The front door: what a notebook meets. Every answer of the example takes a second or two."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import facegear
+from facegear.errors import FacegearError
+
+ROOT = Path(__file__).parents[2]
+HEAVY = (
+    "{'matplotlib', 'numba', 'skfem', 'gmsh', 'meshio', 'snakemake', 'facegear.paper', 'facegear.validation'}"
+)
+
+
+@pytest.fixture(scope="module")
+def gearbox():
+    return facegear.example()
+
+
+def loaded(code):
+    command = [sys.executable, "-c", f"{code}; import sys; print(sorted({HEAVY} & set(sys.modules)))"]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def test_importing_the_package_loads_nothing_behind_the_door():
+    assert loaded("import facegear") == "[]"
+
+
+def test_modes_need_no_mesh_and_no_compiler():
+    own = ROOT / "config" / "harmonics_only.yaml"
+    assert loaded(f"import facegear; facegear.load({str(own)!r}).modes().table()") == "[]"
+
+
+@pytest.mark.parametrize(
+    ("mistake", "line"),
+    [
+        (lambda g: g.contact(torques=[600, 300]), "contact: contact.torques_n_m = [600.0, 300.0]: rising"),
+        (lambda g: g.contact(torques="much"), 'contact: contact.torques_n_m = "much"'),
+        (lambda g: g.contact(positions=2), "contact.positions_per_pitch = 2: should be greater"),
+        (lambda g: g.response(-1), "response: dynamics.speed_rpm = -1: should be greater than"),
+        (lambda g: g.sweep(2000, 1000), "dynamics.sweep.to_rpm = 1000.0: more than from_rpm = 2000"),
+        (lambda g: g.load_sharing(float("nan")), "dynamics.speed_rpm = NaN"),
+        (lambda g: g.with_values({"transmission.backlash": 1}), "with_values: transmission.backlash = 1"),
+        (lambda g: g.with_values({"case": "other"}), "case = 'other': a dotted key"),
+        (lambda g: g.with_values({"transmission.backlash_um": -1}), "backlash_um = -1: should be greater"),
+        (lambda g: g.modes() and g.contact(torques=600).plot("patern"), "plot = 'patern': one of pattern"),
+    ],
+)
+def test_a_mistake_in_an_argument_is_one_clear_line(gearbox, mistake, line):
+    with pytest.raises(FacegearError) as caught:
+        mistake(gearbox)
+    assert line in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_numpy_values_and_single_torques_are_as_good_as_lists(gearbox):
+    changed = gearbox.with_values({"contact.torques_n_m": np.array([300.0, 900.0])})
+    assert changed.values["contact"]["torques_n_m"] == [300.0, 900.0]
+    assert set(gearbox.contact(torques=600).table()["torque_n_m"]) == {600.0}
+
+
+def test_a_change_of_backlash_computes_no_contact_again(gearbox):
+    tight = gearbox.with_values({"transmission.backlash_um": 80})
+    assert tight.contact() is gearbox.contact()
+    assert tight.stiffness() is gearbox.stiffness()
+    assert tight.load_sharing() is not gearbox.load_sharing()
+
+
+def test_a_change_of_teeth_forgets_the_contact(gearbox):
+    thick = gearbox.with_values({"tooth_pair.face_gear.rim_thickness_mm": 24})
+    softer = thick.contact(torques=600).table()["k_average_n_per_m"].mean()
+    assert softer < gearbox.contact(torques=600).table()["k_average_n_per_m"].mean()
+
+
+def test_the_dataset_of_pressures_says_what_the_table_says(gearbox):
+    contact = gearbox.contact()
+    peaks = contact.pressures()["pressure_mpa"].max(["pair", "profile", "width"])
+    told = contact.table().pivot(index="torque_n_m", columns="position", values="peak_pressure_mpa")
+    np.testing.assert_allclose(peaks.to_numpy(), told.to_numpy(), rtol=1e-12)
+
+
+def test_the_dataset_of_a_sweep_holds_every_row_of_its_table(gearbox):
+    found = gearbox.sweep(1000, 1200, points=3)
+    data = found.table()
+    assert data.sizes == {"direction": 2, "speed_rpm": 3, "mesh": 10, "body": 7}
+    for row in found.content["sweep"].iloc[::37].itertuples():
+        at = data[row.quantity].sel(direction=row.direction, speed_rpm=row.speed_rpm)
+        kind = [name for name in at.dims if name in ("mesh", "body")]
+        assert float(at.sel(dict.fromkeys(kind, row.body_or_mesh))) == row.value
+
+
+@pytest.mark.parametrize("name", ["geometry", "contact", "stiffness", "modes", "response", "load_sharing"])
+def test_every_answer_has_a_table_a_figure_and_files(gearbox, name, tmp_path):
+    found = getattr(gearbox, name)()
+    assert len(found.table())
+    assert found.plot().axes
+    assert all(path.stat().st_size for path in found.save(tmp_path))
+    assert found.source == "computed"
+
+
+def test_load_sharing_of_two_gearboxes_stands_in_one_figure(gearbox):
+    tight = gearbox.with_values({"transmission.backlash_um": 80})
+    figure = gearbox.load_sharing().plot("idlers", label="100 um", beside={"80 um": tight.load_sharing()})
+    labels = [line.get_label() for line in figure.axes[0].lines]
+    assert [label.split(":")[0] for label in labels] == ["100 um", "80 um"]
+
+
+def test_given_harmonics_need_no_teeth(tmp_path):
+    config = tmp_path / "own.yaml"
+    stored = facegear.load(ROOT / "config" / "harmonics_only.yaml")
+    assert stored.stiffness().table()["order"].to_list() == [0, 1, 2, 3]
+    with pytest.raises(FacegearError, match=r"own\.yaml: no such config file"):
+        facegear.load(config)
+    with pytest.raises(FacegearError, match="geometry and contact need pinion"):
+        stored.geometry()
