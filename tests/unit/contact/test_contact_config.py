@@ -5,7 +5,7 @@ import pytest
 from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
-from facegear.contact.pair import body_compliance
+from facegear.contact.pair import gear_flank
 from facegear.contact.resolution import check_resolution, half_width
 from facegear.errors import ConfigError, ConfigErrors
 from facegear.geometry.design import FaceGear, Material, PairDesign, Pinion, Shaper
@@ -55,6 +55,6 @@ def test_mesh_that_cannot_see_the_strip_is_refused_with_the_size_that_can():
 
 def test_sector_larger_than_the_gear_is_refused():
     with pytest.raises(ConfigError, match="at most 23"):
-        body_compliance(
+        gear_flank(
             DESIGN, "pinion", MeshSizes(1.5e-3, 6e-3, 3e-3), STEEL, plan(sector=Sector(pinion_teeth=25))
         )
