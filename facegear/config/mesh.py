@@ -1,4 +1,4 @@
-"""The section mesh: a rung of the resolution ladder or sizes of one's own."""
+"""The section mesh: a named resolution or sizes of one's own."""
 
 from typing import Literal
 

@@ -1,4 +1,4 @@
-"""How fine a mesh is: three lengths, and the ladder of named resolutions."""
+"""How fine a mesh is: three lengths, and the named resolutions."""
 
 from dataclasses import dataclass
 
@@ -16,7 +16,7 @@ class MeshSizes:
     thickness: float
 
 
-LADDER = {
+RESOLUTIONS = {
     "coarse": (0.20, 0.64, 0.60),
     "medium": (0.10, 0.40, 0.40),
     "fine": (0.05, 0.27, 0.32),
@@ -26,6 +26,6 @@ LADDER = {
 
 
 def named_sizes(name: str, module: float) -> MeshSizes:
-    """Sizes of a rung of the ladder for a module (m). Raises KeyError for an unknown name."""
-    profile, width, thickness = LADDER[name]
+    """Sizes of a named resolution for a module (m). Raises KeyError for an unknown name."""
+    profile, width, thickness = RESOLUTIONS[name]
     return MeshSizes(profile * module, width * module, thickness * module)

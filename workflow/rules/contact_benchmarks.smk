@@ -1,15 +1,15 @@
-from facegear.validation.contact.refinement_levels import RUNGS
+from facegear.validation.contact.refinement_levels import LEVELS
 
 
-rule contact_rung:
+rule contact_level:
     "Contact at one resolution"
     output:
-        table="results/{case}/benchmarks/contact/{rung}.csv",
-        manifest="results/{case}/benchmarks/contact/{rung}.provenance.json",
+        table="results/{case}/benchmarks/contact/{level}.csv",
+        manifest="results/{case}/benchmarks/contact/{level}.provenance.json",
     params:
         **values_of("tooth_pair", "contact"),
     script:
-        "../scripts/contact_rung.py"
+        "../scripts/contact_level.py"
 
 
 rule contact_growth:
@@ -26,7 +26,7 @@ rule contact_growth:
 rule contact_benchmark:
     "Speed against error of contact"
     input:
-        tables=expand("results/{{case}}/benchmarks/contact/{rung}.csv", rung=RUNGS),
+        tables=expand("results/{{case}}/benchmarks/contact/{level}.csv", level=LEVELS),
         growth=rules.contact_growth.output.table,
     output:
         table="results/{case}/benchmarks/contact.csv",

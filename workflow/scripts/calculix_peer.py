@@ -12,14 +12,14 @@ with stage(snakemake) as run:
     teeth = pair(snakemake.params.tooth_pair)
     design = teeth.design
     m = design.module
-    rungs = {
+    levels = {
         "coarser": (MeshSizes(0.2 * m, 1.07 * m, 0.8 * m), POSITIONS),
         "coarse": (named_sizes("coarse", m), POSITIONS),
         "finer": (MeshSizes(0.13 * m, 0.6 * m, 0.8 * m), (HAND_OVER,)),
     }
     folder = Path(snakemake.output.table).parent / "calculix"
     folder.mkdir(parents=True, exist_ok=True)
-    table = peer_study(design, rungs, teeth.materials, 600.0, folder, snakemake.threads)
+    table = peer_study(design, levels, teeth.materials, 600.0, folder, snakemake.threads)
     tables.write(snakemake.output.table, table)
     run.summary(
         f"largest difference {table['difference_percent'].abs().max():.1f} %, time ratio "

@@ -10,10 +10,12 @@ from facegear.validation.contact.refinement_levels import DEFAULT, FINEST
 from facegear.validation.plots.contact import speed_against_error
 
 with stage(snakemake) as run:
-    parts = [tables.read(path, ["rung", "torque_n_m", "mean_n_per_m"]) for path in snakemake.input.tables]
+    parts = [tables.read(path, ["level", "torque_n_m", "mean_n_per_m"]) for path in snakemake.input.tables]
     growth = tables.read(snakemake.input.growth, ["varied", "positions", "loads", "contact_s"])
     table = with_errors(pd.concat(parts, ignore_index=True), FINEST)
     tables.write(snakemake.output.table, table)
     save(speed_against_error(table, growth, DEFAULT), snakemake.output.svg, snakemake.output.png)
     best = cheapest(table)
-    run.summary(f"{table['rung'].nunique()} resolutions against {FINEST}; cheapest {best}, default {DEFAULT}")
+    run.summary(
+        f"{table['level'].nunique()} resolutions against {FINEST}; cheapest {best}, default {DEFAULT}"
+    )

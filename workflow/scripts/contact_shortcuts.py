@@ -7,7 +7,7 @@ from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Se
 from facegear.io import tables
 from facegear.mesh.sizes import MeshSizes
 from facegear.provenance.stage import stage
-from facegear.validation.contact.benchmark import Rung, shortcuts
+from facegear.validation.contact.benchmark import Level, shortcuts
 from facegear.validation.contact.sector_study import whole_sectors
 
 with stage(snakemake) as run:
@@ -15,7 +15,7 @@ with stage(snakemake) as run:
     design = teeth.design
     plan = ContactPlan((600.0,), 16, Refinement(4, 2, 2, 2.0), Sector(), ContactOptions())
     m = design.module
-    base = Rung("full model", MeshSizes(0.4 * m, 0.85 * m, 0.8 * m), plan)
+    base = Level("full model", MeshSizes(0.4 * m, 0.85 * m, 0.8 * m), plan)
     table = shortcuts(design, base, teeth.materials)
     flat = MeshSizes(0.2 * m, 1.6 * m, 1.2 * m)
     whole = whole_sectors(design, flat, teeth.materials, 600.0, plan.positions)

@@ -1,4 +1,4 @@
-"""Time to mesh one tooth of either body against its number of nodes, over the resolution ladder."""
+"""Time to mesh one tooth of either body against its number of nodes, over the named resolutions."""
 
 from facegear.config.tooth_pair import pair
 from facegear.io import tables

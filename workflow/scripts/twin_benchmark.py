@@ -10,7 +10,7 @@ from facegear.validation.contact.twin_study import twin_study
 with stage(snakemake) as run:
     design = pair(snakemake.params.tooth_pair).design
     gears = (design.pinion.teeth, design.face_gear.teeth)
-    ladder = (0.2, 0.1, 0.05)
-    table = pd.concat([twin_study(design, teeth, ladder) for teeth in gears], ignore_index=True)
+    facets = (0.2, 0.1, 0.05)
+    table = pd.concat([twin_study(design, teeth, facets) for teeth in gears], ignore_index=True)
     tables.write(snakemake.output.table, table)
     run.summary(f"largest difference from brute force {table['difference_percent'].abs().max():.2f} %")

@@ -28,7 +28,7 @@ Result = TypeVar("Result")
 
 
 @dataclass(frozen=True)
-class Rung:
+class Level:
     """A resolution to be measured: name, mesh sizes and what the plan says."""
 
     name: str
@@ -36,23 +36,23 @@ class Rung:
     plan: ContactPlan
 
 
-def rung(name: str, design: PairDesign, plan: ContactPlan) -> Rung:
-    """A rung of the ladder with the positions and torques of `plan`. Raises KeyError for an unknown name."""
+def level(name: str, design: PairDesign, plan: ContactPlan) -> Level:
+    """A refinement level with the positions and torques of `plan`. Raises KeyError for an unknown name."""
     resolution, cuts = CUTS[DEFAULT if name in SECTORS or name in LINEAR else name]
     changed = replace(plan, refinement=cuts, sector=Sector(), element="hex27")
     if name in SECTORS:
         changed = replace(changed, sector=Sector(SECTORS[name], SECTORS[name], "free"))
     if name in LINEAR:
         changed = replace(changed, element=LINEAR[name])
-    return Rung(name, named_sizes(resolution, design.module), changed)
+    return Level(name, named_sizes(resolution, design.module), changed)
 
 
 def compliances(
-    design: PairDesign, rung: Rung, materials: tuple[Material, Material]
+    design: PairDesign, level: Level, materials: tuple[Material, Material]
 ) -> tuple[GearFlank, GearFlank]:
-    """Both bodies of a rung."""
+    """Both bodies of a level."""
     pinion, gear = (
-        gear_flank(design, body, rung.sizes, material, rung.plan)
+        gear_flank(design, body, level.sizes, material, level.plan)
         for body, material in zip(BUILDERS, materials, strict=True)
     )
     return pinion, gear
@@ -72,17 +72,17 @@ class Stopwatch:
         return result
 
 
-def measure(design: PairDesign, rung: Rung, materials: tuple[Material, Material]) -> pd.DataFrame:
+def measure(design: PairDesign, level: Level, materials: tuple[Material, Material]) -> pd.DataFrame:
     """One row a torque: free dof, times (s), memory (GB), mean and first harmonic of both stiffnesses (N/m).
 
     Times of both bodies: assembly; factorisation down to flank and cut faces; compliance of the flanks in the
     ring; then contact at all positions and torques, and the sum. One position is solved beforehand, so that
-    machine code is loaded. The memory is the process's largest so far, so that rungs should be measured in
+    machine code is loaded. The memory is the process's largest so far, so that levels should be measured in
     processes of their own.
     """
-    watch, dof, bodies, plan = Stopwatch(), 0, [], rung.plan
+    watch, dof, bodies, plan = Stopwatch(), 0, [], level.plan
     for body, material in zip(BUILDERS, materials, strict=True):
-        tooth = BUILDERS[body](design, rung.sizes)
+        tooth = BUILDERS[body](design, level.sizes)
         elastic, side = elastic_tooth(design, tooth, material)
         system = watch.time("assembly_s", tied_system, elastic, plan.refinement, plan.element)
         condensed = watch.time("factorisation_s", condense, elastic, system)
@@ -102,26 +102,26 @@ def measure(design: PairDesign, rung: Rung, materials: tuple[Material, Material]
         "contact_s_per_position_and_load": watch.seconds["contact_s"] / len(results),
         "memory_gb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e9,
     }
-    return summary(results).assign(rung=rung.name, element=plan.element, **costs)
+    return summary(results).assign(level=level.name, element=plan.element, **costs)
 
 
 def growth(
     design: PairDesign,
-    rung: Rung,
+    level: Level,
     materials: tuple[Material, Material],
     positions: Sequence[int],
     loads: Sequence[int],
 ) -> pd.DataFrame:
     """Time (s) of contact against the number of positions (at 4 torques) and of torques (at 16 positions)."""
-    model = contact_model(design, *compliances(design, rung, materials))
-    low, high = min(rung.plan.torques), max(rung.plan.torques)
-    loaded_contact(model, [0.3], rung.plan.torques, rung.plan.options)
+    model = contact_model(design, *compliances(design, level, materials))
+    low, high = min(level.plan.torques), max(level.plan.torques)
+    loaded_contact(model, [0.3], level.plan.torques, level.plan.options)
     cases = [("positions", n, 4) for n in positions] + [("loads", 16, n) for n in loads]
     rows = []
     for varied, count, number in cases:
         watch = Stopwatch()
         torques = np.geomspace(high, low, number)[::-1]
-        watch.time("contact_s", loaded_contact, model, even_positions(count), torques, rung.plan.options)
+        watch.time("contact_s", loaded_contact, model, even_positions(count), torques, level.plan.options)
         rows.append((varied, count, number, watch.seconds["contact_s"]))
     return pd.DataFrame(rows, columns=["varied", "positions", "loads", "contact_s"])
 
@@ -142,9 +142,9 @@ def summary(results: Sequence[LoadedPosition]) -> pd.DataFrame:
 
 def with_errors(table: pd.DataFrame, reference: str) -> pd.DataFrame:
     """Add the errors of mean and first harmonic of both stiffnesses (`local_*` the local one), in percent of
-    the reference rung's at the same torque.
+    the reference level's at the same torque.
     """
-    finest = table[table["rung"] == reference].set_index("torque_n_m")
+    finest = table[table["level"] == reference].set_index("torque_n_m")
     result = table.copy()
     for name in ("mean", "amplitude_1", "local_mean", "local_amplitude_1"):
         column = f"{name}_n_per_m"
@@ -153,20 +153,20 @@ def with_errors(table: pd.DataFrame, reference: str) -> pd.DataFrame:
 
 
 def cheapest(table: pd.DataFrame) -> str:
-    """The quickest rung of a table with errors that is within LIMITS at all torques.
+    """The quickest level of a table with errors that is within LIMITS at all torques.
 
     Raises NotConverged if there is none.
     """
     columns = [f"{name}_error_percent" for name in LIMITS]
     inside = (table[columns].abs() <= list(LIMITS.values())).all(axis=1)
-    whole = inside.groupby(table["rung"]).all()
+    whole = inside.groupby(table["level"]).all()
     if not whole.any():
-        raise NotConverged("contact", "all resolutions of the ladder", "errors of mean and first harmonic")
-    times = table.groupby("rung")["total_s"].first()
+        raise NotConverged("contact", "all refinement levels", "errors of mean and first harmonic")
+    times = table.groupby("level")["total_s"].first()
     return str(times[whole[whole].index].idxmin())
 
 
-def shortcuts(design: PairDesign, base: Rung, materials: tuple[Material, Material]) -> pd.DataFrame:
+def shortcuts(design: PairDesign, base: Level, materials: tuple[Material, Material]) -> pd.DataFrame:
     """Effect (percent) of each shortcut on mean and first harmonic against the full model at `base`."""
     plan = base.plan
     plain, few = ContactOptions(), Refinement()
@@ -185,11 +185,13 @@ def shortcuts(design: PairDesign, base: Rung, materials: tuple[Material, Materia
     cases["8-node hexahedra"] = replace(base, plan=replace(plan, element="hex8"))
     cases["4-node tetrahedra"] = replace(base, plan=replace(plan, element="tet4"))
     rows, full = [], compliances(design, base, materials)
-    for name, rung in cases.items():
-        same_bodies = replace(rung.plan, options=plan.options) == plan
-        bodies = full if same_bodies else compliances(design, rung, materials)
+    for name, level in cases.items():
+        same_bodies = replace(level.plan, options=plan.options) == plan
+        bodies = full if same_bodies else compliances(design, level, materials)
         model = contact_model(design, *bodies)
-        results = loaded_contact(model, even_positions(plan.positions), plan.torques, rung.plan.options)
+        results = loaded_contact(model, even_positions(plan.positions), plan.torques, level.plan.options)
         rows.append(summary(results).assign(case=name))
     table = pd.concat(rows, ignore_index=True)
-    return with_errors(table.rename(columns={"case": "rung"}), "full model").rename(columns={"rung": "case"})
+    return with_errors(table.rename(columns={"case": "level"}), "full model").rename(
+        columns={"level": "case"}
+    )

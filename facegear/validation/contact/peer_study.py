@@ -22,7 +22,7 @@ LOADED = (-1, 0, 1, 2)
 HAND_OVER = 0.0
 POSITIONS = (HAND_OVER, 0.34, 0.67)
 RESOLVED = "coarse_4x1x2"
-"""The rung that the errors of both are taken from."""
+"""The level that the errors of both are taken from."""
 AMORTISED = 128
 """Solutions over which one compliance is shared: 32 positions at 4 loads."""
 LOADS = (0.25, 0.5, 0.75, 1.0)
@@ -33,30 +33,30 @@ AROUND = tuple(np.linspace(0.85, 1.15, 13))
 
 def peer_study(
     design: PairDesign,
-    rungs: Mapping[str, tuple[MeshSizes, Sequence[float]]],
+    levels: Mapping[str, tuple[MeshSizes, Sequence[float]]],
     materials: tuple[Material, Material],
     torque: float,
     folder: Path,
     threads: int,
 ) -> pd.DataFrame:
     """Torque (N m) that both need for the turn our sector takes under `torque`, with times (s) and memory
-    (GB), for each rung at its positions (0..1 of a pitch).
+    (GB), for each level at its positions (0..1 of a pitch).
 
     CalculiX runs with either body's flank as the slave surface, a row each: its answer should not depend on
     it. `resolved_torque_n_m` is what the same sector takes at that turn with its contact strip resolved, by
-    our solver on the rung RESOLVED; errors are taken from it. At a given turn torques differ by some
+    our solver on the level RESOLVED; errors are taken from it. At a given turn torques differ by some
     1.3 times what turns do at a given torque (local over average stiffness). `seconds` is ours for one
     solution with its part of the compliances of both sectors, `calculix_seconds` one run.
     Raises FacegearError if ccx is not installed or fails.
     """
     size, cuts = CUTS[RESOLVED]
     resolved = sector_pair(design, named_sizes(size, design.module), materials, TEETH, LOADED, cuts)
-    asked = {position for _, positions in rungs.values() for position in positions}
+    asked = {position for _, positions in levels.values() for position in positions}
     fine = {position: _torque_by_turn(resolved, position, torque) for position in asked}
     del resolved
-    progress = Progress("CalculiX", sum(len(positions) for _, positions in rungs.values()) * len(BUILDERS))
+    progress = Progress("CalculiX", sum(len(positions) for _, positions in levels.values()) * len(BUILDERS))
     rows = []
-    for name, (sizes, positions) in rungs.items():
+    for name, (sizes, positions) in levels.items():
         start = time.perf_counter()
         pair = sector_pair(design, sizes, materials, TEETH, LOADED, Refinement())
         # one more solution makes what all positions share
@@ -77,7 +77,7 @@ def peer_study(
                 progress.step()
                 rows.append(
                     {
-                        "rung": name,
+                        "level": name,
                         "position": position,
                         "slave": slave,
                         "dof": dof,

@@ -1,4 +1,4 @@
-"""The ladder of resolutions that the contact benchmark measures; light to import, as rules list it."""
+"""The refinement levels that the contact benchmark measures; light to import, as rules list it."""
 
 from facegear.contact.options import Element, Refinement
 
@@ -17,13 +17,13 @@ CUTS = {
 """Mesh resolution and cuts of the flank layer across the profile, along the width and in depth."""
 
 DEFAULT = "coarse_3x1x2"
-"""The rung that the default config stands for; sectors and linear elements are measured at it."""
+"""The level that the default config stands for; sectors and linear elements are measured at it."""
 
 SECTORS = {f"{DEFAULT}_sector_{teeth}": teeth for teeth in (5, 9)}
 LINEAR: dict[str, Element] = {f"{DEFAULT}_hex8": "hex8", f"{DEFAULT}_tet4": "tet4"}
 
 FINEST = "medium_4x1x2"
-RUNGS = (*CUTS, *SECTORS, *LINEAR)
+LEVELS = (*CUTS, *SECTORS, *LINEAR)
 
 LIMITS = {"mean": 0.5, "amplitude_1": 3.0}
 """Percent that the default resolution may be off the finest, mean and first harmonic."""

@@ -32,9 +32,9 @@ def whole_sectors(
         loaded = [tooth for tooth in LOADED if abs(tooth) <= count // 2]
         pair = sector_pair(design, sizes, materials, count, loaded, Refinement())
         results = [pair.solve(place, (torque,))[0] for place in places]
-        tables.append(summary(results).assign(rung=_name(count)))
+        tables.append(summary(results).assign(level=_name(count)))
     table = with_errors(pd.concat(tables, ignore_index=True), _name(max(teeth)))
-    return table.rename(columns={"rung": "case"})
+    return table.rename(columns={"level": "case"})
 
 
 def _name(count: int) -> str:

@@ -46,12 +46,12 @@ def twin_gears(design: PairDesign, teeth: int) -> tuple[PairDesign, PairDesign]:
 def twin_study(
     design: PairDesign,
     teeth: int,
-    ladder: tuple[float, ...],
+    facets: tuple[float, ...],
     positions: tuple[float, ...] = POSITIONS,
     line_loads: tuple[float, ...] = LINE_LOADS,
     sector: int = TEETH,
 ) -> pd.DataFrame:
-    """Average stiffness (N/m per m) of ours and of brute force on meshes with facets of `ladder` (modules),
+    """Average stiffness (N/m per m) of ours and of brute force on meshes with facets of `facets` (modules),
     halved `HALVINGS` times more where the flanks touch; `sector` teeth of both gears.
 
     Difference in percent of the finest brute force, its own last change beside it.
@@ -62,8 +62,8 @@ def twin_study(
     model = twin_model(first, second, (sizes, sizes), CUTS, (STEEL, STEEL), sector, "free")
     ours = analyse_twin(model, np.array(positions), list(line_loads))
     thickness, base = float(np.ptp(model.surface.side.v)), first.pinion_base_radius
-    fine = [MeshSizes(size * m, 0.25 * m, 0.4 * m) for size in ladder]
-    progress = Progress(f"brute force, {teeth} teeth", len(ladder) * len(positions))
+    fine = [MeshSizes(size * m, 0.25 * m, 0.4 * m) for size in facets]
+    progress = Progress(f"brute force, {teeth} teeth", len(facets) * len(positions))
     brute = [_brute(first, second, size, sector, positions, line_loads, progress) for size in fine]
     rows = []
     for result, *brute_k in zip(ours, *brute, strict=True):
@@ -76,7 +76,7 @@ def twin_study(
                 "position": result.position,
                 "line_load_n_per_mm": 1e-3 * load,
                 "k_n_per_mm_um": 1e-9 * k,
-                **{f"brute_{size:g}_modules": 1e-9 * b for size, b in zip(ladder, brute_k, strict=True)},
+                **{f"brute_{size:g}_modules": 1e-9 * b for size, b in zip(facets, brute_k, strict=True)},
                 "difference_percent": 100 * (k / brute_k[-1] - 1),
                 "brute_last_change_percent": 100 * (brute_k[-1] / brute_k[-2] - 1),
                 "iso_6336_c_gamma_n_per_mm_um": 1e-9 * mesh_stiffness(first, second),

@@ -8,22 +8,22 @@ import pandas as pd
 from facegear.geometry.design import PairDesign
 from facegear.mesh.orderings import SERENDIPITY20
 from facegear.mesh.quality import scaled_jacobians, volume
-from facegear.mesh.sizes import LADDER, named_sizes
+from facegear.mesh.sizes import RESOLUTIONS, named_sizes
 from facegear.mesh.tooth import gear_tooth, pinion_tooth
 
 BUILDERS = {"pinion": pinion_tooth, "face_gear": gear_tooth}
 
 
 def growth_table(design: PairDesign, repeats: int = 3) -> pd.DataFrame:
-    """One row per body and rung: counts, smallest scaled Jacobian, volume, best time of `repeats` to build.
+    """One row per body and level: counts, smallest scaled Jacobian, volume, best time of `repeats` to build.
 
-    growth_exponent is the slope of log time over log nodes against the rung before (0 on the first).
+    growth_exponent is the slope of log time over log nodes against the level before (0 on the first).
     """
     rows = []
     for body, build in BUILDERS.items():
         before = None
-        for rung in LADDER:
-            sizes = named_sizes(rung, design.module)
+        for level in RESOLUTIONS:
+            sizes = named_sizes(level, design.module)
             seconds = []
             for _ in range(repeats):
                 start = time.perf_counter()
@@ -34,7 +34,7 @@ def growth_table(design: PairDesign, repeats: int = 3) -> pd.DataFrame:
             rows.append(
                 {
                     "body": body,
-                    "resolution": rung,
+                    "resolution": level,
                     "elements": len(tooth.hexes),
                     "nodes": now[0],
                     "serendipity_dof": 3 * len(np.unique(tooth.hexes[:, SERENDIPITY20])),

@@ -66,9 +66,9 @@ def test_a_wrong_value_is_one_line_with_key_and_what_is_allowed(section, part, k
     assert any(line in text for text in refused.value.lines)
 
 
-def test_mesh_sizes_by_rung_and_by_number():
-    rung = mesh_sizes(parse(Mesh, {"resolution": "fine"}), 4e-3)
-    assert rung.profile == pytest.approx(0.2e-3)
+def test_mesh_sizes_by_level_and_by_number():
+    level = mesh_sizes(parse(Mesh, {"resolution": "fine"}), 4e-3)
+    assert level.profile == pytest.approx(0.2e-3)
     own = {"profile_mm": 0.3, "width_mm": 1.5, "thickness_mm": 2.0}
     sizes = mesh_sizes(parse(Mesh, {"resolution": own}), 4e-3)
     assert (sizes.profile, sizes.width, sizes.thickness) == pytest.approx((3e-4, 1.5e-3, 2e-3))

@@ -1,4 +1,4 @@
-"""The paper's pair and its teeth at the coarse rung."""
+"""The paper's pair and its teeth at the coarse level."""
 
 from math import radians
 

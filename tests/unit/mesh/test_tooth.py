@@ -9,7 +9,7 @@ from skfem import ElementHex2
 from facegear.geometry import face_gear, pinion
 from facegear.mesh.hexahedra import facet_basis, hex_mesh
 from facegear.mesh.quality import scaled_jacobians, volume
-from facegear.mesh.sizes import LADDER, named_sizes
+from facegear.mesh.sizes import RESOLUTIONS, named_sizes
 from facegear.mesh.tooth import CORNERS, gear_tooth, pinion_tooth
 
 
@@ -22,10 +22,10 @@ def surface_points(design, body, name, grid):
     return face_gear.cylindrical(grid.v, *face_gear.fillet_section(design, grid.v, grid.u))
 
 
-@pytest.mark.parametrize("rung", LADDER)
+@pytest.mark.parametrize("level", RESOLUTIONS)
 @pytest.mark.parametrize("build", [pinion_tooth, gear_tooth])
-def test_flank_and_fillet_nodes_lie_on_the_analytic_surface_at_every_rung(design, build, rung):
-    mesh = build(design, named_sizes(rung, design.module))
+def test_flank_and_fillet_nodes_lie_on_the_analytic_surface_at_every_level(design, build, level):
+    mesh = build(design, named_sizes(level, design.module))
     for name in ("flank", "fillet"):
         for side, sign in (("right", 1), ("left", -1)):
             grid = mesh.surfaces[f"{name}_{side}"]
@@ -81,13 +81,13 @@ def test_elements_are_conforming(tooth):
             assert seen.setdefault(corners, sorted(face)) == sorted(face)
 
 
-def test_volume_error_falls_eightfold_or_more_from_rung_to_rung(design):
+def test_volume_error_falls_eightfold_or_more_from_level_to_rung(design):
     """Only the profile size halves, width and thickness fall less: short of the O(h^4) of the geometry."""
     for build in (pinion_tooth, gear_tooth):
         found = [
             volume(mesh.nodes, mesh.hexes)
             for mesh in (
-                build(design, named_sizes(rung, design.module)) for rung in ("coarse", "medium", "fine")
+                build(design, named_sizes(level, design.module)) for level in ("coarse", "medium", "fine")
             )
         ]
         assert abs(found[2] - found[1]) < abs(found[1] - found[0]) / 8

@@ -7,14 +7,14 @@ from facegear.config.contact import Contact, contact_plan
 from facegear.config.mesh import Mesh
 from facegear.errors import NotConverged
 from facegear.validation.contact.benchmark import cheapest, with_errors
-from facegear.validation.contact.refinement_levels import CUTS, DEFAULT, FINEST, RUNGS
+from facegear.validation.contact.refinement_levels import CUTS, DEFAULT, FINEST, LEVELS
 
 
-def ladder(**rows):
-    """Rungs with total time (s), mean and first harmonic (N/m) at two torques."""
+def measured(**rows):
+    """Levels with total time (s), mean and first harmonic (N/m) at two torques."""
     parts = [
         {
-            "rung": rung,
+            "level": level,
             "torque_n_m": torque,
             "total_s": seconds,
             "mean_n_per_m": mean * factor,
@@ -22,34 +22,34 @@ def ladder(**rows):
             "local_mean_n_per_m": 1.3 * mean * factor,
             "local_amplitude_1_n_per_m": harmonic * factor,
         }
-        for rung, (seconds, mean, harmonic) in rows.items()
+        for level, (seconds, mean, harmonic) in rows.items()
         for torque, factor in ((100.0, 1.0), (600.0, 1.5))
     ]
     return pd.DataFrame(parts)
 
 
 def test_cheapest_resolution_is_the_quickest_within_half_a_percent_and_three():
-    table = ladder(
+    table = measured(
         rough=(1.0, 4.03e8, 4.0e7), wavy=(2.0, 4.0e8, 4.2e7), good=(3.0, 4.01e8, 4.1e7), best=(9.0, 4e8, 4e7)
     )
     assert cheapest(with_errors(table, "best")) == "good"
 
 
 def test_one_torque_beyond_the_limits_rules_a_resolution_out():
-    table = ladder(good=(3.0, 4.01e8, 4.0e7), best=(9.0, 4e8, 4e7))
-    table.loc[(table["rung"] == "good") & (table["torque_n_m"] == 600.0), "mean_n_per_m"] *= 1.01
+    table = measured(good=(3.0, 4.01e8, 4.0e7), best=(9.0, 4e8, 4e7))
+    table.loc[(table["level"] == "good") & (table["torque_n_m"] == 600.0), "mean_n_per_m"] *= 1.01
     assert cheapest(with_errors(table, "best")) == "best"
 
 
-def test_ladder_without_an_accurate_rung_is_refused():
-    table = with_errors(ladder(rough=(1.0, 4.1e8, 4e7), best=(9.0, 4e8, 4e7)), "best")
+def test_levels_without_an_accurate_level_is_refused():
+    table = with_errors(measured(rough=(1.0, 4.1e8, 4e7), best=(9.0, 4e8, 4e7)), "best")
     with pytest.raises(NotConverged):
-        cheapest(table[table["rung"] == "rough"])
+        cheapest(table[table["level"] == "rough"])
 
 
-def test_ladder_holds_the_default_and_the_finest():
+def test_levels_holds_the_default_and_the_finest():
     assert {DEFAULT, FINEST} <= set(CUTS)
-    assert set(CUTS) < set(RUNGS)
+    assert set(CUTS) < set(LEVELS)
 
 
 def test_config_without_a_refinement_gets_the_default_rung():

@@ -5,13 +5,13 @@ from facegear.config.contact import Contact, contact_plan
 from facegear.config.tooth_pair import pair
 from facegear.io import tables
 from facegear.provenance.stage import stage
-from facegear.validation.contact.benchmark import measure, rung
+from facegear.validation.contact.benchmark import level, measure
 
 with stage(snakemake) as run:
     teeth = pair(snakemake.params.tooth_pair)
     design = teeth.design
     plan = contact_plan(parse(Contact, snakemake.params.contact))
-    table = measure(design, rung(snakemake.wildcards.rung, design, plan), teeth.materials)
+    table = measure(design, level(snakemake.wildcards.level, design, plan), teeth.materials)
     tables.write(snakemake.output.table, table)
     row = table.iloc[-1]
     run.summary(f"{row['dof']} dof, mean {row['mean_n_per_m']:.4g} N/m at {row['torque_n_m']:g} N m")
