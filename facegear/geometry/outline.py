@@ -61,9 +61,9 @@ def pinion_outline(design: PairDesign, density: int = 1200) -> PinionOutline:
     numbers = np.repeat([PINION_PARTS.index(name) for name in names], sizes)
     rolls = np.full(sum(sizes), bottom)
     rolls[numbers == PINION_PARTS.index("flank")] = roll
-    points = np.concatenate(points)
+    nodes = np.concatenate(points)
     return PinionOutline(
-        points, np.concatenate(normals), np.concatenate(others), numbers, rolls, cKDTree(points)
+        nodes, np.concatenate(normals), np.concatenate(others), numbers, rolls, cKDTree(nodes)
     )
 
 

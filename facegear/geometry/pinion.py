@@ -81,8 +81,9 @@ def root_half_angle(design: PairDesign) -> float:
 
 def cartesian(radius: ArrayLike, angle: ArrayLike, y: ArrayLike) -> Array:
     """Points (..., 3) of the pinion body frame."""
-    x, z, y = np.broadcast_arrays(radius * np.sin(angle), -radius * np.cos(angle), y)
-    return np.stack([x, y, z], axis=-1)
+    radius = np.asarray(radius)
+    points = np.broadcast_arrays(radius * np.sin(angle), y, -radius * np.cos(angle))
+    return np.stack(points, axis=-1)
 
 
 def removed(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> Array:

@@ -3,14 +3,13 @@
 import errno
 import os
 import socket
+import sys
 from contextlib import suppress
 from pathlib import Path
 from typing import TextIO
 
-try:
+if sys.platform != "win32":  # which has no advisory locks: there every run may go ahead
     import fcntl
-except ImportError:  # Windows: no advisory locks, every run may go ahead
-    fcntl = None  # type: ignore[assignment]
 
 NO_LOCKS_HERE = (errno.ENOSYS, errno.ENOLCK, errno.EOPNOTSUPP)
 """What the kernel answers where the file system knows no locks, as on some network disks."""
@@ -35,7 +34,7 @@ def hold(path: str | Path) -> TextIO | None:
 
 
 def _taken(stream: TextIO) -> bool:
-    if fcntl is None:
+    if sys.platform == "win32":
         return True
     try:
         fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)

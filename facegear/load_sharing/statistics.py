@@ -45,8 +45,19 @@ def average(
     loaded = counts > 0
     count = len(coefficients)
     if not loaded.any():
-        nothing = [float("nan")] * 7
-        return Average(*nothing, lost=float(lost.mean()), undefined=1.0, cycles=count)
+        nan = float("nan")
+        return Average(
+            mean=nan,
+            half_width=nan,
+            minimum=nan,
+            maximum=nan,
+            cycle_low=nan,
+            cycle_high=nan,
+            cycle_minimum=nan,
+            lost=float(lost.mean()),
+            undefined=1.0,
+            cycles=count,
+        )
     sums = np.where(undefined, 0.0, coefficients).sum(axis=-1)
     means = sums[loaded] / counts[loaded]
     lows = np.where(undefined, np.inf, coefficients).min(axis=-1)[loaded]

@@ -55,10 +55,10 @@ class Outline:
         if self.body == "pinion":
             top, bottom = self.design.pinion_tip_roll, pinion.junction_roll(self.design)
             roll = np.sqrt(top**2 + fraction * (bottom**2 - top**2))
-            return tuple(np.broadcast_arrays(roll, self.planes[None, :]))
+            return _alike(roll, self.planes[None, :])
         radius = self.planes[None, :]
-        top, _ = face_gear.roll_and_psi_at_height(self.design, radius, self.design.gear_tip_plane)
-        roll = top + fraction * (self.design.shaper_tip_roll - top)
+        start, _ = face_gear.roll_and_psi_at_height(self.design, radius, self.design.gear_tip_plane)
+        roll = start + fraction * (self.design.shaper_tip_roll - start)
         return roll, face_gear.psi_at(self.design, radius, roll)
 
     def fillet_parameters(self, fraction: Array) -> tuple[Array, Array]:
@@ -66,9 +66,9 @@ class Outline:
         if self.body == "pinion":
             start = self.design.pressure_angle
             gamma = start + self._even(fraction) * (pi / 2 - start)
-            return tuple(np.broadcast_arrays(gamma[:, None], self.planes[None, :]))
+            return _alike(gamma[:, None], self.planes[None, :])
         chi = face_gear.fillet_end(self.design, self.planes)[None, :] * (1 - self._even(fraction)[:, None])
-        return tuple(np.broadcast_arrays(chi, self.planes[None, :]))
+        return _alike(chi, self.planes[None, :])
 
     def _even(self, fraction: Array) -> Array:
         """Fractions of the fillet's parameter that are evenly spaced along it (in the middle plane)."""
@@ -118,3 +118,9 @@ class Outline:
         if self.body == "pinion":
             return pinion.cartesian(height, angle, self.planes)
         return face_gear.cylindrical(self.planes, angle, height)
+
+
+def _alike(u: Array, v: Array) -> tuple[Array, Array]:
+    """Both arrays at the shape of their product."""
+    u, v = np.broadcast_arrays(u, v)
+    return u, v

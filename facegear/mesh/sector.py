@@ -48,7 +48,7 @@ def sector(tooth: ToothMesh, n_teeth: int, first: int = 0) -> SectorMesh:
     count = len(tooth.nodes)
     own = np.ones(count, dtype=bool)
     own[tooth.cut_left] = False
-    new = np.count_nonzero(own)
+    new = int(np.count_nonzero(own))
 
     tooth_nodes = np.empty((n_teeth, count), dtype=np.int64)
     tooth_nodes[0] = np.arange(count)

@@ -53,7 +53,7 @@ def contact_pattern(arrays: Mapping[str, NDArray]) -> Figure:
     fields = []
     for torque in torques:
         on = (arrays["torque_n_m"] == torque) & arrays["whole"]
-        field = np.zeros(shape[0] * shape[1])
+        field: NDArray[np.float64] = np.zeros(shape[0] * shape[1])
         np.maximum.at(field, arrays["node"][on], 1e-6 * arrays["pressure_pa"][on])
         fields.append(field.reshape(shape))
     top = np.nanquantile(fields[-1], 0.995)

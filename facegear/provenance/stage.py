@@ -84,7 +84,7 @@ class _Copied:
         self.log, self.terminal = log, sys.stderr
 
     def __enter__(self) -> None:
-        sys.stderr = self  # type: ignore[assignment]
+        sys.stderr = self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None

@@ -98,13 +98,13 @@ def _flat(key: str, value: Any) -> list[tuple[str, Any]]:
 
 def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     if title == "Loaded contact" and "ltca" in tables:
-        columns = {
+        kept = {
             "k_average_n_per_m": ["mean", "min", "max"],
             "k_local_n_per_m": ["mean"],
             "pairs_in_contact": ["min", "max"],
             "peak_pressure_mpa": ["max"],
         }
-        found = tables["ltca"].groupby("torque_n_m").agg(columns)
+        found = tables["ltca"].groupby("torque_n_m").agg(kept)
         found.columns = [" ".join(column) for column in found.columns]
         return [Table("Over a pitch, for each torque on the pinion", found.reset_index(), 4)]
     if title == "Mesh stiffness" and "harmonics" in tables:

@@ -157,12 +157,12 @@ class Layout:
     @property
     def bodies(self) -> tuple[Body, ...]:
         """All bodies in the order of the degrees of freedom."""
-        return tuple(part.body for part in (*self.pinions, *self.gears))
+        return (*(pinion.body for pinion in self.pinions), *(gear.body for gear in self.gears))
 
     @property
     def body_names(self) -> tuple[str, ...]:
         """Names of the bodies in the same order."""
-        return tuple(part.name for part in (*self.pinions, *self.gears))
+        return (*(pinion.name for pinion in self.pinions), *(gear.name for gear in self.gears))
 
     @property
     def dof_names(self) -> tuple[str, ...]:

@@ -109,9 +109,11 @@ def _newton(springs: _Springs, tie: float, anchor: NDArray[np.float64]) -> NDArr
     place, ties = anchor, tie * np.eye(len(anchor))
     for _ in range(MAX_ITERATIONS):
         step = -scipy.linalg.solve(springs.curvature(place) + ties, gradient(place), assume_a="pos")
-        moved = place + step * _line_minimum(
-            lambda s, step=step, at=place: float(gradient(at + s * step) @ step)
-        )
+
+        def slope(s: float, step: NDArray[np.float64] = step, at: NDArray[np.float64] = place) -> float:
+            return float(gradient(at + s * step) @ step)
+
+        moved = place + step * _line_minimum(slope)
         if np.abs(moved - place).max() <= 1e-15 * max(np.abs(place).max(), springs.half_width):
             return moved
         place = moved

@@ -127,12 +127,12 @@ STORED = {
 def from_arrays(arrays: Mapping[str, NDArray]) -> FlankCompliance:
     """Inverse of `to_arrays`."""
     profile, width, depth, grading = arrays["refinement"]
-    shape, coarse_shape = (tuple(int(n) for n in arrays[name]) for name in ("shape", "coarse_shape"))
+    (rows, columns), (coarse_rows, coarse_columns) = arrays["shape"], arrays["coarse_shape"]
     return FlankCompliance(
         arrays["own_m_per_n"],
         arrays["others_m_per_n"],
-        shape,
-        coarse_shape,
+        (int(rows), int(columns)),
+        (int(coarse_rows), int(coarse_columns)),
         Refinement(int(profile), int(width), int(depth), float(grading)),
         bool(arrays["linear"][0]),
     )

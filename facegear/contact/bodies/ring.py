@@ -32,7 +32,7 @@ def chain(faces: NDArray[np.float64], teeth: int) -> NDArray[np.float64]:
         if teeth & 1:
             result = power if result is None else joined(result, power)
         teeth >>= 1
-        if not teeth:
+        if not teeth and result is not None:
             return result
         power = joined(power, power)
 

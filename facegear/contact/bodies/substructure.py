@@ -90,6 +90,7 @@ def _turned(
     faces = np.concatenate([(3 * face[:, None] + np.arange(3)).ravel() for face in (left, right)])
     if np.intersect1d(3 * system.loaded, faces).size:
         raise ValueError("a flank node lies on a cut face")
-    if not np.array_equal(*np.split(free[faces], 2)):
+    left_free, right_free = np.split(free[faces], 2)
+    if not np.array_equal(left_free, right_free):
         raise ValueError("the two cut faces are not held alike")
     return stiffness, position[3 * system.loaded], position[faces[free[faces]]]
