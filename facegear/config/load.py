@@ -86,8 +86,9 @@ def merged(values: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]
     result = dict(values)
     for key, value in over.items():
         inside = result.get(key)
-        both = isinstance(inside, Mapping) and isinstance(value, Mapping)
-        result[key] = merged(inside, value) if both else value
+        if isinstance(inside, Mapping) and isinstance(value, Mapping):
+            value = merged(inside, value)
+        result[key] = value
     return result
 
 

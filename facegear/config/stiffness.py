@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
@@ -115,7 +116,7 @@ class MeshStiffness(Section):
 def given_series(section: MeshStiffness) -> Harmonics:
     """The series written in the config (N/m), its mean included."""
     order = max((row.order for row in section.table), default=0)
-    a, b = [0.0] * (order + 1), [0.0] * (order + 1)
+    a, b = np.zeros(order + 1), np.zeros(order + 1)
     for row in section.table:
         a[row.order], b[row.order] = row.a_n_per_m, row.b_n_per_m
     b[0] = section.mean or 0.0

@@ -135,8 +135,8 @@ class Transmission(Section):
         if radius is None:
             refuse("face_gear.mesh_radius_mm", None, "required by mesh_kinematics printed")
         for key in ("single_meshes", "single_pinions", "single_gears"):
-            if given := list(getattr(self, key)):
-                refuse(key, given, "none where mesh_kinematics is printed: it knows no errors of one part")
+            if named := list(getattr(self, key)):
+                refuse(key, named, "none where mesh_kinematics is printed: it knows no errors of one part")
         for key, value in (
             ("pinion.clearance_um", self.pinion.clearance_um or None),
             ("pinion.runout", self.pinion.runout),

@@ -132,11 +132,13 @@ class _Builder:
         tag = getattr(event, "tag", None)
         if tag is not None and str(tag) not in _TAGS and str(tag) != "!":
             raise _Refused(event, f"tag {tag} is not allowed in a config")
+        found: tuple[Any, int]
         if isinstance(event, MappingStartEvent):
             found = self._mapping(depth)
         elif isinstance(event, SequenceStartEvent):
             found = self._sequence(depth)
         else:
+            assert isinstance(event, ScalarEvent)
             found = _scalar(event), 1
         if found[1] > MOST_VALUES:
             raise _Refused(event, f"more than {MOST_VALUES} values, aliases written out")

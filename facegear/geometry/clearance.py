@@ -17,7 +17,7 @@ from facegear.geometry.placement import mirrored, to_pinion_section
 
 Array = NDArray[np.float64]
 
-TOOTH_NUMBERS = np.arange(-2, 3)
+TOOTH_NUMBERS = np.arange(-2.0, 3.0)
 
 
 @dataclass(frozen=True)

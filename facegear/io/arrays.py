@@ -16,7 +16,7 @@ def write(path: str | Path, **arrays: np.ndarray) -> None:
     if any(np.asarray(array).dtype.hasobject for array in arrays.values()):
         raise TypeError("arrays of Python objects are not stored")
     with atomic_path(path) as temporary, open(temporary, "wb") as stream:
-        np.savez(stream, **arrays)
+        np.savez(stream, allow_pickle=False, **arrays)
 
 
 def read(path: str | Path, shapes: Mapping[str, tuple[int | None, ...]]) -> dict[str, np.ndarray]:

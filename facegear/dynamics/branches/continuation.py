@@ -132,8 +132,10 @@ def _track(flow: PeriodMap, start: Point, run: Run, progress: Callable[[Point], 
         track.specials += [replace(one, after=base + one.after) for one in found]
         track.points += meeting or [there]
         progress(there)
-        if meeting or end is not None:
-            track.end = End.DOUBLING if meeting else end
+        if meeting:
+            end = End.DOUBLING
+        if end is not None:
+            track.end = end
             return track
         before = here
         step = min(step * _growth(here, there), run.largest)
@@ -202,7 +204,7 @@ def _drift(here: Point, there: Point) -> float:
 
 def _growth(here: Point, there: Point) -> float:
     angle = np.arccos(np.clip(here.tangent @ there.tangent, -1.0, 1.0))
-    return float(np.clip(0.25 / max(angle, 1e-6), 0.5, 1.7))
+    return float(np.clip(0.25 / max(float(angle), 1e-6), 0.5, 1.7))
 
 
 def _onto_limit(flow: PeriodMap, here: Point, there: Point, limit: float) -> Point:

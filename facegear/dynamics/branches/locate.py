@@ -171,7 +171,7 @@ def _contact_events(flow: PeriodMap, first: Point, second: Point) -> tuple[list[
                 continue
             kind = int(changes[0] == 0)
             mixed = mixed or bool(changes.all()) or abs(changes[kind]) > 1
-            rank = min(counts[0][kind], counts[1][kind])
+            rank = int(min(counts[0][kind], counts[1][kind]))
             test = _distance(flow, first.u, mesh, edge, kind, rank)
             alike = (edge, kind, *(round(test(turning), 7) for turning in (first.turning, second.turning)))
             meshes = (*events[alike].meshes, mesh) if alike in events else (mesh,)
@@ -289,7 +289,7 @@ def reversal(flow: PeriodMap, here: Point, there: Point) -> tuple[Point, Point] 
 
     def left(share: float) -> float:
         point = segment.at(share)
-        return float(half.gap(point.z, point.u) @ shift) / size**2
+        return float((half.gap(point.z, point.u) @ shift) / size**2)
 
     share = bracketed_root(left, 0.0, 1.0, 1e-5)
     return segment.at(0.95 * share), segment.at(share)

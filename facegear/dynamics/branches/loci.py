@@ -235,7 +235,8 @@ def _point(problem: _Problem, x: Array, borders: _Borders, forward: Array, sharp
 def _track(
     problem: _Problem, start: LocusPoint, run: LocusRun, progress: Callable[[LocusPoint], None]
 ) -> tuple[list[LocusPoint], list[tuple[Corner, LocusPoint]], End]:
-    points, corners, step = [start], [], run.first
+    points, step = [start], run.first
+    corners: list[tuple[Corner, LocusPoint]] = []
     limits = np.log([run.low, run.high])
     while len(points) < run.points:
         here = points[-1]
@@ -257,7 +258,7 @@ def _track(
         points.append(there)
         progress(there)
         angle = np.arccos(np.clip(here.tangent @ there.tangent, -1.0, 1.0))
-        step = min(step * float(np.clip(0.2 / max(angle, 1e-6), 0.5, 1.7)), run.largest)
+        step = min(step * float(np.clip(0.2 / max(float(angle), 1e-6), 0.5, 1.7)), run.largest)
     return points, corners, End.POINTS
 
 
@@ -297,8 +298,7 @@ def _corners(problem: _Problem, here: LocusPoint, there: LocusPoint) -> list[tup
         guess = here.x + share * chord
         return _solve(problem, guess, row, nearer.borders, nearer.gradient, here.tangent, sharp=True)
 
-    return [
-        (corner, at(bracketed_root(lambda share, test=test: test(at(share)), 0.0, 1.0, 1e-9)))
-        for corner, test in tests.items()
-        if test(here) * test(there) < 0.0
-    ]
+    def zero(test: Callable[[LocusPoint], float]) -> LocusPoint:
+        return at(bracketed_root(lambda share: test(at(share)), 0.0, 1.0, 1e-9))
+
+    return [(corner, zero(test)) for corner, test in tests.items() if test(here) * test(there) < 0.0]

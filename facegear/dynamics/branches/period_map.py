@@ -1,6 +1,7 @@
 """The map over whole mesh periods, its matrix and its change with the parameter, in weighted states."""
 
 from dataclasses import dataclass, field, replace
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 from facegear.dynamics.branches.family import Family
 from facegear.dynamics.branches.turning import MOST, turning_points
 from facegear.dynamics.integrator.compiled import Packed, pack
-from facegear.dynamics.integrator.periods import disturbance_step, make_log, run_periods
+from facegear.dynamics.integrator.periods import Log, disturbance_step, make_log, run_periods
 from facegear.dynamics.integrator.work import Work, make_work
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.orbits import require
@@ -61,7 +62,7 @@ class PeriodMap:
         key = (*packed.mesh_jacobian.shape, len(packed.stiffness), len(packed.error), len(packed.load))
         if key not in self.memory:
             self.memory[key] = make_work(packed, Settings(tolerance=self.tolerance).taylor_order)
-        return self.memory[key]
+        return cast(Work, self.memory[key])
 
     def weights(self, packed: Packed) -> Array:
         """z = weights * state, shape (2 n,)."""
@@ -89,7 +90,7 @@ class PeriodMap:
         displacement, velocity, _ = self._run(packed, z / weights, none)
         return weights * np.concatenate([displacement, velocity]) - z
 
-    def _run(self, packed: Packed, values: Array, tangents: Array):
+    def _run(self, packed: Packed, values: Array, tangents: Array) -> tuple[Array, Array, Log]:
         displacement, velocity = _split(packed, values)
         log = make_log(packed, self.period)
         work = self.work(packed)
@@ -137,7 +138,7 @@ class PeriodMap:
             shifts = np.zeros((2 * n, len(free)))
             shifts[:n] = weights[:n, None] * free.T
             self.memory[key] = np.linalg.qr(shifts)[0]
-        return self.memory[key]
+        return cast(Array, self.memory[key])
 
     def turning(self, z: Array, u: float) -> list[tuple[Array, Array]]:
         """Maxima and minima of each mesh deflection over the period, over the length scale, each sorted from

@@ -180,7 +180,7 @@ def _newton_step(linear: Linear, gap: Array, row: Array, moved: Array) -> Array:
 
 def _solved(matrix: Array, right: Array) -> Array:
     """Solution of least norm: at a branch point the bordered matrix is singular, and only there."""
-    return np.linalg.lstsq(matrix, right, rcond=SINGULAR)[0]
+    return np.asarray(np.linalg.lstsq(matrix, right, rcond=SINGULAR)[0], float)
 
 
 def make_point(flow: PeriodMap, x: Array, linear: Linear, forward: Array) -> Point:

@@ -129,6 +129,6 @@ def _pieces(system: System, width: int) -> tuple[Array, Array]:
         for row, start in zip(table, breaks[:-1], strict=True):
             source = int(np.searchsorted(piece.breaks, start, side="right")) - 1
             ahead = np.polynomial.Polynomial([start - piece.breaks[source], 1.0])
-            shifted: Array = np.polynomial.Polynomial(piece.coefficients[source])(ahead).coef
+            shifted = np.asarray(np.polynomial.Polynomial(piece.coefficients[source])(ahead).coef, float)
             row[: shifted.size, mesh] = shifted / TAU ** np.arange(shifted.size)
     return breaks * TAU, table

@@ -21,6 +21,8 @@ def search_problem(values: Mapping[str, Any], section: Identify, ltca: pd.DataFr
     Raises ConfigError if no load that was solved gives the wanted mean stiffness.
     """
     stiffness = parse(MeshStiffness, values["mesh_stiffness"])
+    if stiffness.mean_n_per_m is None:
+        raise ConfigError("mesh_stiffness.mean_n_per_m", None, "a number: the search scales the curve to it")
     table = load_table(ltca)
     load = load_for_mean(table, stiffness.mean_n_per_m, stiffness.definition)
     if load is None:

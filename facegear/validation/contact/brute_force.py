@@ -150,7 +150,7 @@ def _separation(designs, facets, place, phi1, tooth):  # type: ignore[no-untyped
     points = pinion.cartesian(*pinion.involute_point(designs[0], roll), 0.0)
     nx, nz = pinion.involute_normal(designs[0], roll)
     normals = np.stack([nx, np.zeros_like(nx), nz], axis=1)
-    gap, hit = involute_separation(*designs, points, normals, phi1, tooth)
+    gap, hit = involute_separation(designs[0], designs[1], points, normals, phi1, tooth)
     return normals, gap, hit
 
 

@@ -87,7 +87,7 @@ def twin_study(
 
 def _brute(first, second, sizes, sector, positions, line_loads, progress):  # type: ignore[no-untyped-def]
     """Stiffness (N/m per m) at all loads of all positions on one mesh."""
-    meshes = tuple(flat_mesh(gear, sizes, sector) for gear in (first, second))
+    meshes = flat_mesh(first, sizes, sector), flat_mesh(second, sizes, sector)
     base, found = first.pinion_base_radius, []
     for position in positions:
         gears = gears_at(meshes, position, STEEL, RADIUS * first.module, HALVINGS)
