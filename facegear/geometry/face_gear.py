@@ -6,6 +6,7 @@ normal. Source: shaper-generated face gears (Litvin and Fuentes, Gear Geometry a
 with the contact condition solved for the axial coordinate: q = r_b / (m2s cos psi).
 """
 
+from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
@@ -106,7 +107,7 @@ def tip_roll(design: PairDesign) -> CubicSpline:
     return CubicSpline(radius, roll_and_psi_at_height(design, radius, design.gear_tip_plane)[0])
 
 
-def _newton(residual, psi: Array, where: str) -> Array:
+def _newton(residual: Callable[[Array], tuple[Array, Array]], psi: Array, where: str) -> Array:
     for _ in range(60):
         value, slope = residual(psi)
         step = np.clip(value / slope, -0.1, 0.1)
