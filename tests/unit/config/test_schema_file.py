@@ -7,6 +7,7 @@ import pytest
 from facegear.config.base import parse
 from facegear.config.load import load_config, read_layers
 from facegear.config.model import Config
+from facegear.config.reference import reference
 from facegear.config.schema import json_schema
 from facegear.errors import ConfigErrors
 
@@ -18,6 +19,12 @@ def test_schema_file_is_what_the_models_say():
     assert stored == json_schema(), (
         "run: python -m facegear.config.schema > workflow/schemas/config.schema.json"
     )
+
+
+def test_the_page_of_all_keys_is_what_the_models_say():
+    stored = (ROOT / "docs" / "config.md").read_text()
+    assert stored == reference(), "run: python -m facegear.config.reference > docs/config.md"
+    assert "| `transmission.pinions[].angle_deg` | `null` | number from -360, to 360 or null |" in stored
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "config").glob("*.yaml")), ids=lambda path: path.stem)

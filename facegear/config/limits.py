@@ -1,0 +1,64 @@
+"""The radii between which a gear's face may lie, from tooth numbers alone."""
+
+from math import radians
+
+from facegear.errors import ConfigError
+from facegear.geometry.design import FaceGear, PairDesign, Pinion, Shaper
+from facegear.geometry.limits import face_range, radius_limits
+
+
+def told_limits(
+    pinion_teeth: int,
+    face_gear_teeth: int,
+    module_mm: float,
+    pressure_angle_deg: float,
+    shaper_teeth: int,
+    pinion_addendum_modules: float,
+    pinion_dedendum_modules: float,
+    profile_shift_modules: float,
+    gear_addendum_modules: float,
+    shaper_addendum_modules: float,
+) -> str:
+    """One line with both radii (mm) and what limits them; a shaper of 0 teeth has three more than the pinion.
+
+    Raises ConfigError for numbers that no pair can have.
+    """
+    if not 5 <= pinion_teeth < face_gear_teeth:
+        raise ConfigError("pinion_teeth", pinion_teeth, f"from 5 to less than the gear's {face_gear_teeth}")
+    if not 0.0 < module_mm <= 100.0:
+        raise ConfigError("module_mm", module_mm, "above 0, at most 100")
+    if not 10.0 <= pressure_angle_deg <= 40.0:
+        raise ConfigError("pressure_angle_deg", pressure_angle_deg, "from 10 to 40")
+    shaper = shaper_teeth or pinion_teeth + 3
+    if not pinion_teeth <= shaper <= pinion_teeth + 3:
+        raise ConfigError("shaper_teeth", shaper, f"from {pinion_teeth} (line contact) to {pinion_teeth + 3}")
+    for name, value, low, high in (
+        ("pinion_addendum_modules", pinion_addendum_modules, 0.1, 2.0),
+        ("pinion_dedendum_modules", pinion_dedendum_modules, 0.1, 2.5),
+        ("profile_shift_modules", profile_shift_modules, -1.0, 1.0),
+        ("gear_addendum_modules", gear_addendum_modules, 0.1, 2.0),
+        ("shaper_addendum_modules", shaper_addendum_modules, 0.1, 2.5),
+    ):
+        if not low <= value <= high:
+            raise ConfigError(name, value, f"from {low:g} to {high:g}")
+    m = 1e-3 * module_mm
+    pinion = Pinion(
+        teeth=pinion_teeth,
+        width=m,
+        addendum=m * pinion_addendum_modules,
+        dedendum=m * pinion_dedendum_modules,
+        rack_tip_radius=0.0,
+        bore_radius=m,
+        profile_shift=m * profile_shift_modules,
+    )
+    gear = FaceGear(
+        teeth=face_gear_teeth,
+        inner_radius=m,
+        outer_radius=m,
+        addendum=m * gear_addendum_modules,
+        rim_thickness=m,
+    )
+    tool = Shaper(shaper, m * shaper_addendum_modules)
+    design = PairDesign(m, radians(pressure_angle_deg), pinion, gear, tool)
+    allowed = face_range(design, radius_limits(design))
+    return f"face_gear radii in mm, with a shaper of {shaper} teeth: {allowed}"

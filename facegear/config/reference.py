@@ -1,0 +1,97 @@
+"""All config keys in one table, for the docs.
+
+Made by `python -m facegear.config.reference > docs/config.md`.
+"""
+
+import json
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from facegear.config.model import Config
+
+HEAD = """# All keys of a config
+Made from the models that check a config, by `python -m facegear.config.reference > docs/config.md`.
+Keys without a default are required where their section is given; `[]` stands for each item of a list, `<name>` for a name of your own. A file's name
+counts from the folder of the config that holds it.
+"""
+
+
+def reference() -> str:
+    """The page as Markdown."""
+    schema = Config.model_json_schema()
+    parts = [HEAD]
+    for name, section in schema["properties"].items():
+        parts.append(f"\n## {name}\n")
+        whole = _plain(schema, section)
+        if told := (whole.get("description") or section.get("description")):
+            parts.append(f"{told}\n")
+        parts.append("\n| key | default | allowed | meaning |\n|---|---|---|---|\n")
+        required = name in schema.get("required", ())
+        parts.extend(_row(*row) for row in _rows(schema, name, section, required))
+    return "".join(parts)
+
+
+def _row(*cells: str) -> str:
+    return f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |\n"
+
+
+def _rows(
+    schema: Mapping[str, Any], key: str, field: Mapping[str, Any], required: bool
+) -> Iterator[tuple[str, str, str, str]]:
+    """A row for the key itself, then those of the keys inside it."""
+    inside = [_plain(schema, one) for one in field.get("anyOf", [field])]
+    yield (f"`{key}`", _default(field, required), _allowed(schema, inside), field.get("description", ""))
+    for one in inside:
+        item, name = one, key
+        if one.get("type") == "array" and isinstance(one.get("items"), dict):
+            item, name = _plain(schema, one["items"]), f"{key}[]"
+        elif isinstance(one.get("additionalProperties"), dict):
+            item, name = _plain(schema, one["additionalProperties"]), f"{key}.<name>"
+        for inner, value in item.get("properties", {}).items():
+            yield from _rows(schema, f"{name}.{inner}", value, inner in item.get("required", ()))
+
+
+def _plain(schema: Mapping[str, Any], field: Mapping[str, Any]) -> Mapping[str, Any]:
+    """A field with its reference followed."""
+    if "$ref" not in field:
+        return field
+    return schema["$defs"][field["$ref"].rsplit("/", 1)[-1]]
+
+
+def _default(field: Mapping[str, Any], required: bool) -> str:
+    if required:
+        return "required"
+    value = field.get("default")
+    return "each key's own" if isinstance(value, dict) and value else f"`{json.dumps(value)}`"
+
+
+def _allowed(schema: Mapping[str, Any], options: list[Mapping[str, Any]]) -> str:
+    return " or ".join(dict.fromkeys(_kind(schema, option) for option in options))
+
+
+def _kind(schema: Mapping[str, Any], option: Mapping[str, Any]) -> str:
+    if "enum" in option or "const" in option:
+        return ", ".join(f"`{value}`" for value in option.get("enum", [option.get("const")]))
+    kind = option.get("type", "any value")
+    if kind == "array":
+        return f"list{_bounds(option, ('minItems', 'maxItems'))}"
+    told = {"integer": "whole number", "object": "section", "string": "text", "boolean": "true, false"}
+    return told.get(kind, kind) + _bounds(option, ("minimum", "maximum"))
+
+
+def _bounds(option: Mapping[str, Any], names: tuple[str, str]) -> str:
+    told = [
+        f"{sign} {option[key]:g}"
+        for key, sign in (
+            (names[0], "from"),
+            ("exclusiveMinimum", "above"),
+            (names[1], "to"),
+            ("exclusiveMaximum", "below"),
+        )
+        if key in option
+    ]
+    return f" {', '.join(told)}" if told else ""
+
+
+if __name__ == "__main__":
+    print(reference(), end="")
