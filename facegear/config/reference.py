@@ -11,8 +11,8 @@ from facegear.config.model import Config
 
 HEAD = """# All keys of a config
 Made from the models that check a config, by `python -m facegear.config.reference > docs/config.md`.
-Keys without a default are required where their section is given; `[]` stands for each item of a list, `<name>` for a name of your own. A file's name
-counts from the folder of the config that holds it.
+Required keys are required where their section is given; `[]` stands for each item of a list, `<name>` for a
+name of your own. A file's name counts from the folder of the config that holds it.
 """
 
 

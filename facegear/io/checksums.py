@@ -2,7 +2,9 @@
 
 import hashlib
 import json
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from facegear.errors import CorruptFile
 
@@ -13,6 +15,26 @@ def sha256(path: str | Path) -> str:
     """SHA-256 of a file's bytes, as hex."""
     with open(path, "rb") as stream:
         return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def require_manifest(path: str | Path) -> None:
+    """A stage's output has a manifest beside it that says what it should hold.
+
+    Raises CorruptFile where there is none, as there is no telling then whether the file is whole.
+    """
+    path = Path(path)
+    if path.is_file() and not any(
+        path.name in _files(one) for one in path.parent.glob(f"*{MANIFEST_SUFFIX}")
+    ):
+        raise CorruptFile(path, "no manifest beside it says what its stage wrote")
+
+
+def _files(manifest: Path) -> Mapping[str, Any]:
+    try:
+        files = json.loads(manifest.read_text(encoding="utf-8"))["files"]
+    except (ValueError, KeyError, TypeError):
+        raise CorruptFile(manifest, "the manifest is not readable") from None
+    return files if isinstance(files, dict) else {}
 
 
 def verify(path: str | Path) -> None:

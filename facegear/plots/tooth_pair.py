@@ -132,6 +132,14 @@ def _pinion_section(axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, 
     axes.set(xlabel="across (mm)", ylabel="radius (mm)", title="Pinion tooth", xlim=(-reach, 1.75 * reach))
 
 
+def path_text(record: Mapping[str, Any]) -> str:
+    """Where the contact path lies along the face, and the nominal place where errors of assembly move it."""
+    path = np.asarray(record["unloaded"]["drive"]["path_pinion_y_mm"], dtype=float)
+    nominal = float(record["radii_mm"]["gear_contact_path_nominal"])
+    text = f"contact path at {path.mean():.3f} mm"
+    return text if np.abs(path - nominal).max() < 0.005 else f"{text}, nominal {nominal:.3f} mm"
+
+
 def _gear_sections(axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, Array]) -> None:
     right = 1e3 * np.concatenate([flanks["gear_flank"], flanks["gear_fillet"][1:]])
     width = right.shape[1]
@@ -145,7 +153,7 @@ def _gear_sections(axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, A
     text = (
         f"undercut below {limits['inner_undercut']:.3f} mm\nface {radii['gear_inner']:.1f} to "
         f"{radii['gear_outer']:.1f} mm\npointed above {limits['outer_pointing']:.3f} mm\n"
-        f"contact path at {radii['gear_contact_path_nominal']:.3f} mm"
+        f"{path_text(record)}"
     )
     axes.text(0.5, 0.03, text, transform=axes.transAxes, ha="center", va="bottom", fontsize=7)
     axes.margins(y=0.12)

@@ -11,8 +11,12 @@ from typing import Any, BinaryIO
 
 from facegear.errors import FacegearError
 from facegear.io.atomic import NO_SPACE, NO_SPACE_TOLD
-from facegear.io.checksums import MANIFEST_SUFFIX
+from facegear.io.checksums import MANIFEST_SUFFIX, require_manifest
 from facegear.provenance.manifest import write_manifest
+
+
+RESULTS = "results"
+"""Folder of what stages write, each file with its manifest; inputs elsewhere are the user's."""
 
 
 class Run:
@@ -46,6 +50,9 @@ def stage(snakemake: Any) -> Iterator[Run]:
         with open(log, "wb", buffering=0) as stream, _Copied(stream), _one_line_errors(snakemake, log):
             for manifest in manifests:
                 manifest.unlink(missing_ok=True)
+            for path in snakemake.input:
+                if Path(path).parts[0] == RESULTS:
+                    require_manifest(path)
             yield run
             if not run.text:
                 run.summary(

@@ -3,6 +3,7 @@
 import errno
 import json
 import os
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -76,3 +77,16 @@ def test_no_room_for_the_log_is_one_line_as_well(job, tmp_path, capsys):
     assert told[0] == "contact paper: mean stiffness 4.1e8 N/m"
     (line,) = told[1:]
     assert "no space left on the disk; free some and run again" in line
+
+
+def test_an_input_whose_manifest_is_gone_is_not_read(job, tmp_path, capsys, monkeypatch):
+    """A manifest deleted together with the last row of its csv was read without a word."""
+    monkeypatch.chdir(tmp_path)
+    table = Path("results") / "paper" / "stiffness" / "harmonics.csv"
+    table.parent.mkdir(parents=True)
+    table.write_text("order\n0\n")
+    job.input = [str(table)]
+    with pytest.raises(SystemExit), stage(job):
+        pytest.fail("the stage ran")
+    (told,) = capsys.readouterr().err.splitlines()
+    assert f"{table}: no manifest beside it says what its stage wrote; rebuild it with: " in told
