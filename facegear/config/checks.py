@@ -1,5 +1,6 @@
 """What the sections of a config demand of one another."""
 
+import os
 from collections.abc import Sequence
 from math import atan, degrees, pi
 
@@ -89,6 +90,14 @@ def geometric_backlash(pair: ToothPair) -> float:
         )
         raise ConfigError("tooth_pair.pinion.thinning_um", pair.pinion and pair.pinion.thinning_um, allowed)
     return 1e6 * max(backlash, 0.0)
+
+
+def memory_here() -> float:
+    """Bytes of memory of this machine; without limit where the system does not tell."""
+    try:
+        return float(os.sysconf("SC_PAGE_SIZE")) * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, OSError, ValueError):
+        return float("inf")
 
 
 def check_studies(studies: Sequence[Study]) -> None:

@@ -12,6 +12,7 @@ from facegear.config.checks import (
     check_studies,
     check_torques,
     geometric_backlash,
+    memory_here,
     pair_teeth,
     with_backlash,
 )
@@ -23,7 +24,7 @@ from facegear.config.stiffness import MeshStiffness
 from facegear.config.studies import NAME, Study
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
 from facegear.config.transmission import Transmission
-from facegear.contact.resolution import check_resolution
+from facegear.contact.resolution import check_memory, check_resolution
 from facegear.errors import ConfigError
 
 
@@ -69,6 +70,7 @@ class Config(Section):
             design = pair_design(pair)
             sizes = mesh_sizes(self.mesh, design.module)
             check_resolution(design, materials(pair), sizes, contact_plan(self.contact))
+            check_memory(design, sizes, contact_plan(self.contact), memory_here())
 
     def _check_machine(self) -> None:
         pair, machine = self.tooth_pair, self.transmission

@@ -22,6 +22,31 @@ def half_width(design: PairDesign, materials: tuple[Material, Material], torque:
     return sqrt(4 * line_load * design.pinion_pitch_radius * sin(design.pressure_angle) * softness / pi)
 
 
+def least_memory(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) -> float:
+    """Bytes that the flank's dense compliance alone takes: a lower bound of what a body needs.
+
+    Surface nodes of the flank, two an element in both directions, to the square; the factorisation of the
+    body comes on top.
+    """
+    height = design.face_gear.addendum + design.pinion.addendum
+    face = design.face_gear.outer_radius - design.face_gear.inner_radius
+    across = 2 * plan.refinement.profile * height / sizes.profile + 1
+    along = 2 * plan.refinement.width * face / sizes.width + 1
+    return 8.0 * (across * along) ** 2
+
+
+def check_memory(design: PairDesign, sizes: MeshSizes, plan: ContactPlan, available: float) -> None:
+    """Refuse a mesh whose compliance cannot fit into `available` bytes. Raises ConfigError."""
+    needed = least_memory(design, sizes, plan)
+    if needed > available:
+        told = f"{1e3 * sizes.profile:.3g} mm across the profile, {1e3 * sizes.width:.3g} mm along the face"
+        allowed = (
+            f"coarser: the flank's compliance alone would take {needed / 1e9:.3g} GB, and this machine has "
+            f"{available / 1e9:.3g} GB"
+        )
+        raise ConfigError("mesh.resolution", told, allowed)
+
+
 def check_resolution(
     design: PairDesign, materials: tuple[Material, Material], sizes: MeshSizes, plan: ContactPlan
 ) -> None:

@@ -14,7 +14,6 @@ from facegear.io.atomic import NO_SPACE, NO_SPACE_TOLD
 from facegear.io.checksums import MANIFEST_SUFFIX, require_manifest
 from facegear.provenance.manifest import write_manifest
 
-
 RESULTS = "results"
 """Folder of what stages write, each file with its manifest; inputs elsewhere are the user's."""
 

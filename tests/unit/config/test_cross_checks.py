@@ -70,6 +70,15 @@ def test_what_cannot_be_run_is_refused_in_one_line(changes, line):
     assert line in told(changed(QUICK, **changes))
 
 
+@pytest.mark.parametrize("profile", [1e-3, 1e-6])
+def test_a_mesh_that_cannot_fit_into_memory_is_refused_with_an_estimate(profile):
+    """One micrometre was accepted without a word."""
+    size = {"profile_mm": profile, "width_mm": 0.1, "thickness_mm": 1.0}
+    line = told(changed(QUICK, mesh__resolution=size))
+    assert line.startswith("mesh.resolution = ")
+    assert "the flank's compliance alone would take" in line and " GB, and this machine has" in line
+
+
 def test_points_of_all_studies_are_counted_before_they_are_made():
     axis = {"label": "2b", "key": "transmission.backlash_um", "values": [float(i) for i in range(1, 1501)]}
     line = told(changed(QUICK, studies=[{**STUDY, "axes": [axis]}]))
