@@ -1,22 +1,28 @@
-"""The notebook in examples/ runs as it stands and still prints what it shows."""
+"""The notebooks in examples/ run as they stand, from an empty folder, and still print what they show."""
 
 import contextlib
 import io
 import json
 from pathlib import Path
 
-import matplotlib
 import matplotlib.pyplot as plt
+import pytest
 
-NOTEBOOK = Path(__file__).parents[2] / "examples" / "load_sharing.ipynb"
+NOTEBOOKS = sorted((Path(__file__).parents[2] / "examples").glob("*.ipynb"))
 
 
-def test_example_notebook_prints_what_it_shows(monkeypatch):
-    matplotlib.use("Agg")
-    monkeypatch.chdir(NOTEBOOK.parent)
+def test_there_is_a_notebook_for_each_first_question():
+    names = {"tooth_contact", "own_gearbox", "speed_sweep", "load_sharing"}
+    assert names <= {path.stem for path in NOTEBOOKS}
+
+
+@pytest.mark.xdist_group("notebooks")  # they share the example's contact analysis
+@pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
+def test_notebook_prints_what_it_shows(notebook, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
     compared = 0
-    for cell in json.loads(NOTEBOOK.read_text())["cells"]:
+    for cell in json.loads(notebook.read_text())["cells"]:
         if cell["cell_type"] != "code":
             continue
         printed = io.StringIO()
@@ -27,6 +33,5 @@ def test_example_notebook_prints_what_it_shows(monkeypatch):
         )
         assert printed.getvalue() == shown
         compared += bool(shown)
-    assert compared == 1
-    assert len(plt.gca().lines) == 3
+    assert compared >= 1
     plt.close("all")
