@@ -35,6 +35,7 @@ rule benchmarks:
                 "dynamics",
                 "dynamics_sweep",
                 "dynamics_convergence",
+                "dynamics_labels",
             ],
         ),
 

@@ -44,7 +44,9 @@ class Sweep(Section):
     to_rpm: float = Field(20_000, ge=1, le=MAX_SPEED_RPM)
     points: int = Field(400, ge=2, le=100_000)
     directions: tuple[Literal["up", "down"], ...] = Field(("up", "down"), min_length=1, max_length=2)
-    chunks: int = Field(2, ge=1, le=1000, description="independent pieces of each direction")
+    chunks: int = Field(
+        1, ge=1, le=1000, description="independent pieces of each direction; more for more than two cores"
+    )
     overlap_points: int = Field(8, ge=0, le=1000, description="speeds a chunk runs before its own first one")
     jump_resolution_rpm: float = Field(1.0, gt=0, le=1000)
     accuracy: Accuracy = Accuracy(

@@ -15,6 +15,8 @@ from facegear.transmission.layout import DOF_PER_BODY
 from facegear.transmission.machine import Machine
 from facegear.transmission.matrices import mass_diagonal
 
+WATCHED = 2
+
 
 @dataclass(frozen=True, eq=False)
 class GroupSharing:
@@ -51,7 +53,7 @@ def load_sharing(
     the starts says how much that choice matters. Raises NotConverged if an integration fails.
     """
     model = build_model(machine) if isinstance(machine, Machine) else machine
-    settings = replace(settings, window=options.cycles, samples=options.samples)
+    settings = replace(watched(settings, options), window=options.cycles, samples=options.samples)
     first = static_start(model)
     responses = [simulate(model, speed_rpm, settings, start=first)]
     random = np.random.default_rng(options.seed)
@@ -62,6 +64,14 @@ def load_sharing(
         _group(group, responses, options.confidence) for group in load_groups(model.machine.layout)
     )
     return Sharing(responses[0], groups, tuple(response.label for response in responses))
+
+
+def watched(settings: Settings, options: SharingOptions) -> Settings:
+    """Settings for averages: a motion that has not closed after a few times the cycles averaged is measured.
+
+    A class that must hold for good, as that of the response at the nominal speed, is watched for longer.
+    """
+    return replace(settings, settle=min(settings.settle, WATCHED * options.cycles))
 
 
 def disturb(model: Model, start: State, spread: float, random: np.random.Generator) -> State:

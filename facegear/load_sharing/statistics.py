@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.stats
 from numpy.typing import NDArray
+
+from facegear.dynamics.steady_state.averages import mean_interval
 
 BATCHES = 10
 
@@ -91,5 +92,4 @@ def _half_width(sums: NDArray[np.float64], counts: NDArray[np.int64], confidence
     ]
     if len(means) < 2:
         return float("nan")
-    quantile = scipy.stats.t.ppf(0.5 + 0.5 * confidence, len(means) - 1)
-    return float(quantile * np.std(means, ddof=1) / np.sqrt(len(means)))
+    return float(mean_interval(np.array(means), confidence))

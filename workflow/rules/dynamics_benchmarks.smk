@@ -42,3 +42,12 @@ rule dynamics_convergence:
         machine=needs("machine"),
     script:
         "../scripts/dynamics_convergence.py"
+
+
+rule dynamics_labels:
+    "Classes of 500 random oscillators held against plain running"
+    output:
+        table="results/{case}/benchmarks/dynamics_labels.csv",
+        manifest="results/{case}/benchmarks/dynamics_labels.provenance.json",
+    script:
+        "../scripts/dynamics_labels.py"

@@ -1,4 +1,4 @@
-"""Each speed of the sweep once more with half the tolerance and twice the dwell."""
+"""Each speed of the sweep once more with everything finer that is discretised."""
 
 import pandas as pd
 

@@ -15,6 +15,7 @@ from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.averages import Averages, Moments, sampled
 from facegear.dynamics.steady_state.closing import FALLING, SMALL, closing
 from facegear.dynamics.steady_state.exponent import Exponent, Growth, largest_exponent
+from facegear.dynamics.steady_state.prepare import prepare
 from facegear.dynamics.steady_state.settle import Settled, settle
 from facegear.dynamics.steady_state.statistics import drifts
 from facegear.dynamics.steady_state.window import Window, run_window
@@ -139,6 +140,7 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
     A run that shows no sign of closing while it is watched gets its largest exponent, then is watched once
     more over the window that it is measured on. What these do not agree on is watched for longer.
     """
+    prepare()
     packed = pack(system, frequency)
     work = make_work(packed, settings.taylor_order)
     state, ends = _by_phase(packed, start, frequency), None

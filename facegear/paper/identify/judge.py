@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
-import scipy.stats
 
 from facegear.dynamics.motion import Settings
+from facegear.dynamics.steady_state.averages import mean_interval
 from facegear.dynamics.steady_state.simulate import build_model, static_start
 from facegear.load_sharing.run import disturb
 from facegear.paper.identify.inputs import Inputs
@@ -127,8 +127,7 @@ def _half_width(values: np.ndarray) -> float:
     values = values[np.isfinite(values)]
     if values.size < 2:
         return 0.0
-    quantile = scipy.stats.t.ppf(0.5 + 0.5 * CONFIDENCE, values.size - 1)
-    return float(quantile * values.std(ddof=1) / np.sqrt(values.size))
+    return float(mean_interval(values, CONFIDENCE))
 
 
 def sensitivity_table(problem: Problem, inputs: Inputs) -> pd.DataFrame:

@@ -1,29 +1,47 @@
-"""Is a sweep converged: each speed once more with half the tolerance and twice the dwell."""
+"""Is a sweep converged: each speed once more with everything finer that is discretised."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
 
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import Model
+from facegear.dynamics.steady_state.averages import sampled
+from facegear.dynamics.steady_state.simulate import Model, SteadyState
 from facegear.dynamics.sweeps.sweep import Piece, collect, joined, run_speeds, tighter
 
 CONVERGED = 1e-3
+SAMPLES = 4096
 
 
 def rerun(model: Model, piece: Piece, settings: Settings, step: Callable[[], None] = lambda: None) -> Piece:
-    """Every speed of a sweep again, finer, from the state that the sweep left there.
+    """Every speed of a sweep again, from the state that the sweep left there, and far finer.
 
-    A finer sweep carried through would also choose other branches after irregular motion, which says nothing
-    about the accuracy of either.
+    All that is discretised varies: the tolerance of the steps and their order, what counts as closed, and the
+    samples, from which alone the moments of this run are taken (`sampled_piece`). What is not periodic is run
+    again with half the tolerance and a longer watch, to see whether its class holds. A finer sweep carried
+    through would also choose other branches after irregular motion, which says nothing about the accuracy of
+    either.
     """
-    finer = tighter(settings)
-    again = [
-        collect(model, run_speeds(model, piece.speeds[i : i + 1], finer, piece.state(i), step))
-        for i in range(len(piece.speeds))
-    ]
+    again = []
+    for i, period in enumerate(piece.period):
+        finer = exact(settings) if period else tighter(settings)
+        responses = run_speeds(model, piece.speeds[i : i + 1], finer, piece.state(i), step)
+        again.append(collect(model, (sampled_response(found) for found in responses)))
     return joined(again)
+
+
+def exact(settings: Settings) -> Settings:
+    """What a periodic motion is held against: 1e-10 and 4096 samples a period."""
+    return replace(settings, tolerance=1e-10, order=None, periodic_residual=1e-9, samples=SAMPLES)
+
+
+def sampled_response(found: tuple[float, SteadyState]) -> tuple[float, SteadyState]:
+    """A response whose averages come from its samples and not from the step polynomials."""
+    speed, response = found
+    averages = sampled(response.averages, response.deflections, response.forces, response.per_period)
+    return speed, replace(response, averages=averages)
 
 
 def convergence_table(direction: str, piece: Piece, finer: Piece) -> pd.DataFrame:

@@ -266,3 +266,17 @@ def suite(count: int, settings: Settings, step: Callable[[], None] = lambda: Non
         rows.append(judge(oscillator, settings))
         step()
     return pd.DataFrame(rows)
+
+
+def verdict(table: pd.DataFrame) -> str:
+    """How many labels hold, are left open, or fail, and how many orbits the run itself reaches."""
+    unsettled = table["label"] == Motion.NOT_SETTLED.value
+    failed = ~table["agrees"] & ~unsettled
+    reached = (table["reached"] | table["sensitive"]).sum()
+    alone = (table["reached_closed_form"] | table["sensitive"]).sum()
+    return (
+        f"{table['agrees'].sum()} of {len(table)} labels hold, "
+        f"{unsettled.sum()} not settled, {failed.sum()} fail; "
+        f"the undisturbed run reaches {reached}, closed-form pieces {alone} (sensitive ones counted); "
+        f"refinement changes {(~table['refinement_agrees']).sum()}"
+    )

@@ -1,0 +1,62 @@
+"""The kernels compiled once for all processes that start together."""
+
+import fcntl
+import sys
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from facegear.dynamics.integrator.compiled import TAU, pack
+from facegear.dynamics.integrator.kernel import text_of
+from facegear.dynamics.integrator.periods import disturbance_step, make_log, run_periods
+from facegear.dynamics.integrator.system import System
+from facegear.dynamics.integrator.work import make_work
+
+
+@cache
+def prepare() -> None:
+    """Load the stored machine code of the time integration, or compile and store it while others wait.
+
+    Without this, jobs that start at once on a fresh checkout each compile the same for half a minute.
+    """
+    folder = Path(run_periods._cache.cache_path)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with open(folder / "compiling.lock", "w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            _compile(folder / f"compiled-{text_of(Path(make_work.__code__.co_filename).parent)[:16]}")
+    except OSError:
+        # A folder that cannot be written keeps no machine code either: each process compiles its own.
+        return
+
+
+def _compile(done: Path) -> None:
+    if not done.exists():
+        print("compiling the time integration once, some 40 s", file=sys.stderr, flush=True)
+    packed = pack(_smallest(), 1.0)
+    work = make_work(packed, 6)
+    state, none = np.zeros((2, 4)), np.zeros((0, 2, 4))
+    run_periods(packed, work, state[0], state[1], none, 1, 0, 1e-2, make_log(packed, 1), TAU)
+    disturbance_step(packed, 6, 1e-2)
+    done.touch()
+
+
+def _smallest() -> System:
+    """One coordinate, one mesh: the types are those of any machine."""
+    one, nothing = np.ones(1), np.zeros((1, 2, 1))
+    return System(
+        mesh_jacobian=np.ones((1, 1)),
+        omega_squared=one,
+        damping=one,
+        mesh_damping=one,
+        lower=-one,
+        upper=one,
+        stiffness=nothing + 1.0,
+        stiffness_kind=np.zeros(1, dtype=np.int64),
+        error=nothing,
+        error_kind=np.zeros(1, dtype=np.int64),
+        load=nothing,
+        damping_when_open=True,
+        scale=1.0,
+    )
