@@ -1,6 +1,7 @@
 """The kernels compiled once for all processes that start together."""
 
 import fcntl
+import hashlib
 import sys
 from functools import cache
 from pathlib import Path
@@ -8,7 +9,6 @@ from pathlib import Path
 import numpy as np
 
 from facegear.dynamics.integrator.compiled import TAU, pack
-from facegear.dynamics.integrator.kernel import text_of
 from facegear.dynamics.integrator.periods import disturbance_step, make_log, run_periods
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.integrator.work import make_work
@@ -25,10 +25,16 @@ def prepare() -> None:
         folder.mkdir(parents=True, exist_ok=True)
         with open(folder / "compiling.lock", "w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
-            _compile(folder / f"compiled-{text_of(Path(make_work.__code__.co_filename).parent)[:16]}")
+            _compile(folder / f"compiled-{_text()[:16]}")
     except OSError:
         # A folder that cannot be written keeps no machine code either: each process compiles its own.
         return
+
+
+def _text() -> str:
+    """Hash of all that is compiled."""
+    sources = sorted(Path(make_work.__code__.co_filename).parent.glob("*.py"))
+    return hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()
 
 
 def _compile(done: Path) -> None:
