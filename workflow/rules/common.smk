@@ -12,6 +12,7 @@ os.environ.update(PYTHONPATH=str(ROOT), MPLBACKEND="Agg")
 from facegear.config.cases import expand_cases, shared_source
 from facegear.config.load import load_values
 from facegear.config.needs import NEEDS, stage_needs
+from facegear.config.notes import notes
 from facegear.errors import FacegearError
 from facegear.io.run_lock import hold
 from facegear.paper.config.reproduction import design_cases, read_reproduction
@@ -63,6 +64,8 @@ onstart:
         raise WorkflowError(f"another run is working in {os.getcwd()}; wait for it or stop it first")
     if any(path.is_file() for path in Path(".snakemake/incomplete").rglob("*")):
         print("resuming a run that was stopped: its unfinished jobs are made again", file=sys.stderr)
+    for note in notes(CONFIG):
+        print(note, file=sys.stderr)
     stop_at_once()
 
 

@@ -6,6 +6,7 @@ from ruamel.yaml import YAML
 
 from facegear.config.base import parse
 from facegear.config.buildable import require_buildable
+from facegear.config.notes import notes
 from facegear.config.transmission import Transmission, machine, tooth_numbers
 from facegear.errors import ConfigError, ConfigErrors
 from facegear.harmonics.series import Harmonics
@@ -143,3 +144,13 @@ def test_machines_that_do_not_go_together_are_refused(changes, line):
 def test_a_machine_with_errors_within_its_backlash_is_buildable():
     errors = {"single_pinions": {"two": {"position_um": {"x": 20.0, "y": -20.0}, "clearance_um": 20}}}
     require_buildable(parse(Transmission, section(**errors)), TEETH)
+
+
+def test_a_config_of_ones_own_that_takes_the_printed_meshes_is_told_once_what_that_means():
+    for kinematics, reproduction, told in (
+        ("printed", None, 1),
+        ("printed", "a.yaml", 0),
+        ("geometric", None, 0),
+    ):
+        values = {"transmission": {"mesh_kinematics": kinematics}, "reproduction": reproduction}
+        assert len(notes(values)) == told

@@ -1,0 +1,60 @@
+"""Modes of geometric meshes, beside those of equation (13) as printed."""
+
+from dataclasses import replace
+
+import numpy as np
+from lumped_machines import make_layout, make_machine
+
+from facegear.transmission.layout import MeshKinematics, Tilt
+from facegear.transmission.loaded_modes import loaded_modes, working_flanks
+from facegear.transmission.mode_classes import ModeClass, name_modes
+from facegear.transmission.modes import natural_modes
+
+LAYOUT = make_layout(kinematics=MeshKinematics.GEOMETRIC)
+
+
+def test_inputs_work_on_their_drive_flanks_and_idlers_on_the_back_flank_below():
+    working = working_flanks(make_machine(LAYOUT, torque=2000.0, tail_share=0.03))
+    drive, back = np.split(working, 2)
+    np.testing.assert_array_equal(back, [True, True, False, False, True] + 5 * [False])
+    np.testing.assert_array_equal(drive, ~back)
+
+
+def test_with_a_large_tail_torque_the_tail_idlers_upper_mesh_changes_flank():
+    working = working_flanks(make_machine(LAYOUT, torque=2000.0, tail_share=0.9))
+    drive, back = np.split(working, 2)
+    assert back[5] and not drive[5]
+
+
+def test_pinions_float_in_one_direction_less_and_the_rigid_modes_stay():
+    machine = make_machine(LAYOUT, torque=2000.0, tail_share=0.03)
+    modes = loaded_modes(machine)
+    assert (modes.frequencies[:6] == 0.0).all() and modes.frequencies[6] > 100.0
+    names = name_modes(LAYOUT, modes)
+    assert [name.mode_class for name in names[:6]] == 6 * [ModeClass.RIGID]
+    # As printed, each pinion has a translation that no mesh feels: five modes at 1171.8 Hz.
+    free = np.sqrt(6.5e7 / 1.199) / (2.0 * np.pi)
+    assert (np.abs(modes.frequencies - free) < 0.01).sum() < 5
+    assert (np.abs(natural_modes(make_layout(), 4.1e8).frequencies - free) < 0.01).sum() == 5
+
+
+def test_printed_machines_keep_their_modes():
+    machine = make_machine()
+    np.testing.assert_array_equal(
+        loaded_modes(machine).frequencies, natural_modes(machine.layout, machine.stiffness.mean).frequencies
+    )
+
+
+def test_tilting_gears_add_two_modes_each_and_stiff_tilt_adds_nothing_else():
+    def tilting(stiffness):
+        gears = tuple(replace(g, body=replace(g.body, tilt=Tilt(0.3, stiffness))) for g in LAYOUT.gears)
+        return make_machine(replace(LAYOUT, gears=gears), torque=2000.0, tail_share=0.03)
+
+    square = loaded_modes(make_machine(LAYOUT, torque=2000.0, tail_share=0.03)).frequencies
+    stiff = loaded_modes(tilting(1e19)).frequencies
+    assert stiff.size == square.size + 4
+    np.testing.assert_allclose(stiff[:-4], square, rtol=1e-6, atol=1e-2)
+    soft = loaded_modes(tilting(1e6))
+    # More freedom with its own inertia lowers every frequency (interlacing).
+    assert (soft.frequencies[:-4] <= square + 1e-6).all()
+    assert any("tilt" in name.symbols for name in name_modes(tilting(1e6).layout, soft))
