@@ -146,11 +146,15 @@ def test_a_machine_with_errors_within_its_backlash_is_buildable():
     require_buildable(parse(Transmission, section(**errors)), TEETH)
 
 
-def test_a_config_of_ones_own_that_takes_the_printed_meshes_is_told_once_what_that_means():
-    for kinematics, reproduction, told in (
-        ("printed", None, 1),
-        ("printed", "a.yaml", 0),
-        ("geometric", None, 0),
+def test_a_config_of_ones_own_is_told_once_what_printed_meshes_and_runouts_mean():
+    plain = parse(Transmission, section()).model_dump(mode="json")
+    printed = {**plain, "mesh_kinematics": "printed"}
+    turning = {**plain, "single_gears": {"upper": {"runout": {"eccentricity_um": 5.0}}}}
+    for transmission, reproduction, told in (
+        (plain, None, 0),
+        (printed, None, 1),
+        (printed, "a.yaml", 0),
+        (turning, None, 1),
+        (None, None, 0),
     ):
-        values = {"transmission": {"mesh_kinematics": kinematics}, "reproduction": reproduction}
-        assert len(notes(values)) == told
+        assert len(notes({"transmission": transmission, "reproduction": reproduction})) == told
