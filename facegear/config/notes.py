@@ -8,8 +8,8 @@ PRINTED = (
     "with it; lever arms, signs of the lower meshes and back flanks are not a gearbox's (docs/theory.md)"
 )
 SLOW = (
-    "transmission: runouts and cumulative pitch deviations enter the quasi-static hunting cycle only; responses "
-    "and sweeps leave them out (docs/theory.md)"
+    "transmission: runouts and cumulative pitch deviations enter the quasi-static hunting cycle only; "
+    "responses and sweeps leave them out (docs/theory.md)"
 )
 
 
