@@ -1,0 +1,67 @@
+"""Append-only records of unfinished work: what a kill leaves behind is read back up to its last line."""
+
+import errno
+import hashlib
+import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from facegear.errors import FacegearError
+from facegear.io.atomic import NO_SPACE, NO_SPACE_TOLD, atomic_path
+
+
+def read(path: str | Path, identity: str) -> list[dict[str, Any]]:
+    """Records of a journal begun under the same identity; those after a damaged line are not read."""
+    path = Path(path)
+    if not path.is_file():
+        return []
+    lines = path.read_bytes().split(b"\n")[:-1]
+    if not lines or lines[0].decode(errors="replace") != _digest(identity):
+        return []
+    records = []
+    for line in lines[1:]:
+        try:
+            told, text = line.decode().split(" ", 1)
+        except ValueError:
+            break
+        if told != _digest(text):
+            break
+        records.append(json.loads(text))
+    return records
+
+
+@contextmanager
+def appending(path: str | Path, identity: str) -> Iterator[Callable[[dict[str, Any]], None]]:
+    """Yield a function that appends one record; the journal is begun anew unless its identity is the same.
+
+    A damaged end is cut off first. Raises FacegearError with one line if the disk is full.
+    """
+    path = Path(path)
+    sound = "".join([_digest(identity) + "\n", *map(_line, read(path, identity))]).encode()
+    if not path.is_file() or path.read_bytes() != sound:
+        with atomic_path(path) as temporary:
+            temporary.write_bytes(sound)
+    try:
+        with open(path, "ab", buffering=0) as stream:
+            yield lambda record: _append(stream, record)
+    except OSError as error:
+        if error.errno in NO_SPACE:
+            raise FacegearError(f"{path}: {NO_SPACE_TOLD}") from None
+        raise
+
+
+def _append(stream: BinaryIO, record: dict[str, Any]) -> None:
+    line = _line(record).encode()
+    if stream.write(line) != len(line):
+        raise OSError(errno.ENOSPC, "the line was not written whole")
+
+
+def _line(record: dict[str, Any]) -> str:
+    text = json.dumps(record)
+    return f"{_digest(text)} {text}\n"
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:16]

@@ -1,0 +1,66 @@
+"""A chunk of samples in one warm process: appended as it goes, resumed where it was killed."""
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from facegear.errors import FacegearError
+from facegear.io import journal
+
+Evaluate = Callable[[int], Mapping[str, float]]
+"""Results by column name of one sample, given its number. Raises FacegearError where it has none."""
+
+SAMPLE, ERROR = "sample", "error"
+
+
+def run_chunk(
+    evaluate: Evaluate,
+    numbers: Sequence[int],
+    columns: Sequence[str],
+    partial: str | Path,
+    identity: str,
+    told: Callable[[], None] = lambda: None,
+) -> pd.DataFrame:
+    """Evaluate samples by number; rows in the order of the numbers.
+
+    `partial` keeps every finished sample at once, so that a killed chunk goes on after its last one; its rows
+    count only if they were written under the same `identity` (a hash of everything that decides a result).
+    `told` is called after each sample. A sample that raises FacegearError becomes a row with the error's text
+    and NaN in `columns`. Columns: sample, `columns`, error.
+    """
+    known = {row[SAMPLE]: row for row in journal.read(partial, identity)}
+    with journal.appending(partial, identity) as append:
+        for number in numbers:
+            if number not in known:
+                known[number] = _row(evaluate, number, columns)
+                append(known[number])
+            told()
+    return _frame([known[number] for number in numbers], columns)
+
+
+def _row(evaluate: Evaluate, number: int, columns: Sequence[str]) -> dict[str, Any]:
+    try:
+        found = evaluate(number)
+    except FacegearError as error:
+        return {SAMPLE: number, "values": None, ERROR: str(error).splitlines()[0]}
+    return {SAMPLE: number, "values": [float(found[name]) for name in columns], ERROR: ""}
+
+
+def _frame(rows: list[dict[str, Any]], columns: Sequence[str]) -> pd.DataFrame:
+    nothing = [float("nan")] * len(columns)
+    values = np.array([row["values"] or nothing for row in rows], dtype=float).reshape(
+        len(rows), len(columns)
+    )
+    frame = pd.DataFrame(values, columns=list(columns))
+    frame.insert(0, SAMPLE, np.array([row[SAMPLE] for row in rows], dtype=np.int64))
+    frame[ERROR] = [row[ERROR] for row in rows]
+    return frame
+
+
+def identity(*parts: object) -> str:
+    """Text that differs whenever one of the parts, plain values, does."""
+    return json.dumps(parts, sort_keys=True)

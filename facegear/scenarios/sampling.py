@@ -1,0 +1,114 @@
+"""Samples by number: the same number gives the same sample in any chunk, order or count of jobs."""
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import scipy.special
+from numpy.typing import NDArray
+from scipy.stats import qmc
+
+from facegear.scenarios.distributions import Array, Distribution
+
+SMALLEST = 2.0**-53
+"""Probabilities keep this distance from 0 and 1, where a normal quantile is infinite."""
+
+
+@dataclass(frozen=True)
+class Cause:
+    """Something that varies from machine to machine, and the config keys that it moves.
+
+    `gains` maps a dotted key to the change of its value for one unit of the cause; the change is added to the
+    nominal value. `source` says where the distribution is from: an ISO grade, a drawing's limits.
+    """
+
+    name: str
+    distribution: Distribution
+    gains: tuple[tuple[str, float], ...]
+    source: str
+
+
+@dataclass(frozen=True, eq=False)
+class Population:
+    """Causes, the seed of their scrambled Sobol sequence, and their rank correlation (d, d) if they have one.
+
+    The correlation is that of the normal scores (a Gaussian copula); its Cholesky factor must exist.
+    """
+
+    causes: tuple[Cause, ...]
+    seed: int
+    correlation: NDArray[np.float64] | None = None
+    factor: NDArray[np.float64] | None = field(init=False)
+
+    def __post_init__(self) -> None:
+        factor = None if self.correlation is None else np.linalg.cholesky(self.correlation)
+        object.__setattr__(self, "factor", factor)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the causes."""
+        return tuple(cause.name for cause in self.causes)
+
+
+def samples(population: Population, start: int, count: int) -> Array:
+    """Values (count, causes) of the samples numbered `start` and following."""
+    probability = _sobol(len(population.causes), population.seed, start, count)
+    return _values(population.causes, _correlated(probability, population.factor))
+
+
+def index_samples(population: Population, start: int, count: int) -> Array:
+    """Values (count, causes) of the samples of Saltelli's design for Sobol indices.
+
+    Sample s belongs to block s // (d + 2); within its block come the point A, the point B, and A with each
+    single cause taken from B. Sobol indices ask for independent causes. Raises ValueError if they are not.
+    """
+    if population.factor is not None:
+        raise ValueError("Sobol indices ask for independent causes")
+    size = len(population.causes)
+    first, last = start // (size + 2), (start + count - 1) // (size + 2)
+    base = _sobol(2 * size, population.seed, first, last - first + 1)
+    blocks = np.empty((len(base), size + 2, size))
+    blocks[:, 0], blocks[:, 1] = base[:, :size], base[:, size:]
+    blocks[:, 2:] = base[:, None, :size]
+    for cause in range(size):
+        blocks[:, 2 + cause, cause] = base[:, size + cause]
+    rows = blocks.reshape(-1, size)[start - first * (size + 2) :][:count]
+    return _values(population.causes, rows)
+
+
+def changes(population: Population, values: Sequence[float]) -> dict[str, float]:
+    """Dotted config key -> what is added to its nominal value, for one sample's values (causes,)."""
+    added: dict[str, float] = {}
+    for cause, value in zip(population.causes, values, strict=True):
+        for key, gain in cause.gains:
+            added[key] = added.get(key, 0.0) + gain * float(value)
+    return added
+
+
+def _sobol(dimensions: int, seed: int, start: int, count: int) -> Array:
+    sequence = qmc.Sobol(dimensions, scramble=True, rng=np.random.default_rng(seed))
+    if start:
+        sequence.fast_forward(start)
+    with warnings.catch_warnings():
+        warnings.filterwarnings(
+            "ignore", "The balance properties", UserWarning
+        )  # a chunk need not be balanced
+        return np.clip(sequence.random(count), SMALLEST, 1.0 - SMALLEST)
+
+
+def _correlated(probability: Array, factor: Array | None) -> Array:
+    """Probabilities with the correlation put in; sums in a fixed order, so that no batch size shows."""
+    if factor is None:
+        return probability
+    scores = scipy.special.ndtri(probability)
+    mixed = np.zeros_like(scores)
+    for row in range(len(factor)):
+        for column in range(row + 1):
+            mixed[:, row] += factor[row, column] * scores[:, column]
+    return np.clip(scipy.special.ndtr(mixed), SMALLEST, 1.0 - SMALLEST)
+
+
+def _values(causes: tuple[Cause, ...], probability: Array) -> Array:
+    columns = [cause.distribution.quantile(probability[:, i]) for i, cause in enumerate(causes)]
+    return np.column_stack(columns)

@@ -1,0 +1,81 @@
+"""Chunks resume after a kill, keep failures as rows, and give the same rows however they are cut."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from facegear.errors import CorruptFile, FacegearError
+from facegear.io import columnar
+from facegear.scenarios.chunks import run_chunk
+
+COLUMNS = ("a", "b")
+
+
+class Killed(BaseException):
+    """Stands for a process that ends without a word."""
+
+
+class Machine:
+    """Counts its evaluations; sample 3 fails, and it is killed at a given number."""
+
+    def __init__(self, killed_at=None):
+        self.seen, self.killed_at = [], killed_at
+
+    def __call__(self, number):
+        if number == self.killed_at:
+            raise Killed
+        self.seen.append(number)
+        if number == 3:
+            raise FacegearError("cannot be assembled\nmore")
+        return {"a": 1.0 / (number + 3), "b": np.pi * number}
+
+
+def run(machine, path, numbers=range(8), identity="same"):
+    return run_chunk(machine, numbers, COLUMNS, path, identity)
+
+
+def test_killed_chunk_goes_on_after_its_last_sample(tmp_path):
+    whole = run(Machine(), tmp_path / "whole")
+    killed, path = Machine(killed_at=5), tmp_path / "partial"
+    with pytest.raises(Killed):
+        run(killed, path)
+    resumed = Machine()
+    pd.testing.assert_frame_equal(run(resumed, path), whole, check_exact=True)
+    assert (killed.seen, resumed.seen) == ([0, 1, 2, 3, 4], [5, 6, 7])
+
+
+@pytest.mark.parametrize("cut", range(1, 60, 7))
+def test_record_that_was_half_written_is_made_again(tmp_path, cut):
+    path = tmp_path / "partial"
+    whole = run(Machine(), path)
+    path.write_bytes(path.read_bytes()[:-cut])
+    pd.testing.assert_frame_equal(run(Machine(), path), whole, check_exact=True)
+
+
+def test_partial_rows_of_another_config_are_not_taken(tmp_path):
+    run(Machine(), tmp_path / "partial", identity="before")
+    machine = Machine()
+    run(machine, tmp_path / "partial", identity="after")
+    assert machine.seen == list(range(8))
+
+
+def test_failed_sample_is_a_row_with_its_error(tmp_path):
+    row = run(Machine(), tmp_path / "partial").set_index("sample").loc[3]
+    assert row["error"] == "cannot be assembled"
+    assert np.isnan(row["a"])
+
+
+@pytest.mark.parametrize("size", [1, 3, 8])
+def test_rows_are_equal_to_the_bit_for_any_size_of_chunk(tmp_path, size):
+    whole = run(Machine(), tmp_path / "whole")
+    parts = [run(Machine(), tmp_path / str(at), range(at, min(at + size, 8))) for at in range(0, 8, size)]
+    pd.testing.assert_frame_equal(pd.concat(parts, ignore_index=True), whole, check_exact=True)
+
+
+def test_columnar_table_comes_back_as_it_was_and_a_broken_one_is_named(tmp_path):
+    frame, path = run(Machine(), tmp_path / "partial"), tmp_path / "rows.parquet"
+    columnar.write(path, frame)
+    pd.testing.assert_frame_equal(columnar.read(path, ("sample", "a")), frame, check_exact=True)
+    path.write_bytes(path.read_bytes()[:-10])
+    with pytest.raises(CorruptFile, match=r"rows\.parquet"):
+        columnar.read(path)

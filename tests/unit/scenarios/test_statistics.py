@@ -1,0 +1,72 @@
+"""Percentiles and indices against closed forms, with intervals that cover them."""
+
+import numpy as np
+import pytest
+import scipy.stats
+
+from facegear.scenarios.distributions import Distribution, Shape
+from facegear.scenarios.sampling import Cause, Population, index_samples, samples
+from facegear.scenarios.statistics import percentile, share, sobol_indices
+
+SPREADS = np.array([3.0, 2.0, 1.0])
+
+
+def causes(shape, seed=1):
+    named = (Cause(str(i), one, ((str(i), 1.0),), "test") for i, one in enumerate(shape))
+    return Population(tuple(named), seed)
+
+
+def linear(seed=1):
+    return causes([Distribution(Shape.NORMAL, spread=spread) for spread in SPREADS], seed)
+
+
+def test_p95_of_a_linear_machine_with_normal_errors_is_that_of_the_closed_form():
+    exact = scipy.stats.norm.ppf(0.95) * np.sqrt((SPREADS**2).sum())
+    errors = {count: [] for count in (512, 8192)}
+    for count, of_count in errors.items():
+        for seed in range(8):
+            found = percentile(samples(linear(seed), 0, count).sum(axis=1), 0.95)
+            assert found.low < exact < found.high
+            of_count.append(found.value / exact - 1.0)
+    spread = {count: np.sqrt(np.mean(np.square(of_count))) for count, of_count in errors.items()}
+    assert max(np.abs(errors[8192])) < 0.02
+    assert spread[8192] < spread[512] / np.sqrt(16.0)  # at least as fast as independent samples
+
+
+def test_sobol_indices_of_a_linear_machine_are_shares_of_variance():
+    values = index_samples(linear(), 0, 5 * 2048).sum(axis=1)
+    found, exact = sobol_indices(values, 3), SPREADS**2 / (SPREADS**2).sum()
+    for estimates in (found.first, found.total):
+        assert [one.value for one in estimates] == pytest.approx(exact, abs=0.02)
+
+
+def test_sobol_indices_of_ishigamis_function_are_the_known_ones():
+    population = causes([Distribution(Shape.UNIFORM, limits=(-np.pi, np.pi))] * 3)
+    x, y, z = index_samples(population, 0, 5 * 2048).T
+    found = sobol_indices(np.sin(x) + 7.0 * np.sin(y) ** 2 + 0.1 * z**4 * np.sin(x), 3)
+    for estimates, exact in ((found.first, (0.3139, 0.4424, 0.0)), (found.total, (0.5576, 0.4424, 0.2437))):
+        assert [one.value for one in estimates] == pytest.approx(exact, abs=0.02)
+        assert all(one.low < value < one.high for one, value in zip(estimates, exact, strict=True))
+
+
+def test_block_with_a_failed_sample_is_left_out_and_counted():
+    values = index_samples(linear(), 0, 5 * 256).sum(axis=1)
+    values[7] = np.nan
+    found = sobol_indices(values, 3)
+    assert (found.blocks, found.failed) == (128, 1)
+    with pytest.raises(ValueError, match="whole"):
+        sobol_indices(np.full(5, np.nan), 3)
+
+
+def test_interval_of_a_percentile_covers_it_as_often_as_stated():
+    rng = np.random.default_rng(5)
+    exact = scipy.stats.norm.ppf(0.95)
+    found = [percentile(rng.standard_normal(400), 0.95) for _ in range(400)]
+    assert np.mean([one.low <= exact <= one.high for one in found]) >= 0.93
+    assert percentile(rng.standard_normal(20), 0.99).high == np.inf
+
+
+def test_share_comes_with_an_interval_that_never_leaves_zero_to_one():
+    none = share(np.zeros(50, dtype=bool))
+    assert (none.value, none.low) == (0.0, 0.0)
+    assert 0.0 < none.high < 0.12
