@@ -23,6 +23,8 @@ MAY_IMPORT = {
     "load_sharing": {"dynamics", "transmission", "harmonics"},
     "plots": {"geometry", "contact", "stiffness", "harmonics", "transmission", "dynamics", "load_sharing"},
     "report": set(),
+    "scenarios": set(),
+    "strength": {"geometry"},
     "stages": {
         *("config", "geometry", "mesh", "contact", "stiffness", "harmonics"),
         *("transmission", "dynamics", "load_sharing"),

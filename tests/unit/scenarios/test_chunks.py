@@ -4,8 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from facegear.errors import CorruptFile, FacegearError
-from facegear.io import columnar
+from facegear.errors import FacegearError
 from facegear.scenarios.chunks import run_chunk
 
 COLUMNS = ("a", "b")
@@ -70,12 +69,3 @@ def test_rows_are_equal_to_the_bit_for_any_size_of_chunk(tmp_path, size):
     whole = run(Machine(), tmp_path / "whole")
     parts = [run(Machine(), tmp_path / str(at), range(at, min(at + size, 8))) for at in range(0, 8, size)]
     pd.testing.assert_frame_equal(pd.concat(parts, ignore_index=True), whole, check_exact=True)
-
-
-def test_columnar_table_comes_back_as_it_was_and_a_broken_one_is_named(tmp_path):
-    frame, path = run(Machine(), tmp_path / "partial"), tmp_path / "rows.parquet"
-    columnar.write(path, frame)
-    pd.testing.assert_frame_equal(columnar.read(path, ("sample", "a")), frame, check_exact=True)
-    path.write_bytes(path.read_bytes()[:-10])
-    with pytest.raises(CorruptFile, match=r"rows\.parquet"):
-        columnar.read(path)
