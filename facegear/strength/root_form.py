@@ -14,9 +14,9 @@ ITERATIONS = 200
 class RootForm:
     """Root section of a spur tooth loaded at a radius.
 
-    chord: width s_Fn (m) of the section where the fillet's tangent makes 30 degrees with the tooth's middle.
-    lever_arm: bending moment arm h_Fe, m. fillet_radius: radius of curvature rho_F there, m. load_angle: angle
-    alpha_Fen between the force and the normal of the tooth's middle, rad. form_factor Y_F and
+    chord: width s_Fn (m) of the section where the fillet's tangent makes 30 degrees with the tooth's axis.
+    lever_arm: bending moment arm h_Fe, m. fillet_radius: radius of curvature rho_F there, m. load_angle:
+    alpha_Fen (rad) between the force and the normal of the tooth's axis. form_factor Y_F and
     stress_correction Y_S.
     """
 
