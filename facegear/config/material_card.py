@@ -1,0 +1,86 @@
+"""Material cards: limits of a material with their source, read from yaml files."""
+
+from importlib.resources import files
+from itertools import pairwise
+from pathlib import Path
+
+from pydantic import Field, model_validator
+
+from facegear.config.base import Section, parse, refuse
+from facegear.config.yaml_file import read_yaml
+from facegear.strength.materials import BendingLimits, Life, MaterialCard, PittingLimits
+
+CARDS = Path(str(files("facegear") / "strength" / "cards"))
+"""Folder of the cards that come with the package."""
+
+
+class Limits(Section):
+    """A fatigue limit for 1 % failures, and its life factors as rising cycles with falling factors."""
+
+    limit_mpa: float = Field(gt=0, le=1e5)
+    life: tuple[tuple[float, float], ...] = Field(min_length=2, description="[cycles, factor] points")
+
+    @model_validator(mode="after")
+    def _falling(self) -> "Limits":
+        cycles, factors = zip(*self.life, strict=True)
+        rising = all(low < high for low, high in pairwise(cycles))
+        falling = all(high > low for high, low in pairwise(factors))
+        if not (rising and falling and cycles[0] >= 1 and factors[-1] > 0):
+            refuse("life", self.life, "points of rising cycles (from 1 on) and falling factors above 0")
+        return self
+
+    @property
+    def curve(self) -> Life:
+        """The life factors as a curve."""
+        cycles, factors = zip(*self.life, strict=True)
+        return Life(cycles, factors)
+
+
+class MeanStress(Section):
+    """Mean stress ratio M = constant - slope Y_S."""
+
+    constant: float = Field(ge=0, le=1)
+    slope: float = Field(ge=0, le=1)
+
+
+class Bending(Limits):
+    """Limits of the root; what the card's source does not give is left out."""
+
+    slip_layer_mm: float | None = Field(None, gt=0, le=1, description="rho' of ISO 6336-3")
+    mean_stress: MeanStress | None = None
+
+
+class Card(Section):
+    """A material card."""
+
+    name: str
+    source: str = Field(min_length=1, description="where the limits are from")
+    grade: str
+    young_modulus_gpa: float = Field(gt=0, le=2000)
+    poisson_ratio: float = Field(ge=0, lt=0.5)
+    pitting: Limits | None = None
+    bending: Bending | None = None
+
+
+def material_card(path: str | Path) -> MaterialCard:
+    """Read a material card in SI units. Raises ConfigErrors with one line for every mistake."""
+    card = parse(Card, read_yaml(path), source=str(path))
+    bending, pitting = card.bending, card.pitting
+    return MaterialCard(
+        name=card.name,
+        source=card.source,
+        grade=card.grade,
+        young_modulus=1e9 * card.young_modulus_gpa,
+        poisson_ratio=card.poisson_ratio,
+        pitting=None if pitting is None else PittingLimits(1e6 * pitting.limit_mpa, pitting.curve),
+        bending=None
+        if bending is None
+        else BendingLimits(
+            limit=1e6 * bending.limit_mpa,
+            life=bending.curve,
+            slip_layer=None if bending.slip_layer_mm is None else 1e-3 * bending.slip_layer_mm,
+            mean_stress=None
+            if bending.mean_stress is None
+            else (bending.mean_stress.constant, bending.mean_stress.slope),
+        ),
+    )

@@ -1,0 +1,22 @@
+"""Material cards name their source, and mistakes in them are told by key."""
+
+import pytest
+
+from facegear.config.material_card import CARDS, material_card
+from facegear.errors import ConfigErrors
+
+
+@pytest.mark.parametrize("path", sorted(CARDS.glob("*.yaml")), ids=lambda path: path.stem)
+def test_every_card_of_the_package_is_readable_and_names_its_source(path):
+    card = material_card(path)
+    assert card.source
+    assert card.pitting is not None
+    assert card.bending is not None
+    assert card.bending.life.factor(3e6) == pytest.approx(1.0)
+
+
+def test_life_factors_that_do_not_fall_are_refused_with_their_key(tmp_path):
+    text = (CARDS / "case_carburised_din3990_11.yaml").read_text().replace("[3.0e+6, 1.0]", "[3.0e+6, 2.6]")
+    (tmp_path / "card.yaml").write_text(text)
+    with pytest.raises(ConfigErrors, match=r"bending\.life"):
+        material_card(tmp_path / "card.yaml")
