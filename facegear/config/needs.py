@@ -34,6 +34,7 @@ NEEDS: dict[str, Slice] = {
         "speed_rpm": "dynamics.speed_rpm",
         "options": "load_sharing",
     },
+    "ratings": {**_MACHINE, "speed_rpm": "dynamics.speed_rpm"},
     "machine": _MACHINE,
     "load_sharing_reference": {
         **_MACHINE,

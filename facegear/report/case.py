@@ -7,12 +7,14 @@ from typing import Any
 import pandas as pd
 
 from facegear.report.contents import CAPTIONS, CHAPTERS
+from facegear.report.machine import machine_chapter
 from facegear.report.page import Chapter, Picture, Table, render
 
-KINEMATICS = {
-    "geometric": "geometric, lever arms and signs as gears have them",
-    "printed": "printed, equation (13) of the source paper to the letter (docs/theory.md)",
-}
+BY_TORQUE = (
+    "Over a pitch, for each torque on the pinion. Peak-to-peak transmission error (ste): largest less "
+    "smallest of the positions solved, so never more than the true value; half: of every second one. "
+    "Path radius: where the contact forces have their centroid, distance from the gear's axis"
+)
 LARGEST_SVG = 1_500_000
 """Bytes; a larger drawing is shown as its png."""
 
@@ -22,15 +24,17 @@ def case_report(
     tables: Mapping[str, pd.DataFrame],
     pictures: Mapping[str, Path],
     manifests: Sequence[Mapping[str, Any]],
+    pair: Mapping[str, Any] | None = None,
 ) -> str:
     """The HTML page of a case.
 
-    values: its config; tables by file name without ending; pictures (svg) by name; manifests of all rules.
+    values: its config; tables by file name without ending; pictures (svg) by name; manifests of all rules;
+    pair: the record of the tooth geometry, if it was computed.
     Chapters without a picture or table are left out.
     """
     known = {name for _, _, names in CHAPTERS for name in names}
     others = [name for name in pictures if name not in known]
-    chapters = [Chapter("The machine as configured", _machine_text(values), (), _machine_tables(values))]
+    chapters = [machine_chapter(values, tables, pair)]
     for title, text, names in CHAPTERS:
         shown = [*names, *(others if title == "Load sharing" else ())]
         found = [_picture(pictures[name], name) for name in shown if name in pictures]
@@ -51,62 +55,9 @@ def _picture(path: Path, name: str) -> Picture:
     return Picture(shown, CAPTIONS.get(name, name.replace("fig", "Figure ").replace("_", " ")))
 
 
-def _machine_text(values: Mapping[str, Any]) -> str:
-    pair, transmission = values["tooth_pair"], values["transmission"]
-    teeth = f"module {pair['module_mm']:g} mm, pressure angle {pair['pressure_angle_deg']:g} deg. "
-    if transmission is None:
-        return (
-            f"A pinion of {pair['pinion_teeth']} teeth and a face gear of {pair['face_gear_teeth']} teeth, "
-            f"{teeth}Mesh stiffness: {values['mesh_stiffness']['source']}. No transmission is configured: "
-            "teeth, contact and stiffness alone."
-        )
-    torque = transmission["torque"]
-    return (
-        f"{_count(transmission['pinions'], 'pinion')} of {pair['pinion_teeth']} teeth and "
-        f"{_count(transmission['face_gears'], 'face gear')} of {pair['face_gear_teeth']} teeth, {teeth}"
-        f"Each input brings {torque['per_input_n_m']:g} N m unless the table gives its own torque; "
-        f"{100 * torque['tail_share']:.3g} % of the power leaves at the tail. "
-        f"Mesh stiffness: {values['mesh_stiffness']['source']}. "
-        f"Mesh kinematics: {KINEMATICS[transmission['mesh_kinematics']]}."
-    )
-
-
-def _count(items: Sequence[Any], name: str) -> str:
-    return f"{len(items)} {name}" + ("" if len(items) == 1 else "s")
-
-
-def _machine_tables(values: Mapping[str, Any]) -> list[Table]:
-    sections = ("tooth_pair", "transmission", "mesh", "contact", "mesh_stiffness", "dynamics")
-    rows = [
-        row for section in sections for row in _flat(section, values[section]) if row[1] not in (None, "")
-    ]
-    keys = pd.DataFrame([row for row in rows if ".pinions" not in row[0]], columns=["key", "value"])
-    config = Table("Config, defaults included", keys, folded=True)
-    if values["transmission"] is None:
-        return [config]
-    pinions = pd.DataFrame(values["transmission"]["pinions"]).dropna(axis=1, how="all")
-    return [Table("Pinions", pinions), config]
-
-
-def _flat(key: str, value: Any) -> list[tuple[str, Any]]:
-    if isinstance(value, Mapping):
-        return [row for name, inside in value.items() for row in _flat(f"{key}.{name}", inside)]
-    if isinstance(value, list):
-        return [(key, ", ".join(str(item) for item in value))]
-    return [(key, value)]
-
-
 def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
-    if title == "Loaded contact" and "ltca" in tables:
-        kept = {
-            "k_average_n_per_m": ["mean", "min", "max"],
-            "k_local_n_per_m": ["mean"],
-            "pairs_in_contact": ["min", "max"],
-            "peak_pressure_mpa": ["max"],
-        }
-        found = tables["ltca"].groupby("torque_n_m").agg(kept)
-        found.columns = [" ".join(column) for column in found.columns]
-        return [Table("Over a pitch, for each torque on the pinion", found.reset_index(), 4)]
+    if title == "Loaded contact" and "by_torque" in tables:
+        return [Table(BY_TORQUE, tables["by_torque"], 4)]
     if title == "Mesh stiffness" and "harmonics" in tables:
         return [Table("Harmonics kept", tables["harmonics"].iloc[:, :4], 5)]
     if title == "Modes" and "frequencies" in tables:

@@ -10,7 +10,18 @@ import pandas as pd
 from facegear.io import pages
 
 TEMPLATE = Path(__file__).with_name("page.html.j2")
-UNITS = {"n_per_m": "N/m", "n_m": "N m", "rpm": "rpm", "mpa": "MPa", "hz": "Hz", "um": "um", "mm": "mm"}
+UNITS = {
+    "n_per_m": "N/m",
+    "n_m": "N m",
+    "rpm": "rpm",
+    "mpa": "MPa",
+    "hz": "Hz",
+    "um": "um",
+    "mm": "mm",
+    "kw": "kW",
+    "percent": "%",
+    "n": "N",
+}
 """Units that end a column's name, as they are written."""
 
 

@@ -19,12 +19,20 @@ class ContactResult(Result):
 
     FILES: ClassVar = {
         "ltca": Kept("contact/ltca.csv", LTCA_COLUMNS),
+        "by_torque": Kept("contact/by_torque.csv", ("torque_n_m", "ste_peak_to_peak_um", "path_radius_mm")),
         "pressure": Kept("contact/pressure.npz", PRESSURE_ARRAYS),
     }
 
     def table(self) -> pd.DataFrame:
         """One row a torque and position; columns in docs/stages.md."""
         return self.content["ltca"].copy()
+
+    def by_torque(self) -> pd.DataFrame:
+        """One row a torque: stiffness, peak-to-peak transmission error, pressure, radius of the contact path.
+
+        Peak-to-peak values are those of the positions solved, and so a lower bound of the true ones.
+        """
+        return self.content["by_torque"].copy()
 
     def pressures(self) -> "xr.Dataset":
         """Pressure (MPa) over torque, position, pair of teeth, and the nodes of the pinion's flank.
@@ -45,7 +53,7 @@ class ContactResult(Result):
         return contact_pattern(self.content["pressure"])
 
     def save(self, folder: str | Path) -> list[Path]:
-        """Write `contact/ltca.csv`, `contact/pressure.npz` and, for ParaView, `contact/pressure.vtu`."""
+        """Write `ltca.csv`, `by_torque.csv`, `pressure.npz` and, for ParaView, `pressure.vtu`."""
         from facegear.contact.tables import pressure_surface
         from facegear.io.meshes import write_vtu
 

@@ -9,6 +9,7 @@ from facegear.config.tooth_pair import pair
 from facegear.contact.gear_flank import GearFlank
 from facegear.contact.ltca import even_positions, loaded_contact
 from facegear.contact.pair import contact_model
+from facegear.contact.summary import by_torque
 from facegear.contact.tables import ltca_table, pressure_arrays
 from facegear.stages.outcome import Outcome
 
@@ -16,13 +17,14 @@ from facegear.stages.outcome import Outcome
 def contact(
     pinion: GearFlank, face_gear: GearFlank, tooth_pair: Mapping[str, Any], contact: Mapping[str, Any]
 ) -> Outcome:
-    """`ltca` (table) and `pressure` (arrays). Raises NotConverged naming position and torque."""
+    """`ltca`, `by_torque` (tables), `pressure` (arrays). Raises NotConverged naming position and torque."""
     plan = contact_plan(parse(Contact, contact))
     model = contact_model(pair(tooth_pair).design, pinion, face_gear)
     found = loaded_contact(model, even_positions(plan.positions).tolist(), plan.torques, plan.options)
     table = ltca_table(found)
     worst, mean = table["kkt_residual"].max(), table["k_average_n_per_m"].mean()
+    pressure = pressure_arrays(found, model.flanks.pinion)
     return Outcome(
-        {"ltca": table, "pressure": pressure_arrays(found, model.flanks.pinion)},
+        {"ltca": table, "by_torque": by_torque(table, pressure), "pressure": pressure},
         f"{len(table)} contacts, mean stiffness {mean:.4g} N/m, worst KKT residual {worst:.0e}",
     )

@@ -5,6 +5,7 @@ rule contact:
         face_gear="results/{case}/compliance/face_gear.npz",
     output:
         ltca="results/{case}/contact/ltca.csv",
+        by_torque="results/{case}/contact/by_torque.csv",
         pressure="results/{case}/contact/pressure.npz",
         vtu="results/{case}/contact/pressure.vtu",
         manifest="results/{case}/contact/contact.provenance.json",

@@ -13,6 +13,19 @@ rule modal:
         "../scripts/modal.py"
 
 
+rule ratings:
+    "Gear ratio, speeds, torques and powers"
+    input:
+        harmonics=shared("stiffness", "harmonics"),
+    output:
+        ratings="results/{case}/machine/ratings.csv",
+        bodies="results/{case}/machine/bodies.csv",
+        meshes="results/{case}/machine/meshes.csv",
+        manifest="results/{case}/machine/machine.provenance.json",
+    script:
+        "../scripts/ratings.py"
+
+
 rule modal_figure:
     "Typical mode shapes"
     input:

@@ -6,6 +6,7 @@ rule report:
     input:
         tables=report_tables,
         pictures=report_pictures,
+        pair=report_pair,
     output:
         html="results/{case}/report.html",
         manifest="results/{case}/report.provenance.json",

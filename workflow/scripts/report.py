@@ -12,7 +12,8 @@ with stage(snakemake) as run:
     pictures = {Path(path).stem: Path(path) for path in snakemake.input.pictures}
     case = Path(snakemake.output.html).parent
     manifests = [documents.read(path, ["rule"]) for path in sorted(case.glob("*/*.provenance.json"))]
-    page = case_report(snakemake.params.values, found, pictures, manifests)
+    pair = documents.read(snakemake.input.pair[0], ["radii_mm"]) if snakemake.input.pair else None
+    page = case_report(snakemake.params.values, found, pictures, manifests, pair)
     with atomic_path(snakemake.output.html) as temporary:
         temporary.write_text(page, encoding="utf-8")
     run.summary(f"{len(pictures)} pictures, {len(found)} tables, {len(page) / 1e6:.1f} MB")

@@ -11,7 +11,7 @@ def stages(case):
         found += [rules.contact, rules.contact_figures, rules.load_dependence, rules.load_dependence_figure]
     if CASES[case]["transmission"] is None:
         return found
-    found += [rules.modal, rules.modal_figure]
+    found += [rules.ratings, rules.modal, rules.modal_figure]
     found += [rules.dynamics_response, rules.dynamics_sweep, rules.dynamics_figures]
     if SHARING_KINDS:
         found += [rules.load_sharing, rules.load_sharing_summary, rules.load_sharing_reference]
@@ -30,11 +30,19 @@ def report_tables(wildcards):
     """Tables that the report of a case reads."""
     tables = [rules.stiffness.output.harmonics]
     if CASES[wildcards.case]["transmission"]:
+        tables += [rules.ratings.output[name] for name in ("ratings", "bodies", "meshes")]
         tables += [rules.modal.output.frequencies, rules.dynamics_sweep.output.jumps]
     tables += [rules.load_sharing_summary.output.summary] if SHARING_KINDS else []
-    tables += [rules.contact.output.ltca] if has_contact(wildcards.case) else []
+    tables += (
+        [rules.contact.output.ltca, rules.contact.output.by_torque] if has_contact(wildcards.case) else []
+    )
     tables += [rules.scorecard.output.csv] if REPRODUCTION else []
     return [path.format(case=wildcards.case) for path in tables]
+
+
+def report_pair(wildcards):
+    """Record of the tooth geometry, where a case computes it."""
+    return [shared("geometry", "pair")(wildcards)] if has_contact(wildcards.case) else []
 
 
 def report_pictures(wildcards):

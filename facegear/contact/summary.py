@@ -1,0 +1,71 @@
+"""What the contact table says of each torque: stiffness, peak-to-peak transmission error, pressure, path."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+COLUMNS = (
+    "torque_n_m",
+    "positions",
+    "k_average_mean_n_per_m",
+    "k_average_min_n_per_m",
+    "k_average_max_n_per_m",
+    "k_local_mean_n_per_m",
+    "ste_peak_to_peak_um",
+    "ste_peak_to_peak_half_um",
+    "unloaded_peak_to_peak_um",
+    "pairs_min",
+    "pairs_max",
+    "peak_pressure_mpa",
+)
+
+
+def by_torque(ltca: pd.DataFrame, pressure: Mapping[str, NDArray]) -> pd.DataFrame:
+    """`contact_summary` and, as its last column, `path_radii`."""
+    return contact_summary(ltca).merge(path_radii(pressure), on="torque_n_m", how="left")
+
+
+def contact_summary(ltca: pd.DataFrame) -> pd.DataFrame:
+    """One row a torque, columns as COLUMNS, of a contact table.
+
+    A peak-to-peak value is the largest less the smallest of the `positions` solved in a pitch, so it cannot
+    exceed the true one; `ste_peak_to_peak_half_um` takes every second position alone and shows how much
+    their number matters (NaN for an odd number, whose every second position is not spread evenly).
+    """
+    rows = [_row(float(torque), found) for torque, found in ltca.groupby("torque_n_m", sort=True)]
+    return pd.DataFrame(rows, columns=list(COLUMNS))
+
+
+def _row(torque: float, found: pd.DataFrame) -> tuple[float, ...]:
+    at = found.sort_values("position")
+    error, average = at["ste_um"].to_numpy(), at["k_average_n_per_m"]
+    return (
+        torque,
+        len(at),
+        average.mean(),
+        average.min(),
+        average.max(),
+        at["k_local_n_per_m"].mean(),
+        float(np.ptp(error)),
+        float(np.ptp(error[::2])) if len(at) % 2 == 0 else np.nan,
+        float(np.ptp(at["unloaded_ste_um"])),
+        int(at["pairs_in_contact"].min()),
+        int(at["pairs_in_contact"].max()),
+        at["peak_pressure_mpa"].max(),
+    )
+
+
+def path_radii(pressure: Mapping[str, NDArray]) -> pd.DataFrame:
+    """Columns torque_n_m and path_radius_mm: the centroid of all contact forces over a pitch.
+
+    `pressure`: arrays as PRESSURE_ARRAYS. The radius is the distance along the pinion's axis from the axis of
+    the face gear, as assembled without errors.
+    """
+    radius, force = 1e3 * pressure["point_m"][:, 1][pressure["node"]], pressure["force_n"]
+    rows = []
+    for torque in np.unique(pressure["torque_n_m"]):
+        on = pressure["torque_n_m"] == torque
+        rows.append((float(torque), float(np.average(radius[on], weights=force[on]))))
+    return pd.DataFrame(rows, columns=["torque_n_m", "path_radius_mm"])

@@ -1,0 +1,25 @@
+"""Gear ratio, speeds, torques and powers of the machine at its nominal speed."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+
+from facegear.config.machines import wired_machine
+from facegear.stages.outcome import Outcome
+from facegear.transmission.ratings import body_table, mesh_table, number_table, rated
+
+
+def ratings(
+    harmonics: pd.DataFrame, transmission: Mapping[str, Any], teeth: Mapping[str, Any], speed_rpm: float
+) -> Outcome:
+    """`ratings`, `bodies` and `meshes` (tables). Raises NotConverged."""
+    machine = wired_machine(transmission, teeth, harmonics)
+    found = rated(machine, speed_rpm)
+    content = {
+        "ratings": number_table(found),
+        "bodies": body_table(machine, speed_rpm),
+        "meshes": mesh_table(machine, speed_rpm),
+    }
+    told = f"ratio {found.ratio:.4f}, mesh frequency {found.mesh_frequency:.1f} Hz"
+    return Outcome(content, f"{told}, {1e-3 * found.power_in:.4g} kW in, {1e-3 * found.power_out:.4g} kW out")

@@ -1,0 +1,117 @@
+"""Gear ratio, speeds, mesh frequency, torques and powers of a machine, from statics and rigid rotation."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from facegear.transmission.layout import Layout
+from facegear.transmission.machine import Machine, mesh_frequency
+from facegear.transmission.statics import static_equilibrium
+
+ROUNDING = 1e-9
+"""Share of the largest mesh force."""
+
+
+@dataclass(frozen=True)
+class Ratings:
+    """What a machine does at one pinion speed.
+
+    ratio: gear teeth over pinion teeth, the pinion's speed over the gear's. Speeds in rpm, mesh_frequency in
+    Hz, powers in W: `power_in` is brought by the bodies that drive, `power_out` taken by those that are
+    driven; they differ by rounding alone unless the lever arms are not those of the teeth.
+    """
+
+    ratio: float
+    pinion_speed: float
+    gear_speed: float
+    mesh_frequency: float
+    power_in: float
+    power_out: float
+
+    @property
+    def imbalance(self) -> float:
+        """Power in less power out over the larger of the two; 0 for a machine without load."""
+        largest = max(self.power_in, self.power_out)
+        return (self.power_in - self.power_out) / largest if largest > 0.0 else 0.0
+
+
+def rated(machine: Machine, speed_rpm: float) -> Ratings:
+    """Key numbers at a pinion speed (rpm)."""
+    layout = machine.layout
+    powers = body_powers(machine, speed_rpm)
+    return Ratings(
+        ratio=layout.gear_teeth / layout.pinion_teeth,
+        pinion_speed=speed_rpm,
+        gear_speed=speed_rpm * layout.pinion_teeth / layout.gear_teeth,
+        mesh_frequency=mesh_frequency(layout, speed_rpm),
+        power_in=float(powers[powers > 0.0].sum()),
+        power_out=float(-powers[powers < 0.0].sum()),
+    )
+
+
+def number_table(found: Ratings) -> pd.DataFrame:
+    """Columns quantity (unit at its end) and value."""
+    rows = {
+        "gear_ratio": found.ratio,
+        "pinion_speed_rpm": found.pinion_speed,
+        "gear_speed_rpm": found.gear_speed,
+        "mesh_frequency_hz": found.mesh_frequency,
+        "power_in_kw": 1e-3 * found.power_in,
+        "power_out_kw": 1e-3 * found.power_out,
+        "power_imbalance": found.imbalance,
+    }
+    return pd.DataFrame(list(rows.items()), columns=["quantity", "value"])
+
+
+def body_powers(machine: Machine, speed_rpm: float) -> NDArray[np.float64]:
+    """Power that each body's torque brings in (positive) or takes out, shape (bodies,), W.
+
+    All bodies turn in step as their teeth say, whatever the lever arms of the model.
+    """
+    return machine.torques * _body_speeds(machine.layout, speed_rpm) * np.pi / 30.0
+
+
+def body_table(machine: Machine, speed_rpm: float) -> pd.DataFrame:
+    """One row a body: role, torque_n_m, speed_rpm, power_kw (positive: brought in), share of the power in."""
+    layout = machine.layout
+    powers = body_powers(machine, speed_rpm)
+    brought = powers[powers > 0.0].sum()
+    return pd.DataFrame(
+        {
+            "body": layout.body_names,
+            "role": [pinion.role.value for pinion in layout.pinions] + ["face gear"] * len(layout.gears),
+            "torque_n_m": machine.torques,
+            "speed_rpm": _body_speeds(layout, speed_rpm),
+            "power_kw": 1e-3 * powers,
+            "share_of_input_percent": 100.0 * powers / brought if brought > 0.0 else np.zeros_like(powers),
+        }
+    )
+
+
+def mesh_table(machine: Machine, speed_rpm: float) -> pd.DataFrame:
+    """One row a mesh at rest with mean stiffness: flank, force, torque on the pinion, power to the gear.
+
+    The force acts along the line of action, negative on the back flank. A force below ROUNDING of the
+    largest counts as none, its mesh as open. Raises NotConverged.
+    """
+    layout = machine.layout
+    found = static_equilibrium(machine).forces
+    forces = np.where(np.abs(found) > ROUNDING * np.abs(found).max(), found, 0.0)
+    torque = forces * layout.pinion_arm
+    flank = np.select([forces > 0.0, forces < 0.0], ["drive", "back"], "open")
+    return pd.DataFrame(
+        {
+            "mesh": layout.mesh_names,
+            "flank": flank,
+            "force_n": forces,
+            "pinion_torque_n_m": torque,
+            "power_kw": 1e-3 * torque * speed_rpm * np.pi / 30.0,
+        }
+    )
+
+
+def _body_speeds(layout: Layout, speed_rpm: float) -> NDArray[np.float64]:
+    gear = speed_rpm * layout.pinion_teeth / layout.gear_teeth
+    return np.concatenate([np.full(len(layout.pinions), speed_rpm), np.full(len(layout.gears), gear)])

@@ -1,0 +1,45 @@
+"""The chapter on the machine says what an engineer looks for first."""
+
+import pandas as pd
+import pytest
+
+import facegear
+from facegear.config.needs import stage_needs
+from facegear.report.machine import key_numbers, machine_chapter
+from facegear.stages.ratings import ratings
+
+
+@pytest.fixture(scope="module")
+def example():
+    values = facegear.example().values
+    harmonics = pd.DataFrame({"order": [0, 1], "a_n_per_m": [0.0, 0.0], "b_n_per_m": [4.1e8, 1e7]})
+    return values, ratings(harmonics, **stage_needs("ratings", values)).content
+
+
+def test_key_numbers_are_ratio_torque_speed_frequency_and_power(example):
+    numbers = key_numbers(example[1], None).set_index("quantity")
+    assert numbers.loc["Gear ratio (gear teeth over pinion teeth)", "value"] == f"{143 / 23:.5g}"
+    assert numbers.loc["Mesh frequency", "value"] == "2875"
+    torque = float(numbers.loc["Torque of the output gear", "value"])
+    speed = float(numbers.loc["Speed of the output gear", "value"])
+    bodies = example[1]["bodies"].set_index("body")["power_kw"]
+    assert torque * speed * 3.14159265 / 30e3 == pytest.approx(-bodies["upper face gear"], rel=1e-4)
+
+
+def test_a_machine_in_balance_says_so_and_one_out_of_balance_by_how_much(example):
+    values, tables = example
+    assert "Power in equals power out" in machine_chapter(values, tables, None).text
+    off = tables["ratings"].assign(value=lambda t: t["value"].mask(t["quantity"] == "power_imbalance", -0.07))
+    assert "-7 % of the larger" in machine_chapter(values, {**tables, "ratings": off}, None).text
+
+
+def test_the_shift_of_the_contact_path_is_a_number():
+    pair = {
+        "radii_mm": {"gear_inner": 190.0, "gear_outer": 212.0, "gear_contact_path_nominal": 202.0},
+        "limits_mm": {"inner_undercut": 188.0, "outer_pointing": 230.0},
+        "unloaded": {"drive": {"path_pinion_y_mm": [198.0, 198.2]}},
+        "contact_ratio": 1.5,
+        "backlash_um": {"smallest": 100.0},
+    }
+    numbers = key_numbers({}, pair).set_index("quantity")["value"]
+    assert numbers["Shift of the unloaded contact path, positive outwards"] == "-3.9"
