@@ -7,7 +7,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.branches.locate import Special, locate, reversal
+from facegear.dynamics.branches.locate import Kind, Special, locate, reversal
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point, at_parameter, solve_point
 from facegear.errors import NotConverged
@@ -23,6 +23,12 @@ SURE = 1e-3
 """A change of parity over a longer step is tried again: the other leg of a fold may have been met."""
 
 
+JUNCTION = 1e-6
+"""Logarithms of the parameter that differ by less belong to one junction of branches."""
+PASSED = (Kind.GRAZE, Kind.AFLOAT)
+"""Special points at which a motion neither ends nor changes its stability."""
+
+
 class End(StrEnum):
     """Why a branch ends."""
 
@@ -33,6 +39,7 @@ class End(StrEnum):
     POLE = "amplitude without bound"
     POINTS = "number of points"
     STEP = "step too short"
+    SPECIAL = "first special point"
 
 
 @dataclass(frozen=True)
@@ -40,6 +47,7 @@ class Run:
     """How a branch is followed: range of the parameter, steps in weighted states and logarithms.
 
     first, least, largest: step lengths. points: most points in each direction. bound: largest weighted state.
+    to_first: end at the first special point that is no graze.
     """
 
     low: float
@@ -49,6 +57,7 @@ class Run:
     largest: float = 0.3
     points: int = 4000
     bound: float = 1e4
+    to_first: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +130,7 @@ def _track(flow: PeriodMap, start: Point, run: Run, progress: Callable[[Point], 
         here = track.points[-1]
         try:
             there, end = _next(flow, here, before, step, run, images if len(track.points) > 2 else [])
-            found, meeting = _between_points(flow, here, there)
+            found, last, junction = _between_points(flow, here, there)
         except (NotConverged, np.linalg.LinAlgError) as error:
             step *= 0.4
             if step < run.least:
@@ -130,12 +139,15 @@ def _track(flow: PeriodMap, start: Point, run: Run, progress: Callable[[Point], 
             continue
         base = len(track.points) - 1
         track.specials += [replace(one, after=base + one.after) for one in found]
-        track.points += meeting or [there]
+        track.points += last or [there]
         progress(there)
-        if meeting:
-            end = End.DOUBLING
+        if junction is not None:
+            end = junction
         if end is not None:
             track.end = end
+            return track
+        if run.to_first and any(one.kind not in PASSED for one in found):
+            track.end = End.SPECIAL
             return track
         before = here
         step = min(step * _growth(here, there), run.largest)
@@ -241,12 +253,25 @@ def _closing(flow: PeriodMap, images: list[Array], here: Point, there: Point) ->
     return None
 
 
-def _between_points(flow: PeriodMap, here: Point, there: Point) -> tuple[list[Special], list[Point]]:
-    """Special points on the way, and the last two points if the branch meets its own image there."""
+def _between_points(
+    flow: PeriodMap, here: Point, there: Point
+) -> tuple[list[Special], list[Point], End | None]:
+    """Special points on the way; where the branch runs into its own image, its last points and that end."""
     meeting = reversal(flow, here, there)
-    if meeting is None:
-        return locate(flow, here, there), []
-    return locate(flow, here, meeting[0]), list(meeting)
+    if meeting is not None:
+        found = [one for one in locate(flow, here, meeting[0]) if not _at(one, meeting[1])]
+        return found, list(meeting), End.DOUBLING
+    found = locate(flow, here, there)
+    for one in found:
+        if one.kind is Kind.BRANCH and any(o.kind is Kind.FOLD and _at(o, one.point) for o in found):
+            before = [other for other in found if other.after < one.after and not _at(other, one.point)]
+            return before, [one.point], End.SYMMETRY
+    return found, [], None
+
+
+def _at(special: Special, point: Point) -> bool:
+    """Whether a fold or branch point is only how a branch that ends at `point` looks there."""
+    return special.kind in (Kind.FOLD, Kind.BRANCH) and abs(special.point.u - point.u) < JUNCTION
 
 
 def branch_at(flow: PeriodMap, z: Array, value: float, run: Run) -> Branch:

@@ -112,7 +112,7 @@ def all_branches(
                 child = leave(parent.flow, special, run)
             except NotConverged:
                 continue
-            if child.ends[1] in (End.DOUBLING, End.SYMMETRY):
+            if child.ends[1] is End.DOUBLING or child.ends[1] is End.SYMMETRY:
                 met.append((period, child.points[-1].u))
             branches.append(child)
             todo.append(child)

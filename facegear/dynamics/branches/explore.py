@@ -1,0 +1,161 @@
+"""Which motions exist at a speed: random starts, the share of them that ends on each, and what is new."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.branches.continuation import Branch
+from facegear.dynamics.branches.period_map import PeriodMap
+from facegear.dynamics.branches.points import Point, at_parameter
+from facegear.dynamics.motion import Motion, Settings
+from facegear.dynamics.steady_state.simulate import steady_state
+from facegear.errors import NotConverged
+
+Array = NDArray[np.float64]
+NEAR = 1e-4
+"""A run this close to a stable orbit, in length scales, that comes closer still, ends there."""
+SAME = 1e-4
+"""States of one orbit differ by less, in length scales."""
+ALONG = 0.2
+"""Greatest distance from a branch's chord at which Newton's method is tried from it."""
+BLOCK = 8
+PATIENCE = 40
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """A motion that starts ended on. z (2 n,): a weighted state of it; point: the orbit if it is periodic.
+
+    count of the starts, share and its standard error sqrt(p (1 - p) / N).
+    """
+
+    label: str
+    period: int
+    z: Array
+    point: Point | None
+    count: int
+    share: float
+    error: float
+
+
+def explore(
+    flow: PeriodMap,
+    value: float,
+    starts: Array,
+    settings: Settings,
+    step: Callable[[], None] = lambda: None,
+) -> list[Found]:
+    """The motions at a parameter on which starts (S, 2 n), weighted states, end; the most frequent first.
+
+    Motions that are not periodic count by their class.
+    """
+    u = float(np.log(value))
+    found: list[Found] = []
+    for start in starts:
+        z, index = _run(flow, u, start, found)
+        if index is None:
+            one = _settled(flow, u, z, settings)
+            index = next((i for i, other in enumerate(found) if _same(flow, u, one, other)), len(found))
+            if index == len(found):
+                found.append(one)
+        found[index] = replace(found[index], count=found[index].count + 1)
+        step()
+    found.sort(key=lambda one: -one.count)
+    shares = [one.count / len(starts) for one in found]
+    return [
+        replace(one, share=p, error=float(np.sqrt(p * (1.0 - p) / len(starts))))
+        for one, p in zip(found, shares, strict=True)
+    ]
+
+
+def box(flow: PeriodMap, value: float, centre: Array, half: Array, count: int, seed: int) -> Array:
+    """Weighted states (count, 2 n) spread evenly over centre +- half, each (2 n,)."""
+    size = flow.packed(float(np.log(value))).n
+    random = np.random.default_rng(seed)
+    return centre + half * random.uniform(-1.0, 1.0, size=(count, 2 * size))
+
+
+def _run(flow: PeriodMap, u: float, z: Array, found: list[Found]) -> tuple[Array, int | None]:
+    """Run until a known stable orbit is reached, or patience ends."""
+    block = flow.over(BLOCK)
+    known = [
+        (i, image)
+        for i, one in enumerate(found)
+        if one.point is not None and BLOCK % one.period == 0
+        for image in flow.over(one.period).images(one.z, u)
+    ]
+    before = np.full(len(known), np.inf)
+    for _ in range(PATIENCE if known else 1):
+        z = z + block.gap(z, u)
+        distance = np.array([np.abs(z - image).max() for _, image in known])
+        close = np.flatnonzero((distance < NEAR) & (distance < before))
+        if close.size:
+            return z, known[close[0]][0]
+        before = distance
+    return z, None
+
+
+def _settled(flow: PeriodMap, u: float, z: Array, settings: Settings) -> Found:
+    system, frequency = flow.family.at(float(np.exp(u)))
+    response = steady_state(system, frequency, settings, flow.state(z, u))
+    there = flow.weighted(response.state, u)
+    point = None
+    if response.motion is Motion.PERIODIC:
+        try:
+            point = at_parameter(flow.over(response.period), there, u)
+            there = point.z
+        except NotConverged:
+            point = None
+    return Found(response.label, response.period, there, point, 0, 0.0, 0.0)
+
+
+def _same(flow: PeriodMap, u: float, one: Found, other: Found) -> bool:
+    if one.label != other.label:
+        return False
+    if one.point is None or other.point is None:
+        return one.point is other.point
+    return any(np.abs(one.z - z).max() < SAME for z in flow.over(other.period).images(other.z, u))
+
+
+def crossings(branch: Branch, value: float) -> list[Point]:
+    """The branch's orbits at a parameter, one for each passage."""
+    u, found = float(np.log(value)), []
+    for here, there in pairwise(branch.points):
+        if not min(here.u, there.u) <= u <= max(here.u, there.u) or here.u == there.u:
+            continue
+        share = (u - here.u) / (there.u - here.u)
+        guess = here.x + share * (there.x - here.x)
+        reach = np.linalg.norm(there.x - here.x)
+        try:
+            point = at_parameter(branch.flow, guess[:-1], u)
+        except (NotConverged, np.linalg.LinAlgError):
+            continue
+        if np.linalg.norm(point.x - guess) < 0.5 * reach:
+            found.append(point)
+    return found
+
+
+def lies_on(branch: Branch, z: Array, period: int, value: float) -> bool:
+    """Whether the orbit of a period through the weighted state z at a parameter belongs to a branch."""
+    if branch.flow.period != period:
+        return False
+    u = float(np.log(value))
+    images = branch.flow.images(z, u)
+    for here, there in pairwise(branch.points):
+        if not min(here.u, there.u) <= u <= max(here.u, there.u):
+            continue
+        share = (u - here.u) / (there.u - here.u) if there.u != here.u else 0.0
+        guess = (here.x + share * (there.x - here.x))[:-1]
+        nearest = min(np.abs(guess - image).max() for image in images)
+        if nearest > ALONG * max(1.0, np.linalg.norm(there.x - here.x)):
+            continue
+        try:
+            point = at_parameter(branch.flow, guess, u)
+        except (NotConverged, np.linalg.LinAlgError):
+            continue
+        if min(np.abs(point.z - image).max() for image in images) < SAME:
+            return True
+    return False
