@@ -7,6 +7,7 @@ include: "workflow/rules/stiffness.smk"
 include: "workflow/rules/modal.smk"
 include: "workflow/rules/dynamics.smk"
 include: "workflow/rules/dynamics_benchmarks.smk"
+include: "workflow/rules/branches.smk"
 include: "workflow/rules/contact_benchmarks.smk"
 include: "workflow/rules/load_sharing.smk"
 include: "workflow/rules/scorecard.smk"
@@ -62,6 +63,7 @@ localrules:
     load_dependence_figure,
     modal_figure,
     dynamics_figures,
+    branches_figures,
     load_sharing_summary,
     load_sharing_figures,
     identify_roads,

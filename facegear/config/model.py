@@ -5,6 +5,7 @@ from typing import Any
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
+from facegear.config.branches import Branches
 from facegear.config.buildable import require_buildable
 from facegear.config.checks import (
     check_load,
@@ -40,6 +41,7 @@ class Config(Section):
         None, description="null: geometry, contact and stiffness only; modes, dynamics, load sharing need it"
     )
     dynamics: Dynamics = Dynamics()
+    branches: Branches | None = Field(None, description="continuation of periodic motions; null: not done")
     load_sharing: LoadSharing = LoadSharing()
     studies: tuple[Study, ...] = ()
     reproduction: str | None = Field(
@@ -50,6 +52,9 @@ class Config(Section):
 
     @model_validator(mode="after")
     def _buildable(self) -> "Config":
+        if self.branches and not self.branches.from_rpm <= self.dynamics.speed_rpm <= self.branches.to_rpm:
+            allowed = f"from branches.from_rpm = {self.branches.from_rpm:g} to {self.branches.to_rpm:g}"
+            refuse("dynamics.speed_rpm", self.dynamics.speed_rpm, allowed)
         try:
             self._check_pair()
             self._check_machine()

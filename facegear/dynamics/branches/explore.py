@@ -124,7 +124,7 @@ def crossings(branch: Branch, value: float) -> list[Point]:
     """The branch's orbits at a parameter, one for each passage."""
     u, found = float(np.log(value)), []
     for here, there in pairwise(branch.points):
-        if not min(here.u, there.u) <= u <= max(here.u, there.u) or here.u == there.u:
+        if not min(here.u, there.u) <= u < max(here.u, there.u):
             continue
         share = (u - here.u) / (there.u - here.u)
         guess = here.x + share * (there.x - here.x)

@@ -16,6 +16,10 @@ LEVEL = 1e-7
 SHORTEST = 1e-10
 """Part of a step down to which points that lie together are told apart."""
 EXACT = 1e-13
+LOOKS = 2
+"""How often a stretch is halved on the mere chance that a multiplier crosses the unit circle twice in it."""
+CLOSE = 0.02
+"""A multiplier this close to the unit circle at an end of a stretch may cross it inside."""
 
 
 class Kind(StrEnum):
@@ -106,16 +110,25 @@ def locate(flow: PeriodMap, here: Point, there: Point) -> list[Special]:
     return sorted(_between(segment, 0.0, 1.0), key=lambda special: special.after)
 
 
-def _between(segment: _Segment, low: float, high: float) -> list[Special]:
+def _between(segment: _Segment, low: float, high: float, depth: int = 0) -> list[Special]:
     first, second = segment.at(low), segment.at(high)
     if first.linear.afloat.shape != second.linear.afloat.shape:
         return _loosening(segment, low, high)
     events, mixed = _events(segment.flow, first, second)
-    if mixed and high - low > SHORTEST:
+    if (mixed and high - low > SHORTEST) or (depth < LOOKS and _may_hide(first, second)):
         middle = 0.5 * (low + high)
         segment.at(middle)
-        return _between(segment, low, middle) + _between(segment, middle, high)
+        return _between(segment, low, middle, depth + 1) + _between(segment, middle, high, depth + 1)
     return [_refined(segment, low, high, event) for event in events]
+
+
+def _may_hide(first: Point, second: Point) -> bool:
+    """Whether a multiplier may have left the unit circle and come back between two points."""
+    if first.outside != second.outside or first.multipliers.size != second.multipliers.size:
+        return False
+    one, two = np.abs(first.multipliers), np.abs(second.multipliers)
+    closest = np.minimum(np.abs(one - 1.0), np.abs(two - 1.0))
+    return bool((closest < np.clip(np.abs(one - two), CLOSE, 0.2)).any())
 
 
 def _events(flow: PeriodMap, first: Point, second: Point) -> tuple[list[_Event], bool]:

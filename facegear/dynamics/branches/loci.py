@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.branches.continuation import End
 from facegear.dynamics.branches.family import Plane
-from facegear.dynamics.branches.locate import Kind, Special, bracketed_root
+from facegear.dynamics.branches.locate import Kind, bracketed_root
 from facegear.dynamics.branches.period_map import Linear, PeriodMap
 from facegear.dynamics.branches.points import SINGULAR
 from facegear.errors import NotConverged
@@ -105,6 +105,8 @@ class _Borders:
     def test(self, matrix: Array) -> float:
         """Zero where the matrix is singular: g of [matrix, left; right^T, 0] [w; g] = [0; 1]."""
         size = len(matrix)
+        if self.left.size != size:
+            raise NotConverged("branches", "a locus", "a body comes loose or is caught")
         whole = np.zeros((size + 1, size + 1))
         whole[:size, :size], whole[:size, size], whole[size, :size] = matrix, self.left, self.right
         right = np.zeros(size + 1)
@@ -115,25 +117,27 @@ class _Borders:
 def follow_locus(
     plane: Plane,
     second: float,
-    special: Special,
+    kind: Kind,
+    found: Array,
     flow: PeriodMap,
     run: LocusRun,
     progress: Callable[[LocusPoint], None] = lambda point: None,
 ) -> Locus:
     """The locus through a fold or period doubling found on `flow` at the plane's second parameter.
 
-    It is followed both ways. Raises NotConverged if the special point is not found again in the plane.
+    found (2 n + 1,): x of the special point. The locus is followed both ways. Raises NotConverged if the
+    special point is not found again in the plane.
     """
-    problem = _Problem(special.kind, plane, flow)
-    x = np.append(special.point.x, np.log(second))
+    problem = _Problem(kind, plane, flow)
+    x = np.append(found, np.log(second))
     row = np.zeros(x.size)
     row[-1] = 1.0
-    borders = _borders(problem.matrix(special.point.linear), None)
+    borders = _borders(problem.matrix(problem.at(x[-1]).linear(x[:-2], x[-2])), None)
     start = _solve(problem, x, row, borders, None, row)
     sides = [_track(problem, side, run, progress) for side in (_turned(start), start)]
     (behind, corners, end), (ahead, more, other) = sides
     points = [_turned(point) for point in behind[:0:-1]] + ahead
-    return Locus(special.kind, plane, points, corners[::-1] + more, (end, other))
+    return Locus(kind, plane, points, corners[::-1] + more, (end, other))
 
 
 def _turned(point: LocusPoint) -> LocusPoint:

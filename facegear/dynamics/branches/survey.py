@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Survey:
-    """branches in the order in which they were found. unfinished: why branches of motions were not followed."""
+    """branches in the order in which they were found. unfinished: why some motions were not followed."""
 
     branches: list[Branch]
     unfinished: list[str]
@@ -55,7 +55,8 @@ def survey(
 ) -> Survey:
     """The branch through `start`, all that leave it, and those through orbits found elsewhere.
 
-    found: a parameter and the motions there. At most `most` branches.
+    found: a parameter and the motions there, of any period; what leaves a branch is followed up to
+    longest_period. At most `most` branches.
     """
 
     def tell(branch: Branch) -> None:
@@ -63,23 +64,22 @@ def survey(
             f"{len(branch.points)} points of period {branch.flow.period}, {len(branch.specials)} special"
         )
 
-    main = follow(flow, start, run)
-    tell(main)
-    branches = all_branches(main, run, longest_period, most, tell)
+    branches = [follow(flow, start, run)]
+    tell(branches[0])
     unfinished: list[str] = []
     for value, motions in found:
         for motion in motions:
-            if motion.point is None or motion.period > longest_period or len(branches) >= most:
+            if motion.point is None or len(branches) >= most:
                 continue
             if any(lies_on(branch, motion.point.z, motion.period, value) for branch in branches):
                 continue
             try:
-                new = follow(flow.over(motion.period), motion.point, run)
+                branches.append(follow(flow.over(motion.period), motion.point, run))
             except NotConverged as error:
                 unfinished.append(str(error))
                 continue
-            tell(new)
-            branches += all_branches(new, run, longest_period, most - len(branches), tell)
+            tell(branches[-1])
+    branches = all_branches(branches, run, longest_period, most, tell)
     return Survey(branches, unfinished)
 
 

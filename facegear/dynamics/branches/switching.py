@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.branches.continuation import Branch, End, Run, follow
+from facegear.dynamics.branches.explore import lies_on
 from facegear.dynamics.branches.locate import Kind, Special
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point, at_parameter, solve_point
@@ -88,17 +89,17 @@ def _aside(flow: PeriodMap, special: Special, direction: Array) -> Point:
 
 
 def all_branches(
-    first: Branch,
+    branches: list[Branch],
     run: Run,
     longest_period: int,
     most: int,
     progress: Callable[[Branch], None] = lambda branch: None,
 ) -> list[Branch]:
-    """The first branch and all that leave it and each other by period doubling or broken symmetry.
+    """The given branches and all that leave them and each other by period doubling or broken symmetry.
 
     A special point that a branch already begins or ends at is not left again. At most `most` branches.
     """
-    branches, todo = [first], [first]
+    branches, todo = list(branches), list(branches)
     met: list[tuple[int, float]] = []
     while todo and len(branches) < most:
         parent = todo.pop(0)
@@ -114,6 +115,9 @@ def all_branches(
                 continue
             if child.ends[1] is End.DOUBLING or child.ends[1] is End.SYMMETRY:
                 met.append((period, child.points[-1].u))
+            middle = child.points[len(child.points) // 2]
+            if any(lies_on(other, middle.z, period, middle.value) for other in branches):
+                continue
             branches.append(child)
             todo.append(child)
             progress(child)

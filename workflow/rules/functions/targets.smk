@@ -13,6 +13,8 @@ def stages(case):
         return found
     found += [rules.ratings, rules.modal, rules.modal_figure]
     found += [rules.dynamics_response, rules.dynamics_sweep, rules.dynamics_figures]
+    if CASES[case]["branches"]:
+        found += [rules.branches, rules.branches_loci, rules.branches_figures]
     if SHARING_KINDS:
         found += [rules.load_sharing, rules.load_sharing_summary, rules.load_sharing_reference]
         found += [rules.load_sharing_figures] if STUDIES else []

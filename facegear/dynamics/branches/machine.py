@@ -1,0 +1,143 @@
+"""The branches of a machine over its speed: what the stage asks for, from a plan."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.branches.continuation import Branch, Run
+from facegear.dynamics.branches.explore import Found, box, explore
+from facegear.dynamics.branches.family import machine_plane, speed_family
+from facegear.dynamics.branches.locate import Kind
+from facegear.dynamics.branches.loci import Locus, LocusRun, follow_locus
+from facegear.dynamics.branches.period_map import PeriodMap
+from facegear.dynamics.branches.points import Point, at_parameter
+from facegear.dynamics.branches.survey import Loss, Survey, losses, survey
+from facegear.dynamics.motion import Settings
+from facegear.dynamics.steady_state.simulate import Model, simulate, static_start
+from facegear.errors import NotConverged
+
+Array = NDArray[np.float64]
+TRIES = 12
+SETTLING = Settings(tolerance=1e-6, settle=256, window=64, extensions=1)
+
+
+@dataclass(frozen=True)
+class BranchPlan:
+    """Speeds in rpm, lengths in m. spread: half width of the box of random starts as mesh deflection."""
+
+    from_rpm: float
+    to_rpm: float
+    nominal_rpm: float
+    tolerance: float
+    longest_period: int
+    most_branches: int
+    speeds_rpm: tuple[float, ...]
+    starts: int
+    spread: float
+    seed: int
+    parameters: tuple[str, ...]
+    factors: tuple[float, float]
+    nearest: int
+
+    @property
+    def run(self) -> Run:
+        """Range of the branches."""
+        return Run(self.from_rpm, self.to_rpm)
+
+
+def machine_flow(model: Model, plan: BranchPlan) -> PeriodMap:
+    """The map of a machine over its speed in rpm."""
+    return PeriodMap(speed_family(model), 1, plan.tolerance)
+
+
+def first_orbit(model: Model, plan: BranchPlan) -> Point:
+    """A motion of period one: at the nominal speed, else at the first of TRIES speeds where a run settles on
+    one. Raises NotConverged if there is none.
+    """
+    flow = machine_flow(model, plan)
+    speeds = [plan.nominal_rpm, *np.geomspace(plan.from_rpm, plan.to_rpm, TRIES + 1)[1:]]
+    for speed in speeds:
+        if not plan.from_rpm <= speed <= plan.to_rpm:
+            continue
+        response = simulate(model, speed, SETTLING)
+        if response.period != 1:
+            continue
+        u = float(np.log(speed))
+        try:
+            return at_parameter(flow, flow.weighted(response.state, u), u)
+        except NotConverged:
+            continue
+    tried = ", ".join(f"{speed:.6g}" for speed in speeds)
+    raise NotConverged("branches", f"{tried} rpm", "no run from rest settles on a motion of period one")
+
+
+def random_starts(
+    model: Model, plan: BranchPlan, speed_rpm: float, step: Callable[[], None] = lambda: None
+) -> list[Found]:
+    """Motions on which random starts around rest end at a speed."""
+    flow = machine_flow(model, plan)
+    rest = flow.weighted(static_start(model), float(np.log(speed_rpm)))
+    half = np.full(rest.size, plan.spread / model.system.scale)
+    starts = box(flow, speed_rpm, rest, half, plan.starts, plan.seed)
+    return explore(flow, speed_rpm, starts, SETTLING, step)
+
+
+def machine_survey(
+    model: Model,
+    plan: BranchPlan,
+    found: Sequence[tuple[float, Sequence[Found]]],
+    progress: Callable[[str], None] = lambda text: None,
+) -> Survey:
+    """All branches of a machine: of period one, those that leave it, and those of motions found elsewhere."""
+    start = first_orbit(model, plan)
+    flow = machine_flow(model, plan)
+    return survey(flow, start, plan.run, found, plan.longest_period, plan.most_branches, progress)
+
+
+def margins(model: Model, plan: BranchPlan, branches: Sequence[Branch]) -> list[Loss]:
+    """How far every stable motion at the nominal speed is from its end, in speed and in torque."""
+    speed = plan.nominal_rpm
+    across = machine_plane(model, "torque").across(speed)
+    families = [
+        (speed_family(model), speed, plan.run),
+        (across, 1.0, Run(*plan.factors)),
+    ]
+    return losses(branches, families, speed)
+
+
+def machine_loci(
+    model: Model, plan: BranchPlan, specials: Sequence[tuple[PeriodMap, Kind, Array]]
+) -> list[Locus]:
+    """Loci of the folds and period doublings nearest to the nominal speed, for each parameter of the plan.
+
+    specials: map, kind and x of each. Those that a locus found before passes already are left out.
+    """
+    nearest = sorted(specials, key=lambda one: abs(np.exp(one[2][-1]) - plan.nominal_rpm))[: plan.nearest]
+    loci: list[Locus] = []
+    for parameter in plan.parameters:
+        plane = machine_plane(model, parameter)
+        run = LocusRun((plan.from_rpm, plan.factors[0]), (plan.to_rpm, plan.factors[1]))
+        passed: list[tuple[int, float]] = []
+        for flow, kind, x in nearest:
+            if any(flow.period == period and abs(x[-1] - u) < 1e-4 for period, u in passed):
+                continue
+            try:
+                locus = follow_locus(plane, 1.0, kind, x, flow, run)
+            except NotConverged:
+                continue
+            loci.append(locus)
+            passed += [(flow.period, u) for u in _at_one(locus)]
+    return loci
+
+
+def _at_one(locus: Locus) -> list[float]:
+    """Logarithms of the speed at which a locus passes the machine as it is."""
+    x = np.array([point.x[-2:] for point in locus.points])
+    found = []
+    for a, b in pairwise(x):
+        if a[1] * b[1] <= 0.0 and a[1] != b[1]:
+            found.append(float(a[0] + (b[0] - a[0]) * a[1] / (a[1] - b[1])))
+    return found

@@ -1,0 +1,49 @@
+"""One line about what the branches stage found, and its progress."""
+
+import sys
+from collections import Counter
+from collections.abc import Sequence
+
+import pandas as pd
+
+from facegear.dynamics.branches.loci import Locus
+from facegear.dynamics.branches.survey import Loss, Survey
+
+
+def tell(text: str) -> None:
+    """Print a line of progress to standard error, which a stage copies to its log."""
+    print(f"branches: {text}", file=sys.stderr, flush=True)
+
+
+def survey_summary(
+    survey: Survey,
+    ranges: Sequence[tuple[float, float, tuple[int, ...]]],
+    losses: Sequence[Loss],
+    jumps: pd.DataFrame,
+) -> str:
+    """Branches, special points, coexistence, margins and named jumps."""
+    kinds = Counter(s.kind.value for branch in survey.branches for s in branch.specials)
+    points = sum(len(branch.points) for branch in survey.branches)
+    parts = [
+        f"{len(survey.branches)} branches of {points} points",
+        ", ".join(f"{count} {kind}" for kind, count in kinds.most_common()),
+        f"{len(ranges)} speed ranges with several stable motions",
+        f"{(jumps['kind'] != '').sum()} of {len(jumps)} jumps named",
+    ]
+    parts += [_margin(loss) for loss in losses]
+    return "; ".join(part for part in parts if part)
+
+
+def _margin(loss: Loss) -> str:
+    if loss.special is None:
+        return f"branch {loss.branch}: no loss up to {loss.parameter} = {loss.reached:.6g}"
+    kind = loss.special.kind.value
+    return f"branch {loss.branch}: {kind} at {loss.parameter} = {loss.reached:.6g}, from {loss.start:.6g}"
+
+
+def loci_summary(loci: Sequence[Locus]) -> str:
+    """Loci, their points and corners."""
+    corners = Counter(corner.value for locus in loci for corner, _ in locus.corners)
+    points = sum(len(locus.points) for locus in loci)
+    told = ", ".join(f"{count} {corner}" for corner, count in corners.items())
+    return f"{len(loci)} loci of {points} points; {told or 'no corners'}"

@@ -1,0 +1,142 @@
+"""Random starts, what continues from them, and a machine with ten meshes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from lumped_machines import make_machine
+from oscillators import backlash_oscillator
+
+from facegear.dynamics.branches.continuation import End, Run, branch_at, follow
+from facegear.dynamics.branches.explore import box, crossings, explore, lies_on
+from facegear.dynamics.branches.family import Family, machine_plane, speed_family
+from facegear.dynamics.branches.locate import Kind
+from facegear.dynamics.branches.period_map import PeriodMap
+from facegear.dynamics.branches.points import at_parameter
+from facegear.dynamics.branches.survey import losses, passed_by, several, survey
+from facegear.dynamics.motion import Settings
+from facegear.dynamics.steady_state.simulate import build_model, simulate
+from facegear.errors import NotConverged
+
+QUICK = Settings(tolerance=1e-8, settle=256, window=32, extensions=0, longest_period=4)
+WIDE = Run(0.25, 2.6)
+
+
+def oscillator(amplitude=0.05):
+    family = Family("W", lambda speed: (backlash_oscillator(speed, amplitude=amplitude), speed))
+    return PeriodMap(family, 1, 1e-10)
+
+
+@pytest.fixture(scope="module")
+def starts():
+    flow = oscillator()
+    half = np.array([1.0, 0.5 / 0.75])
+    return flow, explore(flow, 0.75, box(flow, 0.75, np.array([1.0, 0.0]), half, 800, 1), QUICK)
+
+
+def test_share_of_starts_on_the_lower_orbit_of_oracle_a(starts):
+    """0.3651 +- 0.0005 of the box x0 in 0 .. 2, v0 in -0.5 .. 0.5."""
+    _, found = starts
+    assert len(found) == 2
+    lower = next(one for one in found if one.z[0] > 1.0)
+    assert lower.error == pytest.approx(np.sqrt(lower.share * (1 - lower.share) / 800))
+    assert abs(lower.share - 0.3651) < 3.0 * lower.error
+
+
+def test_every_orbit_that_starts_find_lies_on_the_one_branch(starts):
+    flow, found = starts
+    start = at_parameter(flow, np.array([1.1, 0.0]), np.log(0.3))
+    seen = survey(flow, start, WIDE, [(0.75, found)], 2, 9)
+    assert len(seen.branches) == 1
+    ((low, high, numbers),) = several(seen.branches)
+    assert (low, high) == pytest.approx((0.708031618722, 0.828463984388), rel=1e-8)
+    assert numbers == (0, 0)
+    assert len(crossings(seen.branches[0], 0.75)) == 3
+
+
+def test_an_orbit_off_the_branch_does_not_lie_on_it():
+    flow = oscillator(0.1)
+    branch = branch_at(flow, np.array([1.1, 0.0]), 0.3, Run(0.25, 1.5))
+    point = crossings(branch, 1.3)[0]
+    assert lies_on(branch, point.z, 1, 1.3)
+    assert not lies_on(branch, point.z + 0.05, 1, 1.3)
+    assert not lies_on(branch, point.z, 2, 1.3)
+
+
+def test_margins_are_the_distances_to_the_folds():
+    flow = oscillator()
+    branch = branch_at(flow, np.array([1.1, 0.0]), 0.3, WIDE)
+    found = losses([branch], [(flow.family, 0.75, WIDE)], 0.75)
+    reached = {(loss.direction, round(loss.reached, 6)) for loss in found if loss.special}
+    assert reached == {("up", 0.828464), ("down", 0.708032)}
+    assert all(loss.special is None or loss.special.kind is Kind.FOLD for loss in found)
+
+
+def test_a_jump_is_named_by_the_fold_in_its_bracket():
+    branch = branch_at(oscillator(), np.array([1.1, 0.0]), 0.3, WIDE)
+    ((number, special),) = passed_by([branch], 0.828, 0.829, 1, 0.0)
+    assert (number, special.kind) == (0, Kind.FOLD)
+    assert passed_by([branch], 0.77, 0.78, 1, 0.0) == []
+    assert passed_by([branch], 0.828, 0.829, 2, 0.0) == []
+
+
+@pytest.fixture(scope="module")
+def machine_branch():
+    model = build_model(make_machine(torque=1300.0))
+    flow = PeriodMap(speed_family(model), 1, 1e-9)
+    response = simulate(model, 5000.0, Settings(tolerance=1e-7))
+    start = at_parameter(flow, flow.weighted(response.state, np.log(5000.0)), np.log(5000.0))
+    return model, flow, follow(flow, start, Run(5000.0, 9000.0))
+
+
+def test_matrix_of_the_map_agrees_with_differences_of_the_map(machine_branch):
+    """The determinant alone is blind to errors of stiffness (Liouville)."""
+    _, flow, branch = machine_branch
+    point = branch.points[len(branch.points) // 2]
+    step = 1e-5
+    for column in range(0, point.z.size, 5):
+        shift = np.zeros(point.z.size)
+        shift[column] = step
+        slope = (flow.gap(point.z + shift, point.u) - flow.gap(point.z - shift, point.u)) / (2 * step)
+        slope[column] += 1.0
+        assert slope == pytest.approx(point.linear.matrix[:, column], abs=2e-4)
+
+
+def test_machine_has_the_same_points_with_other_steps_and_from_the_other_end(machine_branch):
+    _, flow, branch = machine_branch
+    last = branch.points[-1]
+    back = follow(
+        flow, replace(last, tangent=-last.tangent, parity=-last.parity), Run(5000.0, 9000.0, largest=0.1)
+    )
+    assert branch.ends == (End.LIMIT, End.LIMIT)
+    first = sorted((s.kind.value, s.point.value) for s in branch.specials)
+    second = sorted((s.kind.value, s.point.value) for s in back.specials)
+    assert [kind for kind, _ in first] == [kind for kind, _ in second]
+    assert [speed for _, speed in first] == pytest.approx([speed for _, speed in second], rel=1e-7)
+    assert branch.of(Kind.FOLD)
+
+
+def test_scaling_torque_backlash_and_error_together_moves_no_special_point(machine_branch):
+    model, flow, branch = machine_branch
+    system = model.system
+    scaled = replace(
+        system, load=2 * system.load, lower=2 * system.lower, upper=2 * system.upper, error=2 * system.error
+    )
+    family = Family("speed_rpm", lambda speed: (scaled, speed_family(model).at(speed)[1]))
+    twice = replace(flow, family=family, memory={})
+    fold = branch.of(Kind.FOLD)[0]
+    point = at_parameter(twice, 2 * crossings(branch, fold.point.value * 0.999)[0].z, fold.point.u - 1e-3)
+    again = follow(twice, point, Run(fold.point.value * 0.998, fold.point.value * 1.001), both=False)
+    assert again.of(Kind.FOLD)[0].point.value == pytest.approx(fold.point.value, rel=1e-7)
+
+
+def test_torque_that_ends_a_motion_is_found_in_the_plane(machine_branch):
+    model, flow, branch = machine_branch
+    fold = branch.of(Kind.FOLD)[0]
+    plane = machine_plane(model, "torque")
+    across = replace(flow, family=plane.across(fold.point.value))
+    with pytest.raises(NotConverged):
+        # At the fold itself the orbit does not go on at a fixed speed: M - I is singular.
+        at_parameter(across, fold.point.z + 0.5, 0.0)
+    near = crossings(branch, fold.point.value * 0.9995)
+    assert near
