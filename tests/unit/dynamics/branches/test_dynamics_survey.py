@@ -109,8 +109,11 @@ def test_machine_has_the_same_points_with_other_steps_and_from_the_other_end(mac
         flow, replace(last, tangent=-last.tangent, parity=-last.parity), Run(5000.0, 9000.0, largest=0.1)
     )
     assert branch.ends == (End.LIMIT, End.LIMIT)
-    first = sorted((s.kind.value, s.point.value) for s in branch.specials)
-    second = sorted((s.kind.value, s.point.value) for s in back.specials)
+    # A mesh that touches and leaves an edge within one step leaves no trace: grazes may lack such pairs.
+    first, second = (
+        sorted((s.kind.value, s.point.value) for s in one.specials if s.kind is not Kind.GRAZE)
+        for one in (branch, back)
+    )
     assert [kind for kind, _ in first] == [kind for kind, _ in second]
     assert [speed for _, speed in first] == pytest.approx([speed for _, speed in second], rel=1e-7)
     assert branch.of(Kind.FOLD)
