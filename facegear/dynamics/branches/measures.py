@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point
-from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import mesh_response
 from facegear.dynamics.steady_state.statistics import moments
@@ -20,7 +19,8 @@ SAMPLES = 64
 @dataclass(frozen=True, eq=False)
 class Measures:
     """Of each mesh, shape (meshes,): RMS without and with mean, least and largest deflection in m, largest
-    elastic force of 64 samples a mesh period in N. shares (3, meshes): time open, on drive and back flank.
+    elastic force of at least 64 samples a mesh period in N. shares (3, meshes): time open, on drive and back
+    flank.
     """
 
     ac_rms: Array
@@ -39,9 +39,9 @@ def measures(flow: PeriodMap, point: Point) -> Measures:
     wide = np.zeros((2, packed.omega_squared.size))
     wide[0, : packed.n], wide[1, : packed.n] = state.displacement, state.velocity / frequency
     settings = Settings(tolerance=flow.tolerance, samples=SAMPLES)
-    window = run_window(packed, flow.work(packed), wide[0], wide[1], flow.period, settings)
-    deflections, forces = mesh_response(system, window.samples, SAMPLES)
-    found = moments(deflections, SAMPLES, True)
+    window = run_window(packed, flow.work(packed), wide, flow.period, settings)
+    deflections, forces = mesh_response(system, window.samples, window.per_period)
+    found = moments(deflections, window.per_period, True)
     maxima = [values[0] if values.size else -np.inf for values, _ in point.turning]
     minima = [values[0] if values.size else np.inf for _, values in point.turning]
     return Measures(
@@ -50,5 +50,5 @@ def measures(flow: PeriodMap, point: Point) -> Measures:
         least=np.minimum(packed.scale * np.array(minima), found.least),
         most=np.maximum(packed.scale * np.array(maxima), found.most),
         peak_force=np.abs(forces).max(axis=0),
-        shares=window.shares / (TAU * flow.period),
+        shares=window.shares,
     )
