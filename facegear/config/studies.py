@@ -49,5 +49,6 @@ class Study(Section):
     title: str = Field(min_length=1, max_length=120)
     axes: tuple[Axis, ...] = Field(min_length=1, max_length=2)
     figures: tuple[int, int] | None = Field(
-        None, description="numbers of the load-sharing figures: inputs, idlers; null: named after the study"
+        None,
+        description="numbers of these figures in the publication that the config reproduces: inputs, idlers",
     )

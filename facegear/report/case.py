@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from facegear.report.contents import CAPTIONS, CHAPTERS
+from facegear.report.contents import CHAPTERS, caption_of
 from facegear.report.machine import machine_chapter
 from facegear.report.page import Chapter, Picture, Table, render
 
@@ -37,7 +37,7 @@ def case_report(
     chapters = [machine_chapter(values, tables, pair)]
     for title, text, names in CHAPTERS:
         shown = [*names, *(others if title == "Load sharing" else ())]
-        found = [_picture(pictures[name], name) for name in shown if name in pictures]
+        found = [_picture(pictures[name], caption_of(name, values)) for name in shown if name in pictures]
         own = _tables(title, tables)
         if found or own:
             chapters.append(Chapter(title, text, found, own))
@@ -49,10 +49,10 @@ def case_report(
     return render(f"facegear: {values['case']}", lead, chapters)
 
 
-def _picture(path: Path, name: str) -> Picture:
+def _picture(path: Path, caption: str) -> Picture:
     smaller = path.with_suffix(".png")
     shown = smaller if path.stat().st_size > LARGEST_SVG and smaller.exists() else path
-    return Picture(shown, CAPTIONS.get(name, name.replace("fig", "Figure ").replace("_", " ")))
+    return Picture(shown, caption)
 
 
 def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:

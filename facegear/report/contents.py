@@ -1,24 +1,53 @@
 """Captions of the figures and texts of the chapters of a case's report."""
 
+from collections.abc import Mapping
+from typing import Any
+
 CAPTIONS = {
     "tooth_pair": "Pinion and face gear in mesh; both tooth sections with limits; contact path, separation.",
     "contact_curves": "Static transmission error, stiffness and load share against position.",
     "contact_pattern": "Largest pressure each point of the flank sees over a pitch.",
-    "fig07": "Figure 7: mesh stiffness over a mesh period, and its Fourier series.",
-    "fig08": "Figure 8: amplitudes of the mesh stiffness harmonics.",
+    "mesh_stiffness": "Mesh stiffness over a mesh period, and its Fourier series.",
+    "stiffness_harmonics": "Amplitudes of the mesh stiffness harmonics.",
     "stiffness_load": "Mean stiffness and its harmonics against load.",
-    "fig06": "Figure 6: typical mode shapes.",
+    "mode_shapes": "Typical mode shapes.",
     "campbell": "Campbell diagram: natural frequencies against multiples of the mesh frequency.",
-    "fig09": "Figure 9: mesh deflections at the nominal speed and their spectra.",
-    "fig10": "Figure 10: RMS of the pinions' translations over speed.",
-    "fig11": "Figure 11: RMS of the face gears' translations over speed.",
-    "fig12": "Figure 12: RMS of the mesh deflections, speed rising and falling; ticks mark jumps.",
+    "mesh_deflections": "Mesh deflections at the nominal speed and their spectra.",
+    "pinion_sweep": "RMS of the pinions' translations over speed.",
+    "gear_sweep": "RMS of the face gears' translations over speed.",
+    "mesh_sweep": "RMS of the mesh deflections, speed rising and falling; ticks mark jumps.",
     "waterfall": "Spectra over speed.",
     "layout": "The machine to scale: directions of rotation, mean forces of meshes and on bearings, at rest.",
     "hunting": "Share of each mesh in its group's load over the hunting cycle, quasi-static.",
     "bearing_stiffness": "K_gamma against the bearing stiffness of inputs and idlers, both kinematics.",
     "sensitivity": "Change of K_gamma per micrometre of each error, largest first.",
 }
+
+PAPER_NUMBERS = {
+    "mode_shapes": 6,
+    "mesh_stiffness": 7,
+    "stiffness_harmonics": 8,
+    "mesh_deflections": 9,
+    "pinion_sweep": 10,
+    "gear_sweep": 11,
+    "mesh_sweep": 12,
+}
+"""Which figure of the reproduced paper a figure stands for; those of studies stand in the config."""
+
+KINDS = {"inputs": "input pinions", "idlers": "idler and tail pinions", "drivers": "pinions on one gear"}
+"""Kinds of load-sharing groups in words."""
+
+
+def caption_of(name: str, values: Mapping[str, Any]) -> str:
+    """Caption of a figure by content; the paper's number goes before it where the config reproduces one."""
+    words, number = CAPTIONS.get(name, name.replace("_", " ").capitalize()), PAPER_NUMBERS.get(name)
+    for study in values["studies"]:
+        for i, kind in enumerate(KINDS):
+            if name == f"study_{study['name']}_{kind}":
+                words = f"{study['title'] or study['name']}: load sharing of the {KINDS[kind]}."
+                number = study["figures"][i] if study["figures"] and i < 2 else None
+    return words if number is None or not values["reproduction"] else f"Figure {number} of the paper: {words}"
+
 
 CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("Tooth pair", "Generated surfaces, limits and the unloaded pair.", ("tooth_pair",)),
@@ -29,17 +58,21 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "line of action.",
         ("contact_pattern", "contact_curves"),
     ),
-    ("Mesh stiffness", "What the lumped model is given.", ("fig07", "fig08", "stiffness_load")),
+    (
+        "Mesh stiffness",
+        "What the lumped model is given.",
+        ("mesh_stiffness", "stiffness_harmonics", "stiffness_load"),
+    ),
     (
         "Modes",
         "Constant mean stiffness, no backlash. T translation, R rotation, A axial.",
-        ("fig06", "campbell"),
+        ("mode_shapes", "campbell"),
     ),
     (
         "Nominal response and speed sweeps",
         "The state is carried over from speed to speed, upwards and downwards. A class of motion stands "
         "beside every number; where the motion is not periodic the number is an average.",
-        ("fig09", "fig10", "fig11", "fig12", "waterfall"),
+        ("mesh_deflections", "pinion_sweep", "gear_sweep", "mesh_sweep", "waterfall"),
     ),
     (
         "Load sharing at rest",

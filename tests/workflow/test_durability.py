@@ -139,7 +139,7 @@ def test_a_full_disk_stops_the_stage_in_one_line_and_nothing_half_written_stays(
     [
         ("stiffness/harmonics.csv", "dynamics/response.csv"),
         ("contact/ltca.csv", "stiffness/tvms.csv"),
-        ("modal/shapes.csv", "figures/fig06.svg"),
+        ("modal/shapes.csv", "figures/mode_shapes.svg"),
     ],
 )
 def test_an_altered_intermediate_is_named_with_the_command_that_rebuilds_it(quick, tmp_path, file, target):

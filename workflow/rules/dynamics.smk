@@ -56,7 +56,15 @@ rule dynamics_figures:
         waterfall=rules.dynamics_sweep.output.waterfall,
         frequencies=rules.modal.output.frequencies,
     output:
-        **pictures("dynamics", "fig09", "fig10", "fig11", "fig12", "campbell", "waterfall"),
+        **pictures(
+            "dynamics",
+            "mesh_deflections",
+            "pinion_sweep",
+            "gear_sweep",
+            "mesh_sweep",
+            "campbell",
+            "waterfall",
+        ),
         manifest="results/{case}/figures/dynamics_figures.provenance.json",
     params:
         **values_of(

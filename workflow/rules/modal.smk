@@ -32,7 +32,7 @@ rule modal_figure:
         frequencies=rules.modal.output.frequencies,
         shapes=rules.modal.output.shapes,
     output:
-        **pictures("modes", "fig06"),
-        manifest="results/{case}/figures/fig06.provenance.json",
+        **pictures("modes", "mode_shapes"),
+        manifest="results/{case}/figures/mode_shapes.provenance.json",
     script:
         "../scripts/modal_figure.py"

@@ -31,7 +31,7 @@ rule stiffness_figures:
         tvms=shared("stiffness", "tvms"),
         spectrum=shared("stiffness", "spectrum"),
     output:
-        **pictures("mesh_stiffness", "fig07", "fig08"),
+        **pictures("mesh_stiffness", "mesh_stiffness", "stiffness_harmonics"),
         manifest="results/{case}/figures/stiffness.provenance.json",
     script:
         "../scripts/stiffness_figures.py"

@@ -1,4 +1,4 @@
-"""Figures 9 to 12, Campbell diagram and waterfall, from tables alone."""
+"""Deflections, sweeps, Campbell diagram and waterfall, from tables alone."""
 
 from facegear.io import arrays, tables
 from facegear.plots.dynamics import SWEEP_FIGURES, drawn_machine

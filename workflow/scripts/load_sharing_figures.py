@@ -1,4 +1,4 @@
-"""Figures 13 to 20: load sharing over one mesh cycle for every study."""
+"""Load sharing over one mesh cycle for every study."""
 
 from facegear.io import tables
 from facegear.load_sharing.tables import SUMMARY_COLUMNS

@@ -1,4 +1,4 @@
-"""Figure 6: typical mode shapes."""
+"""Typical mode shapes."""
 
 from facegear.io import tables
 from facegear.plots.modal import mode_shapes

@@ -1,4 +1,4 @@
-"""Figures 7 and 8: mesh stiffness over a period and its harmonics."""
+"""Mesh stiffness over a period and its harmonics."""
 
 from facegear.io import tables
 from facegear.plots.stiffness import harmonic_amplitudes, stiffness_curve

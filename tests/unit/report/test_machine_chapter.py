@@ -5,6 +5,7 @@ import pytest
 
 import facegear
 from facegear.config.needs import stage_needs
+from facegear.report.contents import caption_of
 from facegear.report.machine import key_numbers, machine_chapter
 from facegear.stages.ratings import ratings
 
@@ -43,3 +44,12 @@ def test_the_shift_of_the_contact_path_is_a_number():
     }
     numbers = key_numbers({}, pair).set_index("quantity")["value"]
     assert numbers["Shift of the unloaded contact path, positive outwards"] == "-3.9"
+
+
+def test_figures_are_named_by_content_and_numbered_after_the_paper_only_where_it_is_reproduced():
+    study = {"name": "backlash", "title": "Effect of backlash", "figures": [13, 14]}
+    own, paper = ({"studies": [study], "reproduction": given} for given in (None, {"claims": "x"}))
+    assert caption_of("study_backlash_idlers", paper).startswith("Figure 14 of the paper: Effect of backlash")
+    assert caption_of("mesh_sweep", paper).startswith("Figure 12 of the paper")
+    for name in ("study_backlash_idlers", "mesh_sweep", "campbell"):
+        assert "Figure" not in caption_of(name, own)

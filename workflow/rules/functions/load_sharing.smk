@@ -10,14 +10,7 @@ STUDY_POINTS = list(STUDY_LABELS)
 SHARING_KINDS = group_kinds(CONFIG) if CONFIG["transmission"] else []
 
 
-def sharing_figures(study):
-    """Names of a study's figures, one for each kind of group."""
-    if study.figures and len(SHARING_KINDS) == 2:
-        return [f"fig{number:02d}" for number in study.figures]
-    return [f"study_{study.name}_{kind}" for kind in SHARING_KINDS]
-
-
-SHARING_FIGURES = [name for study in STUDIES for name in sharing_figures(study)]
+SHARING_FIGURES = [f"study_{study.name}_{kind}" for study in STUDIES for kind in SHARING_KINDS]
 
 
 def sharing_files(output, nominal=False):
