@@ -11,7 +11,7 @@ rule branches_starts:
     wildcard_constraints:
         number=r"\d+",
     params:
-        **machine_values(speed_rpm="dynamics.speed_rpm", branches="branches"),
+        **branch_values(),
     script:
         "../scripts/branches_starts.py"
 
@@ -34,11 +34,7 @@ rule branches:
         orbits="results/{case}/branches/special_points.npz",
         manifest="results/{case}/branches/branches.provenance.json",
     params:
-        **machine_values(
-            speed_rpm="dynamics.speed_rpm",
-            jump_resolution_rpm="dynamics.sweep.jump_resolution_rpm",
-            branches="branches",
-        ),
+        **branch_values(jump_resolution_rpm="dynamics.sweep.jump_resolution_rpm"),
     script:
         "../scripts/branches.py"
 
@@ -52,7 +48,7 @@ rule branches_loci:
         loci="results/{case}/branches/loci.csv",
         manifest="results/{case}/branches/loci.provenance.json",
     params:
-        **machine_values(speed_rpm="dynamics.speed_rpm", branches="branches"),
+        **branch_values(),
     script:
         "../scripts/branches_loci.py"
 

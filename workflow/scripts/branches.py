@@ -2,7 +2,7 @@
 
 from facegear.config.base import parse
 from facegear.config.branches import Branches, branch_plan
-from facegear.config.transmission import Transmission, machine, tooth_numbers
+from facegear.config.machines import wired_machine
 from facegear.dynamics.branches import tables as written
 from facegear.dynamics.branches.machine import machine_flow, machine_survey, margins
 from facegear.dynamics.branches.stored import SHAPES, from_arrays, special_arrays
@@ -11,16 +11,14 @@ from facegear.dynamics.branches.survey import several
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.io import arrays, tables
 from facegear.provenance.stage import stage
-from facegear.stiffness.tables import HARMONICS_COLUMNS, series_of
+from facegear.stiffness.tables import HARMONICS_COLUMNS
 
 JUMPS = ["direction", "speed_before_rpm", "speed_after_rpm", "class_before"]
 
 with stage(snakemake) as run:
     params, output = snakemake.params, snakemake.output
-    stiffness = series_of(tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS))
-    model = build_model(
-        machine(parse(Transmission, params.section), tooth_numbers(**params.teeth), stiffness)
-    )
+    harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
+    model = build_model(wired_machine(params.transmission, params.teeth, harmonics))
     plan, layout = branch_plan(parse(Branches, params.branches), params.speed_rpm), model.machine.layout
     jumps = tables.read(snakemake.input.jumps, JUMPS, allow_empty=True)
     flow = machine_flow(model, plan)
