@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.config.transmission import ToothNumbers, Transmission, imperfections, layout
+from facegear.config.transmission import ToothNumbers, Transmission, half_backlash, imperfections, layout
 from facegear.errors import ConfigError
 from facegear.transmission.assembly import Assembly, assembly, squeezed
 from facegear.transmission.layout import Layout
@@ -22,7 +22,7 @@ def require_buildable(section: Transmission, teeth: ToothNumbers) -> None:
                 where = f"transmission.{key}.{name}.cumulative_pitch_um"
                 raise ConfigError(where, f"{told} values", f"one for each of the {count} teeth")
     flaws = imperfections(section, shape)
-    half = np.full(len(shape.meshes), 0.5e-6 * section.backlash_um)
+    half = np.full(len(shape.meshes), half_backlash(section))
     half = np.where(np.isnan(flaws.half_backlash), half, flaws.half_backlash)
     _require_assembly(section, shape, assembly(shape, half, flaws.clocking))
     _require_room(shape, assembly(shape, half, flaws.clocking, flaws), squeezed(shape, half, flaws))

@@ -225,16 +225,12 @@ def machine(section: Transmission, teeth: ToothNumbers, stiffness: Harmonics) ->
     """The machine that a config describes, with the reference mesh stiffness from its own stage."""
     shape = layout(section, teeth)
     damping = section.damping
-    if section.backlash_um is None:
-        raise ConfigError(
-            "transmission.backlash_um", None, "a number, as facegear.config.model.resolved gives"
-        )
     return Machine(
         layout=shape,
         torques=balanced_torques(shape, given_torques(section, shape)),
         stiffness=stiffness,
         error=error_series(section.transmission_error),
-        half_backlash=0.5e-6 * section.backlash_um,
+        half_backlash=half_backlash(section),
         damping=Damping(
             damping.mesh_n_s_per_m, damping.mass_per_s, damping.bearing_s, OpenFlanks(damping.open_flanks)
         ),
@@ -242,6 +238,15 @@ def machine(section: Transmission, teeth: ToothNumbers, stiffness: Harmonics) ->
         error_in_step=section.transmission_error.phasing == "in_step",
         imperfections=imperfections(section, shape),
     )
+
+
+def half_backlash(section: Transmission) -> float:
+    """Half the backlash (m) common to all meshes. Raises ConfigError where it was not filled in."""
+    if section.backlash_um is None:
+        raise ConfigError(
+            "transmission.backlash_um", None, "a number, as facegear.config.model.resolved gives"
+        )
+    return 0.5e-6 * section.backlash_um
 
 
 def imperfections(section: Transmission, shape: Layout) -> Imperfections:

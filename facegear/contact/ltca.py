@@ -33,9 +33,9 @@ class ContactModel:
         return self.flanks.design
 
 
-def even_positions(count: int) -> NDArray[np.float64]:
+def even_positions(count: int) -> list[float]:
     """Positions 0, 1/n, 2/n ... of a pitch."""
-    return np.arange(count) / count
+    return [i / count for i in range(count)]
 
 
 def loaded_contact(

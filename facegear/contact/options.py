@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 Ends = Literal["ring", "free", "clamped"]
+CutFaces = Literal["free", "clamped"]
 Element = Literal["hex27", "hex8", "tet4"]
 
 
@@ -26,7 +27,7 @@ class Sector:
 
     pinion_teeth: int | None = None
     face_gear_teeth: int | None = None
-    cut_faces: Literal["free", "clamped"] = "free"
+    cut_faces: CutFaces = "free"
 
 
 @dataclass(frozen=True)

@@ -55,5 +55,5 @@ def _near(
     seen = separation(pair.design, probes, *placement, teeth, FARTHEST)
     # a gear's edge may lie between a probe and the points that touch: the flank is taken to go on there
     gaps = np.minimum(seen.gap, seen.continued)
-    close = (gaps[:, elements] < depth).any(axis=2)
+    close = np.any(gaps[:, elements] < depth, axis=2)
     return [np.flatnonzero(row[pair.pinion.element]) for row in close]

@@ -52,7 +52,8 @@ def _flank_frame(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[A
 
 
 def _together(first: ArrayLike, second: ArrayLike) -> tuple[Array, Array]:
-    return np.broadcast_arrays(np.asarray(first, float), np.asarray(second, float))
+    both = np.broadcast_arrays(np.asarray(first, float), np.asarray(second, float))
+    return both[0], both[1]
 
 
 def _stacked(x: Array, y: Array, z: Array) -> Array:
@@ -72,7 +73,7 @@ def psi_at(design: PairDesign, radius: ArrayLike, roll: ArrayLike) -> Array:
     base, ratio, _, _ = shaper_numbers(design)
     radius, roll = _together(radius, roll)
 
-    def residual(psi):
+    def residual(psi: Array) -> tuple[Array, Array]:
         return closed_forms.radius_at_roll(base, ratio, radius, roll, psi)
 
     return _newton(residual, local_pressure_angle(design, radius), "psi at a gear radius")
@@ -87,7 +88,7 @@ def roll_and_psi_at_height(design: PairDesign, radius: ArrayLike, z: ArrayLike) 
     radius, z = _together(radius, z)
     height = (lift - z) / base
 
-    def residual(psi):
+    def residual(psi: Array) -> tuple[Array, Array]:
         return closed_forms.radius_at_height(base, ratio, radius, height, psi)
 
     psi = _newton(residual, local_pressure_angle(design, radius), "flank at a height")

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -67,35 +68,44 @@ def _changes(machine: Machine) -> Iterator[tuple[str, Imperfections, Imperfectio
     layout, base = machine.layout, machine.imperfections
     own = replace(base, half_backlash=machine.half_backlashes)
     for mesh, name in enumerate(layout.mesh_names):
-        yield f"error {name}", *_moved(own, "error", mesh), 2 * STEP
+        low, high = _moved(own, "error", mesh)
+        yield f"error {name}", low, high, 2 * STEP
         low, high = _moved(own, "half_backlash", mesh)
         yield f"backlash {name}", low, high, 4 * STEP
     for i, pinion in enumerate(layout.pinions):
         for k, letter in enumerate("xy"):
-            yield f"position {letter} {pinion.name}", *_moved(own, "position", (i, k)), 2 * STEP
+            low, high = _moved(own, "position", (i, k))
+            yield f"position {letter} {pinion.name}", low, high, 2 * STEP
         if own.clearance[i] > STEP:
-            yield f"clearance {pinion.name}", *_moved(own, "clearance", i), 2 * STEP
+            low, high = _moved(own, "clearance", i)
+            yield f"clearance {pinion.name}", low, high, 2 * STEP
     for key, names in (
         ("pinion_runout", [pinion.name for pinion in layout.pinions]),
         ("gear_runout", [gear.name for gear in layout.gears]),
     ):
         for body, name in enumerate(names):
-            runouts = list(getattr(own, key))
-            now = runouts[body]
-            ends = []
-            for amplitude in (max(now.amplitude - STEP, 0.0), now.amplitude + STEP):
-                runouts[body] = Runout(amplitude, now.phase)
-                ends.append(replace(own, **{key: tuple(runouts)}))
-            yield f"runout {name}", *ends, now.amplitude + STEP - max(now.amplitude - STEP, 0.0)
+            now = getattr(own, key)[body].amplitude
+            low, high = max(now - STEP, 0.0), now + STEP
+            smaller, larger = (_with_runout(own, key, body, amplitude) for amplitude in (low, high))
+            yield f"runout {name}", smaller, larger, high - low
 
 
-def _moved(base: Imperfections, key: str, index: int | tuple[int, int]) -> list[Imperfections]:
-    ends = []
-    for change in (-STEP, STEP):
+def _moved(
+    base: Imperfections, key: str, index: int | tuple[int, int]
+) -> tuple[Imperfections, Imperfections]:
+    def moved(change: float) -> Imperfections:
         values = getattr(base, key).copy()
         values[index] += change
-        ends.append(replace(base, **{key: values}))
-    return ends
+        return replace(base, **{key: values})
+
+    return moved(-STEP), moved(STEP)
+
+
+def _with_runout(base: Imperfections, key: str, body: int, amplitude: float) -> Imperfections:
+    runouts: list[Runout] = list(getattr(base, key))
+    runouts[body] = replace(runouts[body], amplitude=amplitude)
+    changed: dict[str, Any] = {key: tuple(runouts)}
+    return replace(base, **changed)
 
 
 def _with_kinematics(machine: Machine, kinematics: MeshKinematics) -> Machine:

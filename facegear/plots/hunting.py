@@ -26,14 +26,14 @@ def hunting_figure(cycles: pd.DataFrame, meshes: pd.DataFrame, torque: float) ->
             total = loads.sum(axis=1)
             shares = 100.0 * loads / np.where(total > 0.0, total, np.nan)[:, None]
             wide = len(shares) > 1
-            at = cycles["cycle"] if wide else [0, 1]
+            at = cycles["cycle"].to_numpy() if wide else np.array([0, 1])
             for share, name, colour in zip(shares.T, names, COLOURS, strict=False):
                 axis.plot(at, share if wide else np.repeat(share, 2), lw=0.9, color=colour, label=name)
             axis.axhline(100.0 / len(names), color="0.5", lw=0.8, ls=":")
             axis.set_ylabel("Share (%)")
             axis.set_title(group, fontsize=9, loc="left")
             axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
-            axis.set_xlim(at.min() if wide else 0, at.max() if wide else 1)
+            axis.set_xlim(at.min(), at.max())
         axes[-1, 0].set_xlabel("Mesh cycle")
         figure.suptitle(
             f"Load of each mesh over the hunting cycle, quasi-static, input torque {torque:g} N m"

@@ -20,7 +20,7 @@ def contact(
     """`ltca`, `by_torque` (tables), `pressure` (arrays). Raises NotConverged naming position and torque."""
     plan = contact_plan(parse(Contact, contact))
     model = contact_model(pair(tooth_pair).design, pinion, face_gear)
-    found = loaded_contact(model, even_positions(plan.positions).tolist(), plan.torques, plan.options)
+    found = loaded_contact(model, even_positions(plan.positions), plan.torques, plan.options)
     table = ltca_table(found)
     worst, mean = table["kkt_residual"].max(), table["k_average_n_per_m"].mean()
     pressure = pressure_arrays(found, model.flanks.pinion)

@@ -52,9 +52,8 @@ class Orbit:
     def parts(self, packed: Packed, off: Array) -> NDArray[np.complex128]:
         """Components (..., 2 n) of states (..., 2, padded n) off the orbit along its own directions."""
         flat = off[..., : packed.n].reshape(*off.shape[:-2], -1)
-        return np.linalg.lstsq(self.vectors, np.atleast_2d(flat).T.astype(complex), rcond=None)[0].T.reshape(
-            flat.shape
-        )
+        found = np.linalg.lstsq(self.vectors, np.atleast_2d(flat).T.astype(complex), rcond=None)[0]
+        return np.reshape(found.T, flat.shape)
 
     def leaving(self, packed: Packed, off: Array) -> Array:
         """A state (2, padded n) of change() one along the leading direction, to the side of `off`."""

@@ -2,6 +2,7 @@
 
 import string
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -137,10 +138,10 @@ def sensitivity_table(problem: Problem, inputs: Inputs) -> pd.DataFrame:
     for name, step in STEPS.items():
         value = getattr(inputs, name)
         size = step * value if name == "torque" else step
-        below, above = (
-            misfit_of(problem, replace(inputs, **{name: _allowed(problem, name, value + sign * size)}))
-            for sign in (-1.0, 1.0)
-        )
+        ends: list[dict[str, Any]] = [
+            {name: _allowed(problem, name, value + change)} for change in (-size, size)
+        ]
+        below, above = (misfit_of(problem, replace(inputs, **end)) for end in ends)
         rows.append(
             {
                 "number": name,

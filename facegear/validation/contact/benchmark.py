@@ -14,7 +14,7 @@ from facegear.contact.bodies.layer import tied_system
 from facegear.contact.bodies.substructure import condense
 from facegear.contact.gear_flank import GearFlank
 from facegear.contact.ltca import even_positions, loaded_contact
-from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
+from facegear.contact.options import ContactOptions, ContactPlan, CutFaces, Refinement, Sector
 from facegear.contact.pair import BUILDERS, contact_model, extent, gear_flank
 from facegear.contact.position import LoadedPosition
 from facegear.contact.teeth import elastic_tooth
@@ -171,7 +171,8 @@ def shortcuts(design: PairDesign, base: Level, materials: tuple[Material, Materi
     plan = base.plan
     plain, few = ContactOptions(), Refinement()
     cases = {"full model": base}
-    for teeth, ends in ((5, "free"), (9, "free"), (13, "free"), (5, "clamped")):
+    sectors: tuple[tuple[int, CutFaces], ...] = ((5, "free"), (9, "free"), (13, "free"), (5, "clamped"))
+    for teeth, ends in sectors:
         sector = Sector(teeth, teeth, ends)
         cases[f"{teeth}-tooth sectors, {ends} cut faces"] = replace(base, plan=replace(plan, sector=sector))
     for name, options in (

@@ -26,7 +26,7 @@ def whole_sectors(
     A 3-tooth sector carries the pairs -1, 0 and 1 only. The contact strip is seen by unrefined elements: what
     counts is the ratio of rows.
     """
-    places = even_positions(positions).tolist()
+    places = even_positions(positions)
     tables = []
     for count in teeth:
         loaded = [tooth for tooth in LOADED if abs(tooth) <= count // 2]
