@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -164,8 +165,8 @@ def shares(table: pd.DataFrame) -> Figure:
     return figure
 
 
-def _motion(row: object) -> str:
-    branch, motion = str(row.branch), row.motion
+def _motion(row: Any) -> str:
+    branch, motion = str(row.branch), str(row.motion)
     return motion if branch in ("not periodic", "not followed") else f"branch {branch}, {motion}"
 
 

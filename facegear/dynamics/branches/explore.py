@@ -150,7 +150,7 @@ def lies_on(branch: Branch, z: Array, period: int, value: float) -> bool:
         share = (u - here.u) / (there.u - here.u) if there.u != here.u else 0.0
         guess = (here.x + share * (there.x - here.x))[:-1]
         nearest = min(np.abs(guess - image).max() for image in images)
-        if nearest > ALONG * max(1.0, np.linalg.norm(there.x - here.x)):
+        if nearest > ALONG * max(1.0, float(np.linalg.norm(there.x - here.x))):
             continue
         try:
             point = at_parameter(branch.flow, guess, u)
