@@ -15,6 +15,10 @@ BY_TORQUE = (
     "smallest of the positions solved, so never more than the true value; half: of every second one. "
     "Path radius: where the contact forces have their centroid, distance from the gear's axis"
 )
+BEARINGS = (
+    "Force of every body on its bearing at the nominal speed; static: at rest under the mean torques; peak: "
+    "largest magnitude. A pinion's x is tangential, its y along the gears' axis; a face gear's axis is z"
+)
 LARGEST_SVG = 1_500_000
 """Bytes; a larger drawing is shown as its png."""
 
@@ -62,7 +66,27 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
         return [Table("Harmonics kept", tables["harmonics"].iloc[:, :4], 5)]
     if title == "Modes" and "frequencies" in tables:
         return [Table("Natural frequencies", tables["frequencies"].drop(columns="pinion_energy_share"), 6)]
-    if title.startswith("Nominal") and "jumps" in tables:
+    if title.startswith("Nominal"):
+        bearings = [Table(BEARINGS, tables["bearings"], 4)] if "bearings" in tables else []
+        return [*bearings, *_jumps(tables)]
+    if title == "Load sharing" and "summary" in tables:
+        columns = [
+            "study",
+            "label",
+            "group",
+            "mean",
+            "half_width",
+            "minimum",
+            "maximum",
+            "lost_share",
+            "motion",
+        ]
+        return [Table("Means over the cycle with their 95 % half-widths", tables["summary"][columns], 4)]
+    return []
+
+
+def _jumps(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
+    if "jumps" in tables:
         columns = [
             "direction",
             "speed_before_rpm",
@@ -78,19 +102,6 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
             "the mesh frequency at which it moves most, and the speed at which that multiple would meet it"
         )
         return [Table(caption, tables["jumps"][columns], 6)]
-    if title == "Load sharing" and "summary" in tables:
-        columns = [
-            "study",
-            "label",
-            "group",
-            "mean",
-            "half_width",
-            "minimum",
-            "maximum",
-            "lost_share",
-            "motion",
-        ]
-        return [Table("Means over the cycle with their 95 % half-widths", tables["summary"][columns], 4)]
     return []
 
 

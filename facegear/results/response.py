@@ -11,13 +11,14 @@ if TYPE_CHECKING:
 
 
 class ResponseResult(Result):
-    """Steady state at one speed: mesh deflections and forces, their spectrum, class of motion."""
+    """Steady state at one speed: mesh deflections and forces, spectrum, class of motion, bearing forces."""
 
     FILES: ClassVar = {
         "response": Kept("dynamics/response.csv", ("mesh_cycle", "mesh", "deflection_um")),
         "spectrum": Kept("dynamics/spectrum.csv", ("mesh", "order", "amplitude_um")),
         "summary": Kept("dynamics/summary.csv"),
         "multipliers": Kept("dynamics/multipliers.csv", (), may_be_empty=True),
+        "bearings": Kept("dynamics/bearings.csv", ("body", "direction", "static_n", "mean_n", "peak_n")),
     }
 
     def table(self) -> pd.DataFrame:
@@ -27,6 +28,10 @@ class ResponseResult(Result):
     def history(self) -> pd.DataFrame:
         """Deflection (um) and elastic force (N) of every mesh over at most 32 mesh periods."""
         return self.content["response"].copy()
+
+    def bearings(self) -> pd.DataFrame:
+        """Force of every body on its bearing (N) along x, y, z and radially: at rest, mean, RMS, peak."""
+        return self.content["bearings"].copy()
 
     def plot(self) -> "Figure":
         """Deflections along the line of action against time, and their spectra."""

@@ -1,4 +1,4 @@
-"""Response at one speed: time history, spectrum, statistics, multipliers."""
+"""Response at one speed: time history, spectrum, statistics, multipliers, forces on the bearings."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -8,6 +8,7 @@ import pandas as pd
 from facegear.config.base import parse
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.machines import wired_machine
+from facegear.dynamics.bearing_forces import bearing_table
 from facegear.dynamics.response_tables import (
     multiplier_table,
     response_table,
@@ -26,7 +27,10 @@ def dynamics_response(
     accuracy: Mapping[str, Any],
     speed_rpm: float,
 ) -> Outcome:
-    """`response`, `spectrum`, `summary` and `multipliers` (tables). Raises NotConverged naming the speed."""
+    """`response`, `spectrum`, `summary`, `multipliers` and `bearings` (tables).
+
+    Raises NotConverged naming the speed.
+    """
     model = build_model(wired_machine(transmission, teeth, harmonics))
     found = simulate(model, speed_rpm, settings(parse(Accuracy, accuracy)))
     layout = model.machine.layout
@@ -35,5 +39,6 @@ def dynamics_response(
         "spectrum": spectrum_table(layout, found),
         "summary": summary_of_response(model, speed_rpm, found),
         "multipliers": multiplier_table(found),
+        "bearings": bearing_table(model, found),
     }
     return Outcome(content, response_summary(found))

@@ -142,6 +142,17 @@ def static_springs(machine: Machine) -> tuple[Springs, NDArray[np.int64], Array]
     )
 
 
+def static_bearing_forces(machine: Machine) -> Array:
+    """Force of every body on its bearing along x, y, z at rest under the mean torques, (bodies, 3), N.
+
+    Mean stiffness, constant errors, either kinematics. Raises NotConverged.
+    """
+    if machine.layout.is_geometric:
+        return bearing_forces(machine, mean_equilibrium(machine))[0]
+    forces = bearing_matrix(machine.layout) @ static_equilibrium(machine).displacements
+    return forces.reshape(-1, DOF_PER_BODY)[:, :3]
+
+
 def bearing_forces(machine: Machine, found: Equilibria) -> Array:
     """Force of every body on its bearing along x, y, z, shape (K, bodies, 3), N."""
     layout = machine.layout

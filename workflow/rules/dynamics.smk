@@ -10,6 +10,7 @@ rule dynamics_response:
         spectrum="results/{case}/dynamics/spectrum.csv",
         summary="results/{case}/dynamics/summary.csv",
         multipliers="results/{case}/dynamics/multipliers.csv",
+        bearings="results/{case}/dynamics/bearings.csv",
         manifest="results/{case}/dynamics/response.provenance.json",
     script:
         "../scripts/dynamics_response.py"

@@ -34,6 +34,7 @@ def report_tables(wildcards):
     if CASES[wildcards.case]["transmission"]:
         tables += [rules.ratings.output[name] for name in ("ratings", "bodies", "meshes")]
         tables += [rules.modal.output.frequencies, rules.dynamics_sweep.output.jumps]
+        tables += [rules.dynamics_response.output.bearings]
     tables += [rules.load_sharing_summary.output.summary] if SHARING_KINDS else []
     tables += (
         [rules.contact.output.ltca, rules.contact.output.by_torque] if has_contact(wildcards.case) else []

@@ -1,0 +1,145 @@
+"""Forces on bearings over a response: they balance torques and meshes; at rest they are the statics'."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from lumped_machines import make_layout, make_machine
+from scipy.interpolate import CubicSpline
+
+import facegear
+from facegear.dynamics.bearing_forces import bearing_history, bearing_table, velocities
+from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.motion import Motion, Settings
+from facegear.dynamics.steady_state.simulate import build_model, series_values, simulate
+from facegear.harmonics.series import Harmonics
+from facegear.report.case import case_report
+from facegear.transmission.imperfections import perfect
+from facegear.transmission.layout import MeshKinematics, Role
+from facegear.transmission.machine import OpenFlanks
+from facegear.transmission.matrices import bearing_matrix, flank_directions, mass_diagonal
+from facegear.transmission.statics import static_equilibrium
+
+GEOMETRIC = MeshKinematics.GEOMETRIC
+COSINE = np.cos(np.radians(25.0))
+
+
+FLAT = Harmonics(np.zeros(1), np.array([4.1e8]))
+
+
+def loaded(kinematics=GEOMETRIC, clearance=0.0, samples=64, **options):
+    """A machine of the paper's layout under load, and its response at 2500 rpm."""
+    layout = make_layout(kinematics=kinematics)
+    flaws = replace(perfect(layout), clearance=np.full(5, clearance))
+    model = build_model(make_machine(layout, 1500.0, imperfections=flaws, **options))
+    return model, simulate(model, 2500.0, Settings(tolerance=1e-10, samples=samples))
+
+
+def flank_means(response):
+    """Mean force of every flank (2 meshes,), N, of a motion that never wedges."""
+    mean, magnitude = response.mean_forces
+    return 0.5 * np.concatenate([magnitude + mean, magnitude - mean])
+
+
+def test_at_mean_an_input_leaves_its_bearing_alone_and_an_idler_pulls_it_with_twice_the_tangential_force():
+    roles = ((0.0, Role.INPUT), (35.5, Role.IDLER), (71.5, Role.INPUT), (107.0, Role.IDLER))
+    places = tuple((f"{role.value} {at}", role, at) for at, role in roles)
+    layout = make_layout(places, pinion_bearing=1e4, gear_bearing=1e11, kinematics=GEOMETRIC)
+    pinions = list(layout.pinions)
+    for at in (1, 3):
+        pinions[at] = replace(pinions[at], body=replace(pinions[at].body, bearing=(1e10, 1e10, 0.0)))
+    layout = replace(layout, pinions=tuple(pinions))
+    model = build_model(make_machine(layout, 1500.0, tail_share=0.0, backlash=0.0, error=5e-6))
+    found = simulate(model, 2500.0, Settings(tolerance=1e-10))
+    assert found.motion is Motion.PERIODIC
+    table = bearing_table(model, found).set_index(["body", "direction"])
+    upper = found.mean_forces[0, 4:]
+    for pinion, force in zip(layout.pinions, upper, strict=True):
+        row = table.loc[pinion.name]
+        if pinion.role is Role.INPUT:
+            assert np.abs(row.loc[["x", "y", "z"], ["static_n", "mean_n"]]).to_numpy().max() < 1e-3 * force
+        else:
+            assert -row.loc["x", "mean_n"] == pytest.approx(2.0 * force * COSINE, rel=1e-4)
+            assert abs(row.loc["y", "mean_n"]) < 1e-4 * force
+
+
+@settings(max_examples=12, deadline=None)
+@given(
+    st.sampled_from(list(MeshKinematics)),
+    st.floats(0.0, 4e-5),
+    st.floats(3e7, 1e9),
+    st.floats(500.0, 6000.0),
+    st.floats(0.0, 0.3),
+)
+def test_mean_forces_on_bearings_balance_torques_and_meshes(kinematics, error, bearing, speed, tail):
+    layout = make_layout(pinion_bearing=bearing, kinematics=kinematics)
+    options = {"tail_share": tail, "error": error, "open_flanks": OpenFlanks.ALWAYS}
+    model = build_model(make_machine(layout, 1500.0, **options))
+    found = simulate(model, speed, Settings(tolerance=1e-10, samples=256))
+    assume(found.motion is Motion.PERIODIC and found.shares.sum(axis=0).max() <= 1.0)
+    pulls = flank_means(found) @ flank_directions(layout)
+    mean = bearing_history(model, found).mean(axis=0)
+    np.testing.assert_allclose(mean, -pulls.reshape(-1, 4)[:, :3], atol=1e-4 * np.abs(pulls).max())
+
+
+@pytest.mark.parametrize(("kinematics", "backlash"), [(GEOMETRIC, 20e-6), (MeshKinematics.PRINTED, 0.0)])
+def test_bearings_masses_and_meshes_take_no_more_power_than_is_brought_in(kinematics, backlash):
+    steady = {"stiffness": FLAT, "error": 8e-6, "backlash": backlash, "open_flanks": OpenFlanks.CONTACT_ONLY}
+    model, found = loaded(kinematics, samples=1024, **steady)
+    machine, system, rate = model.machine, model.system, velocities(found)
+    assert found.motion is Motion.PERIODIC and found.periods == 1
+    error = series_values(system.error, found.phases)[:, system.error_kind]
+    closed = found.coordinates @ system.mesh_jacobian.T - error - system.upper
+    touches = (closed > 0.0).all(axis=0) | (kinematics is MeshKinematics.PRINTED)
+    assert ((closed < 0.0).all(axis=0) | touches).all()
+    time = np.append(found.phases, 1.0) * TAU / found.frequency
+    error_rate = CubicSpline(time, np.vstack([error, error[:1]]), bc_type="periodic")(time[:-1], 1)
+    flank_rate = rate @ system.mesh_jacobian.T
+    force = (4.1e8 * closed + machine.damping.mesh * (flank_rate - error_rate)) * touches
+    by_meshes = (force * flank_rate).sum(axis=1).mean()
+    moving = rate @ model.reduced.basis.T
+    by_masses = machine.damping.mass * (moving**2 @ mass_diagonal(machine.layout)).mean()
+    at_bodies = moving.reshape(len(moving), -1, 4)[..., :3] * bearing_history(model, found)
+    by_bearings = at_bodies.sum(axis=(1, 2)).mean()
+    # The torques' work over a period is none, as the rigid rotation is left out.
+    assert by_bearings > 1e-3 * abs(by_meshes)
+    assert by_meshes + by_masses + by_bearings == pytest.approx(0.0, abs=1e-5 * abs(by_meshes))
+
+
+@pytest.mark.parametrize("kinematics", list(MeshKinematics))
+def test_without_excitation_the_response_has_the_static_forces(kinematics):
+    model, found = loaded(kinematics, error=0.0, stiffness=FLAT)
+    table = bearing_table(model, found)
+    largest = table["static_n"].abs().max()
+    for column in ("mean_n", "rms_n"):
+        np.testing.assert_allclose(table[column].abs(), table["static_n"].abs(), atol=1e-6 * largest)
+    standing = static_equilibrium(model.machine).displacements
+    exact = (bearing_matrix(model.machine.layout) @ standing).reshape(-1, 4)[:, :3]
+    np.testing.assert_allclose(bearing_history(model, found)[0], exact, atol=1e-6 * largest)
+
+
+def test_a_bearing_with_play_carries_its_static_force_where_nothing_excites():
+    model, found = loaded(clearance=20e-6, error=0.0, stiffness=FLAT)
+    table = bearing_table(model, found)
+    np.testing.assert_allclose(table["mean_n"], table["static_n"], atol=1e-6 * table["static_n"].abs().max())
+
+
+def test_forces_on_bearings_converge_with_the_samples():
+    model, _ = loaded(error=20e-6)
+    coarse, fine = (
+        bearing_table(model, simulate(model, 2500.0, Settings(tolerance=1e-11, samples=samples)))
+        for samples in (64, 512)
+    )
+    largest = fine["peak_n"].max()
+    for column, tolerance in (("mean_n", 1e-6), ("rms_n", 1e-6), ("peak_n", 5e-3)):
+        np.testing.assert_allclose(coarse[column], fine[column], atol=tolerance * largest)
+
+
+def test_the_report_shows_the_forces_on_the_bearings_at_the_nominal_speed():
+    model, found = loaded()
+    values = facegear.example().values
+    page = case_report(values, {"bearings": bearing_table(model, found)}, {}, [])
+    assert "Force of every body on its bearing" in page
+    assert page.count("<td>radial</td>") == 7
