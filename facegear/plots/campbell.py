@@ -5,12 +5,14 @@ from collections.abc import Mapping
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from facegear.plots.style import styled
+from facegear.plots.style import NARROW, styled
 
-ORDER_LINES = (0.5, 1.0, 1.5, 2.0, 3.0)
+ORDER_LINES = (1.0, 2.0, 3.0)
+"""Multiples of the mesh frequency that are always drawn, beside those of the marks."""
 CLASS_COLOURS = {"pinion": "tab:blue", "face gear": "tab:orange", "pinion coupled face gear": "tab:green"}
 
 
@@ -20,35 +22,44 @@ def campbell(
     """Natural frequencies, multiples of the mesh frequency, and what the sweep found: peaks and jumps."""
     elastic = frequencies[frequencies["class"] != "rigid body"]
     top = 1.1 * elastic["frequency_hz"].max()
+    marked = pd.concat([resonances["order"], jumps["order"]]).astype(float)
+    lines = sorted(set(ORDER_LINES) | set(marked[_on_line(marked)]))
     with styled():
-        figure, axis = plt.subplots(figsize=(9, 6))
+        figure, axis = plt.subplots(figsize=(NARROW, 5.4))
         for name, modes in elastic.groupby("class", sort=False):
             values = modes["frequency_hz"].drop_duplicates()
-            axis.hlines(values, 0, last_rpm, color=CLASS_COLOURS[name], lw=0.8, label=f"{name} modes")
+            axis.hlines(values, 0, last_rpm, color=CLASS_COLOURS[name], lw=0.8, label=name)
         speeds = np.array([0.0, last_rpm])
-        for order in ORDER_LINES:
-            line = order * teeth * speeds / 60.0
-            axis.plot(speeds, line, color="0.5", lw=0.8)
+        for order in lines:
+            axis.plot(speeds, order * teeth * speeds / 60.0, color="0.5", lw=0.8)
             end = min(last_rpm, 60.0 * top / (order * teeth))
-            axis.annotate(f"{order:g}x", (end, min(order * teeth * end / 60.0, top)), fontsize=7, color="0.3")
-        _mark(axis, resonances, "speed_rpm", teeth, "o", "peaks of the sweep")
+            height = order * teeth * end / 60.0
+            beyond = (2, 0) if height < 0.99 * top else (0, 2)
+            axis.annotate(f"{order:g}x", (end, height), beyond, textcoords="offset points", color="0.3")
+        _mark(axis, resonances, "speed_rpm", teeth, "o", "peaks")
         _mark(axis, jumps, "speed_after_rpm", teeth, "x", "jumps")
         axis.set_xlim(0, last_rpm)
         axis.set_ylim(0, top)
         axis.set_xlabel("input rotation speed (rpm)")
         axis.set_ylabel("frequency (Hz)")
-        axis.legend(fontsize=7, loc="upper left")
-        axis.set_title("Campbell diagram; marks at the frequency of the mode that moves most")
+        figure.legend(loc="outside lower center", ncols=2, title="modes by class, and what the sweep found")
+        figure.suptitle("Campbell diagram; marks: frequency of the mode that moves most", fontsize=9)
     return figure
 
 
-def _mark(axis: plt.Axes, rows: pd.DataFrame, speed: str, teeth: int, symbol: str, label: str) -> None:
-    """Marks where the strongest mode's response frequency lies at the speed of each row."""
-    if rows.empty:
-        return
+def _on_line(orders: pd.Series) -> pd.Series:
+    """Which orders are multiples of half the mesh frequency; others belong to motion that is not locked."""
+    return (2.0 * orders - (2.0 * orders).round()).abs() < 1e-9
+
+
+def _mark(axis: Axes, rows: pd.DataFrame, speed: str, teeth: int, symbol: str, label: str) -> None:
+    """Marks where the strongest mode's response frequency lies at each row's speed; grey off all lines."""
     unique = rows.drop_duplicates([speed, "resonance"])
-    frequency = unique["order"] * teeth * unique[speed] / 60.0
-    axis.plot(unique[speed], frequency, symbol, color="black", ms=4, label=label)
+    on = _on_line(unique["order"].astype(float))
+    for chosen, colour, told in ((on, "black", label), (~on, "0.6", f"{label} at no multiple")):
+        if chosen.any():
+            frequency = unique["order"][chosen] * teeth * unique[speed][chosen] / 60.0
+            axis.plot(unique[speed][chosen], frequency, symbol, color=colour, ms=4, label=told)
 
 
 def waterfall(spectra: Mapping[str, NDArray[np.float64]], mesh: int, mesh_name: str, teeth: int) -> Figure:
@@ -56,8 +67,10 @@ def waterfall(spectra: Mapping[str, NDArray[np.float64]], mesh: int, mesh_name: 
     directions = [name for name in ("up", "down") if f"{name}_speed_rpm" in spectra]
     orders = spectra["orders"]
     with styled():
-        figure, axes = plt.subplots(1, len(directions), figsize=(5.5 * len(directions), 5), squeeze=False)
-        for axis, name in zip(axes[0], directions, strict=True):
+        figure, axes = plt.subplots(
+            len(directions), 1, figsize=(NARROW, 0.9 + 3.6 * len(directions)), sharex=True, squeeze=False
+        )
+        for axis, name in zip(axes[:, 0], directions, strict=True):
             speeds = spectra[f"{name}_speed_rpm"]
             rank = np.argsort(speeds)
             values = 1e6 * spectra[f"{name}_amplitude_m"][rank, mesh, 1:]
@@ -69,9 +82,11 @@ def waterfall(spectra: Mapping[str, NDArray[np.float64]], mesh: int, mesh_name: 
                 shading="nearest",
                 rasterized=True,
             )
-            axis.set_xlabel("multiple of the mesh frequency")
-            axis.set_title(f"sweep {name}")
-        axes[0, 0].set_ylabel("input rotation speed (rpm)")
+            axis.set_ylabel("input rotation speed (rpm)")
+            axis.set_title(f"sweep {name}", fontsize=9, loc="left")
+        axes[-1, 0].set_xlabel("multiple of the mesh frequency")
         figure.colorbar(image, ax=axes, label="log10 of the amplitude in µm")
-        figure.suptitle(f"Spectrum of the deflection, {mesh_name} (mesh frequency {teeth} per pinion turn)")
+        figure.suptitle(
+            f"Spectrum of the deflection, {mesh_name}\n(mesh frequency {teeth} per pinion turn)", fontsize=9
+        )
     return figure

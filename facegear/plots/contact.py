@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from facegear.contact.columns import SHARES
-from facegear.plots.style import styled
+from facegear.plots.style import NARROW, legend_above, styled
 
 PAIR_NAMES = ("-2", "-1", "0", "1", "2")
 
@@ -21,26 +21,36 @@ def contact_curves(ltca: pd.DataFrame) -> Figure:
     torques = np.sort(ltca["torque_n_m"].unique())
     colours = plt.get_cmap("viridis")(np.linspace(0.0, 0.85, torques.size))
     with styled():
-        figure, axes = plt.subplots(2, 2, figsize=(9.5, 6.2), sharex=True)
+        figure, axes = plt.subplots(4, 1, figsize=(NARROW, 11), sharex=True)
+        error, stiffness = axes[:2]
         for torque, colour in zip(torques, colours, strict=True):
-            rows = ltca[ltca["torque_n_m"] == torque]
-            axes[0, 0].plot(rows["position"], rows["ste_um"], color=colour, label=f"{torque:g} N m")
-            axes[0, 1].plot(rows["position"], 1e-8 * rows["k_average_n_per_m"], color=colour)
-            axes[0, 1].plot(rows["position"], 1e-8 * rows["k_local_n_per_m"], "--", color=colour, lw=0.9)
-        unloaded = ltca[ltca["torque_n_m"] == torques[0]]
-        axes[0, 0].plot(unloaded["position"], unloaded["unloaded_ste_um"], "k:", label="unloaded")
-        axes[0, 0].set(ylabel="Static transmission error (µm)")
-        axes[0, 1].set(ylabel="Stiffness (10$^8$ N/m)\naverage solid, local dashed")
-        for axis, torque in zip(axes[1], torques[[0, -1]], strict=True):
-            rows = ltca[ltca["torque_n_m"] == torque]
+            rows = closed(ltca[ltca["torque_n_m"] == torque])
+            error.plot(rows["position"], rows["ste_um"], color=colour, label=f"{torque:g} N m")
+            stiffness.plot(rows["position"], 1e-8 * rows["k_average_n_per_m"], color=colour)
+            stiffness.plot(rows["position"], 1e-8 * rows["k_local_n_per_m"], "--", color=colour, lw=0.9)
+        unloaded = closed(ltca[ltca["torque_n_m"] == torques[0]])
+        error.plot(unloaded["position"], unloaded["unloaded_ste_um"], "k:", label="unloaded")
+        error.set(ylabel="Static transmission error (µm)")
+        legend_above(error, 3)
+        stiffness.set(ylabel="Stiffness (10$^8$ N/m)\naverage solid, local dashed")
+        for axis, torque in zip(axes[2:], torques[[0, -1]], strict=True):
+            rows = closed(ltca[ltca["torque_n_m"] == torque])
             for column, name in zip(SHARES, PAIR_NAMES, strict=True):
                 if (rows[column] > 0).any():
                     axis.plot(rows["position"], rows[column], label=f"pair {name}")
-            axis.set(xlabel="Position (pitches)", ylabel=f"Load share at {torque:g} N m", ylim=(-0.02, 1.05))
-            axis.legend()
-        axes[0, 0].legend()
-        axes[0, 0].set_xlim(0, 1)
+            axis.set(ylabel=f"Load share at {torque:g} N m", ylim=(-0.02, 1.05))
+            legend_above(axis, 5)
+        axes[-1].set(xlabel="Position (pitches)", xlim=(0, 1))
     return figure
+
+
+def closed(rows: pd.DataFrame) -> pd.DataFrame:
+    """The rows of one torque with the end of the pitch: its beginning, each pair in the next one's place."""
+    rows = rows.sort_values("position")
+    last = rows.iloc[[0]].copy()
+    last["position"] = rows["position"].iloc[0] + 1.0
+    last[list(SHARES)] = np.append(last[list(SHARES)].to_numpy()[0, 1:], 0.0)
+    return pd.concat([rows, last], ignore_index=True)
 
 
 def contact_pattern(arrays: Mapping[str, NDArray]) -> Figure:
@@ -58,20 +68,19 @@ def contact_pattern(arrays: Mapping[str, NDArray]) -> Figure:
         fields.append(field.reshape(shape))
     top = np.nanquantile(fields[-1], 0.995)
     with styled():
-        columns = min(torques.size, 2)
-        rows = -(-torques.size // columns)
+        rows = torques.size
         figure, axes = plt.subplots(
-            rows, columns, figsize=(4.9 * columns, 2.6 * rows), sharex=True, sharey=True, squeeze=False
+            rows, 1, figsize=(NARROW, 0.9 + 1.7 * rows), sharex=True, sharey=True, squeeze=False
         )
         for axis, torque, field in zip(axes.flat, torques, fields, strict=False):
             drawn = axis.pcolormesh(width, radius, field, vmin=0, vmax=top, cmap="inferno", shading="gouraud")
             axis.set_title(f"{torque:g} N m")
             axis.grid(visible=False)
-        for axis in axes.flat[torques.size :]:
-            axis.set_axis_off()
         for axis in axes[-1]:
             axis.set_xlabel("Gear radius (mm)")
         for axis in axes[:, 0]:
             axis.set_ylabel("Pinion radius (mm)")
-        figure.colorbar(drawn, ax=axes, label="Largest pressure over a pitch (MPa)")
+        figure.colorbar(
+            drawn, ax=axes, location="top", aspect=40, label="Largest pressure over a pitch (MPa)"
+        )
     return figure

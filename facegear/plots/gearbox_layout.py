@@ -72,14 +72,14 @@ def _panel(
             _arrow(axis, outside, metres * forces.loc[pinion.name, "mean_x_n"] * along, BEARING)
         place = 1.42 * radius * outwards
         told = f"{pinion.name}\n{np.degrees(angle):.2f} deg\n{_kilo(row['mean_n'])} kN"
-        axis.text(*place, told, ha="center", va="center", fontsize=8)
+        axis.text(*place, told, ha="center", va="center", fontsize=9)
     own = forces.loc[gear.name]
     _arrow(axis, np.zeros(2), metres * own[["mean_x_n", "mean_y_n"]].to_numpy(float), BEARING)
     told = f"axial on its bearing {own['mean_z_n'] / 1e3:+.1f} kN"
     axis.set_title(f"{gear.name.capitalize()}, seen from above\n{told}")
     reach = 1.62 * radius
     axis.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
-    axis.text(0.0, 0.3 * radius, f"mesh radius\n{1e3 * radius:.1f} mm", ha="center", va="center", fontsize=8)
+    axis.text(0.0, 0.3 * radius, f"mesh radius\n{1e3 * radius:.1f} mm", ha="center", va="center", fontsize=9)
     axis.set_axis_off()
 
 

@@ -1,4 +1,4 @@
-"""Figures 13 to 20: load-sharing coefficients over one mesh cycle, one line a point of a study."""
+"""Load-sharing coefficients over one mesh cycle, one line a point of a study."""
 
 import textwrap
 
@@ -7,16 +7,16 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from facegear.plots.style import styled
+from facegear.plots.style import NARROW, styled
 
 LINES = ("-", "--", "-.", ":")
 COLOURS = ("black", "tab:red", "tab:blue", "tab:green", "tab:purple", "tab:orange")
 YLABEL = {
-    "inputs": "Instantaneous dynamic load sharing coefficient\nof upper and lower face gear",
-    "idlers": "Instantaneous dynamic load sharing coefficient\nof idler pinions and tail rotor idler",
-    "drivers": "Instantaneous dynamic load sharing coefficient\nof the input pinions",
+    "inputs": "Load sharing coefficient of\n upper and lower face gear",
+    "idlers": "Load sharing coefficient of\n idler pinions and tail rotor idler",
+    "drivers": "Load sharing coefficient of\n the input pinions",
 }
-CAPTION_WIDTH = 118
+CAPTION_WIDTH = 72
 ENVELOPE = 0.02
 """An envelope narrower than this is a line, and not drawn."""
 
@@ -35,7 +35,7 @@ def sharing_figure(
     means = summary[(summary["group"] == group) & (summary["study"] == rows["study"].iloc[0])]
     means = means.set_index("point")
     with styled():
-        figure, axis = plt.subplots(figsize=(7.2, 4.6))
+        figure, axis = plt.subplots(figsize=(NARROW, 5.0))
         for number, (point, curve) in enumerate(rows.groupby("point", sort=False)):
             _draw(axis, curve, means.loc[point], number)
         axis.set_xlim(0.0, 1e4 * rows["time_s"].max() * len(curve) / (len(curve) - 1))
@@ -44,14 +44,18 @@ def sharing_figure(
         axis.set_xlabel("Time over one mesh cycle (10$^{-4}$ s)")
         axis.set_ylabel(YLABEL[kind])
         axis.set_title(f"{title}: {group}", fontsize=9)
-        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=1, fontsize=8)
-        figure.supxlabel("\n".join(textwrap.wrap(caption, CAPTION_WIDTH)), fontsize=6, color="0.35")
+        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=1)
+        figure.supxlabel(
+            "\n".join(textwrap.wrap(caption, CAPTION_WIDTH)), fontsize=9, color="0.35", ha="center"
+        )
     return figure
 
 
 def _draw(axis: Axes, curve: pd.DataFrame, mean: pd.Series, number: int) -> None:
     """One point's curve, its envelope if it has one, and a legend line with mean and class of motion."""
     colour = COLOURS[number % len(COLOURS)]
+    if mean["motion"] == "period-1":
+        curve = _closed(curve)
     time = 1e4 * curve["time_s"]
     if (curve["envelope_high"] - curve["envelope_low"]).max() > ENVELOPE:
         axis.fill_between(time, curve["envelope_low"], curve["envelope_high"], color=colour, alpha=0.12, lw=0)
@@ -60,3 +64,10 @@ def _draw(axis: Axes, curve: pd.DataFrame, mean: pd.Series, number: int) -> None
     if mean["undefined_share"] > 0.005:
         label += f", no load {100 * mean['undefined_share']:.0f} % of the time"
     axis.plot(time, curve["coefficient"], LINES[number % len(LINES)], color=colour, lw=1.3, label=label)
+
+
+def _closed(curve: pd.DataFrame) -> pd.DataFrame:
+    """The samples of one cycle of a motion that repeats with it, with the end of the cycle."""
+    end = curve.iloc[[0]].copy()
+    end["time_s"] = curve["time_s"].iloc[-1] + curve["time_s"].iloc[1]
+    return pd.concat([curve, end], ignore_index=True)

@@ -1,23 +1,23 @@
-"""Figures 7 and 8: mesh stiffness over a period and its harmonics; stiffness against load."""
+"""Mesh stiffness over a period and its harmonics; stiffness against load."""
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from facegear.plots.style import styled
+from facegear.plots.style import NARROW, legend_above, styled
 
 
 def stiffness_curve(curve: pd.DataFrame) -> Figure:
     """k over one mesh period, as computed and as the kept harmonics give it."""
     with styled():
-        figure, axis = plt.subplots(figsize=(5.2, 3.4))
+        figure, axis = plt.subplots(figsize=(NARROW, 3.3))
         first = curve.iloc[[0]].assign(position=1.0)
         closed = pd.concat([curve, first], ignore_index=True)
         axis.plot(closed["position"], 1e-8 * closed["k_n_per_m"], "k-", lw=1.4, label="computed")
         axis.plot(closed["position"], 1e-8 * closed["k_series_n_per_m"], "r--", lw=1, label="harmonics kept")
         axis.set(xlabel="Mesh period t/T", ylabel="Mesh stiffness (10$^8$ N/m)", xlim=(0, 1))
-        axis.legend()
+        legend_above(axis, 2)
     return figure
 
 
@@ -25,14 +25,14 @@ def harmonic_amplitudes(spectrum: pd.DataFrame, most: int = 15) -> Figure:
     """Absolute amplitudes of the orders of the stiffness variation."""
     rows = spectrum[(spectrum["order"] >= 1) & (spectrum["order"] <= most)]
     with styled():
-        figure, axis = plt.subplots(figsize=(5.2, 3.4))
-        axis.bar(rows["order"], 1e-7 * rows["amplitude_n_per_m"], width=0.5, color="tab:blue")
-        errors = 1e-7 * rows["sampling_error_n_per_m"]
+        figure, axis = plt.subplots(figsize=(NARROW, 3.3))
+        axis.bar(rows["order"], 1e-8 * rows["amplitude_n_per_m"], width=0.5, color="tab:blue")
+        errors = 1e-8 * rows["sampling_error_n_per_m"]
         if (errors > 0).any():
             axis.errorbar(
-                rows["order"], 1e-7 * rows["amplitude_n_per_m"], errors, fmt="none", ecolor="k", capsize=2
+                rows["order"], 1e-8 * rows["amplitude_n_per_m"], errors, fmt="none", ecolor="k", capsize=2
             )
-        axis.set(xlabel="Harmonic order of the mesh frequency", ylabel="Amplitude (10$^7$ N/m)")
+        axis.set(xlabel="Harmonic order of the mesh frequency", ylabel="Amplitude (10$^8$ N/m)")
         axis.set_xticks(rows["order"])
         axis.grid(axis="x", visible=False)
     return figure
@@ -41,7 +41,7 @@ def harmonic_amplitudes(spectrum: pd.DataFrame, most: int = 15) -> Figure:
 def stiffness_against_load(table: pd.DataFrame) -> Figure:
     """Mean of both stiffnesses with the range over a pitch, and the first harmonic, against torque."""
     with styled():
-        figure, (top, bottom) = plt.subplots(2, 1, figsize=(5.2, 5.2), sharex=True)
+        figure, (top, bottom) = plt.subplots(2, 1, figsize=(NARROW, 5.2), sharex=True)
         for (definition, rows), colour in zip(
             table.groupby("definition", sort=False), ("tab:blue", "tab:orange"), strict=True
         ):
@@ -57,5 +57,5 @@ def stiffness_against_load(table: pd.DataFrame) -> Figure:
         bottom.set(xlabel="Pinion torque per mesh (N m)", ylabel="First harmonic (% of the mean)")
         bottom.set_ylim(bottom=0)
         bottom.set_xlim(left=0, right=float(np.max(table["torque_n_m"])) * 1.03)
-        top.legend()
+        legend_above(top, 2)
     return figure

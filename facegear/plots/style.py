@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from facegear.io.atomic import atomic_path
@@ -24,6 +25,10 @@ STYLE = {
 }
 
 
+NARROW = 4.7
+"""Width in inches of figures that a telephone shows whole: at 500 px their 9 pt text is 12 px high."""
+
+
 @contextmanager
 def styled() -> Iterator[None]:
     """Apply the project's matplotlib style."""
@@ -38,3 +43,8 @@ def save(figure: Figure, *paths: str | Path) -> None:
         with atomic_path(path) as temporary:
             figure.savefig(temporary, metadata=dates)
     plt.close(figure)
+
+
+def legend_above(axis: Axes, columns: int) -> None:
+    """The legend of an axis over it, where it hides no curve."""
+    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2)

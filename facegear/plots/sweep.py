@@ -1,4 +1,4 @@
-"""Figures 10 to 12: RMS over speed."""
+"""RMS over speed."""
 
 from collections.abc import Sequence
 
@@ -7,7 +7,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from facegear.plots.style import styled
+from facegear.plots.style import NARROW, styled
 
 DIRECTION_STYLES = {"up": ("tab:red", "-"), "down": ("tab:blue", "--")}
 AXIS_STYLES = {"x": ("tab:red", "-"), "y": ("tab:blue", "--"), "z": ("tab:green", ":")}
@@ -22,13 +22,13 @@ def select(sweep: pd.DataFrame, direction: str, quantity: str, item: str) -> pd.
 
 
 def translations(sweep: pd.DataFrame, bodies: Sequence[str], letters: str) -> Figure:
-    """Figures 10 and 11: RMS (without mean) of translations, one panel for each body, first direction
+    """RMS (without mean) of translations, one panel for each body, first direction
     only.
     """
     direction = sweep["direction"].iloc[0]
     with styled():
         figure, axes = plt.subplots(
-            len(bodies), 1, figsize=(7, 2.5 * len(bodies)), sharex=True, squeeze=False
+            len(bodies), 1, figsize=(NARROW, 1.0 + 1.9 * len(bodies)), sharex=True, squeeze=False
         )
         for axis, body in zip(axes[:, 0], bodies, strict=True):
             for letter in letters:
@@ -37,41 +37,39 @@ def translations(sweep: pd.DataFrame, bodies: Sequence[str], letters: str) -> Fi
                 axis.plot(
                     curve["speed_rpm"], curve["value"], line, color=colour, lw=1, label=f"{letter} direction"
                 )
-            axis.set_title(body, fontsize=9)
+            axis.set_title(body, fontsize=9, loc="left")
             axis.set_ylabel("RMS (µm)")
             axis.set_ylim(bottom=0)
-        axes[0, 0].legend(fontsize=8)
+        handles = axes[0, 0].get_legend_handles_labels()
+        figure.legend(*handles, loc="outside lower center", ncols=3)
         axes[-1, 0].set_xlabel("input rotation speed (rpm)")
-        figure.suptitle(f"RMS of translational displacements without their mean, sweep {direction}")
+        figure.suptitle(f"RMS of translations without their mean, sweep {direction}", fontsize=9)
     return figure
 
 
 def mesh_sweeps(
     sweep: pd.DataFrame, jumps: pd.DataFrame, pinions: Sequence[str], sides: Sequence[str]
 ) -> Figure:
-    """Figure 12: RMS (without mean) of mesh deflections up and down, a row for each gear; jumps marked."""
+    """RMS (without mean) of mesh deflections up and down, a panel for each mesh; jumps marked."""
     with styled():
+        rows = [(pinion, side) for side in sides for pinion in pinions]
         figure, axes = plt.subplots(
-            len(sides),
-            len(pinions),
-            figsize=(max(6.8, 3.8 * len(pinions)), 3.0 * len(sides)),
-            sharex=True,
-            squeeze=False,
+            len(rows), 1, figsize=(NARROW, 1.2 + 1.7 * len(rows)), sharex=True, squeeze=False
         )
-        for row, side in zip(axes, sides, strict=True):
-            for axis, pinion in zip(row, pinions, strict=True):
-                mesh = f"{pinion}/{side}"
-                for direction, (colour, line) in DIRECTION_STYLES.items():
-                    curve = select(sweep, direction, "deflection_ac_rms_um", mesh)
-                    axis.plot(curve["speed_rpm"], curve["value"], line, color=colour, lw=1, label=direction)
-                mark_jumps(axis, jumps)
-                axis.set_title(f"{pinion} and {side} face gear", fontsize=9)
-                axis.set_ylim(bottom=0)
-            row[0].set_ylabel("RMS of d (µm)")
-        for axis in axes[-1]:
-            axis.set_xlabel("input rotation speed (rpm)")
-        axes[0, 0].legend(fontsize=8, title="sweep", title_fontsize=8)
-        figure.suptitle("RMS of the displacement along the line of action without its mean; ticks: jumps")
+        for axis, (pinion, side) in zip(axes[:, 0], rows, strict=True):
+            for direction, (colour, line) in DIRECTION_STYLES.items():
+                curve = select(sweep, direction, "deflection_ac_rms_um", f"{pinion}/{side}")
+                axis.plot(curve["speed_rpm"], curve["value"], line, color=colour, lw=1, label=direction)
+            mark_jumps(axis, jumps)
+            axis.set_title(f"{pinion} and {side} face gear", fontsize=9, loc="left")
+            axis.set_ylim(bottom=0)
+            axis.set_ylabel("RMS of d (µm)")
+        axes[-1, 0].set_xlabel("input rotation speed (rpm)")
+        handles = axes[0, 0].get_legend_handles_labels()
+        figure.legend(*handles, loc="outside lower center", ncols=2, title="sweep")
+        figure.suptitle(
+            "RMS of the displacement along the line of action\nwithout its mean; ticks: jumps", fontsize=9
+        )
     return figure
 
 

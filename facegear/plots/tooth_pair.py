@@ -18,7 +18,7 @@ from facegear.plots.style import styled
 Array = NDArray[np.float64]
 
 PINION_COLOUR, GEAR_COLOUR = "#c98a3d", "#5b7fa6"
-LABEL_GAP = 0.07
+LABEL_GAP = 0.1
 """Least distance of two radius labels, in whole depths of the tooth."""
 
 
@@ -60,7 +60,7 @@ def _in_mesh(axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, Array])
     axes.view_init(elev=22, azim=-62)
     axes.set(xlabel="x (mm)", ylabel="y (mm)", zlabel="z (mm)", title="Pinion and face gear in mesh")
     axes.yaxis.set_major_locator(MaxNLocator(2))
-    axes.tick_params(labelsize=7)
+    axes.tick_params(labelsize=9)
 
 
 def _pinion_skin(flanks: Mapping[str, Array], bore: float) -> list[Array]:
@@ -127,7 +127,7 @@ def _pinion_section(axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, 
         axes.plot(x, np.sqrt(radius**2 - x**2), styles[name], color="0.4", lw=0.8)
         label = name.removeprefix("pinion_").replace("_", " ")
         height = min(np.sqrt(radius**2 - reach**2), height - apart)
-        axes.annotate(f"{label} {radius:.3f}", (reach, height), fontsize=7, va="center")
+        axes.annotate(f"{label} {radius:.3f}", (reach, height), fontsize=9, va="center")
     axes.set_aspect("equal")
     axes.set(xlabel="across (mm)", ylabel="radius (mm)", title="Pinion tooth", xlim=(-reach, 1.75 * reach))
 
@@ -155,10 +155,10 @@ def _gear_sections(axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, A
         f"{radii['gear_outer']:.1f} mm\npointed above {limits['outer_pointing']:.3f} mm\n"
         f"{path_text(record)}"
     )
-    axes.text(0.5, 0.03, text, transform=axes.transAxes, ha="center", va="bottom", fontsize=7)
+    axes.text(1.04, 0.55, text, transform=axes.transAxes, va="top", fontsize=9)
     axes.margins(y=0.12)
     axes.set_aspect("equal")
-    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=7)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=9)
     axes.set(xlabel="arc (mm)", ylabel="z (mm)", title="Face gear tooth")
 
 
@@ -179,7 +179,7 @@ def _contours(
     top, flank = 1e3 * flanks["gear_flank"][0], 1e3 * flanks["gear_flank"][-1]
     for line, label in ((top, "tip edge"), (flank, "end of the flank")):
         axes.plot(np.hypot(line[:, 0], line[:, 1]), line[:, 2], color="0.2", lw=0.8)
-        axes.annotate(label, (np.hypot(*line[-1, :2]), line[-1, 2]), fontsize=7, va="bottom", ha="right")
+        axes.annotate(label, (np.hypot(*line[-1, :2]), line[-1, 2]), fontsize=9, va="bottom", ha="right")
     path_radius = np.interp(contact["path_roll"], contact["contour_roll"][:, 0], np.arange(len(radius)))
     rows = np.clip(np.round(path_radius).astype(int), 0, len(radius) - 1)
     axes.plot(1e3 * contact["path_y"], height[rows, height.shape[1] // 2], "r.", ms=4, label="contact path")
@@ -191,4 +191,4 @@ def _contours(
         f"(gear {gap_record['gear_part']}, pinion {gap_record['pinion_part']}, "
         f"{gap_record['gear_radius_mm']:.1f} mm)",
     )
-    axes.legend(fontsize=7, loc="lower left")
+    axes.legend(loc="upper right", bbox_to_anchor=(1.0, -0.14))

@@ -59,13 +59,26 @@ def _picture(path: Path, caption: str) -> Picture:
     return Picture(shown, caption)
 
 
+def mode_rows(frequencies: pd.DataFrame) -> pd.DataFrame:
+    """One row a frequency: modes (with how many share it), frequency_hz, what moves, class."""
+    rows, first = [], 0
+    while first < len(frequencies):
+        mode = frequencies.iloc[first]
+        count = int(mode["multiplicity"])
+        which = str(mode["order"]) if count == 1 else f"{mode['order']} to {mode['order'] + count - 1}"
+        times = "" if count == 1 else f"x {count}"
+        rows.append((which, times, mode["frequency_hz"], mode["symbols"], mode["class"]))
+        first += count
+    return pd.DataFrame(rows, columns=["modes", "times", "frequency_hz", "what_moves", "class"])
+
+
 def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     if title == "Loaded contact" and "by_torque" in tables:
         return [Table(BY_TORQUE, tables["by_torque"], 4)]
     if title == "Mesh stiffness" and "harmonics" in tables:
         return [Table("Harmonics kept", tables["harmonics"].iloc[:, :4], 5)]
     if title == "Modes" and "frequencies" in tables:
-        return [Table("Natural frequencies", tables["frequencies"].drop(columns="pinion_energy_share"), 6)]
+        return [Table("Natural frequencies, equal ones in one row", mode_rows(tables["frequencies"]), 6)]
     if title.startswith("Nominal"):
         bearings = [Table(BEARINGS, tables["bearings"], 4)] if "bearings" in tables else []
         return [*bearings, *_jumps(tables)]

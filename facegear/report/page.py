@@ -1,6 +1,7 @@
 """A self-contained HTML page from chapters of text, tables and pictures."""
 
 import base64
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +11,8 @@ import pandas as pd
 from facegear.io import pages
 
 TEMPLATE = Path(__file__).with_name("page.html.j2")
+SCREEN_DPI, PNG_DPI = 96, 160
+"""Points an inch of a page, and of a stored png."""
 UNITS = {
     "n_per_m": "N/m",
     "n_m": "N m",
@@ -31,6 +34,16 @@ class Picture:
 
     path: Path
     caption: str
+
+    @property
+    def width_px(self) -> int:
+        """Width at which the text has the size it was drawn with."""
+        if self.path.suffix == ".svg":
+            found = re.search(
+                r'<svg[^>]* width="([\d.]+)(pt|px)?"', self.path.read_text(encoding="utf-8")[:4000]
+            )
+            return 0 if found is None else round(float(found[1]) * (4 / 3 if found[2] == "pt" else 1.0))
+        return round(int.from_bytes(self.path.read_bytes()[16:20], "big") * SCREEN_DPI / PNG_DPI)
 
     def data_uri(self) -> str:
         """The picture's bytes as a data URI."""
@@ -61,12 +74,20 @@ class Table:
 
     def rows(self) -> list[list[str]]:
         """Cells as text."""
-        return [[self._cell(value) for value in row] for row in self.frame.itertuples(index=False)]
+        stiffness = [f"{name} ".find("_n_per_m ") >= 0 for name in self.frame.columns]
+        return [
+            [self._cell(value, power) for value, power in zip(row, stiffness, strict=True)]
+            for row in self.frame.itertuples(index=False)
+        ]
 
-    def _cell(self, value: object) -> str:
+    def _cell(self, value: object, power: bool) -> str:
+        """A cell; stiffnesses (N/m) all with a power of ten, so that they can be read down a column."""
         if isinstance(value, float):
-            return "" if value != value else f"{value:.{self.digits}g}"
+            return "" if value != value else _scientific(value, self.digits) if power else self._plain(value)
         return str(value)
+
+    def _plain(self, value: float) -> str:
+        return f"{value:.{self.digits}g}"
 
 
 @dataclass(frozen=True)
@@ -87,3 +108,8 @@ class Chapter:
 def render(title: str, lead: str, chapters: Sequence[Chapter]) -> str:
     """The page as HTML text that needs no other file."""
     return pages.render(TEMPLATE, title=title, lead=lead, chapters=chapters)
+
+
+def _scientific(value: float, digits: int) -> str:
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    return f"{mantissa}e{int(exponent)}"

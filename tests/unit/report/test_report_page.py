@@ -4,6 +4,7 @@ import re
 
 import pandas as pd
 
+from facegear.report.case import mode_rows
 from facegear.report.page import Chapter, Picture, Table, render
 
 
@@ -37,3 +38,32 @@ def test_units_in_column_names_are_written_out():
         "speed before (rpm)",
         "motion",
     ]
+
+
+def test_equal_modes_are_one_row_that_says_how_many():
+    frequencies = pd.DataFrame(
+        {
+            "order": [1, 2, 3, 4],
+            "frequency_hz": [0.0, 0.0, 0.0, 756.7],
+            "multiplicity": [3, 3, 3, 1],
+            "symbols": ["R", "R", "R", "T"],
+            "class": ["rigid body"] * 3 + ["pinion"],
+        }
+    )
+    rows = mode_rows(frequencies)
+    assert rows["modes"].to_list() == ["1 to 3", "4"]
+    assert rows["times"].to_list() == ["x 3", ""]
+
+
+def test_stiffnesses_are_written_in_one_format():
+    frame = pd.DataFrame({"mean_n_per_m": [4.1e8, 52.0, 9.99e5], "torque_n_m": [600.0, 5.0, 1e5]})
+    assert [row[0] for row in Table("T", frame, 4).rows()] == ["4.100e8", "5.200e1", "9.990e5"]
+
+
+def test_text_of_pictures_keeps_its_size_on_a_telephone(tmp_path):
+    for name, points, narrow in (("a", 338.4, True), ("b", 792.0, False)):
+        path = tmp_path / f"{name}.svg"
+        path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" width="{points}pt" height="9pt"/>')
+        text = render("Case", "Lead", [Chapter("C", "", (Picture(path, "P"),))])
+        assert f'width="{round(points * 4 / 3)}"' in text
+        assert ("class=narrow" in text) == narrow

@@ -1,0 +1,70 @@
+"""What figures draw: whole pitches, no arbitrary vectors, lines at their orders, text that can be read."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from facegear.contact.columns import LTCA_COLUMNS, SHARES
+from facegear.plots.contact import closed
+from facegear.plots.modal import amplitudes, mode_shapes, typical_modes
+from facegear.plots.response import deflections
+
+
+@pytest.fixture
+def modes():
+    """Six pinion modes of one frequency, turned at random, then a simple one of the same kind."""
+    rng = np.random.default_rng(3)
+    vectors = np.linalg.qr(rng.normal(size=(8, 8)))[0].T
+    frequencies = pd.DataFrame(
+        {
+            "order": range(1, 8),
+            "frequency_hz": [900.0] * 6 + [1200.0],
+            "multiplicity": [6] * 6 + [1],
+            "symbols": ["idler T"] * 6 + ["input T"],
+            "class": ["pinion"] * 7,
+        }
+    )
+    names = [("p", letter) for letter in ("x", "y", "z", "theta")] + [
+        ("q", d) for d in ("x", "y", "z", "theta")
+    ]
+    rows = [
+        (order, body, dof, value)
+        for order, vector in enumerate(vectors[:7], start=1)
+        for (body, dof), value in zip(names, vector, strict=True)
+    ]
+    return frequencies, pd.DataFrame(rows, columns=["order", "body", "dof", "amplitude_m_or_rad"])
+
+
+def test_modes_of_one_frequency_are_shown_together_and_do_not_depend_on_their_vectors(modes):
+    frequencies, shapes = modes
+    (equal, simple) = typical_modes(frequencies)
+    assert (equal, simple) == ((1, 2, 3, 4, 5, 6), (7,))
+    turned = shapes.copy()
+    angle = np.linalg.qr(np.random.default_rng(5).normal(size=(6, 6)))[0]
+    stacked = shapes["amplitude_m_or_rad"].to_numpy()[:48].reshape(6, 8)
+    turned.loc[:47, "amplitude_m_or_rad"] = (angle @ stacked).ravel()
+    assert np.allclose(amplitudes(shapes, equal), amplitudes(turned, equal))
+    assert "(x 6)" in mode_shapes(frequencies, shapes).axes[0].get_title(loc="left")
+
+
+def test_a_contact_curve_ends_where_the_next_pitch_begins():
+    rows = pd.DataFrame(1.0, index=range(4), columns=list(LTCA_COLUMNS)).assign(
+        position=[0.0, 0.25, 0.5, 0.75], ste_um=[5.0, 6.0, 7.0, 6.0]
+    )
+    rows[list(SHARES)] = 0.0
+    rows.loc[0, ["load_share_pair_0", "load_share_pair_p1"]] = [0.4, 0.6]
+    end = closed(rows).iloc[-1]
+    assert end["position"] == 1.0
+    assert end["ste_um"] == 5.0
+    assert end[["load_share_pair_m1", "load_share_pair_0"]].to_list() == [0.4, 0.6]
+
+
+def test_spectra_are_lines_at_their_orders_without_the_mean():
+    response = pd.DataFrame({"mesh_cycle": [0.0, 0.5], "mesh": "p/upper", "deflection_um": [40.0, 42.0]})
+    spectrum = pd.DataFrame(
+        {"mesh": "p/upper", "order": [0.0, 0.5, 1.0, 2.0], "amplitude_um": [40.0, 0.0, 3.0, 1.0]}
+    )
+    (lines,) = deflections(response, spectrum, ["p"], 7500.0).axes[1].collections
+    drawn = np.array([segment[1] for segment in lines.get_segments()])
+    assert drawn[:, 0] == pytest.approx([1.0, 2.0], abs=0.1)
+    assert drawn[:, 1].tolist() == [3.0, 1.0]
