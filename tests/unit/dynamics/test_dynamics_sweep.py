@@ -134,7 +134,7 @@ def test_the_campbell_diagram_marks_a_resonance_at_its_order_of_the_mesh_frequen
     frequencies = pd.DataFrame({"frequency_hz": [750.0], "class": ["pinion"]})
     # The text of a name is for readers: the marks come from the numbers beside it.
     figure = campbell(frequencies, peaks.assign(order=2.0), jumps.iloc[:0], layout.pinion_teeth, 5600.0)
-    marks = next(line for line in figure.axes[0].lines if line.get_label() == "peaks of the sweep")
+    marks = next(line for line in figure.axes[0].lines if line.get_label() == "peaks")
     np.testing.assert_allclose(
         marks.get_ydata(), 2.0 * layout.pinion_teeth * np.asarray(marks.get_xdata()) / 60.0
     )
