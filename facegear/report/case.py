@@ -7,6 +7,7 @@ from typing import Any
 import pandas as pd
 
 from facegear.report.contents import CHAPTERS, caption_of
+from facegear.report.glance import glance_chapter
 from facegear.report.machine import machine_chapter
 from facegear.report.page import Chapter, Picture, Table, render
 
@@ -19,6 +20,8 @@ BEARINGS = (
     "Force of every body on its bearing at the nominal speed; static: at rest under the mean torques; peak: "
     "largest magnitude. A pinion's x is tangential, its y along the gears' axis; a face gear's axis is z"
 )
+DRAWINGS = ("layout", "tooth_pair")
+"""Figures that show the machine; the first that exists stands on the first screen."""
 LARGEST_SVG = 1_500_000
 """Bytes; a larger drawing is shown as its png."""
 
@@ -38,10 +41,16 @@ def case_report(
     """
     known = {name for _, _, names in CHAPTERS for name in names}
     others = [name for name in pictures if name not in known]
-    chapters = [machine_chapter(values, tables, pair)]
+    drawing = next((name for name in DRAWINGS if name in pictures), None)
+    drawn = () if drawing is None else (_picture(pictures[drawing], caption_of(drawing, values)),)
+    chapters = [glance_chapter(values, tables, drawn, pair), machine_chapter(values, tables)]
     for title, text, names in CHAPTERS:
         shown = [*names, *(others if title == "Load sharing" else ())]
-        found = [_picture(pictures[name], caption_of(name, values)) for name in shown if name in pictures]
+        found = [
+            _picture(pictures[name], caption_of(name, values))
+            for name in shown
+            if name in pictures and name != drawing
+        ]
         own = _tables(title, tables)
         if found or own:
             chapters.append(Chapter(title, text, found, own))

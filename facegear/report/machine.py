@@ -32,15 +32,11 @@ NUMBERS = {
 """Key numbers in their order: words, unit, significant digits."""
 
 
-def machine_chapter(
-    values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None
-) -> Chapter:
-    """Config and key numbers; `tables` may hold ratings, bodies, meshes; `pair` is the geometry's record."""
-    found = (
-        [Table("Key numbers", key_numbers(tables, pair))] if tables.get("ratings") is not None or pair else []
-    )
+def machine_chapter(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> Chapter:
+    """Config, torques and powers; `tables` may hold ratings, bodies, meshes."""
+    found = []
     if "bodies" in tables:
-        found += [
+        found = [
             Table("Torque and power of every body; positive: brought in", tables["bodies"], 5),
             Table(
                 "Every mesh at rest with mean stiffness; the force is along the line of action",
@@ -53,7 +49,7 @@ def machine_chapter(
 
 def key_numbers(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None) -> pd.DataFrame:
     """Columns quantity, value, unit, as text; only what is known."""
-    known = _rated(tables) | ({} if pair is None else _teeth(pair))
+    known = rated(tables) | ({} if pair is None else _teeth(pair))
     rows = []
     for name, (words, unit, digits) in NUMBERS.items():
         if name in known:
@@ -63,7 +59,8 @@ def key_numbers(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | No
     return pd.DataFrame(rows, columns=["quantity", "value", "unit"])
 
 
-def _rated(tables: Mapping[str, pd.DataFrame]) -> dict[str, float]:
+def rated(tables: Mapping[str, pd.DataFrame]) -> dict[str, float]:
+    """Numbers of the ratings by quantity, and the torque of the output gear; empty without a machine."""
     if "ratings" not in tables:
         return {}
     bodies = tables["bodies"]
@@ -110,7 +107,7 @@ def _text(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
 
 def _balance(tables: Mapping[str, pd.DataFrame]) -> str:
     """What the powers say: in balance, or by how much equation (13) as printed misses it."""
-    numbers = _rated(tables)
+    numbers = rated(tables)
     if "power_imbalance" not in numbers:
         return ""
     missing = numbers["power_imbalance"]

@@ -6,6 +6,7 @@ import pytest
 import facegear
 from facegear.config.needs import stage_needs
 from facegear.report.contents import caption_of
+from facegear.report.glance import verdicts, warnings
 from facegear.report.machine import key_numbers, machine_chapter
 from facegear.stages.ratings import ratings
 
@@ -29,9 +30,9 @@ def test_key_numbers_are_ratio_torque_speed_frequency_and_power(example):
 
 def test_a_machine_in_balance_says_so_and_one_out_of_balance_by_how_much(example):
     values, tables = example
-    assert "Power in equals power out" in machine_chapter(values, tables, None).text
+    assert "Power in equals power out" in machine_chapter(values, tables).text
     off = tables["ratings"].assign(value=lambda t: t["value"].mask(t["quantity"] == "power_imbalance", -0.07))
-    assert "-7 % of the larger" in machine_chapter(values, {**tables, "ratings": off}, None).text
+    assert "-7 % of the larger" in machine_chapter(values, {**tables, "ratings": off}).text
 
 
 def test_the_shift_of_the_contact_path_is_a_number():
@@ -53,3 +54,35 @@ def test_figures_are_named_by_content_and_numbered_after_the_paper_only_where_it
     assert caption_of("mesh_sweep", paper).startswith("Figure 12 of the paper")
     for name in ("study_backlash_idlers", "mesh_sweep", "campbell"):
         assert "Figure" not in caption_of(name, own)
+
+
+def test_the_first_screen_warns_of_what_the_results_hide(example):
+    values, tables = example
+    contact = {
+        "torque_n_m": [300.0, 600.0],
+        "k_average_mean_n_per_m": 5e8,
+        "ste_peak_to_peak_um": 4.0,
+        "ste_peak_to_peak_half_um": [3.99, 3.0],
+        "peak_pressure_mpa": 1500.0,
+    }
+    edges = pd.DataFrame({"torque_n_m": [300.0, 600.0], "edge_pressure_mpa": [0.0, 900.0]})
+    gap = {"gap_um": 7.8, "gear_part": "tip edge", "pinion_part": "fillet", "gear_radius_mm": 259.6}
+    pair = {"interference": gap, "smallest_gap": gap, "backlash_um": {"smallest": 60.0}}
+    found = {**tables, "by_torque": pd.DataFrame(contact), "ltca": edges}
+    told = [" ".join(row) for row in warnings(values, found, pair)]
+    for words in (
+        "the bodies interfere",
+        "from 600 N m on edges",
+        "contact at 600 N m peak-to-peak",
+        "solved up to 600 N m",
+        "the dynamics take 100 um, the teeth as assembled have 60.0 um",
+    ):
+        assert any(words in one for one in told), words
+    assert len(told) == len(set(told))
+    clean = {"gap_um": 7.8} | gap
+    quiet = pd.DataFrame(contact).assign(ste_peak_to_peak_half_um=4.0, torque_n_m=2000.0)
+    pair = {"interference": None, "smallest_gap": clean, "backlash_um": {"smallest": 100.0}}
+    assert not [
+        row for row in warnings(values, {**tables, "by_torque": quiet}, pair) if row[0] != "mesh stiffness"
+    ]
+    assert next(verdicts(found, pair))[1].startswith("free; smallest gap beside the contact 7.8 um")

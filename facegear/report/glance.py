@@ -1,0 +1,115 @@
+"""The report's first screen: machine drawing, key numbers, verdicts and warnings."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import pandas as pd
+
+from facegear.report.machine import BALANCED, key_numbers, rated
+from facegear.report.page import Chapter, Picture, Table
+
+POSITIONS_MATTER = 0.05
+"""Relative change of a peak-to-peak value with half of the positions that is worth a warning."""
+BACKLASH_DIFFERS_UM = 1.0
+
+
+def glance_chapter(
+    values: Mapping[str, Any],
+    tables: Mapping[str, pd.DataFrame],
+    drawing: Sequence[Picture],
+    pair: Mapping[str, Any] | None,
+) -> Chapter:
+    """What is read first, from the same inputs as the whole report; `drawing` shows the machine."""
+    found = []
+    for caption, rows in (("Verdicts", verdicts(tables, pair)), ("Warnings", warnings(values, tables, pair))):
+        found.append(Table(caption, pd.DataFrame(list(rows), columns=["about", "what was found"])))
+    numbers = key_numbers(tables, pair)
+    first = [] if numbers.empty else [Table("Key numbers", numbers)]
+    return Chapter("At a glance", "", drawing, [*first, *found])
+
+
+def verdicts(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None) -> Iterator[tuple[str, str]]:
+    """Subject and finding, in the order of computation."""
+    if pair is not None:
+        gap = pair["interference"] or pair["smallest_gap"]
+        parts = f"gear {gap['gear_part']} against pinion {gap['pinion_part']}"
+        where = f"{parts}, radius {gap['gear_radius_mm']:.1f} mm"
+        found = "interference" if pair["interference"] else "free; smallest gap beside the contact"
+        yield "teeth", f"{found} {gap['gap_um']:.1f} um ({where})"
+    for row in tables.get("by_torque", pd.DataFrame()).itertuples():
+        yield (
+            f"contact at {row.torque_n_m:g} N m",
+            f"mean stiffness {row.k_average_mean_n_per_m / 1e8:.3f}e8 N/m, peak-to-peak transmission error "
+            f"{row.ste_peak_to_peak_um:.2f} um, largest pressure {row.peak_pressure_mpa:.0f} MPa",
+        )
+    for row in _nominal(tables).itertuples():
+        width = f" ± {row.half_width:.2f}" if row.half_width > 0.005 else ""
+        yield f"load sharing, {row.group}", f"mean coefficient {row.mean:.3f}{width}, {row.motion}"
+    if "jumps" in tables:
+        speeds = tables["jumps"].groupby("direction")["speed_after_rpm"].unique()
+        told = [f"{len(at)} {name} ({at.min():.0f} to {at.max():.0f} rpm)" for name, at in speeds.items()]
+        yield "jumps in the sweep", ", ".join(told) or "none"
+    if "scorecard" in tables:
+        counted = tables["scorecard"][tables["scorecard"]["counted"]]["verdict"].value_counts(sort=False)
+        yield "claims of the paper", ", ".join(f"{name} {rows}" for name, rows in counted.items())
+
+
+def warnings(
+    values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None
+) -> Iterator[tuple[str, str]]:
+    """Subject and what to keep in mind, from the config and the results."""
+    if pair is not None and pair["interference"]:
+        yield "teeth", "the bodies interfere: contact and all that follows leave that out"
+    yield from _contact_warnings(values, tables)
+    transmission = values["transmission"]
+    if transmission is None:
+        return
+    if pair is not None:
+        own, teeth = transmission["backlash_um"], pair["backlash_um"]["smallest"]
+        if own is not None and abs(own - teeth) > BACKLASH_DIFFERS_UM:
+            yield "backlash", f"the dynamics take {own:g} um, the teeth as assembled have {teeth:.1f} um"
+    missing = rated(tables).get("power_imbalance", 0.0)
+    if abs(missing) > BALANCED:
+        yield "power", f"in less out {100 * missing:.3g} %: lever arms as printed are not those of the teeth"
+    for row in _nominal(tables).itertuples():
+        if row.lost_share > 0.0:
+            yield (
+                f"load sharing, {row.group}",
+                f"a path is out of contact {100 * row.lost_share:.0f} % of the time",
+            )
+        if not str(row.motion).startswith("period-"):
+            yield f"load sharing, {row.group}", f"the motion is {row.motion}: numbers are averages"
+
+
+def _contact_warnings(
+    values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]
+) -> Iterator[tuple[str, str]]:
+    if values["mesh_stiffness"]["source"] == "fem_scaled":
+        yield "mesh stiffness", "only its shape is computed; its mean is the config's"
+    if "ltca" in tables:
+        edges = tables["ltca"].groupby("torque_n_m")["edge_pressure_mpa"].max()
+        if (edges > 0.0).any():
+            told = f"from {edges.index[edges > 0.0][0]:g} N m on edges of teeth carry load"
+            yield "contact", f"{told}; the pressure there has no limit as the mesh is refined"
+    if "by_torque" not in tables:
+        return
+    found = tables["by_torque"]
+    change = 1.0 - found["ste_peak_to_peak_half_um"] / found["ste_peak_to_peak_um"]
+    for row in found[change > POSITIONS_MATTER].itertuples():
+        yield (
+            f"contact at {row.torque_n_m:g} N m",
+            f"peak-to-peak transmission error {row.ste_peak_to_peak_um:.2f} um, "
+            f"{row.ste_peak_to_peak_half_um:.2f} with half of the positions: more of them may change it",
+        )
+    if "meshes" in tables:
+        largest, solved = tables["meshes"]["pinion_torque_n_m"].abs().max(), found["torque_n_m"].max()
+        if largest > solved:
+            yield (
+                "contact",
+                f"a mesh carries {largest:.0f} N m at rest, contact was solved up to {solved:g} N m",
+            )
+
+
+def _nominal(tables: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
+    summary = tables.get("summary")
+    return pd.DataFrame() if summary is None else summary[summary["study"] == "nominal"]
