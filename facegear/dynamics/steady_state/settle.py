@@ -50,10 +50,10 @@ def settle(
     taken only once the run is drawn in by it. An unstable orbit, on which exact symmetry may hold a run, is
     left by a kick. `ends`: states that the run passed through before, oldest first.
     """
-    return _Run(packed, work, state, settings, ends).settled()
+    return Run(packed, work, state, settings, ends).settled()
 
 
-class _Run:
+class Run:
     """A run under way. `found` is the orbit that Newton's method last came to, `found_at` the period of it.
 
     Newton's method, whose cost is counted in mesh periods, may take as long as the run itself.
@@ -81,7 +81,7 @@ class _Run:
             last = self.periods_run >= self.settings.settle
             near = closing(self.packed, self.ends, self.settings)
             result = self._refined(near, last) if self.settings.refine else None
-            if result is None:
+            if result is None and len(self.ends):  # a kick leaves none: the run begins anew
                 result = self._by_itself(near)
             if result is not None:
                 return result

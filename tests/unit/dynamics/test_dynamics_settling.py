@@ -11,6 +11,7 @@ from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.exponent import smooth_mean
 from facegear.dynamics.steady_state.orbits import shoot
+from facegear.dynamics.steady_state.settle import Run
 from facegear.dynamics.steady_state.simulate import steady_state
 
 FOLD_UP = 0.82846394
@@ -40,6 +41,18 @@ def test_a_run_started_on_an_unstable_orbit_ends_on_a_stable_one():
     on_lower = response.state.displacement[0] == pytest.approx(1.1624504362, abs=1e-7)
     on_upper = response.state.displacement[0] == pytest.approx(0.8338430125, abs=1e-7)
     assert on_lower or on_upper
+
+
+def test_a_run_that_rests_on_an_unstable_orbit_it_knows_is_moved_off_it():
+    system, orbit = unstable_orbit()
+    packed = pack(system, SPEED)
+    state = np.array([orbit.displacement, orbit.velocity])
+    patient = Settings(tolerance=1e-12, periodic_residual=1e-5, dwell=16)
+    run = Run(packed, make_work(packed, 16), state, patient, None)
+    run.found = orbit
+    settled = run.settled()
+    assert run.kicks == 1
+    assert settled.orbit is not None and abs(settled.orbit.multipliers[0]) < 1.0
 
 
 @pytest.mark.parametrize("refine", [True, False])
