@@ -22,7 +22,7 @@ def typical_modes(frequencies: pd.DataFrame) -> list[tuple[int, ...]]:
     for _, rows in elastic.groupby(["class", "symbols"], sort=False):
         first = rows.loc[rows["multiplicity"].idxmin()]
         found.append(tuple(int(first["order"]) + i for i in range(int(first["multiplicity"]))))
-    return found
+    return sorted(found)
 
 
 def amplitudes(shapes: pd.DataFrame, orders: tuple[int, ...]) -> NDArray[np.float64]:

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.text import Text
 
 from facegear.contact.columns import LTCA_COLUMNS, SHARES
 from facegear.plots.contact import closed
@@ -68,3 +69,13 @@ def test_spectra_are_lines_at_their_orders_without_the_mean():
     drawn = np.array([segment[1] for segment in lines.get_segments()])
     assert drawn[:, 0] == pytest.approx([1.0, 2.0], abs=0.1)
     assert drawn[:, 1].tolist() == [3.0, 1.0]
+
+
+def test_text_is_at_least_12_px_high_on_a_page_500_px_wide(modes):
+    response = pd.DataFrame({"mesh_cycle": [0.0, 0.5], "mesh": "p/upper", "deflection_um": [40.0, 42.0]})
+    spectrum = pd.DataFrame({"mesh": ["p/upper"], "order": [1.0], "amplitude_um": [3.0]})
+    margins = 40
+    for figure in (mode_shapes(*modes), deflections(response, spectrum, ["p"], 7500.0)):
+        scale = min(1.0, (500 - margins) / (96 * figure.get_figwidth()))
+        shown = [text for text in figure.findobj(Text) if text.get_text()]
+        assert min(text.get_fontsize() for text in shown) * 96 / 72 * scale >= 12.0 - 1e-9
