@@ -6,7 +6,7 @@ from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
 from facegear.config.dynamics import MAX_SPEED_RPM
-from facegear.dynamics.branches.machine import BranchPlan
+from facegear.dynamics.branches.plan import BranchPlan
 
 Parameter = Literal["torque", "backlash", "mesh_damping", "bearing_stiffness"]
 

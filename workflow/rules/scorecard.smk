@@ -23,7 +23,7 @@ rule scorecard:
     input:
         claims=REPRODUCTION.claims if REPRODUCTION else [],
         sets=REPRODUCTION.sets if REPRODUCTION and REPRODUCTION.sets else [],
-        outcomes=expand(rules.scorecard_set.output.outcomes, set=stored_sets(), allow_missing=True),
+        outcomes=expand(rules.scorecard_set.output.outcomes, set=list(SETS), allow_missing=True),
         frequencies=rules.modal.output.frequencies,
         tvms=rules.stiffness.output.tvms,
         load_dependence=rules.load_dependence.output.table,

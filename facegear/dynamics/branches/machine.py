@@ -1,7 +1,6 @@
 """The branches of a machine over its speed: what the stage asks for, from a plan."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -13,6 +12,7 @@ from facegear.dynamics.branches.family import machine_plane, speed_family
 from facegear.dynamics.branches.locate import Kind
 from facegear.dynamics.branches.loci import Locus, LocusRun, follow_locus
 from facegear.dynamics.branches.period_map import PeriodMap
+from facegear.dynamics.branches.plan import BranchPlan
 from facegear.dynamics.branches.points import Point, at_parameter
 from facegear.dynamics.branches.survey import Loss, Survey, losses, survey
 from facegear.dynamics.motion import Settings
@@ -24,28 +24,9 @@ TRIES = 12
 SETTLING = Settings(tolerance=1e-6, settle=256, window=64, extensions=1)
 
 
-@dataclass(frozen=True)
-class BranchPlan:
-    """Speeds in rpm, lengths in m. spread: half width of the box of random starts as mesh deflection."""
-
-    from_rpm: float
-    to_rpm: float
-    nominal_rpm: float
-    tolerance: float
-    longest_period: int
-    most_branches: int
-    speeds_rpm: tuple[float, ...]
-    starts: int
-    spread: float
-    seed: int
-    parameters: tuple[str, ...]
-    factors: tuple[float, float]
-    nearest: int
-
-    @property
-    def run(self) -> Run:
-        """Range of the branches."""
-        return Run(self.from_rpm, self.to_rpm)
+def plan_range(plan: BranchPlan) -> Run:
+    """Range of the branches."""
+    return Run(plan.from_rpm, plan.to_rpm)
 
 
 def machine_flow(model: Model, plan: BranchPlan) -> PeriodMap:
@@ -94,7 +75,7 @@ def machine_survey(
     """All branches of a machine: of period one, those that leave it, and those of motions found elsewhere."""
     start = first_orbit(model, plan)
     flow = machine_flow(model, plan)
-    return survey(flow, start, plan.run, found, plan.longest_period, plan.most_branches, progress)
+    return survey(flow, start, plan_range(plan), found, plan.longest_period, plan.most_branches, progress)
 
 
 def margins(model: Model, plan: BranchPlan, branches: Sequence[Branch]) -> list[Loss]:
@@ -102,7 +83,7 @@ def margins(model: Model, plan: BranchPlan, branches: Sequence[Branch]) -> list[
     speed = plan.nominal_rpm
     across = machine_plane(model, "torque").across(speed)
     families = [
-        (speed_family(model), speed, plan.run),
+        (speed_family(model), speed, plan_range(plan)),
         (across, 1.0, Run(*plan.factors)),
     ]
     return losses(branches, families, speed)

@@ -1,10 +1,11 @@
 """A stored set of undisclosed inputs as changes of the config."""
 
+import csv
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from facegear.paper.identify.inputs import WAVEFORM_TERMS, Waveform
 
@@ -37,12 +38,10 @@ def config_changes(row: Mapping[str, Any], error_um: float) -> dict[str, Any]:
     }
 
 
-def named_set(sets: pd.DataFrame, name: str) -> dict[str, Any]:
-    """The row of a set. Raises KeyError if there is none."""
-    rows = sets[sets["set"].astype(str) == name]
-    if rows.empty:
-        raise KeyError(name)
-    return rows.iloc[0].to_dict()
+def stored_sets(path: str | Path) -> dict[str, dict[str, str]]:
+    """Name -> the row of each stored set but the recommended one, which is the config's own."""
+    with Path(path).open(encoding="utf-8", newline="") as file:
+        return {row["set"]: row for row in csv.DictReader(file) if row["recommended"] == "False"}
 
 
 def _wrapped(degrees: float) -> float:

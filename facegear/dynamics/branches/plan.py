@@ -1,0 +1,22 @@
+"""What to find of a machine's branches; plain numbers, so that a config is read without the solvers."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class BranchPlan:
+    """Speeds in rpm, lengths in m. spread: half width of the box of random starts as mesh deflection."""
+
+    from_rpm: float
+    to_rpm: float
+    nominal_rpm: float
+    tolerance: float
+    longest_period: int
+    most_branches: int
+    speeds_rpm: tuple[float, ...]
+    starts: int
+    spread: float
+    seed: int
+    parameters: tuple[str, ...]
+    factors: tuple[float, float]
+    nearest: int
