@@ -7,7 +7,6 @@ import numpy as np
 
 from facegear.geometry.design import Assembly, PairDesign
 from facegear.geometry.placement import mirrored
-from facegear.geometry.unloaded import unloaded_contact
 
 POSITIONS = 4
 
@@ -21,6 +20,9 @@ def normal_backlash(design: PairDesign) -> float:
     """
     if design.assembly == Assembly():
         return design.pinion.thinning
+    # Imported here: a start reads configs, most of them without the errors that need compiled geometry.
+    from facegear.geometry.unloaded import unloaded_contact
+
     phi1 = ((np.arange(POSITIONS) + 0.5) / POSITIONS - 0.5) * 2 * pi / design.pinion.teeth
     drive = unloaded_contact(design, phi1)
     back = drive if design.assembly.offset == 0 else unloaded_contact(mirrored(design), phi1)

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline
 
 from facegear.errors import NotConverged
 from facegear.geometry import closed_forms
@@ -101,11 +101,13 @@ def tip_edge(design: PairDesign, radius: ArrayLike) -> Array:
 
 
 @lru_cache(maxsize=16)
-def tip_roll(design: PairDesign) -> CubicSpline:
+def tip_roll(design: PairDesign) -> "scipy.interpolate.CubicSpline":
     """th (rad) of the flank's tip edge by gear radius (m)."""
     gear = design.face_gear
     radius = np.linspace(gear.inner_radius, gear.outer_radius, 65)
-    return CubicSpline(radius, roll_and_psi_at_height(design, radius, design.gear_tip_plane)[0])
+    return scipy.interpolate.CubicSpline(
+        radius, roll_and_psi_at_height(design, radius, design.gear_tip_plane)[0]
+    )
 
 
 def _newton(residual: Callable[[Array], tuple[Array, Array]], psi: Array, where: str) -> Array:

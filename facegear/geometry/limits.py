@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import acos, atan, cos, hypot, pi, sin, sqrt, tan
 
-from scipy.optimize import brentq, minimize_scalar
+import scipy
 
 from facegear.errors import GeometryError, NotConverged
 from facegear.geometry import face_gear
@@ -81,7 +81,7 @@ def _last(room: Callable[[PairDesign, float], float], design: PairDesign, low: f
         return low
     if room(design, high) >= 0:
         return high
-    return float(brentq(lambda radius: room(design, radius), low, high, xtol=1e-9))
+    return float(scipy.optimize.brentq(lambda radius: room(design, radius), low, high, xtol=1e-9))
 
 
 def _land_left(design: PairDesign, radius: float) -> float:
@@ -103,7 +103,7 @@ def undercut_radius(design: PairDesign) -> float:
     def margin(psi: float) -> float:
         return tan(psi) / 2 * (1 + sqrt(1 + 4 / (ratio * cos(psi)) ** 2)) - roll
 
-    psi = brentq(margin, 0.0, atan(roll), xtol=1e-15)
+    psi = scipy.optimize.brentq(margin, 0.0, atan(roll), xtol=1e-15)
     return hypot(base * (sin(psi) - roll * cos(psi)), base / (ratio * cos(psi)))
 
 
@@ -115,7 +115,11 @@ def tip_plane_radius(design: PairDesign) -> float:
     def radius(psi: float) -> float:
         return hypot(base * (1 - height * cos(psi)) / sin(psi), base / (ratio * cos(psi)))
 
-    return float(minimize_scalar(radius, bounds=(1e-4, 1.0), method="bounded", options={"xatol": 1e-10}).fun)
+    return float(
+        scipy.optimize.minimize_scalar(
+            radius, bounds=(1e-4, 1.0), method="bounded", options={"xatol": 1e-10}
+        ).fun
+    )
 
 
 def _pointing_radii(design: PairDesign) -> tuple[float, float]:
@@ -135,7 +139,7 @@ def _pointing_radii(design: PairDesign) -> tuple[float, float]:
         raise GeometryError(
             "face_gear.addendum_modules", round(tip, 6), "less: the tooth is pointed everywhere"
         )
-    planar_psi = brentq(planar, thickest, pi / 2, xtol=1e-15)
+    planar_psi = scipy.optimize.brentq(planar, thickest, pi / 2, xtol=1e-15)
     exact_psi = _root_near(exact, planar_psi)
     roll = (height - cos(exact_psi)) / sin(exact_psi)
     exact_radius = hypot(base * (sin(exact_psi) - roll * cos(exact_psi)), base / (ratio * cos(exact_psi)))
@@ -148,6 +152,6 @@ def _root_near(function: Callable[[float], float], guess: float) -> float:
     while width < 1.0:
         low, high = max(guess - width, 1e-3), min(guess + width, pi / 2 - 1e-6)
         if function(low) * function(high) <= 0:
-            return brentq(function, low, high, xtol=1e-15)
+            return scipy.optimize.brentq(function, low, high, xtol=1e-15)
         width *= 2
     raise NotConverged("geometry", "the pointing limit", f"brackets up to 1 rad around {guess:.4f} rad")

@@ -6,10 +6,16 @@ reruns when, and only when, code that it can reach has changed. Comments, docstr
 
 import ast
 import hashlib
+import json
+import sys
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+
+from facegear.errors import FacegearError
+from facegear.io.atomic import atomic_path
 
 PACKAGE = "facegear"
 STAGES = "facegear.stages."
@@ -17,10 +23,38 @@ STAGES = "facegear.stages."
 
 @dataclass(frozen=True)
 class _Source:
-    """What counts of a file: its code without docstrings, and the modules of the package that it imports."""
+    """What counts of a file: hash of its code without docstrings, and what it imports of the package.
+
+    Of `from package.module import name` that is `package.module.name` too, be it a module or not.
+    """
 
     code: str
-    modules: tuple[str, ...]
+    names: tuple[str, ...]
+
+
+_known: dict[str, _Source] = {}
+"""By name below the root, size and time of change: what `remembered` read, and all that was parsed since."""
+
+
+@contextmanager
+def remembered(file: Path) -> Iterator[None]:
+    """Keep what counts of each source file in `file` for the next process; without it, all are parsed again.
+
+    A file that cannot be read or written, or that another version wrote, is passed over.
+    """
+    version = f"{sys.version_info[:2]} {hashlib.sha256(Path(__file__).read_bytes()).hexdigest()}"
+    with suppress(OSError, ValueError, KeyError, TypeError):
+        stored = json.loads(file.read_text(encoding="utf-8"))
+        if stored["version"] == version:
+            _known.update(
+                {key: _Source(code, tuple(names)) for key, (code, names) in stored["files"].items()}
+            )
+    before = len(_known)
+    yield
+    if len(_known) > before:
+        files = {key: (source.code, source.names) for key, source in _known.items()}
+        with suppress(OSError, FacegearError), atomic_path(file) as partial:
+            partial.write_text(json.dumps({"version": version, "files": files}), encoding="utf-8")
 
 
 def fingerprint(script: str | Path, root: str | Path) -> str:
@@ -32,7 +66,7 @@ def fingerprint(script: str | Path, root: str | Path) -> str:
     root, script = Path(root), Path(script)
     code = _source(script, root)
     own = _hash(code.code, reached_modules(script, root), root)
-    stages = [module for module in code.modules if module.startswith(STAGES)]
+    stages = [name for name in code.names if name.startswith(STAGES) and _exists(name, root)]
     return ".".join([own, *(stage_fingerprint(module, root) for module in stages)])
 
 
@@ -57,21 +91,29 @@ def reached_modules(script: str | Path, root: str | Path) -> tuple[str, ...]:
     """Names of the package's modules that a script imports, directly or through others, sorted."""
     root = Path(root)
     reached: set[str] = set()
-    todo = list(_source(Path(script), root).modules)
+    todo = list(_source(Path(script), root).names)
     while todo:
         module = todo.pop()
-        if module not in reached:
+        if module not in reached and _exists(module, root):
             reached.add(module)
-            todo.extend(_source(_file(module, root), root).modules)
+            todo.extend(_source(_file(module, root), root).names)
     return tuple(sorted(reached))
 
 
 def _source(path: Path, root: Path) -> _Source:
-    return _parsed(path, root, path.stat().st_mtime_ns)
+    found = path.stat()
+    return _looked_up(path, root, found.st_size, found.st_mtime_ns)
 
 
 @cache
-def _parsed(path: Path, root: Path, modified: int) -> _Source:
+def _looked_up(path: Path, root: Path, size: int, modified: int) -> _Source:
+    key = f"{path.relative_to(root).as_posix()} {size} {modified}"
+    if key not in _known:
+        _known[key] = _parsed(path, root)
+    return _known[key]
+
+
+def _parsed(path: Path, root: Path) -> _Source:
     tree = ast.parse(path.read_text(encoding="utf-8"))
     found: set[str] = set()
     for node in _executed(tree):
@@ -83,8 +125,7 @@ def _parsed(path: Path, root: Path, modified: int) -> _Source:
             body = node.body
             if body and isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Constant):
                 node.body = body[1:] or ([] if isinstance(node, ast.Module) else [ast.Pass()])
-    modules = sorted(module for module in found if _exists(module, root))
-    return _Source(ast.unparse(tree), tuple(modules))
+    return _Source(hashlib.sha256(ast.unparse(tree).encode()).hexdigest(), tuple(sorted(found)))
 
 
 def _executed(tree: ast.AST) -> Iterator[ast.AST]:
@@ -103,10 +144,12 @@ def _names(node: ast.Import | ast.ImportFrom) -> list[str]:
     return [node.module] + [f"{node.module}.{alias.name}" for alias in node.names]
 
 
+@cache
 def _exists(module: str, root: Path) -> bool:
     return _file(module, root).is_file()
 
 
+@cache
 def _file(module: str, root: Path) -> Path:
     base = root.joinpath(*module.split("."))
     return base.with_suffix(".py") if base.with_suffix(".py").is_file() else base / "__init__.py"

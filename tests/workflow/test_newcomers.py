@@ -6,7 +6,7 @@ import time
 
 import pandas as pd
 import pytest
-from projects import ROOT, Project, environment
+from projects import ROOT, Project, copy_sources, environment
 
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("newcomers")]
 
@@ -73,3 +73,19 @@ def test_an_interrupted_run_ends_in_one_line_within_three_seconds(tmp_path):
     assert told[-1] == "stopped; the same command goes on from here"
     assert len(told) <= 5, told
     assert not list((tmp_path / "results").rglob(".[0-9]*"))
+
+
+def test_a_moved_checkout_has_nothing_to_do(tmp_path):
+    """The sets of the scorecard ran again: an absolute path stood in their inputs."""
+    here, there = copy_sources(tmp_path / "here"), tmp_path / "there"
+    asked = ("--", "results/harmonics_only/modal/frequencies.csv")
+    Project(here, here).run("--configfile", str(here / "config" / "harmonics_only.yaml"), *asked)
+    here.rename(there)
+    moved = Project(there, there)
+    done = moved.run("-n", "--configfile", str(there / "config" / "harmonics_only.yaml"), *asked)
+    assert "Nothing to be done" in done.stdout + done.stderr
+    paper = ("--configfile", str(there / "config" / "paper.yaml"), "--", "results/paper/scorecard.csv")
+    done = moved.run("-n", *paper)
+    inputs = [line for line in (done.stdout + done.stderr).splitlines() if line.startswith("    input:")]
+    assert len(inputs) > 20
+    assert not [line for line in inputs if str(tmp_path) in line]

@@ -16,7 +16,7 @@ from facegear.config.notes import notes
 from facegear.errors import FacegearError
 from facegear.io.run_lock import hold
 from facegear.paper.config.reproduction import design_cases, read_reproduction
-from facegear.provenance.fingerprint import fingerprint
+from facegear.provenance.fingerprint import fingerprint, remembered
 
 DEFAULT_CONFIGFILE = ROOT / "config" / "paper.yaml"
 CONFIGFILES = [Path(file) for file in workflow.configfiles] or [DEFAULT_CONFIGFILE]

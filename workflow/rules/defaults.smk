@@ -1,6 +1,7 @@
 include: "functions/defaults.smk"
 
 
-for job in workflow.rules:
-    if job.script:
-        complete(job)
+with remembered(Path(".snakemake/facegear_sources.json")):
+    for job in workflow.rules:
+        if job.script:
+            complete(job)

@@ -1,11 +1,15 @@
 """A stage's fingerprint changes when, and only when, code it can reach changes."""
 
 import os
+import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-from facegear.provenance.fingerprint import fingerprint, reached_modules
+from facegear.provenance import fingerprint as provenance_fingerprint
+from facegear.provenance.fingerprint import fingerprint, reached_modules, remembered
 
 ROOT = Path(__file__).parents[3]
 
@@ -69,3 +73,40 @@ def test_package_never_imports_snakemake():
         if "import snakemake" in path.read_text() or "from snakemake" in path.read_text()
     ]
     assert guilty == []
+
+
+def test_what_is_remembered_gives_the_same_fingerprint_without_parsing(package, tmp_path, monkeypatch):
+    """A start parsed some 300 files each time, and so did every job."""
+    file = tmp_path / "sources.json"
+    with remembered(file):
+        before = fingerprint(package / "script.py", package)
+    moved = shutil.copytree(package, tmp_path / "moved")
+    monkeypatch.setattr(provenance_fingerprint, "_known", {})
+    monkeypatch.setattr(provenance_fingerprint, "_parsed", None)
+    with remembered(file):
+        assert fingerprint(moved / "script.py", moved) == before
+    monkeypatch.undo()
+    edit(moved / "facegear/io/tables.py", "x = 2\n")
+    with remembered(file):
+        assert fingerprint(moved / "script.py", moved) != before
+
+
+@pytest.mark.parametrize("text", ["", "{}", "[]", '{"version": "another", "files": {}}', "\xff"])
+def test_a_damaged_memory_is_passed_over(package, tmp_path, text):
+    file = tmp_path / "sources.json"
+    file.write_text(text, encoding="latin-1")
+    with remembered(file):
+        assert fingerprint(package / "script.py", package)
+
+
+def test_reading_configs_leaves_solvers_and_tables_unloaded():
+    """They took most of the five seconds in which a start with nothing to do ended."""
+    code = (
+        "import sys, facegear.paper.config.reproduction\n"
+        "from facegear.config.cases import expand_cases\n"
+        "from facegear.config.load import load_values\n"
+        "expand_cases(load_values(['config/paper.yaml'], {}))\n"
+        "print(*{'numba', 'pandas', 'skfem', 'xarray', 'matplotlib', 'scipy.interpolate'} & {*sys.modules})"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == ""
