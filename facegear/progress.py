@@ -1,14 +1,19 @@
-"""Progress of long stages, with an estimate of the time left."""
+"""Progress of long stages, with an estimate of the time left that does not jump."""
 
 import sys
 import time
 from typing import TextIO
 
+SLOWER = 1.25
+"""The time left is told to have risen only by more than this factor."""
+
 
 class Progress:
     """Print `label: done/total, about N s left` every `interval` seconds.
 
-    The stream is standard error, which a workflow stage also copies to its log.
+    The pace leaves out the first step, in which code is compiled; until a second one nothing is estimated.
+    The end that is told follows the pace half way from line to line. The stream is standard error, which a
+    workflow stage also copies to its log.
     """
 
     def __init__(self, label: str, total: int, interval: float = 5.0, stream: TextIO | None = None) -> None:
@@ -16,16 +21,27 @@ class Progress:
         self.stream = stream
         self.done = 0
         self.start = self.last = time.monotonic()
+        self.first: tuple[float, int] | None = None
+        self.told: tuple[float, float] | None = None
 
     def step(self, count: int = 1) -> None:
         """Count work as done; prints at most once an interval."""
         self.done += count
         now = time.monotonic()
-        if now - self.last < self.interval and self.done < self.total:
+        if self.first is None:
+            self.first = now, self.done
+        if (now - self.last < self.interval and self.done < self.total) or now - self.start < self.interval:
             return
         self.last = now
-        if now - self.start < self.interval:
-            return
-        left = (now - self.start) / self.done * (self.total - self.done)
-        line = f"{self.label}: {self.done}/{self.total}, about {left:.0f} s left"
-        print(line, file=self.stream or sys.stderr, flush=True)
+        known = self.first[1] < self.done < self.total
+        left = f", about {self._left(now, self.first):.0f} s left" if known else ""
+        print(f"{self.label}: {self.done}/{self.total}{left}", file=self.stream or sys.stderr, flush=True)
+
+    def _left(self, now: float, first: tuple[float, int]) -> float:
+        left = (now - first[0]) / (self.done - first[1]) * (self.total - self.done)
+        if self.told is not None:
+            then, told = self.told
+            left = 0.5 * (left + max(told - (now - then), 0.0))
+            left = left if left > SLOWER * told else min(left, told)
+        self.told = now, left
+        return left

@@ -1,6 +1,8 @@
 """Long stages say how far they are and how long it will take."""
 
 import io
+import re
+from itertools import pairwise
 
 import pytest
 
@@ -14,22 +16,62 @@ def clock(monkeypatch):
     return now
 
 
-def test_estimate_is_the_mean_pace_times_what_is_left(clock):
+def lines(clock, durations, interval=5.0):
     stream = io.StringIO()
-    told = progress.Progress("contact", total=10, interval=5.0, stream=stream)
-    for _ in range(4):
-        clock[0] += 3.0
+    told = progress.Progress("contact", len(durations), interval, stream)
+    for duration in durations:
+        clock[0] += duration
         told.step()
-    assert stream.getvalue().splitlines() == [
-        "contact: 2/10, about 24 s left",
-        "contact: 4/10, about 18 s left",
+    return stream.getvalue().splitlines()
+
+
+def seconds(told):
+    return [int(found[1]) for line in told if (found := re.search(r"about (\d+) s left", line))]
+
+
+def by_mean_pace(durations, interval=5.0):
+    """What was told before: all time so far over all steps so far."""
+    found, now, last = [], 0.0, 0.0
+    for done, duration in enumerate(durations, start=1):
+        now += duration
+        if now - last >= interval:
+            last = now
+            found.append(now / done * (len(durations) - done))
+    return found
+
+
+def steady(told):
+    """Whether no estimate is far from the last one less the six seconds between two lines."""
+    return len(told) > 3 and all(0.6 * (a - 6.0) <= b <= 1.6 * a for a, b in pairwise(told))
+
+
+def test_estimate_is_the_pace_after_the_first_step_times_what_is_left(clock):
+    assert lines(clock, [3.0] * 6) == [
+        "contact: 2/6, about 12 s left",
+        "contact: 4/6, about 6 s left",
+        "contact: 6/6",
     ]
 
 
+def test_compiling_in_the_first_step_is_not_taken_for_the_pace(clock):
+    """A stored log of the contact stage: `1/32, about 295 s left`, and 5 s later it was done."""
+    durations = [9.5] + [0.16] * 31
+    assert by_mean_pace(durations)[0] == pytest.approx(294.5)
+    assert lines(clock, durations) == ["contact: 1/32", "contact: 32/32"]
+
+
+def test_estimate_does_not_jump_where_steps_cost_unlike(clock):
+    """77, 22 and 45 s were told one after another: compiling, quick steps, and one that was long."""
+    durations = [5.13, *[1.27] * 4, 16.8, *[2.0] * 10]
+    assert [round(left) for left in by_mean_pace(durations)[:3]] == [77, 22, 45]
+    assert not steady(by_mean_pace(durations))
+    assert steady(seconds(lines(clock, durations)))
+
+
+def test_estimate_rises_where_the_work_has_become_slower(clock):
+    told = seconds(lines(clock, [1.0] * 11 + [20.0] * 29))
+    assert told[1] < told[0] + 5 < max(told)
+
+
 def test_a_short_stage_prints_no_progress(clock):
-    stream = io.StringIO()
-    told = progress.Progress("contact", total=3, interval=5.0, stream=stream)
-    for _ in range(3):
-        clock[0] += 0.5
-        told.step()
-    assert stream.getvalue() == ""
+    assert lines(clock, [0.5] * 3) == []

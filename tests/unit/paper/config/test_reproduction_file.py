@@ -55,3 +55,12 @@ def test_design_that_no_gear_can_have_is_named(stored):
     wrong = design.model_copy(update={"set": {"tooth_pair.face_gear.rim_thickness_mm": -1}})
     with pytest.raises(ConfigErrors, match=r"identify\.designs\.rim_24_mm"):
         design_cases(values, stored.identify.model_copy(update={"designs": (wrong,)}))
+
+
+def test_inputs_of_the_scorecard_move_with_the_checkout(monkeypatch):
+    """An absolute path stood among them, and the sets of the scorecard ran again in a copy."""
+    monkeypatch.chdir(ROOT)
+    values = load_values([ROOT / "config" / "paper.yaml"], {})
+    read = read_reproduction(values["reproduction"])
+    assert read.claims == "config/claims/paper.yaml"
+    assert read.sets == "config/identified/paper.csv"
