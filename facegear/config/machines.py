@@ -8,16 +8,24 @@ import pandas as pd
 from facegear.config.base import parse
 from facegear.config.transmission import TEETH, Transmission, machine, tooth_numbers
 from facegear.harmonics.series import Harmonics
-from facegear.stiffness.tables import series_of
+from facegear.stiffness.tables import series_of, unloaded_error
 from facegear.transmission.machine import Machine
 
 
 def wired_machine(
-    transmission: Mapping[str, Any], teeth: Mapping[str, Any], stiffness: Harmonics | pd.DataFrame
+    transmission: Mapping[str, Any],
+    teeth: Mapping[str, Any],
+    stiffness: Harmonics | pd.DataFrame,
+    unloaded: Harmonics | None = None,
 ) -> Machine:
-    """The machine of section `transmission`; the mesh stiffness as a series or as the table of its stage."""
-    series = stiffness if isinstance(stiffness, Harmonics) else series_of(stiffness)
-    return machine(parse(Transmission, transmission), tooth_numbers(**teeth), series)
+    """The machine of section `transmission`; the mesh stiffness as a series or as the table of its stage.
+
+    A table from contact brings the pair's own e(t); with a series it is `unloaded`, in m.
+    """
+    section, numbers = parse(Transmission, transmission), tooth_numbers(**teeth)
+    if isinstance(stiffness, Harmonics):
+        return machine(section, numbers, stiffness, unloaded)
+    return machine(section, numbers, series_of(stiffness), unloaded_error(stiffness))
 
 
 def case_machine(values: Mapping[str, Any], stiffness: Harmonics | pd.DataFrame) -> Machine:

@@ -24,7 +24,7 @@ from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.stiffness import MeshStiffness
 from facegear.config.studies import NAME, Study
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
-from facegear.config.transmission import Transmission
+from facegear.config.transmission import FROM_CONTACT, Transmission
 from facegear.contact.resolution import check_memory, check_resolution
 from facegear.errors import ConfigError
 
@@ -89,6 +89,15 @@ class Config(Section):
         if machine.backlash_um is None and pair.pinion is None:
             allowed = "required, as tooth_pair has no bodies that it could be taken from"
             raise ConfigError("transmission.backlash_um", None, allowed)
+        errors = {"transmission_error": machine.transmission_error}
+        errors |= {
+            f"single_meshes.{name}.transmission_error": one.transmission_error
+            for name, one in machine.single_meshes.items()
+            if one.transmission_error is not None
+        }
+        for key, error in errors.items():
+            if error.source == "from_contact" and self.mesh_stiffness.source == "harmonics":
+                raise ConfigError(f"transmission.{key}", "from_contact", FROM_CONTACT)
         require_buildable(with_backlash(pair, machine), pair_teeth(pair))
 
 

@@ -1,8 +1,8 @@
 """Config section `transmission`: bodies, bearings, damping, backlash, transmission error, torques."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from facegear.transmission.machine import Damping, Machine, OpenFlanks, balanced
 from facegear.transmission.phases import PhaseConvention
 
 MAX_PINIONS = 60
+FROM_CONTACT = "numbers, where mesh_stiffness.source is harmonics: no contact analysis gives e(t)"
 
 TEETH = ("pinion_teeth", "face_gear_teeth", "module_mm", "pressure_angle_deg")
 """Keys of tooth_pair that the lumped model needs; its other data must not rerun modes or dynamics."""
@@ -59,13 +60,43 @@ class ErrorHarmonic(Section):
 
 
 class TransmissionError(Section):
-    """Static transmission error e(t) of the reference mesh; others lag by their phase or not at all."""
+    """Static transmission error e(t) of the reference mesh; others lag by their phase or not at all.
 
-    amplitude_um: float = Field(ge=0, le=5000)
+    `transmission_error: from_contact` is short for source from_contact.
+    """
+
+    source: Literal["given", "from_contact"] = Field(
+        "given",
+        description="from_contact: that of the unloaded pair's contact analysis, less its mean",
+    )
+    amplitude_um: float | None = Field(
+        None, ge=0, le=5000, description="required where source is given, else left out"
+    )
     meaning: Literal["amplitude", "range"] = "amplitude"
     phase_deg: float = Field(0.0, ge=-360, le=360)
     phasing: Literal["mesh", "in_step"] = "mesh"
     more_harmonics: tuple[ErrorHarmonic, ...] = ()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _short(cls, values: Any) -> Any:
+        if values == "from_contact":
+            return {"source": "from_contact"}
+        if isinstance(values, Mapping) and isinstance(more := values.get("more_harmonics"), list):
+            return {**values, "more_harmonics": tuple(more)}
+        return values
+
+    @model_validator(mode="after")
+    def _one_source(self) -> "TransmissionError":
+        if self.source == "given":
+            if self.amplitude_um is None:
+                refuse("amplitude_um", None, "required, unless transmission_error is from_contact")
+            return self
+        plain = TransmissionError.model_fields
+        for key in ("amplitude_um", "meaning", "phase_deg", "phasing", "more_harmonics"):
+            if (value := getattr(self, key)) != plain[key].default:
+                refuse(key, value, "left out where e(t) is from_contact")
+        return self
 
 
 class SingleMesh(Section):
@@ -221,22 +252,27 @@ def layout(section: Transmission, teeth: ToothNumbers) -> Layout:
     )
 
 
-def machine(section: Transmission, teeth: ToothNumbers, stiffness: Harmonics) -> Machine:
-    """The machine that a config describes, with the reference mesh stiffness from its own stage."""
+def machine(
+    section: Transmission, teeth: ToothNumbers, stiffness: Harmonics, unloaded: Harmonics | None = None
+) -> Machine:
+    """The machine that a config describes, with the reference mesh stiffness from its own stage.
+
+    `unloaded` is the pair's own e(t), m. Raises ConfigError where the config asks for it and there is none.
+    """
     shape = layout(section, teeth)
     damping = section.damping
     return Machine(
         layout=shape,
         torques=balanced_torques(shape, given_torques(section, shape)),
         stiffness=stiffness,
-        error=error_series(section.transmission_error),
+        error=error_series(section.transmission_error, unloaded),
         half_backlash=half_backlash(section),
         damping=Damping(
             damping.mesh_n_s_per_m, damping.mass_per_s, damping.bearing_s, OpenFlanks(damping.open_flanks)
         ),
         phase_convention=PhaseConvention(section.phase_convention),
         error_in_step=section.transmission_error.phasing == "in_step",
-        imperfections=imperfections(section, shape),
+        imperfections=imperfections(section, shape, unloaded),
     )
 
 
@@ -249,7 +285,7 @@ def half_backlash(section: Transmission) -> float:
     return 0.5e-6 * section.backlash_um
 
 
-def imperfections(section: Transmission, shape: Layout) -> Imperfections:
+def imperfections(section: Transmission, shape: Layout, unloaded: Harmonics | None = None) -> Imperfections:
     """Errors of single meshes and bodies, in m."""
     meshes = [section.single_meshes.get(name, SingleMesh()) for name in shape.mesh_names]
     pinions = [section.single_pinions.get(pinion.name, SinglePinion()) for pinion in shape.pinions]
@@ -261,7 +297,7 @@ def imperfections(section: Transmission, shape: Layout) -> Imperfections:
         half_backlash=0.5e-6 * np.array(backlash),
         stiffness=np.array([one.stiffness_factor for one in meshes]),
         series={
-            mesh: error_series(one.transmission_error)
+            mesh: error_series(one.transmission_error, unloaded)
             for mesh, one in enumerate(meshes)
             if one.transmission_error is not None
         },
@@ -282,10 +318,18 @@ def given_torques(section: Transmission, shape: Layout) -> NDArray[np.float64]:
     return np.where(np.isnan(own), by_role, own)
 
 
-def error_series(section: TransmissionError) -> Harmonics:
-    """Transmission error of the reference mesh as a Fourier series in m."""
+def error_series(section: TransmissionError, unloaded: Harmonics | None = None) -> Harmonics:
+    """Transmission error of the reference mesh as a Fourier series in m; `unloaded` if it is from contact.
+
+    Raises ConfigError where it is and there is none.
+    """
+    if section.source == "from_contact":
+        if unloaded is None:
+            raise ConfigError("transmission.transmission_error", "from_contact", FROM_CONTACT)
+        return unloaded
     factor = {"amplitude": 1.0, "range": 0.5}[section.meaning]
-    first = ErrorHarmonic(order=1, amplitude_um=factor * section.amplitude_um, phase_deg=section.phase_deg)
+    amplitude = factor * (section.amplitude_um or 0.0)
+    first = ErrorHarmonic(order=1, amplitude_um=amplitude, phase_deg=section.phase_deg)
     terms = (first, *section.more_harmonics)
     highest = max(term.order for term in terms)
     a, b = np.zeros(highest + 1), np.zeros(highest + 1)

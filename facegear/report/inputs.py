@@ -29,7 +29,9 @@ def inputs_in_words(values: Mapping[str, Any]) -> list[str]:
     return [
         f"torque per engine {torque['per_input_n_m']:g} N m{given}",
         f"share of the power at the tail {100 * torque['tail_share']:.3g} %",
-        f"e(t): {error['amplitude_um']:g} um read as its {error['meaning']}, cosine, "
+        "e(t) from contact"
+        if error["source"] == "from_contact"
+        else f"e(t): {error['amplitude_um']:g} um read as its {error['meaning']}, cosine, "
         f"phase {error['phase_deg']:g} deg, {phasing}" + (f", {more}" if more else ""),
         f"phases of the lower meshes {transmission['phase_convention']}",
         f"mesh stiffness source {stiffness['source']}" + mean,

@@ -101,8 +101,25 @@ def _text(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
         f"{_count(transmission['face_gears'], 'face gear')} of {pair['face_gear_teeth']} teeth, {teeth}"
         f"Each input brings {torque['per_input_n_m']:g} N m unless the table gives its own torque; "
         f"{100 * torque['tail_share']:.3g} % of the power leaves at the tail. Mesh stiffness: {source}. "
+        f"{_error(transmission['transmission_error'], tables)}"
         f"Mesh kinematics: {KINEMATICS[transmission['mesh_kinematics']]}.{_balance(tables)}"
     )
+
+
+def _error(section: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
+    """What e(t) from contact came to."""
+    if section["source"] == "given" or "harmonics" not in tables:
+        return ""
+    table = tables["harmonics"]
+    if "e_peak_to_peak_um" not in table:
+        return ""
+    size, cut = (float(table[name].iloc[0]) for name in ("e_peak_to_peak_um", "e_truncation_error_um"))
+    words = (
+        f"{size:.3g} um peak to peak, the {len(table) - 1} orders kept within {cut:.2g} um of it"
+        if size > 0.0
+        else "constant, so e(t) from contact is zero"
+    )
+    return f"Transmission error from contact, unloaded: {words}. "
 
 
 def _balance(tables: Mapping[str, pd.DataFrame]) -> str:

@@ -30,7 +30,8 @@ def modal(
     mean = mean_stiffness if harmonics is None else series_of(harmonics).mean
     if mean is None:
         raise ConfigError("mesh_stiffness.mean_n_per_m", None, "required where k(t) is not computed")
-    machine = wired_machine(transmission, teeth, Harmonics(np.zeros(1), np.array([mean])))
+    constant, none = Harmonics(np.zeros(1), np.array([mean])), Harmonics(np.zeros(1), np.zeros(1))
+    machine = wired_machine(transmission, teeth, constant, unloaded=none)
     shape, modes = machine.layout, loaded_modes(machine)
     rigid = int((modes.frequencies == 0.0).sum())
     elastic = modes.frequencies[rigid:]

@@ -8,7 +8,8 @@ import pandas as pd
 from facegear.harmonics.fit import LEVELS, fit_harmonics
 from facegear.stiffness.curve import load_table
 from facegear.stiffness.request import StiffnessRequest
-from facegear.stiffness.tables import curve_table, harmonics_table
+from facegear.stiffness.tables import curve_table, harmonics_table, with_unloaded_error
+from facegear.stiffness.unloaded import peak_to_peak, unloaded_series
 
 DRAWN = 256
 """Points a pitch of a curve that comes from given harmonics."""
@@ -41,15 +42,17 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
     whole = fit.series.scaled(scale)
     series = whole.kept(request.kept)
     reach = ", ".join(f"{100 * level:g} %: {fit.orders_within(level)}" for level in LEVELS)
+    error, cut = unloaded_series(ltca, series.order)
     between = table.interpolation_error(request.torque, request.definition)
     summary = (
         f"{request.definition} stiffness at {request.torque:g} N m, mean {fit.series.mean:.4g} N/m "
         f"times {scale:.4f}; orders for an error of the peak-to-peak of {reach}; "
-        f"interpolation between loads {100 * between:.2g} %"
+        f"interpolation between loads {100 * between:.2g} %; "
+        f"unloaded transmission error {1e6 * peak_to_peak(error):.3g} um peak to peak"
     )
     return Stiffness(
         curve_table(table.positions, scale * samples, series),
-        harmonics_table(series, fit, scale),
+        with_unloaded_error(harmonics_table(series, fit, scale), error, cut),
         harmonics_table(whole, fit, scale),
         summary,
     )

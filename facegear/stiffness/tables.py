@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from facegear.harmonics.fit import LEVELS, Fit, fit_harmonics
 from facegear.harmonics.series import Harmonics
 from facegear.stiffness.curve import LoadTable
+from facegear.stiffness.unloaded import peak_to_peak
 
 HARMONICS_COLUMNS = ("order", "a_n_per_m", "b_n_per_m", "amplitude_n_per_m")
 
@@ -29,6 +30,25 @@ def harmonics_table(series: Harmonics, fit: Fit | None, scale: float = 1.0) -> p
             "sampling_error_n_per_m": sampling,
         }
     )
+
+
+def with_unloaded_error(table: pd.DataFrame, series: Harmonics, truncation: float) -> pd.DataFrame:
+    """A harmonics table with the pair's unloaded transmission error (m) beside k, order by order."""
+    orders = table["order"].to_numpy()
+    return table.assign(
+        e_a_um=1e6 * series.a[orders],
+        e_b_um=1e6 * series.b[orders],
+        e_peak_to_peak_um=1e6 * peak_to_peak(series),
+        e_truncation_error_um=1e6 * truncation,
+    )
+
+
+def unloaded_error(table: pd.DataFrame) -> Harmonics | None:
+    """The unloaded transmission error (m) of a harmonics table; None where k was given without contact."""
+    if "e_a_um" not in table:
+        return None
+    renamed = table[["order", "e_a_um", "e_b_um"]].set_axis(["order", "a_n_per_m", "b_n_per_m"], axis=1)
+    return series_of(renamed).scaled(1e-6)
 
 
 def curve_table(

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
+import facegear
 from facegear.config.base import parse
 from facegear.config.buildable import require_buildable
 from facegear.config.notes import notes
@@ -44,6 +45,48 @@ def test_one_line_overrides_one_mesh():
     np.testing.assert_allclose(found.imperfections.stiffness, [1, 1, 1, 1, 1, 1.1])
     own = built(single_meshes={"one/upper": {"transmission_error": {"amplitude_um": 3}}}).imperfections
     assert own.series[3].amplitudes[1] == pytest.approx(3e-6)
+
+
+def test_errors_from_contact_are_those_of_the_unloaded_pair_and_one_mesh_may_differ():
+    unloaded = Harmonics(np.array([0.0, 2e-6]), np.array([0.0, -1e-6]))
+    values = section(transmission_error="from_contact")
+    for spelling in ("from_contact", {"source": "from_contact"}):
+        found = machine(parse(Transmission, section(transmission_error=spelling)), TEETH, STIFFNESS, unloaded)
+        np.testing.assert_array_equal(found.error.a, unloaded.a)
+        np.testing.assert_array_equal(found.error.b, unloaded.b)
+        assert not found.error_in_step
+    own = {**values, "single_meshes": {"two/lower": {"transmission_error": {"amplitude_um": 3}}}}
+    found = machine(parse(Transmission, own), TEETH, STIFFNESS, unloaded)
+    assert found.imperfections.series[1].amplitudes[1] == pytest.approx(3e-6)
+    with pytest.raises(ConfigError, match=r"mesh_stiffness\.source is harmonics"):
+        machine(parse(Transmission, values), TEETH, STIFFNESS)
+
+
+@pytest.mark.parametrize(
+    ("error", "line"),
+    [
+        ({"source": "from_contact", "amplitude_um": 5}, "transmission_error.amplitude_um = 5.0: left out"),
+        ({"source": "from_contact", "phasing": "in_step"}, 'phasing = "in_step": left out'),
+        ({"phase_deg": 5}, "transmission_error.amplitude_um = null: required, unless"),
+    ],
+)
+def test_an_error_is_either_given_or_from_contact(error, line):
+    with pytest.raises(ConfigErrors, match="transmission_error") as caught:
+        parse(Transmission, section(transmission_error=error))
+    assert line in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"transmission.transmission_error": "from_contact"},
+        {"transmission.single_meshes": {"tail idler/lower": {"transmission_error": "from_contact"}}},
+    ],
+)
+def test_an_error_from_contact_is_refused_where_stiffness_is_given(changes):
+    given = {"mesh_stiffness": {"source": "harmonics", "table": [{"order": 0, "b_n_per_m": 4e8}]}}
+    with pytest.raises(ConfigErrors, match="no contact analysis gives e"):
+        facegear.example().with_values(given | changes)
 
 
 def test_one_line_overrides_one_body():

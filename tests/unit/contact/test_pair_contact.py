@@ -7,24 +7,34 @@ import numpy as np
 import pytest
 from contact_bodies import pair_design
 
+from facegear.config.base import parse
+from facegear.config.stiffness import MeshStiffness, stiffness_request
 from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.flanks import FlankPair
 from facegear.contact.gear_flank import GearFlank
 from facegear.contact.ltca import loaded_contact
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
 from facegear.contact.pair import BUILDERS, contact_model, gear_flank
+from facegear.contact.tables import ltca_table
 from facegear.contact.teeth import LOADED_SIDE, elastic_tooth
 from facegear.geometry.clearance import smallest_gaps
 from facegear.geometry.design import Assembly, Material, Relief
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.mesh.sizes import MeshSizes
+from facegear.stiffness.source import stiffness_from_contact
+from facegear.stiffness.tables import unloaded_error
+from facegear.stiffness.unloaded import unloaded_series
 
 TORQUES = [100.0, 600.0]
 
 
 def misaligned(model, **errors):
     """The same elastic bodies in another assembly."""
-    design = replace(model.design, assembly=Assembly(**errors))
+    return redesigned(model, replace(model.design, assembly=Assembly(**errors)))
+
+
+def redesigned(model, design):
+    """The same elastic bodies with other flanks or in another assembly, a few micrometres away."""
     pinion, gear = (replace(flank, design=design) for flank in (model.flanks.pinion, model.flanks.gear))
     return replace(model, flanks=FlankPair(pinion, gear))
 
@@ -228,3 +238,26 @@ def test_linear_elements_on_the_same_nodes_are_too_stiff(model_of):
         stiffness[element] = np.mean([result.k_average for result in results])
     assert 1.003 < stiffness["hex8"] / stiffness["hex27"] < 1.03
     assert 1.03 < stiffness["tet4"] / stiffness["hex27"] < 1.15
+
+
+def test_a_long_tip_relief_shows_in_the_unloaded_error_that_the_dynamics_takes_from_contact(model_of):
+    plain = model_of()
+    relieved = replace(plain.design.pinion, tip_relief=Relief(20e-6, 0.0, 9e-3))
+    model = redesigned(plain, replace(plain.design, pinion=relieved))
+    positions = np.arange(8) / 8
+    table = ltca_table(sound(loaded_contact(model, positions, [600.0])))
+    section = parse(MeshStiffness, {"source": "fem", "torque_n_m": 600.0})
+    series = unloaded_error(stiffness_from_contact(table, stiffness_request(section)).harmonics)
+    pitch = 2 * np.pi / model.design.pinion.teeth
+    exact = -unloaded_contact(model.design, (positions - 0.5) * pitch).transmission_error
+    assert np.ptp(exact) > 1e-6
+    # Eight positions carry three orders; what they miss stands in the table.
+    np.testing.assert_allclose(series(positions), exact - exact.mean(), atol=0.2 * np.ptp(exact))
+
+
+def test_conjugate_flanks_give_no_error_from_contact_however_they_are_assembled(model_of):
+    model = misaligned(model_of(), offset=50e-6, shaft_angle_error=radians(0.02))
+    table = ltca_table(loaded_contact(model, np.arange(4) / 4, [600.0]))
+    assert table["unloaded_ste_um"].abs().min() > 1.0
+    series, missed = unloaded_series(table, 1)
+    assert not series.amplitudes.any() and missed == 0.0

@@ -21,7 +21,8 @@ def contact_table():
     torque, position = (grid.ravel() for grid in np.meshgrid(TORQUES, POSITIONS, indexing="ij"))
     average = stiffness_at(torque, position)
     columns = {"torque_n_m": torque, "position": position, "k_average_n_per_m": average}
-    return pd.DataFrame(columns | {"k_local_n_per_m": 1.3 * average})
+    unloaded = np.full(torque.size, -44.8)
+    return pd.DataFrame(columns | {"k_local_n_per_m": 1.3 * average, "unloaded_ste_um": unloaded})
 
 
 def request(**changes):

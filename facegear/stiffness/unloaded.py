@@ -1,0 +1,33 @@
+"""e(t) of the pair itself: its transmission error without load, with assembly errors and reliefs."""
+
+import numpy as np
+import pandas as pd
+
+from facegear.harmonics.fit import fit_harmonics
+from facegear.harmonics.series import Harmonics
+
+ROUNDING_UM = 1e-4
+"""Peak-to-peak up to which an error counts as constant: the closest points of flanks are known no better."""
+
+
+def unloaded_series(ltca: pd.DataFrame, order: int) -> tuple[Harmonics, float]:
+    """Fourier series (m) of the contact table's unloaded_ste_um up to `order`, and what the cut misses (m).
+
+    Positive where the drive flank comes late. The mean is taken off: it turns the pinions, and what it does
+    to the backlash stands in that of the pair as assembled. An error that is constant is exactly zero.
+    """
+    rows = ltca[ltca["torque_n_m"] == ltca["torque_n_m"].min()].sort_values("position")
+    samples = rows["unloaded_ste_um"].to_numpy(float)
+    if np.ptp(samples) <= ROUNDING_UM:
+        return Harmonics(np.zeros(order + 1), np.zeros(order + 1)), 0.0
+    fit = fit_harmonics(1e-6 * (samples - samples.mean()))
+    series = fit.series.kept(order)
+    b = series.b.copy()
+    b[0] = 0.0
+    return Harmonics(series.a, b), float(fit.truncation[order])
+
+
+def peak_to_peak(series: Harmonics) -> float:
+    """Of a series over a period, m."""
+    points = np.linspace(0.0, 1.0, 64 * (series.order + 1), endpoint=False)
+    return float(np.ptp(series(points)))
