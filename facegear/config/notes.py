@@ -3,6 +3,10 @@
 from collections.abc import Mapping
 from typing import Any
 
+from facegear.config.base import parse
+from facegear.config.checks import geometric_backlash
+from facegear.config.tooth_pair import ToothPair
+
 PRINTED = (
     "transmission.mesh_kinematics = printed: equation (13) of the source paper to the letter, to compare "
     "with it; lever arms, signs of the lower meshes and back flanks are not a gearbox's (docs/theory.md)"
@@ -12,14 +16,19 @@ SLOW = (
     "responses and sweeps leave them out (docs/theory.md)"
 )
 
+BACKLASH_DIFFERS_UM = 1.0
+"""Difference between the backlash of the dynamics and that of the teeth that is worth a note."""
+
 
 def notes(values: Mapping[str, Any]) -> list[str]:
-    """Lines for a config of one's own that counts as the publication does, and for errors that turn."""
+    """Lines for a config of one's own that counts as the publication does, for errors that turn, and for
+    dynamics with a backlash other than that of the teeth.
+    """
     transmission = values["transmission"]
     if transmission is None:
         return []
     own = values["reproduction"] is None and transmission["mesh_kinematics"] == "printed"
-    return [PRINTED] * own + [SLOW] * _turns(transmission)
+    return [PRINTED] * own + [SLOW] * _turns(transmission) + _backlash(values)
 
 
 def _turns(transmission: Mapping[str, Any]) -> bool:
@@ -27,3 +36,16 @@ def _turns(transmission: Mapping[str, Any]) -> bool:
     singles = (*transmission["single_pinions"].values(), *transmission["single_gears"].values())
     bodies = (transmission["pinion"], transmission["face_gear"], *singles)
     return any(body.get("runout") or body.get("cumulative_pitch_um") for body in bodies)
+
+
+def _backlash(values: Mapping[str, Any]) -> list[str]:
+    own = values["transmission"].get("backlash_um")
+    if own is None or values.get("tooth_pair", {}).get("pinion") is None:
+        return []
+    teeth = geometric_backlash(parse(ToothPair, values["tooth_pair"]))
+    if abs(own - teeth) <= BACKLASH_DIFFERS_UM:
+        return []
+    return [
+        f"transmission.backlash_um = {own:g}: the teeth as assembled have {teeth:.1f} um; without the key "
+        "the dynamics take theirs"
+    ]

@@ -2,11 +2,12 @@
 
 import signal
 import subprocess
+import sys
 import time
 
 import pandas as pd
 import pytest
-from projects import ROOT, Project, copy_sources, environment
+from projects import ROOT, Project, copy_sources, environment, rules_in
 
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("newcomers")]
 
@@ -86,3 +87,20 @@ def test_a_moved_checkout_has_nothing_to_do(tmp_path):
     moved = Project(there, there)
     done = moved.run("-n", "--configfile", str(there / "config" / "harmonics_only.yaml"), *asked)
     assert "Nothing to be done" in done.stdout + done.stderr
+
+
+def test_run_hands_a_config_and_its_targets_over_to_snakemake(tmp_path):
+    """A target after `--configfile` was taken for another config."""
+    config = str(ROOT / "config" / "harmonics_only.yaml")
+    target = "results/harmonics_only/modal/frequencies.csv"
+    done = subprocess.run(
+        [sys.executable, "-m", "facegear", "run", config, target, "-n", "--directory", str(tmp_path)],
+        cwd=ROOT,
+        env=environment(),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert rules_in(done.stdout + done.stderr) == {"modal"}
+    assert not (tmp_path / "results").exists()

@@ -9,6 +9,7 @@ from facegear.config.base import parse
 from facegear.config.cases import expand_cases
 from facegear.config.load import load_values
 from facegear.config.model import Config, resolved
+from facegear.config.notes import notes
 from facegear.errors import ConfigErrors
 
 ROOT = Path(__file__).parents[3]
@@ -92,6 +93,15 @@ def test_a_misaligned_pair_without_backlash_is_refused_with_the_amount_by_which_
     assert "the pair jams by " in line
     least = float(line.split("at least ")[1].split(":")[0])
     assert parse(Config, changed(values, tooth_pair__pinion__thinning_um=least + 0.1))
+
+
+def test_another_backlash_than_that_of_the_teeth_is_told_when_a_run_starts():
+    """It was never compared with the geometry's."""
+    (line,) = notes(parse(Config, TWO).model_dump(mode="json"))
+    assert line.startswith("transmission.backlash_um = 120: the teeth as assembled have 130.5 um")
+    for own in (None, 130.0):
+        values = changed(TWO, transmission__backlash_um=own, studies=[])
+        assert notes(parse(Config, values).model_dump(mode="json")) == []
 
 
 def test_the_dynamics_take_the_backlash_of_the_teeth_as_assembled():
