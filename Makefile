@@ -4,7 +4,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.locked
 CORES ?= 2
 
-.PHONY: all env check test lint docs notebooks benchmarks peers identify lock clean
+.PHONY: all env check test lint docs ci notebooks benchmarks peers identify lock clean
 
 all: check
 	$(BIN)/snakemake --cores $(CORES)
@@ -31,7 +31,10 @@ lint: env
 	$(BIN)/mypy
 
 docs: env
-	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet docs docs/build
+	$(BIN)/sphinx-build --jobs $(CORES) --fail-on-warning --keep-going --quiet docs docs/build
+
+# What CI runs: a complaint of lint or docs stops it before the tests.
+ci: lint docs test
 
 notebooks: env
 	$(BIN)/jupyter execute --inplace examples/*.ipynb

@@ -10,7 +10,7 @@ sys.path.insert(0, str(ROOT))
 project = "facegear"
 author = "the facegear authors"
 release = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.apidoc", "sphinx.ext.viewcode"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.apidoc"]
 exclude_patterns = ["build"]
 default_role = "literal"  # docstrings write names in single backticks
 myst_enable_extensions = ["dollarmath", "colon_fence"]

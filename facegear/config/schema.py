@@ -1,11 +1,15 @@
 """The config's JSON schema, for editors.
 
-Made by `python -m facegear.config.schema > workflow/schemas/config.schema.json`.
+Made by `python -m facegear.config.schema > facegear/config/config.schema.json`.
 """
 
 import json
+from pathlib import Path
 
 from facegear.config.model import Config
+
+SCHEMA = Path(__file__).with_name("config.schema.json")
+"""The stored copy, which is installed with the package."""
 
 
 def json_schema() -> str:

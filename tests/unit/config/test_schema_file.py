@@ -8,16 +8,15 @@ from facegear.config.base import parse
 from facegear.config.load import load_config, read_layers
 from facegear.config.model import Config
 from facegear.config.reference import reference
-from facegear.config.schema import json_schema
+from facegear.config.schema import SCHEMA, json_schema
 from facegear.errors import ConfigErrors
 
 ROOT = Path(__file__).parents[3]
 
 
 def test_schema_file_is_what_the_models_say():
-    stored = (ROOT / "workflow" / "schemas" / "config.schema.json").read_text()
-    assert stored == json_schema(), (
-        "run: python -m facegear.config.schema > workflow/schemas/config.schema.json"
+    assert SCHEMA.read_text() == json_schema(), (
+        "run: python -m facegear.config.schema > facegear/config/config.schema.json"
     )
 
 
