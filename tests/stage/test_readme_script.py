@@ -45,7 +45,7 @@ def installed(tmp_path_factory):
 
 
 def lend_machine_code(site):
-    """What the checkout has compiled from the same text is not compiled again: numba goes by time and size."""
+    """Kernels that the checkout has compiled already are not compiled again: numba goes by time and size."""
     for path in (ROOT / "facegear").rglob("*"):
         copy = site / path.relative_to(ROOT)
         if path.suffix in (".nbi", ".nbc"):
