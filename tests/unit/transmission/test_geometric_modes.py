@@ -1,6 +1,9 @@
 """Modes of geometric meshes, beside those of equation (13) as printed."""
 
+from collections.abc import Iterator
 from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 from lumped_machines import make_layout, make_machine
@@ -58,3 +61,50 @@ def test_tilting_gears_add_two_modes_each_and_stiff_tilt_adds_nothing_else():
     # More freedom with its own inertia lowers every frequency (interlacing).
     assert (soft.frequencies[:-4] <= square + 1e-6).all()
     assert any("tilt" in name.symbols for name in name_modes(tilting(1e6).layout, soft))
+
+
+def test_inputs_float_along_one_line_and_idlers_along_none():
+    """As printed every pinion has one translation that no mesh feels; really only inputs, whose two meshes
+    push along one line, while an idler's drive flank above and back flank below push along two.
+    """
+    printed, geometric = both_modes()
+    assert multiplicities(printed) == [6, 1, 1, 2, 1, 5, 1, 1, 1, 1, 1, 1, 2, 1, 1, 1, 1]
+    assert multiplicities(geometric) == [6, 1, 1, 1, 1, 2] + 16 * [1]
+    classes = [name.mode_class for name in name_modes(LAYOUT, geometric)]
+    coupled = [ModeClass.COUPLED]
+    expected = 6 * [ModeClass.RIGID] + coupled + 2 * [ModeClass.PINION] + coupled + 2 * [ModeClass.PINION]
+    assert classes == expected + 16 * coupled
+
+
+def test_the_table_of_both_kinematics_in_the_docs_is_what_the_model_gives():
+    told = (Path(__file__).parents[3] / "docs" / "validation.md").read_text().splitlines()
+    for line in table_lines():
+        assert line in told
+
+
+def both_modes():
+    """The paper's machine at the torque of its config, as printed and with geometric meshes."""
+    at_work = {"torque": 1327.6, "tail_share": 0.034}
+    return loaded_modes(make_machine(make_layout(), **at_work)), loaded_modes(make_machine(LAYOUT, **at_work))
+
+
+def multiplicities(modes):
+    return [stop - start for start, stop in modes.groups]
+
+
+def table_lines() -> Iterator[str]:
+    """Orders, frequency, multiplicity and class by both, orders that are alike in one row."""
+    columns = [cells(modes) for modes in both_modes()]
+    rows = list(zip(*columns, strict=True))
+    edges = [0] + [k for k in range(1, len(rows)) if rows[k] != rows[k - 1]] + [len(rows)]
+    for start, stop in pairwise(edges):
+        orders = str(stop) if stop == start + 1 else f"{start + 1}-{stop}"
+        yield f"| {orders} | {' | '.join(rows[start])} |"
+
+
+def cells(modes):
+    names = name_modes(LAYOUT, modes)
+    for start, stop in modes.groups:
+        for order in range(start, stop):
+            cell = f"{modes.frequencies[order]:.1f} | {stop - start} | {names[order].mode_class.value}"
+            yield cell
