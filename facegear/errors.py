@@ -1,6 +1,7 @@
 """Errors a user may meet. Each one's text is one clear line."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 
@@ -43,3 +44,27 @@ class CorruptFile(FacegearError):
         rebuild = rebuild or f"snakemake --cores 2 --force {path}"
         super().__init__(f"{path}: {what}; rebuild it with: {rebuild}")
         self.path, self.what = Path(path), what
+
+
+class MissingExtra(FacegearError):
+    """A library that is installed only with an extra of the package: names both."""
+
+    def __init__(self, library: str, extra: str) -> None:
+        super().__init__(f'{library} is not installed; get it with: pip install "facegear[{extra}]"')
+        self.library, self.extra = library, extra
+
+
+EXTRAS = {"skfem": "fe", "gmsh": "fe", "meshio": "fe", "jinja2": "workflow", "snakemake": "workflow"}
+"""Modules that the core does without, and the extra that holds each."""
+
+
+@contextmanager
+def extras_named() -> Iterator[None]:
+    """Raise MissingExtra in place of the import error of a library that an extra holds."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        library = (error.name or "").split(".")[0]
+        if library not in EXTRAS:
+            raise
+        raise MissingExtra(library, EXTRAS[library]) from error

@@ -13,7 +13,7 @@ from facegear.config.cases import changed_config
 from facegear.config.load import load_config
 from facegear.config.model import Config, resolved
 from facegear.config.needs import NEEDS, stage_needs
-from facegear.errors import CorruptFile
+from facegear.errors import CorruptFile, extras_named
 from facegear.results.base import Result
 
 if TYPE_CHECKING:
@@ -316,7 +316,8 @@ class Gearbox:
         rules = _before(name[0], self.values)
         key = json.dumps([name, [stage_needs(rule, self.values) for rule in rules]])
         if key not in self._known:
-            self._known[key] = find()
+            with extras_named():
+                self._known[key] = find()
         return self._known[key]
 
     def _stored(self, kind: type[Found]) -> Found | None:

@@ -3,7 +3,10 @@
 from pathlib import Path
 from typing import Any
 
-import jinja2
+from facegear.errors import extras_named
+
+with extras_named():
+    import jinja2
 
 
 def render(template: Path, **values: Any) -> str:

@@ -1,0 +1,46 @@
+"""Without an extra the core goes on working, and what needs it says which one in one line."""
+
+import subprocess
+import sys
+
+import pytest
+
+import facegear
+
+
+def told(module, call):
+    """What a call in a fresh interpreter says in which `module` cannot be imported."""
+    script = f"""
+import sys
+sys.modules[{module!r}] = None
+import facegear
+from facegear.errors import MissingExtra
+gearbox = facegear.example()
+try:
+    {call}
+except MissingExtra as error:
+    print(error)
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
+
+
+@pytest.mark.parametrize("call", ["contact()", "load_sharing()"])
+def test_teeth_without_finite_elements_name_the_extra(call):
+    line = 'skfem is not installed; get it with: pip install "facegear[fe]"'
+    assert told("skfem", f"gearbox.{call}") == line
+
+
+def test_modes_of_a_given_mean_stiffness_need_no_extra():
+    assert told("skfem", "print(len(gearbox.modes().table()) > 6)") == "True"
+
+
+def test_a_report_without_its_template_engine_names_the_extra():
+    line = 'jinja2 is not installed; get it with: pip install "facegear[workflow]"'
+    assert told("jinja2", "import facegear.report.page") == line
+
+
+def test_a_library_of_no_extra_fails_as_python_says():
+    with pytest.raises(ModuleNotFoundError, match="nowhere"), facegear.errors.extras_named():
+        import nowhere  # noqa: F401
