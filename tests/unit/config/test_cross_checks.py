@@ -7,9 +7,13 @@ import pytest
 
 from facegear.config.base import parse
 from facegear.config.cases import expand_cases
+from facegear.config.contact import contact_plan
 from facegear.config.load import load_values
+from facegear.config.mesh import mesh_sizes
 from facegear.config.model import Config, resolved
 from facegear.config.notes import notes
+from facegear.config.tooth_pair import pair_design
+from facegear.contact.resolution import estimated_memory
 from facegear.errors import ConfigErrors
 
 ROOT = Path(__file__).parents[3]
@@ -77,7 +81,30 @@ def test_a_mesh_that_cannot_fit_into_memory_is_refused_with_an_estimate(profile)
     size = {"profile_mm": profile, "width_mm": 0.1, "thickness_mm": 1.0}
     line = told(changed(QUICK, mesh__resolution=size))
     assert line.startswith("mesh.resolution = ")
-    assert "the flank's compliance alone would take" in line and " GB, and this machine has" in line
+    assert "an estimate of the memory for factorisation and compliance is" in line
+    assert " GB, and this machine has" in line
+
+
+@pytest.mark.parametrize(
+    ("resolution", "cuts", "measured_gb"),
+    [
+        ("coarse", (1, 1, 1), 1.1),
+        ("coarse", (2, 1, 2), 1.5),
+        ("coarse", (3, 1, 2), 1.8),
+        ("coarse", (4, 2, 2), 3.9),
+        ("coarse", (8, 1, 3), 4.7),
+        ("medium", (2, 1, 2), 5.3),
+        ("medium", (4, 1, 2), 9.1),
+    ],
+)
+def test_the_estimate_of_memory_agrees_with_what_was_measured_within_a_fifth(resolution, cuts, measured_gb):
+    """The measured ones are those of docs/contact.md, the paper's pair."""
+    refinement = dict(zip(("profile", "width", "depth"), cuts, strict=True))
+    config = parse(Config, changed(QUICK, mesh__resolution=resolution, contact__refinement=refinement))
+    design = pair_design(config.tooth_pair)
+    sizes = mesh_sizes(config.mesh, design.module)
+    estimate = estimated_memory(design, sizes, contact_plan(config.contact))
+    assert estimate == pytest.approx(1e9 * measured_gb, rel=0.2)
 
 
 def test_points_of_all_studies_are_counted_before_they_are_made():
