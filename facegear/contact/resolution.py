@@ -36,8 +36,8 @@ def estimated_memory(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) ->
     """Bytes that meshes, factorisation and compliance of both bodies take: an estimate.
 
     Its three numbers are fitted to the largest memory measured for the paper's pair on coarse and medium
-    meshes (docs/contact.md), which it gives within a fifth; beyond them it extrapolates. It never falls below the flanks' dense
-    compliance, which is certain.
+    meshes (docs/contact.md), which it gives within a fifth; finer ones are extrapolated. It never falls
+    below the flanks' dense compliance, which is certain.
     """
     nodes, along = flank_nodes(design, sizes, plan), _elements_along(design, sizes)
     return max(3e8 + 3.6e6 * along**2 + 8.5e4 * along * nodes, 8.0 * nodes**2)
