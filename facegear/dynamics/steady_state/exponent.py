@@ -10,7 +10,7 @@ from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.work import Work
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.averages import BATCHES, mean_interval
-from facegear.dynamics.steady_state.window import run_disturbed
+from facegear.dynamics.steady_state.window import Window, run_disturbed, run_window
 
 Array = NDArray[np.float64]
 ALIGN = 2
@@ -29,7 +29,8 @@ class Growth(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Exponent:
-    """Exponent per mesh period with its 95 % half-width, what it says, and the run's ends (periods, 2, n).
+    """Exponent per mesh period with its 95 % half-width, what it says, the run's ends (periods, 2, n), and
+    the last window of that run.
 
     A neutral exponent comes with the half-width of its smooth mean, any other with that of the batches.
     """
@@ -38,33 +39,35 @@ class Exponent:
     value: float
     half_width: float
     ends: Array
+    window: Window
 
 
 def largest_exponent(packed: Packed, work: Work, state: Array, settings: Settings) -> Exponent:
     """Largest exponent from a state (2, n) by phase, by one tangent vector over the settings' window.
 
-    While it cannot be told from zero the window is doubled, up to `extensions` times.
+    While it cannot be told from zero the run is doubled, window by window, up to `extensions` times.
     """
     tangent = np.zeros((1, *state.shape))
     tangent[0, :, : packed.n] = np.random.default_rng(0).normal(size=(2, packed.n))
     tangent /= np.sqrt(((packed.weights * tangent) ** 2).sum())
-    length = max(1, settings.window // BATCHES)
     # The vector first turns into the direction of fastest growth.
-    ends, _ = run_disturbed(packed, work, state, tangent, ALIGN * length, settings)
+    align = ALIGN * max(1, settings.window // BATCHES)
+    ends = run_disturbed(packed, work, state, tangent, align, settings)
     rates = np.zeros(0)
-    for times in range(settings.extensions + 1):
-        periods = BATCHES * length * 2 ** max(times - 1, 0)
-        more, grown = run_disturbed(packed, work, ends[-1], tangent, periods, settings)
-        ends, rates = np.concatenate([ends, more]), np.concatenate([rates, grown])
+    for windows in range(1, 2**settings.extensions + 1):
+        window = run_window(packed, work, ends[-1], settings.window, settings, tangent)
+        ends, rates = np.concatenate([ends, window.ends]), np.concatenate([rates, window.growth])
+        if windows.bit_count() > 1:
+            continue
         growth, value, half_width = _judged(rates)
         if growth is not Growth.UNKNOWN:
             break
-    return Exponent(growth, value, half_width, ends)
+    return Exponent(growth, value, half_width, ends, window)
 
 
 def _judged(rates: Array) -> tuple[Growth, float, float]:
     """What growth rates (periods,) say, their mean and its half-width."""
-    batches = rates.reshape(BATCHES, -1).mean(axis=1)
+    batches = np.array([part.mean() for part in np.array_split(rates, min(BATCHES, rates.size))])
     mean, half = float(batches.mean()), float(mean_interval(batches))
     if mean - half > NEUTRAL:
         return Growth.GROWS, mean, half

@@ -9,7 +9,7 @@ from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.periods import make_log, run_periods
 from facegear.dynamics.integrator.work import Work
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.closing import TREND, Closing, closed, closing
+from facegear.dynamics.steady_state.closing import TREND, VERY_SMALL, Closing, closed, closing
 from facegear.dynamics.steady_state.orbits import AFLOAT, Orbit, change, drawn_in, require, shoot
 
 Array = NDArray[np.float64]
@@ -17,6 +17,8 @@ NEWTON_COST = 20
 """Mesh periods that cost as much time as one with all tangents."""
 NEWTON_STEPS = 2
 """Times that Newton's method usually needs them."""
+SHORT = 8
+"""Newton's method goes after longer periods only where the change over them is very small."""
 BLOCK, LONG_BLOCK = 16, 128
 """A block is half of what was run before, within these: each call of the kernels has a price."""
 KICK = 0.01
@@ -92,6 +94,8 @@ class Run:
     def _advance(self) -> None:
         settings = self.settings
         block = min(max(self.block, self.periods_run // 2), max(self.block, LONG_BLOCK))
+        if self.periods_run < settings.settle:
+            block = min(block, settings.settle - self.periods_run)
         log = make_log(self.packed, block)
         none = np.zeros((0, *self.state.shape))
         displacement, velocity = self.state
@@ -116,7 +120,8 @@ class Run:
             self._kick(near)
             return None
         since = (self.periods_run - self.found_at) % self.found.period
-        if drawn_in(self.packed, self.found, self.ends, since, self.settings.tolerance):
+        at_rest = since == 0 and self._stands_on(self.found, near)
+        if at_rest or drawn_in(self.packed, self.found, self.ends, since, self.settings.tolerance):
             return self._result(self.found.period, self.found.residual, self.found)
         return None
 
@@ -126,7 +131,8 @@ class Run:
         cost = NEWTON_STEPS * NEWTON_COST * near.period
         cheap = self.newton_cost + cost <= self.periods_run or last
         slow = near.periods_left(self.settings.periodic_residual) > NEWTON_COST * near.period
-        worth = near.shrinking and again and cheap and (slow or last)
+        near_enough = near.period <= SHORT or near.residual < VERY_SMALL
+        worth = near.shrinking and near_enough and again and cheap and (slow or last)
         self.newton_cost += cost * worth
         return worth
 
@@ -162,6 +168,15 @@ class Run:
         moved = change(self.packed, self.state, np.array([orbit.displacement, orbit.velocity]))
         settings, slow = self.settings, max(1.0 - abs(orbit.multipliers[0]), 1e-3)
         return moved <= max(20.0 * settings.periodic_residual, 10.0 * settings.tolerance) / slow
+
+    def _stands_on(self, orbit: Orbit, near: Closing) -> bool:
+        """Whether a run has come to rest where the orbit draws it in.
+
+        The orbit is found in the steps that tangents need, the run's own may hold it a step's error aside.
+        """
+        left = near.residual / max(1.0 - abs(orbit.multipliers[0]), 1e-3)
+        whole = near.period % orbit.period == 0
+        return whole and left <= 10.0 * self.settings.periodic_residual and self._is_here(orbit)
 
     def _kick(self, near: Closing) -> None:
         """Move a run that an unstable orbit holds along the way by which it is leaving already, if it is."""

@@ -137,8 +137,8 @@ def simulate_many(
 def steady_state(system: System, frequency: float, settings: Settings, start: State) -> SteadyState:
     """Steady state of any system at an angular mesh frequency in rad/s.
 
-    A run that shows no sign of closing while it is watched gets its largest exponent, then is watched once
-    more over the window that it is measured on. What these do not agree on is watched for longer.
+    A run that shows no sign of closing while it is watched gets its largest exponent on the window that it is
+    measured on, which is also a second watch. Where the two do not agree it is watched for longer.
     """
     prepare()
     packed = pack(system, frequency)
@@ -154,13 +154,13 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
             exponent, motion = None, Motion.PERIODIC
             break
         exponent = largest_exponent(packed, work, settled.state, settings)
-        window = run_window(packed, work, exponent.ends[-1], settings.window, settings)
+        window = exponent.window
         response = mesh_response(system, window.samples, window.per_period)
         motion = _class(packed, settled, exponent, window, response[0], settings)
-        periods_run += len(exponent.ends) + window.periods
+        periods_run += len(exponent.ends)
         if motion is not Motion.NOT_SETTLED or exponent.growth is Growth.UNKNOWN:
             break
-        state, ends = window.ends[-1], np.concatenate([exponent.ends, window.ends])
+        state, ends = window.ends[-1], exponent.ends
     orbit, end = settled.orbit, window.ends[-1][:, : packed.n]
     return SteadyState(
         motion=motion,

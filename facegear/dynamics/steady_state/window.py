@@ -23,7 +23,7 @@ FINENESS = 3.0
 @dataclass(frozen=True, eq=False)
 class Window:
     """Whole mesh periods: samples (periods * per_period, n) of y, shares (3, m) of time, ends (periods, 2, n)
-    of each period by phase, exact averages.
+    of each period by phase, exact averages, logarithmic growth (periods,) of a disturbance, if one was run.
     """
 
     periods: int
@@ -32,19 +32,28 @@ class Window:
     shares: Array
     ends: Array
     averages: Averages
+    growth: Array
 
 
-def run_window(packed: Packed, work: Work, state: Array, periods: int, settings: Settings) -> Window:
+def run_window(
+    packed: Packed, work: Work, state: Array, periods: int, settings: Settings, tangent: Array | None = None
+) -> Window:
     """Run periods from a state (2, n) by phase, which is left alone. Raises NotConverged where a step fails.
 
-    A periodic motion over its own period needs one batch; BATCHES of others show how far chance goes.
+    A periodic motion over its own period needs one batch; BATCHES of others show how far chance goes. A
+    disturbance (1, 2, n) of length one is moved along and turned.
     """
     displacement, velocity = state.copy()
     none = np.zeros((0, 2, displacement.size))
     per_period = samples_needed(packed, settings.samples, periods)
-    log = make_log(packed, periods, per_period, batches=min(BATCHES, periods))
+    disturbed = tangent is not None
+    log = make_log(packed, periods, per_period, growth=disturbed, batches=min(BATCHES, periods))
     tolerance = settings.tolerance
-    require(run_periods(packed, work, displacement, velocity, none, periods, per_period, tolerance, log, TAU))
+    longest = disturbance_step(packed, work.order, tolerance) if disturbed else TAU
+    moved = tangent if disturbed else none
+    require(
+        run_periods(packed, work, displacement, velocity, moved, periods, per_period, tolerance, log, longest)
+    )
     return Window(
         periods=periods,
         per_period=per_period,
@@ -52,6 +61,7 @@ def run_window(packed: Packed, work: Work, state: Array, periods: int, settings:
         shares=log.shares[:, : packed.m] / (TAU * periods),
         ends=log.ends,
         averages=averages(packed, log.sums, periods),
+        growth=log.growth,
     )
 
 
@@ -67,13 +77,11 @@ def samples_needed(packed: Packed, least: int, periods: int) -> int:
 
 def run_disturbed(
     packed: Packed, work: Work, state: Array, tangent: Array, periods: int, settings: Settings
-) -> tuple[Array, Array]:
-    """Ends (periods, 2, n) of each period, and the logarithmic growth (periods,) of a disturbance (1, 2, n)
-    of length one, which is moved along and turned.
-    """
+) -> Array:
+    """Ends (periods, 2, n) of each period; a disturbance (1, 2, n) of length one is moved along and turned."""
     displacement, velocity = state.copy()
     tolerance = settings.tolerance
     log = make_log(packed, periods, growth=True)
     longest = disturbance_step(packed, work.order, tolerance)
     require(run_periods(packed, work, displacement, velocity, tangent, periods, 0, tolerance, log, longest))
-    return log.ends, log.growth
+    return log.ends
