@@ -15,8 +15,9 @@ TREND = 7
 SMALL, VERY_SMALL = 0.02, 1e-3
 FALLING = 0.9
 """A change that falls by less than this over a trend is no sign of closing."""
-SPLIT = 100.0
-"""A change over a part of the period counts as a difference if it is this many times the goal."""
+NO_DIFFERENCE, SPLIT = 10.0, 100.0
+"""A change over a part of a period that has closed is none below the first, for certain one above the second,
+times the goal."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ def closed(packed: Packed, ends: Array, near: Closing, settings: Settings) -> in
         if near.period % part:
             continue
         short = Closing(part, float(returns[part - 1]), trend(packed, ends, part))
-        if _at_rest(short, goal):
+        if short.residual <= NO_DIFFERENCE * goal:
             return part
         if short.residual <= SPLIT * goal and short.trend < 0.5 * (1.0 + near.trend):
             return 0

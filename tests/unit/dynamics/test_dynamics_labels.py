@@ -38,6 +38,14 @@ def test_at_low_damping_the_orbit_is_the_one_that_the_run_comes_to(refine):
     assert found.moments.least[0] > 1.0, "the lower orbit keeps contact"
 
 
+@pytest.mark.parametrize("number", [230, 248])
+def test_a_spiral_that_turns_by_parts_of_a_period_is_period_1_without_refinement(number):
+    """Turning by a half and by a sixth a period, they were once called period-2 and period-6."""
+    oscillator = list(random_oscillators(number + 1))[number]
+    found = steady_state(oscillator.system, oscillator.speed, Settings(refine=False), oscillator.start)
+    assert found.label == "period-1"
+
+
 def test_closed_form_pieces_and_taylor_steps_agree_before_chaos_parts_them():
     for oscillator in random_oscillators(6):
         ours = plain_run(oscillator, oscillator.start, 8, 1e-13)
