@@ -78,7 +78,7 @@ def samples_needed(packed: Packed, least: int, periods: int) -> int:
 def run_disturbed(
     packed: Packed, work: Work, state: Array, tangent: Array, periods: int, settings: Settings
 ) -> Array:
-    """Ends (periods, 2, n) of each period; a disturbance (1, 2, n) of length one is moved along and turned."""
+    """Ends (periods, 2, n) of each period; a disturbance (1, 2, n) of length one is moved along."""
     displacement, velocity = state.copy()
     tolerance = settings.tolerance
     log = make_log(packed, periods, growth=True)
