@@ -52,8 +52,12 @@ def largest_exponent(packed: Packed, work: Work, state: Array, settings: Setting
     tangent /= np.sqrt(((packed.weights * tangent) ** 2).sum())
     # The vector first turns into the direction of fastest growth.
     align = ALIGN * max(1, settings.window // BATCHES)
-    ends = run_disturbed(packed, work, state, tangent, align, settings)
+    ends, _ = run_disturbed(packed, work, state, tangent, align, settings)
     rates = np.zeros(0)
+    if settings.window < BATCHES:
+        # Too short a window to tell growth by.
+        more, rates = run_disturbed(packed, work, ends[-1], tangent, BATCHES, settings)
+        ends = np.concatenate([ends, more])
     for windows in range(1, 2**settings.extensions + 1):
         window = run_window(packed, work, ends[-1], settings.window, settings, tangent)
         ends, rates = np.concatenate([ends, window.ends]), np.concatenate([rates, window.growth])
@@ -67,7 +71,7 @@ def largest_exponent(packed: Packed, work: Work, state: Array, settings: Setting
 
 def _judged(rates: Array) -> tuple[Growth, float, float]:
     """What growth rates (periods,) say, their mean and its half-width."""
-    batches = np.array([part.mean() for part in np.array_split(rates, min(BATCHES, rates.size))])
+    batches = np.array([part.mean() for part in np.array_split(rates, BATCHES)])
     mean, half = float(batches.mean()), float(mean_interval(batches))
     if mean - half > NEUTRAL:
         return Growth.GROWS, mean, half

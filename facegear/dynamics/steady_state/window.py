@@ -77,11 +77,13 @@ def samples_needed(packed: Packed, least: int, periods: int) -> int:
 
 def run_disturbed(
     packed: Packed, work: Work, state: Array, tangent: Array, periods: int, settings: Settings
-) -> Array:
-    """Ends (periods, 2, n) of each period; a disturbance (1, 2, n) of length one is moved along."""
+) -> tuple[Array, Array]:
+    """Ends (periods, 2, n) of each period, and the logarithmic growth (periods,) of a disturbance (1, 2, n)
+    of length one, which is moved along and turned.
+    """
     displacement, velocity = state.copy()
     tolerance = settings.tolerance
     log = make_log(packed, periods, growth=True)
     longest = disturbance_step(packed, work.order, tolerance)
     require(run_periods(packed, work, displacement, velocity, tangent, periods, 0, tolerance, log, longest))
-    return log.ends
+    return log.ends, log.growth
