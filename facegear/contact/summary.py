@@ -1,4 +1,7 @@
-"""What the contact table says of each torque: stiffness, peak-to-peak transmission error, pressure, path."""
+"""What the contact table says of each torque: stiffness, peak-to-peak transmission error, path.
+
+The largest pressure of the contact table is left out: beside tip edges it grows as the mesh is refined.
+"""
 
 from collections.abc import Mapping
 
@@ -18,7 +21,6 @@ COLUMNS = (
     "unloaded_peak_to_peak_um",
     "pairs_min",
     "pairs_max",
-    "peak_pressure_mpa",
 )
 
 
@@ -53,7 +55,6 @@ def _row(torque: float, found: pd.DataFrame) -> tuple[float, ...]:
         float(np.ptp(at["unloaded_ste_um"])),
         int(at["pairs_in_contact"].min()),
         int(at["pairs_in_contact"].max()),
-        at["peak_pressure_mpa"].max(),
     )
 
 

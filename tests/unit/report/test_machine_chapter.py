@@ -63,7 +63,6 @@ def test_the_first_screen_warns_of_what_the_results_hide(example):
         "k_average_mean_n_per_m": 5e8,
         "ste_peak_to_peak_um": 4.0,
         "ste_peak_to_peak_half_um": [3.99, 3.0],
-        "peak_pressure_mpa": 1500.0,
     }
     edges = pd.DataFrame({"torque_n_m": [300.0, 600.0], "edge_pressure_mpa": [0.0, 900.0]})
     gap = {"gap_um": 7.8, "gear_part": "tip edge", "pinion_part": "fillet", "gear_radius_mm": 259.6}
