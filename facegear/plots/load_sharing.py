@@ -16,7 +16,7 @@ YLABEL = {
     "idlers": "Load sharing coefficient of\n idler pinions and tail rotor idler",
     "drivers": "Load sharing coefficient of\n the input pinions",
 }
-CAPTION_WIDTH = 72
+CAPTION_WIDTH = 62
 ENVELOPE = 0.02
 """An envelope narrower than this is a line, and not drawn."""
 

@@ -1,5 +1,6 @@
 """What figures draw: whole pitches, no arbitrary vectors, lines at their orders, text that can be read."""
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
@@ -7,6 +8,7 @@ from matplotlib.text import Text
 
 from facegear.contact.columns import LTCA_COLUMNS, SHARES
 from facegear.plots.contact import closed
+from facegear.plots.load_sharing import sharing_figure
 from facegear.plots.modal import amplitudes, mode_shapes, typical_modes
 from facegear.plots.response import deflections
 
@@ -79,3 +81,41 @@ def test_text_is_at_least_12_px_high_on_a_page_500_px_wide(modes):
         scale = min(1.0, (500 - margins) / (96 * figure.get_figwidth()))
         shown = [text for text in figure.findobj(Text) if text.get_text()]
         assert min(text.get_fontsize() for text in shown) * 96 / 72 * scale >= 12.0 - 1e-9
+
+
+def test_inputs_named_under_a_load_sharing_figure_stay_inside_it():
+    cycle = np.arange(8) / 8
+    curves = pd.DataFrame(
+        {
+            "study": "s",
+            "point": "a",
+            "label": "80 um",
+            "group": "idlers",
+            "kind": "idlers",
+            "cycle_fraction": cycle,
+            "time_s": 3.5e-4 * cycle,
+            "coefficient": 1.5,
+            "envelope_low": 1.5,
+            "envelope_high": 1.5,
+        }
+    )
+    summary = pd.DataFrame(
+        {
+            "study": ["s"],
+            "point": ["a"],
+            "group": ["idlers"],
+            "mean": [1.5],
+            "motion": ["period-1"],
+            "half_width": [0.0],
+            "undefined_share": [0.5],
+        }
+    )
+    caption = "; ".join(["mesh stiffness source fem_scaled, mean 4.1e+08 N/m"] * 6)
+    figure = sharing_figure(curves, summary, "idlers", "Effect of backlash", caption)
+    figure.canvas.draw()
+    whole = figure.bbox
+    for text in figure.findobj(Text):
+        box = text.get_window_extent()
+        if text.get_text() and box.width:
+            assert whole.x0 <= box.x0 and box.x1 <= whole.x1, text.get_text()
+    plt.close(figure)
