@@ -5,8 +5,8 @@ from typing import Any
 
 import pandas as pd
 
-from facegear.config.base import parse
-from facegear.config.transmission import TEETH, Transmission, machine, tooth_numbers
+from facegear.config.layouts import lumped_sections
+from facegear.config.transmission import machine
 from facegear.harmonics.series import Harmonics
 from facegear.stiffness.tables import series_of, unloaded_error
 from facegear.transmission.machine import Machine
@@ -22,7 +22,7 @@ def wired_machine(
 
     A table from contact brings the pair's own e(t); with a series it is `unloaded`, in m.
     """
-    section, numbers = parse(Transmission, transmission), tooth_numbers(**teeth)
+    section, numbers = lumped_sections(transmission, teeth)
     if isinstance(stiffness, Harmonics):
         return machine(section, numbers, stiffness, unloaded)
     return machine(section, numbers, series_of(stiffness), unloaded_error(stiffness))
@@ -30,4 +30,4 @@ def wired_machine(
 
 def case_machine(values: Mapping[str, Any], stiffness: Harmonics | pd.DataFrame) -> Machine:
     """The machine of a whole config."""
-    return wired_machine(values["transmission"], {key: values["tooth_pair"][key] for key in TEETH}, stiffness)
+    return wired_machine(values["transmission"], values["tooth_pair"], stiffness)

@@ -1,7 +1,6 @@
 """Layout of the machine with mean forces; quasi-static load sharing over the hunting cycle."""
 
-from facegear.config.base import parse
-from facegear.config.transmission import Transmission, layout, tooth_numbers
+from facegear.config.layouts import wired_layout
 from facegear.io import tables
 from facegear.plots.gearbox_layout import layout_figure
 from facegear.plots.hunting import bearing_figure, hunting_figure, sensitivity_figure
@@ -10,9 +9,7 @@ from facegear.provenance.stage import stage
 
 with stage(snakemake) as run:
     params, given = snakemake.params, snakemake.input
-    shape = layout(
-        parse(Transmission, params.machine["transmission"]), tooth_numbers(**params.machine["teeth"])
-    )
+    shape = wired_layout(params.machine["transmission"], params.machine["teeth"])
     meshes = tables.read(given.meshes, ["mean_n", "drive_share", "back_share"], text=["mesh", "group"])
     bearings = tables.read(given.bearings, ["body", "mean_x_n", "mean_y_n", "mean_z_n"], text=["body"])
     groups = tables.read(given.groups, ["torque_n_m"], text=["group", "kind"])
