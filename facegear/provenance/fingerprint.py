@@ -9,7 +9,7 @@ import hashlib
 import json
 import sys
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -33,28 +33,38 @@ class _Source:
 
 
 _known: dict[str, _Source] = {}
-"""By name below the root, size and time of change: what `remembered` read, and all that was parsed since."""
+"""By name below the root, size and time of change: what `recall` read, and all that was parsed since."""
+_recalled: set[str] = set()
+"""Keys of `_known` that `recall` read."""
 
 
-@contextmanager
-def remembered(file: Path) -> Iterator[None]:
-    """Keep what counts of each source file in `file` for the next process; without it, all are parsed again.
+def recall(file: Path) -> None:
+    """Take from `file` what counts of each source file, as `remember` left it; the others are parsed.
 
-    A file that cannot be read or written, or that another version wrote, is passed over.
+    A file that cannot be read, or that another version wrote, is passed over.
     """
-    version = f"{sys.version_info[:2]} {hashlib.sha256(Path(__file__).read_bytes()).hexdigest()}"
     with suppress(OSError, ValueError, KeyError, TypeError):
         stored = json.loads(file.read_text(encoding="utf-8"))
-        if stored["version"] == version:
+        if stored["version"] == _version():
             _known.update(
                 {key: _Source(code, tuple(names)) for key, (code, names) in stored["files"].items()}
             )
-    before = len(_known)
-    yield
-    if len(_known) > before:
+            _recalled.update(_known)
+
+
+def remember(file: Path) -> None:
+    """Leave in `file` what counts of each source file for the next process, if any was parsed here.
+
+    Where nothing can be written the next process parses again.
+    """
+    if _known.keys() - _recalled:
         files = {key: (source.code, source.names) for key, source in _known.items()}
         with suppress(OSError, FacegearError), atomic_path(file) as partial:
-            partial.write_text(json.dumps({"version": version, "files": files}), encoding="utf-8")
+            partial.write_text(json.dumps({"version": _version(), "files": files}), encoding="utf-8")
+
+
+def _version() -> str:
+    return f"{sys.version_info[:2]} {hashlib.sha256(Path(__file__).read_bytes()).hexdigest()}"
 
 
 def fingerprint(script: str | Path, root: str | Path) -> str:

@@ -16,7 +16,7 @@ from facegear.config.notes import notes
 from facegear.errors import FacegearError
 from facegear.io.run_lock import hold
 from facegear.paper.config.reproduction import design_cases, read_reproduction
-from facegear.provenance.fingerprint import fingerprint, remembered
+from facegear.provenance.fingerprint import fingerprint, recall, remember
 
 DEFAULT_CONFIGFILE = ROOT / "config" / "paper.yaml"
 CONFIGFILES = [Path(file) for file in workflow.configfiles] or [DEFAULT_CONFIGFILE]
@@ -58,7 +58,13 @@ RUN_LOCKS = []  # held until this process ends
 
 
 # Only a run that is about to work comes here, no dry run, listing or report.
+SOURCES = Path(".snakemake/facegear_sources.json")
+recall(SOURCES)
+
+
+# Not on a dry run, which changes nothing on disk.
 onstart:
+    remember(SOURCES)
     RUN_LOCKS.append(hold(".snakemake/facegear.lock"))
     if RUN_LOCKS[-1] is None:
         raise WorkflowError(f"another run is working in {os.getcwd()}; wait for it or stop it first")
@@ -122,8 +128,13 @@ def shown(name, caption):
     return report(file, caption=text, category=category, labels={"figure": name})
 
 
-def pictures(caption, *names):
-    """Output files `svg` and `png` where the named figures are drawn."""
+def picture_lists(caption, names):
+    """Output lists `svg` and `png` where the named figures are drawn, however many they are."""
     svg = [shown(name, caption) for name in names]
-    png = [f"results/{{case}}/figures/{name}.png" for name in names]
-    return {"svg": svg[0], "png": png[0]} if len(names) == 1 else {"svg": svg, "png": png}
+    return {"svg": svg, "png": [f"results/{{case}}/figures/{name}.png" for name in names]}
+
+
+def pictures(caption, *names):
+    """Output files `svg` and `png` where the named figures are drawn: a path for one, a list for several."""
+    lists = picture_lists(caption, names)
+    return {kind: paths[0] for kind, paths in lists.items()} if len(names) == 1 else lists

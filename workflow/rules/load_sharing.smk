@@ -85,7 +85,7 @@ rule load_sharing_figures:
         studies=rules.load_sharing_summary.output.studies,
         summary=rules.load_sharing_summary.output.summary,
     output:
-        **pictures("load_sharing", *SHARING_FIGURES),
+        **picture_lists("load_sharing", SHARING_FIGURES),
         manifest="results/{case}/figures/load_sharing_figures.provenance.json",
     params:
         titles=[(study.title, study.figures is not None) for study in STUDIES],

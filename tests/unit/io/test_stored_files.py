@@ -83,7 +83,7 @@ def test_altered_file_is_found_by_its_manifest(tmp_path):
     from facegear.provenance.manifest import write_manifest
 
     write_manifest(
-        tmp_path / "tvms.provenance.json", [path], {"code": "x"}, "tvms", 0.1, "", "snakemake --force"
+        tmp_path / "tvms.provenance.json", [path], [], {"code": "x"}, "tvms", 0.1, "", "snakemake --force"
     )
     assert tables.read(path, ["k_n_per_m"]).shape == (1, 1)
     path.write_text(path.read_text().replace("410000000", "420000000"))

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from facegear.provenance import fingerprint as provenance_fingerprint
-from facegear.provenance.fingerprint import fingerprint, reached_modules, remembered
+from facegear.provenance.fingerprint import fingerprint, reached_modules, recall, remember
 
 ROOT = Path(__file__).parents[3]
 
@@ -78,25 +78,24 @@ def test_package_never_imports_snakemake():
 def test_what_is_remembered_gives_the_same_fingerprint_without_parsing(package, tmp_path, monkeypatch):
     """A start parsed some 300 files each time, and so did every job."""
     file = tmp_path / "sources.json"
-    with remembered(file):
-        before = fingerprint(package / "script.py", package)
+    before = fingerprint(package / "script.py", package)
+    remember(file)
     moved = shutil.copytree(package, tmp_path / "moved")
     monkeypatch.setattr(provenance_fingerprint, "_known", {})
     monkeypatch.setattr(provenance_fingerprint, "_parsed", None)
-    with remembered(file):
-        assert fingerprint(moved / "script.py", moved) == before
+    recall(file)
+    assert fingerprint(moved / "script.py", moved) == before
     monkeypatch.undo()
     edit(moved / "facegear/io/tables.py", "x = 2\n")
-    with remembered(file):
-        assert fingerprint(moved / "script.py", moved) != before
+    assert fingerprint(moved / "script.py", moved) != before
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[]", '{"version": "another", "files": {}}', "\xff"])
 def test_a_damaged_memory_is_passed_over(package, tmp_path, text):
     file = tmp_path / "sources.json"
     file.write_text(text, encoding="latin-1")
-    with remembered(file):
-        assert fingerprint(package / "script.py", package)
+    recall(file)
+    assert fingerprint(package / "script.py", package)
 
 
 def test_reading_configs_leaves_solvers_and_tables_unloaded():
