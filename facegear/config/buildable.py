@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.config.transmission import ToothNumbers, Transmission, half_backlash, imperfections, layout
+from facegear.config.lumped_model import ToothNumbers, half_backlash, imperfections, layout
+from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.transmission.assembly import Assembly, assembly, squeezed
 from facegear.transmission.layout import Layout

@@ -7,10 +7,11 @@ from math import atan, degrees, pi
 import numpy as np
 
 from facegear.config.contact import Contact
+from facegear.config.lumped_model import ToothNumbers, given_torques, layout, tooth_numbers
 from facegear.config.stiffness import MeshStiffness
 from facegear.config.studies import Study
 from facegear.config.tooth_pair import ToothPair, pair_design
-from facegear.config.transmission import ToothNumbers, Transmission, given_torques, layout, tooth_numbers
+from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError, NotConverged
 
 MOST_POINTS = 200

@@ -5,8 +5,7 @@ from typing import Any
 
 import pandas as pd
 
-from facegear.config.layouts import lumped_sections
-from facegear.config.transmission import machine
+from facegear.config.lumped_model import lumped_sections, machine
 from facegear.harmonics.series import Harmonics
 from facegear.stiffness.tables import series_of, unloaded_error
 from facegear.transmission.machine import Machine

@@ -24,7 +24,8 @@ from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.stiffness import MeshStiffness
 from facegear.config.studies import NAME, Study
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
-from facegear.config.transmission import FROM_CONTACT, Transmission
+from facegear.config.transmission import Transmission
+from facegear.config.transmission_error import FROM_CONTACT
 from facegear.contact.resolution import check_memory, check_resolution
 from facegear.errors import ConfigError
 

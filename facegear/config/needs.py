@@ -7,7 +7,7 @@ arguments of the stage's function in `facegear.stages`.
 from collections.abc import Mapping
 from typing import Any
 
-from facegear.config.transmission import TEETH
+from facegear.config.lumped_model import TEETH
 from facegear.errors import ConfigError
 
 Slice = dict[str, str | tuple[str, ...]]

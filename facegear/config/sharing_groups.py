@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from facegear.config.layouts import wired_layout
+from facegear.config.lumped_model import wired_layout
 from facegear.load_sharing.groups import load_groups
 
 

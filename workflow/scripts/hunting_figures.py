@@ -1,6 +1,6 @@
 """Layout of the machine with mean forces; quasi-static load sharing over the hunting cycle."""
 
-from facegear.config.layouts import wired_layout
+from facegear.config.lumped_model import wired_layout
 from facegear.io import tables
 from facegear.plots.gearbox_layout import layout_figure
 from facegear.plots.hunting import bearing_figure, hunting_figure, sensitivity_figure

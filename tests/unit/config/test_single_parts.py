@@ -7,8 +7,9 @@ from ruamel.yaml import YAML
 import facegear
 from facegear.config.base import parse
 from facegear.config.buildable import require_buildable
+from facegear.config.lumped_model import machine, tooth_numbers
 from facegear.config.notes import notes
-from facegear.config.transmission import Transmission, machine, tooth_numbers
+from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError, ConfigErrors
 from facegear.harmonics.series import Harmonics
 

@@ -5,7 +5,8 @@ import pytest
 
 from facegear.config.base import parse
 from facegear.config.dynamics import Dynamics, settings, sweep_plan
-from facegear.config.transmission import Transmission, layout, machine, tooth_numbers
+from facegear.config.lumped_model import layout, machine, tooth_numbers
+from facegear.config.transmission import Transmission
 from facegear.errors import ConfigErrors
 from facegear.harmonics.series import Harmonics
 

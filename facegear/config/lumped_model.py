@@ -1,0 +1,186 @@
+"""The lumped model that section `transmission` describes: its layout, its errors, its machine, in SI.
+
+The one place where that section and the tooth numbers of section `tooth_pair` meet. `config.machines`
+adds the mesh stiffness as its stage has stored it.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.config.base import parse
+from facegear.config.bodies import GearBody, PinionBody, RunoutSection, SingleGear, SinglePinion
+from facegear.config.transmission import PinionPlace, SingleMesh, Transmission
+from facegear.config.transmission_error import error_series
+from facegear.errors import ConfigError
+from facegear.harmonics.series import Harmonics
+from facegear.transmission.imperfections import Imperfections, Runout
+from facegear.transmission.layout import Body, FaceGear, Layout, MeshKinematics, Pinion, Role, Side, Tilt
+from facegear.transmission.machine import Damping, Machine, OpenFlanks, balanced_torques, pinion_torques
+from facegear.transmission.phases import PhaseConvention
+
+TEETH = ("pinion_teeth", "face_gear_teeth", "module_mm", "pressure_angle_deg")
+"""Keys of tooth_pair that the lumped model needs; its other data must not rerun modes or dynamics."""
+
+
+@dataclass(frozen=True)
+class ToothNumbers:
+    """What the lumped model takes from the tooth pair; radii in m, angle in rad."""
+
+    pinion_teeth: int
+    gear_teeth: int
+    pinion_base_radius: float
+    pressure_angle: float
+
+
+def tooth_numbers(
+    pinion_teeth: int, face_gear_teeth: int, module_mm: float, pressure_angle_deg: float
+) -> ToothNumbers:
+    """SI values from the keys of the same names in config section `tooth_pair`."""
+    angle = float(np.radians(pressure_angle_deg))
+    base_radius = 0.5e-3 * module_mm * pinion_teeth * float(np.cos(angle))
+    return ToothNumbers(pinion_teeth, face_gear_teeth, base_radius, angle)
+
+
+def lumped_sections(
+    transmission: Mapping[str, Any], teeth: Mapping[str, Any]
+) -> tuple[Transmission, ToothNumbers]:
+    """Section `transmission`, and what the lumped model takes from the keys TEETH of section `tooth_pair`."""
+    return parse(Transmission, transmission), tooth_numbers(**{key: teeth[key] for key in TEETH})
+
+
+def wired_layout(transmission: Mapping[str, Any], teeth: Mapping[str, Any]) -> Layout:
+    """Bodies, angles and meshes of the machine of section `transmission`, with its tooth numbers."""
+    return layout(*lumped_sections(transmission, teeth))
+
+
+def layout(section: Transmission, teeth: ToothNumbers) -> Layout:
+    """The layout that a config describes."""
+    printed = section.mesh_kinematics == "printed"
+    radius_mm = section.pinion.base_radius_mm
+    sides = [side for side in Side if side.value in section.face_gears]
+    pinion_radius = teeth.pinion_base_radius if radius_mm is None else 1e-3 * radius_mm
+    conjugate = pinion_radius * teeth.gear_teeth / teeth.pinion_teeth
+    return Layout(
+        pinions=tuple(
+            Pinion(
+                place.name,
+                Role(place.role),
+                _pitches(place, teeth.gear_teeth),
+                _body(section.pinion, section.single_pinions.get(place.name)),
+            )
+            for place in section.pinions
+        ),
+        gears=tuple(
+            FaceGear(side, _body(section.face_gear, section.single_gears.get(side.value))) for side in sides
+        ),
+        pinion_teeth=teeth.pinion_teeth,
+        gear_teeth=teeth.gear_teeth,
+        pressure_angle=teeth.pressure_angle,
+        pinion_radius=pinion_radius,
+        gear_radius=1e-3 * (section.face_gear.mesh_radius_mm or 0.0) if printed else conjugate,
+        kinematics=MeshKinematics(section.mesh_kinematics),
+    )
+
+
+def machine(
+    section: Transmission, teeth: ToothNumbers, stiffness: Harmonics, unloaded: Harmonics | None = None
+) -> Machine:
+    """The machine that a config describes, with the reference mesh stiffness from its own stage.
+
+    `unloaded` is the pair's own e(t), m. Raises ConfigError where the config asks for it and there is none.
+    """
+    shape = layout(section, teeth)
+    damping = section.damping
+    return Machine(
+        layout=shape,
+        torques=balanced_torques(shape, given_torques(section, shape)),
+        stiffness=stiffness,
+        error=error_series(section.transmission_error, unloaded),
+        half_backlash=half_backlash(section),
+        damping=Damping(
+            damping.mesh_n_s_per_m, damping.mass_per_s, damping.bearing_s, OpenFlanks(damping.open_flanks)
+        ),
+        phase_convention=PhaseConvention(section.phase_convention),
+        error_in_step=section.transmission_error.phasing == "in_step",
+        imperfections=imperfections(section, shape, unloaded),
+    )
+
+
+def half_backlash(section: Transmission) -> float:
+    """Half the backlash (m) common to all meshes. Raises ConfigError where it was not filled in."""
+    if section.backlash_um is None:
+        raise ConfigError(
+            "transmission.backlash_um", None, "a number, as facegear.config.model.resolved gives"
+        )
+    return 0.5e-6 * section.backlash_um
+
+
+def imperfections(section: Transmission, shape: Layout, unloaded: Harmonics | None = None) -> Imperfections:
+    """Errors of single meshes and bodies, in m."""
+    meshes = [section.single_meshes.get(name, SingleMesh()) for name in shape.mesh_names]
+    pinions = [section.single_pinions.get(pinion.name, SinglePinion()) for pinion in shape.pinions]
+    gears = [section.single_gears.get(gear.side.value, SingleGear()) for gear in shape.gears]
+    play = [section.pinion.clearance_um if one.clearance_um is None else one.clearance_um for one in pinions]
+    backlash = [np.nan if one.backlash_um is None else one.backlash_um for one in meshes]
+    return Imperfections(
+        error=1e-6 * np.array([one.error_um for one in meshes]),
+        half_backlash=0.5e-6 * np.array(backlash),
+        stiffness=np.array([one.stiffness_factor for one in meshes]),
+        series={
+            mesh: error_series(one.transmission_error, unloaded)
+            for mesh, one in enumerate(meshes)
+            if one.transmission_error is not None
+        },
+        position=1e-6 * np.array([(one.position_um.x, one.position_um.y) for one in pinions]),
+        clearance=1e-6 * np.array(play),
+        clocking=np.array([one.clocking_deg for one in pinions]) / 360.0 * shape.pinion_teeth,
+        pinion_runout=tuple(_runout(one.runout or section.pinion.runout) for one in pinions),
+        gear_runout=tuple(_runout(one.runout or section.face_gear.runout) for one in gears),
+        pinion_pitch=_pitch_curves(pinions),
+        gear_pitch=_pitch_curves(gears),
+    )
+
+
+def given_torques(section: Transmission, shape: Layout) -> NDArray[np.float64]:
+    """Torque on each pinion by its role, or its own where it has one; shape (pinions,), N m."""
+    by_role = pinion_torques(shape, section.torque.per_input_n_m, section.torque.tail_share)
+    own = np.array([np.nan if place.torque_n_m is None else place.torque_n_m for place in section.pinions])
+    return np.where(np.isnan(own), by_role, own)
+
+
+def _body(section: PinionBody | GearBody, own: SinglePinion | SingleGear | None) -> Body:
+    """A body from what all have and what it has of its own."""
+    own = own or SinglePinion()
+    stiffness = own.bearing_stiffness_n_per_m or section.bearing_stiffness_n_per_m
+    tilt = getattr(own, "tilt", None) or getattr(section, "tilt", None)
+    return Body(
+        section.mass_kg if own.mass_kg is None else own.mass_kg,
+        section.inertia_kg_m2 if own.inertia_kg_m2 is None else own.inertia_kg_m2,
+        (stiffness.x, stiffness.y, stiffness.z),
+        stiffness.xy,
+        Tilt(tilt.inertia_kg_m2, tilt.stiffness_n_m_per_rad) if tilt else None,
+    )
+
+
+def _runout(section: RunoutSection | None) -> Runout:
+    if section is None:
+        return Runout()
+    return Runout(1e-6 * section.eccentricity_um, float(np.radians(section.phase_deg)))
+
+
+def _pitch_curves(bodies: Sequence[SinglePinion | SingleGear]) -> dict[int, NDArray[np.float64]]:
+    return {
+        body: 1e-6 * np.array(one.cumulative_pitch_um)
+        for body, one in enumerate(bodies)
+        if one.cumulative_pitch_um
+    }
+
+
+def _pitches(place: PinionPlace, gear_teeth: int) -> float:
+    if place.angle_pitches is not None:
+        return place.angle_pitches
+    return float(place.angle_deg or 0.0) / 360.0 * gear_teeth

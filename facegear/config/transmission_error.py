@@ -1,0 +1,83 @@
+"""Config of the transmission error e(t), and its Fourier series."""
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from facegear.config.base import Section, refuse
+from facegear.errors import ConfigError
+from facegear.harmonics.series import Harmonics
+
+FROM_CONTACT = "numbers, where mesh_stiffness.source is harmonics: no contact analysis gives e(t)"
+
+
+class ErrorHarmonic(Section):
+    """One harmonic of the transmission error, amplitude * cos(order * angle + phase)."""
+
+    order: int = Field(ge=1, le=64)
+    amplitude_um: float = Field(ge=0, le=5000)
+    phase_deg: float = Field(0.0, ge=-360, le=360)
+
+
+class TransmissionError(Section):
+    """Static transmission error e(t) of the reference mesh; others lag by their phase or not at all.
+
+    `transmission_error: from_contact` is short for source from_contact.
+    """
+
+    source: Literal["given", "from_contact"] = Field(
+        "given",
+        description="from_contact: that of the unloaded pair's contact analysis, less its mean",
+    )
+    amplitude_um: float | None = Field(
+        None, ge=0, le=5000, description="required where source is given, else left out"
+    )
+    meaning: Literal["amplitude", "range"] = "amplitude"
+    phase_deg: float = Field(0.0, ge=-360, le=360)
+    phasing: Literal["mesh", "in_step"] = "mesh"
+    more_harmonics: tuple[ErrorHarmonic, ...] = ()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _short(cls, values: Any) -> Any:
+        if values == "from_contact":
+            return {"source": "from_contact"}
+        if isinstance(values, Mapping) and isinstance(more := values.get("more_harmonics"), list):
+            return {**values, "more_harmonics": tuple(more)}
+        return values
+
+    @model_validator(mode="after")
+    def _one_source(self) -> "TransmissionError":
+        if self.source == "given":
+            if self.amplitude_um is None:
+                refuse("amplitude_um", None, "required, unless transmission_error is from_contact")
+            return self
+        plain = TransmissionError.model_fields
+        for key in ("amplitude_um", "meaning", "phase_deg", "phasing", "more_harmonics"):
+            if (value := getattr(self, key)) != plain[key].default:
+                refuse(key, value, "left out where e(t) is from_contact")
+        return self
+
+
+def error_series(section: TransmissionError, unloaded: Harmonics | None = None) -> Harmonics:
+    """Transmission error of the reference mesh as a Fourier series in m; `unloaded` if it is from contact.
+
+    Raises ConfigError where it is and there is none.
+    """
+    if section.source == "from_contact":
+        if unloaded is None:
+            raise ConfigError("transmission.transmission_error", "from_contact", FROM_CONTACT)
+        return unloaded
+    factor = {"amplitude": 1.0, "range": 0.5}[section.meaning]
+    amplitude = factor * (section.amplitude_um or 0.0)
+    first = ErrorHarmonic(order=1, amplitude_um=amplitude, phase_deg=section.phase_deg)
+    terms = (first, *section.more_harmonics)
+    highest = max(term.order for term in terms)
+    a, b = np.zeros(highest + 1), np.zeros(highest + 1)
+    for term in terms:
+        phase = np.radians(term.phase_deg)
+        a[term.order] -= 1e-6 * term.amplitude_um * np.sin(phase)
+        b[term.order] += 1e-6 * term.amplitude_um * np.cos(phase)
+    return Harmonics(a, b)
