@@ -1,5 +1,6 @@
 """A periodic mesh stiffness as a Fourier series."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -73,3 +74,17 @@ class Harmonics:
     def scaled(self, factor: float) -> "Harmonics":
         """The series times `factor`."""
         return Harmonics(self.a * factor, self.b * factor)
+
+
+def stacked(series: Sequence[Harmonics]) -> NDArray[np.float64]:
+    """Fourier series as rows (series, 2, harmonics + 1), sine part first, padded to the longest."""
+    rows = np.zeros((len(series), 2, max(one.order for one in series) + 1))
+    for row, one in zip(rows, series, strict=True):
+        row[0, : one.order + 1], row[1, : one.order + 1] = one.a, one.b
+    return rows
+
+
+def stacked_values(rows: NDArray[np.float64], cycles: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values of stacked Fourier series at `cycles` (K,) in mesh periods, shape (K, series)."""
+    angle = 2.0 * np.pi * np.outer(cycles, np.arange(rows.shape[2]))
+    return np.sin(angle) @ rows[:, 0].T + np.cos(angle) @ rows[:, 1].T

@@ -28,7 +28,7 @@ def layout_figure(layout: Layout, meshes: pd.DataFrame, bearings: pd.DataFrame) 
     forces = bearings.set_index("body")
     cosine = np.cos(layout.pressure_angle)
     largest = max(loads["mean_n"].max() * cosine, forces[["mean_x_n", "mean_y_n"]].abs().to_numpy().max())
-    order = sorted(range(len(layout.gears)), key=lambda g: layout.gears[g].side is Side.LOWER)
+    order = sorted(range(len(layout.gears)), key=lambda g: -layout.gears[g].sign)
     with styled():
         figure, axes = plt.subplots(1, len(order), figsize=(5.4 * len(order), 6.0), squeeze=False)
         for axis, g in zip(axes[0], order, strict=True):
@@ -48,7 +48,7 @@ def _panel(
     axis: Axes, layout: Layout, g: int, loads: pd.DataFrame, forces: pd.DataFrame, metres: float
 ) -> None:
     gear, radius = layout.gears[g], layout.mesh_radius
-    turns = -1.0 if gear.side is Side.LOWER else 1.0
+    turns = gear.sign
     for edge in (1.0 - HALF_FACE, 1.0 + HALF_FACE):
         axis.add_patch(Circle((0.0, 0.0), edge * radius, fill=False, color="0.6", lw=1.0))
     _turn_arrow(axis, 0.55 * radius, turns)

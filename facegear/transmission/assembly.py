@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.transmission.imperfections import Imperfections
-from facegear.transmission.layout import Layout, Side
+from facegear.transmission.layout import Layout
 
 ROUNDED = 1e-3
 """Misfit in pitches that counts as an angle given with few digits (three decimals of a degree)."""
@@ -80,7 +80,7 @@ def squeezed(
     sine = np.sin(layout.pressure_angle)
     squeeze = np.empty(len(layout.meshes))
     for mesh, (i, g) in enumerate(layout.meshes):
-        side = -1.0 if layout.gears[g].side is Side.LOWER else 1.0
+        side = layout.gears[g].sign
         squeeze[mesh] = sine * (side * errors.position[i, 1] - errors.clearance[i]) - half_backlash[mesh]
     return squeeze
 

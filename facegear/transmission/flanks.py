@@ -44,8 +44,7 @@ def constant_errors(machine: Machine) -> Array:
     cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
     misfit = assembly(layout, machine.half_backlashes, errors.clocking).misfit
     for mesh, (i, g) in enumerate(layout.meshes):
-        lower = layout.gears[g].side is Side.LOWER
-        side = -1.0 if lower else 1.0
+        side, lower = layout.gears[g].sign, layout.gears[g].side is Side.LOWER
         tangential[mesh] -= side * cosine * errors.position[i, 0] + (misfit[i] if lower else 0.0)
         separating[mesh] -= side * sine * errors.position[i, 1]
     return _flanks(tangential, separating)
@@ -60,8 +59,7 @@ def slow_errors(machine: Machine, cycles: Array) -> Array:
     tangential, separating = np.zeros((2, cycles.size, len(layout.meshes)))
     cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
     for mesh, (i, g) in enumerate(layout.meshes):
-        lower = layout.gears[g].side is Side.LOWER
-        side = -1.0 if lower else 1.0
+        side, lower = layout.gears[g].sign, layout.gears[g].side is Side.LOWER
         runout = errors.pinion_runout[i]
         turn = 2.0 * np.pi * cycles / layout.pinion_teeth + runout.phase
         tangential[:, mesh] -= side * cosine * runout.amplitude * np.sin(turn)
@@ -74,16 +72,6 @@ def slow_errors(machine: Machine, cycles: Array) -> Array:
         tangential[:, mesh] -= cosine * _deviation(errors.pinion_pitch.get(i), on_pinion)
         tangential[:, mesh] += cosine * _deviation(errors.gear_pitch.get(g), on_gear)
     return _flanks(tangential, separating)
-
-
-def periodic_values(series: list[Harmonics], cycles: Array) -> Array:
-    """Values of Fourier series at `cycles` (K,), shape (K, series)."""
-    order = max(one.order for one in series)
-    a, b = np.zeros((2, len(series), order + 1))
-    for row, one in enumerate(series):
-        a[row, : one.order + 1], b[row, : one.order + 1] = one.a, one.b
-    angle = 2.0 * np.pi * np.outer(cycles, np.arange(order + 1))
-    return np.sin(angle) @ a.T + np.cos(angle) @ b.T
 
 
 def mirrored(series: Harmonics) -> Harmonics:

@@ -80,6 +80,11 @@ class FaceGear:
         """Name in tables and figures."""
         return f"{self.side.value} face gear"
 
+    @property
+    def sign(self) -> float:
+        """1 for the upper gear, -1 for the lower, which a pinion sees turned half round its own axis."""
+        return -1.0 if self.side is Side.LOWER else 1.0
+
 
 @dataclass(frozen=True)
 class Layout:

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.transmission.layout import DOF_PER_BODY, Layout, Side, Tilt
+from facegear.transmission.layout import DOF_PER_BODY, Layout, Tilt
 
 
 def mass_diagonal(layout: Layout) -> NDArray[np.float64]:
@@ -76,7 +76,7 @@ def mesh_parts(layout: Layout) -> tuple[NDArray[np.float64], NDArray[np.float64]
     tangential, separating = np.zeros((2, len(layout.meshes), layout.dof))
     tilted = {g: DOF_PER_BODY * len(layout.bodies) + 2 * k for k, g in enumerate(layout.tilting)}
     for row, (i, g) in enumerate(layout.meshes):
-        side = -1.0 if layout.gears[g].side is Side.LOWER else 1.0
+        side = layout.gears[g].sign
         along = np.array([np.cos(layout.angles[i]), np.sin(layout.angles[i])])
         pinion, gear = DOF_PER_BODY * i, DOF_PER_BODY * (len(layout.pinions) + g)
         tangential[row, pinion] = side * cosine
@@ -106,7 +106,7 @@ def _printed(layout: Layout) -> NDArray[np.float64]:
     for row, (i, g) in zip(directions, layout.meshes, strict=True):
         pinion = DOF_PER_BODY * i
         gear = DOF_PER_BODY * (len(layout.pinions) + g)
-        axial = 1.0 if layout.gears[g].side is Side.LOWER else -1.0
+        axial = -layout.gears[g].sign
         row[pinion : pinion + 4] = cosine, sine, 0.0, layout.pinion_radius * cosine
         row[gear] = -np.cos(angles[i]) * cosine
         row[gear + 1] = -np.sin(angles[i]) * cosine

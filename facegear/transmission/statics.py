@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.errors import NotConverged
-from facegear.transmission.contact_kernel import Springs, settle_all
+from facegear.harmonics.series import stacked, stacked_values
+from facegear.transmission.contact_energy import Springs
+from facegear.transmission.contact_kernel import settle_all
 from facegear.transmission.flanks import (
     constant_errors,
     error_series,
     flank_gaps,
-    periodic_values,
     slow_errors,
     stiffness_series,
 )
@@ -81,10 +82,10 @@ def static_equilibrium(machine: Machine, cycles: float | None = None) -> Equilib
 
 def equilibria(machine: Machine, cycles: Array) -> Equilibria:
     """Equilibrium at `cycles` (K,), mesh cycles from the start, all errors in. Raises NotConverged."""
-    errors = constant_errors(machine) + periodic_values(error_series(machine), cycles)
+    errors = constant_errors(machine) + stacked_values(stacked(error_series(machine)), cycles)
     if machine.imperfections.any_slow:
         errors += slow_errors(machine, cycles)
-    stiffness = periodic_values(stiffness_series(machine), cycles)
+    stiffness = stacked_values(stacked(stiffness_series(machine)), cycles)
     return settle(machine, stiffness, errors, [f"mesh position {at:.4f}" for at in cycles])
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.reduction import Reduced
-from facegear.harmonics.series import Harmonics
+from facegear.harmonics.series import Harmonics, stacked
 from facegear.transmission.flanks import constant_errors, error_series, flank_gaps, stiffness_series
 from facegear.transmission.machine import Machine, OpenFlanks
 
@@ -61,16 +61,6 @@ class System:
     def size(self) -> int:
         """Number of coordinates n."""
         return self.omega_squared.size
-
-
-def fourier_rows(series: list[Harmonics]) -> Array:
-    """Stack Fourier series into (rows, 2, harmonics + 1)."""
-    order = max(one.order for one in series)
-    rows = np.zeros((len(series), 2, order + 1))
-    for row, one in zip(rows, series, strict=True):
-        row[0, : one.order + 1] = one.a
-        row[1, : one.order + 1] = one.b
-    return rows
 
 
 def machine_system(machine: Machine, reduced: Reduced) -> System:
@@ -130,7 +120,7 @@ def _flank_system(machine: Machine, reduced: Reduced) -> System:
 
 def _different(series: list[Harmonics]) -> tuple[Array, NDArray[np.int64]]:
     """The different ones among Fourier series, and which one each is."""
-    rows = fourier_rows(series)
+    rows = stacked(series)
     different, kind = np.unique(rows.reshape(len(rows), -1), axis=0, return_inverse=True)
     return different.reshape(-1, *rows.shape[1:]), kind.ravel().astype(np.int64)
 
@@ -147,4 +137,4 @@ def _kinds(series: Harmonics, phases: Array) -> tuple[Array, NDArray[np.int64]]:
     """Shifted copies of a series, one for each phase that occurs, and which one each mesh takes."""
     rounded = np.round(phases, 12) % 1.0
     different, kind = np.unique(rounded, return_inverse=True)
-    return fourier_rows([series.shifted(float(phase)) for phase in different]), kind.astype(np.int64)
+    return stacked([series.shifted(float(phase)) for phase in different]), kind.astype(np.int64)

@@ -20,6 +20,7 @@ from facegear.dynamics.steady_state.settle import Settled, settle
 from facegear.dynamics.steady_state.statistics import drifts
 from facegear.dynamics.steady_state.window import Window, run_window
 from facegear.errors import NotConverged
+from facegear.harmonics.series import stacked_values
 from facegear.transmission.machine import Machine, mesh_frequency
 from facegear.transmission.matrices import mass_diagonal
 from facegear.transmission.statics import static_equilibrium
@@ -204,8 +205,8 @@ def _class(
 def mesh_response(system: System, coordinates: Array, per_period: int) -> tuple[Array, Array]:
     """Deflections and elastic mesh forces (K, meshes) of samples that start with a mesh period."""
     cycles = np.arange(per_period) / per_period
-    error = series_values(system.error, cycles)[:, system.error_kind]
-    stiffness = series_values(system.stiffness, cycles)
+    error = stacked_values(system.error, cycles)[:, system.error_kind]
+    stiffness = stacked_values(system.stiffness, cycles)
     for kind, piece in enumerate(system.pieces):
         index = np.searchsorted(piece.breaks, cycles, side="right") - 1
         ahead = cycles - piece.breaks[index]
@@ -258,12 +259,6 @@ def mesh_averages(
     if system.two_flanks:
         return sampled(window.averages, deflections, forces, window.per_period)
     return replace(window.averages, force=window.averages.force * frequency**2)
-
-
-def series_values(series: Array, cycles: Array) -> Array:
-    """Values of Fourier rows (kinds, 2, harmonics + 1) at times in mesh periods, shape (times, kinds)."""
-    angle = TAU * np.outer(cycles, np.arange(series.shape[2]))
-    return np.sin(angle) @ series[:, 0].T + np.cos(angle) @ series[:, 1].T
 
 
 def _by_phase(packed: Packed, state: State, frequency: float) -> Array:

@@ -13,8 +13,8 @@ import facegear
 from facegear.dynamics.bearing_forces import bearing_history, bearing_table, velocities
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.motion import Motion, Settings
-from facegear.dynamics.steady_state.simulate import build_model, series_values, simulate
-from facegear.harmonics.series import Harmonics
+from facegear.dynamics.steady_state.simulate import build_model, simulate
+from facegear.harmonics.series import Harmonics, stacked_values
 from facegear.report.case import case_report
 from facegear.transmission.imperfections import perfect
 from facegear.transmission.layout import MeshKinematics, Role
@@ -90,7 +90,7 @@ def test_bearings_masses_and_meshes_take_no_more_power_than_is_brought_in(kinema
     model, found = loaded(kinematics, samples=1024, **steady)
     machine, system, rate = model.machine, model.system, velocities(found)
     assert found.motion is Motion.PERIODIC and found.periods == 1
-    error = series_values(system.error, found.phases)[:, system.error_kind]
+    error = stacked_values(system.error, found.phases)[:, system.error_kind]
     closed = found.coordinates @ system.mesh_jacobian.T - error - system.upper
     touches = (closed > 0.0).all(axis=0) | (kinematics is MeshKinematics.PRINTED)
     assert ((closed < 0.0).all(axis=0) | touches).all()

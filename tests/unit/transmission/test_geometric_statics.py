@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 
 from facegear.harmonics.series import Harmonics
-from facegear.transmission.contact_kernel import Springs, settle_all
+from facegear.transmission.contact_energy import Springs
+from facegear.transmission.contact_kernel import settle_all
 from facegear.transmission.imperfections import Runout, perfect
 from facegear.transmission.layout import Body, MeshKinematics, Role, Side, Tilt
 from facegear.transmission.matrices import bearing_matrix, flank_directions, rigid_rotation

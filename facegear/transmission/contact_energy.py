@@ -1,0 +1,176 @@
+"""Compiled: derivatives of the energy of one-sided flanks, bearings (with play or without) and torques.
+
+Pinions touch each other through the gears only, which the second derivatives keep to: a block for each pinion
+and one for the gears.
+"""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.machine_code import compiler
+
+Array = NDArray[np.float64]
+
+kernel = compiler(Path(__file__).parent, nogil=True, fastmath={"contract"})
+
+
+class Springs(NamedTuple):
+    """F flanks, P pinions, n unknowns: x, y, turn of every pinion, then w of every gear; all are lengths.
+
+    jacobian (F, 3 + w) by the unknowns of its pinion and its gear, which start at pinion and gear (F,);
+    pinion_bearing (P, 3): xx, xy, yy; clearance (P,), where positive with xx = yy and xy = 0; gear_bearing
+    (n - 3 P,); applied (n,) forces. N, m.
+    """
+
+    jacobian: Array
+    pinion: NDArray[np.int64]
+    gear: NDArray[np.int64]
+    pinion_bearing: Array
+    clearance: Array
+    gear_bearing: Array
+    applied: Array
+
+
+@kernel
+def penetrate(springs: Springs, gap: Array, place: Array, over: Array) -> None:
+    """How far each flank is pressed in, negative where it is open; (F,)."""
+    along(springs, place, over)
+    for f in range(gap.size):
+        over[f] -= gap[f]
+
+
+@kernel
+def along(springs: Springs, motion: Array, out: Array) -> None:
+    """Jacobian times a motion."""
+    wide = springs.jacobian.shape[1]
+    for f in range(out.size):
+        p, g = springs.pinion[f], springs.gear[f] - 3
+        total = 0.0
+        for j in range(3):
+            total += springs.jacobian[f, j] * motion[p + j]
+        for j in range(3, wide):
+            total += springs.jacobian[f, j] * motion[g + j]
+        out[f] = total
+
+
+@kernel
+def _bearing(springs: Springs, i: int, x: float, y: float) -> tuple[float, float]:
+    """Force of pinion i's bearing away from x, y."""
+    xx, xy, yy = springs.pinion_bearing[i]
+    play = springs.clearance[i]
+    if play > 0.0:
+        distance = np.hypot(x, y)
+        share = xx * (1.0 - play / distance) if distance > play else 0.0
+        return share * x, share * y
+    return xx * x + xy * y, xy * x + yy * y
+
+
+@kernel
+def balance(springs: Springs, stiffness: Array, over: Array, place: Array, gradient: Array) -> float:
+    """Forces out of balance into gradient (n,); the largest single force is returned."""
+    pinions = springs.pinion_bearing.shape[0]
+    first = 3 * pinions
+    size = 0.0
+    for j in range(gradient.size):
+        gradient[j] = -springs.applied[j]
+        size = max(size, abs(springs.applied[j]))
+    for i in range(pinions):
+        x, y = _bearing(springs, i, place[3 * i], place[3 * i + 1])
+        gradient[3 * i] += x
+        gradient[3 * i + 1] += y
+    for j in range(first, gradient.size):
+        gradient[j] += springs.gear_bearing[j - first] * place[j]
+    for f in range(over.size):
+        if over[f] > 0.0:
+            force = stiffness[f] * over[f]
+            size = max(size, force)
+            p, g = springs.pinion[f], springs.gear[f] - 3
+            for j in range(3):
+                gradient[p + j] += springs.jacobian[f, j] * force
+            for j in range(3, springs.jacobian.shape[1]):
+                gradient[g + j] += springs.jacobian[f, j] * force
+    return size
+
+
+@kernel
+def assemble(
+    springs: Springs,
+    stiffness: Array,
+    over: Array,
+    place: Array,
+    gradient: Array,
+    tie: float,
+    blocks: Array,
+    core: Array,
+) -> None:
+    """Second derivatives of the energy and the right side, upper triangles only."""
+    pinions, gears = blocks.shape[0], core.shape[0]
+    first, wide = 3 * pinions, blocks.shape[2]
+    blocks[:] = 0.0
+    core[:] = 0.0
+    for i in range(pinions):
+        block = blocks[i]
+        xx, xy, yy = springs.pinion_bearing[i]
+        play = springs.clearance[i]
+        if play > 0.0:
+            x, y = place[3 * i], place[3 * i + 1]
+            distance = np.hypot(x, y)
+            turned = xx * (1.0 - play / distance) if distance > play else 0.0
+            ahead = (xx - turned) / distance**2 if distance > play else 0.0
+            xx, xy, yy = turned + ahead * x * x, ahead * x * y, turned + ahead * y * y
+        block[0, 0], block[0, 1], block[1, 1], block[2, 2] = xx + tie, xy, yy + tie, tie
+        for r in range(3):
+            block[r, wide - 1] = -gradient[3 * i + r]
+    for a in range(gears):
+        core[a, a] = springs.gear_bearing[a] + tie
+        core[a, gears] = -gradient[first + a]
+    for f in range(over.size):
+        if over[f] > 0.0:
+            i, g = springs.pinion[f] // 3, springs.gear[f] - first - 3
+            for r in range(3):
+                factor = stiffness[f] * springs.jacobian[f, r]
+                for c in range(r, 3):
+                    blocks[i, r, c] += factor * springs.jacobian[f, c]
+                for b in range(3, springs.jacobian.shape[1]):
+                    blocks[i, r, g + 3 + b] += factor * springs.jacobian[f, b]
+            for a in range(3, springs.jacobian.shape[1]):
+                factor = stiffness[f] * springs.jacobian[f, a]
+                for b in range(a, springs.jacobian.shape[1]):
+                    core[g + a, g + b] += factor * springs.jacobian[f, b]
+
+
+@kernel
+def slope_along(
+    springs: Springs, stiffness: Array, over: Array, rate: Array, place: Array, step: Array, share: float
+) -> tuple[float, float]:
+    """First and second derivative of the energy along the step."""
+    pinions = springs.pinion_bearing.shape[0]
+    first = 3 * pinions
+    slope, curvature = 0.0, 0.0
+    for j in range(step.size):
+        slope -= springs.applied[j] * step[j]
+    for i in range(pinions):
+        dx, dy = step[3 * i], step[3 * i + 1]
+        x, y = place[3 * i] + share * dx, place[3 * i + 1] + share * dy
+        along_x, along_y = _bearing(springs, i, x, y)
+        slope += along_x * dx + along_y * dy
+        xx, xy, yy = springs.pinion_bearing[i]
+        if springs.clearance[i] == 0.0:
+            curvature += xx * dx * dx + 2.0 * xy * dx * dy + yy * dy * dy
+        elif along_x != 0.0 or along_y != 0.0:
+            ahead, square = (x * dx + y * dy), x * x + y * y
+            turned = 1.0 - springs.clearance[i] / np.sqrt(square)
+            curvature += xx * (turned * (dx * dx + dy * dy) + (1.0 - turned) * ahead * ahead / square)
+    for j in range(first, step.size):
+        stiff = springs.gear_bearing[j - first] * step[j]
+        slope += stiff * (place[j] + share * step[j])
+        curvature += stiff * step[j]
+    for f in range(over.size):
+        depth = over[f] + share * rate[f]
+        if depth > 0.0:
+            slope += stiffness[f] * depth * rate[f]
+            curvature += stiffness[f] * rate[f] * rate[f]
+    return slope, curvature
