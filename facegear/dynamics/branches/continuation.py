@@ -7,9 +7,11 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.branches.locate import Kind, Special, locate, reversal
+from facegear.dynamics.branches.locate import locate
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point, at_parameter, solve_point
+from facegear.dynamics.branches.segment import reversal
+from facegear.dynamics.branches.special import Kind, Special
 from facegear.errors import NotConverged
 
 Array = NDArray[np.float64]

@@ -2,51 +2,24 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import Point, correct_state, solve_point
+from facegear.dynamics.branches.points import Point
+from facegear.dynamics.branches.segment import Segment, zero
+from facegear.dynamics.branches.special import Kind, Special, evidence
 
 Array = NDArray[np.float64]
 LEVEL = 1e-7
 """A component of the tangent below this is zero: a motion that keeps contact may double at one speed."""
 SHORTEST = 1e-10
 """Part of a step down to which points that lie together are told apart."""
-EXACT = 1e-13
 LOOKS = 2
 """How often a stretch is halved on the mere chance that a multiplier crosses the unit circle twice in it."""
 CLOSE = 0.02
 """A multiplier this close to the unit circle at an end of a stretch may cross it inside."""
-
-
-class Kind(StrEnum):
-    """What happens at a special point."""
-
-    FOLD = "fold"
-    DOUBLING = "period doubling"
-    TORUS = "Neimark-Sacker"
-    BRANCH = "branch point"
-    GRAZE = "graze"
-    AFLOAT = "body afloat"
-
-
-@dataclass(frozen=True, eq=False)
-class Special:
-    """A special point. after: place along the branch. multiplier: the critical one (NaN at a graze).
-
-    proof: what shows that it is one. meshes, edge: those that graze (+1 upper edge, -1 lower).
-    """
-
-    kind: Kind
-    point: Point
-    multiplier: complex
-    proof: str
-    after: float
-    meshes: tuple[int, ...] = ()
-    edge: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,58 +32,13 @@ class _Event:
     edge: int = 0
 
 
-class _Segment:
-    """Points between two neighbours, by their share of the chord."""
-
-    def __init__(self, flow: PeriodMap, here: Point, there: Point) -> None:
-        self.flow, self.here, self.there = flow, here, there
-        self.chord = there.x - here.x
-        self.length = float(np.linalg.norm(self.chord))
-        self.known = {0.0: here, 1.0: there}
-
-    def at(self, share: float) -> Point:
-        """The point of the branch at a share of the chord."""
-        if share not in self.known:
-            row = self.chord / self.length
-            linear = self._near(share).linear
-            self.known[share] = solve_point(self.flow, self._guess(share), row, row, linear)
-        return self.known[share]
-
-    def turning(self, share: float) -> list[tuple[Array, Array]]:
-        """Turning points of the deflections at a share, without the matrix of the map."""
-        if share in self.known:
-            return self.known[share].turning
-        row = self.chord / self.length
-        x = correct_state(self.flow, self._guess(share), row, self._near(share).linear)
-        return self.flow.turning(x[:-1], x[-1])
-
-    def _near(self, share: float) -> Point:
-        return self.known[min(self.known, key=lambda other: abs(other - share))]
-
-    def _guess(self, share: float) -> Array:
-        """Cubic between the nearest known points, with their tangents."""
-        low = max(other for other in self.known if other < share)
-        high = min(other for other in self.known if other > share)
-        a, b = self.known[low], self.known[high]
-        width = (high - low) * self.length
-        row = self.chord / self.length
-        t = (share - low) / (high - low)
-        first, second = (width * p.tangent / (row @ p.tangent) for p in (a, b))
-        return (
-            (1 + 2 * t) * (1 - t) ** 2 * a.x
-            + t * (1 - t) ** 2 * first
-            + t**2 * (3 - 2 * t) * b.x
-            - t**2 * (1 - t) * second
-        )
-
-
 def locate(flow: PeriodMap, here: Point, there: Point) -> list[Special]:
     """All special points between two neighbours, in order; `after` is the share of the way."""
-    segment = _Segment(flow, here, there)
+    segment = Segment(flow, here, there)
     return sorted(_between(segment, 0.0, 1.0), key=lambda special: special.after)
 
 
-def _between(segment: _Segment, low: float, high: float, depth: int = 0) -> list[Special]:
+def _between(segment: Segment, low: float, high: float, depth: int = 0) -> list[Special]:
     first, second = segment.at(low), segment.at(high)
     if first.linear.afloat.shape != second.linear.afloat.shape:
         return _loosening(segment, low, high)
@@ -205,7 +133,7 @@ def _distance(
     return test
 
 
-def _loosening(segment: _Segment, low: float, high: float) -> list[Special]:
+def _loosening(segment: Segment, low: float, high: float) -> list[Special]:
     """A body comes loose or is caught: halve until the place is known."""
     while high - low > 1e-9:
         middle = 0.5 * (low + high)
@@ -218,7 +146,7 @@ def _loosening(segment: _Segment, low: float, high: float) -> list[Special]:
     return [Special(Kind.AFLOAT, segment.at(high), 1.0 + 0.0j, proof, high)]
 
 
-def _refined(segment: _Segment, low: float, high: float, event: _Event) -> Special:
+def _refined(segment: Segment, low: float, high: float, event: _Event) -> Special:
     def test(share: float) -> float:
         if event.kind is Kind.GRAZE:
             return event.test(segment.turning(share))
@@ -227,82 +155,8 @@ def _refined(segment: _Segment, low: float, high: float, event: _Event) -> Speci
     # At a fold the parameter stands still along the arc, so its place need not be as sharp.
     tolerance = segment.flow.tolerance
     goal = max(1e-3 * np.sqrt(tolerance), 1e-10) if event.kind is Kind.FOLD else max(0.1 * tolerance, 1e-13)
-    share = bracketed_root(test, low, high, goal)
+    share = zero(test, low, high, goal)
     point = segment.at(share)
-    multiplier, proof = _evidence(event, segment.at(low), point, segment.at(high))
+    off = event.test(point.turning) if event.kind is Kind.GRAZE else np.nan
+    multiplier, proof = evidence(event.kind, off, segment.at(low), point, segment.at(high))
     return Special(event.kind, point, multiplier, proof, share, event.meshes, event.edge)
-
-
-def bracketed_root(test: Callable[[float], float], low: float, high: float, goal: float) -> float:
-    """Bracketed root to `goal` in the test (Chandrupatla 1997); the last place evaluated is returned."""
-    a, b = low, high
-    at_a, at_b = test(a), test(b)
-    if min(abs(at_a), abs(at_b)) <= goal:
-        return a if abs(at_a) < abs(at_b) else b
-    share = at_a / (at_a - at_b)
-    place = a
-    for _ in range(100):
-        place = a + min(max(share, 1e-3), 1.0 - 1e-3) * (b - a)
-        value = test(place)
-        if abs(value) <= goal or abs(b - a) <= EXACT:
-            break
-        if (value > 0.0) == (at_a > 0.0):
-            c, at_c = a, at_a
-        else:
-            c, at_c, b, at_b = b, at_b, a, at_a
-        a, at_a = place, value
-        along, across = (a - b) / (c - b), (at_a - at_b) / (at_c - at_b)
-        share = 0.5
-        if across**2 < along and (1.0 - across) ** 2 < 1.0 - along:
-            share = at_a / (at_b - at_a) * at_c / (at_b - at_c) + (c - a) / (b - a) * at_a / (
-                at_c - at_a
-            ) * at_b / (at_c - at_b)
-    return place
-
-
-def _evidence(event: _Event, before: Point, here: Point, after: Point) -> tuple[complex, str]:
-    """The critical multiplier and what proves the point."""
-    if event.kind is Kind.GRAZE:
-        return complex(
-            np.nan
-        ), f"an extreme lies {abs(event.test(here.turning)):.1e} length scales from the edge"
-    if event.kind is Kind.FOLD:
-        mu = _nearest(here.multipliers, 1.0)
-        return mu, (
-            f"the speed component of the tangent goes from {before.tangent[-1]:+.1e} to "
-            f"{after.tangent[-1]:+.1e}; multiplier {mu.real:.9f}"
-        )
-    if event.kind is Kind.DOUBLING:
-        mu = _nearest(here.multipliers, -1.0)
-        return mu, f"a real multiplier is {mu.real:.9f}, goes through -1"
-    if event.kind is Kind.BRANCH:
-        mu = _nearest(here.multipliers, 1.0)
-        flipped = "changes" if before.parity != after.parity else "keeps"
-        return mu, f"multiplier {mu.real:.9f} at a tangent with {here.tangent[-1]:+.1e}; parity {flipped}"
-    pair = here.pairs[np.argmin(np.abs(np.abs(here.pairs) - 1.0))] if here.pairs.size else complex(np.nan)
-    return complex(pair), f"modulus {abs(pair):.9f}, angle {np.degrees(np.angle(pair)):.6f} deg"
-
-
-def _nearest(values: NDArray[np.complex128], goal: float) -> complex:
-    return complex(values[np.argmin(np.abs(values - goal))])
-
-
-def reversal(flow: PeriodMap, here: Point, there: Point) -> tuple[Point, Point] | None:
-    """Where a branch of several periods runs into its own image, shifted by half of them: the point shortly
-    before, and the orbit of half the period at which another branch doubles.
-    """
-    if flow.period % 2:
-        return None
-    half = flow.over(flow.period // 2)
-    shift = half.gap(here.z, here.u)
-    size = np.linalg.norm(shift)
-    if shift @ half.gap(there.z, there.u) > -0.5 * size * np.linalg.norm(half.gap(there.z, there.u)):
-        return None
-    segment = _Segment(flow, here, there)
-
-    def left(share: float) -> float:
-        point = segment.at(share)
-        return float((half.gap(point.z, point.u) @ shift) / size**2)
-
-    share = bracketed_root(left, 0.0, 1.0, 1e-5)
-    return segment.at(0.95 * share), segment.at(share)

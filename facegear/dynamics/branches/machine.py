@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 from facegear.dynamics.branches.continuation import Branch, Run
 from facegear.dynamics.branches.explore import Found, box, explore
 from facegear.dynamics.branches.family import machine_plane, speed_family
-from facegear.dynamics.branches.locate import Kind
 from facegear.dynamics.branches.loci import Locus, LocusRun, follow_locus
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.plan import BranchPlan
 from facegear.dynamics.branches.points import Point, at_parameter
+from facegear.dynamics.branches.special import Kind
 from facegear.dynamics.branches.survey import Loss, Survey, losses, survey
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import Model, simulate, static_start

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.branches.continuation import Branch
 from facegear.dynamics.branches.explore import Found
-from facegear.dynamics.branches.locate import Kind
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import at_parameter
+from facegear.dynamics.branches.special import Kind
 
 SHAPES = {
     "speed_rpm": (),

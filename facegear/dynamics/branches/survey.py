@@ -7,12 +7,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.branches.continuation import PASSED, Branch, Run, follow
+from facegear.dynamics.branches.continuation import PASSED, Branch, Run, follow, turned
 from facegear.dynamics.branches.explore import Found, crossings, lies_on
 from facegear.dynamics.branches.family import Family
-from facegear.dynamics.branches.locate import Kind, Special
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point, at_parameter
+from facegear.dynamics.branches.special import Kind, Special
 from facegear.dynamics.branches.switching import all_branches
 from facegear.errors import NotConverged
 
@@ -114,11 +114,7 @@ def _losses(flow: PeriodMap, number: int, point: Point, start: float, run: Run) 
     sides = []
     for direction in ("up", "down"):
         sign = 1.0 if direction == "up" else -1.0
-        looking = (
-            here
-            if here.tangent[-1] * sign > 0.0
-            else replace(here, tangent=-here.tangent, parity=-here.parity)
-        )
+        looking = here if here.tangent[-1] * sign > 0.0 else turned(here)
         branch = follow(flow, looking, run, both=False)
         special = next((one for one in branch.specials if one.kind not in PASSED), None)
         reached = branch.points[-1].value if special is None else special.point.value

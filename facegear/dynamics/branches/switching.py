@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.branches.continuation import Branch, End, Run, follow
 from facegear.dynamics.branches.explore import lies_on
-from facegear.dynamics.branches.locate import Kind, Special
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point, at_parameter, solve_point
+from facegear.dynamics.branches.special import Kind, Special
 from facegear.dynamics.motion import State
 from facegear.errors import NotConverged
 

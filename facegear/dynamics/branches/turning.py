@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.integrator.advance import advance, move
+from facegear.dynamics.integrator.advance import advance, after, move
 from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.kernel import kernel
 from facegear.dynamics.integrator.periods import DONE, MOST_STEPS, TOO_MANY_STEPS
@@ -64,9 +64,7 @@ def turning_points(
                         counts[m, kind] += 1
                     slope = later
             move(work, length, displacement, velocity)
-            s += length
-            if TAU - s < 1e-13:
-                s = TAU
+            s = after(s, length)
             taken += 1
             if taken > MOST_STEPS:
                 return TOO_MANY_STEPS

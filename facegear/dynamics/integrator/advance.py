@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.integrator.compiled import Packed
+from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.excitation import excitation
 from facegear.dynamics.integrator.kernel import inlined
 from facegear.dynamics.integrator.lanes import (
@@ -28,6 +28,8 @@ BRIEFEST = 1e-14
 """An edge that is crossed within this time (rad of mesh phase) is stood on: s itself is not known better."""
 SHORTEST = 1e-10
 """Shortest time (rad of mesh phase) between two switches of one mesh that is followed."""
+ROUNDING = 1e-13
+"""A step that ends this close to the end of a period (rad) ends there."""
 MOST_GUESSES = 4
 OPEN, DRIVE, BACK = 0, 1, -1
 
@@ -210,6 +212,12 @@ def _beyond(work: Work, degree: int, root: float) -> float:
         carry = value + root * carry
     work.polynomial[degree] = 0.0
     return first_root(work.polynomial, degree, work.conversion_less, work.subdivision)
+
+
+@inlined
+def after(s: float, length: float) -> float:
+    """The phase at the end of a step, which is the period's end if it lies within rounding of it."""
+    return TAU if TAU - (s + length) < ROUNDING else s + length
 
 
 @inlined

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.integrator.advance import advance, move
+from facegear.dynamics.integrator.advance import advance, after, move
 from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.kernel import inlined, kernel
 from facegear.dynamics.integrator.sums import Sums, add_step, make_sums, start_sums
@@ -102,9 +102,7 @@ def run_periods(
                     log.samples[period * per_period + next_sample, k] = sample[k]
                 next_sample += 1
             move(work, length, displacement, velocity)
-            s += length
-            if TAU - s < 1e-13:
-                s = TAU
+            s = after(s, length)
             taken += 1
             if taken > MOST_STEPS:
                 return TOO_MANY_STEPS

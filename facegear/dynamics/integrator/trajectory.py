@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.integrator.advance import advance, move
+from facegear.dynamics.integrator.advance import advance, after, move
 from facegear.dynamics.integrator.compiled import TAU, Packed, pack
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.integrator.work import make_work
@@ -79,9 +79,7 @@ def record(
             deflections.append(polynomial)
             states.append(work.state[: packed.m].copy())
             move(work, length, displacement, velocity)
-            s += length
-            if TAU - s < 1e-13:
-                s = TAU
+            s = after(s, length)
             if len(starts) > MOST_STEPS or not np.isfinite(length):
                 raise NotConverged("dynamics", f"mesh phase {s:.6g} rad", f"{len(starts)} steps")
     return Trajectory(

@@ -12,9 +12,9 @@ from oscillators import backlash_oscillator, meissner, one_degree, two_coordinat
 
 from facegear.dynamics.branches.continuation import Branch, End, Run, branch_at, follow, turned
 from facegear.dynamics.branches.family import Family
-from facegear.dynamics.branches.locate import Kind
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import at_parameter
+from facegear.dynamics.branches.special import Kind
 from facegear.dynamics.branches.switching import broken, doubled
 from facegear.dynamics.motion import State
 

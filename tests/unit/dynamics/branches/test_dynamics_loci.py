@@ -8,9 +8,9 @@ from oscillators import backlash_oscillator
 
 from facegear.dynamics.branches.continuation import Run, branch_at
 from facegear.dynamics.branches.family import Plane
-from facegear.dynamics.branches.locate import Kind
 from facegear.dynamics.branches.loci import Corner, LocusRun, follow_locus
 from facegear.dynamics.branches.period_map import PeriodMap
+from facegear.dynamics.branches.special import Kind
 
 
 def parent(plane, second):

@@ -10,9 +10,9 @@ from oscillators import backlash_oscillator
 from facegear.dynamics.branches.continuation import End, Run, branch_at, follow
 from facegear.dynamics.branches.explore import box, crossings, explore, lies_on
 from facegear.dynamics.branches.family import Family, machine_plane, speed_family
-from facegear.dynamics.branches.locate import Kind
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import at_parameter
+from facegear.dynamics.branches.special import Kind
 from facegear.dynamics.branches.survey import losses, passed_by, several, survey
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate

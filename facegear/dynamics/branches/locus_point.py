@@ -1,0 +1,180 @@
+"""A point of a locus of folds or period doublings in the plane of two parameters, by Newton's method."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.branches.family import Plane
+from facegear.dynamics.branches.period_map import Linear, PeriodMap
+from facegear.dynamics.branches.points import SINGULAR
+from facegear.dynamics.branches.special import Kind
+from facegear.errors import NotConverged
+
+Array = NDArray[np.float64]
+DIFFERENCE = 1e-5
+"""Step of the differences that tell how the test changes along the family of orbits."""
+SHARP = 2e-5
+"""Step of the central differences at a corner."""
+NEWTON_STEPS = 8
+
+
+@dataclass(frozen=True, eq=False)
+class LocusProblem:
+    """The map in the plane at one tolerance, and whether folds or doublings are followed."""
+
+    kind: Kind
+    plane: Plane
+    flow: PeriodMap
+
+    def at(self, v: float) -> PeriodMap:
+        """The map at a logarithm of the second parameter."""
+        return replace(self.flow, family=self.plane.line(float(np.exp(v))))
+
+    def matrix(self, linear: Linear) -> Array:
+        """What is singular on the locus: M + I, or M - I without the shifts of bodies afloat."""
+        size = len(linear.matrix)
+        if self.kind is Kind.DOUBLING:
+            return linear.matrix + np.eye(size)
+        loose = linear.afloat.shape[1]
+        matrix = np.zeros((size + loose, size + loose))
+        matrix[:size, :size] = linear.matrix - np.eye(size)
+        matrix[:size, size:], matrix[size:, :size] = linear.afloat, linear.afloat.T
+        return matrix
+
+
+@dataclass(frozen=True, eq=False)
+class Borders:
+    """Row and column that border a singular matrix."""
+
+    left: Array
+    right: Array
+
+    def test(self, matrix: Array) -> float:
+        """Zero where the matrix is singular: g of [matrix, left; right^T, 0] [w; g] = [0; 1]."""
+        size = len(matrix)
+        if self.left.size != size:
+            raise NotConverged("branches", "a locus", "a body comes loose or is caught")
+        whole = np.zeros((size + 1, size + 1))
+        whole[:size, :size], whole[:size, size], whole[size, :size] = matrix, self.left, self.right
+        right = np.zeros(size + 1)
+        right[size] = 1.0
+        return float(np.linalg.solve(whole, right)[size])
+
+
+@dataclass(frozen=True, eq=False)
+class LocusPoint:
+    """x (2 n + 2,): weighted state, logarithms of both parameters. tangent (2 n + 2,) of the locus.
+
+    bend: how the test changes along the orbits' own null direction, which vanishes at a cusp. gradient (2 n +
+    2,): the same along the surface of orbits.
+    """
+
+    x: Array
+    tangent: Array
+    bend: float
+    borders: Borders
+    gradient: Array
+
+    @property
+    def values(self) -> tuple[float, float]:
+        """Both parameters."""
+        return float(np.exp(self.x[-2])), float(np.exp(self.x[-1]))
+
+
+def turned(point: LocusPoint) -> LocusPoint:
+    """The same point looking the other way."""
+    return replace(point, tangent=-point.tangent)
+
+
+def borders_of(matrix: Array, before: Borders | None) -> Borders:
+    """Singular vectors of the smallest singular value, with the signs of those before."""
+    left, _, right = np.linalg.svd(matrix)
+    one, two = left[:, -1], right[-1]
+    if before is not None and before.left.shape == one.shape:
+        one = one * np.sign(one @ before.left)
+        two = two * np.sign(two @ before.right)
+    return Borders(one, two)
+
+
+def solve_on_locus(
+    problem: LocusProblem,
+    guess: Array,
+    row: Array,
+    borders: Borders,
+    gradient: Array | None,
+    forward: Array,
+    sharp: bool = False,
+) -> LocusPoint:
+    """The point of the locus next to `guess` with row . (x - guess) = 0.
+
+    The change of the test along the orbits comes from differences of the matrix, once for each point. Raises
+    NotConverged naming the two parameters.
+    """
+    x, goal = guess.copy(), max(0.1 * problem.flow.tolerance, 2e-13)
+    before = np.inf
+    for count in range(NEWTON_STEPS):
+        linear, surface, normal = _surface(problem, x)
+        test = borders.test(problem.matrix(linear))
+        if gradient is None or (count > 0 and abs(test) > 0.2 * before):
+            gradient = _gradient(problem, x, surface, borders, test, sharp)
+        before = abs(test)
+        system = np.array([gradient @ surface, row @ surface])
+        right = np.array([-test, -row @ (x - guess) - row @ normal])
+        step = normal + surface @ np.linalg.solve(system, right)
+        if not np.abs(step).max() < 1.0:
+            break
+        x = x + step
+        if np.abs(step).max() <= max(1e3 * goal, 1e-10):
+            return _point(problem, x, borders, forward, sharp)
+    where = " and ".join(
+        f"{n} = {np.exp(value):.6g}" for n, value in zip(problem.plane.names, guess[-2:], strict=True)
+    )
+    raise NotConverged("branches", where, f"Newton's method on the locus of a {problem.kind}")
+
+
+def _surface(problem: LocusProblem, x: Array) -> tuple[Linear, Array, Array]:
+    """The map at x, the two directions (2 n + 2, 2) along which orbits go on, the step onto the orbits."""
+    z, u, v = x[:-2], x[-2], x[-1]
+    linear = problem.at(v).linear(z, u)
+    ahead, back = (problem.at(v + sign * DIFFERENCE).gap(z, u) for sign in (1.0, -1.0))
+    slope = (ahead - back) / (2.0 * DIFFERENCE)
+    size, loose = linear.afloat.shape
+    matrix = np.zeros((size + loose, size + 2))
+    matrix[:size] = np.column_stack([linear.matrix - np.eye(size), linear.slope, slope])
+    matrix[size:, :size] = linear.afloat.T
+    left, sizes, right = np.linalg.svd(matrix)
+    kept = np.count_nonzero(sizes > SINGULAR * sizes[0])
+    gap = np.concatenate([-linear.gap, np.zeros(loose)])
+    normal = right[:kept].T @ ((left.T @ gap)[:kept] / sizes[:kept])
+    return linear, right[-2:].T, normal
+
+
+def _gradient(
+    problem: LocusProblem, x: Array, surface: Array, borders: Borders, test: float, sharp: bool
+) -> Array:
+    """How the test changes along the orbits, as a vector (2 n + 2,) in their surface."""
+
+    def moved(along: Array, step: float) -> float:
+        there = x + step * along
+        return borders.test(problem.matrix(problem.at(there[-1]).linear(there[:-2], there[-2])))
+
+    if sharp:
+        step = SHARP
+        rates = [(moved(along, step) - moved(along, -step)) / (2.0 * step) for along in surface.T]
+    else:
+        rates = [(moved(along, DIFFERENCE) - test) / DIFFERENCE for along in surface.T]
+    return surface @ np.array(rates)
+
+
+def _point(problem: LocusProblem, x: Array, borders: Borders, forward: Array, sharp: bool) -> LocusPoint:
+    linear, surface, _ = _surface(problem, x)
+    matrix = problem.matrix(linear)
+    fresh = borders_of(matrix, borders)
+    gradient = _gradient(problem, x, surface, fresh, fresh.test(matrix), sharp)
+    rates = gradient @ surface
+    tangent = surface @ np.array([-rates[1], rates[0]])
+    tangent *= np.sign(tangent @ forward) / np.linalg.norm(tangent)
+    size = x.size - 2
+    bend = float(gradient[:size] @ fresh.right[:size])
+    return LocusPoint(x, tangent, bend, fresh, gradient)

@@ -1,0 +1,94 @@
+"""The stretch of a branch between two neighbouring points, and zeros of tests along it."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from facegear.dynamics.branches.period_map import PeriodMap
+from facegear.dynamics.branches.points import Point, correct_state, solve_point
+from facegear.errors import NotConverged
+
+Array = NDArray[np.float64]
+EXACT = 1e-13
+"""Part of a step down to which a zero is placed."""
+
+
+class Segment:
+    """Points of a branch between two neighbours, by their share of the chord."""
+
+    def __init__(self, flow: PeriodMap, here: Point, there: Point) -> None:
+        self.flow, self.here, self.there = flow, here, there
+        self.chord = there.x - here.x
+        self.length = float(np.linalg.norm(self.chord))
+        self.known = {0.0: here, 1.0: there}
+
+    def at(self, share: float) -> Point:
+        """The point of the branch at a share of the chord."""
+        if share not in self.known:
+            row = self.chord / self.length
+            linear = self._near(share).linear
+            self.known[share] = solve_point(self.flow, self._guess(share), row, row, linear)
+        return self.known[share]
+
+    def turning(self, share: float) -> list[tuple[Array, Array]]:
+        """Turning points of the deflections at a share, without the matrix of the map."""
+        if share in self.known:
+            return self.known[share].turning
+        row = self.chord / self.length
+        x = correct_state(self.flow, self._guess(share), row, self._near(share).linear)
+        return self.flow.turning(x[:-1], x[-1])
+
+    def _near(self, share: float) -> Point:
+        return self.known[min(self.known, key=lambda other: abs(other - share))]
+
+    def _guess(self, share: float) -> Array:
+        """Cubic between the nearest known points, with their tangents."""
+        low = max(other for other in self.known if other < share)
+        high = min(other for other in self.known if other > share)
+        a, b = self.known[low], self.known[high]
+        width = (high - low) * self.length
+        row = self.chord / self.length
+        t = (share - low) / (high - low)
+        first, second = (width * p.tangent / (row @ p.tangent) for p in (a, b))
+        return (
+            (1 + 2 * t) * (1 - t) ** 2 * a.x
+            + t * (1 - t) ** 2 * first
+            + t**2 * (3 - 2 * t) * b.x
+            - t**2 * (1 - t) * second
+        )
+
+
+def zero(test: Callable[[float], float], low: float, high: float, goal: float) -> float:
+    """Where a test of the share is zero, to `goal` in the test. Raises NotConverged without a sign change."""
+
+    def rounded(share: float) -> float:
+        value = test(share)
+        return 0.0 if abs(value) <= goal else value
+
+    try:
+        return float(brentq(rounded, low, high, xtol=EXACT))
+    except ValueError as error:
+        raise NotConverged("branches", f"shares {low:g} to {high:g} of a step", str(error)) from None
+
+
+def reversal(flow: PeriodMap, here: Point, there: Point) -> tuple[Point, Point] | None:
+    """Where a branch of several periods runs into its own image, shifted by half of them: the point shortly
+    before, and the orbit of half the period at which another branch doubles.
+    """
+    if flow.period % 2:
+        return None
+    half = flow.over(flow.period // 2)
+    shift = half.gap(here.z, here.u)
+    size = np.linalg.norm(shift)
+    if shift @ half.gap(there.z, there.u) > -0.5 * size * np.linalg.norm(half.gap(there.z, there.u)):
+        return None
+    segment = Segment(flow, here, there)
+
+    def left(share: float) -> float:
+        point = segment.at(share)
+        return float((half.gap(point.z, point.u) @ shift) / size**2)
+
+    share = zero(left, 0.0, 1.0, 1e-5)
+    return segment.at(0.95 * share), segment.at(share)

@@ -1,0 +1,64 @@
+"""Special points of a branch: what they are and what proves them."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.branches.points import Point
+
+
+class Kind(StrEnum):
+    """What happens at a special point."""
+
+    FOLD = "fold"
+    DOUBLING = "period doubling"
+    TORUS = "Neimark-Sacker"
+    BRANCH = "branch point"
+    GRAZE = "graze"
+    AFLOAT = "body afloat"
+
+
+@dataclass(frozen=True, eq=False)
+class Special:
+    """A special point. after: place along the branch. multiplier: the critical one (NaN at a graze).
+
+    proof: what shows that it is one. meshes, edge: those that graze (+1 upper edge, -1 lower).
+    """
+
+    kind: Kind
+    point: Point
+    multiplier: complex
+    proof: str
+    after: float
+    meshes: tuple[int, ...] = ()
+    edge: int = 0
+
+
+def evidence(kind: Kind, off: float, before: Point, here: Point, after: Point) -> tuple[complex, str]:
+    """The critical multiplier of a point between two neighbours, and what proves it.
+
+    off: how far the extreme of a graze lies from the edge, over the length scale.
+    """
+    if kind is Kind.GRAZE:
+        return complex(np.nan), f"an extreme lies {abs(off):.1e} length scales from the edge"
+    if kind is Kind.FOLD:
+        mu = _nearest(here.multipliers, 1.0)
+        return mu, (
+            f"the speed component of the tangent goes from {before.tangent[-1]:+.1e} to "
+            f"{after.tangent[-1]:+.1e}; multiplier {mu.real:.9f}"
+        )
+    if kind is Kind.DOUBLING:
+        mu = _nearest(here.multipliers, -1.0)
+        return mu, f"a real multiplier is {mu.real:.9f}, goes through -1"
+    if kind is Kind.BRANCH:
+        mu = _nearest(here.multipliers, 1.0)
+        flipped = "changes" if before.parity != after.parity else "keeps"
+        return mu, f"multiplier {mu.real:.9f} at a tangent with {here.tangent[-1]:+.1e}; parity {flipped}"
+    pair = here.pairs[np.argmin(np.abs(np.abs(here.pairs) - 1.0))] if here.pairs.size else complex(np.nan)
+    return complex(pair), f"modulus {abs(pair):.9f}, angle {np.degrees(np.angle(pair)):.6f} deg"
+
+
+def _nearest(values: NDArray[np.complex128], goal: float) -> complex:
+    return complex(values[np.argmin(np.abs(values - goal))])
