@@ -1,20 +1,17 @@
 """The front door: one object that answers for a machine, from its teeth to its load sharing."""
 
-import json
-import warnings
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from facegear.config.cases import changed_config
 from facegear.config.load import load_config
 from facegear.config.model import Config, resolved
-from facegear.config.needs import NEEDS, stage_needs
-from facegear.errors import CorruptFile, extras_named
-from facegear.results.base import Result
+from facegear.config.needs import stage_needs
+from facegear.results.store import Store, case_folder
 
 if TYPE_CHECKING:
     from facegear.contact.gear_flank import GearFlank
@@ -26,10 +23,6 @@ if TYPE_CHECKING:
     from facegear.results.stiffness import StiffnessResult
     from facegear.results.sweep import SweepResult
     from facegear.stages.outcome import Outcome
-
-Found = TypeVar("Found", bound=Result)
-Value = TypeVar("Value")
-ROOT = Path(__file__).parents[1]
 
 
 def load(config: str | Path, results: str | Path | None = "results") -> "Gearbox":
@@ -43,7 +36,7 @@ def load(config: str | Path, results: str | Path | None = "results") -> "Gearbox
     23
     """
     read = load_config(config)
-    return Gearbox(read, None if results is None else _case_folder(config, results, read.case))
+    return Gearbox(read, Store(None if results is None else case_folder(config, results, read.case)))
 
 
 @cache
@@ -63,9 +56,9 @@ def example() -> "Gearbox":
 class Gearbox:
     """A machine as its config describes it; every answer is computed once, or read where it is stored.
 
-    `config` is validated, `folder` holds what the workflow stored. A stored result is used if it was made
-    from the same part of the config, by the same code, from inputs of which the same holds; `source` of each
-    result says which it is.
+    `config` is validated, `store` finds what is known already or stored by the workflow. A stored result is
+    used if it was made from the same part of the config, by the same code, from inputs of which the same
+    holds; `source` of each result says which it is.
 
     >>> import facegear
     >>> gearbox = facegear.example().with_values({"transmission.backlash_um": 120})
@@ -74,8 +67,7 @@ class Gearbox:
     """
 
     config: Config
-    folder: Path | None = None
-    _known: dict[str, Any] = field(default_factory=dict)
+    store: Store = field(default_factory=Store)
 
     @cached_property
     def values(self) -> dict[str, Any]:
@@ -111,7 +103,7 @@ class Gearbox:
 
             return geometry(**self._needs("geometry"))
 
-        return self._result("geometry", GeometryResult, compute)
+        return self.store.result("geometry", self.values, GeometryResult, compute)
 
     def contact(
         self, torques: float | Iterable[float] | None = None, positions: int | None = None
@@ -135,7 +127,7 @@ class Gearbox:
 
         from facegear.results.contact import ContactResult
 
-        return gearbox._result("contact", ContactResult, gearbox._contact)
+        return gearbox.store.result("contact", gearbox.values, ContactResult, gearbox._contact)
 
     def stiffness(self) -> "StiffnessResult":
         """k(t) of one mesh at the config's load, or from given harmonics.
@@ -148,7 +140,7 @@ class Gearbox:
         """
         from facegear.results.stiffness import StiffnessResult
 
-        return self._result("stiffness", StiffnessResult, self._stiffness)
+        return self.store.result("stiffness", self.values, StiffnessResult, self._stiffness)
 
     def modes(self) -> "ModesResult":
         """Natural frequencies, classes and shapes; needs neither mesh nor contact.
@@ -165,7 +157,7 @@ class Gearbox:
             given = self.values["mesh_stiffness"]["mean_n_per_m"] is not None
             return modal(**self._needs("modal"), harmonics=None if given else self._harmonics())
 
-        return self._result("modal", ModesResult, compute)
+        return self.store.result("modal", self.values, ModesResult, compute)
 
     def response(self, speed_rpm: float | None = None) -> "ResponseResult":
         """Steady state at a pinion speed, the config's unless given.
@@ -185,7 +177,7 @@ class Gearbox:
 
             return dynamics_response(gearbox._harmonics(), **gearbox._needs("dynamics_response"))
 
-        return gearbox._result("dynamics_response", ResponseResult, compute)
+        return gearbox.store.result("dynamics_response", gearbox.values, ResponseResult, compute)
 
     def sweep(
         self,
@@ -213,7 +205,9 @@ class Gearbox:
 
         from facegear.results.sweep import SweepResult
 
-        found = gearbox._result("dynamics_sweep", SweepResult, lambda: gearbox._sweep(threads))
+        found = gearbox.store.result(
+            "dynamics_sweep", gearbox.values, SweepResult, lambda: gearbox._sweep(threads)
+        )
         return replace(found, content={**found.content, "frequencies": gearbox.modes().table()})
 
     def load_sharing(self, speed_rpm: float | None = None) -> "LoadSharingResult":
@@ -235,7 +229,7 @@ class Gearbox:
 
             return load_sharing(gearbox._harmonics(), **gearbox._needs("load_sharing"))
 
-        return gearbox._result("load_sharing", LoadSharingResult, compute)
+        return gearbox.store.result("load_sharing", gearbox.values, LoadSharingResult, compute)
 
     def __repr__(self) -> str:
         pair, machine = self.config.tooth_pair, self.config.transmission
@@ -250,7 +244,7 @@ class Gearbox:
             return self
         plain = {key: _plain(value) for key, value in changes.items()}
         config = changed_config(self.config.model_dump(mode="json"), plain, where)
-        return Gearbox(config, self.folder, self._known)
+        return Gearbox(config, self.store)
 
     def _needs(self, rule: str) -> dict[str, Any]:
         return stage_needs(rule, self.values)
@@ -262,19 +256,18 @@ class Gearbox:
         return contact(pinion, face_gear, **self._needs("contact"))
 
     def _compliance(self, body: str) -> "GearFlank":
-        def find() -> "GearFlank":
-            from facegear.contact.gear_flank import STORED, from_arrays
-            from facegear.io import arrays
-            from facegear.stages.compliance import compliance
+        from facegear.contact.gear_flank import STORED, from_arrays
+        from facegear.io import arrays
+        from facegear.stages.compliance import compliance
 
-            path = None if self.folder is None else self.folder / "compliance" / f"{body}.npz"
-            if path is not None and self._current_manifest(path):
-                stored = _unless_corrupt(lambda: arrays.read(path, STORED))
-                if stored is not None:
-                    return from_arrays(stored)
-            return compliance(body, **self._needs("compliance"))
-
-        return self._once(("compliance", body), find)
+        return self.store.part(
+            "compliance",
+            body,
+            self.values,
+            f"compliance/{body}.npz",
+            lambda path: from_arrays(arrays.read(path, STORED)),
+            lambda: compliance(body, **self._needs("compliance")),
+        )
 
     def _stiffness(self) -> "Outcome":
         from facegear.stages.stiffness import stiffness
@@ -298,82 +291,6 @@ class Gearbox:
             for number in range(plan["chunks"])
         ]
         return dynamics_sweep(chunks, harmonics, **needs, threads=threads)
-
-    def _result(self, rule: str, kind: type[Found], compute: Callable[[], "Outcome"]) -> Found:
-        """Known already, else stored and up to date, else computed."""
-
-        def find() -> Found:
-            stored = self._stored(kind)
-            if stored is not None:
-                return stored
-            found = compute()
-            return kind(found.content, found.summary, "computed", self.values)
-
-        return self._once((rule,), find)
-
-    def _once(self, name: tuple[str, ...], find: Callable[[], Value]) -> Value:
-        """What `find` gives, kept under the part of the config that it depends on."""
-        rules = _before(name[0], self.values)
-        key = json.dumps([name, [stage_needs(rule, self.values) for rule in rules]])
-        if key not in self._known:
-            with extras_named():
-                self._known[key] = find()
-        return self._known[key]
-
-    def _stored(self, kind: type[Found]) -> Found | None:
-        if self.folder is None:
-            return None
-        folder, summary = self.folder, ""
-        for kept in kind.FILES.values():
-            manifest = self._current_manifest(folder / kept.path)
-            if manifest is None:
-                return None
-            summary = manifest["summary"]
-        content = _unless_corrupt(lambda: {name: kept.read(folder) for name, kept in kind.FILES.items()})
-        return None if content is None else kind(content, summary, "stored", self.values)
-
-    def _current_manifest(self, path: Path) -> Mapping[str, Any] | None:
-        from facegear.provenance.current import current_manifest
-        from facegear.provenance.fingerprint import stage_fingerprint
-
-        return current_manifest(
-            path,
-            lambda rule: self._needs(rule) if rule in NEEDS else None,
-            lambda rule: stage_fingerprint(f"facegear.stages.{rule}", ROOT),
-        )
-
-
-UPSTREAM = {
-    "contact": ("compliance",),
-    "stiffness": ("contact",),
-    "dynamics_response": ("stiffness",),
-    "dynamics_sweep": ("stiffness",),
-    "load_sharing": ("stiffness",),
-}
-
-
-def _before(rule: str, values: Mapping[str, Any]) -> list[str]:
-    """A rule and all whose results it uses."""
-    stiffness = values["mesh_stiffness"]
-    if rule == "stiffness" and stiffness["source"] == "harmonics":
-        return [rule]
-    if rule == "modal" and stiffness["mean_n_per_m"] is None:
-        return [rule, *_before("stiffness", values)]
-    return [rule, *(other for near in UPSTREAM.get(rule, ()) for other in _before(near, values))]
-
-
-def _case_folder(config: str | Path, results: str | Path, case: str) -> Path | None:
-    places = [Path(results), Path(config).resolve().parents[1] / results]
-    return next((place / case for place in places if (place / case).is_dir()), None)
-
-
-def _unless_corrupt(read: Callable[[], Value]) -> Value | None:
-    """What is stored; None, with a warning, if it is damaged."""
-    try:
-        return read()
-    except CorruptFile as error:
-        warnings.warn(f"{error}; computed anew", stacklevel=5)
-        return None
 
 
 def _given(changes: Mapping[str, Any]) -> dict[str, Any]:

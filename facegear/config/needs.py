@@ -44,6 +44,15 @@ NEEDS: dict[str, Slice] = {
     },
 }
 
+UPSTREAM = {
+    "contact": ("compliance",),
+    "stiffness": ("contact",),
+    "dynamics_response": ("stiffness",),
+    "dynamics_sweep": ("stiffness",),
+    "load_sharing": ("stiffness",),
+}
+"""Stages whose results a stage uses."""
+
 
 def stage_needs(rule: str, values: Mapping[str, Any]) -> dict[str, Any]:
     """The arguments of a stage from the plain values of a whole config.
@@ -58,6 +67,16 @@ def stage_needs(rule: str, values: Mapping[str, Any]) -> dict[str, Any]:
         else {key.rsplit(".", 1)[-1]: _value(values, key) for key in keys}
         for name, keys in NEEDS[rule].items()
     }
+
+
+def stages_before(rule: str, values: Mapping[str, Any]) -> list[str]:
+    """A rule and all whose results it uses, with the plain values of a whole config."""
+    stiffness = values["mesh_stiffness"]
+    if rule == "stiffness" and stiffness["source"] == "harmonics":
+        return [rule]
+    if rule == "modal" and stiffness["mean_n_per_m"] is None:
+        return [rule, *stages_before("stiffness", values)]
+    return [rule, *(other for near in UPSTREAM.get(rule, ()) for other in stages_before(near, values))]
 
 
 def _value(values: Any, key: str) -> Any:

@@ -29,7 +29,7 @@ MAY_IMPORT = {
         *("config", "geometry", "mesh", "contact", "stiffness", "harmonics"),
         *("transmission", "dynamics", "load_sharing"),
     },
-    "results": {"contact", "load_sharing", "plots", "report"},
+    "results": {"config", "provenance", "stages", "contact", "load_sharing", "plots", "report"},
 }
 TENANTS = ("paper", "validation")
 """Packages that use the library; no module of the library, nor the other tenant, imports them."""
