@@ -68,3 +68,10 @@ def extras_named() -> Iterator[None]:
         if library not in EXTRAS:
             raise
         raise MissingExtra(library, EXTRAS[library]) from error
+
+
+def chosen(name: str, allowed: Sequence[str], what: str) -> str:
+    """`name` if it is one of `allowed`; raises FacegearError with one line otherwise."""
+    if name not in allowed:
+        raise FacegearError(f"{what} = {name!r}: one of {', '.join(allowed)}")
+    return name

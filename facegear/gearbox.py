@@ -11,6 +11,7 @@ from facegear.config.cases import changed_config
 from facegear.config.load import load_config
 from facegear.config.model import Config, resolved
 from facegear.config.needs import stage_needs
+from facegear.errors import extras_named
 from facegear.results.store import Store, case_folder
 
 if TYPE_CHECKING:
@@ -230,6 +231,17 @@ class Gearbox:
             return load_sharing(gearbox._harmonics(), **gearbox._needs("load_sharing"))
 
         return gearbox.store.result("load_sharing", gearbox.values, LoadSharingResult, compute)
+
+    def export(self, path: str | Path, body: str = "pinion", teeth: int | None = None) -> Path:
+        """Write the exact teeth of a body, modifications included, as STEP or STL (mm), by the path's ending.
+
+        `body`: pinion or face_gear; `teeth`: a sector of so many, the whole gear unless given. Returns the
+        path. Raises FacegearError for anything else, ConfigError for a pair without bodies.
+        """
+        with extras_named():
+            from facegear.stages.cad import export
+
+            return export(path, body, teeth, self.values["tooth_pair"])
 
     def __repr__(self) -> str:
         pair, machine = self.config.tooth_pair, self.config.transmission

@@ -21,6 +21,7 @@ _ACCURACY: Slice = {"accuracy": "dynamics.accuracy"}
 NEEDS: dict[str, Slice] = {
     "geometry": _PAIR,
     "mesh": _MESH,
+    "cad": _MESH,
     "compliance": _COMPLIANCE,
     "contact": {**_PAIR, "contact": "contact"},
     "stiffness": {"mesh_stiffness": "mesh_stiffness"},

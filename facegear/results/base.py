@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
-from facegear.errors import FacegearError
 from facegear.io import arrays, documents, tables
 from facegear.io.files import write_all
 
@@ -50,10 +49,3 @@ class Result:
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.source}: {self.summary})"
-
-
-def chosen(name: str, allowed: Sequence[str], what: str) -> str:
-    """`name` if it is one of `allowed`; raises FacegearError with one line otherwise."""
-    if name not in allowed:
-        raise FacegearError(f"{what} = {name!r}: one of {', '.join(allowed)}")
-    return name

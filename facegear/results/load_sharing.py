@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.errors import FacegearError
-from facegear.results.base import Kept, Result, chosen
+from facegear.errors import FacegearError, chosen
+from facegear.results.base import Kept, Result
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure

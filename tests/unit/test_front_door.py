@@ -102,6 +102,28 @@ def test_every_answer_has_a_table_a_figure_and_files(gearbox, name, tmp_path):
     assert found.source == "computed"
 
 
+@pytest.mark.parametrize("name", ["teeth.step", "teeth.STL"])
+def test_exact_teeth_are_exported_in_the_format_that_the_ending_names(gearbox, name, tmp_path):
+    written = gearbox.export(tmp_path / name, body="face_gear", teeth=1).read_bytes()
+    if name.endswith("step"):
+        assert written.startswith(b"ISO-10303-21")
+    else:
+        assert len(written) == 84 + 50 * int.from_bytes(written[80:84], "little") > 84
+
+
+@pytest.mark.parametrize(
+    ("asked", "line"),
+    [
+        ({"path": "teeth.iges"}, "ending of the path = '.iges': one of .step, .stp, .stl"),
+        ({"path": "teeth.stl", "body": "gear"}, "body = 'gear': one of pinion, face_gear"),
+        ({"path": "teeth.stl", "teeth": 24}, "teeth = 24: 1 to 23"),
+    ],
+)
+def test_an_export_that_cannot_be_is_refused_in_one_line(gearbox, asked, line):
+    with pytest.raises(FacegearError, match=f"^{line}$"):
+        gearbox.export(**asked)
+
+
 def test_load_sharing_of_two_gearboxes_stands_in_one_figure(gearbox):
     tight = gearbox.with_values({"transmission.backlash_um": 80})
     figure = gearbox.load_sharing().plot("idlers", label="100 um", beside={"80 um": tight.load_sharing()})

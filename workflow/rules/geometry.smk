@@ -20,3 +20,15 @@ rule tooth_pair_figure:
         manifest="results/{case}/figures/tooth_pair.provenance.json",
     script:
         "../scripts/tooth_pair_figure.py"
+
+
+rule cad:
+    "Exact teeth for CAD"
+    output:
+        step="results/{case}/cad/{body}.step",
+        stl="results/{case}/cad/{body}.stl",
+        manifest="results/{case}/cad/{body}.provenance.json",
+    wildcard_constraints:
+        body="pinion|face_gear",
+    script:
+        "../scripts/cad.py"

@@ -1,0 +1,189 @@
+"""Closed surfaces of whole teeth, fillets and bodies included, as patches of exact points.
+
+A patch is a grid (profile, width, 3) of points in m in the body frame of its gear (see `design`); its normal,
+first direction cross second, points outwards. Neighbouring patches share the points of their common edge.
+Unlike the finite element bodies, teeth are not idealised: lands, chamfer and modifications are those of the
+config, assembly errors are left out.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import pi
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.geometry import face_gear, pinion
+from facegear.geometry.design import PairDesign, Relief
+from facegear.geometry.pinion_surface import fillet_points, flank_points
+
+Array = NDArray[np.float64]
+Body = Literal["pinion", "face_gear"]
+BODIES: tuple[Body, ...] = ("pinion", "face_gear")
+
+
+@dataclass(frozen=True, eq=False)
+class HalfTooth:
+    """The right half of tooth 0 from the middle of its land to the middle of the space.
+
+    `surface`: patches in that order; `base`: where each of them, ends in the body (bore or back).
+    """
+
+    surface: Sequence[Array]
+    base: Sequence[Array]
+    normal_sign: float
+    """+1 if first direction cross second points out of the tooth on its surface."""
+
+
+def solid(
+    design: PairDesign, body: Body, teeth: int | None = None, profile: int = 17, width: int = 17
+) -> list[Array]:
+    """Patches of a gear, or of a sector of `teeth` teeth about tooth 0, which together enclose it.
+
+    profile, width: points of every patch along the profile (of lands: a quarter) and the width.
+    """
+    whole = teeth_of(design, body)
+    count = whole if teeth is None else teeth
+    half = _pinion_half(design, profile, width) if body == "pinion" else _gear_half(design, profile, width)
+    tooth = [side for part in _sides(half) for side in (part, mirrored(part))]
+    patches = [turned(part, body, 2 * pi * n / whole) for n in numbers(count) for part in tooth]
+    if count < whole:
+        end, first, last = _cut(half), *(2 * pi * n / whole for n in (numbers(count)[0], numbers(count)[-1]))
+        patches += [turned(end, body, last), turned(mirrored(end), body, first)]
+    return patches
+
+
+def teeth_of(design: PairDesign, body: Body) -> int:
+    """Number of teeth of the whole gear."""
+    return design.pinion.teeth if body == "pinion" else design.face_gear.teeth
+
+
+def numbers(count: int) -> range:
+    """Numbers of `count` neighbouring teeth about tooth 0."""
+    return range(-(count // 2), count - count // 2)
+
+
+def turned(points: Array, body: Body, angle: float) -> Array:
+    """Points (..., 3) of a body turned about its axis by `angle` (rad, positive as in `design`)."""
+    c, s = np.cos(angle), np.sin(angle)
+    x, y, z = points[..., 0], points[..., 1], points[..., 2]
+    parts = (c * x - s * z, y, s * x + c * z) if body == "pinion" else (c * x + s * y, c * y - s * x, z)
+    return np.stack(parts, axis=-1)
+
+
+def mirrored(patch: Array) -> Array:
+    """The left side's patch for one of the right side, normal outwards."""
+    return patch[::-1] * np.array([-1.0, 1.0, 1.0])
+
+
+def _sides(half: HalfTooth) -> list[Array]:
+    """Surface, base and both ends of half a tooth, normals outwards."""
+    found = []
+    for surface, base in zip(half.surface, half.base, strict=True):
+        first, last = (np.stack([surface[:, k], base[:, k]], axis=1) for k in (0, -1))
+        found += [surface, base[::-1], first[::-1], last]
+    return found if half.normal_sign > 0 else [patch[::-1] for patch in found]
+
+
+def _cut(half: HalfTooth) -> Array:
+    """The plane through the middle of the space on the right, normal outwards."""
+    cut = np.stack([half.surface[-1][-1], half.base[-1][-1]], axis=1)
+    return cut[::-1] if half.normal_sign > 0 else cut
+
+
+def _pinion_half(design: PairDesign, profile: int, width: int) -> HalfTooth:
+    part, few = design.pinion, (profile - 1) // 4 + 1
+    y = np.linspace(design.mean_radius - part.width / 2, design.mean_radius + part.width / 2, width)[None, :]
+    bounds = _roll_bounds(design)
+    flank = [
+        flank_points(design, np.linspace(top, bottom, profile)[:, None], y).position
+        for top, bottom in pairwise(bounds)
+    ]
+    gamma = np.linspace(design.pressure_angle, pi / 2, profile)[:, None]
+    fillet = fillet_points(design, gamma, y).position
+    tip = flank[0][0]
+    lands = []
+    if part.tip_chamfer > 0:
+        corner = pinion.cartesian(design.pinion_tip_radius, pinion.tip_half_angle(design), y[0])
+        lands = [_between(corner, tip, few)]
+        tip = corner
+    land = _arc(np.zeros(width), tip, few)
+    root = _arc(np.full(width, pi / part.teeth), fillet[-1], few)[::-1]
+    surface = [land, *lands, *flank, fillet, root]
+    return HalfTooth(surface, [_onto_bore(patch, part.bore_radius) for patch in surface], -1.0)
+
+
+def _roll_bounds(design: PairDesign) -> list[float]:
+    """Roll angles (rad) from tip to fillet between which the flank is smooth."""
+    top, bottom = design.pinion_tip_roll, pinion.junction_roll(design)
+
+    def kinks(relief: Relief) -> list[float]:
+        places = [relief.start, relief.start + relief.length] if relief.amount else []
+        return [place / design.pinion_base_radius for place in places]
+
+    inside = [top - kink for kink in kinks(design.pinion.tip_relief)]
+    inside += [bottom + kink for kink in kinks(design.pinion.root_relief)]
+    return [top, *sorted({roll for roll in inside if bottom < roll < top}, reverse=True), bottom]
+
+
+def _polar(points: Array) -> tuple[Array, Array]:
+    return np.hypot(points[..., 0], points[..., 2]), np.arctan2(points[..., 0], -points[..., 2])
+
+
+def _arc(start: Array, end: Array, count: int) -> Array:
+    """From polar angles `start` (n,) to points (n, 3) on their circles."""
+    radius, angle = _polar(end)
+    share = np.linspace(0.0, 1.0, count)[:, None]
+    found = pinion.cartesian(radius, start + share * (angle - start), end[:, 1])
+    found[-1] = end
+    return found
+
+
+def _between(start: Array, end: Array, count: int) -> Array:
+    share = np.linspace(0.0, 1.0, count)[:, None, None]
+    found = start + share * (end - start)
+    found[-1] = end
+    return found
+
+
+def _onto_bore(points: Array, bore: float) -> Array:
+    _, angle = _polar(points)
+    return pinion.cartesian(bore, angle, points[..., 1])
+
+
+def _gear_half(design: PairDesign, profile: int, width: int) -> HalfTooth:
+    gear, few = design.face_gear, (profile - 1) // 4 + 1
+    radius = np.linspace(gear.inner_radius, gear.outer_radius, width)[None, :]
+    share = np.linspace(0.0, 1.0, profile)[:, None]
+    top, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
+    roll = top + share * (design.shaper_tip_roll - top)
+    flank = face_gear.flank_point(design, roll, face_gear.psi_at(design, radius, roll))
+    chi = face_gear.fillet_end(design, radius) * (1.0 - share)
+    fillet = face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, chi))
+    fillet[0] = flank[-1]
+    step = np.linspace(0.0, 1.0, few)[:, None]
+    tip, last = (np.arctan2(line[:, 0], line[:, 1]) for line in (flank[0], fillet[-1]))
+    land = face_gear.cylindrical(radius, step * tip, design.gear_tip_plane)
+    root = face_gear.cylindrical(radius, last + step * (pi / gear.teeth - last), design.gear_root_plane)
+    land[-1], root[0] = flank[0], fillet[-1]
+    surface = [land, flank, fillet, root]
+    flat = np.array([1.0, 1.0, 0.0])
+    base = [patch * flat + [0.0, 0.0, design.gear_back_plane] for patch in surface]
+    return HalfTooth(surface, base, 1.0)
+
+
+def volume(patches: Sequence[Array]) -> float:
+    """Volume (m3) that the patches' triangles enclose."""
+    corners = triangles(patches)
+    return float(np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6.0
+
+
+def triangles(patches: Sequence[Array]) -> Array:
+    """Corners (n, 3, 3) of two triangles for every cell of the patches, counterclockwise from outside."""
+    found = []
+    for patch in patches:
+        a, b, c, d = patch[:-1, :-1], patch[1:, :-1], patch[1:, 1:], patch[:-1, 1:]
+        found += [np.stack(corners, axis=-2).reshape(-1, 3, 3) for corners in ((a, b, c), (a, c, d))]
+    return np.concatenate(found)

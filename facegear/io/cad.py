@@ -1,0 +1,100 @@
+"""Write solids made of patches: STEP (B-spline surfaces through every point) and STL (triangles)."""
+
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import make_interp_spline
+
+from facegear.errors import NotConverged, extras_named
+from facegear.io.atomic import atomic_path
+
+with extras_named():
+    import gmsh
+    import meshio
+
+Array = NDArray[np.float64]
+DEGREE = 3
+NANOMETRES = 6
+"""Decimals of a coordinate in mm that a triangle's corners are rounded to, so that equal ones are equal."""
+SEWN = 1e-6
+"""Largest gap in mm that is sewn up; patches meet to rounding."""
+
+
+def write_stl(path: str | Path, corners: Array) -> None:
+    """Triangles (n, 3, 3) in m as binary STL in mm, corners to the nanometre."""
+    points, cells = np.unique(
+        np.round(1e3 * corners, NANOMETRES).reshape(-1, 3) + 0.0, axis=0, return_inverse=True
+    )
+    mesh = meshio.Mesh(points, [("triangle", cells.reshape(-1, 3))])
+    with atomic_path(path) as temporary:
+        meshio.write(temporary, mesh, file_format="stl", binary=True)
+
+
+def write_step(path: str | Path, patches: Sequence[Array], name: str) -> float:
+    """One solid in mm, sewn of a bicubic B-spline through each patch (n, m, 3) in m.
+
+    Returns its volume in m3 as OpenCASCADE integrates it, to about 2e-5. Raises NotConverged if the patches
+    do not close.
+    """
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("Geometry.ToleranceBoolean", SEWN)
+        gmsh.model.add(name)
+        tags = [_surface(1e3 * patch) for patch in patches]
+        loop = gmsh.model.occ.addSurfaceLoop(tags, sewing=True)
+        solid = gmsh.model.occ.addVolume([loop])
+        gmsh.model.occ.remove([(2, tag) for tag in tags], recursive=True)
+        gmsh.model.occ.synchronize()
+        volume = abs(gmsh.model.occ.getMass(3, solid)) * 1e-9
+        sides = [len(gmsh.model.getAdjacencies(1, edge)[0]) for _, edge in gmsh.model.getEntities(1)]
+        if set(sides) != {2}:
+            raise NotConverged("STEP", name, f"{len(patches)} patches do not close")
+        with atomic_path(path) as temporary, _silent():
+            gmsh.write(str(temporary))
+        return volume
+    finally:
+        gmsh.finalize()
+
+
+@contextmanager
+def _silent() -> Iterator[None]:
+    """Keep what OpenCASCADE prints past Python from the terminal."""
+    sys.stdout.flush()
+    kept = os.dup(1)
+    with open(os.devnull, "wb") as nowhere:
+        os.dup2(nowhere.fileno(), 1)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+
+
+def _surface(points: Array) -> int:
+    """The B-spline surface through a grid of points, parameters evenly spaced."""
+    poles, knots, degrees = points, [], []
+    for axis in (0, 1):
+        count = points.shape[axis]
+        degree = min(DEGREE, count - 1)
+        spline = make_interp_spline(np.linspace(0.0, 1.0, count), poles, k=degree, axis=axis)
+        poles = np.moveaxis(spline.c, 0, axis)
+        knots.append(np.unique(spline.t, return_counts=True))
+        degrees.append(degree)
+    tags = [gmsh.model.occ.addPoint(*pole) for pole in poles.transpose(1, 0, 2).reshape(-1, 3)]
+    (knots_u, times_u), (knots_v, times_v) = knots
+    return gmsh.model.occ.addBSplineSurface(
+        tags,
+        poles.shape[0],
+        degreeU=degrees[0],
+        degreeV=degrees[1],
+        knotsU=knots_u,
+        knotsV=knots_v,
+        multiplicitiesU=times_u,
+        multiplicitiesV=times_v,
+    )

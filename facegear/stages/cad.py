@@ -1,0 +1,40 @@
+"""Exact teeth as solids, for CAD."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from numpy import float64
+from numpy.typing import NDArray
+
+from facegear.config.base import parse
+from facegear.config.mesh import Mesh
+from facegear.config.tooth_pair import pair
+from facegear.errors import FacegearError, chosen
+from facegear.geometry.solids import BODIES, Body, solid, teeth_of, triangles
+from facegear.io.cad import write_step, write_stl
+
+
+def cad(body: Body, tooth_pair: Mapping[str, Any], mesh: Mapping[str, Any]) -> list[NDArray[float64]]:
+    """Patches of as many teeth of a body as mesh files hold. Raises ConfigError for a pair without bodies."""
+    design = pair(tooth_pair).design
+    return solid(design, body, min(parse(Mesh, mesh).exported_teeth, teeth_of(design, body)))
+
+
+def export(path: str | Path, body: str, teeth: int | None, tooth_pair: Mapping[str, Any]) -> Path:
+    """Write teeth of a body, or the whole gear, as STEP or STL by the ending of `path`; returns the path.
+
+    Raises FacegearError for another ending, body or number of teeth, ConfigError for a pair without bodies.
+    """
+    path = Path(path)
+    ending = chosen(path.suffix.lower(), (".step", ".stp", ".stl"), "ending of the path")
+    gear = next(name for name in BODIES if name == chosen(body, BODIES, "body"))
+    design = pair(tooth_pair).design
+    if teeth is not None and not 1 <= teeth <= teeth_of(design, gear):
+        raise FacegearError(f"teeth = {teeth}: 1 to {teeth_of(design, gear)}")
+    patches = solid(design, gear, teeth)
+    if ending == ".stl":
+        write_stl(path, triangles(patches))
+    else:
+        write_step(path, patches, gear)
+    return path

@@ -1,0 +1,91 @@
+"""Whole teeth as closed surfaces, and the CAD files made of them."""
+
+import gmsh
+import meshio
+import numpy as np
+import pytest
+
+from facegear.errors import NotConverged
+from facegear.geometry import face_gear
+from facegear.geometry.design import Relief
+from facegear.geometry.pinion_surface import flank_points
+from facegear.geometry.solids import BODIES, solid, triangles, volume
+from facegear.io.cad import write_step, write_stl
+
+TEETH = 2
+
+
+def exact_volume(design, body):
+    """Of chords at 64 and 128 cells, whose error falls with the square of the cell."""
+    coarse, fine = (volume(solid(design, body, TEETH, n + 1, n // 2 + 1)) for n in (64, 128))
+    return fine + (fine - coarse) / 3
+
+
+@pytest.fixture(scope="module", params=BODIES)
+def body(request):
+    return request.param
+
+
+@pytest.mark.parametrize("teeth", [1, 2, 23])
+def test_surfaces_close_and_face_outwards(pair, body, teeth):
+    corners = np.round(1e9 * triangles(solid(pair(), body, teeth, profile=7, width=3)))
+    _, points = np.unique(corners.reshape(-1, 3) + 0.0, axis=0, return_inverse=True)
+    cells = points.reshape(-1, 3)
+    edges = np.concatenate([cells[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))])
+    forwards, backwards = ({tuple(edge) for edge in way.tolist()} for way in (edges, edges[:, ::-1]))
+    assert len(forwards) == len(edges)
+    assert forwards == backwards
+    assert volume(solid(pair(), body, teeth, profile=7, width=3)) > 0
+
+
+def test_step_has_the_volume_and_the_flanks_of_the_exact_teeth(pair, body, tmp_path):
+    design = pair(tip_relief=Relief(20e-6, 0.0, 2e-3), thinning=1e-4)
+    file = tmp_path / "teeth.step"
+    told = write_step(file, solid(design, body, TEETH), body)
+    assert told == pytest.approx(exact_volume(design, body), rel=5e-5)  # OpenCASCADE's quadrature
+    assert _distance(file, _flank(design, body)) < 50e-9
+
+
+def _flank(design, body):
+    """Points of the right flank of tooth 0, none of them on the grid that the file was made from."""
+    share = np.linspace(0.03, 0.97, 6)[:, None]
+    if body == "pinion":
+        low = design.pinion_tip_roll - 0.3
+        y = design.mean_radius + design.pinion.width * np.array([[-0.41, 0.13, 0.37]])
+        return flank_points(design, low + 0.3 * share, y).position.reshape(-1, 3)
+    radius = np.array([[0.2511, 0.2637, 0.2742]])
+    top, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
+    roll = top + share * (design.shaper_tip_roll - top)
+    return face_gear.flank_point(design, roll, face_gear.psi_at(design, radius, roll)).reshape(-1, 3)
+
+
+def _distance(file, points):
+    """Largest distance (m) of points from the surfaces in a STEP file."""
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.model.occ.importShapes(str(file))
+        gmsh.model.occ.synchronize()
+        assert len(gmsh.model.getEntities(3)) == 1
+        flat = (1e3 * points).ravel()
+        nearest = np.full(len(points), np.inf)
+        for _, tag in gmsh.model.getEntities(2):
+            closest, _ = gmsh.model.getClosestPoint(2, tag, flat)
+            apart = np.linalg.norm((np.asarray(closest) - flat).reshape(-1, 3), axis=1)
+            nearest = np.minimum(nearest, apart)
+        return 1e-3 * nearest.max()
+    finally:
+        gmsh.finalize()
+
+
+def test_stl_holds_the_triangles_in_millimetres(pair, body, tmp_path):
+    corners = triangles(solid(pair(), body, TEETH))
+    write_stl(tmp_path / "teeth.stl", corners)
+    read = meshio.read(tmp_path / "teeth.stl")
+    np.testing.assert_allclose(read.points[read.cells_dict["triangle"]], 1e3 * corners, atol=2e-5)
+
+
+def test_patches_that_do_not_close_are_refused(pair, tmp_path):
+    with pytest.raises(NotConverged, match="33 patches do not close"):
+        write_step(tmp_path / "open.step", solid(pair(), "pinion", 1)[:-1], "pinion")
+    assert not list(tmp_path.iterdir())
