@@ -85,16 +85,16 @@ def _hat_averages(hats, values, area, least):  # type: ignore[no-untyped-def]
     chosen = np.flatnonzero(covered > least)
     pointer = np.zeros(chosen.size + 1, np.int64)
     pointer[1:] = np.cumsum(points[chosen])
-    place = np.full(least.size, -1)
-    place[chosen] = pointer[:-1]
+    slot = np.full(least.size, -1)
+    slot[chosen] = pointer[:-1]
     index, weight = np.empty(pointer[-1], np.int64), np.empty(pointer[-1])
     for q in range(hats.shape[0]):
         for h in range(hats.shape[1]):
             hat = hats[q, h]
-            if place[hat] >= 0:
-                index[place[hat]] = q
-                weight[place[hat]] = values[q, h] * area[q] / covered[hat]
-                place[hat] += 1
+            if slot[hat] >= 0:
+                index[slot[hat]] = q
+                weight[slot[hat]] = values[q, h] * area[q] / covered[hat]
+                slot[hat] += 1
     return pointer, index, weight, chosen, covered[chosen]
 
 

@@ -28,9 +28,9 @@ def influence_matrix(
         for j in range(i) if coupled else ():
             second = pairs[j]
             other = slice(ends[j], ends[j + 1])
-            places = first.tooth - second.tooth
-            block = product(first.pinion_coarse, pinion.block(places), second.pinion_coarse)
-            block += product(first.gear_coarse, gear.block(places), second.gear_coarse)
+            teeth_apart = first.tooth - second.tooth
+            block = product(first.pinion_coarse, pinion.block(teeth_apart), second.pinion_coarse)
+            block += product(first.gear_coarse, gear.block(teeth_apart), second.gear_coarse)
             matrix[own, other] = block
             matrix[other, own] = block.T
     return matrix
@@ -53,13 +53,13 @@ def displacement(
 def _approach(here, loads, pinion, gear, coupled):  # type: ignore[no-untyped-def]
     total = np.zeros((len(here.hats), loads[0][1].shape[1]))
     for pair, force in loads:
-        places = here.tooth - pair.tooth
-        if places == 0:
+        teeth_apart = here.tooth - pair.tooth
+        if teeth_apart == 0:
             total += _response(here.pinion, pinion.own, pair.pinion, force)
             total += _response(here.gear, gear.own, pair.gear, force)
         elif coupled:
-            total += _response(here.pinion_coarse, pinion.block(places), pair.pinion_coarse, force)
-            total += _response(here.gear_coarse, gear.block(places), pair.gear_coarse, force)
+            total += _response(here.pinion_coarse, pinion.block(teeth_apart), pair.pinion_coarse, force)
+            total += _response(here.gear_coarse, gear.block(teeth_apart), pair.gear_coarse, force)
     return total
 
 
@@ -77,14 +77,14 @@ def _response(
 
 @njit(cache=True)
 def _sparse_response(seen, compliance, loads, forces):  # type: ignore[no-untyped-def]
-    loaded, place = _used(loads[1], compliance.shape[1])
+    loaded, slot = _used(loads[1], compliance.shape[1])
     nodal = np.zeros((loaded.size, forces.shape[1]))
     for i in range(forces.shape[0]):
         for k in range(loads[0][i], loads[0][i + 1]):
             for t in range(forces.shape[1]):
-                nodal[place[loads[1][k]], t] += loads[2][k] * forces[i, t]
-    used, place = _used(seen[1], compliance.shape[0])
-    return _averaged(seen[0], place[seen[1]], seen[2], _gathered(compliance, used, loaded) @ nodal)
+                nodal[slot[loads[1][k]], t] += loads[2][k] * forces[i, t]
+    used, slot = _used(seen[1], compliance.shape[0])
+    return _averaged(seen[0], slot[seen[1]], seen[2], _gathered(compliance, used, loaded) @ nodal)
 
 
 def product(
@@ -102,11 +102,11 @@ def product(
 
 @njit(cache=True)
 def _sparse_product(first, compliance, second):  # type: ignore[no-untyped-def]
-    rows, row_place = _used(first[1], compliance.shape[0])
-    columns, column_place = _used(second[1], compliance.shape[1])
+    rows, row_slot = _used(first[1], compliance.shape[0])
+    columns, column_slot = _used(second[1], compliance.shape[1])
     part = _gathered(compliance, rows, columns)
-    half = _averaged(first[0], row_place[first[1]], first[2], part)
-    return _averaged(second[0], column_place[second[1]], second[2], np.ascontiguousarray(half.T)).T
+    half = _averaged(first[0], row_slot[first[1]], first[2], part)
+    return _averaged(second[0], column_slot[second[1]], second[2], np.ascontiguousarray(half.T)).T
 
 
 @njit(cache=True)
@@ -122,14 +122,14 @@ def _gathered(dense, rows, columns):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _used(indices, count):  # type: ignore[no-untyped-def]
-    """The distinct indices, rising, and the place of each among them."""
+    """The distinct indices, rising, and the index of each among them."""
     mark = np.zeros(count, np.bool_)
     for index in indices:
         mark[index] = True
     used = np.flatnonzero(mark)
-    place = np.full(count, -1)
-    place[used] = np.arange(used.size)
-    return used, place
+    slot = np.full(count, -1)
+    slot[used] = np.arange(used.size)
+    return used, slot
 
 
 @njit(cache=True)

@@ -57,11 +57,11 @@ def contact_side(design: PairDesign, tooth: ToothMesh, side: str | None = None) 
     elements = int(np.flatnonzero(touched).max() + 1) if touched.any() else 0
     rows = slice(1, 2 * elements + 1)
     return ContactSide(
-        np.concatenate([flank.nodes, fillet.nodes[rows]]),
-        np.concatenate([flank.u, fillet.u[rows]]),
-        np.concatenate([flank.v, fillet.v[rows]]),
-        len(flank.nodes),
-        fillet.u[0],
+        nodes=np.concatenate([flank.nodes, fillet.nodes[rows]]),
+        u=np.concatenate([flank.u, fillet.u[rows]]),
+        v=np.concatenate([flank.v, fillet.v[rows]]),
+        flank_rows=len(flank.nodes),
+        junction=fillet.u[0],
     )
 
 

@@ -56,14 +56,14 @@ def analyse(design: PairDesign, positions: int = 32, tolerance: float = 1e-7) ->
     others = [gap for parts, gap in gaps.items() if parts not in TOUCHING]
     interference = deepest if deepest.gap < -tolerance else None
     return PairAnalysis(
-        limits,
-        section_contact_ratio(design),
-        drive,
-        back,
-        backlash,
-        gaps,
-        interference,
-        min(others, key=lambda gap: gap.gap),
+        limits=limits,
+        contact_ratio=section_contact_ratio(design),
+        drive=drive,
+        back=back,
+        backlash=backlash,
+        gaps=gaps,
+        interference=interference,
+        smallest=min(others, key=lambda gap: gap.gap),
     )
 
 

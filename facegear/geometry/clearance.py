@@ -48,7 +48,7 @@ def smallest_gaps(design: PairDesign, phi1: ArrayLike, phi2: ArrayLike) -> dict[
         turns = sign * phi1, sign * phi2
         outline = pinion_outline(pair)
         for gear_part, points in _gear_points(pair).items():
-            section = to_pinion_section(pair, points, *turns, TOOTH_NUMBERS)
+            section = to_pinion_section(pair, *turns, TOOTH_NUMBERS).points(points)
             distance, nearest = signed_distance(pair, outline, section, 0.5 * design.module)
             for number, pinion_part in enumerate(PINION_PARTS):
                 here = np.where(outline.part[nearest] == number, distance, np.inf)
@@ -67,7 +67,9 @@ def _lever(design: PairDesign, spot: tuple[Array, Array, Array, Array], normal: 
     """Change of the distance along `normal` per turn of the gear (m/rad)."""
     points, phi1, phi2, teeth = spot
     step = 1e-6
-    after, before = (to_pinion_section(design, points, phi1, phi2 + d, teeth) for d in (step, -step))
+    after, before = (
+        to_pinion_section(design, phi1, phi2 + turn, teeth).points(points) for turn in (step, -step)
+    )
     return float((after - before).ravel()[:2] @ normal) / (2 * step)
 
 

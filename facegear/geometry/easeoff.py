@@ -60,4 +60,11 @@ def ease_off(design: PairDesign, transmission_error: float, shape: tuple[int, in
     def kept(values: Array) -> Array:
         return np.where(facing, values, 0.0).reshape(shape)
 
-    return EaseOff(roll, y, kept(lowest), facing.reshape(shape), kept(radius), kept(hit[:, 2]))
+    return EaseOff(
+        roll=roll,
+        y=y,
+        gap=kept(lowest),
+        facing=facing.reshape(shape),
+        radius=kept(radius),
+        height=kept(hit[:, 2]),
+    )

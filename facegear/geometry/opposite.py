@@ -92,7 +92,7 @@ def located(design: PairDesign, seen: Separation) -> GearHits:
     radius[on] = seen.v[on]
     edge = face_gear.tip_edge(design, seen.v[on])
     beyond[on] = seen.v[on] * (np.arctan2(edge[:, 0], edge[:, 1]) - seen.u[on])
-    return GearHits(seen.gap, radius, flank, fillet, beyond)
+    return GearHits(gap=seen.gap, radius=radius, flank=flank, fillet=fillet, beyond=beyond)
 
 
 def tip_edge_feet(
@@ -109,7 +109,7 @@ def tip_edge_feet(
     """
     phi1, phi2 = (np.array([angle]) for angle in placement)
     found = []
-    for section in to_pinion_section(design, points, phi1, phi2, np.asarray(teeth))[0]:
+    for section in to_pinion_section(design, phi1, phi2, np.asarray(teeth)).points(points)[0]:
         feet = _flank_feet(design, section)
         if fillet is not None:
             beside = ~np.isfinite(feet.gap)

@@ -63,7 +63,12 @@ def pinion_outline(design: PairDesign, density: int = 1200) -> PinionOutline:
     rolls[numbers == PINION_PARTS.index("flank")] = roll
     nodes = np.concatenate(points)
     return PinionOutline(
-        nodes, np.concatenate(normals), np.concatenate(others), numbers, rolls, cKDTree(nodes)
+        points=nodes,
+        normals=np.concatenate(normals),
+        other_normals=np.concatenate(others),
+        part=numbers,
+        roll=rolls,
+        tree=cKDTree(nodes),
     )
 
 
@@ -82,14 +87,14 @@ def _chamfer(design: PairDesign, count: int) -> tuple[Array, Array, tuple[Array,
 
 
 def signed_distance(
-    design: PairDesign, outline: PinionOutline, section: Array, reach: float
+    design: PairDesign, outline: PinionOutline, section: Array, search_radius: float
 ) -> tuple[Array, NDArray[np.int64]]:
     """Signed distance (m) of points (..., 3), x, -z, y of the tooth's frame, and the nearest vertex' index.
 
-    Negative inside the tooth. inf beyond `reach` and beyond the ends of the face. Modifications are taken off
-    the flank and the fillet.
+    Negative inside the tooth. inf beyond `search_radius` and beyond the ends of the face. Modifications are
+    taken off the flank and the fillet.
     """
-    distance, nearest = outline.tree.query(section[..., :2], distance_upper_bound=reach)
+    distance, nearest = outline.tree.query(section[..., :2], distance_upper_bound=search_radius)
     away = np.abs(section[..., 2] - design.mean_radius) > design.pinion.width / 2
     far = ~np.isfinite(distance) | away
     nearest = np.where(far, 0, nearest)

@@ -1,14 +1,49 @@
 """Where the pinion stands against the gear: rotations, tooth numbers and assembly errors."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.spatial.transform import Rotation
 
 from facegear.geometry.design import PairDesign
 
 Array = NDArray[np.float64]
+
+AXIS = {"pinion": np.array([0.0, -1.0, 0.0]), "face_gear": np.array([0.0, 0.0, -1.0])}
+"""Axes about which a positive turn moves the teeth in mesh towards +x, see `design`."""
+
+
+def body_rotation(body: str, angle: ArrayLike) -> Array:
+    """Matrices (..., 3, 3) of turns of the pinion or the face gear by `angle` (rad)."""
+    angle = np.asarray(angle, float)
+    turns = Rotation.from_rotvec(angle.reshape(-1, 1) * AXIS[body])
+    return turns.as_matrix().reshape(*angle.shape, 3, 3)
+
+
+@dataclass(frozen=True, eq=False)
+class RigidMotion:
+    """From one frame to another: a point x becomes `matrix` x + `shift`; (..., 3, 3) and (..., 3) in m."""
+
+    matrix: Array
+    shift: Array
+
+    def points(self, points: Array) -> Array:
+        """Points (n, 3), or (..., n, 3) for each motion its own, in the other frame: (..., n, 3)."""
+        return self.directions(points) + self.shift[..., None, :]
+
+    def directions(self, vectors: Array) -> Array:
+        """The same for directions, which are turned only."""
+        return vectors @ np.swapaxes(self.matrix, -1, -2)
+
+    def inverse(self) -> "RigidMotion":
+        matrix = np.swapaxes(self.matrix, -1, -2)
+        return RigidMotion(matrix, -np.einsum("...ij,...j->...i", matrix, self.shift))
+
+    def then(self, matrix: Array) -> "RigidMotion":
+        """This motion followed by a turn or a mirror about the other frame's origin."""
+        return RigidMotion(matrix @ self.matrix, np.einsum("...ij,...j->...i", matrix, self.shift))
 
 
 def conjugate_angle(design: PairDesign, phi1: ArrayLike) -> Array:
@@ -16,30 +51,24 @@ def conjugate_angle(design: PairDesign, phi1: ArrayLike) -> Array:
     return np.asarray(phi1, float) * design.pinion.teeth / design.face_gear.teeth
 
 
-def to_left_flank(
-    design: PairDesign, vectors: Array, phi1: Array, phi2: Array, tooth: Array, directions: bool
-) -> Array:
-    """Points or directions of pinion tooth 0's body frame seen from the gear's tooth `tooth`.
+def pinion_to_gear(design: PairDesign, phi1: ArrayLike, phi2: ArrayLike, tooth: ArrayLike) -> RigidMotion:
+    """From the body frame of pinion tooth 0, standing as tooth `tooth`, to that of the gear's tooth 0.
 
-    vectors: (n, 3), the same for all placements, or (p, n, 3).
-
-    phi1, phi2 (rad) and tooth have shape (p,); the pinion's tooth is the one of the same number. The
-    result (p, n, 3) is in the gear's body frame with that tooth as reference, mirrored x -> -x so that the
-    gear's left flank appears as the right flank of `face_gear`.
+    phi1, phi2 (rad) and the number of both teeth, broadcast together. Assembly errors are the design's.
     """
-    turn = phi1 + (tooth - 0.5) * 2 * pi / design.pinion.teeth
-    c, s = np.cos(turn)[:, None], np.sin(turn)[:, None]
-    x, y, z = vectors[..., 0], vectors[..., 1], vectors[..., 2]
-    x, z = c * x - s * z, s * x + c * z
+    phi1, phi2, tooth = np.broadcast_arrays(*(np.asarray(part, float) for part in (phi1, phi2, tooth)))
     errors = design.assembly
-    tilt_c, tilt_s = np.cos(errors.shaft_angle_error), np.sin(errors.shaft_angle_error)
-    pivot = 0.0 if directions else design.mean_radius
-    y, z = pivot + (y - pivot) * tilt_c - z * tilt_s, (y - pivot) * tilt_s + z * tilt_c
-    if not directions:
-        x, z = x + errors.offset, z + errors.axial_shift
-    turn = phi2 + tooth * 2 * pi / design.face_gear.teeth
-    c, s = np.cos(turn)[:, None], np.sin(turn)[:, None]
-    return np.stack([-(c * x - s * y), s * x + c * y, z], axis=-1)
+    tilt = Rotation.from_rotvec([errors.shaft_angle_error, 0.0, 0.0]).as_matrix()
+    pivot = np.array([0.0, design.mean_radius, 0.0])
+    moved = pivot - tilt @ pivot + np.array([errors.offset, 0.0, errors.axial_shift])
+    turned = tilt @ body_rotation("pinion", phi1 + (tooth - 0.5) * 2 * pi / design.pinion.teeth)
+    back = body_rotation("face_gear", -(phi2 + tooth * 2 * pi / design.face_gear.teeth))
+    return RigidMotion(turned, np.broadcast_to(moved, (*phi1.shape, 3))).then(back)
+
+
+def to_left_flank(design: PairDesign, phi1: ArrayLike, phi2: ArrayLike, tooth: ArrayLike) -> RigidMotion:
+    """`pinion_to_gear`, mirrored x -> -x: the gear's left flank appears as the right one of `face_gear`."""
+    return pinion_to_gear(design, phi1, phi2, tooth).then(np.diag([-1.0, 1.0, 1.0]))
 
 
 def mirrored(design: PairDesign) -> PairDesign:
@@ -50,21 +79,11 @@ def mirrored(design: PairDesign) -> PairDesign:
     return replace(design, assembly=replace(design.assembly, offset=-design.assembly.offset))
 
 
-def to_pinion_section(design: PairDesign, points: Array, phi1: Array, phi2: Array, teeth: Array) -> Array:
-    """Gear points (n, 3) of tooth 0's body frame in the pinion's tooth section.
+def to_pinion_section(design: PairDesign, phi1: Array, phi2: Array, teeth: Array) -> RigidMotion:
+    """From the body frame of gear tooth 0 to the pinion's tooth section: x, -z, y of its body frame.
 
-    For p placements and t tooth numbers, gear tooth j against pinion tooth j: (p, t, n, 3), x, -z, y of the
-    pinion tooth's body frame.
+    For p placements and t tooth numbers, gear tooth j against pinion tooth j: motions (p, t).
     """
-    turn = (phi2[:, None] + teeth * 2 * pi / design.face_gear.teeth)[..., None]
-    c, s = np.cos(turn), np.sin(turn)
-    x, y, z = points[:, 0], points[:, 1], points[:, 2]
-    x, y, z = c * x + s * y, c * y - s * x, np.broadcast_to(z, (*turn.shape[:2], len(points)))
-    errors = design.assembly
-    x, z = x - errors.offset, z - errors.axial_shift
-    tilt_c, tilt_s = np.cos(errors.shaft_angle_error), np.sin(errors.shaft_angle_error)
-    along = y - design.mean_radius
-    y, z = design.mean_radius + along * tilt_c + z * tilt_s, z * tilt_c - along * tilt_s
-    turn = (phi1[:, None] + (teeth - 0.5) * 2 * pi / design.pinion.teeth)[..., None]
-    c, s = np.cos(turn), np.sin(turn)
-    return np.stack([c * x + s * z, s * x - c * z, y], axis=-1)
+    section = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+    motion = pinion_to_gear(design, phi1[:, None], phi2[:, None], teeth)
+    return motion.inverse().then(section)

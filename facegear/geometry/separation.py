@@ -7,17 +7,16 @@ tooth there has gap inf.
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from facegear.errors import NotConverged
-from facegear.geometry import face_gear
 from facegear.geometry.design import PairDesign
 from facegear.geometry.pinion_surface import SurfacePoints
 from facegear.geometry.placement import to_left_flank
-from facegear.geometry.rays import FILLET, FLANK, NONE, ROOT_LAND, TIP_LAND, Blank, blank, cut
+from facegear.geometry.ray_blank import gear_rays
+from facegear.geometry.rays import FILLET, FLANK, NONE, ROOT_LAND, TIP_LAND, cut
 
 Array = NDArray[np.float64]
 
@@ -61,70 +60,37 @@ def separation(
     phi1: ArrayLike,
     phi2: ArrayLike,
     tooth: ArrayLike = 0,
-    reach: float | None = None,
+    search_radius: float | None = None,
 ) -> Separation:
     """Separation of the right side of pinion tooth `tooth` from the left side of that gear tooth.
 
     phi1, phi2 (rad) and tooth broadcast to p placements; points are n points (n, 3) of the frame of tooth 0,
-    or (p, n, 3) for each placement its own. Surfaces further than `reach` (m, default one module) are not
-    looked for. Assembly errors are the design's.
+    or (p, n, 3) for each placement its own. Surfaces are looked for as far as `search_radius` (m, default one
+    module). Assembly errors are the design's.
     Raises NotConverged where a ray close to the flank cannot be cut with it.
     """
     phi1, phi2, tooth = (
         np.atleast_1d(part).ravel() for part in np.broadcast_arrays(phi1, phi2, np.asarray(tooth, float))
     )
-    reach = design.module if reach is None else reach
+    search_radius = design.module if search_radius is None else search_radius
     count = points.position.shape[-2]
     gap = np.full((len(phi1), count), np.inf)
     part = np.zeros(gap.shape, np.int8)
     u, v, continued = (np.full(gap.shape, value) for value in (np.nan, np.nan, np.inf))
-    numbers, sample = _gear(design)
+    blank, sample = gear_rays(design)
     block = max(1, RAYS_AT_ONCE // max(count, 1))
     for first in range(0, len(phi1), block):
         rows = slice(first, first + block)
+        motion = to_left_flank(design, phi1[rows], phi2[rows], tooth[rows])
         position, normal = (
-            to_left_flank(
-                design,
-                vectors[rows] if vectors.ndim == 3 else vectors,
-                phi1[rows],
-                phi2[rows],
-                tooth[rows],
-                directions,
-            ).reshape(-1, 3)
-            for vectors, directions in ((points.position, False), (points.normal, True))
+            vectors[rows] if vectors.ndim == 3 else vectors for vectors in (points.position, points.normal)
         )
-        *hit, lost = cut(numbers, position, normal, float(reach), *sample)
+        starts, ways = motion.points(position).reshape(-1, 3), motion.directions(normal).reshape(-1, 3)
+        *hit, lost = cut(blank, starts, ways, float(search_radius), *sample)
         if lost:
             raise NotConverged(
                 "separation", f"{lost} rays at the gear", "Newton from two starts, 40 steps each"
             )
         for target, found in zip((gap, part, u, v, continued), hit, strict=True):
             target[rows] = found.reshape(-1, count)
-    return Separation(gap, part, u, v, continued)
-
-
-@lru_cache(maxsize=16)
-def _gear(design: PairDesign, size: int = 25) -> tuple[Blank, tuple]:
-    """The gear's numbers and its sampled flank, as `cut` takes them."""
-    gear = design.face_gear
-    radius = np.linspace(gear.inner_radius, gear.outer_radius, size)[None, :]
-    top, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
-    roll = top + np.linspace(0, 1, size)[:, None] * (design.shaper_tip_roll - top)
-    psi = face_gear.psi_at(design, radius, roll)
-    point = face_gear.flank_point(design, roll, psi)
-    inner = np.zeros((size, size), bool)
-    inner[2:-2, 2:-2] = True
-    steps = (
-        np.linalg.norm(np.diff(point, axis=0), axis=-1),
-        np.linalg.norm(np.diff(point, axis=1), axis=-1),
-    )
-    normal = face_gear.flank_normal(design, roll, psi)
-    sample = (
-        point.reshape(-1, 3),
-        normal.reshape(-1, 3),
-        roll.ravel(),
-        psi.ravel(),
-        inner.ravel(),
-        float(np.hypot(steps[0].max(), steps[1].max())),
-    )
-    return blank(design), sample
+    return Separation(gap=gap, part=part, u=u, v=v, continued=continued)

@@ -66,13 +66,13 @@ def unloaded_contact(design: PairDesign, phi1: ArrayLike) -> UnloadedContact:
         if np.max(np.abs(smallest)) < TOLERANCE:
             facing = np.isfinite(found.gap)
             return UnloadedContact(
-                phi1,
-                phi2,
-                (phi2 - conjugate) * design.gear_base_radius,
-                PAIRS[np.argmin(found.gap, axis=1)],
-                found.gap,
-                np.where(facing, found.roll, np.nan),
-                np.where(facing, found.y, np.nan),
+                phi1=phi1,
+                phi2=phi2,
+                transmission_error=(phi2 - conjugate) * design.gear_base_radius,
+                tooth=PAIRS[np.argmin(found.gap, axis=1)],
+                gap=found.gap,
+                roll=np.where(facing, found.roll, np.nan),
+                y=np.where(facing, found.y, np.nan),
             )
         phi2 = phi2 - smallest / design.gear_base_radius
         # the turn opens or closes all pairs alike, those not followed too

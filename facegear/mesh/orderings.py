@@ -13,8 +13,8 @@ _GMSH_FACES = [(1, 1, 0), (1, 0, 1), (0, 1, 1), (2, 1, 1), (1, 2, 1), (1, 1, 2)]
 _VTK_FACES = [(0, 1, 1), (2, 1, 1), (1, 0, 1), (1, 2, 1), (1, 1, 0), (1, 1, 2)]
 
 
-def _index(places: list[tuple[int, int, int]]) -> np.ndarray:
-    return np.array([i + 3 * j + 9 * k for i, j, k in places])
+def _index(positions: list[tuple[int, int, int]]) -> np.ndarray:
+    return np.array([i + 3 * j + 9 * k for i, j, k in positions])
 
 
 GMSH27 = _index([*_CORNERS, *_GMSH_EDGES, *_GMSH_FACES, (1, 1, 1)])

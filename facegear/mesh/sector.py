@@ -66,4 +66,11 @@ def sector(tooth: ToothMesh, n_teeth: int, first: int = 0) -> SectorMesh:
     nodes = np.empty((total, 3))
     for j in range(n_teeth - 1, -1, -1):
         nodes[tooth_nodes[j]] = tooth.rotated(tooth.nodes, (first + j) * tooth.pitch)
-    return SectorMesh(tooth, nodes, tooth_nodes[:, tooth.hexes].reshape(-1, 27), tooth_nodes, first, closed)
+    return SectorMesh(
+        tooth=tooth,
+        nodes=nodes,
+        hexes=tooth_nodes[:, tooth.hexes].reshape(-1, 27),
+        tooth_nodes=tooth_nodes,
+        first=first,
+        closed=closed,
+    )

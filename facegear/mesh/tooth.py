@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.geometry.design import PairDesign
+from facegear.geometry.placement import body_rotation
 from facegear.mesh.outline import Outline
 from facegear.mesh.section import SectionPlan, plan_section, section_nodes, segment_fractions
 from facegear.mesh.sizes import MeshSizes
@@ -56,19 +57,11 @@ class ToothMesh:
 
     def rotated(self, points: Array, angle: float) -> Array:
         """Points (or vectors) (..., 3) turned about the body's axis, positive as in `geometry.design`."""
-        return points @ rotation(self.body, angle).T
+        return points @ body_rotation(self.body, angle).T
 
 
 CORNERS = np.array([0, 2, 6, 8, 18, 20, 24, 26])
 """Columns of `hexes` of the corners (i, j, k) = (0,0,0), (1,0,0), (0,1,0), (1,1,0), (0,0,1), ..."""
-
-
-def rotation(body: str, angle: float) -> Array:
-    """Matrix (3, 3) of a turn by `angle` (rad) that moves the teeth in mesh towards +x."""
-    c, s = np.cos(angle), np.sin(angle)
-    if body == "pinion":
-        return np.array([[c, 0, -s], [0, 1, 0], [s, 0, c]])
-    return np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
 
 
 def pinion_tooth(design: PairDesign, sizes: MeshSizes) -> ToothMesh:
@@ -116,14 +109,14 @@ def _tooth(design: PairDesign, body: str, sizes: MeshSizes, start: float, end: f
     cut = np.flatnonzero(half.sigma == half.sigma.max())
     planes = count * np.arange(2 * layers + 1)
     return ToothMesh(
-        body,
-        teeth,
-        nodes,
-        hexes,
-        faces,
-        _surfaces(outline, plan, mirror, planes),
-        (mirror[cut][:, None] + planes).ravel(),
-        (cut[:, None] + planes).ravel(),
+        body=body,
+        teeth=teeth,
+        nodes=nodes,
+        hexes=hexes,
+        faces=faces,
+        surfaces=_surfaces(outline, plan, mirror, planes),
+        cut_left=(mirror[cut][:, None] + planes).ravel(),
+        cut_right=(cut[:, None] + planes).ravel(),
     )
 
 

@@ -13,7 +13,13 @@ from facegear.validation.contact.sector_study import whole_sectors
 with stage(snakemake) as run:
     teeth = pair(snakemake.params.tooth_pair)
     design = teeth.design
-    plan = ContactPlan((600.0,), 16, Refinement(4, 2, 2, 2.0), Sector(), ContactOptions())
+    plan = ContactPlan(
+        torques=(600.0,),
+        positions=16,
+        refinement=Refinement(profile=4, width=2, depth=2, grading=2.0),
+        sector=Sector(),
+        options=ContactOptions(),
+    )
     m = design.module
     base = Level("full model", MeshSizes(0.4 * m, 0.85 * m, 0.8 * m), plan)
     table = shortcuts(design, base, teeth.materials)

@@ -89,7 +89,14 @@ def coupled_compliance(
         others = seen @ face_compliance(tooth.faces, rests) @ seen.T
         rest = rests[0][0]
     own = on_lattice(system.spread, held_by(tooth, rest))
-    return FlankCompliance(own, others, shape, coarse_shape, refinement, element != "hex27")
+    return FlankCompliance(
+        own=own,
+        others=others,
+        shape=shape,
+        coarse_shape=coarse_shape,
+        refinement=refinement,
+        linear=element != "hex27",
+    )
 
 
 def on_lattice(spread: sp.csr_matrix, flank: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -129,10 +136,10 @@ def from_arrays(arrays: Mapping[str, NDArray]) -> FlankCompliance:
     profile, width, depth, grading = arrays["refinement"]
     (rows, columns), (coarse_rows, coarse_columns) = arrays["shape"], arrays["coarse_shape"]
     return FlankCompliance(
-        arrays["own_m_per_n"],
-        arrays["others_m_per_n"],
-        (int(rows), int(columns)),
-        (int(coarse_rows), int(coarse_columns)),
-        Refinement(int(profile), int(width), int(depth), float(grading)),
-        bool(arrays["linear"][0]),
+        own=arrays["own_m_per_n"],
+        others=arrays["others_m_per_n"],
+        shape=(int(rows), int(columns)),
+        coarse_shape=(int(coarse_rows), int(coarse_columns)),
+        refinement=Refinement(int(profile), int(width), int(depth), float(grading)),
+        linear=bool(arrays["linear"][0]),
     )

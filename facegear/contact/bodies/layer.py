@@ -130,7 +130,13 @@ def refined_layer(body: ElasticBody, under: FlankElements, refinement: Refinemen
     points = np.ascontiguousarray(np.einsum("na,nai->in", weights, body.points[parents]))
     number = np.empty(shape, dtype=np.int64)
     number[tuple(lattice.T)] = np.arange(len(lattice))
-    return Layer(replace(mesh, doflocs=points), lattice, number, parents, weights)
+    return Layer(
+        mesh=replace(mesh, doflocs=points),
+        lattice=lattice,
+        number=number,
+        parents=parents,
+        weights=weights,
+    )
 
 
 def tied_system(body: ElasticBody, refinement: Refinement, element: Element = "hex27") -> TiedSystem:

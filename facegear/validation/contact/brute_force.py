@@ -21,7 +21,7 @@ from facegear.geometry import pinion
 from facegear.geometry.design import Material
 from facegear.geometry.unloaded import PAIRS
 from facegear.validation.contact.brute_mesh import Chain, FlatGear, FlatMesh, flat_gear, refined
-from facegear.validation.contact.twin import involute_separation
+from facegear.validation.contact.twin import involute_separation, turned
 
 PENALTIES = (1e14, 1e15, 1e16, 1e17, 1e18)
 """Pa per m, each the start of the next: by the last a pressure of 1 GPa gives way by 1 nm."""
@@ -30,7 +30,7 @@ DEGREE = 11
 """Of the quadrature along a facet: six Gauss points."""
 CLOSE = 3e-4
 """Points with larger gaps (m) are left out."""
-REACH = 40e-6
+REFINED_BELOW = 40e-6
 """Pairs closer than this (m) when unloaded are refined around their closest point."""
 
 
@@ -40,19 +40,19 @@ def gears_at(
     """Both gears, halved `halvings` times within `radius` (m) of where they touch at a position."""
     first, second = (mesh.design for mesh in meshes)
     facets = [len(mesh.flanks[0]) - 1 for mesh in meshes]
-    place = np.linspace(0.0, facets[0], 40 * facets[0] + 1)
+    at = np.linspace(0.0, facets[0], 40 * facets[0] + 1)
     phi1 = _angle(first, position)
     spots: tuple[list[tuple[int, float]], list[tuple[int, float]]] = ([], [])
     for tooth in PAIRS.tolist():
-        _, gap, hit = _separation((first, second), facets, place, phi1, tooth)
+        _, gap, hit = _separation((first, second), facets, at, phi1, tooth)
         gap = np.where(np.isfinite(hit), gap, np.inf)
         nearest = np.argmin(gap)
-        if gap[nearest] < REACH:
-            spots[0].append((tooth, float(place[nearest])))
-            spots[1].append((-tooth, float(_place(second, facets[1], hit[nearest]))))
+        if gap[nearest] < REFINED_BELOW:
+            spots[0].append((tooth, float(at[nearest])))
+            spots[1].append((-tooth, float(_flank_position(second, facets[1], hit[nearest]))))
     own, other = (
-        flat_gear(mesh, refined(mesh, at, radius, halvings), material, PAIRS.tolist())
-        for mesh, at in zip(meshes, spots, strict=True)
+        flat_gear(mesh, refined(mesh, touching, radius, halvings), material, PAIRS.tolist())
+        for mesh, touching in zip(meshes, spots, strict=True)
     )
     return own, other
 
@@ -131,22 +131,22 @@ def _angle(design, position):  # type: ignore[no-untyped-def]
     return (position - 0.5) * 2 * np.pi / design.pinion.teeth
 
 
-def _roll(design, facets, place):  # type: ignore[no-untyped-def]
-    """Roll angle at places along the flank, whose nodes are evenly spaced in its square, from tip to root."""
+def _roll(design, facets, at):  # type: ignore[no-untyped-def]
+    """Roll angle along the flank, whose nodes are evenly spaced in its square, from tip to root."""
     top, bottom = design.pinion_tip_roll, pinion.junction_roll(design)
-    return np.sqrt(top**2 + place / facets * (bottom**2 - top**2))
+    return np.sqrt(top**2 + at / facets * (bottom**2 - top**2))
 
 
-def _place(design, facets, roll):  # type: ignore[no-untyped-def]
+def _flank_position(design, facets, roll):  # type: ignore[no-untyped-def]
     top, bottom = design.pinion_tip_roll, pinion.junction_roll(design)
     return (top**2 - roll**2) / (top**2 - bottom**2) * facets
 
 
-def _separation(designs, facets, place, phi1, tooth):  # type: ignore[no-untyped-def]
-    """Normals (n, 3) of the pinion's flank at places, gaps (n,) along them and the gear's places, nan
+def _separation(designs, facets, at, phi1, tooth):  # type: ignore[no-untyped-def]
+    """Normals (n, 3) of the pinion's flank at positions, gaps (n,) along them and the gear's positions, nan
     beside it.
     """
-    roll = _roll(designs[0], facets[0], place)
+    roll = _roll(designs[0], facets[0], at)
     points = pinion.cartesian(*pinion.involute_point(designs[0], roll), 0.0)
     nx, nz = pinion.involute_normal(designs[0], roll)
     normals = np.stack([nx, np.zeros_like(nx), nz], axis=1)
@@ -170,16 +170,20 @@ def _constraints(
     for tooth in PAIRS.tolist():
         own, other = gears[0].chains[tooth], gears[1].chains[-tooth]
         long = np.diff(own.ends)
-        place = (own.ends[:-1, None] + long[:, None] * where).ravel()
+        at = (own.ends[:-1, None] + long[:, None] * where).ravel()
         length = own.length[:, None] * weight
-        normals, gap, hit = _separation(designs, facets, place, phi1, tooth)
+        normals, gap, hit = _separation(designs, facets, at, phi1, tooth)
         on = np.isfinite(hit) & (gap < CLOSE)
-        turned = _turn(normals[on][:, [0, 2]], tooth * pitches[0])
+        along = turned(normals[on][:, [0, 2]], tooth * pitches[0])
         n2 = np.stack(pinion.involute_normal(designs[1], hit[on]), axis=1)
         matrices.append(
-            _rows(own, place[on], turned, size, 0)
+            _rows(own, at[on], along, size, 0)
             + _rows(
-                other, _place(designs[1], facets[1], hit[on]), _turn(n2, -tooth * pitches[1]), size, shift
+                other,
+                _flank_position(designs[1], facets[1], hit[on]),
+                turned(n2, -tooth * pitches[1]),
+                size,
+                shift,
             )
         )
         gaps.append(gap[on])
@@ -193,15 +197,10 @@ def _constraints(
     )
 
 
-def _turn(vectors: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
-    c, s = np.cos(angle), np.sin(angle)
-    return np.stack([c * vectors[:, 0] - s * vectors[:, 1], s * vectors[:, 0] + c * vectors[:, 1]], axis=1)
-
-
-def _rows(chain: Chain, place, normal, size, shift):  # type: ignore[no-untyped-def]
-    """Minus the displacement along `normal` (n, 2) at places of a chain, as rows on all dof."""
-    facet = np.clip(np.searchsorted(chain.ends, place, side="right") - 1, 0, len(chain.ends) - 2)
-    x = (place - chain.ends[facet]) / np.diff(chain.ends)[facet]
+def _rows(chain: Chain, at, normal, size, shift):  # type: ignore[no-untyped-def]
+    """Minus the displacement along `normal` (n, 2) at positions of a chain, as rows on all dof."""
+    facet = np.clip(np.searchsorted(chain.ends, at, side="right") - 1, 0, len(chain.ends) - 2)
+    x = (at - chain.ends[facet]) / np.diff(chain.ends)[facet]
     line = ElementLineP2()
     shapes = np.stack([line.lbasis(x[None], i)[0] for i in range(3)], axis=1)
     nodes = chain.dofs[2 * facet[:, None] + np.rint(2 * line.doflocs[:, 0]).astype(np.int64)]

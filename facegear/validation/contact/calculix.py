@@ -137,7 +137,11 @@ def run_deck(path: Path, threads: int, dof: int, timeout: float = 3600.0) -> Pee
     version = re.search(r"Version ([\d.]+)", done.stdout)
     along = float(moments[-1][1])
     return PeerResult(
-        1e-3 * abs(along), seconds, memory * 1024 / 1e9, dof, version.group(1) if version else "unknown"
+        torque=1e-3 * abs(along),
+        seconds=seconds,
+        gigabytes=memory * 1024 / 1e9,
+        dof=dof,
+        version=version.group(1) if version else "unknown",
     )
 
 
@@ -146,7 +150,8 @@ def _placed(
 ) -> dict[str, NDArray[np.float64]]:
     """Both bodies in the pinion's frame, whose y axis is the axis the bore turns about."""
     phi1, phi2 = (np.array([angle]) for angle in angles)
-    x, minus_z, y = to_pinion_section(design, bodies["face_gear"].nodes, phi1, phi2, np.zeros(1))[0, 0].T
+    section = to_pinion_section(design, phi1, phi2, np.zeros(1)).points(bodies["face_gear"].nodes)
+    x, minus_z, y = section[0, 0].T
     return {"pinion": bodies["pinion"].nodes, "face_gear": np.stack([x, y, -minus_z], axis=1)}
 
 

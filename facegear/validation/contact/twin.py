@@ -22,6 +22,7 @@ from facegear.contact.position import FIRST_GUESS, LoadedPosition, solve_positio
 from facegear.contact.teeth import ContactSide, elastic_tooth
 from facegear.geometry import pinion
 from facegear.geometry.design import Material, PairDesign
+from facegear.geometry.placement import body_rotation
 from facegear.geometry.unloaded import PAIRS
 from facegear.mesh.sizes import MeshSizes
 from facegear.mesh.tooth import ToothMesh, pinion_tooth
@@ -149,8 +150,8 @@ def involute_separation(
     centre = model_pinion.pinion_pitch_radius + model_gear.pinion_pitch_radius
     turn = phi1 + (tooth - 0.5) * 2 * pi / teeth
     back = phi1 * teeth / other + tooth * 2 * pi / other
-    start, along = _turned(points[:, [0, 2]], turn), _turned(normals[:, [0, 2]], turn)
-    start, along = (_turned(-vector, back) for vector in (start + np.array([0.0, centre]), along))
+    start, along = turned(points[:, [0, 2]], turn), turned(normals[:, [0, 2]], turn)
+    start, along = (turned(-vector, back) for vector in (start + np.array([0.0, centre]), along))
     low, high = pinion.junction_roll(model_gear), model_gear.pinion_tip_roll
     roll, distance = np.full(len(points), 0.5 * (low + high)), np.zeros(len(points))
     base = model_gear.pinion_base_radius
@@ -172,10 +173,9 @@ def involute_separation(
     return np.where(on, distance, np.inf), np.where(on, roll, np.nan)
 
 
-def _turned(vectors: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
+def turned(vectors: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
     """x and z of vectors (n, 2) turned as the pinion turns."""
-    c, s = np.cos(angle), np.sin(angle)
-    return np.stack([c * vectors[:, 0] - s * vectors[:, 1], s * vectors[:, 0] + c * vectors[:, 1]], axis=1)
+    return vectors @ body_rotation("pinion", angle)[np.ix_([0, 2], [0, 2])].T
 
 
 def _candidates(model: TwinModel, phi1: float, limit: float) -> list[Candidates]:

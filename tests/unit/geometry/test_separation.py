@@ -41,7 +41,7 @@ def test_localised_contact_path_lies_at_the_pitch_radius(pair, teeth):
     assert np.max(np.abs(contact.transmission_error)) < 1e-12
     position = flank_points(design, roll, y).position
     gear = [
-        to_left_flank(design, p[None], *(np.array([v]) for v in (f1, f2, j)), False)[0, 0]
+        to_left_flank(design, f1, f2, j).points(p[None])[0]
         for p, f1, f2, j in zip(position, contact.phi1, contact.phi2, contact.tooth, strict=True)
     ]
     radius = np.hypot(*np.array(gear)[:, :2].T)
@@ -119,10 +119,8 @@ def test_separation_agrees_with_a_dense_cloud_of_the_gear(pair):
     points = flank_points(design, [0.35, 0.4, 0.5], [0.256, 0.262, 0.27])
     phi1 = np.array([0.02])
     found = separation(design, points, phi1, conjugate_angle(design, phi1), 0)
-    position, normal = (
-        to_left_flank(design, v, phi1, conjugate_angle(design, phi1), np.zeros(1), d)[0]
-        for v, d in ((points.position, False), (points.normal, True))
-    )
+    motion = to_left_flank(design, phi1, conjugate_angle(design, phi1), 0)
+    position, normal = motion.points(points.position)[0], motion.directions(points.normal)[0]
     radius = np.linspace(0.25, 0.275, 700)[None, :]
     roll = np.linspace(0.35, 0.66, 700)[:, None]
     cloud = face_gear.flank_point(design, roll, face_gear.psi_at(design, radius, roll)).reshape(-1, 3)
@@ -253,10 +251,8 @@ def test_every_ray_ends_on_the_part_it_names(pair):
     phi1 = np.repeat([-0.1, 0.02, 0.12], 3)
     placement = phi1, conjugate_angle(design, phi1), np.tile([-1, 0, 1], 3)
     found = separation(design, points, *placement)
-    start, along = (
-        to_left_flank(design, v, *map(np.asarray, placement), d)
-        for v, d in ((points.position, False), (points.normal, True))
-    )
+    motion = to_left_flank(design, *placement)
+    start, along = motion.points(points.position), motion.directions(points.normal)
     end = start + found.gap[..., None] * along
     surfaces = {
         FLANK: lambda u, v: face_gear.flank_point(design, u, v),

@@ -1,0 +1,102 @@
+"""The face gear's numbers and a sample of its flank, as the compiled rays take them."""
+
+from functools import lru_cache
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.geometry import face_gear
+from facegear.geometry.design import PairDesign
+
+Array = NDArray[np.float64]
+
+SAMPLES = 25
+"""Points of the sampled flank each way."""
+
+
+class Blank(NamedTuple):
+    """The gear's numbers as the kernels take them."""
+
+    base: float
+    ratio: float
+    space: float
+    lift: float
+    tip_radius: float
+    tip_roll: float
+    edge_start: float
+    inner: float
+    outer: float
+    tip_plane: float
+    root_plane: float
+    root_start: float
+    pitch: float
+    aside: float
+    """Largest distance from the tooth's middle plane, abs(x) in m, of points looked at."""
+    fillet_top: float
+    """Height (m) that no point of the fillet exceeds."""
+
+
+def blank(design: PairDesign) -> Blank:
+    """Numbers of a design's face gear."""
+    gear, pitch = design.face_gear, 2 * pi / design.face_gear.teeth
+    ends = face_gear.fillet_end(design, np.linspace(gear.inner_radius, gear.outer_radius, 65))
+    tops = design.shaper_lift - design.shaper_tip_radius * np.cos(ends)
+    base, ratio, space, lift = face_gear.shaper_numbers(design)
+    return Blank(
+        base=base,
+        ratio=ratio,
+        space=space,
+        lift=lift,
+        tip_radius=design.shaper_tip_radius,
+        tip_roll=design.shaper_tip_roll,
+        edge_start=float(face_gear.edge_start(design)),
+        inner=gear.inner_radius,
+        outer=gear.outer_radius,
+        tip_plane=design.gear_tip_plane,
+        root_plane=design.gear_root_plane,
+        root_start=pitch / 2 - float(face_gear.root_half_angle(design)),
+        pitch=pitch,
+        aside=3 * design.module,
+        fillet_top=float(tops.max()) + 0.01 * design.module,
+    )
+
+
+class FlankSample(NamedTuple):
+    """Points and normals (m, 3) of the flank, roll and psi (m,) rad there, `inner` (m,) those away from its
+    edges, and the largest `spacing` (m) between neighbours.
+    """
+
+    points: Array
+    normals: Array
+    rolls: Array
+    psis: Array
+    inner: NDArray[np.bool_]
+    spacing: float
+
+
+@lru_cache(maxsize=16)
+def gear_rays(design: PairDesign) -> tuple[Blank, FlankSample]:
+    """A design's face gear as `facegear.geometry.rays.cut` takes it."""
+    return blank(design), _flank_sample(design)
+
+
+def _flank_sample(design: PairDesign) -> FlankSample:
+    gear = design.face_gear
+    radius = np.linspace(gear.inner_radius, gear.outer_radius, SAMPLES)[None, :]
+    top, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
+    roll = top + np.linspace(0, 1, SAMPLES)[:, None] * (design.shaper_tip_roll - top)
+    psi = face_gear.psi_at(design, radius, roll)
+    points = face_gear.flank_point(design, roll, psi)
+    inner = np.zeros((SAMPLES, SAMPLES), bool)
+    inner[2:-2, 2:-2] = True
+    across, along = (np.linalg.norm(np.diff(points, axis=axis), axis=-1).max() for axis in (0, 1))
+    return FlankSample(
+        points=points.reshape(-1, 3),
+        normals=face_gear.flank_normal(design, roll, psi).reshape(-1, 3),
+        rolls=roll.ravel(),
+        psis=psi.ravel(),
+        inner=inner.ravel(),
+        spacing=float(np.hypot(across, along)),
+    )
