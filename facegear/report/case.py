@@ -9,7 +9,7 @@ import pandas as pd
 from facegear.report.contents import CHAPTERS, caption_of
 from facegear.report.glance import glance_chapter
 from facegear.report.machine import machine_chapter
-from facegear.report.page import Chapter, Picture, Table, render
+from facegear.report.page import Chapter, Picture, Table, View, render
 
 BY_TORQUE = (
     "Over a pitch, for each torque on the pinion. Peak-to-peak transmission error (ste): largest less "
@@ -32,11 +32,12 @@ def case_report(
     pictures: Mapping[str, Path],
     manifests: Sequence[Mapping[str, Any]],
     pair: Mapping[str, Any] | None = None,
+    view: View | None = None,
 ) -> str:
     """The HTML page of a case.
 
     values: its config; tables by file name without ending; pictures (svg) by name; manifests of all rules;
-    pair: the record of the tooth geometry, if it was computed.
+    pair: the record of the tooth geometry, view: the pair in mesh, if they were computed.
     Chapters without a picture or table are left out.
     """
     known = {name for _, _, names in CHAPTERS for name in names}
@@ -52,8 +53,9 @@ def case_report(
             if name in pictures and name != drawing
         ]
         own = _tables(title, tables)
-        if found or own:
-            chapters.append(Chapter(title, text, found, own))
+        seen = view if title == "Loaded contact" else None
+        if found or own or seen:
+            chapters.append(Chapter(title, text, found, own, seen))
     if "scorecard" in tables:
         chapters.append(_scorecard(tables["scorecard"]))
     chapters.append(_errors(tables))

@@ -2,15 +2,17 @@
 
 import base64
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
 from facegear.io import pages
 
 TEMPLATE = Path(__file__).with_name("page.html.j2")
+VIEWER = Path(__file__).with_name("pair_view.js")
 SCREEN_DPI, PNG_DPI = 96, 160
 """Points an inch of a page, and of a stored png."""
 UNITS = {
@@ -91,6 +93,14 @@ class Table:
 
 
 @dataclass(frozen=True)
+class View:
+    """What the viewer of `pair_view.js` draws (plain values, arrays as base64), under a caption."""
+
+    data: Mapping[str, Any]
+    caption: str
+
+
+@dataclass(frozen=True)
 class Chapter:
     """One part of the page."""
 
@@ -98,6 +108,7 @@ class Chapter:
     text: str
     pictures: Sequence[Picture] = ()
     tables: Sequence[Table] = ()
+    view: View | None = None
 
     @property
     def anchor(self) -> str:
@@ -107,7 +118,8 @@ class Chapter:
 
 def render(title: str, lead: str, chapters: Sequence[Chapter]) -> str:
     """The page as HTML text that needs no other file."""
-    return pages.render(TEMPLATE, title=title, lead=lead, chapters=chapters)
+    viewer = VIEWER.read_text(encoding="utf-8") if any(chapter.view for chapter in chapters) else ""
+    return pages.render(TEMPLATE, title=title, lead=lead, chapters=chapters, viewer=viewer)
 
 
 def _scientific(value: float, digits: int) -> str:

@@ -22,7 +22,7 @@ MAY_IMPORT = {
     "dynamics": {"transmission", "harmonics"},
     "load_sharing": {"dynamics", "transmission", "harmonics"},
     "plots": {"geometry", "contact", "stiffness", "harmonics", "transmission", "dynamics", "load_sharing"},
-    "report": set(),
+    "report": {"geometry", "contact"},
     "scenarios": set(),
     "strength": {"geometry"},
     "stages": {

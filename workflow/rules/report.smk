@@ -7,6 +7,7 @@ rule report:
         tables=report_tables,
         pictures=report_pictures,
         pair=report_pair,
+        loads=report_loads,
     output:
         html="results/{case}/report.html",
         manifest="results/{case}/report.provenance.json",

@@ -2,10 +2,13 @@
 
 from pathlib import Path
 
-from facegear.io import documents, tables
+from facegear.config.tooth_pair import pair as tooth_pair
+from facegear.contact.columns import PRESSURE_ARRAYS
+from facegear.io import arrays, documents, tables
 from facegear.io.atomic import atomic_path
 from facegear.provenance.stage import stage
 from facegear.report.case import case_report
+from facegear.report.pair_view import pair_view
 
 with stage(snakemake) as run:
     found = {Path(path).stem: tables.read(path, allow_empty=True) for path in snakemake.input.tables}
@@ -13,7 +16,11 @@ with stage(snakemake) as run:
     case = Path(snakemake.output.html).parent
     manifests = [documents.read(path, ["rule"]) for path in sorted(case.glob("*/*.provenance.json"))]
     pair = documents.read(snakemake.input.pair[0], ["radii_mm"]) if snakemake.input.pair else None
-    page = case_report(snakemake.params.values, found, pictures, manifests, pair)
+    view = None
+    if snakemake.input.loads:
+        loads = arrays.read(snakemake.input.loads[0], PRESSURE_ARRAYS)
+        view = pair_view(tooth_pair(snakemake.params.values["tooth_pair"]).design, loads, found["ltca"])
+    page = case_report(snakemake.params.values, found, pictures, manifests, pair, view)
     with atomic_path(snakemake.output.html) as temporary:
         temporary.write_text(page, encoding="utf-8")
     run.summary(f"{len(pictures)} pictures, {len(found)} tables, {len(page) / 1e6:.1f} MB")

@@ -48,6 +48,11 @@ def report_pair(wildcards):
     return [shared("geometry", "pair")(wildcards)] if has_contact(wildcards.case) else []
 
 
+def report_loads(wildcards):
+    """What each contact carries, where a case computes it."""
+    return [shared("contact", "pressure")(wildcards)] if has_contact(wildcards.case) else []
+
+
 def report_pictures(wildcards):
     """Figures that the report of a case shows."""
     return [file for file in targets(wildcards.case) if file.endswith(".svg")]

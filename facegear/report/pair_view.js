@@ -1,0 +1,246 @@
+// Draws every `.pair-view` of the page with WebGL 2 from the JSON inside it (facegear/report/pair_view.py).
+"use strict";
+(() => {
+  const VERTEX = `#version 300 es
+    uniform mat4 camera; uniform mat3 turn;
+    in vec3 point; in vec2 load;
+    out vec3 place; out vec2 carried;
+    void main() { place = turn * point; carried = load; gl_Position = camera * vec4(place, 1.0); }`;
+  const FRAGMENT = `#version 300 es
+    precision highp float;
+    uniform vec4 colour; uniform bool painted; uniform vec3 scale[9]; uniform vec3 eye;
+    in vec3 place; in vec2 carried; out vec4 shown;
+    void main() {
+      vec3 normal = normalize(cross(dFdx(place), dFdy(place)));
+      float light = 0.45 + 0.55 * abs(dot(normal, normalize(eye + vec3(0.3, -0.2, 0.5))));
+      if (!painted) { shown = vec4(colour.rgb * light, colour.a); return; }
+      if (carried.y < 0.35) discard;
+      float at = clamp(carried.x / carried.y, 0.0, 1.0) * 8.0;
+      shown = vec4(mix(scale[int(at)], scale[min(int(at) + 1, 8)], fract(at)), 1.0);
+    }`;
+  const KINDS = { f: Float32Array, H: Uint16Array, b: Int8Array, B: Uint8Array };
+  const COLOURS = { pinion: [0.82, 0.6, 0.33], face_gear: [0.42, 0.56, 0.72] };
+
+  function decoded(text, kind) {
+    const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+    return new KINDS[kind](bytes.buffer);
+  }
+
+  function cells([rows, columns], start = 0) {
+    const found = [];
+    for (let i = 0; i + 1 < rows; i++)
+      for (let j = 0; j + 1 < columns; j++) {
+        const a = start + i * columns + j, b = a + columns;
+        found.push(a, b, b + 1, a, b + 1, a + 1);
+      }
+    return found;
+  }
+
+  // about -y for the pinion, -z for the gear, as in facegear/geometry/design.py; columns first
+  function turned(name, angle) {
+    const c = Math.cos(angle), s = Math.sin(angle);
+    return name === "pinion" ? [c, 0, s, 0, 1, 0, -s, 0, c] : [c, -s, 0, s, c, 0, 0, 0, 1];
+  }
+
+  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+
+  // perspective looking along -back at the centre; columns first
+  function cameraMatrix(view, centre, size, aspect) {
+    const [ca, sa, ce, se] = [Math.cos(view.azimuth), Math.sin(view.azimuth), Math.cos(view.height), Math.sin(view.height)];
+    const back = [ce * ca, ce * sa, se], right = [-sa, ca, 0], up = cross(back, right);
+    const focal = 3.2, distance = (focal * size * Math.max(0.62, 0.75 / aspect)) / view.zoom;
+    const eye = centre.map((value, k) => value + distance * back[k]);
+    const near = distance / 20, far = distance + 20 * size;
+    const [p, q] = [-(far + near) / (far - near), (-2 * far * near) / (far - near)];
+    const rows = [right.map((v) => (focal * v) / aspect), up.map((v) => focal * v), back];
+    const moved = [-dot(rows[0], eye), -dot(rows[1], eye), -dot(back, eye)];
+    const matrix = [];
+    for (let k = 0; k < 3; k++) matrix.push(rows[0][k], rows[1][k], p * back[k], -back[k]);
+    matrix.push(moved[0], moved[1], p * moved[2] + q, -moved[2]);
+    return { matrix, back };
+  }
+
+  function start(root) {
+    const data = JSON.parse(root.querySelector("script").textContent);
+    const canvas = root.querySelector("canvas");
+    const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
+    if (!gl) { root.querySelector("p.missing").hidden = false; return; }
+    const find = (name) => root.querySelector(`[name=${name}]`);
+    const program = gl.createProgram();
+    for (const [kind, text] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
+      const shader = gl.createShader(kind);
+      gl.shaderSource(shader, text);
+      gl.compileShader(shader);
+      gl.attachShader(program, shader);
+    }
+    gl.bindAttribLocation(program, 0, "point");
+    gl.bindAttribLocation(program, 1, "load");
+    gl.linkProgram(program);
+    gl.useProgram(program);
+    const uniform = (name) => gl.getUniformLocation(program, name);
+    const places = Object.fromEntries(["camera", "turn", "colour", "painted", "scale", "eye"].map((n) => [n, uniform(n)]));
+    gl.uniform3fv(places.scale, data.colours.flatMap((colour) => [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16) / 255)));
+
+    function shape(points, indices) {
+      const array = gl.createVertexArray();
+      gl.bindVertexArray(array);
+      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ARRAY_BUFFER, points, gl.STATIC_DRAW);
+      gl.enableVertexAttribArray(0);
+      gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, new Uint32Array(indices), gl.STATIC_DRAW);
+      return { array, count: indices.length };
+    }
+
+    for (const body of data.bodies) {
+      const points = [], indices = [];
+      for (const patch of body.patches) {
+        indices.push(...cells(patch.shape, points.length / 3));
+        points.push(...decoded(patch.points, "f"));
+      }
+      body.tooth = shape(new Float32Array(points), indices);
+    }
+    const flank = shape(decoded(data.lattice.points, "f"), cells(data.lattice.shape));
+    const [rows, columns] = data.lattice.shape, nodes = rows * columns;
+    const carried = new Float32Array(2 * nodes), buffer = gl.createBuffer();
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    gl.bufferData(gl.ARRAY_BUFFER, carried, gl.DYNAMIC_DRAW);
+    gl.enableVertexAttribArray(1);
+    gl.vertexAttribPointer(1, 2, gl.FLOAT, false, 0, 0);
+    for (const found of data.torques)
+      Object.assign(found, { node: decoded(found.node, "H"), tooth: decoded(found.tooth, "b"), load: decoded(found.load, "B") });
+
+    const [pinion, gear] = data.bodies;
+    const home = { azimuth: -2.35, height: 0.62, zoom: 1.6 };
+    const view = { ...home };
+    let pending = false, moving = 0;
+
+    function drawBody(body, angle, alpha) {
+      gl.bindVertexArray(body.tooth.array);
+      gl.uniform4f(places.colour, ...COLOURS[body.name], alpha);
+      for (let n = body.first; n < body.first + body.shown; n++) {
+        gl.uniformMatrix3fv(places.turn, false, turned(body.name, angle + ((n + body.turn) * 2 * Math.PI) / body.teeth));
+        gl.drawElements(gl.TRIANGLES, body.tooth.count, gl.UNSIGNED_INT, 0);
+      }
+    }
+
+    // nearest surface only, blended over what is there
+    function drawClear(body, angle) {
+      gl.colorMask(false, false, false, false);
+      drawBody(body, angle, 1);
+      gl.colorMask(true, true, true, true);
+      gl.depthFunc(gl.LEQUAL);
+      gl.enable(gl.BLEND);
+      drawBody(body, angle, 0.3);
+      gl.disable(gl.BLEND);
+    }
+
+    function drawLoads(found, index, angle) {
+      gl.bindVertexArray(flank.array);
+      gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+      gl.uniform1i(places.painted, 1);
+      gl.enable(gl.POLYGON_OFFSET_FILL);
+      gl.polygonOffset(-8, -16);
+      for (let tooth = -2; tooth <= 2; tooth++) {
+        carried.fill(0);
+        let any = false;
+        for (let k = found.start[index]; k < found.start[index + 1]; k++)
+          if (found.tooth[k] === tooth) {
+            any = true;
+            for (const node of [found.node[k] - columns, found.node[k], found.node[k] + columns])
+              if (node >= 0 && node < nodes) {
+                carried[2 * node] = found.load[k] / 255;
+                carried[2 * node + 1] = 1;
+              }
+          }
+        if (!any) continue;
+        gl.bufferSubData(gl.ARRAY_BUFFER, 0, carried);
+        gl.uniformMatrix3fv(places.turn, false, turned("pinion", angle + ((tooth - 0.5) * 2 * Math.PI) / pinion.teeth));
+        gl.drawElements(gl.TRIANGLES, flank.count, gl.UNSIGNED_INT, 0);
+      }
+      gl.disable(gl.POLYGON_OFFSET_FILL);
+      gl.uniform1i(places.painted, 0);
+    }
+
+    function draw() {
+      pending = false;
+      const dense = Math.min(window.devicePixelRatio || 1, 2);
+      canvas.width = Math.round(canvas.clientWidth * dense);
+      canvas.height = Math.round(canvas.clientHeight * dense);
+      const index = +find("position").value, found = data.torques[+find("torque").value];
+      const position = data.positions[index], clear = find("clear").value;
+      const phi1 = ((position - 0.5) * 2 * Math.PI) / pinion.teeth, phi2 = (phi1 * pinion.teeth) / gear.teeth;
+      const { matrix, back } = cameraMatrix(view, data.centre, data.size, canvas.width / canvas.height);
+      gl.viewport(0, 0, canvas.width, canvas.height);
+      gl.clearColor(1, 1, 1, 1);
+      gl.depthMask(true);
+      gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+      gl.enable(gl.DEPTH_TEST);
+      gl.depthFunc(gl.LEQUAL);
+      gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE);
+      gl.uniformMatrix4fv(places.camera, false, matrix);
+      gl.uniform3f(places.eye, ...back);
+      gl.uniform1i(places.painted, 0);
+      const bodies = [[pinion, phi1], [gear, phi2]];
+      const solid = bodies.filter(([body]) => clear !== body.name && clear !== "both");
+      const glass = bodies.filter((entry) => !solid.includes(entry));
+      for (const [body, angle] of solid) drawBody(body, angle, 1);
+      for (const [body, angle] of glass) {
+        drawClear(body, angle);
+        gl.clear(gl.DEPTH_BUFFER_BIT);
+        gl.colorMask(false, false, false, false);
+        for (const [other, turn] of solid) drawBody(other, turn, 1);
+        gl.colorMask(true, true, true, true);
+      }
+      drawLoads(found, index, phi1);
+      tell(found, index, position);
+    }
+
+    function tell(found, index, position) {
+      const share = found.share[index].map((part, k) => [k - 2, part]).filter(([, part]) => part > 0.0005);
+      const pairs = share.map(([pair, part]) => `pair ${pair}: ${(100 * part).toFixed(0)} %`).join(", ");
+      root.querySelector("output").textContent =
+        `Position ${position.toFixed(3)} of a pitch. ${pairs}. Transmission error ${found.error_um[index].toFixed(2)} µm.`;
+      root.querySelector(".most").textContent = `${found.largest.toFixed(0)} N/mm`;
+    }
+
+    function redraw() {
+      if (!pending) { pending = true; requestAnimationFrame(draw); }
+    }
+
+    const held = new Map();
+    canvas.addEventListener("pointerdown", (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      held.set(event.pointerId, [event.clientX, event.clientY]);
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      const before = held.get(event.pointerId);
+      if (!before) return;
+      view.azimuth -= (event.clientX - before[0]) / 150;
+      view.height = Math.max(-1.5, Math.min(1.5, view.height + (event.clientY - before[1]) / 150));
+      held.set(event.pointerId, [event.clientX, event.clientY]);
+      redraw();
+    });
+    for (const name of ["pointerup", "pointercancel"])
+      canvas.addEventListener(name, (event) => held.delete(event.pointerId));
+    for (const name of ["position", "torque", "clear"]) find(name).addEventListener("input", redraw);
+    const zoomed = (factor) => () => { view.zoom = Math.max(0.4, Math.min(12, view.zoom * factor)); redraw(); };
+    find("nearer").addEventListener("click", zoomed(1.35));
+    find("further").addEventListener("click", zoomed(1 / 1.35));
+    find("home").addEventListener("click", () => { Object.assign(view, home); redraw(); });
+    find("turn").addEventListener("click", (event) => {
+      clearInterval(moving);
+      moving = moving ? 0 : setInterval(() => {
+        find("position").value = (+find("position").value + 1) % data.positions.length;
+        redraw();
+      }, 120);
+      event.target.textContent = moving ? "Stop" : "Turn";
+    });
+    new ResizeObserver(redraw).observe(canvas);
+    redraw();
+  }
+
+  document.querySelectorAll(".pair-view").forEach(start);
+})();

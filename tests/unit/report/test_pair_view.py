@@ -1,0 +1,88 @@
+"""The viewer's data say what the contact analysis found, and the page carries all that it needs."""
+
+import base64
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from facegear.config.load import load_config
+from facegear.config.model import resolved
+from facegear.config.tooth_pair import pair
+from facegear.contact.columns import SHARES
+from facegear.report.page import Chapter, render
+from facegear.report.pair_view import line_load, pair_view
+
+ROWS, COLUMNS = 5, 4
+CONFIG = Path(__file__).parents[3] / "config" / "quick.yaml"
+
+
+@pytest.fixture(scope="module")
+def loads():
+    """Two torques and positions; at each one tooth carries load on two rows of every column."""
+    chance = np.random.default_rng(1)
+    nodes = np.concatenate([np.arange(COLUMNS), COLUMNS + np.arange(COLUMNS)])
+    keys = [(torque, position) for torque in (100.0, 300.0) for position in (0.0, 0.5)]
+    size = len(keys) * nodes.size
+    y = np.array([0.250, 0.251, 0.253, 0.254])
+    grid = np.broadcast_to(y, (ROWS, COLUMNS))
+    return {
+        "torque_n_m": np.repeat([torque for torque, _ in keys], nodes.size),
+        "position": np.repeat([position for _, position in keys], nodes.size),
+        "tooth": np.repeat([-1, 0, 1, 0], nodes.size),
+        "node": np.tile(nodes, len(keys)),
+        "force_n": chance.uniform(1.0, 100.0, size),
+        "shape": np.array([ROWS, COLUMNS]),
+        "point_m": np.stack([0 * grid, grid, 0 * grid], axis=-1).reshape(-1, 3),
+    }
+
+
+@pytest.fixture(scope="module")
+def view(loads):
+    rows = [(100.0, 0.5, 2.0), (100.0, 0.0, 1.0), (300.0, 0.0, 3.0), (300.0, 0.5, 4.0)]
+    frame = pd.DataFrame(rows, columns=["torque_n_m", "position", "ste_um"])
+    for name in SHARES:
+        frame[name] = float(name.endswith("_0"))
+    return pair_view(pair(resolved(load_config(CONFIG))["tooth_pair"]).design, loads, frame)
+
+
+def decoded(text, kind):
+    return np.frombuffer(base64.b64decode(text), kind)
+
+
+def test_load_along_the_face_adds_up_to_the_force(loads):
+    on = loads["torque_n_m"] == 300.0
+    first = on & (loads["node"] < COLUMNS)  # one of the two rows, each with its column's whole load
+    width = np.tile([0.5, 1.5, 1.5, 0.5], 2)  # mm that each column stands for
+    assert line_load(loads, first | on)[loads["node"][on] < COLUMNS] @ width == pytest.approx(
+        loads["force_n"][on].sum()
+    )
+
+
+def test_the_viewer_holds_every_loaded_node_at_its_torque_and_position(loads, view):
+    for found in view.data["torques"]:
+        node, tooth = decoded(found["node"], "<u2"), decoded(found["tooth"], "i1")
+        load = decoded(found["load"], "u1")
+        for index, position in enumerate(view.data["positions"]):
+            here = slice(*found["start"][index : index + 2])
+            on = (loads["torque_n_m"] == found["torque_n_m"]) & (loads["position"] == position)
+            np.testing.assert_array_equal(node[here], loads["node"][on])
+            np.testing.assert_array_equal(tooth[here], loads["tooth"][on])
+            drawn = load[here] / 255 * found["largest"]
+            np.testing.assert_allclose(drawn, line_load(loads, on), atol=found["largest"] / 255)
+    assert [found["error_um"] for found in view.data["torques"]] == [[1.0, 2.0], [3.0, 4.0]]
+
+
+def test_the_page_carries_viewer_and_data_below_two_megabytes(view):
+    text = render("Case", "Lead", [Chapter("Loaded contact", "", view=view)])
+    assert len(text) < 2e6
+    assert not re.search(r'(src|href)="(?!data:|#)|https?://', text)
+    (stored,) = re.findall(r'<script type="application/json">(.*?)</script>', text, re.DOTALL)
+    assert json.loads(stored)["positions"] == [0.0, 0.5]
+    assert text.count('querySelectorAll(".pair-view")') == 1
+    asked = set(re.findall(r'find\("(\w+)"\)', text))
+    assert asked == set(re.findall(r'name="?(\w+)"? ?(?:type="range"|type="button"|>)', text)), "controls"
+    assert "pair-view" not in re.sub(r"(?s)<style>.*</style>", "", render("C", "L", [Chapter("Modes", "")]))
