@@ -1,10 +1,11 @@
 """Config section `branches`: which motions exist over the speed, where they end, how far a jump is."""
 
-from typing import Literal
+from collections.abc import Mapping
+from typing import Any, Literal
 
 from pydantic import Field, model_validator
 
-from facegear.config.base import Section, refuse
+from facegear.config.base import Section, parse, refuse
 from facegear.config.dynamics import MAX_SPEED_RPM
 from facegear.dynamics.branches.plan import BranchPlan
 
@@ -39,7 +40,12 @@ class Branches(Section):
     tolerance: float = Field(
         1e-8, ge=1e-14, le=1e-5, description="local error of a step over the length scale"
     )
-    longest_period: int = Field(2, ge=1, le=64, description="longest period of a branch, in mesh periods")
+    longest_period: int = Field(
+        2, ge=1, le=64, description="longest period followed through doublings, in mesh periods"
+    )
+    longest_found: int = Field(
+        8, ge=1, le=64, description="longest period followed of motions of the sweep and of random starts"
+    )
     most_branches: int = Field(48, ge=1, le=10_000)
     explore: Explore = Explore()
     loci: Loci = Loci()
@@ -54,6 +60,11 @@ class Branches(Section):
         return self
 
 
+def read_branch_plan(section: Mapping[str, Any] | None, nominal_rpm: float) -> BranchPlan:
+    """The plan of a config's plain section, of its defaults if there is none."""
+    return branch_plan(parse(Branches, section or {}), nominal_rpm)
+
+
 def branch_plan(section: Branches, nominal_rpm: float) -> BranchPlan:
     """What the stage does, in SI units but for speeds in rpm."""
     return BranchPlan(
@@ -62,6 +73,7 @@ def branch_plan(section: Branches, nominal_rpm: float) -> BranchPlan:
         nominal_rpm=nominal_rpm,
         tolerance=section.tolerance,
         longest_period=section.longest_period,
+        longest_found=section.longest_found,
         most_branches=section.most_branches,
         speeds_rpm=section.explore.speeds_rpm or (nominal_rpm,),
         starts=section.explore.starts,

@@ -16,6 +16,7 @@ _PAIR: Slice = {"tooth_pair": "tooth_pair"}
 _MESH: Slice = {**_PAIR, "mesh": "mesh"}
 _COMPLIANCE: Slice = {**_MESH, "contact": "contact"}
 _MACHINE: Slice = {"transmission": "transmission", "teeth": tuple(f"tooth_pair.{key}" for key in TEETH)}
+_BRANCHES: Slice = {**_MACHINE, "branches": "branches", "speed_rpm": "dynamics.speed_rpm"}
 _ACCURACY: Slice = {"accuracy": "dynamics.accuracy"}
 
 NEEDS: dict[str, Slice] = {
@@ -29,6 +30,9 @@ NEEDS: dict[str, Slice] = {
     "dynamics_response": {**_MACHINE, **_ACCURACY, "speed_rpm": "dynamics.speed_rpm"},
     "dynamics_sweep_chunk": {**_MACHINE, "sweep": "dynamics.sweep"},
     "dynamics_sweep": {**_MACHINE, "sweep": "dynamics.sweep"},
+    "branches_starts": _BRANCHES,
+    "branches": {**_BRANCHES, "sweep": "dynamics.sweep"},
+    "branches_loci": _BRANCHES,
     "load_sharing": {
         **_MACHINE,
         **_ACCURACY,

@@ -10,8 +10,6 @@ rule branches_starts:
         manifest="results/{case}/branches/starts/{number}.provenance.json",
     wildcard_constraints:
         number=r"\d+",
-    params:
-        **branch_values(),
     script:
         "../scripts/branches_starts.py"
 
@@ -21,20 +19,21 @@ rule branches:
     input:
         harmonics=shared("stiffness", "harmonics"),
         jumps=rules.dynamics_sweep.output.jumps,
+        chunks=sweep_chunks,
         starts=branch_starts,
     output:
         branches="results/{case}/branches/branches.csv",
         ends="results/{case}/branches/ends.csv",
+        unfollowed="results/{case}/branches/unfollowed.csv",
         multipliers="results/{case}/branches/multipliers.csv",
         special="results/{case}/branches/special_points.csv",
         coexistence="results/{case}/branches/coexistence.csv",
         ranges="results/{case}/branches/ranges.csv",
         margins="results/{case}/branches/margins.csv",
+        swept="results/{case}/branches/swept.csv",
         jumps="results/{case}/branches/jumps.csv",
         orbits="results/{case}/branches/special_points.npz",
         manifest="results/{case}/branches/branches.provenance.json",
-    params:
-        **branch_values(jump_resolution_rpm="dynamics.sweep.jump_resolution_rpm"),
     script:
         "../scripts/branches.py"
 
@@ -47,8 +46,6 @@ rule branches_loci:
     output:
         loci="results/{case}/branches/loci.csv",
         manifest="results/{case}/branches/loci.provenance.json",
-    params:
-        **branch_values(),
     script:
         "../scripts/branches_loci.py"
 

@@ -1,6 +1,6 @@
 """Which motions exist at a speed: random starts, the share of them that ends on each, and what is new."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -140,22 +140,34 @@ def crossings(branch: Branch, value: float) -> list[Point]:
 
 def lies_on(branch: Branch, z: Array, period: int, value: float) -> bool:
     """Whether the orbit of a period through the weighted state z at a parameter belongs to a branch."""
-    if branch.flow.period != period:
-        return False
+    return distance(branch, z, period, value) < SAME
+
+
+def distance(branch: Branch, z: Array, period: int, value: float) -> float:
+    """How far, in length scales, the orbit of a period through the weighted state z lies from the nearest
+    orbit of a branch at the same parameter; infinite if none is near.
+    """
+    if branch.flow.period != period or not branch.values.min() <= value <= branch.values.max():
+        return np.inf
     u = float(np.log(value))
     images = branch.flow.images(z, u)
-    for here, there in pairwise(branch.points):
-        if not min(here.u, there.u) <= u <= max(here.u, there.u):
-            continue
-        share = (u - here.u) / (there.u - here.u) if there.u != here.u else 0.0
-        guess = (here.x + share * (there.x - here.x))[:-1]
-        nearest = min(np.abs(guess - image).max() for image in images)
-        if nearest > ALONG * max(1.0, float(np.linalg.norm(there.x - here.x))):
+    nearest = np.inf
+    for guess, reach in _passages(branch, u):
+        if min(np.abs(guess - image).max() for image in images) > ALONG * max(1.0, reach):
             continue
         try:
             point = at_parameter(branch.flow, guess, u)
         except (NotConverged, np.linalg.LinAlgError):
             continue
-        if min(np.abs(point.z - image).max() for image in images) < SAME:
-            return True
-    return False
+        nearest = min(nearest, *(float(np.abs(point.z - image).max()) for image in images))
+        if nearest < SAME:
+            break
+    return nearest
+
+
+def _passages(branch: Branch, u: float) -> Iterator[tuple[Array, float]]:
+    """States on the chords where a branch passes a parameter's logarithm, with the chords' lengths."""
+    for here, there in pairwise(branch.points):
+        if min(here.u, there.u) <= u <= max(here.u, there.u):
+            share = (u - here.u) / (there.u - here.u) if there.u != here.u else 0.0
+            yield (here.x + share * (there.x - here.x))[:-1], float(np.linalg.norm(there.x - here.x))

@@ -10,11 +10,13 @@ from facegear.dynamics.branches.continuation import Branch, Run
 from facegear.dynamics.branches.explore import Found, box, explore
 from facegear.dynamics.branches.family import machine_plane, speed_family
 from facegear.dynamics.branches.loci import Locus, LocusRun, follow_locus
+from facegear.dynamics.branches.margins import Loss, losses
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.plan import BranchPlan
 from facegear.dynamics.branches.points import Point, at_parameter
 from facegear.dynamics.branches.special import Kind
-from facegear.dynamics.branches.survey import Loss, Survey, losses, survey
+from facegear.dynamics.branches.survey import Survey, survey
+from facegear.dynamics.branches.swept import Swept
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import Model, simulate, static_start
 from facegear.errors import NotConverged
@@ -70,12 +72,23 @@ def machine_survey(
     model: Model,
     plan: BranchPlan,
     found: Sequence[tuple[float, Sequence[Found]]],
+    swept: Sequence[Swept],
     progress: Callable[[str], None] = lambda text: None,
 ) -> Survey:
-    """All branches of a machine: of period one, those that leave it, and those of motions found elsewhere."""
-    start = first_orbit(model, plan)
-    flow = machine_flow(model, plan)
-    return survey(flow, start, plan_range(plan), found, plan.longest_period, plan.most_branches, progress)
+    """All branches of a machine: of period one, those that leave it, and those of motions found elsewhere.
+
+    found: motions of random starts at some speeds; swept: those of a sweep.
+    """
+    start, flow = first_orbit(model, plan), machine_flow(model, plan)
+    motions = [
+        (one.point, one.period, f"random starts, {speed:.6g} rpm") for speed, many in found for one in many
+    ] + [(one.point, one.period, one.origin) for one in swept]
+    short = [
+        (flow.over(period), point, origin)
+        for point, period, origin in motions
+        if point is not None and period <= plan.longest_found
+    ]
+    return survey((flow, start), short, plan_range(plan), plan.longest_period, plan.most_branches, progress)
 
 
 def margins(model: Model, plan: BranchPlan, branches: Sequence[Branch]) -> list[Loss]:
@@ -90,14 +103,20 @@ def margins(model: Model, plan: BranchPlan, branches: Sequence[Branch]) -> list[
 
 
 def machine_loci(
-    model: Model, plan: BranchPlan, specials: Sequence[tuple[PeriodMap, Kind, Array]]
-) -> list[Locus]:
+    model: Model,
+    plan: BranchPlan,
+    specials: Sequence[tuple[PeriodMap, Kind, Array]],
+    progress: Callable[[str], None] = lambda text: None,
+) -> tuple[list[Locus], list[str]]:
     """Loci of the folds and period doublings nearest to the nominal speed, for each parameter of the plan.
+
+    Also why some could not be followed.
 
     specials: map, kind and x of each. Those that a locus found before passes already are left out.
     """
     nearest = sorted(specials, key=lambda one: abs(np.exp(one[2][-1]) - plan.nominal_rpm))[: plan.nearest]
     loci: list[Locus] = []
+    missed: list[str] = []
     for parameter in plan.parameters:
         plane = machine_plane(model, parameter)
         run = LocusRun((plan.from_rpm, plan.factors[0]), (plan.to_rpm, plan.factors[1]))
@@ -107,11 +126,14 @@ def machine_loci(
                 continue
             try:
                 locus = follow_locus(plane, 1.0, kind, x, flow, run)
-            except NotConverged:
+            except NotConverged as error:
+                missed.append(f"{kind} at {np.exp(x[-1]):.6g} rpm over {parameter}: {error}")
+                progress(missed[-1])
                 continue
             loci.append(locus)
+            progress(f"{kind} at {np.exp(x[-1]):.6g} rpm over {parameter}: {len(locus.points)} points")
             passed += [(flow.period, u) for u in _at_one(locus)]
-    return loci
+    return loci, missed
 
 
 def _at_one(locus: Locus) -> list[float]:

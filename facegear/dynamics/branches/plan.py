@@ -12,6 +12,7 @@ class BranchPlan:
     nominal_rpm: float
     tolerance: float
     longest_period: int
+    longest_found: int
     most_branches: int
     speeds_rpm: tuple[float, ...]
     starts: int

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import pandas as pd
 
 from facegear.dynamics.branches.loci import Locus
-from facegear.dynamics.branches.survey import Loss, Survey
+from facegear.dynamics.branches.margins import Loss
+from facegear.dynamics.branches.survey import Survey
 
 
 def tell(text: str) -> None:
@@ -19,15 +20,18 @@ def survey_summary(
     survey: Survey,
     ranges: Sequence[tuple[float, float, tuple[int, ...]]],
     losses: Sequence[Loss],
+    swept: pd.DataFrame,
     jumps: pd.DataFrame,
 ) -> str:
-    """Branches, special points, coexistence, margins and named jumps."""
+    """Branches, special points, coexistence, motions of the sweep, named jumps and margins."""
     kinds = Counter(s.kind.value for branch in survey.branches for s in branch.specials)
     points = sum(len(branch.points) for branch in survey.branches)
     parts = [
         f"{len(survey.branches)} branches of {points} points",
         ", ".join(f"{count} {kind}" for kind, count in kinds.most_common()),
         f"{len(ranges)} speed ranges with several stable motions",
+        f"{len(survey.unfollowed)} motions not followed" if survey.unfollowed else "",
+        f"{(swept['branch'] != '').sum()} of {len(swept)} periodic motions of the sweep on a branch",
         f"{(jumps['kind'] != '').sum()} of {len(jumps)} jumps named",
     ]
     parts += [_margin(loss) for loss in losses]
@@ -41,9 +45,10 @@ def _margin(loss: Loss) -> str:
     return f"branch {loss.branch}: {kind} at {loss.parameter} = {loss.reached:.6g}, from {loss.start:.6g}"
 
 
-def loci_summary(loci: Sequence[Locus]) -> str:
-    """Loci, their points and corners."""
+def loci_summary(loci: Sequence[Locus], missed: Sequence[str]) -> str:
+    """Loci, their points and corners; those that could not be followed."""
     corners = Counter(corner.value for locus in loci for corner, _ in locus.corners)
     points = sum(len(locus.points) for locus in loci)
     told = ", ".join(f"{count} {corner}" for corner, count in corners.items())
-    return f"{len(loci)} loci of {points} points; {told or 'no corners'}"
+    lost = f"; not followed: {'; '.join(missed)}" if missed else ""
+    return f"{len(loci)} loci of {points} points; {told or 'no corners'}{lost}"

@@ -1,186 +1,126 @@
-"""All motions over a range of one parameter: branches, what leaves them, what random starts add."""
+"""All motions over a range of one parameter: branches, what leaves them, what was found elsewhere."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from itertools import pairwise
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from functools import partial
 
-import numpy as np
-from numpy.typing import NDArray
-
-from facegear.dynamics.branches.continuation import PASSED, Branch, Run, follow, turned
-from facegear.dynamics.branches.explore import Found, crossings, lies_on
-from facegear.dynamics.branches.family import Family
+from facegear.dynamics.branches.continuation import Branch, End, Run, follow
+from facegear.dynamics.branches.explore import lies_on
 from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import Point, at_parameter
+from facegear.dynamics.branches.points import Point
 from facegear.dynamics.branches.special import Kind, Special
-from facegear.dynamics.branches.switching import all_branches
+from facegear.dynamics.branches.switching import broken, doubled
 from facegear.errors import NotConverged
 
-Array = NDArray[np.float64]
+MET = 1e-6
+"""Logarithms of the parameter that differ by less belong to one special point."""
+
+
+@dataclass(frozen=True)
+class Unfollowed:
+    """A motion that was not followed: its period, its parameter, where it was met, and why not."""
+
+    period: int
+    value: float
+    origin: str
+    reason: str
 
 
 @dataclass(frozen=True, eq=False)
 class Survey:
-    """branches in the order in which they were found. unfinished: why some motions were not followed."""
+    """branches in the order in which they were found, and the motions that were not followed."""
 
     branches: list[Branch]
-    unfinished: list[str]
-
-
-@dataclass(frozen=True, eq=False)
-class Loss:
-    """Where a stable motion first loses its stability or its existence when one parameter changes.
-
-    branch, period: of the motion. parameter, start: its name and value there. direction: of the parameter.
-    special: None if nothing is met within the range.
-    """
-
-    branch: int
-    period: int
-    parameter: str
-    start: float
-    direction: str
-    special: Special | None
-    reached: float
+    unfollowed: list[Unfollowed]
 
 
 def survey(
-    flow: PeriodMap,
-    start: Point,
+    start: tuple[PeriodMap, Point],
+    motions: Iterable[tuple[PeriodMap, Point, str]],
     run: Run,
-    found: Sequence[tuple[float, Sequence[Found]]],
     longest_period: int,
     most: int,
     progress: Callable[[str], None] = lambda text: None,
 ) -> Survey:
-    """The branch through `start`, all that leave it, and those through orbits found elsewhere.
+    """The branch through `start`, all that leave it, and those through motions found elsewhere.
 
-    found: a parameter and the motions there, of any period; what leaves a branch is followed up to
-    longest_period. At most `most` branches.
+    motions: each with its map and where it was found. What leaves a branch by period doubling or broken
+    symmetry is followed up to longest_period. At most `most` branches.
     """
+    search = _Search(run, longest_period, most, progress)
+    search.follow(*start, "the first motion")
+    for flow, point, origin in motions:
+        search.follow(flow, point, origin)
+    return Survey(search.branches, search.unfollowed)
 
-    def tell(branch: Branch) -> None:
-        progress(
-            f"{len(branch.points)} points of period {branch.flow.period}, {len(branch.specials)} special"
-        )
 
-    branches = [follow(flow, start, run)]
-    tell(branches[0])
-    unfinished: list[str] = []
-    for value, motions in found:
-        for motion in motions:
-            if motion.point is None or len(branches) >= most:
+@dataclass(eq=False)
+class _Search:
+    run: Run
+    longest_period: int
+    most: int
+    progress: Callable[[str], None]
+    branches: list[Branch] = field(default_factory=list)
+    unfollowed: list[Unfollowed] = field(default_factory=list)
+    met: list[tuple[int, float]] = field(default_factory=list)
+
+    def follow(self, flow: PeriodMap, point: Point, origin: str) -> None:
+        """Follow a motion that lies on no branch, and all that leaves its branch."""
+        if self._is_known(flow.period, point):
+            return
+        branch = self._tried(partial(follow, flow, point, self.run), flow.period, point.value, origin)
+        if branch is None:
+            return
+        todo = [branch]
+        while todo:
+            todo += self._children(todo.pop(0))
+
+    def _children(self, parent: Branch) -> list[Branch]:
+        """New branches that leave a branch; a special point that a branch begins or ends at is left once."""
+        found = []
+        for special in parent.of(Kind.DOUBLING, Kind.BRANCH):
+            period = parent.flow.period * (2 if special.kind is Kind.DOUBLING else 1)
+            if period > self.longest_period or self._was_met(period, special.point.u):
                 continue
-            if any(lies_on(branch, motion.point.z, motion.period, value) for branch in branches):
-                continue
-            try:
-                branches.append(follow(flow.over(motion.period), motion.point, run))
-            except NotConverged as error:
-                unfinished.append(str(error))
-                continue
-            tell(branches[-1])
-    branches = all_branches(branches, run, longest_period, most, tell)
-    return Survey(branches, unfinished)
+            self.met.append((period, special.point.u))
+            child = self._tried(
+                partial(_leave, parent.flow, special, self.run),
+                period,
+                special.point.value,
+                f"{special.kind} of branch {self.branches.index(parent)}",
+            )
+            if child is not None:
+                found.append(child)
+        return found
+
+    def _tried(self, attempt: Callable[[], Branch], period: int, value: float, origin: str) -> Branch | None:
+        """A new branch, kept; None if it is known already, or with a note if it cannot be followed."""
+        if len(self.branches) >= self.most:
+            reason = f"{self.most} branches are followed already"
+            self.unfollowed.append(Unfollowed(period, value, origin, reason))
+            return None
+        try:
+            branch = attempt()
+        except NotConverged as error:
+            self.unfollowed.append(Unfollowed(period, value, origin, str(error)))
+            return None
+        self.met += [
+            (period, branch.points[place].u)
+            for place, end in zip((0, -1), branch.ends, strict=True)
+            if end in (End.DOUBLING, End.SYMMETRY)
+        ]
+        if self._is_known(period, branch.points[len(branch.points) // 2]):
+            return None
+        self.branches.append(branch)
+        self.progress(f"{len(branch.points)} points of period {period}, {len(branch.specials)} special")
+        return branch
+
+    def _is_known(self, period: int, point: Point) -> bool:
+        return any(lies_on(branch, point.z, period, point.value) for branch in self.branches)
+
+    def _was_met(self, period: int, u: float) -> bool:
+        return any(other == period and abs(u - place) < MET for other, place in self.met)
 
 
-def stable_at(branches: Sequence[Branch], value: float) -> list[tuple[int, Point]]:
-    """Stable orbits at a parameter, each with the number of its branch."""
-    return [
-        (number, point)
-        for number, branch in enumerate(branches)
-        for point in crossings(branch, value)
-        if point.stable
-    ]
-
-
-def losses(
-    branches: Sequence[Branch], families: Sequence[tuple[Family, float, Run]], value: float
-) -> list[Loss]:
-    """For every stable motion at a parameter of the branches, the first special point in each family.
-
-    families: with the value at which they pass through the motion, and the range to look through.
-    """
-    found = []
-    for number, point in stable_at(branches, value):
-        flow = branches[number].flow
-        for family, start, run in families:
-            found += _losses(replace(flow, family=family), number, point, start, run)
-    return found
-
-
-def _losses(flow: PeriodMap, number: int, point: Point, start: float, run: Run) -> list[Loss]:
-    here = at_parameter(flow, point.z, float(np.log(start)))
-    run = replace(run, to_first=True)
-    sides = []
-    for direction in ("up", "down"):
-        sign = 1.0 if direction == "up" else -1.0
-        looking = here if here.tangent[-1] * sign > 0.0 else turned(here)
-        branch = follow(flow, looking, run, both=False)
-        special = next((one for one in branch.specials if one.kind not in PASSED), None)
-        reached = branch.points[-1].value if special is None else special.point.value
-        sides.append(Loss(number, flow.period, flow.family.name, start, direction, special, float(reached)))
-    return sides
-
-
-def several(branches: Sequence[Branch]) -> list[tuple[float, float, tuple[int, ...]]]:
-    """Ranges of the parameter between special points in which several stable motions exist.
-
-    Each with its ends and the numbers of the branches, one for each motion.
-    """
-    edges = sorted(
-        {special.point.value for b in branches for special in b.specials if special.kind not in PASSED}
-        | {float(b.values[i]) for b in branches for i in (0, -1)}
-    )
-    ranges: list[tuple[float, float, tuple[int, ...]]] = []
-    for low, high in pairwise(edges):
-        if high - low < 1e-9 * high:
-            continue
-        middle = float(np.log(0.5 * (low + high)))
-        numbers = tuple(
-            number for number, branch in enumerate(branches) for _ in range(_stable_passages(branch, middle))
-        )
-        if ranges and ranges[-1][2] == numbers and abs(ranges[-1][1] - low) < 1e-9 * low:
-            ranges[-1] = (ranges[-1][0], high, numbers)
-        else:
-            ranges.append((low, high, numbers))
-    return [one for one in ranges if len(one[2]) > 1]
-
-
-def _stable_passages(branch: Branch, u: float) -> int:
-    """How often a stable part of a branch passes a parameter's logarithm, away from special points."""
-    count, places = 0, {int(special.after): special for special in branch.of(*ENDING)}
-    for index, (here, there) in enumerate(pairwise(branch.points)):
-        if not min(here.u, there.u) <= u < max(here.u, there.u):
-            continue
-        special = places.get(index)
-        nearer = here if special is None or (u - special.point.u) * (here.u - special.point.u) > 0 else there
-        count += nearer.stable
-    return count
-
-
-ENDING = (Kind.FOLD, Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
-
-
-def passed_by(
-    branches: Sequence[Branch], before: float, after: float, period: int, slack: float
-) -> list[tuple[int, Special]]:
-    """Special points within a jump's bracket (widened by `slack`) at which a stable part of a branch of some
-    period ends; folds first, then the nearest to the bracket's middle.
-    """
-    low, high = sorted((before, after))
-    middle = 0.5 * (low + high)
-    hits = [
-        (number, special)
-        for number, branch in enumerate(branches)
-        for special in branch.of(*ENDING)
-        if branch.flow.period == period
-        and low - slack <= special.point.value <= high + slack
-        and _ends_stability(branch, special)
-    ]
-    return sorted(hits, key=lambda hit: (hit[1].kind is not Kind.FOLD, abs(hit[1].point.value - middle)))
-
-
-def _ends_stability(branch: Branch, special: Special) -> bool:
-    index = int(special.after)
-    sides = branch.points[max(index, 0)], branch.points[min(index + 1, len(branch.points) - 1)]
-    return sides[0].stable != sides[1].stable
+def _leave(flow: PeriodMap, special: Special, run: Run) -> Branch:
+    return doubled(flow, special, run) if special.kind is Kind.DOUBLING else broken(flow, special, run)

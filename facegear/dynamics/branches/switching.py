@@ -1,16 +1,14 @@
 """From one branch onto another: doubled periods, broken symmetry, any motion that was found."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.branches.continuation import Branch, End, Run, follow
-from facegear.dynamics.branches.explore import lies_on
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point, at_parameter, solve_point
-from facegear.dynamics.branches.special import Kind, Special
+from facegear.dynamics.branches.special import Special
 from facegear.dynamics.motion import State
 from facegear.errors import NotConverged
 
@@ -86,43 +84,3 @@ def _aside(flow: PeriodMap, special: Special, direction: Array) -> Point:
         f"{special.kind} at {flow.family.name} = {special.point.value:.9g}",
         f"another branch at distances {', '.join(f'{d:g}' for d in ASIDE)}",
     )
-
-
-def all_branches(
-    branches: list[Branch],
-    run: Run,
-    longest_period: int,
-    most: int,
-    progress: Callable[[Branch], None] = lambda branch: None,
-) -> list[Branch]:
-    """The given branches and all that leave them and each other by period doubling or broken symmetry.
-
-    A special point that a branch already begins or ends at is not left again. At most `most` branches.
-    """
-    branches, todo = list(branches), list(branches)
-    met: list[tuple[int, float]] = []
-    while todo and len(branches) < most:
-        parent = todo.pop(0)
-        for special in parent.of(Kind.DOUBLING, Kind.BRANCH):
-            period = parent.flow.period * (2 if special.kind is Kind.DOUBLING else 1)
-            if len(branches) >= most or period > longest_period or _known(met, period, special.point.u):
-                continue
-            met.append((period, special.point.u))
-            try:
-                leave = doubled if special.kind is Kind.DOUBLING else broken
-                child = leave(parent.flow, special, run)
-            except NotConverged:
-                continue
-            if child.ends[1] is End.DOUBLING or child.ends[1] is End.SYMMETRY:
-                met.append((period, child.points[-1].u))
-            middle = child.points[len(child.points) // 2]
-            if any(lies_on(other, middle.z, period, middle.value) for other in branches):
-                continue
-            branches.append(child)
-            todo.append(child)
-            progress(child)
-    return branches
-
-
-def _known(met: list[tuple[int, float]], period: int, u: float) -> bool:
-    return any(other == period and abs(u - place) < 1e-6 for other, place in met)

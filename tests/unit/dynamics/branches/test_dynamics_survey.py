@@ -10,10 +10,11 @@ from oscillators import backlash_oscillator
 from facegear.dynamics.branches.continuation import End, Run, branch_at, follow
 from facegear.dynamics.branches.explore import box, crossings, explore, lies_on
 from facegear.dynamics.branches.family import Family, machine_plane, speed_family
+from facegear.dynamics.branches.margins import losses, passed_by, several
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import at_parameter
 from facegear.dynamics.branches.special import Kind
-from facegear.dynamics.branches.survey import losses, passed_by, several, survey
+from facegear.dynamics.branches.survey import survey
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.errors import NotConverged
@@ -46,7 +47,8 @@ def test_share_of_starts_on_the_lower_orbit_of_oracle_a(starts):
 def test_every_orbit_that_starts_find_lies_on_the_one_branch(starts):
     flow, found = starts
     start = at_parameter(flow, np.array([1.1, 0.0]), np.log(0.3))
-    seen = survey(flow, start, WIDE, [(0.75, found)], 2, 9)
+    motions = [(flow.over(one.period), one.point, "starts") for one in found]
+    seen = survey((flow, start), motions, WIDE, 2, 9)
     assert len(seen.branches) == 1
     ((low, high, numbers),) = several(seen.branches)
     assert (low, high) == pytest.approx((0.708031618722, 0.828463984388), rel=1e-8)

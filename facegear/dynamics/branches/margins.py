@@ -1,0 +1,134 @@
+"""How far stable motions are from their ends, and where several of them exist."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from facegear.dynamics.branches.continuation import PASSED, Branch, Run, follow, turned
+from facegear.dynamics.branches.explore import crossings
+from facegear.dynamics.branches.family import Family
+from facegear.dynamics.branches.period_map import PeriodMap
+from facegear.dynamics.branches.points import Point, at_parameter
+from facegear.dynamics.branches.special import Kind, Special
+
+ENDING = (Kind.FOLD, Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
+"""Special points at which a motion may end or change its stability."""
+
+
+@dataclass(frozen=True, eq=False)
+class Loss:
+    """Where a stable motion first loses its stability or its existence when one parameter changes.
+
+    branch, period: of the motion. parameter, start: its name and value there. direction: of the parameter.
+    special: None if nothing is met within the range.
+    """
+
+    branch: int
+    period: int
+    parameter: str
+    start: float
+    direction: str
+    special: Special | None
+    reached: float
+
+
+def stable_at(branches: Sequence[Branch], value: float) -> list[tuple[int, Point]]:
+    """Stable orbits at a parameter, each with the number of its branch."""
+    return [
+        (number, point)
+        for number, branch in enumerate(branches)
+        for point in crossings(branch, value)
+        if point.stable
+    ]
+
+
+def losses(
+    branches: Sequence[Branch], families: Sequence[tuple[Family, float, Run]], value: float
+) -> list[Loss]:
+    """For every stable motion at a parameter of the branches, the first special point in each family.
+
+    families: with the value at which they pass through the motion, and the range to look through.
+    """
+    found = []
+    for number, point in stable_at(branches, value):
+        flow = branches[number].flow
+        for family, start, run in families:
+            found += _losses(replace(flow, family=family), number, point, start, run)
+    return found
+
+
+def _losses(flow: PeriodMap, number: int, point: Point, start: float, run: Run) -> list[Loss]:
+    here = at_parameter(flow, point.z, float(np.log(start)))
+    run = replace(run, to_first=True)
+    sides = []
+    for direction in ("up", "down"):
+        sign = 1.0 if direction == "up" else -1.0
+        looking = here if here.tangent[-1] * sign > 0.0 else turned(here)
+        branch = follow(flow, looking, run, both=False)
+        special = next((one for one in branch.specials if one.kind not in PASSED), None)
+        reached = branch.points[-1].value if special is None else special.point.value
+        sides.append(Loss(number, flow.period, flow.family.name, start, direction, special, float(reached)))
+    return sides
+
+
+def several(branches: Sequence[Branch]) -> list[tuple[float, float, tuple[int, ...]]]:
+    """Ranges of the parameter between special points in which several stable motions exist.
+
+    Each with its ends and the numbers of the branches, one for each motion.
+    """
+    edges = sorted(
+        {special.point.value for b in branches for special in b.specials if special.kind not in PASSED}
+        | {float(b.values[i]) for b in branches for i in (0, -1)}
+    )
+    ranges: list[tuple[float, float, tuple[int, ...]]] = []
+    for low, high in pairwise(edges):
+        if high - low < 1e-9 * high:
+            continue
+        middle = float(np.log(0.5 * (low + high)))
+        numbers = tuple(
+            number for number, branch in enumerate(branches) for _ in range(_stable_passages(branch, middle))
+        )
+        if ranges and ranges[-1][2] == numbers and abs(ranges[-1][1] - low) < 1e-9 * low:
+            ranges[-1] = (ranges[-1][0], high, numbers)
+        else:
+            ranges.append((low, high, numbers))
+    return [one for one in ranges if len(one[2]) > 1]
+
+
+def _stable_passages(branch: Branch, u: float) -> int:
+    """How often a stable part of a branch passes a parameter's logarithm, away from special points."""
+    count, places = 0, {int(special.after): special for special in branch.of(*ENDING)}
+    for index, (here, there) in enumerate(pairwise(branch.points)):
+        if not min(here.u, there.u) <= u < max(here.u, there.u):
+            continue
+        special = places.get(index)
+        nearer = here if special is None or (u - special.point.u) * (here.u - special.point.u) > 0 else there
+        count += nearer.stable
+    return count
+
+
+def passed_by(
+    branches: Sequence[Branch], before: float, after: float, period: int, slack: float
+) -> list[tuple[int, Special]]:
+    """Special points within a jump's bracket (widened by `slack`) at which a stable part of a branch of some
+    period ends; folds first, then the nearest to the bracket's middle.
+    """
+    low, high = sorted((before, after))
+    middle = 0.5 * (low + high)
+    hits = [
+        (number, special)
+        for number, branch in enumerate(branches)
+        for special in branch.of(*ENDING)
+        if branch.flow.period == period
+        and low - slack <= special.point.value <= high + slack
+        and _ends_stability(branch, special)
+    ]
+    return sorted(hits, key=lambda hit: (hit[1].kind is not Kind.FOLD, abs(hit[1].point.value - middle)))
+
+
+def _ends_stability(branch: Branch, special: Special) -> bool:
+    index = int(special.after)
+    sides = branch.points[max(index, 0)], branch.points[min(index + 1, len(branch.points) - 1)]
+    return sides[0].stable != sides[1].stable

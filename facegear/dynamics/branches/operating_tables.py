@@ -1,0 +1,168 @@
+"""The csv tables of what a machine is on: coexistence, margins, the sweep's motions and jumps."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+
+from facegear.dynamics.branches.continuation import Branch
+from facegear.dynamics.branches.explore import Found, lies_on
+from facegear.dynamics.branches.margins import Loss, passed_by
+from facegear.dynamics.branches.swept import Swept, nearest_branch
+
+IRREGULAR = "not periodic"
+SWEPT_COLUMNS = (
+    "direction",
+    "speed_rpm",
+    "class",
+    "period",
+    "branch",
+    "distance",
+    "sweep_error",
+    "note",
+)
+SWEEP_JUMPS = ("direction", "speed_before_rpm", "speed_after_rpm", "class_before")
+"""What is read of the sweep's jumps."""
+JUMP_COLUMNS = (
+    "direction",
+    "speed_before_rpm",
+    "speed_after_rpm",
+    "class_before",
+    "branch",
+    "kind",
+    "speed_rpm",
+    "note",
+)
+
+
+def coexistence_table(
+    found: Sequence[tuple[float, Sequence[Found]]], branches: Sequence[Branch]
+) -> pd.DataFrame:
+    """Columns speed_rpm, motion, branch, share, error, starts: where random starts end.
+
+    branch: its number, `not followed`, or what kind of motion it is that no branch holds.
+    """
+    rows = []
+    for speed, motions in found:
+        starts = sum(motion.count for motion in motions)
+        for motion in motions:
+            rows.append(
+                {
+                    "speed_rpm": speed,
+                    "motion": motion.label,
+                    "branch": _branch_of(motion, speed, branches),
+                    "share": motion.share,
+                    "error": motion.error,
+                    "starts": starts,
+                }
+            )
+    return pd.DataFrame(rows, columns=["speed_rpm", "motion", "branch", "share", "error", "starts"])
+
+
+def _branch_of(motion: Found, speed: float, branches: Sequence[Branch]) -> str:
+    if motion.point is None:
+        return IRREGULAR
+    for number, branch in enumerate(branches):
+        if lies_on(branch, motion.point.z, motion.period, speed):
+            return str(number)
+    return "not followed"
+
+
+def range_table(ranges: Sequence[tuple[float, float, tuple[int, ...]]]) -> pd.DataFrame:
+    """Columns from_rpm, to_rpm, motions, branches: where several stable periodic motions exist."""
+    rows = [(low, high, len(numbers), " ".join(map(str, numbers))) for low, high, numbers in ranges]
+    return pd.DataFrame(rows, columns=["from_rpm", "to_rpm", "motions", "branches"])
+
+
+def margin_table(losses: Sequence[Loss]) -> pd.DataFrame:
+    """Columns branch, period, parameter, direction, start, kind, value, margin: how far each stable motion
+    at the operating speed is from its end or its loss of stability.
+
+    kind `none` where the range ends first; margin is value less start.
+    """
+    rows = [
+        {
+            "branch": loss.branch,
+            "period": loss.period,
+            "parameter": loss.parameter,
+            "direction": loss.direction,
+            "start": loss.start,
+            "kind": "none" if loss.special is None else loss.special.kind.value,
+            "value": loss.reached,
+            "margin": loss.reached - loss.start,
+        }
+        for loss in losses
+    ]
+    columns = ["branch", "period", "parameter", "direction", "start", "kind", "value", "margin"]
+    return pd.DataFrame(rows, columns=columns)
+
+
+def swept_table(swept: Sequence[Swept], branches: Sequence[Branch], longest: int) -> pd.DataFrame:
+    """SWEPT_COLUMNS: every periodic motion of the sweep with the branch it lies on, or why on none.
+
+    sweep_error: how far the sweep's state lies from the exact orbit next to it; distance: how far that orbit
+    lies from the branch's at the same speed; both in length scales.
+    """
+    rows = []
+    for motion in swept:
+        number, distance = nearest_branch(motion, branches)
+        note = motion.reason
+        if number is None and not note:
+            long = motion.period > longest
+            note = f"periods above longest_found = {longest} are not followed" if long else "not followed"
+        branch = "" if number is None else str(number)
+        rows.append(
+            (
+                motion.direction,
+                motion.speed_rpm,
+                motion.label,
+                motion.period,
+                branch,
+                distance,
+                motion.error,
+                note,
+            )
+        )
+    return pd.DataFrame(rows, columns=list(SWEPT_COLUMNS))
+
+
+def jump_table(jumps: pd.DataFrame, branches: Sequence[Branch], resolution_rpm: float) -> pd.DataFrame:
+    """JUMP_COLUMNS: each jump of the sweep with the special point its motion runs into, or why there is none.
+
+    A point counts within the jump's bracket or up to `resolution_rpm` beside it, since a motion that has just
+    ended still holds a run for a while.
+    """
+    rows = []
+    for jump in jumps.itertuples():
+        before, after = float(jump.speed_before_rpm), float(jump.speed_after_rpm)
+        row = {
+            "direction": jump.direction,
+            "speed_before_rpm": before,
+            "speed_after_rpm": after,
+            "class_before": jump.class_before,
+            "branch": "",
+            "kind": "",
+            "speed_rpm": np.nan,
+            "note": "",
+        }
+        rows.append(row | _named(before, after, str(jump.class_before), branches, resolution_rpm))
+    return pd.DataFrame(rows, columns=list(JUMP_COLUMNS))
+
+
+def _named(
+    before: float, after: float, label: str, branches: Sequence[Branch], resolution_rpm: float
+) -> dict[str, object]:
+    if not label.startswith("period-"):
+        return {"note": f"the motion before it is {label}: no branch of periodic motions ends there"}
+    period = int(label.removeprefix("period-"))
+    hits = passed_by(branches, before, after, period, resolution_rpm)
+    if not hits:
+        followed = any(branch.flow.period == period for branch in branches)
+        told = "no followed branch loses stability in the bracket"
+        return {"note": told if followed else f"no branch of period {period} was followed"}
+    number, special = hits[0]
+    low, high = sorted((before, after))
+    speed = special.point.value
+    inside = low <= speed <= high
+    beside = "" if inside else f"{max(low - speed, speed - high):.3g} rpm beside the bracket"
+    return {"branch": str(number), "kind": special.kind.value, "speed_rpm": speed, "note": beside}

@@ -1,0 +1,95 @@
+"""Periodic motions of a sweep: the exact orbit next to each, and the branch that it lies on."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.branches.continuation import Branch
+from facegear.dynamics.branches.explore import distance
+from facegear.dynamics.branches.period_map import PeriodMap
+from facegear.dynamics.branches.points import Point, at_parameter
+from facegear.dynamics.sweeps.sweep import Piece
+from facegear.errors import NotConverged
+
+Array = NDArray[np.float64]
+REPEATS = 1e-5
+"""An orbit whose states one shorter period apart differ by less, in length scales, has that period."""
+ELSEWHERE = 0.1
+"""An orbit farther than this from the sweep's state is not the sweep's motion."""
+
+
+@dataclass(frozen=True, eq=False)
+class Swept:
+    """A periodic motion at one speed of a sweep.
+
+    label: its class in the sweep. period: least period of the orbit next to it, of the label if there is
+    none. point: that orbit, and error how far the sweep's state lies from it, in length scales. reason: why
+    there is none.
+    """
+
+    direction: str
+    speed_rpm: float
+    label: str
+    period: int
+    point: Point | None
+    error: float
+    reason: str = ""
+
+    @property
+    def origin(self) -> str:
+        """Where it was found."""
+        return f"sweep {self.direction}, {self.speed_rpm:.6g} rpm"
+
+
+def swept_motions(
+    flow: PeriodMap, pieces: Mapping[str, Sequence[Piece]], from_rpm: float, to_rpm: float
+) -> list[Swept]:
+    """The periodic motions of a sweep's directions between two speeds, each with its orbit.
+
+    flow: the machine's map over its speed in rpm and one mesh period.
+    """
+    return [
+        _orbit(flow, direction, piece, index)
+        for direction, chunks in pieces.items()
+        for piece in chunks
+        for index, speed in enumerate(piece.speeds)
+        if piece.period[index] > 0 and from_rpm <= speed <= to_rpm
+    ]
+
+
+def _orbit(flow: PeriodMap, direction: str, piece: Piece, index: int) -> Swept:
+    speed, label, period = float(piece.speeds[index]), piece.labels[index], int(piece.period[index])
+    u = float(np.log(speed))
+    z = flow.weighted(piece.state(index), u)
+    try:
+        point = at_parameter(flow.over(period), z, u)
+        least = _least_period(flow, point, period)
+        if least < period:
+            point = at_parameter(flow.over(least), point.z, u)
+    except (NotConverged, np.linalg.LinAlgError) as failure:
+        return Swept(direction, speed, label, period, None, np.nan, f"no orbit next to it: {failure}")
+    error = float(np.abs(point.z - z).max())
+    if error > ELSEWHERE:
+        reason = f"the nearest orbit lies {error:.2g} length scales away"
+        return Swept(direction, speed, label, period, None, error, reason)
+    return Swept(direction, speed, label, least, point, error)
+
+
+def _least_period(flow: PeriodMap, point: Point, period: int) -> int:
+    images = flow.over(period).images(point.z, point.u)
+    return next(
+        divisor
+        for divisor in range(1, period + 1)
+        if period % divisor == 0 and (divisor == period or np.abs(images[divisor] - point.z).max() < REPEATS)
+    )
+
+
+def nearest_branch(motion: Swept, branches: Sequence[Branch]) -> tuple[int | None, float]:
+    """Number of the branch that a motion lies on, and how far its orbit there is, in length scales."""
+    if motion.point is None:
+        return None, np.nan
+    far = [distance(branch, motion.point.z, motion.period, motion.speed_rpm) for branch in branches]
+    nearest = int(np.argmin(far))
+    return (nearest, far[nearest]) if np.isfinite(far[nearest]) else (None, np.nan)

@@ -1,0 +1,67 @@
+"""Branches of periodic motions over the speed, their special points, margins of the nominal speed."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import pandas as pd
+from numpy.typing import NDArray
+
+from facegear.config.base import parse
+from facegear.config.branches import read_branch_plan
+from facegear.config.dynamics import Sweep, sweep_plan
+from facegear.config.machines import wired_machine
+from facegear.dynamics.branches import operating_tables, tables
+from facegear.dynamics.branches.machine import machine_flow, machine_survey, margins
+from facegear.dynamics.branches.margins import several
+from facegear.dynamics.branches.stored import from_arrays, special_arrays
+from facegear.dynamics.branches.summary import survey_summary, tell
+from facegear.dynamics.branches.swept import swept_motions
+from facegear.dynamics.steady_state.simulate import build_model
+from facegear.dynamics.sweeps.stored import from_arrays as chunk_from_arrays
+from facegear.stages.outcome import Outcome
+
+
+def branches(
+    starts: Iterable[Mapping[str, NDArray]],
+    chunks: Iterable[Mapping[str, NDArray]],
+    jumps: pd.DataFrame,
+    harmonics: pd.DataFrame,
+    transmission: Mapping[str, Any],
+    teeth: Mapping[str, Any],
+    branches: Mapping[str, Any] | None,
+    sweep: Mapping[str, Any],
+    speed_rpm: float,
+) -> Outcome:
+    """`branches`, `ends`, `unfollowed`, `multipliers`, `special`, `coexistence`, `ranges`, `margins`, `swept`
+    and `jumps` (tables) and `orbits` (arrays).
+
+    starts: arrays of the random starts, speed by speed. chunks, jumps: of the sweep, direction by direction
+    in the order of the config. Raises NotConverged if no motion of period one is found.
+    """
+    model = build_model(wired_machine(transmission, teeth, harmonics))
+    plan, layout = read_branch_plan(branches, speed_rpm), model.machine.layout
+    flow, swept_plan = machine_flow(model, plan), sweep_plan(parse(Sweep, sweep))
+    found = [from_arrays(flow, one) for one in starts]
+    stored = iter(chunks)
+    pieces = {
+        name: [chunk_from_arrays(next(stored))[1] for _ in range(swept_plan.chunks)]
+        for name in swept_plan.directions
+    }
+    swept = swept_motions(flow, pieces, plan.from_rpm, plan.to_rpm)
+    seen = machine_survey(model, plan, found, swept, tell)
+    ranges, losses = several(seen.branches), margins(model, plan, seen.branches)
+    within = jumps[jumps["speed_before_rpm"].between(plan.from_rpm, plan.to_rpm)]
+    content = {
+        "branches": tables.branch_table(layout, seen.branches),
+        "ends": tables.end_table(seen.branches),
+        "unfollowed": tables.unfollowed_table(seen.unfollowed),
+        "multipliers": tables.multiplier_table(seen.branches),
+        "special": tables.special_table(layout, seen.branches),
+        "coexistence": operating_tables.coexistence_table(found, seen.branches),
+        "ranges": operating_tables.range_table(ranges),
+        "margins": operating_tables.margin_table(losses),
+        "swept": operating_tables.swept_table(swept, seen.branches, plan.longest_found),
+        "jumps": operating_tables.jump_table(within, seen.branches, swept_plan.jump_resolution_rpm),
+        "orbits": special_arrays(seen.branches),
+    }
+    return Outcome(content, survey_summary(seen, ranges, losses, content["swept"], content["jumps"]))

@@ -1,0 +1,31 @@
+"""Loci of folds and period doublings in the plane of speed and a second parameter."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+from numpy.typing import NDArray
+
+from facegear.config.branches import read_branch_plan
+from facegear.config.machines import wired_machine
+from facegear.dynamics.branches.machine import machine_flow, machine_loci
+from facegear.dynamics.branches.stored import special_points
+from facegear.dynamics.branches.summary import loci_summary, tell
+from facegear.dynamics.branches.tables import locus_table
+from facegear.dynamics.steady_state.simulate import build_model
+from facegear.stages.outcome import Outcome
+
+
+def branches_loci(
+    orbits: Mapping[str, NDArray],
+    harmonics: pd.DataFrame,
+    transmission: Mapping[str, Any],
+    teeth: Mapping[str, Any],
+    branches: Mapping[str, Any] | None,
+    speed_rpm: float,
+) -> Outcome:
+    """`loci` (table). orbits: arrays of the special points."""
+    model = build_model(wired_machine(transmission, teeth, harmonics))
+    plan = read_branch_plan(branches, speed_rpm)
+    loci, missed = machine_loci(model, plan, special_points(machine_flow(model, plan), orbits), tell)
+    return Outcome({"loci": locus_table(loci)}, loci_summary(loci, missed))
