@@ -16,6 +16,8 @@ from facegear.results.store import Store, case_folder
 
 if TYPE_CHECKING:
     from facegear.contact.gear_flank import GearFlank
+    from facegear.results.branch_loci import BranchLociResult
+    from facegear.results.branches import BranchesResult
     from facegear.results.contact import ContactResult
     from facegear.results.geometry import GeometryResult
     from facegear.results.load_sharing import LoadSharingResult
@@ -211,6 +213,44 @@ class Gearbox:
         )
         return replace(found, content={**found.content, "frequencies": gearbox.modes().table()})
 
+    def branches(
+        self,
+        from_rpm: float | None = None,
+        to_rpm: float | None = None,
+        longest_period: int | None = None,
+        starts: int | None = None,
+    ) -> "BranchesResult":
+        """Every periodic motion over speed, stable or not, beside the sweep: folds, margins, coexistence.
+
+        Speeds, the longest period followed through doublings and the number of random `starts` as in section
+        `branches` of the config unless given, its defaults where there is no such section. Raises
+        ConfigErrors for values that the config would refuse, NotConverged without a motion of period one.
+
+        >>> import facegear
+        >>> found = facegear.example().branches(7000, 7600, starts=2)
+        >>> found.table()["period"].unique().tolist()
+        [1]
+        """
+        explore = _given({"starts": starts})
+        changes = _given({"from_rpm": from_rpm, "to_rpm": to_rpm, "longest_period": longest_period})
+        return self._with_branches({**changes, **({"explore": explore} if explore else {})})._branches()
+
+    def branch_loci(
+        self, parameters: Sequence[str] | None = None, nearest: int | None = None
+    ) -> "BranchLociResult":
+        """Where folds and period doublings move when a second parameter changes, with cusps.
+
+        `parameters`: of torque, backlash, mesh_damping and bearing_stiffness; `nearest`: how many special
+        points nearest to the nominal speed are followed; both as in section `branches.loci` unless given.
+        Raises ConfigErrors for values that the config would refuse.
+        """
+        loci = _given({"parameters": parameters, "nearest": nearest})
+        gearbox = self._with_branches({"loci": loci} if loci else {})
+
+        from facegear.results.branch_loci import BranchLociResult
+
+        return gearbox.store.result("branches_loci", gearbox.values, BranchLociResult, gearbox._loci)
+
     def load_sharing(self, speed_rpm: float | None = None) -> "LoadSharingResult":
         """Load-sharing coefficients at a pinion speed, the config's unless given, averaged as section
         `load_sharing` asks.
@@ -242,6 +282,21 @@ class Gearbox:
             from facegear.stages.cad import export
 
             return export(path, body, teeth, self.values["tooth_pair"])
+
+    def _with_branches(self, changes: Mapping[str, Any]) -> "Gearbox":
+        """A copy with a section `branches`, in which some values differ from the config's."""
+        section = self.values["branches"] or {}
+        inner = {
+            key: {**section.get(key, {}), **value} if isinstance(value, Mapping) else value
+            for key, value in changes.items()
+        }
+        return self._changed("branches", {"branches": {**section, **inner}})
+
+    def _branches(self) -> "BranchesResult":
+        from facegear.results.branches import BranchesResult
+
+        found = self.store.result("branches", self.values, BranchesResult, self._follow_branches)
+        return replace(found, content={**found.content, "sweep": self.sweep().content["sweep"]})
 
     def __repr__(self) -> str:
         pair, machine = self.config.tooth_pair, self.config.transmission
@@ -293,16 +348,59 @@ class Gearbox:
 
     def _sweep(self, threads: int) -> "Outcome":
         from facegear.stages.dynamics_sweep import dynamics_sweep
+
+        needs = self._needs("dynamics_sweep")
+        return dynamics_sweep(self._chunks(), self._harmonics(), **needs, threads=threads)
+
+    def _chunks(self) -> list[Any]:
+        """Arrays of the sweep's chunks, direction by direction."""
+        sweep = self.values["dynamics"]["sweep"]
+        return [self._chunk(name, n) for name in sweep["directions"] for n in range(sweep["chunks"])]
+
+    def _chunk(self, direction: str, number: int) -> Any:
+        from facegear.dynamics.sweeps.stored import SHAPES
+        from facegear.io import arrays
         from facegear.stages.dynamics_sweep_chunk import dynamics_sweep_chunk
 
-        needs, harmonics = self._needs("dynamics_sweep"), self._harmonics()
-        plan = needs["sweep"]
-        chunks = [
-            dynamics_sweep_chunk(direction, number, harmonics, **needs).content["chunk"]
-            for direction in plan["directions"]
-            for number in range(plan["chunks"])
-        ]
-        return dynamics_sweep(chunks, harmonics, **needs, threads=threads)
+        name, needs = f"{direction}_{number}", self._needs("dynamics_sweep_chunk")
+        return self.store.part(
+            "dynamics_sweep_chunk",
+            name,
+            self.values,
+            f"dynamics/chunks/{name}.npz",
+            lambda path: arrays.read(path, SHAPES),
+            lambda: dynamics_sweep_chunk(direction, number, self._harmonics(), **needs).content["chunk"],
+        )
+
+    def _follow_branches(self) -> "Outcome":
+        from facegear.stages.branches import branches
+
+        count = max(len(self.values["branches"]["explore"]["speeds_rpm"]), 1)
+        starts = [self._starts(number) for number in range(count)]
+        jumps = self.sweep().content["jumps"]
+        return branches(starts, self._chunks(), jumps, self._harmonics(), **self._needs("branches"))
+
+    def _starts(self, number: int) -> Any:
+        from facegear.dynamics.branches.stored import SHAPES
+        from facegear.io import arrays
+        from facegear.stages.branches_starts import branches_starts
+
+        return self.store.part(
+            "branches_starts",
+            str(number),
+            self.values,
+            f"branches/starts/{number}.npz",
+            lambda path: arrays.read(path, SHAPES),
+            lambda: branches_starts(number, self._harmonics(), **self._needs("branches_starts")).content[
+                "found"
+            ],
+        )
+
+    def _loci(self) -> "Outcome":
+        from facegear.stages.branches_loci import branches_loci
+
+        orbits = self._branches().content["orbits"]
+        return branches_loci(orbits, self._harmonics(), **self._needs("branches_loci"))
 
 
 def _given(changes: Mapping[str, Any]) -> dict[str, Any]:

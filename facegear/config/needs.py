@@ -54,6 +54,9 @@ UPSTREAM = {
     "stiffness": ("contact",),
     "dynamics_response": ("stiffness",),
     "dynamics_sweep": ("stiffness",),
+    "branches_starts": ("stiffness",),
+    "branches": ("branches_starts", "dynamics_sweep"),
+    "branches_loci": ("branches",),
     "load_sharing": ("stiffness",),
 }
 """Stages whose results a stage uses."""

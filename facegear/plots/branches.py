@@ -1,6 +1,6 @@
 """Figures of the branches of periodic motions."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -24,6 +24,14 @@ MARKERS = {
 }
 SWEEPS = {"up": ("1", "0.45"), "down": ("2", "0.7")}
 BARS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442")
+
+
+def typical_meshes(pinions: Sequence[Mapping[str, Any]], meshes: Iterable[str]) -> list[str]:
+    """The first mesh of the first pinion of each role; pinions as in the config, meshes `pinion/side`."""
+    roles = [place["role"] for place in pinions]
+    names = [place["name"] for i, place in enumerate(pinions) if roles[i] not in roles[:i]]
+    different = list(dict.fromkeys(meshes))
+    return [next(mesh for mesh in different if mesh.startswith(f"{name}/")) for name in names]
 
 
 def amplitudes(

@@ -13,12 +13,13 @@ from facegear.io.files import write_all
 class Kept:
     """The file of one part of a result below a case's folder, and what its reader asks of it.
 
-    `holds`: columns of a table, shapes of arrays, keys of a record.
+    `holds`: columns of a table, shapes of arrays, keys of a record. `text`: columns that stay text.
     """
 
     path: str
     holds: Mapping[str, tuple[int | None, ...]] | Sequence[str] = ()
     may_be_empty: bool = False
+    text: Sequence[str] = ()
 
     def read(self, folder: Path) -> Any:
         """The part as stored. Raises CorruptFile if it is missing, altered or lacks something."""
@@ -27,7 +28,7 @@ class Kept:
             return arrays.read(path, self.holds if isinstance(self.holds, Mapping) else {})
         if path.suffix == ".json":
             return documents.read(path, tuple(self.holds))
-        return tables.read(path, tuple(self.holds), self.may_be_empty)
+        return tables.read(path, tuple(self.holds), self.may_be_empty, self.text)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -44,7 +45,7 @@ class Result:
     def save(self, folder: str | Path) -> list[Path]:
         """Write the files that the workflow writes for this stage, below `folder`; returns their paths."""
         paths = {name: Path(folder) / kept.path for name, kept in self.FILES.items()}
-        write_all(self.content, paths)
+        write_all({name: self.content[name] for name in paths}, paths)
         return list(paths.values())
 
     def __repr__(self) -> str:

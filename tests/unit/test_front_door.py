@@ -43,6 +43,8 @@ def test_modes_need_no_mesh_and_no_compiler():
         (lambda g: g.contact(positions=2), "contact.positions_per_pitch = 2: should be greater"),
         (lambda g: g.response(-1), "response: dynamics.speed_rpm = -1: should be greater than"),
         (lambda g: g.sweep(2000, 1000), "dynamics.sweep.to_rpm = 1000.0: more than from_rpm = 2000"),
+        (lambda g: g.branches(2000, 1000), "branches.to_rpm = 1000.0: more than from_rpm = 2000"),
+        (lambda g: g.branch_loci(["mass"]), 'parameters[0] = "mass": should be'),
         (lambda g: g.load_sharing(float("nan")), "dynamics.speed_rpm = NaN"),
         (lambda g: g.with_values({"transmission.backlash": 1}), "with_values: transmission.backlash = 1"),
         (lambda g: g.with_values({"case": "other"}), "case = 'other': a dotted key"),
@@ -93,6 +95,10 @@ def test_the_dataset_of_a_sweep_holds_every_row_of_its_table(gearbox):
         assert float(at.sel(dict.fromkeys(kind, row.body_or_mesh))) == row.value
 
 
+def test_the_files_of_a_sweep_are_saved_although_its_figures_use_more(gearbox, tmp_path):
+    assert all(path.stat().st_size for path in gearbox.sweep(1000, 1200, points=3).save(tmp_path))
+
+
 @pytest.mark.parametrize("name", ["geometry", "contact", "stiffness", "modes", "response", "load_sharing"])
 def test_every_answer_has_a_table_a_figure_and_files(gearbox, name, tmp_path):
     found = getattr(gearbox, name)()
@@ -122,6 +128,33 @@ def test_exact_teeth_are_exported_in_the_format_that_the_ending_names(gearbox, n
 def test_an_export_that_cannot_be_is_refused_in_one_line(gearbox, asked, line):
     with pytest.raises(FacegearError, match=f"^{line}$"):
         gearbox.export(**asked)
+
+
+@pytest.fixture(scope="module")
+def followed(gearbox):
+    """A sweep of three speeds and the branches around them; the meshes have two flanks each."""
+    sweep = {"from_rpm": 7380, "to_rpm": 7580, "points": 3}
+    narrow = gearbox.with_values({f"dynamics.sweep.{key}": value for key, value in sweep.items()})
+    return narrow.branches(7380, 7580, starts=1)
+
+
+def test_branches_have_tables_figures_and_files(followed, tmp_path):
+    table = followed.table()
+    assert followed.source == "computed"
+    assert table["mesh"].nunique() == 10
+    assert (table["deflection_least_um"] <= table["deflection_most_um"]).all()
+    assert all(followed.plot(name).axes for name in ("amplitudes", "shares", "multipliers"))
+    assert all(path.stat().st_size for path in followed.save(tmp_path))
+    with pytest.raises(FacegearError, match="plot = 'loci': one of amplitudes"):
+        followed.plot("loci")
+
+
+def test_every_periodic_motion_of_the_sweep_lies_on_a_branch(followed):
+    swept = followed.swept()
+    assert len(swept) == 6
+    assert (swept["branch"] != "").all()
+    assert swept["distance"].max() < 1e-5
+    assert swept["sweep_error"].max() < 1e-2
 
 
 def test_load_sharing_of_two_gearboxes_stands_in_one_figure(gearbox):

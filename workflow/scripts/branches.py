@@ -1,6 +1,6 @@
 """Branches of periodic motions over the speed, their special points, margins of the nominal speed."""
 
-from facegear.dynamics.branches.operating_tables import SWEEP_JUMPS
+from facegear.dynamics.branches.columns import SWEEP_JUMPS
 from facegear.dynamics.branches.stored import SHAPES
 from facegear.dynamics.sweeps.stored import SHAPES as CHUNK_SHAPES
 from facegear.io import arrays, tables

@@ -1,8 +1,8 @@
 """Branches over speed, loci, shares of starts and multipliers, from tables alone."""
 
-from facegear.dynamics.branches.tables import BRANCH_COLUMNS
+from facegear.dynamics.branches.columns import BRANCH_COLUMNS
 from facegear.io import tables
-from facegear.plots.branches import amplitudes, loci, multipliers, shares
+from facegear.plots.branches import amplitudes, loci, multipliers, shares, typical_meshes
 from facegear.plots.style import save
 from facegear.provenance.stage import stage
 
@@ -14,9 +14,7 @@ with stage(snakemake) as run:
     starts = tables.read(given.coexistence, ["speed_rpm", "share", "error"], text=["branch", "motion"])
     curves = tables.read(given.loci, ["locus", "factor", "speed_rpm"], allow_empty=True)
     circle = tables.read(given.multipliers, ["branch", "speed_rpm", "real", "imaginary"])
-    roles = [place["role"] for place in params.pinions]
-    typical = [place["name"] for i, place in enumerate(params.pinions) if roles[i] not in roles[:i]]
-    meshes = [next(m for m in branches["mesh"].unique() if m.startswith(f"{name}/")) for name in typical]
+    meshes = typical_meshes(params.pinions, branches["mesh"])
     figures = [
         amplitudes(branches, special, sweep, meshes, params.speed_rpm),
         loci(curves, params.speed_rpm),

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import mesh_response
-from facegear.dynamics.steady_state.statistics import moments
+from facegear.dynamics.steady_state.simulate import mesh_averages, mesh_response, mesh_shares
 from facegear.dynamics.steady_state.window import run_window
 
 Array = NDArray[np.float64]
@@ -32,7 +31,7 @@ class Measures:
 
 
 def measures(flow: PeriodMap, point: Point) -> Measures:
-    """Measures of an orbit; extremes are exact to the steps' accuracy."""
+    """Measures of an orbit, by the same sums as those of a sweep."""
     packed = flow.packed(point.u)
     system, frequency = flow.family.at(point.value)
     state = flow.state(point.z, point.u)
@@ -41,14 +40,12 @@ def measures(flow: PeriodMap, point: Point) -> Measures:
     settings = Settings(tolerance=flow.tolerance, samples=SAMPLES)
     window = run_window(packed, flow.work(packed), wide, flow.period, settings)
     deflections, forces = mesh_response(system, window.samples, window.per_period)
-    found = moments(deflections, window.per_period, True)
-    maxima = [values[0] if values.size else -np.inf for values, _ in point.turning]
-    minima = [values[0] if values.size else np.inf for _, values in point.turning]
+    found = mesh_averages(system, frequency, window, deflections, forces).meshes(True)
     return Measures(
         ac_rms=found.ac_rms,
         rms=found.rms,
-        least=np.minimum(packed.scale * np.array(minima), found.least),
-        most=np.maximum(packed.scale * np.array(maxima), found.most),
+        least=found.least,
+        most=found.most,
         peak_force=np.abs(forces).max(axis=0),
-        shares=window.shares,
+        shares=mesh_shares(system, window.shares),
     )

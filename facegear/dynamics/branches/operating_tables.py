@@ -5,34 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
+from facegear.dynamics.branches.columns import JUMP_COLUMNS, SWEPT_COLUMNS
 from facegear.dynamics.branches.continuation import Branch
 from facegear.dynamics.branches.explore import Found, lies_on
 from facegear.dynamics.branches.margins import Loss, passed_by
 from facegear.dynamics.branches.swept import Swept, nearest_branch
 
 IRREGULAR = "not periodic"
-SWEPT_COLUMNS = (
-    "direction",
-    "speed_rpm",
-    "class",
-    "period",
-    "branch",
-    "distance",
-    "sweep_error",
-    "note",
-)
-SWEEP_JUMPS = ("direction", "speed_before_rpm", "speed_after_rpm", "class_before")
-"""What is read of the sweep's jumps."""
-JUMP_COLUMNS = (
-    "direction",
-    "speed_before_rpm",
-    "speed_after_rpm",
-    "class_before",
-    "branch",
-    "kind",
-    "speed_rpm",
-    "note",
-)
 
 
 def coexistence_table(

@@ -5,48 +5,16 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
+from facegear.dynamics.branches.columns import BRANCH_COLUMNS, SPECIAL_COLUMNS
 from facegear.dynamics.branches.continuation import Branch, End
 from facegear.dynamics.branches.loci import Locus
 from facegear.dynamics.branches.measures import measures
+from facegear.dynamics.branches.special import Special
 from facegear.dynamics.branches.survey import Unfollowed
 from facegear.transmission.layout import Layout
 
 UM = 1e6
 SHOWN_MULTIPLIERS = 8
-BRANCH_COLUMNS = (
-    "branch",
-    "point",
-    "arc",
-    "speed_rpm",
-    "period",
-    "stable",
-    "leading_multiplier_real",
-    "leading_multiplier_imaginary",
-    "mesh",
-    "deflection_ac_rms_um",
-    "deflection_rms_um",
-    "deflection_least_um",
-    "deflection_most_um",
-    "peak_force_n",
-    "open_share",
-    "drive_share",
-    "back_share",
-)
-SPECIAL_COLUMNS = (
-    "branch",
-    "period",
-    "kind",
-    "speed_rpm",
-    "arc",
-    "multiplier_real",
-    "multiplier_imaginary",
-    "angle_deg",
-    "stable_before",
-    "stable_after",
-    "meshes",
-    "edge",
-    "proof",
-)
 
 
 def branch_table(layout: Layout, branches: Sequence[Branch]) -> pd.DataFrame:
@@ -97,6 +65,7 @@ def multiplier_table(branches: Sequence[Branch]) -> pd.DataFrame:
 def special_table(layout: Layout, branches: Sequence[Branch]) -> pd.DataFrame:
     """SPECIAL_COLUMNS: every special point along every branch, what it is and what proves it."""
     rows = []
+    names = [name.replace(" ", "_") for name in layout.mesh_names]
     for number, branch in enumerate(branches):
         arc = branch.arc
         for special in branch.specials:
@@ -114,12 +83,19 @@ def special_table(layout: Layout, branches: Sequence[Branch]) -> pd.DataFrame:
                     "angle_deg": float(np.degrees(np.angle(mu))),
                     "stable_before": branch.points[index].stable,
                     "stable_after": branch.points[index + 1].stable,
-                    "meshes": " ".join(layout.mesh_names[m].replace(" ", "_") for m in special.meshes),
-                    "edge": {1: "upper", -1: "lower"}.get(special.edge, ""),
+                    "meshes": " ".join(dict.fromkeys(names[m % len(names)] for m in special.meshes)),
+                    "edge": _edge(special, len(names)),
                     "proof": special.proof,
                 }
             )
     return pd.DataFrame(rows, columns=list(SPECIAL_COLUMNS))
+
+
+def _edge(special: Special, meshes: int) -> str:
+    """The edge that is grazed; of one-sided flanks upper stands for the drive flank, lower for the back."""
+    if not special.meshes:
+        return ""
+    return "upper" if special.edge > 0 and special.meshes[0] < meshes else "lower"
 
 
 def end_table(branches: Sequence[Branch]) -> pd.DataFrame:

@@ -1,0 +1,58 @@
+"""Columns of the tables of branches, apart from what computes them, so that readers need no solver."""
+
+BRANCH_COLUMNS = (
+    "branch",
+    "point",
+    "arc",
+    "speed_rpm",
+    "period",
+    "stable",
+    "leading_multiplier_real",
+    "leading_multiplier_imaginary",
+    "mesh",
+    "deflection_ac_rms_um",
+    "deflection_rms_um",
+    "deflection_least_um",
+    "deflection_most_um",
+    "peak_force_n",
+    "open_share",
+    "drive_share",
+    "back_share",
+)
+SPECIAL_COLUMNS = (
+    "branch",
+    "period",
+    "kind",
+    "speed_rpm",
+    "arc",
+    "multiplier_real",
+    "multiplier_imaginary",
+    "angle_deg",
+    "stable_before",
+    "stable_after",
+    "meshes",
+    "edge",
+    "proof",
+)
+SWEPT_COLUMNS = (
+    "direction",
+    "speed_rpm",
+    "class",
+    "period",
+    "branch",
+    "distance",
+    "sweep_error",
+    "note",
+)
+SWEEP_JUMPS = ("direction", "speed_before_rpm", "speed_after_rpm", "class_before")
+"""What is read of the sweep's jumps."""
+JUMP_COLUMNS = (
+    "direction",
+    "speed_before_rpm",
+    "speed_after_rpm",
+    "class_before",
+    "branch",
+    "kind",
+    "speed_rpm",
+    "note",
+)

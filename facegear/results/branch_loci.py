@@ -1,0 +1,30 @@
+"""Curves of folds and period doublings in two parameters."""
+
+from typing import TYPE_CHECKING, ClassVar
+
+import pandas as pd
+
+from facegear.results.base import Kept, Result
+
+if TYPE_CHECKING:
+    from facegear.plots.style import Figure
+
+
+class BranchLociResult(Result):
+    """Where motions end or double their period in the plane of speed and a second parameter."""
+
+    FILES: ClassVar = {
+        "loci": Kept(
+            "branches/loci.csv", ("locus", "kind", "factor", "speed_rpm"), may_be_empty=True, text=("corner",)
+        )
+    }
+
+    def table(self) -> pd.DataFrame:
+        """One row a point: locus, kind, parameter and the factor on it, speed_rpm; `corner` at a cusp."""
+        return self.content["loci"].copy()
+
+    def plot(self) -> "Figure":
+        """All loci with the operating point, a panel for each parameter."""
+        from facegear.plots.branches import loci
+
+        return loci(self.content["loci"], self.values["dynamics"]["speed_rpm"])

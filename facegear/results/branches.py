@@ -1,0 +1,85 @@
+"""Branches of periodic motions."""
+
+from typing import TYPE_CHECKING, ClassVar
+
+import pandas as pd
+
+from facegear.results.base import Kept, Result, chosen
+
+if TYPE_CHECKING:
+    from facegear.plots.style import Figure
+
+FIGURES = ("amplitudes", "shares", "multipliers")
+PLACE = ("branch", "period", "kind", "speed_rpm", "arc")
+
+
+class BranchesResult(Result):
+    """Every periodic motion found over speed, stable or not, and the points where motions end or change."""
+
+    FILES: ClassVar = {
+        "branches": Kept("branches/branches.csv", ("branch", "speed_rpm", "stable", "mesh")),
+        "ends": Kept("branches/ends.csv", ("branch", "period", "points"), text=("tried",)),
+        "unfollowed": Kept("branches/unfollowed.csv", ("period", "origin"), may_be_empty=True),
+        "multipliers": Kept("branches/multipliers.csv", ("branch", "speed_rpm", "real", "imaginary")),
+        "special": Kept(
+            "branches/special_points.csv", PLACE, may_be_empty=True, text=("meshes", "edge", "proof")
+        ),
+        "coexistence": Kept(
+            "branches/coexistence.csv", ("speed_rpm", "share", "error"), text=("branch", "motion")
+        ),
+        "ranges": Kept("branches/ranges.csv", ("from_rpm", "to_rpm"), may_be_empty=True, text=("branches",)),
+        "margins": Kept("branches/margins.csv", ("branch", "parameter", "margin"), may_be_empty=True),
+        "swept": Kept(
+            "branches/swept.csv", ("direction", "period"), may_be_empty=True, text=("branch", "note")
+        ),
+        "jumps": Kept(
+            "branches/jumps.csv",
+            ("direction", "speed_before_rpm", "speed_after_rpm"),
+            may_be_empty=True,
+            text=("class_before", "branch", "kind", "note"),
+        ),
+        "orbits": Kept("branches/special_points.npz", {"x": (None, None)}),
+    }
+
+    def table(self) -> pd.DataFrame:
+        """One row a branch, point and mesh: speed, stable or not, deflections, peak force, contact."""
+        return self.content["branches"].copy()
+
+    def special_points(self) -> pd.DataFrame:
+        """One row a fold, period doubling, Neimark-Sacker point, branch point or graze, with its proof."""
+        return self.content["special"].copy()
+
+    def margins(self) -> pd.DataFrame:
+        """How far each stable motion at the nominal speed is from its end, in speed and in torque."""
+        return self.content["margins"].copy()
+
+    def ranges(self) -> pd.DataFrame:
+        """Speeds between which several stable motions exist."""
+        return self.content["ranges"].copy()
+
+    def coexistence(self) -> pd.DataFrame:
+        """Share of random starts that ends on each motion, with its standard error."""
+        return self.content["coexistence"].copy()
+
+    def jumps(self) -> pd.DataFrame:
+        """Each jump of the sweep with the special point that its motion runs into, or why there is none."""
+        return self.content["jumps"].copy()
+
+    def swept(self) -> pd.DataFrame:
+        """Each periodic motion of the sweep with the branch it lies on, or why it lies on none."""
+        return self.content["swept"].copy()
+
+    def plot(self, what: str = "amplitudes", branch: int = 0) -> "Figure":
+        """`amplitudes` over speed, `shares` of random starts, or the `multipliers` of one branch."""
+        from facegear.plots.branches import amplitudes, multipliers, shares, typical_meshes
+
+        chosen(what, FIGURES, "plot")
+        if what == "shares":
+            return shares(self.content["coexistence"])
+        if what == "multipliers":
+            return multipliers(self.content["multipliers"], branch)
+        meshes = typical_meshes(self.values["transmission"]["pinions"], self.content["branches"]["mesh"])
+        speed = self.values["dynamics"]["speed_rpm"]
+        return amplitudes(
+            self.content["branches"], self.content["special"], self.content["sweep"], meshes, speed
+        )
