@@ -4,7 +4,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.results.base import Kept, Result, chosen
+from facegear.errors import chosen
+from facegear.results.base import Kept, Result
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
