@@ -9,7 +9,6 @@ from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.steady_state.simulate import Model, SteadyState
 from facegear.dynamics.steady_state.statistics import moments
 from facegear.transmission.layout import DOF_PER_BODY
-from facegear.transmission.linear_bearings import linear_bearings
 from facegear.transmission.matrices import bearing_matrix
 from facegear.transmission.statics import static_bearing_forces
 
@@ -31,15 +30,31 @@ BEARING_COLUMNS = (
 def bearing_history(model: Model, response: SteadyState) -> Array:
     """Force of every body on its bearing along x, y, z, shape (K, bodies, 3), N: K q + beta K q'.
 
-    Springs and their damping, equation (21); mass damping acts from outside and is no bearing's. A bearing
-    with play is the spring that the dynamics takes it for.
+    Springs and their damping, equation (21); mass damping acts from outside and is no bearing's. With play
+    the spring acts beyond it, F = k (1 - c / r) (x, y), and its damping is beta dF/dt.
     """
-    layout, held = linear_bearings(model.machine)
-    moved = response.coordinates + model.machine.damping.bearing * velocities(response)
+    machine, basis = model.machine, model.reduced.basis
+    layout, lag = machine.layout, machine.damping.bearing
     bodies = len(layout.bodies)
+    rate = velocities(response)
     stiffness = bearing_matrix(layout)[:, : DOF_PER_BODY * bodies]
-    forces = moved @ (model.reduced.basis.T @ stiffness) - held[: DOF_PER_BODY * bodies]
-    return forces.reshape(len(forces), bodies, DOF_PER_BODY)[..., :3]
+    forces = (response.coordinates + lag * rate) @ (basis.T @ stiffness)
+    forces = forces.reshape(len(forces), bodies, DOF_PER_BODY)[..., :3]
+    for i in np.flatnonzero(machine.imperfections.clearance > 0.0):
+        rows = basis[DOF_PER_BODY * i : DOF_PER_BODY * i + 2].T
+        play, spring = machine.imperfections.clearance[i], layout.pinions[i].body.bearing[0]
+        place, speed = response.coordinates @ rows, rate @ rows
+        forces[:, i, :2] = _ring_force(place, speed, spring, play, lag)
+    return forces
+
+
+def _ring_force(place: Array, speed: Array, stiffness: float, play: float, lag: float) -> Array:
+    """Force of a bearing with play at places (K, 2) and speeds (K, 2)."""
+    distance = np.maximum(np.hypot(place[:, :1], place[:, 1:]), play)
+    share = 1.0 - play / distance
+    radial = (place * speed).sum(axis=1, keepdims=True) / distance**2
+    damping = (share * speed + (1.0 - share) * radial * place) * (distance > play)
+    return stiffness * (share * place + lag * damping)
 
 
 def velocities(response: SteadyState) -> Array:

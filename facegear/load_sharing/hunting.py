@@ -15,23 +15,20 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class HuntingCycle:
-    """K = mesh cycles x positions of the quasi-static motion.
-
-    cycles (K,) mesh cycles since the start; found holds flank forces and displacements; bearings (K, bodies,
-    3) the force of each body on its bearing along x, y, z, N.
+class LoadHistory:
+    """K = mesh cycles x positions of a motion: cycles (K,) mesh cycles since the start; flank_forces (K, 2
+    meshes), N, drive flanks first.
     """
 
     machine: Machine
     positions: int
     cycles: Array
-    found: Equilibria
-    bearings: Array
+    flank_forces: Array
 
     @property
     def loads(self) -> Array:
         """Load of each mesh (K, meshes), N: its more heavily loaded flank."""
-        drive, back = np.split(self.found.flank_forces, 2, axis=1)
+        drive, back = np.split(self.flank_forces, 2, axis=1)
         return np.maximum(drive, back)
 
     @property
@@ -50,6 +47,14 @@ class HuntingCycle:
         return loads.max(axis=0) / even if even > 0.0 else np.full(loads.shape[1], np.nan)
 
 
+@dataclass(frozen=True, eq=False)
+class HuntingCycle(LoadHistory):
+    """The quasi-static motion; bearings (K, bodies, 3): force of each body on its bearing, N."""
+
+    found: Equilibria
+    bearings: Array
+
+
 def hunting_length(machine: Machine) -> int:
     """Mesh cycles until the pattern repeats: 1 without runouts and pitch errors."""
     errors, layout = machine.imperfections, machine.layout
@@ -66,4 +71,5 @@ def hunting_cycle(machine: Machine, positions: int = 16, every: int = 1) -> Hunt
     whole = np.arange(0, hunting_length(machine), every)
     cycles = (whole[:, None] + np.arange(positions) / positions).ravel()
     found = equilibria(machine, cycles)
-    return HuntingCycle(machine, positions, cycles, found, bearing_forces(machine, found))
+    bearings = bearing_forces(machine, found)
+    return HuntingCycle(machine, positions, cycles, found.flank_forces, found, bearings)

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from facegear.load_sharing.hunting import HuntingCycle
+from facegear.load_sharing.hunting import HuntingCycle, LoadHistory
 
 MESH_COLUMNS = (
     "mesh",
@@ -21,14 +21,14 @@ MESH_COLUMNS = (
 )
 
 
-def mesh_table(run: HuntingCycle) -> pd.DataFrame:
+def mesh_table(run: LoadHistory) -> pd.DataFrame:
     """One row a mesh: load, path factor K_gamma, shares of the time on each flank, open, wedged (both).
 
     `first_open_cycle` is empty where the mesh never opens; `group` and `k_gamma` where it shares with nobody.
     """
     names = run.machine.layout.mesh_names
     group, factor = _factors(run)
-    drive, back = (flank > 0.0 for flank in np.split(run.found.flank_forces, 2, axis=1))
+    drive, back = (flank > 0.0 for flank in np.split(run.flank_forces, 2, axis=1))
     unloaded = ~drive & ~back
     rows = []
     for mesh, load in enumerate(run.loads.T):
@@ -92,7 +92,7 @@ def bearing_table(run: HuntingCycle) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=[*columns, "largest_axial_n"])
 
 
-def cycle_table(run: HuntingCycle) -> pd.DataFrame:
+def cycle_table(run: LoadHistory) -> pd.DataFrame:
     """Mean load of every mesh in each mesh cycle, one row a cycle: columns cycle, then one a mesh, N."""
     loads = run.loads.reshape(-1, run.positions, len(run.machine.layout.meshes)).mean(axis=1)
     frame = pd.DataFrame(loads, columns=[f"{name} (N)" for name in run.machine.layout.mesh_names])
@@ -100,7 +100,7 @@ def cycle_table(run: HuntingCycle) -> pd.DataFrame:
     return frame
 
 
-def _factors(run: HuntingCycle) -> tuple[list[str], NDArray[np.float64]]:
+def _factors(run: LoadHistory) -> tuple[list[str], NDArray[np.float64]]:
     """Group and path factor of every mesh (meshes,)."""
     names = [""] * len(run.machine.layout.meshes)
     factors = np.full(len(names), np.nan)

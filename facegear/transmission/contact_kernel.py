@@ -56,7 +56,8 @@ def settle_all(
             _newton_step(springs, stiffness[k], over, place, gradient, tie * stiffest, blocks, core, step)
             tie = max(0.1 * tie, TIE)
             along(springs, step, rate)
-            noise = 1e-15 * size * np.abs(step).sum()
+            # Forces below the tolerance are no reason to go on: a free body would slide, the others with it.
+            noise = tolerance * size * np.abs(step).sum()
             share = _line_minimum(springs, stiffness[k], over, rate, place, step, noise)
             for j in range(n):
                 place[j] += share * step[j]

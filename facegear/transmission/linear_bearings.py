@@ -1,32 +1,28 @@
-"""Bearings with play as the dynamics takes them: springs about the place where the mean torques hold them."""
+"""Bearings with play as modes take them: springs about the place where the mean torques hold them."""
 
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from facegear.transmission.layout import DOF_PER_BODY, Layout
 from facegear.transmission.machine import Machine
-from facegear.transmission.statics import bearing_forces, mean_equilibrium
+from facegear.transmission.statics import mean_equilibrium
 
 
-def linear_bearings(machine: Machine) -> tuple[Layout, NDArray[np.float64]]:
-    """The layout with every ring of play replaced by its tangent, and the force (dof,) that goes with it, N.
+def linear_bearings(machine: Machine) -> Layout:
+    """The layout with every ring of play replaced by its tangent.
 
     A bearing pressed against its ring is stiff along its load, k, and less across it, k (1 - play / way); one
     that floats inside carries nothing. Raises NotConverged.
     """
     layout = machine.layout
-    constant = np.zeros(layout.dof)
     play = machine.imperfections.clearance
     if not (play > 0.0).any():
-        return layout, constant
-    found = mean_equilibrium(machine)
-    forces = bearing_forces(machine, found)[0]
+        return layout
+    standing = mean_equilibrium(machine).displacements[0]
     pinions = list(layout.pinions)
     for i in np.flatnonzero(play > 0.0):
-        at = slice(DOF_PER_BODY * i, DOF_PER_BODY * i + 2)
-        moved = found.displacements[0, at]
+        moved = standing[DOF_PER_BODY * i : DOF_PER_BODY * i + 2]
         distance = float(np.hypot(*moved))
         stiffness = pinions[i].body.bearing[0]
         across = stiffness * max(1.0 - play[i] / distance, 0.0) if distance > 0.0 else 0.0
@@ -37,5 +33,4 @@ def linear_bearings(machine: Machine) -> tuple[Layout, NDArray[np.float64]]:
         bearing = (float(tangent[0, 0]), float(tangent[1, 1]), body.bearing[2])
         own = replace(body, bearing=bearing, bearing_xy=float(tangent[0, 1]))
         pinions[i] = replace(pinions[i], body=own)
-        constant[at] = tangent @ moved - forces[i, :2]
-    return replace(layout, pinions=tuple(pinions)), constant
+    return replace(layout, pinions=tuple(pinions))

@@ -20,10 +20,15 @@ def working_flanks(machine: Machine) -> NDArray[np.bool_]:
 
 
 def loaded_modes(machine: Machine) -> Modes:
-    """Modes with mean mesh stiffness on the working flanks; on one line of action for printed meshes."""
+    """Modes with mean mesh stiffness on the working flanks, and bearings with play as they are pressed.
+
+    On one line of action for printed meshes. Raises NotConverged.
+    """
     if not machine.layout.is_geometric:
         return natural_modes(machine.layout, machine.stiffness.mean)
     stiffness = machine.stiffness.mean * np.tile(machine.imperfections.stiffness, 2)
     pressed = np.where(working_flanks(machine), stiffness, 0.0)
+    from facegear.transmission.linear_bearings import linear_bearings  # compiled, too
+
     directions = flank_directions(machine.layout)
-    return modes_of(machine.layout, (pressed * directions.T) @ directions)
+    return modes_of(linear_bearings(machine), (pressed * directions.T) @ directions)

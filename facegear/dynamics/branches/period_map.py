@@ -10,6 +10,7 @@ from facegear.dynamics.branches.family import Family
 from facegear.dynamics.branches.turning import MOST, turning_points
 from facegear.dynamics.integrator.compiled import Packed, pack
 from facegear.dynamics.integrator.periods import Log, disturbance_step, make_log, run_periods
+from facegear.dynamics.integrator.rings import ROWS
 from facegear.dynamics.integrator.work import Work, make_work
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.orbits import require
@@ -117,6 +118,8 @@ class PeriodMap:
         contact = (log.shares[1:, : packed.m].sum(axis=0) > 0.0) | (
             packed.lower[: packed.m] >= packed.upper[: packed.m]
         )
+        for x in range(packed.m - ROWS * packed.ring_stiffness.size, packed.m, ROWS):
+            contact[x : x + 2] = contact[x + 2]
         return Linear(
             gap=gap,
             matrix=matrix,

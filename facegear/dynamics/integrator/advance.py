@@ -17,6 +17,7 @@ from facegear.dynamics.integrator.lanes import (
     spread,
     store,
 )
+from facegear.dynamics.integrator.rings import ring_row
 from facegear.dynamics.integrator.roots import first_root, refine_root
 from facegear.dynamics.integrator.taylor import deflect, evaluate, recurrence, step_length
 from facegear.dynamics.integrator.work import Work
@@ -53,9 +54,13 @@ def advance(
     excitation(packed, work, s, piece, work.order + 1)
     deflect(packed, work.y, 0, work.error, work.deflection)
     deflect(packed, work.y, 1, work.error, work.deflection)
+    for m in range(packed.m):
+        work.active[m] = 0.0
+    ring_row(packed, work, 0)
+    ring_row(packed, work, 1)
     _find_state(packed, work)
     for _ in range(MOST_GUESSES):
-        recurrence(packed, work, work.error, work.load, work.y, work.deflection)
+        recurrence(packed, work, work.error, work.load, work.y, work.deflection, False)
         if not _correct_state(packed, work):
             break
     longest = stop - s
@@ -106,12 +111,15 @@ def _find_state(packed: Packed, work: Work) -> None:
 
 @inlined
 def _correct_state(packed: Packed, work: Work) -> bool:
-    """Where a mesh stands on an edge with hardly any speed its acceleration decides; True if one changed."""
+    """Where a mesh stands on an edge with hardly any speed, its place after SHORTEST decides; True if one
+    changed.
+    """
     changed = False
     for m in range(packed.m):
         if work.at_edge[m] == 0:
             continue
-        soon = work.deflection[1, m] + SHORTEST * work.deflection[2, m]
+        soon = work.deflection[2, m] + SHORTEST * work.deflection[3, m]
+        soon = work.deflection[1, m] + SHORTEST * soon
         wanted = (DRIVE if soon > 0.0 else OPEN) if work.at_edge[m] == 1 else BACK if soon < 0.0 else OPEN
         if wanted != work.state[m]:
             set_state(packed, work, m, wanted)

@@ -21,7 +21,9 @@ class Packed(NamedTuple):
     omega_squared, stiffness and load are over w^2, damping and mesh_damping over w. Fourier series are
     (harmonics + 1, 2, width), sine part first. pieces (pieces, degree + 1, m) add to the stiffness
     from one of `breaks` (rad) to the next; stiffness and error have one column for each of the kinds that
-    stiffness_kind and error_kind (m,) name. leverage (m,): sum of squares of a row of mesh_jacobian.
+    stiffness_kind and error_kind (m,) name. drift (terms, m): polynomial in s added to the error of this
+    period, or none. leverage (m,): sum of squares of a row of mesh_jacobian. ring_stiffness over w^2,
+    ring_play (R,), ring_lag (w times the bearings' damping): of the rings in the last 3 R rows of the m.
     """
 
     n: int
@@ -37,6 +39,7 @@ class Packed(NamedTuple):
     stiffness_kind: NDArray[np.int64]
     error: Array
     error_kind: NDArray[np.int64]
+    drift: Array
     load: Array
     breaks: Array
     pieces: Array
@@ -45,6 +48,9 @@ class Packed(NamedTuple):
     fastest: float
     damping_when_open: bool
     scale: float
+    ring_stiffness: Array
+    ring_play: Array
+    ring_lag: float
 
 
 def pack(system: System, frequency: float) -> Packed:
@@ -72,6 +78,7 @@ def pack(system: System, frequency: float) -> Packed:
         stiffness_kind=system.stiffness_kind,
         error=_series(system.error),
         error_kind=system.error_kind,
+        drift=np.zeros((0, wide_m)),
         load=_series(system.load) / frequency**2,
         breaks=breaks,
         pieces=pieces / frequency**2,
@@ -80,6 +87,9 @@ def pack(system: System, frequency: float) -> Packed:
         fastest=natural / frequency + harmonics,
         damping_when_open=system.damping_when_open,
         scale=system.scale,
+        ring_stiffness=system.ring_stiffness / frequency**2,
+        ring_play=system.ring_play,
+        ring_lag=system.ring_lag * frequency,
     )
 
 
@@ -93,9 +103,13 @@ def _fastest(system: System) -> tuple[float, float]:
         [np.abs(p.coefficients).sum() for p in system.pieces] or [0.0]
     )
     mesh = highest[system.stiffness_kind]
+    contacts = system.contacts
+    mesh[contacts::3] = mesh[contacts + 1 :: 3] = system.ring_stiffness
     mesh_jacobian = system.mesh_jacobian
     stiffness = np.diag(system.omega_squared) + (mesh_jacobian.T * mesh) @ mesh_jacobian
-    damping = np.diag(system.damping) + (mesh_jacobian.T * system.mesh_damping) @ mesh_jacobian
+    dampers = system.mesh_damping.copy()
+    dampers[contacts::3] = dampers[contacts + 1 :: 3] = system.ring_lag * system.ring_stiffness
+    damping = np.diag(system.damping) + (mesh_jacobian.T * dampers) @ mesh_jacobian
     natural = np.sqrt(max(np.linalg.eigvalsh(stiffness)[-1], 0.0)) + np.linalg.eigvalsh(damping)[-1]
     share = (amplitudes / np.maximum(highest, 1e-300)[:, None]).max(axis=0)
     harmonics = (np.arange(share.size) * share ** (1.0 / 8.0)).max()

@@ -32,6 +32,8 @@ def excitation(packed: Packed, work: Work, s: float, piece: int, rows: int) -> N
         _add_piece(packed, work, s - packed.breaks[piece], piece)
     _fourier(work, packed.error, cosine, sine, rows, work.kinds)
     _share(work.kinds, packed.error.shape[2], packed.error_kind, rows, work.error)
+    if packed.drift.shape[0] > 0:
+        _add_drift(packed, work, s)
     if packed.load.shape[0] > 1:
         _fourier(work, packed.load, cosine, sine, rows, work.load)
     else:
@@ -79,14 +81,30 @@ def _share(kinds: Array, wide: int, kind: NDArray[np.int64], rows: int, out: Arr
 
 
 @inlined
+def _add_drift(packed: Packed, work: Work, s: float) -> None:
+    """Add the slow part of the error, a polynomial over the whole period, shifted to s."""
+    terms = packed.drift.shape[0]
+    for m in range(packed.m):
+        _shift(packed.drift, m, terms, s, work.polynomial)
+        for i in range(terms):
+            work.error[i, m] += work.polynomial[i]
+
+
+@inlined
+def _shift(table: Array, column: int, terms: int, ahead: float, out: Array) -> None:
+    """Coefficients of a polynomial, a column of `table`, about a place further on by `ahead`."""
+    for i in range(terms):
+        out[i] = table[i, column]
+    for start in range(terms - 1):
+        for i in range(terms - 2, start - 1, -1):
+            out[i] += ahead * out[i + 1]
+
+
+@inlined
 def _add_piece(packed: Packed, work: Work, ahead: float, piece: int) -> None:
     """Add the polynomial part of the stiffness, shifted from its break by `ahead`."""
     _, terms, _ = packed.pieces.shape
     for m in range(packed.m):
-        for i in range(terms):
-            work.polynomial[i] = packed.pieces[piece, i, m]
-        for start in range(terms - 1):
-            for i in range(terms - 2, start - 1, -1):
-                work.polynomial[i] += ahead * work.polynomial[i + 1]
+        _shift(packed.pieces[piece], m, terms, ahead, work.polynomial)
         for i in range(terms):
             work.stiffness[i, m] += work.polynomial[i]

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from facegear.dynamics.integrator.advance import advance, after, move
 from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.kernel import inlined, kernel
+from facegear.dynamics.integrator.rings import ROWS, ring_slopes, ring_trace, switch_ring
 from facegear.dynamics.integrator.sums import Sums, add_step, make_sums, start_sums
 from facegear.dynamics.integrator.taylor import deflect, evaluate, recurrence
 from facegear.dynamics.integrator.work import Work
@@ -85,8 +86,11 @@ def run_periods(
                     _switch_tangents(packed, work, acting, tangents)
                 for m in range(acting.size):
                     acting[m] = work.acting[m]
+                for m in range(packed.m - ROWS * packed.ring_stiffness.size, packed.m):
+                    acting[m] = work.active[m]
+                ring_slopes(packed, work)
                 _move_tangents(packed, work, length, tangents)
-                log.divergence[0] -= length * _trace(packed, work)
+                log.divergence[0] -= length * _trace(packed, work) + ring_trace(packed, work, length)
             if batches > 0:
                 if first:
                     start_sums(packed, work, log.sums)
@@ -160,7 +164,12 @@ def _switch_tangents(packed: Packed, work: Work, acting: Array, tangents: Array)
 
     Stiffness alone gives none, since the force is continuous at the edge.
     """
-    for m in range(packed.m):
+    contacts = packed.m - ROWS * packed.ring_stiffness.size
+    for r in range(packed.ring_stiffness.size):
+        m = contacts + ROWS * r + 2
+        if acting[m] != work.active[m]:
+            switch_ring(packed, work, r, work.active[m] - acting[m], tangents)
+    for m in range(contacts):
         jump = acting[m] - work.acting[m]
         if jump == 0.0:
             continue
@@ -182,5 +191,6 @@ def _move_tangents(packed: Packed, work: Work, length: float, tangents: Array) -
             work.tangent[1, k] = tangents[column, 1, k]
         deflect(packed, work.tangent, 0, work.zero_error, work.tangent_deflection)
         deflect(packed, work.tangent, 1, work.zero_error, work.tangent_deflection)
-        recurrence(packed, work, work.zero_error, work.zero_load, work.tangent, work.tangent_deflection)
+        tangent = work.tangent_deflection
+        recurrence(packed, work, work.zero_error, work.zero_load, work.tangent, tangent, True)
         evaluate(work.tangent, work.order, length, tangents[column, 0], tangents[column, 1])

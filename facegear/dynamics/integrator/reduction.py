@@ -6,12 +6,12 @@ with the others. The rest (pinion axial motions, the rigid rotation, one transla
 decoupled.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.transmission.linear_bearings import linear_bearings
+from facegear.transmission.layout import DOF_PER_BODY, Layout
 from facegear.transmission.machine import Damping, Machine
 from facegear.transmission.matrices import (
     bearing_axes,
@@ -30,7 +30,8 @@ RANK = 1e-10
 class Reduced:
     """The moving part in n mass-normalised coordinates y, displacements = basis y.
 
-    basis (dof, n), mesh_jacobian (meshes, n), or (2 meshes, n) by flank where meshes are geometric,
+    basis (dof, n), mesh_jacobian (meshes, n), or (2 meshes, n) by flank where meshes are geometric, followed
+    by x, y and a row of zeros of each pinion whose bearing has play: those bearings are not in omega_squared,
     omega_squared (n,) bearing frequencies squared in 1/s2,
     damping (n,) in 1/s, load (n,) from the torques, `free` the names of the DOF that nothing touches.
     """
@@ -45,10 +46,12 @@ class Reduced:
 
 def reduce(machine: Machine) -> Reduced:
     """Reduced coordinates of a machine; torques are in balance, so the rigid rotation stays at rest."""
-    layout, held = linear_bearings(machine)
+    rings = np.flatnonzero(machine.imperfections.clearance > 0.0)
+    layout = without_bearings(machine.layout, rings)
     mass = mass_diagonal(layout)
     mesh_jacobian = flank_directions(layout) if layout.is_geometric else mesh_directions(layout)
-    applied = held
+    mesh_jacobian = np.concatenate([mesh_jacobian, *(_ring_rows(layout, int(i)) for i in rings)])
+    applied = np.zeros(layout.dof)
     applied[layout.spins] = machine.torques
     bearing = bearing_diagonal(layout)
     if any(body.bearing_xy != 0.0 for body in layout.bodies):
@@ -68,6 +71,21 @@ def reduce(machine: Machine) -> Reduced:
         load=basis.T @ applied,
         free=tuple(names[~touched].tolist()),
     )
+
+
+def without_bearings(layout: Layout, pinions: NDArray[np.int64]) -> Layout:
+    """The layout with some pinions free in x and y."""
+    changed = list(layout.pinions)
+    for i in pinions:
+        body = changed[i].body
+        changed[i] = replace(changed[i], body=replace(body, bearing=(0.0, 0.0, body.bearing[2])))
+    return replace(layout, pinions=tuple(changed))
+
+
+def _ring_rows(layout: Layout, pinion: int) -> NDArray[np.float64]:
+    rows = np.zeros((3, layout.dof))
+    rows[[0, 1], DOF_PER_BODY * pinion + np.arange(2)] = 1.0
+    return rows
 
 
 def modal_damping(damping: Damping, omega_squared: NDArray[np.float64]) -> NDArray[np.float64]:

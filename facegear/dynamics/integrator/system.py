@@ -3,8 +3,8 @@
     y'' + damping y' + omega_squared y + G^T F = load(t),   F = k(t) f(d) + c d',   d = G y - e(t),
 
 f(d) = d - upper above `upper`, d - lower below `lower`, zero between. k, e and load are Fourier series in the
-mesh phase s = 2 pi t / T, k plus an optional piecewise polynomial. One degree of freedom is a case like any
-other.
+mesh phase s = 2 pi t / T, k plus an optional piecewise polynomial. Bearings with play are rings (rings.py).
+One degree of freedom is a case like any other.
 """
 
 from dataclasses import dataclass, field
@@ -38,7 +38,9 @@ class System:
     mesh_jacobian (m, n); omega_squared, damping (n,); mesh_damping, lower, upper (m,); stiffness and error
     of the kinds of mesh that differ in phase, stiffness_kind and error_kind (m,) say which; load
     (n, 2, harmonics + 1). A mesh with lower >= upper never opens. `scale`: the length that tolerances mean.
-    `two_flanks`: the m are one-sided flanks, all drive flanks, then the back flanks of the same meshes.
+    `two_flanks`: the m are one-sided flanks, all drive flanks, then the back flanks of the same meshes. The
+    last 3 R of the m rows belong to the rings: x, y of the body, and a row of zeros. ring_stiffness and
+    ring_play (R,); ring_lag: damping over stiffness of the rings, s.
     """
 
     mesh_jacobian: Array
@@ -55,12 +57,20 @@ class System:
     damping_when_open: bool
     scale: float
     two_flanks: bool = False
+    ring_stiffness: Array = field(default_factory=lambda: np.zeros(0))
+    ring_play: Array = field(default_factory=lambda: np.zeros(0))
+    ring_lag: float = 0.0
     pieces: tuple[Piecewise, ...] = field(default=())
 
     @property
     def size(self) -> int:
         """Number of coordinates n."""
         return self.omega_squared.size
+
+    @property
+    def contacts(self) -> int:
+        """Number of the m rows that are meshes or flanks, and not of rings."""
+        return len(self.mesh_jacobian) - 3 * self.ring_stiffness.size
 
 
 def machine_system(machine: Machine, reduced: Reduced) -> System:
@@ -94,19 +104,23 @@ def _flank_system(machine: Machine, reduced: Reduced) -> System:
 
     Damping across open flanks is shared by the two, so that turning alone meets the whole of it.
     """
-    stiffness, stiffness_kind = _different(stiffness_series(machine))
-    error, error_kind = _different(error_series(machine))
+    play = machine.imperfections.clearance
+    rings = np.flatnonzero(play > 0.0)
+    none = 3 * rings.size * [Harmonics(np.zeros(1), np.zeros(1))]
+    stiffness, stiffness_kind = _different([*stiffness_series(machine), *none])
+    error, error_kind = _different([*error_series(machine), *none])
     load = np.zeros((reduced.omega_squared.size, 2, 1))
     load[:, 1, 0] = reduced.load
-    flanks = len(reduced.mesh_jacobian)
+    flanks = 2 * len(machine.layout.meshes)
+    nothing = np.zeros(3 * rings.size)
     always = machine.damping.open_flanks is OpenFlanks.ALWAYS
     return System(
         mesh_jacobian=reduced.mesh_jacobian,
         omega_squared=reduced.omega_squared,
         damping=reduced.damping,
-        mesh_damping=np.full(flanks, machine.damping.mesh * (0.5 if always else 1.0)),
-        lower=np.full(flanks, -np.inf),
-        upper=flank_gaps(machine) + constant_errors(machine),
+        mesh_damping=np.append(np.full(flanks, machine.damping.mesh * (0.5 if always else 1.0)), nothing),
+        lower=np.append(np.full(flanks, -np.inf), np.tile([0.0, 0.0, -np.inf], rings.size)),
+        upper=np.append(flank_gaps(machine) + constant_errors(machine), nothing),
         stiffness=stiffness,
         stiffness_kind=stiffness_kind,
         error=error,
@@ -115,6 +129,9 @@ def _flank_system(machine: Machine, reduced: Reduced) -> System:
         damping_when_open=always,
         scale=length_scale(machine),
         two_flanks=True,
+        ring_stiffness=np.array([machine.layout.pinions[i].body.bearing[0] for i in rings]),
+        ring_play=play[rings],
+        ring_lag=machine.damping.bearing,
     )
 
 

@@ -21,6 +21,7 @@ from facegear.dynamics.integrator.lanes import (
     spread,
     store,
 )
+from facegear.dynamics.integrator.rings import ring_push, ring_row, ring_tangent_row
 from facegear.dynamics.integrator.work import Work
 
 Array = NDArray[np.float64]
@@ -70,15 +71,19 @@ def deflect(packed: Packed, y: Array, row: int, error: Array, deflection: Array)
 
 
 @inlined
-def recurrence(packed: Packed, work: Work, error: Array, applied: Array, y: Array, deflection: Array) -> None:
+def recurrence(
+    packed: Packed, work: Work, error: Array, applied: Array, y: Array, deflection: Array, tangent: bool
+) -> None:
     """Fill rows 2.. of y and of deflection from rows 0 and 1 of both.
 
     Row 0 of deflection has the edge of the contact subtracted. work.active (m,) masks meshes in contact,
-    work.acting (m,) holds the mesh damping that acts.
+    work.acting (m,) holds the mesh damping that acts. A `tangent` needs the slopes of the rings' forces.
     """
     n, wide = packed.mesh_jacobian.shape
     force, stiffness = work.force, work.stiffness
     minus = splat(-1.0)
+    _ring(packed, work, 0, deflection, tangent)
+    _ring(packed, work, 1, deflection, tangent)
     for i in range(work.order - 1):
         rate = splat(float(i + 1))
         # Forces push back; they carry the factor of the next coefficient already.
@@ -94,6 +99,7 @@ def recurrence(packed: Packed, work: Work, error: Array, applied: Array, y: Arra
             damping = multiply(load(work.acting, c), rate)
             total = multiply_add(damping, load(deflection, (i + 1) * wide + c), total)
             store(force, c, multiply(pushed, total))
+        ring_push(packed, work, i, force, -1.0 / ((i + 1) * (i + 2)))
         factor = splat(1.0 / ((i + 1) * (i + 2)))
         for c in range(0, n, LANES):
             total = multiply(load(packed.damping, c), multiply(rate, load(y, (i + 1) * n + c)))
@@ -102,6 +108,15 @@ def recurrence(packed: Packed, work: Work, error: Array, applied: Array, y: Arra
             store(y, (i + 2) * n + c, multiply(factor, total))
         accumulate(packed.transposed, packed.m + packed.m % 2, force, 0, y, (i + 2) * n)
         deflect(packed, y, i + 2, error, deflection)
+        _ring(packed, work, i + 2, deflection, tangent)
+
+
+@inlined
+def _ring(packed: Packed, work: Work, i: int, deflection: Array, tangent: bool) -> None:
+    if tangent:
+        ring_tangent_row(packed, work, i, deflection)
+    else:
+        ring_row(packed, work, i)
 
 
 @inlined

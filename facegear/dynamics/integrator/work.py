@@ -18,7 +18,8 @@ class Work(NamedTuple):
     edge, active, acting, state, at_edge describe the contact of each mesh during the step. powers (rows,
     harmonics) holds the Taylor coefficients of cos(j s) (even rows) and sin(j s) (odd rows) at 0; parts and
     kinds are used by Fourier series. bernstein holds the deflections' Bernstein coefficients over the step,
-    least and most their bounds. nodes: of the rule that integrates products of polynomials.
+    least and most their bounds. nodes: of the rule that integrates products of polynomials. ring_: series of
+    the bearings with play, r^2 and its powers, forces, their slopes.
     """
 
     order: int
@@ -52,6 +53,12 @@ class Work(NamedTuple):
     least: Array
     most: Array
     nodes: Array
+    ring_square: Array
+    ring_inverse: Array
+    ring_cube: Array
+    ring_force: Array
+    ring_product: Array
+    ring_slope: Array
 
 
 def make_work(packed: Packed, order: int) -> Work:
@@ -59,6 +66,7 @@ def make_work(packed: Packed, order: int) -> Work:
     n, m = packed.mesh_jacobian.shape
     rows = order + 1
     harmonics = max(len(packed.stiffness), len(packed.error), len(packed.load))
+    rings = packed.ring_stiffness.size
     widest = max(packed.stiffness.shape[2], packed.error.shape[2])
     return Work(
         order=order,
@@ -92,6 +100,12 @@ def make_work(packed: Packed, order: int) -> Work:
         least=np.zeros(m),
         most=np.zeros(m),
         nodes=_gauss(order // 2 + 1),
+        ring_square=np.zeros((rows, rings)),
+        ring_inverse=np.zeros((rows, rings)),
+        ring_cube=np.zeros((rows, rings)),
+        ring_force=np.zeros((rows, 2 * rings)),
+        ring_product=np.zeros((rows, 3 * rings)),
+        ring_slope=np.zeros((rows, 3 * rings)),
     )
 
 

@@ -144,7 +144,7 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
     prepare()
     packed = pack(system, frequency)
     work = make_work(packed, settings.taylor_order)
-    state, ends = _by_phase(packed, start, frequency), None
+    state, ends = by_phase(packed, start, frequency), None
     periods_run = 0
     for _ in range(settings.extensions + 1):
         settled = settle(packed, work, state, settings, ends)
@@ -205,7 +205,8 @@ def _class(
 def mesh_response(system: System, coordinates: Array, per_period: int) -> tuple[Array, Array]:
     """Deflections and elastic mesh forces (K, meshes) of samples that start with a mesh period."""
     cycles = np.arange(per_period) / per_period
-    error = stacked_values(system.error, cycles)[:, system.error_kind]
+    contacts = system.contacts
+    error = stacked_values(system.error, cycles)[:, system.error_kind[:contacts]]
     stiffness = stacked_values(system.stiffness, cycles)
     for kind, piece in enumerate(system.pieces):
         index = np.searchsorted(piece.breaks, cycles, side="right") - 1
@@ -213,9 +214,8 @@ def mesh_response(system: System, coordinates: Array, per_period: int) -> tuple[
         stiffness[:, kind] += (
             piece.coefficients[index] * np.vander(ahead, piece.coefficients.shape[1], True)
         ).sum(1)
-    stiffness = stiffness[:, system.stiffness_kind]
-    shape = (-1, per_period, len(system.mesh_jacobian))
-    deflections = (coordinates @ system.mesh_jacobian.T).reshape(shape)
+    stiffness = stiffness[:, system.stiffness_kind[:contacts]]
+    deflections = (coordinates @ system.mesh_jacobian[:contacts].T).reshape(-1, per_period, contacts)
     deflections -= error
     if system.two_flanks:
         return flank_response(system, deflections.reshape(len(coordinates), -1), stiffness)
@@ -233,7 +233,7 @@ def flank_response(system: System, deflections: Array, stiffness: Array) -> tupl
 
     stiffness (per_period, 2 meshes) repeats.
     """
-    over = (deflections - system.upper).reshape(-1, *stiffness.shape)
+    over = (deflections - system.upper[: system.contacts]).reshape(-1, *stiffness.shape)
     forces = (np.maximum(over, 0.0) * stiffness).reshape(deflections.shape)
     over = over.reshape(deflections.shape)
     meshes = deflections.shape[1] // 2
@@ -248,7 +248,7 @@ def mesh_shares(system: System, shares: Array) -> Array:
     """
     if not system.two_flanks:
         return shares
-    drive, back = np.split(shares[1], 2)
+    drive, back = np.split(shares[1, : system.contacts], 2)
     return np.stack([np.maximum(1.0 - drive - back, 0.0), drive, back])
 
 
@@ -261,7 +261,7 @@ def mesh_averages(
     return replace(window.averages, force=window.averages.force * frequency**2)
 
 
-def _by_phase(packed: Packed, state: State, frequency: float) -> Array:
+def by_phase(packed: Packed, state: State, frequency: float) -> Array:
     """A state as the kernels count it, (2, padded n), velocity by phase."""
     wide = np.zeros((2, packed.omega_squared.size))
     wide[0, : packed.n] = state.displacement

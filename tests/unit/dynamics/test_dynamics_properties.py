@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 
@@ -18,7 +18,8 @@ from facegear.dynamics.steady_state.simulate import Model, build_model, simulate
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.flanks import error_series, stiffness_series
 from facegear.transmission.flanks import mirrored as backwards
-from facegear.transmission.layout import MeshKinematics, Role, Side
+from facegear.transmission.imperfections import perfect
+from facegear.transmission.layout import Body, MeshKinematics, Role, Side, Tilt
 from facegear.transmission.machine import OpenFlanks, mesh_frequency
 from facegear.transmission.matrices import flank_directions, mass_diagonal, mesh_directions
 
@@ -27,7 +28,10 @@ FINE = Settings(tolerance=1e-14)
 
 @st.composite
 def machines(draw, **fixed):
-    """One to six pinions at half-pitch places between one or two face gears."""
+    """One to six pinions at half-pitch places between one or two face gears.
+
+    Geometric ones may tilt, have play in their bearings and errors in every mesh.
+    """
     count = draw(st.integers(1, 6))
     places = []
     for i in range(count):
@@ -48,7 +52,20 @@ def machines(draw, **fixed):
         "mass_damping": draw(st.floats(0, 2000)),
         "open_flanks": draw(st.sampled_from(list(OpenFlanks))),
     }
-    return make_machine(layout, **(options | fixed))
+    symmetric = fixed.pop("symmetric", False)
+    if kinematics is MeshKinematics.PRINTED:
+        return make_machine(layout, **(options | fixed))
+    if draw(st.booleans()):
+        tilt = Tilt(0.3, draw(st.floats(1e6, 1e8)))
+        gears = tuple(replace(gear, body=replace(gear.body, tilt=tilt)) for gear in layout.gears)
+        layout = replace(layout, gears=gears)
+    error = np.zeros(len(layout.meshes)) if symmetric else np.array([draw(ERRORS) for _ in layout.meshes])
+    play = draw(st.sampled_from([0.0, 1e-5, 5e-5]))
+    flaws = replace(perfect(layout), error=error, clearance=np.full(count, play))
+    return make_machine(layout, **(options | fixed), imperfections=flaws)
+
+
+ERRORS = st.floats(-2e-5, 2e-5)
 
 
 def contacts(machine):
@@ -61,18 +78,44 @@ def contacts(machine):
 
 def pressed(system, deflection, state):
     """Deflection beyond the edge of the flank in contact, 0 where none is."""
-    lower = np.where(np.isfinite(system.lower), system.lower, 0.0)
-    edge = np.where(state > 0, system.upper, lower)
+    low, upper = system.lower[: system.contacts], system.upper[: system.contacts]
+    lower = np.where(np.isfinite(low), low, 0.0)
+    edge = np.where(state > 0, upper, lower)
     return np.where(state == 0, 0.0, deflection - edge)
 
 
 def state_of(system, deflection):
     """1 beyond the upper edge, -1 below the lower one, else 0."""
-    return np.where(deflection > system.upper, 1, np.where(deflection < system.lower, -1, 0))
+    lower, upper = system.lower[: system.contacts], system.upper[: system.contacts]
+    return np.where(deflection > upper, 1, np.where(deflection < lower, -1, 0))
 
 
 def acting_damping(system, state):
-    return system.mesh_damping * (1.0 if system.damping_when_open else np.abs(state))
+    return system.mesh_damping[: system.contacts] * (1.0 if system.damping_when_open else np.abs(state))
+
+
+def rings(model, coordinates):
+    """x, y (K, R, 2) of the pinions whose bearings have play, and the bearing's force there."""
+    system = model.system
+    rows = system.mesh_jacobian[system.contacts :].reshape(-1, 3, system.size)[:, :2]
+    place = np.einsum("rcn,kn->krc", rows, coordinates)
+    distance = np.hypot(place[..., 0], place[..., 1])
+    beyond = np.maximum(distance - system.ring_play, 0.0)
+    along = place / np.maximum(distance, 1e-300)[..., None]
+    return place, along, beyond
+
+
+def ring_dissipation(model, coordinates, velocity):
+    """Power (K,) that the damping of bearings with play takes."""
+    system = model.system
+    place, along, beyond = rings(model, coordinates)
+    rows = system.mesh_jacobian[system.contacts :].reshape(-1, 3, system.size)[:, :2]
+    speed = np.einsum("rcn,kn->krc", rows, velocity)
+    radial = (along * speed).sum(axis=-1)
+    turning = (speed**2).sum(axis=-1) - radial**2
+    share = beyond / np.maximum(np.hypot(place[..., 0], place[..., 1]), 1e-300)
+    power = system.ring_lag * system.ring_stiffness * (radial**2 * (beyond > 0.0) + share * turning)
+    return power.sum(axis=1)
 
 
 speeds = st.floats(3000, 20_000)
@@ -100,6 +143,11 @@ def test_scaling_torques_backlash_and_error_scales_the_motion(machine, speed, fa
         torques=factor * machine.torques,
         half_backlash=factor * machine.half_backlash,
         error=machine.error.scaled(factor),
+        imperfections=replace(
+            machine.imperfections,
+            error=factor * machine.imperfections.error,
+            clearance=factor * machine.imperfections.clearance,
+        ),
     )
     bigger = replace(build_model(scaled).system, scale=factor * model.system.scale)
     first = record(model.system, frequency(model, speed), start, 2, FINE)
@@ -125,8 +173,23 @@ def test_negated_torques_and_error_negate_the_motion(machine, speed):
     np.testing.assert_allclose(second.at(phases)[1], -first.at(phases)[1], atol=1e-9 * model.system.scale)
 
 
+def standing_on_an_edge():
+    """A gear without load at rest where its flank just touches, from where only the jerk moves it."""
+    layout = make_layout((("p0", Role.INPUT, 0.0),), kinematics=MeshKinematics.GEOMETRIC)
+    layout = replace(
+        layout,
+        pinions=(replace(layout.pinions[0], body=Body(1.199, 0.002, (1e7, 1e7, 0.0))),),
+        gears=tuple(replace(gear, body=Body(7.795, 0.54, (1e8,) * 3)) for gear in layout.gears),
+    )
+    flaws = replace(perfect(layout), clearance=np.array([1e-5]))
+    swing = Harmonics(np.array([0.0, 0.0, 8.2e6]), np.array([4.1e8, 0.0, 0.0]))
+    options = {"error": 0.0, "stiffness": swing, "mesh_damping": 0.0, "mass_damping": 0.0}
+    return make_machine(layout, 50.0, 0.0, backlash=1.14732774e-4, imperfections=flaws, **options)
+
+
 @settings(max_examples=12, deadline=None)
-@given(machine=machines(kinematics=MeshKinematics.GEOMETRIC), speed=speeds)
+@given(machine=machines(kinematics=MeshKinematics.GEOMETRIC, symmetric=True), speed=speeds)
+@example(machine=standing_on_an_edge(), speed=3000.0)
 def test_in_a_mirror_drive_and_back_flanks_change_places(machine, speed):
     """Angles, torques and the waveforms' direction mirrored; at half pitches the teeth stand as before."""
     model = build_model(machine)
@@ -144,9 +207,10 @@ def test_in_a_mirror_drive_and_back_flanks_change_places(machine, speed):
     run = record(model.system, frequency(model, speed), static_start(model), 3, FINE)
     other = record(mirrored.system, frequency(mirrored, speed), static_start(mirrored), 3, FINE)
     phases = np.linspace(0.0, 3 * TAU, 50)
-    drive, back = np.split(run.at(phases)[1], 2, axis=1)
+    flanks = slice(0, model.system.contacts)
+    drive, back = np.split(run.at(phases)[1][:, flanks], 2, axis=1)
     swapped = np.concatenate([back, drive], axis=1)
-    np.testing.assert_allclose(other.at(phases)[1], swapped, atol=1e-8 * model.system.scale)
+    np.testing.assert_allclose(other.at(phases)[1][:, flanks], swapped, atol=1e-8 * model.system.scale)
 
 
 @settings(max_examples=12, deadline=None)
@@ -180,18 +244,21 @@ def test_energy_audit_over_a_period(machine, speed):
     powers = ahead ** np.arange(run.coordinates.shape[1])
     rates = np.arange(1, run.coordinates.shape[1]) * ahead ** np.arange(run.coordinates.shape[1] - 1)
     velocity = omega * np.einsum("kp,kpn->kn", rates, run.coordinates[step][:, 1:])
-    deflection = np.einsum("kp,kpm->km", powers, run.deflections[step])
-    rate = omega * np.einsum("kp,kpm->km", rates, run.deflections[step][:, 1:])
+    flanks = slice(0, system.contacts)
+    deflection = np.einsum("kp,kpm->km", powers, run.deflections[step][..., flanks])
+    rate = omega * np.einsum("kp,kpm->km", rates, run.deflections[step][:, 1:, flanks])
     cycles = phases / TAU
     springs, errors = contacts(machine)
     stiffness = np.stack([series(cycles) for series in springs], axis=1)
     slope = np.stack([derivative(series, cycles, omega) for series in springs], axis=1)
     error_rate = np.stack([derivative(series, cycles, omega) for series in errors], axis=1)
-    state = run.states[step]
+    state = run.states[step][:, flanks]
     beyond, acting = pressed(system, deflection, state), acting_damping(system, state)
     force = stiffness * beyond + acting * rate
+    place = np.einsum("kp,kpn->kn", powers, run.coordinates[step])
     # d/dt of kinetic + bearing + mesh energy: torques in, damping out, k'(t) stores, e'(t) pushes.
     power = velocity @ model.reduced.load - velocity**2 @ system.damping - (acting * rate**2).sum(axis=1)
+    power -= ring_dissipation(model, place, velocity)
     power += (0.5 * slope * beyond**2).sum(axis=1) - (force * error_rate).sum(axis=1)
 
     def energy(at):
@@ -200,10 +267,11 @@ def test_energy_audit_over_a_period(machine, speed):
         ahead_at = at - run.starts[k]
         order = np.arange(1, run.coordinates.shape[1])
         v = omega * (order * ahead_at ** (order - 1)) @ run.coordinates[k][1:]
-        d = run.at(np.array([at]))[1][0]
+        d = run.at(np.array([at]))[1][0, flanks]
         gap = pressed(system, d, state_of(system, d))
         now = np.array([float(series(at / TAU)) for series in springs])
-        return 0.5 * v @ v + 0.5 * system.omega_squared @ y**2 + 0.5 * now @ gap**2
+        in_rings = 0.5 * system.ring_stiffness @ rings(model, y[None])[2][0] ** 2
+        return 0.5 * v @ v + 0.5 * system.omega_squared @ y**2 + 0.5 * now @ gap**2 + in_rings
 
     ends = run.starts[-1] + run.lengths[-1]
     change = energy(ends) - energy(0.0)
@@ -231,11 +299,11 @@ def test_torques_less_mesh_forces_change_the_spin_of_every_body(machine, speed):
         displacement = ahead**order @ run.coordinates[step]
         slope = (order[1:] * ahead ** order[:-1]) @ run.coordinates[step][1:]
         ends.append((model.reduced.basis @ displacement, omega * (model.reduced.basis @ slope)))
-    (angle, spin), (later_angle, later_spin) = ((q[3::4], v[3::4]) for q, v in ends)
-    inertia = mass_diagonal(layout)[3::4]
+    (angle, spin), (later_angle, later_spin) = ((q[layout.spins], v[layout.spins]) for q, v in ends)
+    inertia = mass_diagonal(layout)[layout.spins]
     gained = inertia * (later_spin - spin + machine.damping.mass * (later_angle - angle))
     directions = flank_directions(layout) if layout.is_geometric else mesh_directions(layout)
-    impulses = directions[:, 3::4] * (times @ force)[:, None]
+    impulses = directions[:, layout.spins] * (times @ force)[:, None]
     given_ = machine.torques * times.sum()
     size = np.abs(given_).max() + np.abs(impulses).max() + np.abs(inertia * spin).max()
     np.testing.assert_allclose(gained, given_ - impulses.sum(axis=0), atol=1e-9 * size)
@@ -248,9 +316,10 @@ def mesh_forces(model: Model, run: Trajectory, omega: float) -> tuple[np.ndarray
     step = np.searchsorted(run.starts, phases, side="right") - 1
     ahead = (phases - run.starts[step])[:, None]
     order = np.arange(run.deflections.shape[1])
-    deflection = np.einsum("kp,kpm->km", ahead**order, run.deflections[step])
-    slope = np.einsum("kp,kpm->km", order[1:] * ahead ** order[:-1], run.deflections[step][:, 1:])
-    state = run.states[step]
+    flanks = slice(0, system.contacts)
+    deflection = np.einsum("kp,kpm->km", ahead**order, run.deflections[step][..., flanks])
+    slope = np.einsum("kp,kpm->km", order[1:] * ahead ** order[:-1], run.deflections[step][:, 1:, flanks])
+    state = run.states[step][:, flanks]
     beyond, acting = pressed(system, deflection, state), acting_damping(system, state)
     stiffness = np.stack([series(phases / TAU) for series in contacts(machine)[0]], axis=1)
     return stiffness * beyond + acting * omega * slope, weights / omega

@@ -302,3 +302,12 @@ def test_springs_hold_no_hidden_state():
     together = equilibria(machine, cycles).flank_forces
     alone = np.concatenate([equilibria(machine, cycles[k : k + 1]).flank_forces for k in range(3)])
     np.testing.assert_allclose(together, alone, atol=1e-10 * together.max())
+
+
+@pytest.mark.parametrize("share", [1e-16, 1e-14, 1e-13, 1e-11, 1e-8])
+def test_next_to_no_torque_on_a_free_pinion_does_not_keep_the_others_from_balance(share):
+    places = (("engine", Role.INPUT, 0.0), ("tail", Role.TAIL, 0.0))
+    layout = make_layout(places, (Side.UPPER,), 1e7, 1e8, MeshKinematics.GEOMETRIC)
+    found = mean_equilibrium(machine_with(layout, 50.0, share, 7.9e-5))
+    assert found.residual[0] < 1e-12
+    assert found.forces[0, 0] == pytest.approx(50.0 / layout.pinion_arm, rel=1e-12)

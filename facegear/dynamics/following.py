@@ -1,0 +1,136 @@
+"""The motion while runouts and pitch deviations turn: followed mesh cycle by mesh cycle.
+
+What turns slowly enters each cycle as a polynomial in time through its values at NODES instants, so that it
+goes on without a jump from cycle to cycle. A motion whose past is forgotten does not depend on where the
+following began: it is followed from two starts.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.integrator.compiled import TAU, Packed, pack
+from facegear.dynamics.integrator.periods import make_log, run_periods
+from facegear.dynamics.integrator.work import make_work
+from facegear.dynamics.motion import Settings, State
+from facegear.dynamics.steady_state.orbits import require
+from facegear.dynamics.steady_state.prepare import prepare
+from facegear.dynamics.steady_state.simulate import Model, by_phase, static_start
+from facegear.harmonics.series import stacked, stacked_values
+from facegear.transmission.flanks import error_series, slow_errors, stiffness_series
+from facegear.transmission.machine import mesh_frequency
+
+Array = NDArray[np.float64]
+NODES = 6
+LEAD = 64
+"""Mesh cycles before those that are kept."""
+MOST_LEAD = 1024
+FORGOTTEN = 1e-4
+"""Difference between two starts, over the largest flank force, that counts as none."""
+APART = 0.3
+"""How far the second start is from equilibrium, in length scales."""
+
+
+@dataclass(frozen=True, eq=False)
+class Followed:
+    """K = mesh cycles x positions of the motion with everything that turns.
+
+    cycles (K,) mesh cycles of the reference; coordinates (K, n); flank_forces (K, 2 meshes) elastic, N, drive
+    flanks first. lead: cycles run before. memory: largest difference of the flank forces in the cycles after
+    the lead between two starts, over the largest force; the motion depends on its past where it is not small.
+    """
+
+    cycles: Array
+    positions: int
+    coordinates: Array
+    flank_forces: Array
+    lead: int
+    memory: float
+
+
+def follow(
+    model: Model,
+    speed_rpm: float,
+    first: int,
+    count: int,
+    positions: int = 16,
+    settings: Settings | None = None,
+) -> Followed:
+    """Follow a machine with geometric meshes through `count` mesh cycles from cycle `first` on.
+
+    The lead is doubled until two starts agree, up to MOST_LEAD cycles. Raises NotConverged if a step fails.
+    """
+    prepare()
+    settings = settings or Settings()
+    frequency = TAU * mesh_frequency(model.machine.layout, speed_rpm)
+    packed = pack(model.system, frequency)
+    rest = static_start(model)
+    lead, kept = LEAD, min(count, LEAD)
+    while True:
+        states = [by_phase(packed, start, frequency) for start in (rest, _apart(model, rest))]
+        whole = np.arange(first - lead, first + kept)
+        runs = [_run(model, packed, state, whole, positions, settings) for state in states]
+        runs = [run[-kept * positions :] for run in runs]
+        forces = [_flank_forces(model, run, whole[-kept:], positions) for run in runs]
+        memory = float(np.abs(forces[1] - forces[0]).max() / max(forces[0].max(), 1e-300))
+        if memory <= FORGOTTEN or lead >= MOST_LEAD:
+            break
+        lead *= 2
+    rest_of_it = np.arange(first + kept, first + count)
+    coordinates = np.concatenate([runs[0], _run(model, packed, states[0], rest_of_it, positions, settings)])
+    whole = np.arange(first, first + count)
+    return Followed(
+        cycles=_instants(whole, positions),
+        positions=positions,
+        coordinates=coordinates,
+        flank_forces=_flank_forces(model, coordinates, whole, positions),
+        lead=lead,
+        memory=memory,
+    )
+
+
+def slow_polynomials(model: Model, cycles: NDArray[np.int64]) -> Array:
+    """The slow part of every flank's error in each mesh cycle, (cycles, NODES, flanks), by powers of s."""
+    nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(NODES) / (NODES - 1))
+    values = slow_errors(model.machine, (cycles[:, None] + nodes).ravel())
+    powers = np.linalg.inv(np.vander(nodes, increasing=True)) / TAU ** np.arange(NODES)[:, None]
+    return np.einsum("pk,ckf->cpf", powers, values.reshape(cycles.size, NODES, values.shape[1]))
+
+
+def _run(
+    model: Model, packed: Packed, state: Array, cycles: NDArray[np.int64], positions: int, settings: Settings
+) -> Array:
+    """Samples (cycles * positions, n) of y; `state` (2, padded n) is moved along."""
+    work = make_work(packed, settings.taylor_order)
+    log = make_log(packed, 1, positions)
+    none = np.zeros((0, *state.shape))
+    drifts = np.zeros((cycles.size, NODES, packed.lower.size))
+    slow = slow_polynomials(model, cycles)
+    drifts[:, :, : slow.shape[2]] = slow
+    samples = np.zeros((cycles.size, positions, packed.n))
+    for kept, drift in zip(samples, drifts, strict=True):
+        now = packed._replace(drift=drift)
+        require(run_periods(now, work, state[0], state[1], none, 1, positions, settings.tolerance, log, TAU))
+        kept[:] = log.samples[:, : packed.n]
+    return samples.reshape(-1, packed.n)
+
+
+def _flank_forces(model: Model, coordinates: Array, cycles: NDArray[np.int64], positions: int) -> Array:
+    machine, flanks = model.machine, model.system.contacts
+    at = _instants(cycles, positions)
+    error = stacked_values(stacked(error_series(machine)), at) + slow_errors(machine, at)
+    stiffness = stacked_values(stacked(stiffness_series(machine)), at)
+    over = coordinates @ model.system.mesh_jacobian[:flanks].T - error - model.system.upper[:flanks]
+    return stiffness * np.maximum(over, 0.0)
+
+
+def _instants(cycles: NDArray[np.int64], positions: int) -> Array:
+    return (cycles[:, None] + np.arange(positions) / positions).ravel()
+
+
+def _apart(model: Model, start: State) -> State:
+    """A start away from equilibrium, in a direction that no mesh is blind to."""
+    reach = np.abs(model.reduced.mesh_jacobian).max()
+    way = np.sign(np.cos(1.0 + np.arange(start.displacement.size)))
+    return replace(start, displacement=start.displacement + APART * model.system.scale / reach * way)

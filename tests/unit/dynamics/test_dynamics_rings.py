@@ -1,0 +1,137 @@
+"""Bearings with play in the dynamics: the exact ring, against SciPy, statics and Liouville's theorem."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from lumped_machines import make_layout, make_machine
+from scipy.integrate import solve_ivp
+
+from facegear.dynamics.integrator.compiled import TAU, pack
+from facegear.dynamics.integrator.trajectory import record
+from facegear.dynamics.integrator.work import make_work
+from facegear.dynamics.motion import Settings, State
+from facegear.dynamics.steady_state.orbits import monodromy
+from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
+from facegear.harmonics.series import stacked_values
+from facegear.load_sharing.hunting import hunting_cycle
+from facegear.transmission.imperfections import perfect
+from facegear.transmission.layout import MeshKinematics, Role, Side
+
+ONE = (("engine", Role.INPUT, 0.0),)
+TWO = (("engine", Role.INPUT, 0.0), ("idler", Role.IDLER, 35.5))
+
+
+def machine_with(play, places=TWO, sides=tuple(Side), torque=900.0, **options):
+    layout = make_layout(places, sides, kinematics=MeshKinematics.GEOMETRIC)
+    errors = options.pop("errors", {})
+    flaws = replace(perfect(layout), clearance=np.full(len(places), play), **errors)
+    return make_machine(layout, torque, 0.0, error=8e-6, imperfections=flaws, **options)
+
+
+def kicked(model, size=0.03):
+    start = static_start(model)
+    random = np.random.default_rng(3)
+    reach = np.abs(model.reduced.mesh_jacobian).max()
+    return replace(start, velocity=size / reach * random.normal(size=start.velocity.size))
+
+
+def slope(model, omega):
+    """Right side y', y'' of the system, written out once more."""
+    system, flanks = model.system, model.system.contacts
+    errors = system.error[system.error_kind[:flanks]]
+    orders = np.arange(errors.shape[2])
+    rates = np.stack([-orders * errors[:, 1], orders * errors[:, 0]], axis=1) * omega
+    springs = system.stiffness[system.stiffness_kind[:flanks]]
+    rows = system.mesh_jacobian[flanks:].reshape(-1, 3, system.size)
+
+    def right(t, z):
+        y, v = np.split(z, 2)
+        cycles = np.array([omega * t / TAU])
+        d = system.mesh_jacobian[:flanks] @ y - stacked_values(errors, cycles)[0]
+        d_rate = system.mesh_jacobian[:flanks] @ v - stacked_values(rates, cycles)[0]
+        over = d - system.upper[:flanks]
+        k = stacked_values(springs, cycles)[0]
+        acts = system.mesh_damping[:flanks] * ((over > 0.0) | system.damping_when_open)
+        push = system.mesh_jacobian[:flanks].T @ (k * np.maximum(over, 0.0) + acts * d_rate)
+        for row, spring, play in zip(rows, system.ring_stiffness, system.ring_play, strict=True):
+            q, q_rate = row[:2] @ y, row[:2] @ v
+            r = np.hypot(*q)
+            if r > play:
+                jacobian = (1.0 - play / r) * np.eye(2) + play / r**3 * np.outer(q, q)
+                force = spring * ((1.0 - play / r) * q + system.ring_lag * jacobian @ q_rate)
+                push = push + row[:2].T @ force
+        load = system.load[:, 1, 0]
+        return np.concatenate([v, load - system.damping * v - system.omega_squared * y - push])
+
+    return right
+
+
+@pytest.mark.parametrize("play", [3e-6, 40e-6])
+def test_a_bearing_with_play_moves_as_scipy_says_through_touching_and_leaving(play):
+    model = build_model(machine_with(play, ONE, torque=20.0, backlash=20e-6))
+    omega = TAU * 1500.0
+    start = kicked(model, 0.15)
+    run = record(model.system, omega, start, 2, Settings(tolerance=1e-13))
+    rim = run.states[:, model.system.contacts + 2 :: 3]
+    assert (rim == 0).any() and (rim == 1).any()
+    phases = np.linspace(0.0, 2.0 * TAU, 21)
+    initial = np.concatenate([start.displacement, start.velocity])
+    scale = np.abs(model.reduced.mesh_jacobian).max()
+    found = solve_ivp(
+        slope(model, omega),
+        (0.0, phases[-1] / omega),
+        initial,
+        "DOP853",
+        phases / omega,
+        rtol=1e-11,
+        atol=1e-13 / scale,
+        max_step=2e-6,
+    )
+    gap = np.abs(found.y[: model.system.size].T - run.at(phases)[0]).max() * scale
+    assert gap < 2e-6 * model.system.scale
+
+
+def test_liouville_holds_while_bearings_touch_and_leave_their_rings():
+    model = build_model(machine_with(40e-6, ONE, torque=20.0, backlash=20e-6))
+    omega = TAU * 1500.0
+    packed = pack(model.system, omega)
+    start = kicked(model, 0.15)
+    state = np.zeros((2, packed.omega_squared.size))
+    state[:, : packed.n] = start.displacement, start.velocity / omega
+    *_, matrix, log = monodromy(packed, make_work(packed, 20), state[0], state[1], 1, 1e-14)
+    rim = log.shares[1, model.system.contacts + 2 : packed.m : 3]
+    assert ((rim > 0.0) & (rim < TAU)).any()
+    sign, volume = np.linalg.slogdet(matrix)
+    assert sign > 0
+    assert volume == pytest.approx(log.divergence[0], abs=1e-8)
+    # The matrix itself, against differences of neighbouring runs.
+    for column in range(0, 2 * packed.n, 5):
+        moved = []
+        for sign in (-1.0, 1.0):
+            change = np.zeros((2, packed.n))
+            change[divmod(column, packed.n)] = sign * 1e-9
+            near = State(state[0, : packed.n] + change[0], (state[1, : packed.n] + change[1]) * omega)
+            run = record(model.system, omega, near, 1, Settings(tolerance=1e-14))
+            moved.append(run.at(np.array([TAU]))[0][0])
+        slope_ = (moved[1] - moved[0]) / 2e-9
+        np.testing.assert_allclose(matrix[: packed.n, column], slope_, atol=2e-4 * np.abs(matrix).max())
+
+
+def test_without_play_the_ring_is_the_bearing():
+    tiny, none = (simulate(machine_with(play), 2500.0, Settings(tolerance=1e-10)) for play in (1e-13, 0.0))
+    assert tiny.label == none.label == "period-1"
+    np.testing.assert_allclose(tiny.forces, none.forces, atol=1e-6 * np.abs(none.forces).max())
+
+
+def test_slow_running_with_play_is_the_quasi_static_machine():
+    errors = {"position": 1e-6 * np.array([[30.0, 10.0], [-20.0, 5.0]])}
+    machine = machine_with(25e-6, torque=250.0, errors=errors)
+    still = hunting_cycle(machine, 32).found.forces
+    gaps = []
+    for speed in (160.0, 40.0):
+        settings = Settings(samples=32, dwell=2, settle=2, window=1, refine=False)
+        response = simulate(machine, speed, settings)
+        moving = response.forces[: response.per_period : response.per_period // 32]
+        gaps.append(np.abs(moving - still).max() / np.abs(still).max())
+    assert gaps[1] < 2e-3 and gaps[1] < 0.5 * gaps[0]
