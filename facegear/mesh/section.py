@@ -30,12 +30,12 @@ def plan_section(outline: Outline, sizes: MeshSizes) -> SectionPlan:
     depth = scale * float(np.mean(outline.points("flank", np.array([0.5]))[0]))
     levels = coarsening_levels(sizes.profile, sizes.thickness, depth)
 
-    upper = max(1, round(lengths["fillet"] / 2 / sizes.profile))
+    upper = max(1, round(lengths["fillet"] / 2 / (sizes.fillet or sizes.profile)))
     chamfer = max(1, round(outline.design.pinion.tip_chamfer / sizes.profile)) if outline.has_chamfer else 0
     fine = 3**levels
     wall = max(2, ceil((round(lengths["flank"] / sizes.profile) + upper + chamfer) / fine))
 
-    lower = max(1, round(lengths["fillet"] / 2 / sizes.profile))
+    lower = upper
     land = max(1, round(lengths["root_land"] / sizes.profile))
     floor_columns = max(2, round(outline.half_pitch * scale / (1.5 * sizes.thickness)))
     floor_levels = 0
@@ -72,17 +72,25 @@ def _length(outline: Outline, segment: str, scale: float) -> float:
 
 
 def segment_fractions(plan: SectionPlan, sigma: Array) -> dict[str, tuple[NDArray[np.bool_], Array]]:
-    """For each segment of the outline: which sigma lie on it (ends included) and their fractions 0..1."""
+    """For each segment of the outline: which sigma lie on it (ends included) and their fractions 0..1.
+
+    `sigma` must hold the segments' ends, which may differ by rounding.
+    """
     result = {}
+    breaks = {name: [_nearest(sigma, end) for end in ends] for name, ends in plan.breaks.items()}
     for name in ("chamfer", "flank", "root_land"):
-        low, high = plan.breaks[name]
+        low, high = breaks[name]
         on = (sigma >= low) & (sigma <= high) if high > low else np.zeros(len(sigma), bool)
         result[name] = (on, (sigma[on] - low) / (high - low) if high > low else sigma[on])
-    (start, corner), (_, end) = plan.breaks["fillet_upper"], plan.breaks["fillet_lower"]
+    (start, corner), (_, end) = breaks["fillet_upper"], breaks["fillet_lower"]
     on = (sigma >= start) & (sigma <= end)
     at = sigma[on]
     result["fillet"] = (on, np.interp(at, [start, corner, end], [0.0, 0.5, 1.0]))
     return result
+
+
+def _nearest(values: Array, value: float) -> float:
+    return float(values[np.argmin(np.abs(values - value))])
 
 
 def section_nodes(outline: Outline, plan: SectionPlan) -> tuple[Array, Array]:

@@ -9,11 +9,13 @@ class MeshSizes:
 
     profile: along the flank's profile at its surface; width: along the face; thickness: largest size inside
     the tooth and the body below it. Between surface and inside the mesh coarsens three to one per level.
+    fillet: along the fillet's profile, None as along the flank's.
     """
 
     profile: float
     width: float
     thickness: float
+    fillet: float | None = None
 
 
 RESOLUTIONS = {

@@ -1,7 +1,7 @@
 """Flank compliance of a whole gear from one of its teeth."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.sparse as sp
@@ -25,7 +25,9 @@ class FlankCompliance:
     `own` (n, n): on the loaded tooth, nodes of the refined lattice `shape`; `others` (2 d + 1, c, c): on the
     tooth t - d places further, nodes of the lattice before refinement `coarse_shape` (the field of a
     neighbour is smooth); the middle block repeats the own tooth and is not used. `refinement` relates the two
-    lattices; `linear` where displacements are so between nodes, not quadratic over elements.
+    lattices; `linear` where displacements are so between nodes, not quadratic over elements. `readings`
+    (2 d + 1, g, c): what g gauges on the tooth t - d places further show by unit normal forces on the nodes of
+    the lattice before refinement; empty without gauges.
     """
 
     own: NDArray[np.float64]
@@ -34,6 +36,7 @@ class FlankCompliance:
     coarse_shape: tuple[int, int]
     refinement: Refinement
     linear: bool = False
+    readings: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0, 0)))
 
     def block(self, places: int) -> NDArray[np.float64] | None:
         """Coarse block for a tooth `places` further than the loaded one; None beyond those computed."""
@@ -48,10 +51,12 @@ def flank_compliance(
     neighbours: int = 2,
     ends: Ends = "ring",
     element: Element = "hex27",
+    gauges: sp.csr_matrix | None = None,
 ) -> FlankCompliance:
     """Compliance of `teeth` copies of a body with cut faces; `neighbours` of the loaded one on each side are
     kept.
 
+    `gauges` (g, 3 n): readings by the displacements of the body's nodes, which must lie on its surface.
     All teeth are refined alike, so that one factorisation serves the loaded tooth and its neighbours. A body
     without cut faces stands for itself.
     Raises FacegearError if the body is not held, ValueError if there are too few teeth.
@@ -59,7 +64,9 @@ def flank_compliance(
     progress = Progress("flank compliance", total=sum(SHARES))
     system = tied_system(body, refinement, element)
     progress.step(SHARES[0])
-    tooth = condense(body, system)
+    if gauges is not None:
+        gauges = gauges @ sp.kron(system.followed(body, refinement), sp.eye(3), format="csr")
+    tooth = condense(body, system, gauges)
     progress.step(SHARES[1])
     coupled = coupled_compliance(body, system, tooth, refinement, teeth, neighbours, ends, element)
     progress.step(SHARES[2])
@@ -82,11 +89,16 @@ def coupled_compliance(
     """
     shape, coarse_shape = system.surface.shape[:2], body.flank.shape
     others, rest = np.zeros((1, body.flank.size, body.flank.size)), np.zeros((0, 0))
+    nodes = np.arange(shape[0] * shape[1]).reshape(shape)
+    spread = system.spread[nodes[:: refinement.profile, :: refinement.width].ravel()]
+    readings = (spread @ tooth.gauge_flank.T).T[None]
     if body.left.size:
         rests = rest_stiffness(tooth.faces, neighbours, teeth, ends)
-        nodes = np.arange(shape[0] * shape[1]).reshape(shape)
-        seen = system.spread[nodes[:: refinement.profile, :: refinement.width].ravel()] @ tooth.influence
-        others = seen @ face_compliance(tooth.faces, rests) @ seen.T
+        seen = spread @ tooth.influence
+        moved = face_compliance(tooth.faces, rests)
+        others = seen @ moved @ seen.T
+        own, readings = readings[0], -(tooth.gauge_faces @ moved @ seen.T)
+        readings[neighbours] += own
         rest = rests[0][0]
     own = on_lattice(system.spread, held_by(tooth, rest))
     return FlankCompliance(
@@ -96,6 +108,7 @@ def coupled_compliance(
         coarse_shape=coarse_shape,
         refinement=refinement,
         linear=element != "hex27",
+        readings=readings,
     )
 
 
@@ -117,6 +130,7 @@ def to_arrays(compliance: FlankCompliance) -> dict[str, NDArray]:
         "coarse_shape": np.array(compliance.coarse_shape),
         "refinement": np.array([cuts.profile, cuts.width, cuts.depth, cuts.grading], dtype=float),
         "linear": np.array([compliance.linear]),
+        "readings_pa_per_n": compliance.readings,
     }
 
 
@@ -127,6 +141,7 @@ STORED = {
     "coarse_shape": (2,),
     "refinement": (4,),
     "linear": (1,),
+    "readings_pa_per_n": (None, None, None),
 }
 """Names and shapes of the arrays of a stored compliance."""
 
@@ -142,4 +157,5 @@ def from_arrays(arrays: Mapping[str, NDArray]) -> FlankCompliance:
         coarse_shape=(int(coarse_rows), int(coarse_columns)),
         refinement=Refinement(int(profile), int(width), int(depth), float(grading)),
         linear=bool(arrays["linear"][0]),
+        readings=arrays["readings_pa_per_n"],
     )

@@ -41,6 +41,21 @@ class TiedSystem:
     loaded_normals: NDArray[np.float64]
     spread: sp.csr_matrix
 
+    def followed(self, body: ElasticBody, refinement: Refinement) -> sp.csr_matrix:
+        """Displacements (m, n) of the body's m nodes by those of the n masters, for nodes on its surfaces.
+
+        Nodes of the flank that were refined away follow the refined surface; those inside get no row.
+        """
+        kept = np.flatnonzero(self.coarse >= 0)
+        lattice = np.arange(self.spread.shape[0]).reshape(self.surface.shape[:2])
+        surface = self.spread[lattice[:: refinement.profile, :: refinement.width].ravel()].tocoo()
+        nodes, gone = body.flank.ravel(), self.coarse[body.flank.ravel()] < 0
+        on = gone[surface.row]
+        rows = np.concatenate([kept, nodes[surface.row[on]]])
+        columns = np.concatenate([self.coarse[kept], self.loaded[surface.col[on]]])
+        values = np.concatenate([np.ones(kept.size), surface.data[on]])
+        return sp.csr_matrix((values, (rows, columns)), shape=(len(body.points), len(self.points)))
+
 
 @dataclass(frozen=True, eq=False)
 class FlankElements:

@@ -1,6 +1,6 @@
 """One tooth of a gear condensed onto what is loaded and what is shared with its neighbours."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.sparse as sp
@@ -20,28 +20,52 @@ class Superelement:
     `flank` (k, k), m/N: normal displacements by unit normal forces with both faces clamped;
     `influence` (k, 2 s), s the free dof of a face: minus the normal displacement by unit face displacements
     (left, then right), which is also the force on the faces by unit normal forces; `faces` (2 s, 2 s), N/m:
-    stiffness of the faces, flank unloaded.
+    stiffness of the faces, flank unloaded. For g gauges, `gauge_flank` (g, k): readings by unit normal forces
+    with both faces clamped; `gauge_faces` (g, 2 s): by unit face displacements, flank unloaded.
     """
 
     flank: NDArray[np.float64]
     influence: NDArray[np.float64]
     faces: NDArray[np.float64]
+    gauge_flank: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
+    gauge_faces: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
 
 
-def condense(body: ElasticBody, system: TiedSystem) -> Superelement:
+def condense(
+    body: ElasticBody, system: TiedSystem, gauges: sp.csr_matrix | None = None
+) -> Superelement:
     """Eliminate everything but the normal displacements of the flank and the cut faces.
 
+    `gauges` (g, 3 n): readings by the displacements of the system's masters; they cost as much as so many
+    more flank nodes.
     Raises FacegearError if the body is not held, ValueError if the flank touches a held or a cut face.
     """
-    stiffness, flank, faces = _turned(body, system)
-    schur = schur_complement(stiffness, np.concatenate([flank, faces]))
-    k = flank.size
+    stiffness, turn, flank, faces = _turned(body, system)
+    kept = np.concatenate([flank, faces])
+    if gauges is not None:
+        kept = np.concatenate([kept, len(stiffness.indptr) - 1 + np.arange(gauges.shape[0])])
+        stiffness = _with_gauges(stiffness, (gauges @ turn.T).tocsr())
+    schur = schur_complement(stiffness, kept)
+    k, ends = flank.size, flank.size + faces.size
+    readings, schur = schur[ends:, :ends], schur[:ends, :ends]
     lower = cholesky(schur[:k, :k])
     half = solve_triangular(lower, schur[:k, k:], lower=True, check_finite=False)
     outer = schur[k:, k:] - half.T @ half
     del schur
     influence = solve_triangular(lower, half, trans="T", lower=True, check_finite=False)
-    return Superelement(inverse(lower), influence, outer)
+    own = inverse(lower)
+    return Superelement(
+        flank=own,
+        influence=influence,
+        faces=outer,
+        gauge_flank=readings[:, :k] @ own,
+        gauge_faces=readings[:, k:] - readings[:, :k] @ influence,
+    )
+
+
+def _with_gauges(stiffness: sp.csr_matrix, gauges: sp.csr_matrix) -> sp.csr_matrix:
+    """The stiffness bordered by gauges, whose own part of a Schur complement has no meaning."""
+    return sp.bmat([[stiffness, gauges.T], [gauges, sp.eye(gauges.shape[0])]], format="csr")
 
 
 def held_by(tooth: Superelement, rest: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -68,10 +92,10 @@ def frames_of(normals: NDArray[np.float64], held: NDArray[np.bool_]) -> NDArray[
 
 def _turned(
     body: ElasticBody, system: TiedSystem
-) -> tuple[sp.csr_matrix, NDArray[np.int64], NDArray[np.int64]]:
+) -> tuple[sp.csr_matrix, sp.csr_matrix, NDArray[np.int64], NDArray[np.int64]]:
     """Stiffness on the free dof, flank nodes turned to their normals and right faces to the left's frame.
 
-    Also the positions of the flank's normal dof and of the faces' dof (left, then right) in it.
+    Also the turn itself (free dof, 3 n), the positions of the flank's normal dof and of the faces' dof (left, then right) in it.
     """
     count = len(system.points)
     frames = np.tile(np.eye(3), (count, 1, 1))
@@ -93,4 +117,4 @@ def _turned(
     left_free, right_free = np.split(free[faces], 2)
     if not np.array_equal(left_free, right_free):
         raise ValueError("the two cut faces are not held alike")
-    return stiffness, position[3 * system.loaded], position[faces[free[faces]]]
+    return stiffness, turn, position[3 * system.loaded], position[faces[free[faces]]]

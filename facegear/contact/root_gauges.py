@@ -1,0 +1,57 @@
+"""Gauges on both fillets of a tooth."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from facegear.contact.bodies.gauges import Gauges, gauges_on
+from facegear.contact.teeth import LOADED_SIDE
+from facegear.geometry.design import Material
+from facegear.mesh.hexahedra import hex_mesh
+from facegear.mesh.tooth import ToothMesh
+
+
+@dataclass(frozen=True, eq=False)
+class RootGauges:
+    """Gauges (2, a, b) on the fillets of a tooth: below the loaded flank, then below the other one.
+
+    a down the fillet, b along the face. `position` (2, a, b, 3) m and unit vectors `across` (2, a, b, 3) down
+    the fillet, in the body frame with the tooth in the middle.
+    """
+
+    position: NDArray[np.float64]
+    across: NDArray[np.float64]
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Sides, gauges down the fillet and along the face."""
+        sides, down, along = self.position.shape[:3]
+        return sides, down, along
+
+    @property
+    def tangent_angle(self) -> NDArray[np.float64]:
+        """Angle (rad), (2, a, b), between the fillet's tangent and the tooth's middle plane in its section."""
+        return np.arctan2(np.abs(self.across[..., 0]), np.abs(self.across[..., 2]))
+
+
+def fillet_sides(body: str) -> tuple[str, str]:
+    """Sides of a tooth's fillets: below the flank loaded when the pinion drives, then below the other."""
+    return (LOADED_SIDE[body], "left" if LOADED_SIDE[body] == "right" else "right")
+
+
+def root_gauges(tooth: ToothMesh, material: Material) -> tuple[RootGauges, sp.csr_matrix]:
+    """Gauges of a tooth, and their readings (g, 3 n) by the displacements of the elastic body's nodes.
+
+    A gauge reads the normal stress (Pa) down the fillet, across its lines, with the surface in plane stress.
+    """
+    mesh, number = hex_mesh(tooth.nodes, tooth.hexes)
+    found: list[Gauges] = [
+        gauges_on(mesh.doflocs.T, number[tooth.surfaces[f"fillet_{side}"].nodes], material)
+        for side in fillet_sides(tooth.body)
+    ]
+    gauges = RootGauges(
+        position=np.stack([one.position for one in found]), across=np.stack([one.across for one in found])
+    )
+    return gauges, sp.vstack([one.normal for one in found], format="csr")
