@@ -17,6 +17,7 @@ from facegear.contact.bodies.elements import mesh_of
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.gear_flank import GearFlank, from_arrays, to_arrays
 from facegear.contact.options import Refinement
+from facegear.contact.root_gauges import root_gauges
 from facegear.contact.teeth import contact_side, elastic_tooth
 from facegear.errors import FacegearError
 from facegear.geometry.design import FaceGear, PairDesign, Pinion, Shaper
@@ -167,7 +168,8 @@ def test_body_that_nothing_holds_is_refused_in_one_line():
 @pytest.mark.parametrize("places", [0, 1, -2])
 def test_ring_of_one_condensed_tooth_is_the_ring_meshed_whole(slab, places):
     tooth, elastic = slab
-    compliance = flank_compliance(elastic, Refinement(), tooth.teeth, 2, "ring")
+    _, gauges = root_gauges(tooth, STEEL)
+    compliance = flank_compliance(elastic, Refinement(), tooth.teeth, 2, "ring", gauges=gauges)
     ring = sector(tooth, tooth.teeth)
     assert ring.closed
     stiffness = in_tooth_order(*hex_mesh(ring.nodes, ring.hexes))
@@ -186,6 +188,13 @@ def test_ring_of_one_condensed_tooth_is_the_ring_meshed_whole(slab, places):
     expected = moved.reshape(-1, 3)[node] @ normal
     own = compliance.own if places == 0 else compliance.block(places)
     assert own[seen_at, load_at] == pytest.approx(expected, rel=1e-8)
+    _, number = hex_mesh(tooth.nodes, tooth.hexes)
+    here = np.empty_like(tooth.nodes)
+    here[number] = tooth.rotated(
+        moved.reshape(-1, 3)[ring.tooth_nodes[places % tooth.teeth]], -places * tooth.pitch
+    )
+    stress, read = gauges @ here.ravel(), compliance.readings[2 + places][:, load_at]
+    np.testing.assert_allclose(read, stress, rtol=0, atol=1e-8 * np.abs(stress).max())
 
 
 def test_sector_of_one_condensed_tooth_is_the_sector_meshed_whole():

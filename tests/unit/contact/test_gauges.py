@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from contact_bodies import STEEL
 from skfem import MeshHex1, MeshHex2
 
 from facegear.contact.bodies.assembly import Part, stiffness_matrix
 from facegear.contact.bodies.factor import solve_sparse
 from facegear.contact.bodies.gauges import gauges_on
-from tests.helpers.contact_bodies import STEEL
 
 INNER, OUTER = 1.0, 3.0
 
