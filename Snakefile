@@ -3,6 +3,7 @@ include: "workflow/rules/geometry.smk"
 include: "workflow/rules/mesh.smk"
 include: "workflow/rules/compliance.smk"
 include: "workflow/rules/contact.smk"
+include: "workflow/rules/strength.smk"
 include: "workflow/rules/stiffness.smk"
 include: "workflow/rules/modal.smk"
 include: "workflow/rules/dynamics.smk"
@@ -59,6 +60,7 @@ localrules:
     tooth_pair_figure,
     contact_figures,
     load_dependence,
+    root_stress_figures,
     stiffness_figures,
     load_dependence_figure,
     modal_figure,

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from facegear.results.load_sharing import LoadSharingResult
     from facegear.results.modal import ModesResult
     from facegear.results.response import ResponseResult
+    from facegear.results.root_stress import RootStressResult
     from facegear.results.stiffness import StiffnessResult
     from facegear.results.sweep import SweepResult
     from facegear.stages.outcome import Outcome
@@ -131,6 +132,28 @@ class Gearbox:
         from facegear.results.contact import ContactResult
 
         return gearbox.store.result("contact", gearbox.values, ContactResult, gearbox._contact)
+
+    def root_stress(self) -> "RootStressResult":
+        """Stress at the fillets of both gears over a tooth's passage, at the contact analysis' torques.
+
+        The fillets carry gauges for it, whatever the config says. Raises what `contact` raises.
+
+        >>> import facegear
+        >>> table = facegear.example().root_stress().table()
+        >>> table["body"].unique().tolist()
+        ['pinion', 'face_gear']
+        """
+        gearbox = self._changed("root_stress", {"contact.root_stress": True})
+
+        from facegear.results.root_stress import RootStressResult
+
+        def compute() -> "Outcome":
+            from facegear.stages.root_stress import root_stress
+
+            bodies = [gearbox._compliance(body) for body in ("pinion", "face_gear")]
+            return root_stress(*bodies, gearbox.contact().content["loads"])
+
+        return gearbox.store.result("root_stress", gearbox.values, RootStressResult, compute)
 
     def stiffness(self) -> "StiffnessResult":
         """k(t) of one mesh at the config's load, or from given harmonics.

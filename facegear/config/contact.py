@@ -44,11 +44,14 @@ class Contact(Section):
     neighbour_coupling: bool = Field(default=True, description="a loaded tooth moves its neighbours")
 
     edge_contact: bool = Field(default=True, description="tip edges carry loads of their own")
+    root_stress: bool = Field(default=False, description="strain gauges on the fillets of both gears")
 
     @model_validator(mode="after")
     def _rising(self) -> "Contact":
         if list(self.torques_n_m) != sorted(set(self.torques_n_m)):
             refuse("torques_n_m", list(self.torques_n_m), "rising, each once")
+        if self.root_stress and self.element != "hex27":
+            refuse("element", self.element, "hex27, where contact.root_stress is asked for")
         return self
 
 
@@ -62,6 +65,7 @@ def contact_plan(section: Contact) -> ContactPlan:
         sector=Sector(_number(sector.pinion_teeth), _number(sector.face_gear_teeth), sector.cut_faces),
         options=ContactOptions(section.fillet_contact, section.neighbour_coupling, section.edge_contact),
         element=section.element,
+        root_stress=section.root_stress,
     )
 
 

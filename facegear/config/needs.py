@@ -25,6 +25,7 @@ NEEDS: dict[str, Slice] = {
     "cad": _MESH,
     "compliance": _COMPLIANCE,
     "contact": {**_PAIR, "contact": "contact"},
+    "root_stress": {},
     "stiffness": {"mesh_stiffness": "mesh_stiffness"},
     "modal": {**_MACHINE, "mean_stiffness": "mesh_stiffness.mean_n_per_m"},
     "dynamics_response": {**_MACHINE, **_ACCURACY, "speed_rpm": "dynamics.speed_rpm"},
@@ -51,6 +52,7 @@ NEEDS: dict[str, Slice] = {
 
 UPSTREAM = {
     "contact": ("compliance",),
+    "root_stress": ("contact",),
     "stiffness": ("contact",),
     "dynamics_response": ("stiffness",),
     "dynamics_sweep": ("stiffness",),

@@ -31,3 +31,15 @@ PRESSURE_ARRAYS = {
     "area_m2": (None,),
 }
 """Arrays of the pressure file: one loaded hat a row, then the lattice the nodes belong to."""
+
+LOAD_ARRAYS = {
+    "torque_n_m": (None,),
+    "position": (None,),
+    **{
+        f"{body}_{name}": (None,)
+        for body in ("pinion", "face_gear")
+        for name in ("case", "tooth", "node", "force_n")
+    },
+    "nodes": (2,),
+}
+"""Arrays of the loads file: an entry a case, a row a loaded node of a body, and the numbers of nodes."""

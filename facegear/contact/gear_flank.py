@@ -8,15 +8,17 @@ from numpy.typing import NDArray
 
 from facegear.contact.bodies import compliance
 from facegear.contact.bodies.compliance import FlankCompliance
+from facegear.contact.root_gauges import RootGauges
 from facegear.contact.teeth import ContactSide
 
 
 @dataclass(frozen=True, eq=False)
 class GearFlank:
-    """Contact surface of a tooth, and how the gear's flanks give way."""
+    """Contact surface of a tooth, how the gear's flanks give way, and the gauges that it reads, if any."""
 
     side: ContactSide
     compliance: FlankCompliance
+    gauges: RootGauges | None = None
 
 
 STORED = {
@@ -26,13 +28,16 @@ STORED = {
     "flank_v": (None, None),
     "flank_rows": (1,),
     "junction": (None,),
+    "gauge_position_m": (None, None, None, None),
+    "gauge_across": (None, None, None, None),
 }
 """Names and shapes of the arrays of a stored flank; u, v and junction as in `ContactSide`."""
 
 
 def to_arrays(flank: GearFlank) -> dict[str, NDArray]:
     """Named arrays from which `from_arrays` rebuilds the flank."""
-    side = flank.side
+    side, gauges = flank.side, flank.gauges
+    none = np.zeros((0, 0, 0, 3))
     return {
         **compliance.to_arrays(flank.compliance),
         "flank_nodes": side.nodes,
@@ -40,6 +45,8 @@ def to_arrays(flank: GearFlank) -> dict[str, NDArray]:
         "flank_v": side.v,
         "flank_rows": np.array([side.flank_rows]),
         "junction": side.junction,
+        "gauge_position_m": none if gauges is None else gauges.position,
+        "gauge_across": none if gauges is None else gauges.across,
     }
 
 
@@ -52,4 +59,6 @@ def from_arrays(arrays: Mapping[str, NDArray]) -> GearFlank:
         flank_rows=int(arrays["flank_rows"][0]),
         junction=arrays["junction"],
     )
-    return GearFlank(side, compliance.from_arrays(arrays))
+    position, across = arrays["gauge_position_m"], arrays["gauge_across"]
+    gauges = RootGauges(position, across) if position.size else None
+    return GearFlank(side, compliance.from_arrays(arrays), gauges)

@@ -45,7 +45,10 @@ class ContactOptions:
 
 @dataclass(frozen=True)
 class ContactPlan:
-    """Torques (N m, on the pinion, per mesh), positions a pitch, model and options."""
+    """Torques (N m, on the pinion, per mesh), positions a pitch, model and options.
+
+    `root_stress`: whether the fillets carry gauges.
+    """
 
     torques: tuple[float, ...]
     positions: int
@@ -53,3 +56,4 @@ class ContactPlan:
     sector: Sector
     options: ContactOptions
     element: Element = "hex27"
+    root_stress: bool = False

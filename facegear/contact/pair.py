@@ -7,6 +7,7 @@ from facegear.contact.flanks import flank_pair
 from facegear.contact.gear_flank import GearFlank
 from facegear.contact.ltca import ContactModel
 from facegear.contact.options import ContactPlan, Ends
+from facegear.contact.root_gauges import root_gauges
 from facegear.contact.teeth import elastic_tooth
 from facegear.errors import ConfigError
 from facegear.geometry.design import Material, PairDesign
@@ -25,7 +26,7 @@ BUILDERS: dict[str, Callable[[PairDesign, MeshSizes], ToothMesh]] = {
 def gear_flank(
     design: PairDesign, body: str, sizes: MeshSizes, material: Material, plan: ContactPlan
 ) -> GearFlank:
-    """Contact surface and flank compliance of the pinion or the face gear.
+    """Contact surface, flank compliance and, where asked for, gauges of the pinion or the face gear.
 
     Raises ConfigError for a sector with more teeth than the gear, FacegearError if the mesh cannot be
     factorised.
@@ -33,8 +34,9 @@ def gear_flank(
     tooth = BUILDERS[body](design, sizes)
     elastic, side = elastic_tooth(design, tooth, material)
     teeth, neighbours, ends = extent(tooth, body, plan)
-    found = flank_compliance(elastic, plan.refinement, teeth, neighbours, ends, plan.element)
-    return GearFlank(side, found)
+    gauges, rows = root_gauges(tooth, material) if plan.root_stress else (None, None)
+    found = flank_compliance(elastic, plan.refinement, teeth, neighbours, ends, plan.element, rows)
+    return GearFlank(side, found, gauges)
 
 
 def extent(tooth: ToothMesh, body: str, plan: ContactPlan) -> tuple[int, int, Ends]:

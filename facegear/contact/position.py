@@ -44,7 +44,8 @@ class PairAtPosition(Bodies, Protocol):
 class Spot:
     """Loaded hats of one pair at one position and torque: lattice node, force (N), pressure (Pa).
 
-    `whole` marks hats that no edge of either tooth cuts.
+    `whole` marks hats that no edge of either tooth cuts. `on_pinion` and `on_gear`: the same forces (N) on
+    the nodes of both contact surfaces before refinement.
     """
 
     tooth: int
@@ -52,6 +53,8 @@ class Spot:
     force: NDArray[np.float64]
     pressure: NDArray[np.float64]
     whole: NDArray[np.bool_]
+    on_pinion: NDArray[np.float64]
+    on_gear: NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,6 +146,8 @@ def _result(
                     force=force[on],
                     pressure=force[on] / loads.area[on],
                     whole=loads.whole[on],
+                    on_pinion=loads.pinion_coarse.T @ force,
+                    on_gear=loads.gear_coarse.T @ force,
                 )
             )
     approach = base * contact.rotation

@@ -24,15 +24,14 @@ class RootGauges:
     position: NDArray[np.float64]
     across: NDArray[np.float64]
 
-    @property
-    def shape(self) -> tuple[int, int, int]:
-        """Sides, gauges down the fillet and along the face."""
-        sides, down, along = self.position.shape[:3]
-        return sides, down, along
+    def along(self, body: str) -> NDArray[np.float64]:
+        """Where the gauges stand along the face (b,), m: gear radius, y along the pinion's axis."""
+        x, y = self.position[..., 0], self.position[..., 1]
+        return np.asarray((y if body == "pinion" else np.hypot(x, y)).mean(axis=(0, 1)))
 
     @property
     def tangent_angle(self) -> NDArray[np.float64]:
-        """Angle (rad), (2, a, b), between the fillet's tangent and the tooth's middle plane in its section."""
+        """Angle (rad), (2, a, b), between the fillet's tangent and the tooth's middle plane."""
         return np.arctan2(np.abs(self.across[..., 0]), np.abs(self.across[..., 2]))
 
 

@@ -20,6 +20,10 @@ BEARINGS = (
     "Force of every body on its bearing at the nominal speed; static: at rest under the mean torques; peak: "
     "largest magnitude. A pinion's x is tangential, its y along the gears' axis; a face gear's axis is z"
 )
+ROOT_STRESS = (
+    "Largest and smallest stress of each fillet over a passage; loaded: below the flank that carries the "
+    "load. Radius: distance from the gear's axis; tangent: angle of the fillet to the tooth's middle line"
+)
 DRAWINGS = ("layout", "tooth_pair")
 """Figures that show the machine; the first that exists stands on the first screen."""
 LARGEST_SVG = 1_500_000
@@ -86,6 +90,8 @@ def mode_rows(frequencies: pd.DataFrame) -> pd.DataFrame:
 def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     if title == "Loaded contact" and "by_torque" in tables:
         return [Table(BY_TORQUE, tables["by_torque"], 4)]
+    if title == "Root stress" and "root_stress" in tables:
+        return [Table(ROOT_STRESS, tables["root_stress"], 4)]
     if title == "Mesh stiffness" and "harmonics" in tables:
         return [Table("Harmonics kept", tables["harmonics"].iloc[:, :4], 5)]
     if title == "Modes" and "frequencies" in tables:

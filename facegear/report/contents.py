@@ -7,6 +7,9 @@ CAPTIONS = {
     "tooth_pair": "Pinion and face gear in mesh; both tooth sections with limits; contact path, separation.",
     "contact_curves": "Static transmission error, stiffness and load share against position.",
     "contact_pattern": "Largest pressure each point of the flank sees over a pitch.",
+    "root_stress_passage": "Root stress of a tooth on its way through the mesh: largest tension below the "
+    "loaded flank, largest compression below the other.",
+    "root_stress_along_face": "Root stress along the face, the largest over a passage.",
     "mesh_stiffness": "Mesh stiffness over a mesh period, and its Fourier series.",
     "stiffness_harmonics": "Amplitudes of the mesh stiffness harmonics.",
     "stiffness_load": "Mean stiffness and its harmonics against load.",
@@ -57,6 +60,13 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "stiffness is force over deflection, local stiffness the slope of that curve; both are along the "
         "line of action.",
         ("contact_pattern", "contact_curves"),
+    ),
+    (
+        "Root stress",
+        "Normal stress down the fillets from surface strain gauges on the finite element model, under all "
+        "contacts of the tooth and its neighbours. Passage: 0 to 1 while the tooth belongs to the pair in "
+        "the middle of the mesh.",
+        ("root_stress_passage", "root_stress_along_face"),
     ),
     (
         "Mesh stiffness",

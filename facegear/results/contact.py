@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.contact.columns import LTCA_COLUMNS, PRESSURE_ARRAYS
+from facegear.contact.columns import LOAD_ARRAYS, LTCA_COLUMNS, PRESSURE_ARRAYS
 from facegear.errors import chosen
 from facegear.results.base import Kept, Result
 
@@ -22,6 +22,7 @@ class ContactResult(Result):
         "ltca": Kept("contact/ltca.csv", LTCA_COLUMNS),
         "by_torque": Kept("contact/by_torque.csv", ("torque_n_m", "ste_peak_to_peak_um", "path_radius_mm")),
         "pressure": Kept("contact/pressure.npz", PRESSURE_ARRAYS),
+        "loads": Kept("contact/loads.npz", LOAD_ARRAYS),
     }
 
     def table(self) -> pd.DataFrame:
@@ -54,7 +55,7 @@ class ContactResult(Result):
         return contact_pattern(self.content["pressure"])
 
     def save(self, folder: str | Path) -> list[Path]:
-        """Write `ltca.csv`, `by_torque.csv`, `pressure.npz` and, for ParaView, `pressure.vtu`."""
+        """Write two tables, `pressure.npz`, `loads.npz` and, for ParaView, `pressure.vtu`."""
         from facegear.contact.tables import pressure_surface
         from facegear.io.meshes import write_vtu
 

@@ -8,6 +8,7 @@ from facegear.config.contact import Contact, contact_plan
 from facegear.config.tooth_pair import pair
 from facegear.contact.gear_flank import GearFlank
 from facegear.contact.ltca import even_positions, loaded_contact
+from facegear.contact.nodal_loads import load_arrays
 from facegear.contact.pair import contact_model
 from facegear.contact.summary import by_torque
 from facegear.contact.tables import ltca_table, pressure_arrays
@@ -17,7 +18,10 @@ from facegear.stages.outcome import Outcome
 def contact(
     pinion: GearFlank, face_gear: GearFlank, tooth_pair: Mapping[str, Any], contact: Mapping[str, Any]
 ) -> Outcome:
-    """`ltca`, `by_torque` (tables), `pressure` (arrays). Raises NotConverged naming position and torque."""
+    """`ltca`, `by_torque` (tables), `pressure`, `loads` (arrays).
+
+    Raises NotConverged naming position and torque.
+    """
     plan = contact_plan(parse(Contact, contact))
     model = contact_model(pair(tooth_pair).design, pinion, face_gear)
     found = loaded_contact(model, even_positions(plan.positions), plan.torques, plan.options)
@@ -25,6 +29,11 @@ def contact(
     worst, mean = table["kkt_residual"].max(), table["k_average_n_per_m"].mean()
     pressure = pressure_arrays(found, model.flanks.pinion)
     return Outcome(
-        {"ltca": table, "by_torque": by_torque(table, pressure), "pressure": pressure},
+        {
+            "ltca": table,
+            "by_torque": by_torque(table, pressure),
+            "pressure": pressure,
+            "loads": load_arrays(found),
+        },
         f"{len(table)} contacts, mean stiffness {mean:.4g} N/m, worst KKT residual {worst:.0e}",
     )

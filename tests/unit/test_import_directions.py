@@ -27,9 +27,9 @@ MAY_IMPORT = {
     "strength": {"geometry"},
     "stages": {
         *("config", "geometry", "mesh", "contact", "stiffness", "harmonics"),
-        *("transmission", "dynamics", "load_sharing"),
+        *("transmission", "dynamics", "load_sharing", "strength"),
     },
-    "results": {"config", "provenance", "stages", "contact", "load_sharing", "plots", "report"},
+    "results": {"config", "provenance", "stages", "contact", "load_sharing", "plots", "report", "strength"},
 }
 TENANTS = ("paper", "validation")
 """Packages that use the library; no module of the library, nor the other tenant, imports them."""

@@ -7,6 +7,7 @@ rule contact:
         ltca="results/{case}/contact/ltca.csv",
         by_torque="results/{case}/contact/by_torque.csv",
         pressure="results/{case}/contact/pressure.npz",
+        loads="results/{case}/contact/loads.npz",
         vtu="results/{case}/contact/pressure.vtu",
         manifest="results/{case}/contact/contact.provenance.json",
     script:

@@ -26,8 +26,8 @@ class FlankCompliance:
     tooth t - d places further, nodes of the lattice before refinement `coarse_shape` (the field of a
     neighbour is smooth); the middle block repeats the own tooth and is not used. `refinement` relates the two
     lattices; `linear` where displacements are so between nodes, not quadratic over elements. `readings`
-    (2 d + 1, g, c): what g gauges on the tooth t - d places further show by unit normal forces on the nodes of
-    the lattice before refinement; empty without gauges.
+    (2 d + 1, g, c): what g gauges on the tooth t - d places further show by unit normal forces on the nodes
+    of the lattice before refinement; empty without gauges.
     """
 
     own: NDArray[np.float64]

@@ -31,9 +31,7 @@ class Superelement:
     gauge_faces: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
 
 
-def condense(
-    body: ElasticBody, system: TiedSystem, gauges: sp.csr_matrix | None = None
-) -> Superelement:
+def condense(body: ElasticBody, system: TiedSystem, gauges: sp.csr_matrix | None = None) -> Superelement:
     """Eliminate everything but the normal displacements of the flank and the cut faces.
 
     `gauges` (g, 3 n): readings by the displacements of the system's masters; they cost as much as so many
@@ -95,7 +93,8 @@ def _turned(
 ) -> tuple[sp.csr_matrix, sp.csr_matrix, NDArray[np.int64], NDArray[np.int64]]:
     """Stiffness on the free dof, flank nodes turned to their normals and right faces to the left's frame.
 
-    Also the turn itself (free dof, 3 n), the positions of the flank's normal dof and of the faces' dof (left, then right) in it.
+    Also the turn itself (free dof, 3 n), the positions of the flank's normal dof and of the faces' dof (left,
+    then right) in it.
     """
     count = len(system.points)
     frames = np.tile(np.eye(3), (count, 1, 1))

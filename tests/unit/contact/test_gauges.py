@@ -26,7 +26,7 @@ def quarter_annulus(across, around):
 
 
 def stresses(across, around, outer_displacement):
-    """Angles and hoop stress at the gauges of the hole, for displacements (n, 2) given on the outer radius."""
+    """Angles and hoop stress at the gauges of the hole, for displacements (n, 2) on the outer radius."""
     mesh, hole = quarter_annulus(across, around)
     points = mesh.doflocs.T
     count = len(points)
@@ -70,7 +70,9 @@ def kirsch(radius, angle):
     shear, kappa = STEEL.young_modulus / 2 / (1 + STEEL.poisson_ratio), 3 - 4 * STEEL.poisson_ratio
     r, a = radius / INNER, INNER / 8 / shear
     double = 2 * angle
-    radial = a * (r * (kappa - 1 + 2 * np.cos(double)) + 2 / r * (1 + (1 + kappa - 1 / r**2) * np.cos(double)))
+    radial = a * (
+        r * (kappa - 1 + 2 * np.cos(double)) + 2 / r * (1 + (1 + kappa - 1 / r**2) * np.cos(double))
+    )
     hoop = a * (-2 * r * np.sin(double) + 2 / r * (1 - kappa - 1 / r**2) * np.sin(double))
     return radial, hoop
 

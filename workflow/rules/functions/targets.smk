@@ -9,6 +9,8 @@ def stages(case):
     if has_contact(case):
         found += [rules.geometry, rules.tooth_pair_figure, rules.mesh]
         found += [rules.contact, rules.contact_figures, rules.load_dependence, rules.load_dependence_figure]
+    if CASES[case]["contact"]["root_stress"]:
+        found += [rules.root_stress, rules.root_stress_figures]
     if CASES[case]["transmission"] is None:
         return found
     found += [rules.ratings, rules.modal, rules.modal_figure]
@@ -39,6 +41,8 @@ def report_tables(wildcards):
     tables += (
         [rules.contact.output.ltca, rules.contact.output.by_torque] if has_contact(wildcards.case) else []
     )
+    if CASES[wildcards.case]["contact"]["root_stress"]:
+        tables += [rules.root_stress.output.summary]
     tables += [rules.scorecard.output.csv] if REPRODUCTION else []
     return [path.format(case=wildcards.case) for path in tables]
 

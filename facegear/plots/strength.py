@@ -1,0 +1,41 @@
+"""Root stress of both gears: over a tooth's passage through the mesh, and along the face."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from facegear.plots.style import NARROW, legend_above, styled
+
+BODIES = {"pinion": "Pinion", "face_gear": "Face gear"}
+
+
+def passage(table: pd.DataFrame) -> Figure:
+    """Largest tension below the loaded flank, and largest compression below the other, for each torque."""
+    shown = table[(table["passage"] > -1.0) & (table["passage"] < 2.0)]
+    return _both(shown, "passage", "Place of the tooth (pitches; 0 to 1: in the middle of the mesh)")
+
+
+def along_face(table: pd.DataFrame) -> Figure:
+    """The same along the face: the largest over the passage."""
+    return _both(table, "radius_mm", "Gear radius (mm)")
+
+
+def _both(table: pd.DataFrame, place: str, label: str) -> Figure:
+    torques = np.sort(table["torque_n_m"].unique())
+    colours = plt.get_cmap("viridis")(np.linspace(0.0, 0.85, torques.size))
+    with styled():
+        figure, axes = plt.subplots(2, 1, figsize=(NARROW, 6.2), sharex=place == "passage")
+        for axis, (body, name) in zip(axes, BODIES.items(), strict=True):
+            for torque, colour in zip(torques, colours, strict=True):
+                rows = table[(table["torque_n_m"] == torque) & (table["body"] == body)]
+                loaded, other = (
+                    rows[rows["fillet"] == fillet].sort_values(place) for fillet in ("loaded", "other")
+                )
+                axis.plot(loaded[place], loaded["largest_mpa"], color=colour, label=f"{torque:g} N m")
+                axis.plot(other[place], other["smallest_mpa"], "--", color=colour, lw=0.9)
+            axis.set(ylabel=f"{name}: root stress (MPa)\ntension solid, compression dashed")
+        legend_above(axes[0], 3)
+        for axis in axes if place != "passage" else axes[1:]:
+            axis.set_xlabel(label)
+    return figure

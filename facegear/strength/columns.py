@@ -1,0 +1,33 @@
+"""Columns of the tables of root stress, apart from what computes them."""
+
+FILLETS = ("loaded", "other")
+"""Below the flank that is loaded when the pinion drives, and below the other flank of the same tooth."""
+
+ROOT_STRESS_COLUMNS = (
+    "torque_n_m",
+    "body",
+    "fillet",
+    "largest_mpa",
+    "passage",
+    "radius_mm",
+    "tangent_deg",
+    "at_30_deg_mpa",
+    "smallest_mpa",
+)
+PASSAGE_COLUMNS = ("torque_n_m", "body", "fillet", "passage", "largest_mpa", "smallest_mpa")
+ALONG_FACE_COLUMNS = ("torque_n_m", "body", "fillet", "radius_mm", "largest_mpa", "smallest_mpa")
+
+ROOT_STRESS_ARRAYS = {
+    "torque_n_m": (None,),
+    **{
+        f"{body}_{name}": shape
+        for body in ("pinion", "face_gear")
+        for name, shape in (
+            ("passage", (None,)),
+            ("stress_pa", (None, None, 2, None, None)),
+            ("position_m", (2, None, None, 3)),
+            ("tangent_rad", (2, None, None)),
+        )
+    },
+}
+"""Stress over torque, place in the passage, fillet, gauges down the fillet and along the face."""

@@ -1,0 +1,80 @@
+"""Root stress of a tooth on its way through the mesh, from readings of gauges and the loads on all teeth."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+Array = NDArray[np.float64]
+
+FINER = 8
+"""Points a gauge at which a maximum down the fillet is looked for."""
+
+
+@dataclass(frozen=True, eq=False)
+class RootStress:
+    """Stress (Pa) at the gauges of one tooth while it passes through the mesh.
+
+    For t torques (N m): `stress` (t, n, 2, a, b) at the places `passage` (n,) in pitches, 0 to 1 while the
+    tooth belongs to pair 0; fillets below the loaded and below the other flank, a gauges down them, b along
+    the face. `along` (b,) m: gear radius, the pinion's distance from the gear's axis; `angle` (2, a, b) rad
+    between the tangent and the tooth's middle line.
+    """
+
+    torques: Array
+    passage: Array
+    stress: Array
+    along: Array
+    angle: Array
+
+    def at_torque(self, torque: float) -> Array:
+        """Stress (n, 2, a, b) at a torque, linear between those solved and proportional beyond them."""
+        if torque <= self.torques[0]:
+            return self.stress[0] * (torque / self.torques[0])
+        if torque >= self.torques[-1]:
+            return self.stress[-1] * (torque / self.torques[-1])
+        above = int(np.searchsorted(self.torques, torque))
+        low, high = self.torques[above - 1], self.torques[above]
+        part = (torque - low) / (high - low)
+        return (1.0 - part) * self.stress[above - 1] + part * self.stress[above]
+
+
+def root_stress(
+    readings: Array,
+    loads: Mapping[int, sp.csr_matrix],
+    torques: Array,
+    positions: Array,
+    along: Array,
+    angle: Array,
+) -> RootStress:
+    """Superpose the readings (2 d + 1, g, c) by the loads {tooth: (t p, c)} of t torques at p positions.
+
+    Teeth further apart than d do not feel each other. `along` (b,) and `angle` (2, a, b) of the gauges as in
+    `RootStress`.
+    """
+    shape = angle.shape
+    reach, teeth = len(readings) // 2, np.arange(min(loads) - 1, max(loads) + 2)
+    found = np.zeros((len(teeth), len(torques) * len(positions), readings.shape[1]))
+    for row, seen in enumerate(teeth):
+        for tooth, force in loads.items():
+            if abs(seen - tooth) <= reach:
+                found[row] -= force @ readings[seen - tooth + reach].T
+    found = found.reshape(len(teeth), len(torques), len(positions), *shape).transpose(1, 0, 2, 3, 4, 5)
+    place = (teeth[:, None] + np.asarray(positions)).ravel()
+    return RootStress(
+        torques=np.asarray(torques, dtype=float),
+        passage=place,
+        stress=found.reshape(len(torques), place.size, *shape),
+        along=along,
+        angle=angle,
+    )
+
+
+def down_the_fillet(values: Array) -> Array:
+    """Values (..., a, b) at FINER times as many points from the first to the last gauge, by splines."""
+    rows = values.shape[-2]
+    kind = CubicSpline(np.arange(rows), values, axis=-2)
+    return kind(np.linspace(0.0, rows - 1.0, FINER * rows))

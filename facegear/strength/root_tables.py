@@ -1,0 +1,80 @@
+"""Tables of root stress: peaks with their places, histories over a passage, distributions along the face."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from facegear.strength.columns import (
+    ALONG_FACE_COLUMNS,
+    FILLETS,
+    PASSAGE_COLUMNS,
+    ROOT_STRESS_COLUMNS,
+)
+from facegear.strength.root_stress import RootStress, down_the_fillet
+
+STANDARD_ANGLE = np.radians(30.0)
+"""Between the fillet's tangent and the tooth's middle line at the section of ISO 6336-3."""
+
+
+def root_tables(found: Mapping[str, RootStress]) -> dict[str, pd.DataFrame]:
+    """`summary`, `passage` and `along_face` of the root stress of each body.
+
+    Largest and smallest values are of splines through the gauges down the fillet, but of the gauges
+    themselves along the face, the outermost of which stand a fifth of an element from its ends.
+    """
+    summary, passage, along_face = [], [], []
+    for body, root in found.items():
+        for row, torque in enumerate(root.torques):
+            for side, fillet in enumerate(FILLETS):
+                fine = down_the_fillet(root.stress[row, :, side])
+                place = (torque, body, fillet)
+                summary.append((*place, *_peak(root, row, side, fine)))
+                history = zip(root.passage, fine.max(axis=(1, 2)), fine.min(axis=(1, 2)), strict=True)
+                passage += [(*place, at, 1e-6 * high, 1e-6 * low) for at, high, low in history]
+                ends = zip(root.along, fine.max(axis=(0, 1)), fine.min(axis=(0, 1)), strict=True)
+                along_face += [(*place, 1e3 * at, 1e-6 * high, 1e-6 * low) for at, high, low in ends]
+    return {
+        "summary": pd.DataFrame(summary, columns=list(ROOT_STRESS_COLUMNS)),
+        "passage": pd.DataFrame(passage, columns=list(PASSAGE_COLUMNS)),
+        "along_face": pd.DataFrame(along_face, columns=list(ALONG_FACE_COLUMNS)),
+    }
+
+
+def _peak(root: RootStress, row: int, side: int, fine: NDArray[np.float64]) -> tuple[float, ...]:
+    """Columns from `largest_mpa` on."""
+    when, down, column = np.unravel_index(np.argmax(fine), fine.shape)
+    angle = down_the_fillet(root.angle[side])
+    return (
+        1e-6 * float(fine[when, down, column]),
+        float(root.passage[when]),
+        1e3 * float(root.along[column]),
+        float(np.degrees(angle[down, column])),
+        1e-6 * _at_angle(fine, angle, STANDARD_ANGLE),
+        1e-6 * float(fine.min()),
+    )
+
+
+def _at_angle(fine: NDArray[np.float64], angle: NDArray[np.float64], wanted: float) -> float:
+    """Largest of stress (n, m, b) where the angle (m, b) has a value; nan where no gauges enclose it."""
+    found = [np.nan]
+    for column in range(angle.shape[1]):
+        order = np.argsort(angle[:, column])
+        here = angle[order, column]
+        if here[0] <= wanted <= here[-1]:
+            found.append(max(np.interp(wanted, here, stress[order]) for stress in fine[..., column]))
+    return float(np.nanmax(found)) if len(found) > 1 else np.nan
+
+
+def root_arrays(
+    found: Mapping[str, RootStress], positions: Mapping[str, NDArray[np.float64]]
+) -> dict[str, NDArray]:
+    """All of it as ROOT_STRESS_ARRAYS; `positions` (2, a, b, 3) of the gauges of each body, m."""
+    arrays: dict[str, NDArray] = {"torque_n_m": next(iter(found.values())).torques}
+    for body, root in found.items():
+        arrays[f"{body}_passage"] = root.passage
+        arrays[f"{body}_stress_pa"] = root.stress
+        arrays[f"{body}_position_m"] = positions[body]
+        arrays[f"{body}_tangent_rad"] = root.angle
+    return arrays

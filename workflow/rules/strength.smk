@@ -1,0 +1,26 @@
+rule root_stress:
+    "Root stress of both gears"
+    input:
+        pinion="results/{case}/compliance/pinion.npz",
+        face_gear="results/{case}/compliance/face_gear.npz",
+        loads=shared("contact", "loads"),
+    output:
+        summary="results/{case}/strength/root_stress.csv",
+        passage="results/{case}/strength/passage.csv",
+        along_face="results/{case}/strength/along_face.csv",
+        stress="results/{case}/strength/root_stress.npz",
+        manifest="results/{case}/strength/root_stress.provenance.json",
+    script:
+        "../scripts/root_stress.py"
+
+
+rule root_stress_figures:
+    "Root stress over a passage and along the face"
+    input:
+        passage=shared("root_stress", "passage"),
+        along_face=shared("root_stress", "along_face"),
+    output:
+        **pictures("strength", "root_stress_passage", "root_stress_along_face"),
+        manifest="results/{case}/figures/root_stress.provenance.json",
+    script:
+        "../scripts/root_stress_figures.py"
