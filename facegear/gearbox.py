@@ -150,8 +150,8 @@ class Gearbox:
         def compute() -> "Outcome":
             from facegear.stages.root_stress import root_stress
 
-            bodies = [gearbox._compliance(body) for body in ("pinion", "face_gear")]
-            return root_stress(*bodies, gearbox.contact().content["loads"])
+            pinion, face_gear = gearbox._compliance("pinion"), gearbox._compliance("face_gear")
+            return root_stress(pinion, face_gear, gearbox.contact().content["loads"])
 
         return gearbox.store.result("root_stress", gearbox.values, RootStressResult, compute)
 

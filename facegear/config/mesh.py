@@ -14,6 +14,9 @@ class SizesSection(Section):
     profile_mm: float = Field(gt=0, le=100, description="across the flank's profile, at its surface")
     width_mm: float = Field(gt=0, le=100, description="along the face")
     thickness_mm: float = Field(gt=0, le=100, description="largest inside the tooth and the body below")
+    fillet_mm: float | None = Field(
+        default=None, gt=0, le=100, description="along the fillet's profile; null: as across the flank"
+    )
 
 
 class Mesh(Section):
@@ -30,4 +33,9 @@ def mesh_sizes(section: Mesh, module: float) -> MeshSizes:
     sizes = section.resolution
     if isinstance(sizes, str):
         return named_sizes(sizes, module)
-    return MeshSizes(1e-3 * sizes.profile_mm, 1e-3 * sizes.width_mm, 1e-3 * sizes.thickness_mm)
+    return MeshSizes(
+        profile=1e-3 * sizes.profile_mm,
+        width=1e-3 * sizes.width_mm,
+        thickness=1e-3 * sizes.thickness_mm,
+        fillet=None if sizes.fillet_mm is None else 1e-3 * sizes.fillet_mm,
+    )

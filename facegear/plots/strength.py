@@ -7,13 +7,17 @@ from matplotlib.figure import Figure
 
 from facegear.plots.style import NARROW, legend_above, styled
 
+PART_SHOWN = 0.02
+"""Of the largest stress: the passage is drawn where more is felt."""
 BODIES = {"pinion": "Pinion", "face_gear": "Face gear"}
 
 
 def passage(table: pd.DataFrame) -> Figure:
     """Largest tension below the loaded flank, and largest compression below the other, for each torque."""
-    shown = table[(table["passage"] > -1.0) & (table["passage"] < 2.0)]
-    return _both(shown, "passage", "Place of the tooth (pitches; 0 to 1: in the middle of the mesh)")
+    felt = table[["largest_mpa", "smallest_mpa"]].abs().max(axis=1)
+    places = table.loc[felt > PART_SHOWN * felt.max(), "passage"]
+    shown = table[table["passage"].between(places.min() - 0.25, places.max() + 0.25)]
+    return _both(shown, "passage", "Passage of a tooth (pitches)")
 
 
 def along_face(table: pd.DataFrame) -> Figure:

@@ -63,7 +63,7 @@ def root_stress(
             if abs(seen - tooth) <= reach:
                 found[row] -= force @ readings[seen - tooth + reach].T
     found = found.reshape(len(teeth), len(torques), len(positions), *shape).transpose(1, 0, 2, 3, 4, 5)
-    place = (teeth[:, None] + np.asarray(positions)).ravel()
+    place = (teeth[:, None] + np.asarray(positions, dtype=float)).ravel()
     return RootStress(
         torques=np.asarray(torques, dtype=float),
         passage=place,
