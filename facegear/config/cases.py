@@ -15,6 +15,7 @@ STAGE_KEYS: dict[str, tuple[str, ...]] = {
     "geometry": ("tooth_pair",),
     "mesh": ("tooth_pair", "mesh"),
     "contact": ("tooth_pair", "mesh", "contact"),
+    "root_stress": ("tooth_pair", "mesh", "contact"),
     "stiffness": ("tooth_pair", "mesh", "contact", "mesh_stiffness"),
 }
 """Config keys that each stage's results depend on, those of the stages before it included."""

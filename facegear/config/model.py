@@ -69,10 +69,12 @@ class Config(Section):
         check_load(self.mesh_stiffness, self.contact)
         if pair.pinion is not None:
             geometric_backlash(pair)
+        elif self.contact.root_stress:
+            raise ConfigError("tooth_pair.pinion", None, "required by contact.root_stress")
         elif self.mesh_stiffness.source != "harmonics":
             allowed = "required, as mesh_stiffness.source is not harmonics"
             raise ConfigError("tooth_pair.pinion", None, allowed)
-        if self.mesh_stiffness.source != "harmonics":
+        if self.mesh_stiffness.source != "harmonics" or self.contact.root_stress:
             design = pair_design(pair)
             sizes = mesh_sizes(self.mesh, design.module)
             check_resolution(design, materials(pair), sizes, contact_plan(self.contact))
