@@ -90,6 +90,12 @@ class SinglePinion(Section):
 class SingleGear(Section):
     """What is different in one face gear; null keeps what both have."""
 
+    torque_n_m: float = Field(
+        0.0,
+        ge=-1e7,
+        le=1e7,
+        description="on the lower of two gears, negative where it is driven; the other's follows",
+    )
     mass_kg: float | None = Field(None, gt=0, le=1e6)
     inertia_kg_m2: float | None = Field(None, gt=0, le=1e6)
     bearing_stiffness_n_per_m: BearingStiffness | None = None

@@ -7,7 +7,7 @@ from math import atan, degrees, pi
 import numpy as np
 
 from facegear.config.contact import Contact
-from facegear.config.lumped_model import ToothNumbers, given_torques, layout, tooth_numbers
+from facegear.config.lumped_model import ToothNumbers, given_torques, layout, other_gear_torque, tooth_numbers
 from facegear.config.stiffness import MeshStiffness
 from facegear.config.studies import Study
 from facegear.config.tooth_pair import ToothPair, pair_design
@@ -67,7 +67,8 @@ def check_places(pair: ToothPair, section: Transmission) -> None:
 
 def check_torques(pair: ToothPair, section: Transmission) -> None:
     """Something loads the machine. Raises ConfigError."""
-    if not given_torques(section, layout(section, pair_teeth(pair))).any():
+    on_pinions = given_torques(section, layout(section, pair_teeth(pair)))
+    if not on_pinions.any() and other_gear_torque(section) == 0.0:
         allowed = "not 0 where no pinion has a torque of its own: nothing would be loaded"
         if not any(place.role == "input" for place in section.pinions):
             raise ConfigError("transmission.pinions", "no input", "at least one input, or a torque_n_m")

@@ -32,7 +32,13 @@ class LoadSharing(Section):
     quasi_static_rpm: float = Field(10.0, ge=1, le=1000, description="speed of the slow run")
     speed_range: SpeedRangeSection = SpeedRangeSection()
     hunting_positions: int = Field(
-        16, ge=1, le=256, description="positions of each mesh cycle in the quasi-static hunting cycle"
+        16, ge=1, le=256, description="positions of each mesh cycle of the hunting cycle, at rest and running"
+    )
+    followed_cycles: int | None = Field(
+        None,
+        ge=1,
+        le=100_000,
+        description="mesh cycles for which the running machine is followed while runouts turn; null: all",
     )
 
 

@@ -97,7 +97,7 @@ def machine(
     damping = section.damping
     return Machine(
         layout=shape,
-        torques=balanced_torques(shape, given_torques(section, shape)),
+        torques=balanced_torques(shape, given_torques(section, shape), other_gear_torque(section)),
         stiffness=stiffness,
         error=error_series(section.transmission_error, unloaded),
         half_backlash=half_backlash(section),
@@ -150,6 +150,11 @@ def given_torques(section: Transmission, shape: Layout) -> NDArray[np.float64]:
     by_role = pinion_torques(shape, section.torque.per_input_n_m, section.torque.tail_share)
     own = np.array([np.nan if place.torque_n_m is None else place.torque_n_m for place in section.pinions])
     return np.where(np.isnan(own), by_role, own)
+
+
+def other_gear_torque(section: Transmission) -> float:
+    """Torque on the face gear that is not the output, N m."""
+    return float(sum(gear.torque_n_m for gear in section.single_gears.values()))
 
 
 def _body(section: PinionBody | GearBody, own: SinglePinion | SingleGear | None) -> Body:

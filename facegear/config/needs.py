@@ -40,6 +40,13 @@ NEEDS: dict[str, Slice] = {
         "speed_rpm": "dynamics.speed_rpm",
         "options": "load_sharing",
     },
+    "following": {
+        **_MACHINE,
+        **_ACCURACY,
+        "speed_rpm": "dynamics.speed_rpm",
+        "positions": "load_sharing.hunting_positions",
+        "cycles": "load_sharing.followed_cycles",
+    },
     "ratings": {**_MACHINE, "speed_rpm": "dynamics.speed_rpm"},
     "machine": _MACHINE,
     "load_sharing_reference": {

@@ -12,8 +12,8 @@ PRINTED = (
     "with it; lever arms, signs of the lower meshes and back flanks are not a gearbox's (docs/theory.md)"
 )
 SLOW = (
-    "transmission: runouts and cumulative pitch deviations enter the quasi-static hunting cycle only; "
-    "responses and sweeps leave them out (docs/theory.md)"
+    "transmission: runouts and cumulative pitch deviations enter the hunting cycle, at rest and running; "
+    "steady states and sweeps leave them out (docs/theory.md)"
 )
 
 BACKLASH_DIFFERS_UM = 1.0
@@ -28,10 +28,10 @@ def notes(values: Mapping[str, Any]) -> list[str]:
     if transmission is None:
         return []
     own = values["reproduction"] is None and transmission["mesh_kinematics"] == "printed"
-    return [PRINTED] * own + [SLOW] * _turns(transmission) + _backlash(values)
+    return [PRINTED] * own + [SLOW] * turns(transmission) + _backlash(values)
 
 
-def _turns(transmission: Mapping[str, Any]) -> bool:
+def turns(transmission: Mapping[str, Any]) -> bool:
     """Whether a body has a runout or a curve of cumulative pitch deviations."""
     singles = (*transmission["single_pinions"].values(), *transmission["single_gears"].values())
     bodies = (transmission["pinion"], transmission["face_gear"], *singles)

@@ -137,6 +137,11 @@ class Transmission(Section):
             refuse("pinions", names, "each pinion needs a name of its own")
         if len(set(self.face_gears)) < len(self.face_gears):
             refuse("face_gears", list(self.face_gears), "lower, upper, or both once")
+        output = "upper" if "upper" in self.face_gears else self.face_gears[0]
+        if (own := self.single_gears.get(output)) and own.torque_n_m != 0.0:
+            refuse(
+                f"single_gears.{output}.torque_n_m", own.torque_n_m, "left out: it follows from the balance"
+            )
         has_tail = any(place.role == "tail" for place in self.pinions)
         if self.torque.tail_share > 0 and not has_tail:
             refuse("torque.tail_share", self.torque.tail_share, "0 where no pinion has the role tail")

@@ -22,7 +22,7 @@ class Running(LoadHistory):
 
 
 def running(
-    machine: Machine, speed_rpm: float, cycles: int, positions: int = 16, settings: Settings | None = None
+    machine: Machine, speed_rpm: float, cycles: int, positions: int = 64, settings: Settings | None = None
 ) -> Running:
     """The first `cycles` mesh cycles of the hunting cycle at a speed. Raises NotConverged."""
     found: Followed = follow(build_model(machine), speed_rpm, 0, cycles, positions, settings)
@@ -40,25 +40,29 @@ def running(
 def running_table(moving: Running, still: HuntingCycle) -> pd.DataFrame:
     """One row a group: path factor K_gamma while running, quasi-static over the same cycles and over all.
 
-    `still` is the whole hunting cycle at the same positions. cut: what following a part of it only does to
-    the quasi-static factor, relative. memory: difference between two starts, over the largest flank force.
+    `still` is the whole hunting cycle. cut: what following a part of it only does to the quasi-static factor,
+    relative; sampling: what every second sample alone does to the running one. memory: difference between two
+    starts, over the largest flank force.
     """
-    part = replace(still, cycles=moving.cycles, flank_forces=still.flank_forces[: len(moving.cycles)])
+    count = len(moving.cycles) // moving.positions
+    part = replace(still, flank_forces=still.flank_forces[: count * still.positions])
+    coarse = replace(moving, flank_forces=moving.flank_forces[::2])
     rows = []
     for group in moving.groups:
         quasi, whole = (float(one.path_factors(group).max()) for one in (part, still))
-        coefficient = moving.coefficients(group)
+        coefficient, factor = moving.coefficients(group), float(moving.path_factors(group).max())
         rows.append(
             {
                 "group": group.name,
                 "kind": group.kind.value,
                 "speed_rpm": moving.speed_rpm,
-                "mesh_cycles": len(moving.cycles) // moving.positions,
+                "mesh_cycles": count,
                 "mean": np.nanmean(coefficient) if np.isfinite(coefficient).any() else np.nan,
-                "k_gamma": moving.path_factors(group).max(),
+                "k_gamma": factor,
                 "k_gamma_static": quasi,
                 "k_gamma_static_whole": whole,
                 "cut": quasi / whole - 1.0,
+                "sampling": coarse.path_factors(group).max() / factor - 1.0,
                 "lead_cycles": moving.lead,
                 "memory": moving.memory,
             }

@@ -121,7 +121,9 @@ def _with_kinematics(machine: Machine, kinematics: MeshKinematics) -> Machine:
     errors = replace(
         perfect(other), error=kept.error, half_backlash=kept.half_backlash, stiffness=kept.stiffness
     )
-    torques = balanced_torques(other, machine.torques[: len(layout.pinions)])
+    pinions = len(layout.pinions)
+    lower = machine.torques[pinions] if len(layout.gears) > 1 else 0.0
+    torques = balanced_torques(other, machine.torques[:pinions], float(lower))
     return replace(machine, layout=other, torques=torques, imperfections=errors)
 
 

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyArrowPatch, Polygon
 
-from facegear.plots.style import styled
+from facegear.plots.style import NARROW, styled
 from facegear.transmission.layout import Layout, Role, Side
 
 ROLE_COLOUR = {Role.INPUT: "tab:blue", Role.IDLER: "0.55", Role.TAIL: "tab:purple"}
@@ -19,28 +19,29 @@ HALF_FACE = 0.06
 
 
 def layout_figure(layout: Layout, meshes: pd.DataFrame, bearings: pd.DataFrame) -> Figure:
-    """One panel a face gear, upper first; tables as the hunting cycle's.
+    """One panel a face gear, upper on top; tables as the hunting cycle's.
 
     Red: mean tangential force of each pinion on the gear; green: mean force on bearings, of the pinions
-    (tangential) outside the upper gear, of the gear from its centre.
+    (tangential) inside the upper gear, of the gear from its centre.
     """
     loads = meshes.set_index("mesh")
     forces = bearings.set_index("body")
     cosine = np.cos(layout.pressure_angle)
-    largest = max(loads["mean_n"].max() * cosine, forces[["mean_x_n", "mean_y_n"]].abs().to_numpy().max())
+    pushed = loads["mean_n"].max() * cosine
+    largest = max(pushed, forces[["mean_x_n", "mean_y_n"]].abs().to_numpy().max())
     order = sorted(range(len(layout.gears)), key=lambda g: -layout.gears[g].sign)
     with styled():
-        figure, axes = plt.subplots(1, len(order), figsize=(5.4 * len(order), 6.0), squeeze=False)
-        for axis, g in zip(axes[0], order, strict=True):
+        figure, axes = plt.subplots(len(order), 1, figsize=(NARROW, 4.7 * len(order) + 1.0), squeeze=False)
+        for axis, g in zip(axes[:, 0], order, strict=True):
             _panel(axis, layout, g, loads, forces, layout.mesh_radius * LONGEST / max(largest, 1e-300))
         handles = [
             plt.Line2D(
-                [], [], color=MESH, lw=2, label=f"mesh force on the gear, largest {_kilo(largest)} kN"
+                [], [], color=MESH, lw=2, label=f"tangential force on the gear, largest {_kilo(pushed)} kN"
             ),
             plt.Line2D([], [], color=BEARING, lw=2, label="force on bearings, same scale"),
             *(plt.Line2D([], [], color=c, lw=6, label=f"{r.value} pinion") for r, c in ROLE_COLOUR.items()),
         ]
-        figure.legend(handles=handles, loc="outside lower center", ncols=2)
+        figure.legend(handles=handles, loc="outside lower center", ncols=1)
     return figure
 
 
@@ -68,17 +69,17 @@ def _panel(
         force = turns * drives * row["mean_n"] * np.cos(layout.pressure_angle) * along
         _arrow(axis, middle, metres * force, MESH)
         if gear.side is Side.UPPER or len(layout.gears) == 1:
-            outside = (1.0 + 2.5 * HALF_FACE) * radius * outwards
-            _arrow(axis, outside, metres * forces.loc[pinion.name, "mean_x_n"] * along, BEARING)
-        place = 1.42 * radius * outwards
+            inside = (1.0 - 2.5 * HALF_FACE) * radius * outwards
+            _arrow(axis, inside, metres * forces.loc[pinion.name, "mean_x_n"] * along, BEARING)
+        place = 1.44 * radius * outwards
         told = f"{pinion.name}\n{np.degrees(angle):.2f} deg\n{_kilo(row['mean_n'])} kN"
         axis.text(*place, told, ha="center", va="center", fontsize=9)
     own = forces.loc[gear.name]
     _arrow(axis, np.zeros(2), metres * own[["mean_x_n", "mean_y_n"]].to_numpy(float), BEARING)
     told = f"axial on its bearing {own['mean_z_n'] / 1e3:+.1f} kN"
     axis.set_title(f"{gear.name.capitalize()}, seen from above\n{told}")
-    reach = 1.62 * radius
-    axis.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
+    reach, height = 1.75 * radius, 1.6 * radius
+    axis.set(xlim=(-reach, reach), ylim=(-height, height), aspect="equal")
     axis.text(0.0, 0.3 * radius, f"mesh radius\n{1e3 * radius:.1f} mm", ha="center", va="center", fontsize=9)
     axis.set_axis_off()
 

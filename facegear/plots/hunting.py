@@ -5,7 +5,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from facegear.plots.style import styled
+from facegear.plots.style import NARROW, styled
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 LINES = {"geometric": "-", "printed": "--"}
@@ -18,7 +18,7 @@ def hunting_figure(cycles: pd.DataFrame, meshes: pd.DataFrame, torque: float) ->
     groups = [name for name in meshes["group"].dropna().unique() if name]
     with styled():
         figure, axes = plt.subplots(
-            len(groups), 1, figsize=(7.6, 1.2 + 1.8 * len(groups)), sharex=True, squeeze=False
+            len(groups), 1, figsize=(NARROW, 1.0 + 2.0 * len(groups)), sharex=True, squeeze=False
         )
         for axis, group in zip(axes[:, 0], groups, strict=True):
             names = meshes.loc[meshes["group"] == group, "mesh"]
@@ -31,21 +31,27 @@ def hunting_figure(cycles: pd.DataFrame, meshes: pd.DataFrame, torque: float) ->
                 axis.plot(at, share if wide else np.repeat(share, 2), lw=0.9, color=colour, label=name)
             axis.axhline(100.0 / len(names), color="0.5", lw=0.8, ls=":")
             axis.set_ylabel("Share (%)")
-            axis.set_title(group, fontsize=9, loc="left")
-            axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
+            axis.legend(
+                loc="lower left",
+                bbox_to_anchor=(0.0, 1.0),
+                ncols=2,
+                title=f"Group: {group}",
+                alignment="left",
+                borderaxespad=0.2,
+            )
             axis.set_xlim(at.min(), at.max())
         axes[-1, 0].set_xlabel("Mesh cycle")
         figure.suptitle(
-            f"Load of each mesh over the hunting cycle, quasi-static, input torque {torque:g} N m"
+            f"Load of each mesh over the hunting cycle,\nquasi-static, input torque {torque:g} N m"
         )
     return figure
 
 
 def bearing_figure(scan: pd.DataFrame, torque: float) -> Figure:
-    """K_gamma against bearing stiffness of the inputs (left) and of the idlers (right), both kinematics."""
+    """K_gamma against bearing stiffness of the inputs (top) and of the idlers (below), both kinematics."""
     kinds = list(scan["kind"].unique())
     with styled():
-        figure, axes = plt.subplots(1, 2, figsize=(8.2, 4.2), sharey=True)
+        figure, axes = plt.subplots(2, 1, figsize=(NARROW, 6.6), sharey=True)
         for axis, varied in zip(axes, ("inputs", "idlers"), strict=True):
             for kind, colour in zip(kinds, COLOURS, strict=False):
                 for kinematics, line in LINES.items():
@@ -54,9 +60,9 @@ def bearing_figure(scan: pd.DataFrame, torque: float) -> Figure:
                     label = f"K of the {kind}, {kinematics}"
                     axis.semilogx(rows["stiffness_n_per_m"], rows["k_gamma"], line, color=colour, label=label)
             axis.set_xlabel(f"Bearing stiffness of the {varied} (N/m)")
-        axes[0].set_ylabel(r"Largest $K_\gamma$ of the paths")
+            axis.set_ylabel(r"Largest $K_\gamma$ of the paths")
         figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
-        figure.suptitle(f"Static load sharing against bearing stiffness, input torque {torque:g} N m")
+        figure.suptitle(f"Static load sharing against bearing stiffness,\ninput torque {torque:g} N m")
     return figure
 
 
@@ -66,12 +72,12 @@ def sensitivity_figure(table: pd.DataFrame, torque: float) -> Figure:
     rows = largest.sort_values("per_um", key=np.abs, ascending=False).head(SHOWN)[::-1]
     colours = dict(zip(table["group"].unique(), COLOURS, strict=False))
     with styled():
-        figure, axis = plt.subplots(figsize=(7.6, 1.6 + 0.24 * len(rows)))
+        figure, axis = plt.subplots(figsize=(NARROW, 1.6 + 0.24 * len(rows)))
         axis.barh(rows["error"], 1e3 * rows["per_um"], color=[colours[group] for group in rows["group"]])
         axis.axvline(0.0, color="black", lw=0.6)
-        axis.set_xlabel(r"Change of $K_\gamma$ per $\mu$m of error ($10^{-3}/\mu$m)")
+        axis.set_xlabel(r"Change of $K_\gamma$ per $\mu$m ($10^{-3}/\mu$m)")
         axis.grid(axis="y", visible=False)
         handles = [plt.Line2D([], [], color=c, lw=6, label=f"K of {g}") for g, c in colours.items()]
-        figure.legend(handles=handles, loc="outside lower center", ncols=3)
-        figure.suptitle(f"Which errors matter: largest first, input torque {torque:g} N m")
+        figure.legend(handles=handles, loc="outside lower center", ncols=2)
+        figure.suptitle(f"Which errors matter: largest first,\ninput torque {torque:g} N m")
     return figure

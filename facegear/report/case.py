@@ -24,6 +24,12 @@ ROOT_STRESS = (
     "Largest and smallest stress of each fillet over a passage; loaded: below the flank that carries the "
     "load. Radius: distance from the gear's axis; tangent: angle of the fillet to the tooth's middle line"
 )
+FOLLOWING = (
+    "The running machine followed while runouts turn, beside the machine at rest. k_gamma: running; static: "
+    "at rest over the same mesh cycles, and over the whole hunting cycle; cut: what leaving out the rest "
+    "does to the static one; sampling: what half of the samples do to the running one; memory: difference "
+    "between two starts after the lead, over the largest force"
+)
 DRAWINGS = ("layout", "tooth_pair")
 """Figures that show the machine; the first that exists stands on the first screen."""
 LARGEST_SVG = 1_500_000
@@ -99,6 +105,8 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     if title.startswith("Nominal"):
         bearings = [Table(BEARINGS, tables["bearings"], 4)] if "bearings" in tables else []
         return [*bearings, *_jumps(tables)]
+    if title == "Load sharing at rest" and "following_groups" in tables:
+        return [Table(FOLLOWING, tables["following_groups"], 4)]
     if title == "Load sharing" and "summary" in tables:
         columns = [
             "study",

@@ -89,12 +89,18 @@ def pinion_torques(layout: Layout, per_input: float, tail_share: float) -> NDArr
     return np.array([value[role] for role in roles])
 
 
-def balanced_torques(layout: Layout, on_pinions: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Torques on all bodies with the output face gear (upper, else the only one) in static balance, N m."""
+def balanced_torques(
+    layout: Layout, on_pinions: NDArray[np.float64], on_other_gear: float = 0.0
+) -> NDArray[np.float64]:
+    """Torques on all bodies with the output face gear (upper, else the only one) in static balance, N m.
+
+    `on_other_gear`: torque on the one that is not the output, where there are two.
+    """
     sides = [gear.side for gear in layout.gears]
     output = sides.index(Side.UPPER) if Side.UPPER in sides else 0
-    on_gears = np.zeros(len(layout.gears))
-    on_gears[output] = -on_pinions.sum() * layout.gear_radius / layout.pinion_radius
+    on_gears = np.full(len(layout.gears), float(on_other_gear))
+    on_gears[output] = 0.0
+    on_gears[output] = -on_pinions.sum() * layout.gear_radius / layout.pinion_radius - on_gears.sum()
     return np.concatenate([on_pinions, on_gears])
 
 

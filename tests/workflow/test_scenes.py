@@ -27,6 +27,12 @@ def test_given_harmonics_need_no_contact_at_all(tmp_path):
     assert {"modal", "dynamics_response", "load_sharing"} <= planned
 
 
+@pytest.mark.parametrize(("config", "followed"), [("concentric", True), ("two_pinion", False)])
+def test_the_running_machine_is_followed_where_runouts_turn(tmp_path, config, followed):
+    planned = Project(tmp_path).planned("--configfile", str(ROOT / "config" / f"{config}.yaml"))
+    assert "hunting" in planned and ("following" in planned) is followed
+
+
 @pytest.mark.parametrize("config", sorted(path.name for path in (ROOT / "config").glob("*.yaml")))
 def test_dry_run_of_every_config_is_clean(tmp_path, config):
     done = Project(tmp_path).run("-n", "--configfile", str(ROOT / "config" / config))

@@ -12,7 +12,7 @@ os.environ.update(PYTHONPATH=str(ROOT), MPLBACKEND="Agg")
 from facegear.config.cases import expand_cases, shared_source
 from facegear.config.load import load_values
 from facegear.config.needs import NEEDS, stage_needs
-from facegear.config.notes import notes
+from facegear.config.notes import notes, turns
 from facegear.errors import FacegearError
 from facegear.io.run_lock import hold
 from facegear.paper.config.reproduction import design_cases, read_reproduction

@@ -44,6 +44,18 @@ rule hunting:
         "../scripts/hunting.py"
 
 
+rule following:
+    "Load sharing of the running machine while its runouts turn"
+    input:
+        harmonics=shared("stiffness", "harmonics"),
+    output:
+        groups="results/{case}/load_sharing/following_groups.csv",
+        meshes="results/{case}/load_sharing/following_meshes.csv",
+        manifest="results/{case}/load_sharing/following.provenance.json",
+    script:
+        "../scripts/following.py"
+
+
 rule hunting_figures:
     "Layout of the machine with its forces, load sharing over the hunting cycle"
     input:

@@ -18,8 +18,8 @@ class Work(NamedTuple):
     edge, active, acting, state, at_edge describe the contact of each mesh during the step. powers (rows,
     harmonics) holds the Taylor coefficients of cos(j s) (even rows) and sin(j s) (odd rows) at 0; parts and
     kinds are used by Fourier series. bernstein holds the deflections' Bernstein coefficients over the step,
-    least and most their bounds. nodes: of the rule that integrates products of polynomials. ring_: series of
-    the bearings with play, r^2 and its powers, forces, their slopes.
+    least and most their bounds. nodes: of the rule that integrates products of polynomials. ring_square to
+    ring_slope: series of the bearings with play, r^2 and its powers, forces, their slopes.
     """
 
     order: int

@@ -12,6 +12,7 @@ from facegear.config.notes import notes
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError, ConfigErrors
 from facegear.harmonics.series import Harmonics
+from facegear.transmission.statics import static_equilibrium
 
 TEETH = tooth_numbers(23, 143, 3.75, 25)
 STIFFNESS = Harmonics(np.array([0.0, 1e7]), np.array([4.1e8, 2e7]))
@@ -202,3 +203,29 @@ def test_a_config_of_ones_own_is_told_once_what_printed_meshes_and_runouts_mean(
         (None, None, 0),
     ):
         assert len(notes({"transmission": transmission, "reproduction": reproduction})) == told
+
+
+def test_both_gears_may_carry_load_and_differ_in_all_but_their_teeth():
+    """Lower gear of its own mass, bearing, tilt and load; the upper one's torque follows, as do forces."""
+    lower = {
+        "torque_n_m": -2000.0,
+        "mass_kg": 12.0,
+        "bearing_stiffness_n_per_m": {"x": 1e9, "y": 2e9, "z": 3e9},
+    }
+    lower["tilt"] = {"inertia_kg_m2": 0.4, "stiffness_n_m_per_rad": 5e8}
+    found = built(single_gears={"lower": lower}, transmission_error={"amplitude_um": 0})
+    upper, below = found.layout.gears[1], found.layout.gears[0]
+    assert below.body.mass == 12.0 and upper.body.mass == 7.8
+    assert below.body.bearing == (1e9, 2e9, 3e9) and upper.body.tilt is None
+    ratio = 143 / 23
+    assert found.torques[3] == -2000.0
+    assert found.torques[4] == pytest.approx(2000.0 - ratio * found.torques[:3].sum(), rel=1e-12)
+    forces = static_equilibrium(found).forces
+    arm = found.layout.gear_arm
+    assert forces[:3].sum() * arm == pytest.approx(2000.0, rel=1e-11)
+    assert forces[3:].sum() * arm == pytest.approx(-found.torques[4], rel=1e-11)
+
+
+def test_the_output_gears_torque_is_not_given():
+    with pytest.raises(ConfigErrors, match=r"single_gears\.upper\.torque_n_m.*balance"):
+        parse(Transmission, section(single_gears={"upper": {"torque_n_m": -100.0}}), "transmission")

@@ -23,6 +23,7 @@ def stages(case):
         found += [rules.load_sharing_figures] if STUDIES else []
     if SHARING_KINDS and CASES[case]["transmission"]["mesh_kinematics"] == "geometric":
         found += [rules.hunting, rules.hunting_figures]
+        found += [rules.following] if turns(CASES[case]["transmission"]) else []
     return found + ([rules.scorecard] if REPRODUCTION else [])
 
 
@@ -39,6 +40,7 @@ def report_tables(wildcards):
         tables += [rules.modal.output.frequencies, rules.dynamics_sweep.output.jumps]
         tables += [rules.dynamics_response.output.bearings]
     tables += [rules.load_sharing_summary.output.summary] if SHARING_KINDS else []
+    tables += [rules.following.output.groups] if rules.following in stages(wildcards.case) else []
     tables += (
         [rules.contact.output.ltca, rules.contact.output.by_torque] if has_contact(wildcards.case) else []
     )

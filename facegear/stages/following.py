@@ -1,0 +1,44 @@
+"""Load sharing of the running machine while its runouts and pitch deviations turn."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+
+from facegear.config.base import parse
+from facegear.config.dynamics import Accuracy, settings
+from facegear.config.machines import wired_machine
+from facegear.load_sharing.following import running, running_table
+from facegear.load_sharing.hunting import hunting_cycle, hunting_length
+from facegear.load_sharing.hunting_tables import mesh_table
+from facegear.stages.outcome import Outcome
+
+FINER = 4
+"""Samples of the running machine for each position of the machine at rest: it has peaks between."""
+
+
+def following(
+    harmonics: pd.DataFrame,
+    transmission: Mapping[str, Any],
+    teeth: Mapping[str, Any],
+    accuracy: Mapping[str, Any],
+    speed_rpm: float,
+    positions: int,
+    cycles: int | None,
+) -> Outcome:
+    """`groups` and `meshes` (tables) over `cycles` mesh cycles, or all of the hunting cycle.
+
+    Raises NotConverged naming the position or the mesh phase.
+    """
+    machine = wired_machine(transmission, teeth, harmonics)
+    length = hunting_length(machine)
+    part = length if cycles is None else min(cycles, length)
+    moving = running(machine, speed_rpm, part, FINER * positions, settings(parse(Accuracy, accuracy)))
+    groups = running_table(moving, hunting_cycle(machine, positions))
+    said = ", ".join(
+        f"{row.group} {row.k_gamma:.3f} (at rest {row.k_gamma_static:.3f})" for row in groups.itertuples()
+    )
+    return Outcome(
+        {"groups": groups, "meshes": mesh_table(moving)},
+        f"K_gamma over {part} of {length} mesh cycles: {said}; two starts differ by {moving.memory:.0e}",
+    )
