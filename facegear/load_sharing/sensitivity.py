@@ -28,7 +28,8 @@ def sensitivities(machine: Machine, every: int = 7) -> pd.DataFrame:
 
     Columns error, group, per_um. Central differences of half a micrometre about the machine as it is; sizes
     that cannot be negative count from where they are. Where something turns slowly one position is taken in
-    `every` mesh cycle of so many, which meets all places of pinion and gear as evenly as taking all.
+    `every` mesh cycle of so many, which meets all places of pinion and gear as evenly as taking all. A group
+    whose paths carry nothing has no K_gamma and no row.
     """
     rows = []
     for name, low, high, width in _changes(machine):
@@ -37,7 +38,7 @@ def sensitivities(machine: Machine, every: int = 7) -> pd.DataFrame:
             before, after = (run.path_factors(group).max() for run in ends)
             rows.append((name, group.name, 1e-6 * (after - before) / width))
     frame = pd.DataFrame(rows, columns=["error", "group", "per_um"])
-    return frame.sort_values("per_um", key=np.abs, ascending=False, ignore_index=True)
+    return frame.dropna().sort_values("per_um", key=np.abs, ascending=False, ignore_index=True)
 
 
 def _coarse_cycle(machine: Machine, every: int) -> HuntingCycle:
@@ -49,7 +50,7 @@ def bearing_scan(machine: Machine) -> pd.DataFrame:
     """K_gamma of each kind of group against bearing stiffness of inputs or idlers, both kinematics.
 
     Columns kinematics, varied, stiffness_n_per_m, kind, k_gamma; over one mesh cycle, with constant errors of
-    meshes only.
+    meshes only. A kind whose paths carry nothing has no K_gamma and no row.
     """
     rows = []
     for kinematics in MeshKinematics:
@@ -60,7 +61,7 @@ def bearing_scan(machine: Machine) -> pd.DataFrame:
                 for kind in dict.fromkeys(group.kind.value for group in run.groups):
                     rows.append((kinematics.value, varied, stiffness, kind, worst_factor(run, kind)))
     columns = ["kinematics", "varied", "stiffness_n_per_m", "kind", "k_gamma"]
-    return pd.DataFrame(rows, columns=columns)
+    return pd.DataFrame(rows, columns=columns).dropna(ignore_index=True)
 
 
 def _changes(machine: Machine) -> Iterator[tuple[str, Imperfections, Imperfections, float]]:

@@ -8,6 +8,7 @@ from lumped_machines import make_layout, make_machine
 
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import simulate
+from facegear.load_sharing import sensitivity
 from facegear.load_sharing.hunting import hunting_cycle, hunting_length
 from facegear.load_sharing.hunting_tables import bearing_table, cycle_table, group_table, mesh_table
 from facegear.load_sharing.sensitivity import bearing_scan, sensitivities
@@ -36,6 +37,17 @@ def test_the_pattern_repeats_after_the_teeth_in_common():
     assert hunting_length(machine_with(**RUNOUTS)) == 23 * 143
     whole = machine_with(gear_pitch={1: np.zeros(143)}, pinion_pitch={0: np.zeros(23)})
     assert hunting_length(whole) == 3289
+
+
+def test_paths_that_carry_nothing_have_no_factor_in_tables(monkeypatch):
+    """At a small torque no idler's backlash closes: the run ended in figures that could not read the table."""
+    idle = make_machine(LAYOUT, 100.0, tail_share=0.0, error=0.0)
+    groups = group_table(hunting_cycle(idle, 2)).set_index("kind")
+    assert np.isnan(groups.loc["idlers", "k_gamma"])
+    monkeypatch.setattr(sensitivity, "BEARINGS", np.array([1e8]))
+    scan = bearing_scan(idle)
+    assert set(scan["kind"]) == {"inputs"}
+    assert scan["k_gamma"].notna().all()
 
 
 def test_the_hunting_cycle_balances_every_torque_to_rounding():
