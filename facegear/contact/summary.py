@@ -64,9 +64,18 @@ def path_radii(pressure: Mapping[str, NDArray]) -> pd.DataFrame:
     `pressure`: arrays as PRESSURE_ARRAYS. The radius is the distance along the pinion's axis from the axis of
     the face gear, as assembled without errors.
     """
-    radius, force = 1e3 * pressure["point_m"][:, 1][pressure["node"]], pressure["force_n"]
-    rows = []
-    for torque in np.unique(pressure["torque_n_m"]):
-        on = pressure["torque_n_m"] == torque
-        rows.append((float(torque), float(np.average(radius[on], weights=force[on]))))
-    return pd.DataFrame(rows, columns=["torque_n_m", "path_radius_mm"])
+    return _centroids(pressure, ["torque_n_m"])
+
+
+def path_by_position(pressure: Mapping[str, NDArray]) -> pd.DataFrame:
+    """Columns torque_n_m, position and path_radius_mm: as `path_radii`, of the forces at each position."""
+    return _centroids(pressure, ["torque_n_m", "position"])
+
+
+def _centroids(pressure: Mapping[str, NDArray], keys: list[str]) -> pd.DataFrame:
+    force = pressure["force_n"]
+    moment = force * 1e3 * pressure["point_m"][:, 1][pressure["node"]]
+    frame = pd.DataFrame({key: pressure[key] for key in keys} | {"force": force, "moment": moment})
+    sums = frame.groupby(keys, as_index=False).sum()
+    sums["path_radius_mm"] = sums["moment"] / sums["force"]
+    return sums[[*keys, "path_radius_mm"]]

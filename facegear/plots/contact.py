@@ -55,32 +55,35 @@ def closed(rows: pd.DataFrame) -> pd.DataFrame:
 
 def contact_pattern(arrays: Mapping[str, NDArray]) -> Figure:
     """Largest pressure over a pitch on the pinion's flank, one panel a torque, one scale."""
-    shape = tuple(int(n) for n in arrays["shape"])
-    points = arrays["point_m"].reshape(*shape, 3)
-    radius = 1e3 * np.hypot(points[..., 0], points[..., 2])
-    width = 1e3 * points[..., 1]
-    torques = np.unique(arrays["torque_n_m"])
-    fields = []
-    for torque in torques:
-        on = (arrays["torque_n_m"] == torque) & arrays["whole"]
-        field: NDArray[np.float64] = np.zeros(shape[0] * shape[1])
-        np.maximum.at(field, arrays["node"][on], 1e-6 * arrays["pressure_pa"][on])
-        fields.append(field.reshape(shape))
-    top = np.nanquantile(fields[-1], 0.995)
+    return pattern_panels({f"{torque:g} N m": (arrays, torque) for torque in np.unique(arrays["torque_n_m"])})
+
+
+def pattern_panels(panels: Mapping[str, tuple[Mapping[str, NDArray], float]]) -> Figure:
+    """`contact_pattern` with panels by title: the arrays and the torque (N m) that each shows."""
+    found = {title: _largest_pressure(arrays, torque) for title, (arrays, torque) in panels.items()}
+    top = max(np.nanquantile(field, 0.995) for _, _, field in found.values())
+    rows = len(found)
     with styled():
-        rows = torques.size
         figure, axes = plt.subplots(
             rows, 1, figsize=(NARROW, 0.9 + 1.7 * rows), sharex=True, sharey=True, squeeze=False
         )
-        for axis, torque, field in zip(axes.flat, torques, fields, strict=False):
-            drawn = axis.pcolormesh(width, radius, field, vmin=0, vmax=top, cmap="inferno", shading="gouraud")
-            axis.set_title(f"{torque:g} N m")
+        for axis, (title, (along, radius, field)) in zip(axes[:, 0], found.items(), strict=True):
+            drawn = axis.pcolormesh(along, radius, field, vmin=0, vmax=top, cmap="inferno", shading="gouraud")
+            axis.set_title(title)
             axis.grid(visible=False)
-        for axis in axes[-1]:
-            axis.set_xlabel("Gear radius (mm)")
-        for axis in axes[:, 0]:
             axis.set_ylabel("Pinion radius (mm)")
+        axes[-1, 0].set_xlabel("Gear radius (mm)")
         figure.colorbar(
             drawn, ax=axes, location="top", aspect=40, label="Largest pressure over a pitch (MPa)"
         )
     return figure
+
+
+def _largest_pressure(arrays: Mapping[str, NDArray], torque: float) -> tuple[NDArray, NDArray, NDArray]:
+    """Gear radius and pinion radius (mm) of the flank's nodes, and the largest pressure (MPa) each sees."""
+    shape = tuple(int(n) for n in arrays["shape"])
+    points = 1e3 * arrays["point_m"].reshape(*shape, 3)
+    on = (arrays["torque_n_m"] == torque) & arrays["whole"]
+    field: NDArray[np.float64] = np.zeros(shape[0] * shape[1])
+    np.maximum.at(field, arrays["node"][on], 1e-6 * arrays["pressure_pa"][on])
+    return points[..., 1], np.hypot(points[..., 0], points[..., 2]), field.reshape(shape)

@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from facegear.report.contents import CHAPTERS, caption_of
+from facegear.report.contents import CHAPTERS, STUDIED_CONTACT, caption_of
 from facegear.report.glance import glance_chapter
 from facegear.report.machine import machine_chapter
 from facegear.report.page import Chapter, Picture, Table, View, render
@@ -30,6 +30,10 @@ FOLLOWING = (
     "does to the static one; sampling: what half of the samples do to the running one; memory: difference "
     "between two starts after the lead, over the largest force"
 )
+STUDY_COLUMNS = [
+    *("study", "label", "torque_n_m", "k_average_mean_n_per_m", "ste_peak_to_peak_um"),
+    *("path_radius_mm", "path_shift_mm", "unloaded_path_shift_mm", "backlash_um"),
+]
 DRAWINGS = ("layout", "tooth_pair")
 """Figures that show the machine; the first that exists stands on the first screen."""
 LARGEST_SVG = 1_500_000
@@ -52,11 +56,13 @@ def case_report(
     """
     known = {name for _, _, names in CHAPTERS for name in names}
     others = [name for name in pictures if name not in known]
+    studied = [name for name in others if name.startswith("contact_")]
+    added = {STUDIED_CONTACT: studied, "Load sharing": [name for name in others if name not in studied]}
     drawing = next((name for name in DRAWINGS if name in pictures), None)
     drawn = () if drawing is None else (_picture(pictures[drawing], caption_of(drawing, values)),)
     chapters = [glance_chapter(values, tables, drawn, pair), machine_chapter(values, tables)]
     for title, text, names in CHAPTERS:
-        shown = [*names, *(others if title == "Load sharing" else ())]
+        shown = [*names, *added.get(title, ())]
         found = [
             _picture(pictures[name], caption_of(name, values))
             for name in shown
@@ -98,6 +104,8 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
         return [Table(BY_TORQUE, tables["by_torque"], 4)]
     if title == "Root stress" and "root_stress" in tables:
         return [Table(ROOT_STRESS, tables["root_stress"], 4)]
+    if title == STUDIED_CONTACT and "studies" in tables:
+        return [Table("Every case and torque", tables["studies"][STUDY_COLUMNS], 4)]
     if title == "Mesh stiffness" and "harmonics" in tables:
         return [Table("Harmonics kept", tables["harmonics"].iloc[:, :4], 5)]
     if title == "Modes" and "frequencies" in tables:

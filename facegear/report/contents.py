@@ -45,13 +45,19 @@ def caption_of(name: str, values: Mapping[str, Any]) -> str:
     """Caption of a figure by content; the paper's number goes before it where the config reproduces one."""
     words, number = CAPTIONS.get(name, name.replace("_", " ").capitalize()), PAPER_NUMBERS.get(name)
     for study in values["studies"]:
+        title = study["title"] or study["name"]
+        if name == f"contact_study_{study['name']}":
+            words = f"{title}: transmission error, stiffness and radius of the contact over a pitch."
+        if name == f"contact_pattern_study_{study['name']}":
+            words = f"{title}: contact patterns, largest pressure over a pitch."
         for i, kind in enumerate(KINDS):
             if name == f"study_{study['name']}_{kind}":
-                words = f"{study['title'] or study['name']}: load sharing of the {KINDS[kind]}."
+                words = f"{title}: load sharing of the {KINDS[kind]}."
                 number = study["figures"][i] if study["figures"] and i < 2 else None
     return words if number is None or not values["reproduction"] else f"Figure {number} of the paper: {words}"
 
 
+STUDIED_CONTACT = "Studies of the contact"
 CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("Tooth pair", "Generated surfaces, limits and the unloaded pair.", ("tooth_pair",)),
     (
@@ -67,6 +73,12 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "contacts of the tooth and its neighbours. Passage: 0 to 1 while the tooth belongs to the pair in "
         "the middle of the mesh.",
         ("root_stress_passage", "root_stress_along_face"),
+    ),
+    (
+        STUDIED_CONTACT,
+        "The cases of the studies that change the contact, beside the machine as configured. Shifts of the "
+        "contact path are from the machine's own, positive outwards.",
+        (),
     ),
     (
         "Mesh stiffness",
@@ -97,4 +109,6 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         (),
     ),
 )
-"""Title, text and figures of each chapter; figures of studies go to the last."""
+"""Title, text and figures of each chapter; of studies, figures of the contact go to `STUDIED_CONTACT`, the
+others to the last.
+"""

@@ -48,13 +48,21 @@ def test_teeth_alone_plan_geometry_contact_stiffness_and_a_report(tmp_path):
     config = str(ROOT / "config" / "teeth_only.yaml")
     planned = Project(tmp_path).planned("--configfile", config)
     assert {"geometry", "contact", "stiffness", "report"} <= planned
-    assert not {"modal", "dynamics_response", "load_sharing"} & planned
+    assert not {"modal", "dynamics_response", "load_sharing", "contact_studies"} & planned
     asked = ("-n", "--configfile", config, "--", "results/teeth_only/modal/frequencies.csv")
     done = Project(tmp_path).run(*asked, check=False)
     assert done.returncode == 1
     told = done.stderr.splitlines()[-1]
     assert told.startswith("transmission = ")
     assert told.endswith(": required for modes, dynamics and load sharing of teeth_only")
+
+
+def test_misalignments_of_a_machine_without_load_sharing_are_studied(tmp_path):
+    """A study of one pinion's contact was accepted and left out without a word."""
+    planned = Project(tmp_path).planned(
+        "--configfile", str(ROOT / "examples" / "machines" / "misaligned.yaml")
+    )
+    assert "contact_studies" in planned
 
 
 def test_an_interrupted_run_ends_in_one_line_within_three_seconds(tmp_path):

@@ -80,6 +80,12 @@ onsuccess:
     print(f"done{f': {report}' if report.exists() else ''}", file=sys.stderr)
 
 
+def has_contact(case):
+    """Whether the case solves the loaded contact itself."""
+    values = CASES[case]
+    return values["mesh_stiffness"]["source"] != "harmonics" or values["contact"]["root_stress"]
+
+
 def value_of(key):
     """Function of the wildcards giving a value of a case's config; a dotted key reaches inside."""
 

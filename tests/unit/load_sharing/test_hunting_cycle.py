@@ -40,7 +40,7 @@ def test_the_pattern_repeats_after_the_teeth_in_common():
 
 
 def test_paths_that_carry_nothing_have_no_factor_in_tables(monkeypatch):
-    """At a small torque no idler's backlash closes: the run ended in figures that could not read the table."""
+    """At a small torque no idler's backlash closes: the run ended in figures that could not read this."""
     idle = make_machine(LAYOUT, 100.0, tail_share=0.0, error=0.0)
     groups = group_table(hunting_cycle(idle, 2)).set_index("kind")
     assert np.isnan(groups.loc["idlers", "k_gamma"])

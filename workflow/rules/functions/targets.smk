@@ -1,9 +1,3 @@
-def has_contact(case):
-    """Whether the case solves the loaded contact itself."""
-    values = CASES[case]
-    return values["mesh_stiffness"]["source"] != "harmonics" or values["contact"]["root_stress"]
-
-
 def stages(case):
     """What a run of a case consists of: only what its config asks for."""
     found = [rules.stiffness, rules.stiffness_figures]
@@ -12,6 +6,7 @@ def stages(case):
         found += [rules.contact, rules.contact_figures, rules.load_dependence, rules.load_dependence_figure]
     if CASES[case]["contact"]["root_stress"]:
         found += [rules.root_stress, rules.root_stress_figures]
+    found += [rules.contact_studies] if CONTACT_STUDIES else []
     if CASES[case]["transmission"] is None:
         return found
     found += [rules.ratings, rules.modal, rules.modal_figure]
@@ -46,6 +41,7 @@ def report_tables(wildcards):
     )
     if CASES[wildcards.case]["contact"]["root_stress"]:
         tables += [rules.root_stress.output.summary]
+    tables += [rules.contact_studies.output.table] if CONTACT_STUDIES else []
     tables += [rules.scorecard.output.csv] if REPRODUCTION else []
     return [path.format(case=wildcards.case) for path in tables]
 

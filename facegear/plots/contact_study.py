@@ -1,0 +1,41 @@
+"""Contact of the cases of a study side by side."""
+
+from collections.abc import Sequence
+
+import matplotlib.pyplot as plt
+from matplotlib.figure import Figure
+
+from facegear.contact.studies import StudiedContact
+from facegear.plots.contact import closed, pattern_panels
+from facegear.plots.style import NARROW, styled
+
+COLOURS = ("black", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+LINES = ("-", "--", "-.", ":")
+
+
+def contact_study(cases: Sequence[StudiedContact], torque: float, title: str) -> Figure:
+    """Transmission error, average stiffness and radius of the contact over a pitch at a torque (N m)."""
+    with styled():
+        figure, axes = plt.subplots(3, 1, figsize=(NARROW, 7.8 + 0.22 * len(cases)), sharex=True)
+        error, stiffness, path = axes
+        for number, case in enumerate(cases):
+            rows = closed(case.over_pitch(torque))
+            look = {"color": COLOURS[number % len(COLOURS)], "ls": LINES[number // len(COLOURS) % len(LINES)]}
+            error.plot(rows["position"], rows["ste_um"], label=case.label_at(torque), **look)
+            stiffness.plot(rows["position"], 1e-8 * rows["k_average_n_per_m"], **look)
+            path.plot(rows["position"], rows["path_radius_mm"], **look)
+            path.axhline(case.unloaded_path_mm, **{**look, "ls": ":"}, lw=0.9)
+        error.set(ylabel="Static transmission error (µm)")
+        stiffness.set(ylabel="Average stiffness (10$^8$ N/m)")
+        path.set(ylabel="Radius of the contact (mm)\nloaded; dotted: unloaded, mean", xlim=(0, 1))
+        path.set_xlabel("Position (pitches)")
+        figure.legend(*error.get_legend_handles_labels(), loc="outside lower center", ncols=2)
+        figure.suptitle(f"{title}\nat {torque:g} N m on the pinion", fontsize=9)
+    return figure
+
+
+def pattern_study(cases: Sequence[StudiedContact], torque: float) -> Figure:
+    """Contact patterns at a torque (N m), one panel a case, one scale."""
+    return pattern_panels(
+        {case.label_at(torque): (case.pressure, case.torque_near(torque)) for case in cases}
+    )
