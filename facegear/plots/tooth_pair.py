@@ -1,4 +1,4 @@
-"""Pictures of the tooth pair: in mesh, both sections with limits, contact path, separation contours."""
+"""Pictures of the tooth pair: in mesh, both sections with limits, separation with the contact path."""
 
 from collections.abc import Mapping
 from math import pi
@@ -13,7 +13,7 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from numpy.typing import NDArray
 
-from facegear.plots.style import styled
+from facegear.plots.style import NARROW, styled
 
 Array = NDArray[np.float64]
 
@@ -22,16 +22,30 @@ LABEL_GAP = 0.1
 """Least distance of two radius labels, in whole depths of the tooth."""
 
 
-def tooth_pair(
+def tooth_pair(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Figure:
+    """Pinion and gear in mesh, from `geometry/pair.json` and `flanks.npz`."""
+    with styled():
+        figure = plt.figure(figsize=(NARROW, 4.0))
+        _in_mesh(figure.add_subplot(projection="3d"), record, flanks)
+    return figure
+
+
+def tooth_sections(record: Mapping[str, Any], flanks: Mapping[str, Array]) -> Figure:
+    """Sections of both teeth with limits and radii, from `geometry/pair.json` and `flanks.npz`."""
+    with styled():
+        figure, (pinion, gear) = plt.subplots(2, 1, figsize=(NARROW, 7.6))
+        _pinion_section(pinion, record, flanks)
+        _gear_sections(gear, record, flanks)
+    return figure
+
+
+def separation(
     record: Mapping[str, Any], flanks: Mapping[str, Array], contact: Mapping[str, Array]
 ) -> Figure:
-    """One page of four panels from `geometry/pair.json`, `flanks.npz` and `contact.npz`."""
+    """Gap of the unloaded pair over the gear's flank, with the contact path, from all of `geometry/`."""
     with styled():
-        figure = plt.figure(figsize=(11, 8.5))
-        _in_mesh(figure.add_subplot(2, 2, 1, projection="3d"), record, flanks)
-        _pinion_section(figure.add_subplot(2, 2, 2), record, flanks)
-        _gear_sections(figure.add_subplot(2, 2, 3), record, flanks)
-        _contours(figure.add_subplot(2, 2, 4), record, flanks, contact)
+        figure, axes = plt.subplots(figsize=(NARROW, 4.2))
+        _contours(axes, record, flanks, contact)
     return figure
 
 
@@ -56,7 +70,7 @@ def _in_mesh(axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, Array])
     axes.add_collection3d(Poly3DCollection(faces, facecolors=shaded, edgecolors=shaded, linewidths=0.2))
     low, high = faces.min(axis=(0, 1)), faces.max(axis=(0, 1))
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set_box_aspect(high - low, zoom=1.25)
+    axes.set_box_aspect(high - low, zoom=1.0)
     axes.view_init(elev=22, azim=-62)
     axes.set(xlabel="x (mm)", ylabel="y (mm)", zlabel="z (mm)", title="Pinion and face gear in mesh")
     axes.yaxis.set_major_locator(MaxNLocator(2))
@@ -148,18 +162,18 @@ def _gear_sections(axes: Axes, record: Mapping[str, Any], flanks: Mapping[str, A
         arc = radius[column] * np.arctan2(right[:, column, 0], right[:, column, 1])
         across = np.concatenate([-arc[::-1], arc])
         height = np.concatenate([right[::-1, column, 2], right[:, column, 2]])
-        axes.plot(across, height, style, color=GEAR_COLOUR, label=f"gear radius {radius[column]:.1f} mm")
+        axes.plot(across, height, style, color=GEAR_COLOUR, label=f"{radius[column]:.1f}")
     limits, radii = record["limits_mm"], record["radii_mm"]
     text = (
         f"undercut below {limits['inner_undercut']:.3f} mm\nface {radii['gear_inner']:.1f} to "
         f"{radii['gear_outer']:.1f} mm\npointed above {limits['outer_pointing']:.3f} mm\n"
         f"{path_text(record)}"
     )
-    axes.text(1.04, 0.55, text, transform=axes.transAxes, va="top", fontsize=9)
     axes.margins(y=0.12)
     axes.set_aspect("equal")
-    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=9)
-    axes.set(xlabel="arc (mm)", ylabel="z (mm)", title="Face gear tooth")
+    axes.set_xlim(right=1.55 * across.max())
+    axes.legend(loc="upper right", title="gear radius\n(mm)")
+    axes.set(xlabel=f"arc (mm)\n{text}", ylabel="z (mm)", title="Face gear tooth")
 
 
 def _contours(
@@ -175,7 +189,7 @@ def _contours(
     levels = [level for level in levels if level <= gap.max()] + [float(np.ceil(gap.max() + 1e-9))]
     colours = BoundaryNorm(levels, plt.get_cmap("viridis_r").N)
     filled = axes.contourf(radius, height, gap, levels=levels, norm=colours, cmap="viridis_r", extend="min")
-    axes.figure.colorbar(filled, ax=axes, label="separation (um)", shrink=0.8, ticks=levels)
+    axes.figure.colorbar(filled, ax=axes, label="separation (um)", ticks=levels)
     top, flank = 1e3 * flanks["gear_flank"][0], 1e3 * flanks["gear_flank"][-1]
     for line, label in ((top, "tip edge"), (flank, "end of the flank")):
         axes.plot(np.hypot(line[:, 0], line[:, 1]), line[:, 2], color="0.2", lw=0.8)
@@ -187,8 +201,8 @@ def _contours(
     axes.set(
         xlabel="gear radius (mm)",
         ylabel="z (mm)",
-        title=f"Drive flank of the gear, smallest gap elsewhere {gap_record['gap_um']:.1f} um\n"
-        f"(gear {gap_record['gear_part']}, pinion {gap_record['pinion_part']}, "
-        f"{gap_record['gear_radius_mm']:.1f} mm)",
+        title=f"Drive flank of the gear; smallest gap elsewhere\n{gap_record['gap_um']:.1f} um at "
+        f"{gap_record['gear_radius_mm']:.1f} mm (gear {gap_record['gear_part']},\n"
+        f"pinion {gap_record['pinion_part']})",
     )
-    axes.legend(loc="upper right", bbox_to_anchor=(1.0, -0.14))
+    axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.16), borderaxespad=0.0)

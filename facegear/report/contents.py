@@ -4,7 +4,9 @@ from collections.abc import Mapping
 from typing import Any
 
 CAPTIONS = {
-    "tooth_pair": "Pinion and face gear in mesh; both tooth sections with limits; contact path, separation.",
+    "tooth_pair": "Pinion and face gear in mesh.",
+    "tooth_sections": "Sections of both teeth, with the radii between which the gear's teeth can exist.",
+    "separation": "Gap between the unloaded flanks, and the path of the contact over the gear's flank.",
     "contact_curves": "Static transmission error, stiffness and load share against position.",
     "contact_pattern": "Largest pressure each point of the flank sees over a pitch.",
     "root_stress_passage": "Root stress of a tooth on its way through the mesh: largest tension below the "
@@ -59,7 +61,11 @@ def caption_of(name: str, values: Mapping[str, Any]) -> str:
 
 STUDIED_CONTACT = "Studies of the contact"
 CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
-    ("Tooth pair", "Generated surfaces, limits and the unloaded pair.", ("tooth_pair",)),
+    (
+        "Tooth pair",
+        "Generated surfaces, limits and the unloaded pair.",
+        ("tooth_pair", "tooth_sections", "separation"),
+    ),
     (
         "Loaded contact",
         "Unilateral contact of all candidate tooth pairs on the bodies' finite element compliance. Average "

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
+from facegear.errors import chosen
 from facegear.results.base import Kept, Result
 
 if TYPE_CHECKING:
@@ -29,11 +30,14 @@ class GeometryResult(Result):
         ]
         return pd.DataFrame(rows, columns=["quantity", "value"])
 
-    def plot(self) -> "Figure":
-        """The pair in mesh, its sections, and the gap around the contact point."""
-        from facegear.plots.tooth_pair import tooth_pair
+    def plot(self, what: str = "pair") -> "Figure":
+        """`pair`: both gears in mesh; `sections` of both teeth; `separation` around the contact path."""
+        from facegear.plots.tooth_pair import separation, tooth_pair, tooth_sections
 
-        return tooth_pair(self.content["pair"], self.content["flanks"], self.content["contact"])
+        record, flanks = self.content["pair"], self.content["flanks"]
+        if chosen(what, ("pair", "sections", "separation"), "plot") == "separation":
+            return separation(record, flanks, self.content["contact"])
+        return tooth_pair(record, flanks) if what == "pair" else tooth_sections(record, flanks)
 
 
 def _sections(record: dict) -> list[tuple[str, dict]]:

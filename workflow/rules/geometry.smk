@@ -16,7 +16,7 @@ rule tooth_pair_figure:
         flanks=shared("geometry", "flanks"),
         contact=shared("geometry", "contact"),
     output:
-        **pictures("teeth", "tooth_pair"),
+        **pictures("teeth", "tooth_pair", "tooth_sections", "separation"),
         manifest="results/{case}/figures/tooth_pair.provenance.json",
     script:
         "../scripts/tooth_pair_figure.py"
