@@ -19,6 +19,8 @@ from facegear.geometry.design import PairDesign
 
 Array = NDArray[np.float64]
 
+ROUNDING = 16 * np.finfo(float).eps
+
 
 def shaper_numbers(design: PairDesign) -> tuple[float, float, float, float]:
     """(r_b, m2s, th_os, lift) of the shaper."""
@@ -76,7 +78,7 @@ def psi_at(design: PairDesign, radius: ArrayLike, roll: ArrayLike) -> Array:
     def residual(psi: Array) -> tuple[Array, Array]:
         return closed_forms.radius_at_roll(base, ratio, radius, roll, psi)
 
-    return _newton(residual, local_pressure_angle(design, radius), "psi at a gear radius")
+    return _newton(residual, local_pressure_angle(design, radius), radius**2, "psi at a gear radius")
 
 
 def roll_and_psi_at_height(design: PairDesign, radius: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:
@@ -91,7 +93,7 @@ def roll_and_psi_at_height(design: PairDesign, radius: ArrayLike, z: ArrayLike) 
     def residual(psi: Array) -> tuple[Array, Array]:
         return closed_forms.radius_at_height(base, ratio, radius, height, psi)
 
-    psi = _newton(residual, local_pressure_angle(design, radius), "flank at a height")
+    psi = _newton(residual, local_pressure_angle(design, radius), radius**2, "flank at a height")
     return closed_forms.roll_at_height(height, psi), psi
 
 
@@ -110,7 +112,8 @@ def tip_roll(design: PairDesign) -> "scipy.interpolate.CubicSpline":
     )
 
 
-def _newton(residual: Callable[[Array], tuple[Array, Array]], psi: Array, where: str) -> Array:
+def _newton(residual: Callable[[Array], tuple[Array, Array]], psi: Array, size: Array, where: str) -> Array:
+    """The root near psi of a difference of numbers of a `size`, exact near a fold before psi is."""
     for _ in range(60):
         value, slope = residual(psi)
         step = np.clip(value / slope, -0.1, 0.1)
@@ -119,7 +122,7 @@ def _newton(residual: Callable[[Array], tuple[Array, Array]], psi: Array, where:
             return psi
         if not np.all(np.isfinite(psi)):
             break
-    if np.all(np.isfinite(psi)) and np.all(np.abs(step) < 1e-12):
+    if np.all(np.isfinite(psi)) and np.all((np.abs(step) < 1e-12) | (np.abs(value) <= ROUNDING * size)):
         return psi
     raise NotConverged("geometry", where, "60 Newton steps on psi")
 

@@ -4,11 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import acos, atan, cos, hypot, pi, sin, sqrt, tan
 
-import scipy
-
 from facegear.errors import GeometryError, NotConverged
 from facegear.geometry import face_gear
 from facegear.geometry.design import PairDesign
+from facegear.geometry.roots import root
 
 THINNEST_LAND = 0.05
 """Thinnest tip or root land, in modules: less cannot be cut, nor meshed."""
@@ -81,7 +80,7 @@ def _last(room: Callable[[PairDesign, float], float], design: PairDesign, low: f
         return low
     if room(design, high) >= 0:
         return high
-    return float(scipy.optimize.brentq(lambda radius: room(design, radius), low, high, xtol=1e-9))
+    return root(lambda radius: room(design, radius), low, high, 1e-9)
 
 
 def _land_left(design: PairDesign, radius: float) -> float:
@@ -103,7 +102,7 @@ def undercut_radius(design: PairDesign) -> float:
     def margin(psi: float) -> float:
         return tan(psi) / 2 * (1 + sqrt(1 + 4 / (ratio * cos(psi)) ** 2)) - roll
 
-    psi = scipy.optimize.brentq(margin, 0.0, atan(roll), xtol=1e-15)
+    psi = root(margin, 0.0, atan(roll))
     return hypot(base * (sin(psi) - roll * cos(psi)), base / (ratio * cos(psi)))
 
 
@@ -112,14 +111,13 @@ def tip_plane_radius(design: PairDesign) -> float:
     base, ratio = design.shaper_base_radius, design.shaper_ratio
     height = (design.shaper_lift - design.gear_tip_plane) / base
 
-    def radius(psi: float) -> float:
-        return hypot(base * (1 - height * cos(psi)) / sin(psi), base / (ratio * cos(psi)))
+    def slope(psi: float) -> float:
+        """Of half the radius squared, over base squared."""
+        outwards = (1 - height * cos(psi)) * (height - cos(psi)) / sin(psi) ** 3
+        return outwards + sin(psi) / (ratio**2 * cos(psi) ** 3)
 
-    return float(
-        scipy.optimize.minimize_scalar(
-            radius, bounds=(1e-4, 1.0), method="bounded", options={"xatol": 1e-10}
-        ).fun
-    )
+    psi = root(slope, 1e-4, 1.0)
+    return hypot(base * (1 - height * cos(psi)) / sin(psi), base / (ratio * cos(psi)))
 
 
 def _pointing_radii(design: PairDesign) -> tuple[float, float]:
@@ -139,7 +137,7 @@ def _pointing_radii(design: PairDesign) -> tuple[float, float]:
         raise GeometryError(
             "face_gear.addendum_modules", round(tip, 6), "less: the tooth is pointed everywhere"
         )
-    planar_psi = scipy.optimize.brentq(planar, thickest, pi / 2, xtol=1e-15)
+    planar_psi = root(planar, thickest, pi / 2)
     exact_psi = _root_near(exact, planar_psi)
     roll = (height - cos(exact_psi)) / sin(exact_psi)
     exact_radius = hypot(base * (sin(exact_psi) - roll * cos(exact_psi)), base / (ratio * cos(exact_psi)))
@@ -152,6 +150,6 @@ def _root_near(function: Callable[[float], float], guess: float) -> float:
     while width < 1.0:
         low, high = max(guess - width, 1e-3), min(guess + width, pi / 2 - 1e-6)
         if function(low) * function(high) <= 0:
-            return scipy.optimize.brentq(function, low, high, xtol=1e-15)
+            return root(function, low, high)
         width *= 2
     raise NotConverged("geometry", "the pointing limit", f"brackets up to 1 rad around {guess:.4f} rad")

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign, Relief
 from facegear.geometry.pinion_surface import fillet_points, flank_points
+from facegear.geometry.placement import body_rotation
 
 Array = NDArray[np.float64]
 Body = Literal["pinion", "face_gear"]
@@ -67,10 +68,7 @@ def numbers(count: int) -> range:
 
 def turned(points: Array, body: Body, angle: float) -> Array:
     """Points (..., 3) of a body turned about its axis by `angle` (rad, positive as in `design`)."""
-    c, s = np.cos(angle), np.sin(angle)
-    x, y, z = points[..., 0], points[..., 1], points[..., 2]
-    parts = (c * x - s * z, y, s * x + c * z) if body == "pinion" else (c * x + s * y, c * y - s * x, z)
-    return np.stack(parts, axis=-1)
+    return points @ body_rotation(body, angle).T
 
 
 def mirrored(patch: Array) -> Array:

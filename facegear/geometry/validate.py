@@ -1,5 +1,6 @@
 """Refuses designs that cannot exist, naming the config key, its value and what is allowed."""
 
+from functools import lru_cache
 from math import cos, inf, pi, sin, tan
 
 import numpy as np
@@ -15,6 +16,7 @@ NARROWEST = 0.5
 """Narrowest pinion over the gear's face."""
 
 
+@lru_cache(maxsize=64)
 def check(design: PairDesign) -> RadiusLimits:
     """Limits of the gear's radii, if the design can exist.
 
