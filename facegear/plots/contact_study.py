@@ -14,18 +14,23 @@ LINES = ("-", "--", "-.", ":")
 
 
 def contact_study(cases: Sequence[StudiedContact], torque: float, title: str) -> Figure:
-    """Transmission error, average stiffness and radius of the contact over a pitch at a torque (N m)."""
+    """Transmission error less its mean, average stiffness and radius of the contact over a pitch at a torque (N m)."""
     with styled():
         figure, axes = plt.subplots(3, 1, figsize=(NARROW, 7.8 + 0.22 * len(cases)), sharex=True)
         error, stiffness, path = axes
         for number, case in enumerate(cases):
             rows = closed(case.over_pitch(torque))
             look = {"color": COLOURS[number % len(COLOURS)], "ls": LINES[number // len(COLOURS) % len(LINES)]}
-            error.plot(rows["position"], rows["ste_um"], label=case.label_at(torque), **look)
+            error.plot(
+                rows["position"],
+                rows["ste_um"] - rows["ste_um"].iloc[:-1].mean(),
+                label=case.label_at(torque),
+                **look,
+            )
             stiffness.plot(rows["position"], 1e-8 * rows["k_average_n_per_m"], **look)
             path.plot(rows["position"], rows["path_radius_mm"], **look)
             path.axhline(case.unloaded_path_mm, **{**look, "ls": ":"}, lw=0.9)
-        error.set(ylabel="Static transmission error (µm)")
+        error.set(ylabel="Static transmission error\nless its mean (µm)")
         stiffness.set(ylabel="Average stiffness (10$^8$ N/m)")
         path.set(ylabel="Radius of the contact (mm)\nloaded; dotted: unloaded, mean", xlim=(0, 1))
         path.set_xlabel("Position (pitches)")
