@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import matplotlib.pyplot as plt
+import pandas as pd
 from matplotlib.figure import Figure
 
 from facegear.contact.studies import StudiedContact
@@ -14,19 +15,14 @@ LINES = ("-", "--", "-.", ":")
 
 
 def contact_study(cases: Sequence[StudiedContact], torque: float, title: str) -> Figure:
-    """Transmission error less its mean, average stiffness and radius of the contact over a pitch at a torque (N m)."""
+    """Transmission error less its mean, average stiffness, contact radius over a pitch at a torque (N m)."""
     with styled():
         figure, axes = plt.subplots(3, 1, figsize=(NARROW, 7.8 + 0.22 * len(cases)), sharex=True)
         error, stiffness, path = axes
         for number, case in enumerate(cases):
             rows = closed(case.over_pitch(torque))
             look = {"color": COLOURS[number % len(COLOURS)], "ls": LINES[number // len(COLOURS) % len(LINES)]}
-            error.plot(
-                rows["position"],
-                rows["ste_um"] - rows["ste_um"].iloc[:-1].mean(),
-                label=case.label_at(torque),
-                **look,
-            )
+            error.plot(rows["position"], _variation(rows["ste_um"]), label=case.label_at(torque), **look)
             stiffness.plot(rows["position"], 1e-8 * rows["k_average_n_per_m"], **look)
             path.plot(rows["position"], rows["path_radius_mm"], **look)
             path.axhline(case.unloaded_path_mm, **{**look, "ls": ":"}, lw=0.9)
@@ -37,6 +33,11 @@ def contact_study(cases: Sequence[StudiedContact], torque: float, title: str) ->
         figure.legend(*error.get_legend_handles_labels(), loc="outside lower center", ncols=2)
         figure.suptitle(f"{title}\nat {torque:g} N m on the pinion", fontsize=9)
     return figure
+
+
+def _variation(closed_curve: pd.Series) -> pd.Series:
+    """Less the mean over the pitch, whose end repeats its beginning."""
+    return closed_curve - closed_curve.iloc[:-1].mean()
 
 
 def pattern_study(cases: Sequence[StudiedContact], torque: float) -> Figure:
