@@ -44,11 +44,11 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
     reach = ", ".join(f"{100 * level:g} %: {fit.orders_within(level)}" for level in LEVELS)
     error, cut = unloaded_series(ltca, series.order)
     between = table.interpolation_error(request.torque, request.definition)
+    loads = "" if np.isnan(between) else f"interpolation between loads {100 * between:.2g} %; "
     summary = (
         f"{request.definition} stiffness at {request.torque:g} N m, mean {fit.series.mean:.4g} N/m "
         f"times {scale:.4f}; orders for an error of the peak-to-peak of {reach}; "
-        f"interpolation between loads {100 * between:.2g} %; "
-        f"unloaded transmission error {1e6 * peak_to_peak(error):.3g} um peak to peak"
+        f"{loads}unloaded transmission error {1e6 * peak_to_peak(error):.3g} um peak to peak"
     )
     return Stiffness(
         curve_table(table.positions, scale * samples, series),
