@@ -13,10 +13,13 @@ from facegear.errors import ConfigError, ConfigErrors
 
 STAGE_KEYS: dict[str, tuple[str, ...]] = {
     "geometry": ("tooth_pair",),
-    "mesh": ("tooth_pair", "mesh"),
     "contact": ("tooth_pair", "mesh", "contact"),
     "root_stress": ("tooth_pair", "mesh", "contact"),
     "stiffness": ("tooth_pair", "mesh", "contact", "mesh_stiffness"),
+    "load_sharing": (
+        *("tooth_pair", "mesh", "contact", "mesh_stiffness"),
+        *("transmission", "dynamics", "load_sharing"),
+    ),
 }
 """Config keys that each stage's results depend on, those of the stages before it included."""
 

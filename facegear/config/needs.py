@@ -49,6 +49,7 @@ NEEDS: dict[str, Slice] = {
     },
     "ratings": {**_MACHINE, "speed_rpm": "dynamics.speed_rpm"},
     "machine": _MACHINE,
+    "hunting": {**_MACHINE, "positions": "load_sharing.hunting_positions"},
     "load_sharing_reference": {
         **_MACHINE,
         **_ACCURACY,
@@ -67,6 +68,7 @@ UPSTREAM = {
     "branches": ("branches_starts", "dynamics_sweep"),
     "branches_loci": ("branches",),
     "load_sharing": ("stiffness",),
+    "hunting": ("stiffness",),
 }
 """Stages whose results a stage uses."""
 

@@ -115,9 +115,9 @@ def needs(rule):
     return values
 
 
-def whole_config(wildcards):
-    """All values of a case's config."""
-    return CASES[wildcards.case]
+def sections(*keys):
+    """Function of the wildcards giving these keys of a case's config, as a config of its own."""
+    return lambda wildcards: {key: CASES[wildcards.case][key] for key in keys}
 
 
 def shared(rule, output):

@@ -1,7 +1,5 @@
 rule compliance:
     "Flank compliance"
-    input:
-        quality=shared("mesh", "quality"),
     output:
         arrays="results/{case}/compliance/{body}.npz",
         manifest="results/{case}/compliance/{body}.provenance.json",

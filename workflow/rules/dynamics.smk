@@ -1,6 +1,14 @@
 include: "functions/dynamics.smk"
 
 
+rule machine_code:
+    "Machine code of the time integration"
+    output:
+        manifest="results/{case}/dynamics/machine_code.provenance.json",
+    script:
+        "../scripts/machine_code.py"
+
+
 rule dynamics_response:
     "Response at the nominal speed"
     input:

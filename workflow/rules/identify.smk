@@ -11,7 +11,7 @@ rule identify_branch:
     wildcard_constraints:
         branch="[a-z_-]+",
     params:
-        values=whole_config,
+        values=sections("tooth_pair", "transmission", "mesh_stiffness", "dynamics"),
         identify=IDENTIFY_VALUES,
     script:
         "../scripts/identify_branch.py"
@@ -30,7 +30,7 @@ rule identify_sets:
         png="results/{case}/figures/identify_landscape.png",
         manifest="results/{case}/identify/identify.provenance.json",
     params:
-        values=whole_config,
+        values=sections("tooth_pair", "transmission", "mesh_stiffness", "dynamics"),
         identify=IDENTIFY_VALUES,
     script:
         "../scripts/identify_sets.py"

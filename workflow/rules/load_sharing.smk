@@ -37,9 +37,6 @@ rule hunting:
         scan="results/{case}/load_sharing/bearing_stiffness.csv",
         sensitivity="results/{case}/load_sharing/sensitivity.csv",
         manifest="results/{case}/load_sharing/hunting.provenance.json",
-    params:
-        **values_of(positions="load_sharing.hunting_positions"),
-        machine=needs("machine"),
     script:
         "../scripts/hunting.py"
 
@@ -102,6 +99,6 @@ rule load_sharing_figures:
     params:
         titles=[(study.title, study.figures is not None) for study in STUDIES],
         kinds=SHARING_KINDS,
-        values=whole_config,
+        values=sections("tooth_pair", "transmission", "mesh_stiffness"),
     script:
         "../scripts/load_sharing_figures.py"

@@ -1,7 +1,5 @@
 rule mesh:
     "Meshes of both bodies"
-    input:
-        pair=shared("geometry", "pair"),
     output:
         pinion_msh="results/{case}/mesh/pinion.msh",
         pinion_vtu="results/{case}/mesh/pinion.vtu",

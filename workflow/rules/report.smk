@@ -12,6 +12,9 @@ rule report:
         html="results/{case}/report.html",
         manifest="results/{case}/report.provenance.json",
     params:
-        values=whole_config,
+        values=sections(
+            *("case", "tooth_pair", "transmission", "mesh", "contact"),
+            *("mesh_stiffness", "dynamics", "studies", "reproduction"),
+        ),
     script:
         "../scripts/report.py"

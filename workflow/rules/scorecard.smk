@@ -40,6 +40,6 @@ rule scorecard:
         html="results/{case}/scorecard.html",
         manifest="results/{case}/scorecard.provenance.json",
     params:
-        values=whole_config,
+        values=sections("tooth_pair", "transmission", "mesh_stiffness"),
     script:
         "../scripts/scorecard.py"

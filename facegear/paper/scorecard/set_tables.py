@@ -1,5 +1,6 @@
 """The dynamic tables of a case and its studies, by the stages that the workflow runs, in memory."""
 
+import json
 from collections.abc import Mapping
 from typing import Any
 
@@ -12,6 +13,7 @@ from facegear.stages.dynamics_sweep import dynamics_sweep
 from facegear.stages.dynamics_sweep_chunk import dynamics_sweep_chunk
 from facegear.stages.load_sharing import load_sharing
 from facegear.stages.load_sharing_reference import load_sharing_reference
+from facegear.stages.outcome import Outcome
 from facegear.stages.stiffness import stiffness
 
 Values = Mapping[str, Any]
@@ -24,10 +26,7 @@ def set_tables(base: Values, points: Mapping[tuple[str, str], Values], ltca: pd.
     """
     harmonics = stiffness(**stage_needs("stiffness", base), ltca=ltca).content["harmonics"]
     response = dynamics_response(harmonics, **stage_needs("dynamics_response", base))
-    sharing = {
-        key: load_sharing(harmonics, **stage_needs("load_sharing", values))
-        for key, values in {(NOMINAL, NOMINAL): base, **points}.items()
-    }
+    sharing = _sharing({(NOMINAL, NOMINAL): base, **points}, harmonics)
     reference = load_sharing_reference(harmonics, **stage_needs("load_sharing_reference", base))
     return {
         **response.content,
@@ -36,6 +35,19 @@ def set_tables(base: Values, points: Mapping[tuple[str, str], Values], ltca: pd.
         "curves": collected({key: one.content["curve"] for key, one in sharing.items()}),
         "reference": reference.content["reference"],
     }
+
+
+def _sharing(cases: Mapping[tuple[str, str], Values], harmonics: pd.DataFrame) -> dict[Any, Outcome]:
+    """Load sharing of every case; cases that are the same machine are computed once."""
+    known: dict[str, Outcome] = {}
+    found = {}
+    for key, values in cases.items():
+        needs = stage_needs("load_sharing", values)
+        machine = json.dumps(needs)
+        if machine not in known:
+            known[machine] = load_sharing(harmonics, **needs)
+        found[key] = known[machine]
+    return found
 
 
 def _sweep(base: Values, harmonics: pd.DataFrame) -> Mapping[str, Any]:

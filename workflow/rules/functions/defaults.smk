@@ -1,3 +1,18 @@
+PRIORITIES = {
+    "machine_code": 100,
+    "compliance": 90,
+    "contact": 80,
+    "stiffness": 75,
+    "scorecard_set": 70,
+    "dynamics_sweep_chunk": 60,
+    "dynamics_sweep": 60,
+    "dynamics_figures": 60,
+    "branches_starts": 50,
+    "branches": 50,
+}
+"""What starts first where several jobs may: long jobs and those that long ones wait for, so that short ones fill in."""
+
+
 def complete(job):
     """Add what all jobs share, under names made of the rule's and its wildcards.
 
@@ -11,6 +26,7 @@ def complete(job):
     job.set_log(f"results/{{case}}/logs/{name}.log")
     job.benchmark = f"results/{{case}}/benchmarks/rules/{name}.tsv"
     job.conda_env = "../envs/facegear.yaml"
+    job.priority = PRIORITIES.get(job.name, 0)
     job.message = f"{job.docstring}: {{wildcards}}"
     if job.name in NEEDS:
         job.set_params(needs=needs(job.name))

@@ -14,9 +14,15 @@ SHARING_FIGURES = [f"study_{study.name}_{kind}" for study in STUDIES for kind in
 
 
 def sharing_files(output, nominal=False):
-    """Function of the wildcards giving a file of every study's point, after the nominal case's if asked for."""
-    points = [f"{{case}}/studies/{study}/{point}" for study, point in STUDY_POINTS]
-    cases = ["{case}"] * nominal + points
-    return lambda wildcards: [
-        rules.load_sharing.output[output].format(case=case.format(case=wildcards.case)) for case in cases
-    ]
+    """Function of the wildcards giving a file of every study's point, after the nominal case's if asked for.
+
+    Points that are the same machine, the nominal one mostly, have one file.
+    """
+
+    def files(wildcards):
+        points = [f"{wildcards.case}/studies/{study}/{point}" for study, point in STUDY_POINTS]
+        cases = [wildcards.case] * nominal + points
+        alike = [shared_source(CASES, case, "load_sharing") for case in cases]
+        return [rules.load_sharing.output[output].format(case=case) for case in alike]
+
+    return files

@@ -9,7 +9,7 @@ def stages(case):
     found += [rules.contact_studies] if CONTACT_STUDIES else []
     if CASES[case]["transmission"] is None:
         return found
-    found += [rules.ratings, rules.modal, rules.modal_figure]
+    found += [rules.machine_code, rules.ratings, rules.modal, rules.modal_figure]
     found += [rules.dynamics_response, rules.dynamics_sweep, rules.dynamics_figures]
     if CASES[case]["branches"]:
         found += [rules.branches, rules.branches_loci, rules.branches_figures]

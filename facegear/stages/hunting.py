@@ -1,0 +1,31 @@
+"""Quasi-static load sharing over the hunting cycle, against bearing stiffness, and error by error."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+
+from facegear.config.machines import wired_machine
+from facegear.load_sharing.hunting import hunting_cycle
+from facegear.load_sharing.hunting_tables import bearing_table, cycle_table, group_table, mesh_table
+from facegear.load_sharing.sensitivity import bearing_scan, sensitivities
+from facegear.stages.outcome import Outcome
+
+
+def hunting(
+    harmonics: pd.DataFrame, transmission: Mapping[str, Any], teeth: Mapping[str, Any], positions: int
+) -> Outcome:
+    """Tables `meshes`, `groups`, `bearings`, `cycles`, `scan`, `sensitivity`. Raises NotConverged."""
+    machine = wired_machine(transmission, teeth, harmonics)
+    found = hunting_cycle(machine, positions)
+    content = {
+        "meshes": mesh_table(found),
+        "groups": (groups := group_table(found)),
+        "bearings": bearing_table(found),
+        "cycles": cycle_table(found),
+        "scan": bearing_scan(machine),
+        "sensitivity": sensitivities(machine),
+    }
+    worst = groups.loc[groups["k_gamma"].idxmax()]
+    told = f"K_gamma {worst['k_gamma']:.3f} ({worst['group']}) over {worst['mesh_cycles']:.0f} mesh cycles"
+    return Outcome(content, told)
