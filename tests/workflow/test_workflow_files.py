@@ -1,5 +1,6 @@
-"""Rules are complete, formatted and lint clean."""
+"""Rules are complete, take what they use, and are formatted and lint clean."""
 
+import ast
 import json
 import subprocess
 import sys
@@ -8,21 +9,29 @@ from pathlib import Path
 import pytest
 from projects import ROOT, Project
 
+from facegear.config.load import load_values
 from facegear.config.yaml_file import read_yaml
+from facegear.report.inputs import inputs_in_words
 
 SCRIPTS = sorted((ROOT / "workflow" / "scripts").glob("*.py"))
+STAGES = sorted((ROOT / "facegear" / "stages").glob("*.py"))
 TOLD = """
 import json
+from types import SimpleNamespace
 
 def told(rule):
+    values = rule.params.get("values")
     return {
         "log": list(rule.log), "benchmark": rule.benchmark, "threads": rule.resources["_cores"].value,
         "memory": "mem_mb" in rule.resources, "runtime": "runtime" in rule.resources, "message": rule.message,
         "environment": rule.conda_env, "code": rule.params.get("code"), "script": rule.script,
         "outputs": [str(file) for file in rule.output],
+        "taken": [list(rule.input.keys()), sorted({*rule.params.keys()} - {"code", "needs"})],
+        "sections": [*values(SimpleNamespace(case=CASE))] if values else ["none"],
     }
 
 Path("rules.json").write_text(json.dumps({rule.name: told(rule) for rule in workflow.rules if rule.output}))
+assert set(PRIORITIES) <= {rule.name for rule in workflow.rules}
 """
 
 
@@ -52,6 +61,59 @@ def test_rules_share_no_log_and_no_benchmark(rules):
 def test_every_script_has_the_name_of_its_rule(rules):
     assert {name: Path(rule["script"]).stem for name, rule in rules.items()} == {name: name for name in rules}
     assert sorted(rules) == [script.stem for script in SCRIPTS]
+
+
+def test_every_input_and_parameter_of_a_rule_is_used_by_its_script(rules):
+    """What a script names is an attribute or a text in it; those that take all by `items()` name none."""
+    for name, rule in rules.items():
+        words = {word for node in ast.walk(_script(name)) for word in _words(node)}
+        inputs, parameters = rule["taken"]
+        assert set(parameters) <= words, name
+        assert set(inputs) <= words or "items" in words, name
+
+
+def test_no_script_reads_a_file_and_drops_what_it_read():
+    for script in SCRIPTS:
+        for node in ast.walk(_script(script.stem)):
+            if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
+                assert "read" not in _words(node.value.func), script
+
+
+def test_every_stage_uses_all_that_it_is_given():
+    functions = [node for path in STAGES for node in ast.parse(path.read_text()).body]
+    for function in (node for node in functions if isinstance(node, ast.FunctionDef)):
+        read = {node.id for node in ast.walk(function) if isinstance(node, ast.Name)}
+        assert {argument.arg for argument in function.args.args} <= read, function.name
+
+
+def test_no_rule_is_handed_the_whole_config(rules):
+    whole = set(load_values([ROOT / "config" / "paper.yaml"], {}))
+    for name, rule in rules.items():
+        assert set(rule["sections"]) < whole | {"none"}, name
+
+
+@pytest.mark.parametrize("rule", ["load_sharing_figures", "scorecard"])
+def test_captions_are_handed_the_sections_that_they_tell_of(rules, rule):
+    read = set()
+
+    class Recorded(dict):
+        def __getitem__(self, key):
+            read.add(key)
+            return super().__getitem__(key)
+
+    inputs_in_words(Recorded(load_values([ROOT / "config" / "paper.yaml"], {})))
+    assert set(rules[rule]["sections"]) == read
+
+
+def _script(name):
+    return ast.parse((ROOT / "workflow" / "scripts" / f"{name}.py").read_text())
+
+
+def _words(node):
+    """Attribute names and texts at a node."""
+    if isinstance(node, ast.Attribute):
+        return {node.attr}
+    return {node.value} if isinstance(node, ast.Constant) else set()
 
 
 def test_the_profile_names_rules_that_exist(rules):
