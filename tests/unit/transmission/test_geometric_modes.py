@@ -1,19 +1,25 @@
 """Modes of geometric meshes, beside those of equation (13) as printed."""
 
+import subprocess
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+from hypothesis import event, given, settings
+from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 
 from facegear.transmission.imperfections import perfect
 from facegear.transmission.layout import MeshKinematics, Tilt
-from facegear.transmission.loaded_modes import loaded_modes, working_flanks
+from facegear.transmission.loaded_modes import _forces_by_active_sets, loaded_modes, working_flanks
 from facegear.transmission.mode_classes import ModeClass, name_modes
 from facegear.transmission.modes import natural_modes
 from facegear.transmission.statics import mean_equilibrium
+
+ROOT = Path(__file__).parents[3]
 
 LAYOUT = make_layout(kinematics=MeshKinematics.GEOMETRIC)
 
@@ -29,6 +35,36 @@ def test_with_a_large_tail_torque_the_tail_idlers_upper_mesh_changes_flank():
     working = working_flanks(make_machine(LAYOUT, torque=2000.0, tail_share=0.9))
     drive, back = np.split(working, 2)
     assert back[5] and not drive[5]
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    st.integers(0, 2**31), st.floats(50.0, 4000.0), st.floats(0.0, 0.9), st.floats(1e-6, 2e-4), st.booleans()
+)
+def test_active_sets_find_the_flank_forces_of_the_compiled_statics(seed, torque, share, backlash, flawed):
+    random = np.random.default_rng(seed)
+    flaws = perfect(LAYOUT)
+    if flawed:
+        flaws = replace(
+            flaws,
+            error=15e-6 * random.normal(size=len(LAYOUT.meshes)),
+            position=15e-6 * random.normal(size=(len(LAYOUT.pinions), 2)),
+            stiffness=random.uniform(0.7, 1.4, len(LAYOUT.meshes)),
+        )
+    machine = make_machine(LAYOUT, torque, share, backlash, imperfections=flaws)
+    forces, exact = _forces_by_active_sets(machine), mean_equilibrium(machine).flank_forces[0]
+    event("settled" if forces is not None else "left to the compiled statics")
+    if forces is not None:
+        np.testing.assert_allclose(forces, exact, atol=1e-9 * exact.max())
+
+
+def test_modes_of_geometric_meshes_need_no_compiled_code():
+    code = (
+        "import sys, facegear; found = facegear.load('facegear/example.yaml', None).modes();"
+        "print(found.values['transmission']['mesh_kinematics'], 'numba' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["geometric", "False"]
 
 
 def test_pinions_float_in_one_direction_less_and_the_rigid_modes_stay():
@@ -79,7 +115,7 @@ def test_inputs_float_along_one_line_and_idlers_along_none():
 
 
 def test_the_table_of_both_kinematics_in_the_docs_is_what_the_model_gives():
-    told = (Path(__file__).parents[3] / "docs" / "validation.md").read_text().splitlines()
+    told = (ROOT / "docs" / "validation.md").read_text().splitlines()
     for line in table_lines():
         assert line in told
 
