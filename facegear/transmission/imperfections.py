@@ -1,6 +1,6 @@
 """What makes one mesh or one body of a real gearbox differ from the others."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +51,18 @@ class Imperfections:
         """Whether an error changes from one mesh cycle to the next."""
         turning = (*self.pinion_runout, *self.gear_runout)
         return bool(self.pinion_pitch or self.gear_pitch or any(one.amplitude != 0.0 for one in turning))
+
+    @property
+    def standing(self) -> "Imperfections":
+        """The same without what changes from one mesh cycle to the next, as steady motions see it."""
+        pinions, gears = len(self.pinion_runout), len(self.gear_runout)
+        return replace(
+            self,
+            pinion_runout=(Runout(),) * pinions,
+            gear_runout=(Runout(),) * gears,
+            pinion_pitch={},
+            gear_pitch={},
+        )
 
 
 def perfect(layout: Layout) -> Imperfections:

@@ -2,6 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from lumped_machines import make_layout, make_machine
 
 from facegear.dynamics.motion import Settings
 from facegear.harmonics.series import Harmonics
@@ -11,6 +12,8 @@ from facegear.load_sharing.reference import reference_table, slow_forces, speed_
 from facegear.load_sharing.run import load_sharing
 from facegear.load_sharing.statics import static_forces
 from facegear.load_sharing.tables import CURVE_COLUMNS, SUMMARY_COLUMNS, curve_table, summary_table
+from facegear.transmission.imperfections import Runout, perfect
+from facegear.transmission.layout import MeshKinematics
 
 OPTIONS = SharingOptions(64, 24, 2, 2e-5, 0, 0.95, 60.0, SpeedRange(2000.0, 9000.0, 3))
 SETTINGS = Settings(tolerance=1e-4, settle=128)
@@ -32,6 +35,27 @@ def test_quasi_static_coefficient_tends_to_the_static_one_as_speed_falls(tight):
     assert off[1] < 0.7 * off[0]
     assert off[2] < 0.7 * off[1]
     assert off[2] < 0.01
+
+
+def test_what_a_run_is_held_against_leaves_out_what_it_says_of_every_mesh():
+    """Runouts are in neither static nor slow motion; own e(t) and backlash go with the common ones."""
+    layout = make_layout(kinematics=MeshKinematics.GEOMETRIC)
+    loose = np.full(10, np.nan)
+    loose[2] = 40e-6
+    flaws = replace(
+        perfect(layout),
+        pinion_runout=(Runout(2e-5, 0.3),) * 5,
+        half_backlash=loose,
+        series={7: Harmonics(np.zeros(2), np.array([0.0, 2e-5]))},
+    )
+    plain, quick = make_machine(layout, 1500.0, 0.05, error=4e-6), replace(OPTIONS, slow_rpm=600.0)
+    table = reference_table(replace(plain, imperfections=flaws), SETTINGS, quick).set_index("quantity")
+    exact = reference_table(plain, SETTINGS, quick).set_index("quantity")
+    only_runout = replace(plain, imperfections=replace(flaws, half_backlash=np.full(10, np.nan), series={}))
+    still = reference_table(only_runout, SETTINGS, quick).set_index("quantity")
+    np.testing.assert_allclose(still.loc["static", "mean"], exact.loc["static", "mean"], rtol=1e-12)
+    tight = "no_error_no_backlash"
+    np.testing.assert_allclose(table.loc[tight, "mean"], exact.loc[tight, "mean"], rtol=1e-12)
 
 
 def test_left_and_right_inputs_share_alike_where_the_machine_is_symmetric(tight):

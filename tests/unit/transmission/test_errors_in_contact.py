@@ -58,3 +58,23 @@ def test_an_axial_shim_is_twice_its_sine_of_backlash(design):
     np.testing.assert_allclose(opened, upper, rtol=2e-3)
     assert -opened.sum() == pytest.approx(2.0 * SHIFT * np.sin(np.radians(25.0)), rel=2e-3)
     np.testing.assert_allclose(closed_by(design, axial_shift=-SHIFT), lower, rtol=2e-3)
+
+
+@pytest.mark.parametrize(
+    "assembly",
+    [
+        {"offset": 60e-6},
+        {"axial_shift": 40e-6},
+        {"shaft_angle_error": np.radians(0.05)},
+        {"offset": -30e-6, "axial_shift": 25e-6, "shaft_angle_error": np.radians(-0.03)},
+    ],
+)
+@pytest.mark.parametrize("config", ["paper", "two_pinion"])
+def test_errors_of_assembly_change_the_unloaded_errors_mean_and_nothing_else(config, assembly):
+    """Why e(t) from contact is one series for all meshes: a pinion out of place adds a constant only."""
+    design = replace(
+        pair_design(load_config(f"config/{config}.yaml").tooth_pair), assembly=Assembly(**assembly)
+    )
+    cycle = 2.0 * np.pi / design.pinion.teeth * np.linspace(0.0, 1.0, 9)
+    error = unloaded_contact(design, cycle).transmission_error
+    assert np.ptp(error) < 1e-11
