@@ -54,7 +54,14 @@ class MissingExtra(FacegearError):
         self.library, self.extra = library, extra
 
 
-EXTRAS = {"skfem": "fe", "gmsh": "fe", "meshio": "fe", "jinja2": "workflow", "snakemake": "workflow"}
+EXTRAS = {
+    "skfem": "fe",
+    "gmsh": "fe",
+    "meshio": "fe",
+    "jinja2": "workflow",
+    "snakemake": "workflow",
+    "pyarrow": "workflow",
+}
 """Modules that the core does without, and the extra that holds each."""
 
 

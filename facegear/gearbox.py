@@ -11,7 +11,7 @@ from facegear.config.cases import changed_config
 from facegear.config.load import load_config
 from facegear.config.model import Config, resolved
 from facegear.config.needs import stage_needs
-from facegear.errors import extras_named
+from facegear.errors import ConfigError, extras_named
 from facegear.results.store import Store, case_folder
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from facegear.results.root_stress import RootStressResult
     from facegear.results.stiffness import StiffnessResult
     from facegear.results.sweep import SweepResult
+    from facegear.results.tolerances import TolerancesResult
     from facegear.stages.outcome import Outcome
 
 
@@ -321,6 +322,20 @@ class Gearbox:
         found = self.store.result("branches", self.values, BranchesResult, self._follow_branches)
         return replace(found, content={**found.content, "sweep": self.sweep().content["sweep"]})
 
+    def tolerances(self, samples: int | None = None) -> "TolerancesResult":
+        """Percentiles, shares and Sobol indices of the machine with its tolerances, in one process.
+
+        `samples`: as many instead of the config's, without Sobol indices. Raises ConfigErrors without a
+        section `tolerances`.
+        """
+        from facegear.results.tolerances import TolerancesResult
+
+        changes = {} if samples is None else {"samples": samples, "chunk_samples": samples, "index_blocks": 0}
+        if self.values["tolerances"] is None:
+            raise ConfigError("tolerances", None, "a section of the config: causes and what is asked of them")
+        gearbox = self._changed("tolerances", {f"tolerances.{key}": value for key, value in changes.items()})
+        return gearbox.store.result("tolerances", gearbox.values, TolerancesResult, gearbox._tolerances)
+
     def __repr__(self) -> str:
         pair, machine = self.config.tooth_pair, self.config.transmission
         pinions, gears = (len(machine.pinions), len(machine.face_gears)) if machine else (1, 1)
@@ -365,6 +380,22 @@ class Gearbox:
         section = self.values["mesh_stiffness"]
         given = section["source"] == "harmonics"
         return stiffness(section, ltca=None if given else self.contact().content["ltca"])
+
+    def _tolerances(self) -> "Outcome":
+        from facegear.config.base import parse
+        from facegear.config.tolerances import Design, Tolerances, sizes
+        from facegear.stages.tolerances import tolerances
+        from facegear.stages.tolerances_chunk import tolerances_chunk
+
+        harmonics, needs = self._harmonics(), self._needs("tolerances_chunk")
+        section = parse(Tolerances, self.values["tolerances"])
+
+        def chunks(design: Design) -> list[Any]:
+            count = sizes(section, design)
+            found = [tolerances_chunk(design, 0, count - 1, harmonics, **needs)] if count else []
+            return [one.content["chunk"] for one in found]
+
+        return tolerances(chunks("samples"), chunks("indices"), **self._needs("tolerances"))
 
     def _harmonics(self) -> Any:
         return self.stiffness().content["harmonics"]

@@ -6,13 +6,16 @@ from math import atan, degrees, pi
 
 import numpy as np
 
+from facegear.config.base import parse
 from facegear.config.contact import Contact
 from facegear.config.lumped_model import ToothNumbers, given_torques, layout, other_gear_torque, tooth_numbers
 from facegear.config.stiffness import MeshStiffness
 from facegear.config.studies import Study
+from facegear.config.tolerances import Tolerances
 from facegear.config.tooth_pair import ToothPair, pair_design
 from facegear.config.transmission import Transmission
-from facegear.errors import ConfigError, NotConverged
+from facegear.config.variants import movable
+from facegear.errors import ConfigError, ConfigErrors, NotConverged
 
 MOST_POINTS = 200
 """Points of all studies of a config together: each is a case of its own with some five jobs."""
@@ -117,6 +120,19 @@ def check_studies(studies: Sequence[Study]) -> None:
     if points > MOST_POINTS:
         told = f"at most {MOST_POINTS} in all: fewer values, several configs, or a loop in Python"
         raise ConfigError("studies", f"{points} points", told)
+
+
+def check_tolerances(section: Tolerances, machine: Transmission) -> None:
+    """Every cause moves numbers that stand in this machine. Raises ConfigError."""
+    keys = [key for cause in section.causes for key in cause.moves]
+    start = movable(machine.model_dump(mode="json"), keys)
+    try:
+        parse(Transmission, start)
+    except ConfigErrors as error:
+        told = error.lines[0]
+        raise ConfigError(
+            "tolerances.causes.moves", keys, f"keys that this machine can have; {told}"
+        ) from None
 
 
 def _pinion_body(pair: ToothPair) -> tuple[float, float]:

@@ -11,6 +11,7 @@ from facegear.config.checks import (
     check_load,
     check_places,
     check_studies,
+    check_tolerances,
     check_torques,
     geometric_backlash,
     memory_here,
@@ -23,6 +24,7 @@ from facegear.config.load_sharing import LoadSharing
 from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.stiffness import MeshStiffness
 from facegear.config.studies import NAME, Study
+from facegear.config.tolerances import Tolerances
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
 from facegear.config.transmission import Transmission
 from facegear.config.transmission_error import FROM_CONTACT
@@ -44,6 +46,9 @@ class Config(Section):
     dynamics: Dynamics = Dynamics()
     branches: Branches | None = Field(None, description="continuation of periodic motions; null: not done")
     load_sharing: LoadSharing = LoadSharing()
+    tolerances: Tolerances | None = Field(
+        None, description="thousands of machines with their tolerances: percentiles, indices; null: not done"
+    )
     studies: tuple[Study, ...] = ()
     reproduction: str | None = Field(
         None,
@@ -83,7 +88,7 @@ class Config(Section):
     def _check_machine(self) -> None:
         pair, machine = self.tooth_pair, self.transmission
         if machine is None:
-            for key in ("studies", "reproduction"):
+            for key in ("studies", "tolerances", "reproduction"):
                 if getattr(self, key):
                     raise ConfigError("transmission", None, f"required by {key}")
             return
@@ -101,7 +106,10 @@ class Config(Section):
         for key, error in errors.items():
             if error.source == "from_contact" and self.mesh_stiffness.source == "harmonics":
                 raise ConfigError(f"transmission.{key}", "from_contact", FROM_CONTACT)
-        require_buildable(with_backlash(pair, machine), pair_teeth(pair))
+        complete = with_backlash(pair, machine)
+        require_buildable(complete, pair_teeth(pair))
+        if self.tolerances is not None:
+            check_tolerances(self.tolerances, complete)
 
 
 def resolved(config: Config) -> dict[str, Any]:

@@ -47,6 +47,16 @@ NEEDS: dict[str, Slice] = {
         "positions": "load_sharing.hunting_positions",
         "cycles": "load_sharing.followed_cycles",
     },
+    "tolerances_chunk": {
+        **_MACHINE,
+        **_ACCURACY,
+        "speed_rpm": "dynamics.speed_rpm",
+        "options": "load_sharing",
+        "tolerances": tuple(
+            f"tolerances.{key}" for key in ("causes", "correlations", "model", "seed", "hunting_cycles")
+        ),
+    },
+    "tolerances": {"tolerances": "tolerances"},
     "ratings": {**_MACHINE, "speed_rpm": "dynamics.speed_rpm"},
     "machine": _MACHINE,
     "hunting": {**_MACHINE, "positions": "load_sharing.hunting_positions"},
@@ -69,6 +79,8 @@ UPSTREAM = {
     "branches_loci": ("branches",),
     "load_sharing": ("stiffness",),
     "hunting": ("stiffness",),
+    "tolerances_chunk": ("stiffness",),
+    "tolerances": ("tolerances_chunk",),
 }
 """Stages whose results a stage uses."""
 

@@ -115,6 +115,9 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
         return [*bearings, *_jumps(tables)]
     if title == "Load sharing at rest" and "following_groups" in tables:
         return [Table(FOLLOWING, tables["following_groups"], 4)]
+    if title == "Tolerances" and "percentiles" in tables:
+        limits = Table("Percentiles with their confidence intervals", tables["percentiles"], 4)
+        return [limits, Table("Share of the samples in which", tables["shares"], 4)]
     if title == "Load sharing" and "summary" in tables:
         columns = [
             "study",

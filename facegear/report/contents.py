@@ -25,6 +25,9 @@ CAPTIONS = {
     "layout": "The machine to scale: directions of rotation, mean forces of meshes and on bearings, at rest.",
     "hunting": "Share of each mesh in its group's load over the hunting cycle, quasi-static.",
     "bearing_stiffness": "K_gamma against the bearing stiffness of inputs and idlers, both kinematics.",
+    "tolerance_distributions": "Share of samples above each value, with percentiles and their intervals.",
+    "tolerance_importance": "Which tolerance matters: total Sobol indices, or rank correlations.",
+    "tolerance_scatter": "Every sample against the two tolerances that matter most.",
     "sensitivity": "Change of K_gamma per micrometre of each error, largest first.",
 }
 
@@ -107,6 +110,12 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "Every position of the hunting cycle as one contact problem with gaps, clearances and all errors. "
         "K_gamma is a path's largest load over an even share of the group's mean; it falls with torque.",
         ("layout", "hunting", "bearing_stiffness", "sensitivity"),
+    ),
+    (
+        "Tolerances",
+        "The machine as a series of machines: causes with their distributions, sampled by scrambled Sobol "
+        "sequences. K_gamma is a path's largest load over an even share of the group's mean.",
+        ("tolerance_distributions", "tolerance_importance", "tolerance_scatter"),
     ),
     (
         "Load sharing",

@@ -26,6 +26,10 @@ class Kept:
         path = folder / self.path
         if path.suffix == ".npz":
             return arrays.read(path, self.holds if isinstance(self.holds, Mapping) else {})
+        if path.suffix == ".parquet":
+            from facegear.io import columnar
+
+            return columnar.read(path, tuple(self.holds))
         if path.suffix == ".json":
             return documents.read(path, tuple(self.holds))
         return tables.read(path, tuple(self.holds), self.may_be_empty, self.text)

@@ -27,7 +27,7 @@ MAY_IMPORT = {
     "strength": {"geometry"},
     "stages": {
         *("config", "geometry", "mesh", "contact", "stiffness", "harmonics"),
-        *("transmission", "dynamics", "load_sharing", "strength"),
+        *("transmission", "dynamics", "load_sharing", "scenarios", "strength"),
     },
     "results": {"config", "provenance", "stages", "contact", "load_sharing", "plots", "report", "strength"},
 }

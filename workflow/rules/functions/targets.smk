@@ -19,6 +19,8 @@ def stages(case):
     if SHARING_KINDS and CASES[case]["transmission"]["mesh_kinematics"] == "geometric":
         found += [rules.hunting, rules.hunting_figures]
         found += [rules.following] if turns(CASES[case]["transmission"]) else []
+    if CASES[case]["tolerances"]:
+        found += [rules.tolerances, rules.tolerances_figures]
     return found + ([rules.scorecard] if REPRODUCTION else [])
 
 
@@ -42,6 +44,8 @@ def report_tables(wildcards):
     if CASES[wildcards.case]["contact"]["root_stress"]:
         tables += [rules.root_stress.output.summary]
     tables += [rules.contact_studies.output.table] if CONTACT_STUDIES else []
+    if CASES[wildcards.case]["tolerances"]:
+        tables += [rules.tolerances.output[name] for name in ("percentiles", "shares")]
     tables += [rules.scorecard.output.csv] if REPRODUCTION else []
     return [path.format(case=wildcards.case) for path in tables]
 

@@ -1,0 +1,155 @@
+"""Config section `tolerances`: what varies from machine to machine, how it is sampled, what is asked."""
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+
+from facegear.config.base import Section, refuse
+
+if TYPE_CHECKING:
+    from facegear.scenarios.sampling import Population
+
+MOST_SAMPLES = 2**24
+MOST_CHUNKS = 500
+
+
+class CauseSection(Section):
+    """Something that varies from machine to machine, and the numbers of the config that it moves."""
+
+    name: str = Field(pattern=r"^[a-z][a-z0-9_]{0,39}$")
+    shape: Literal["normal", "uniform", "rayleigh", "choice"] = "normal"
+    centre: float = Field(0.0, description="of a normal distribution")
+    spread: float | None = Field(
+        None, gt=0, description="standard deviation; of one component where the shape is rayleigh"
+    )
+    limits: tuple[float, float] | None = Field(
+        None, description="of a uniform distribution; where a normal or rayleigh one is cut"
+    )
+    values: tuple[float, ...] = Field((), description="of shape choice, each as likely")
+    moves: dict[str, float] = Field(
+        min_length=1,
+        description="dotted key of a number of `transmission`, or dynamics.speed_rpm -> what one unit of the "
+        "cause adds to it",
+    )
+    source: str = Field(min_length=1, max_length=200, description="ISO grade or drawing that it is from")
+
+    @model_validator(mode="after")
+    def _shaped(self) -> "CauseSection":
+        asks = {
+            "normal": ("spread",),
+            "uniform": ("limits",),
+            "rayleigh": ("spread",),
+            "choice": ("values",),
+        }
+        for key in asks[self.shape]:
+            if not getattr(self, key):
+                refuse(key, getattr(self, key), f"required by shape {self.shape}")
+        if self.limits is not None and self.limits[1] <= self.limits[0]:
+            refuse("limits", list(self.limits), "the lower one first")
+        return self
+
+
+class RankCorrelation(Section):
+    """Two causes that come together."""
+
+    between: tuple[str, str]
+    coefficient: float = Field(gt=-1, lt=1, description="correlation of their normal scores")
+
+
+class Tolerances(Section):
+    """Samples of one machine with its tolerances, and what they say."""
+
+    causes: tuple[CauseSection, ...] = Field(max_length=200, description="at least one")
+    correlations: tuple[RankCorrelation, ...] = ()
+    model: Literal["quasi_static", "dynamic"] = Field(
+        "quasi_static", description="load sharing over the hunting cycle, or of the motion at the speed"
+    )
+    samples: int = Field(1024, ge=1, le=MOST_SAMPLES, description="a multiple of chunk_samples")
+    index_blocks: int = Field(
+        0, ge=0, le=MOST_SAMPLES, description="of the design for Sobol indices, a power of two; 0: none"
+    )
+    chunk_samples: int = Field(256, ge=1, le=100_000, description="samples of one job")
+    seed: int = Field(0, ge=0, le=2**31)
+    confidence: float = Field(0.95, gt=0.5, lt=1.0)
+    hunting_cycles: int = Field(
+        32, ge=1, le=100_000, description="mesh cycles taken from the hunting cycle, evenly spread"
+    )
+
+    @model_validator(mode="after")
+    def _told_apart(self) -> "Tolerances":
+        names = [cause.name for cause in self.causes]
+        if not names:
+            refuse("causes", [], "at least one")
+        for number, name in enumerate(names):
+            if name in names[:number]:
+                refuse(f"causes[{number}].name", name, "a name of its own for each cause")
+        for number, pair in enumerate(self.correlations):
+            if pair.between[0] == pair.between[1] or not set(pair.between) <= set(names):
+                allowed = f"two of {', '.join(names)}"
+                refuse(f"correlations[{number}].between", list(pair.between), allowed)
+        matrix = correlation_matrix(self)
+        if matrix is not None and np.linalg.eigvalsh(matrix)[0] <= 0.0:
+            told = [[*pair.between, pair.coefficient] for pair in self.correlations]
+            refuse("correlations", told, "numbers that can hold together: the matrix is not positive")
+        return self
+
+    @model_validator(mode="after")
+    def _cut(self) -> "Tolerances":
+        if self.samples % self.chunk_samples:
+            below = max(self.samples // self.chunk_samples, 1) * self.chunk_samples
+            refuse("samples", self.samples, f"a multiple of chunk_samples, such as {below}")
+        if self.index_blocks & (self.index_blocks - 1):
+            refuse("index_blocks", self.index_blocks, "a power of two, or 0")
+        if self.index_blocks and self.correlations:
+            refuse("index_blocks", self.index_blocks, "0 where causes are correlated: indices are undefined")
+        chunks = len(chunk_starts(self, "samples")) + len(chunk_starts(self, "indices"))
+        if chunks > MOST_CHUNKS:
+            least = -(-self.chunk_samples * chunks // MOST_CHUNKS)
+            refuse("chunk_samples", self.chunk_samples, f"at least {least}, for at most {MOST_CHUNKS} jobs")
+        return self
+
+
+Design = Literal["samples", "indices"]
+"""Plain samples for percentiles and shares, or Saltelli's design for Sobol indices."""
+
+
+def sizes(section: Tolerances, design: Design) -> int:
+    """How many samples a design has."""
+    return section.samples if design == "samples" else section.index_blocks * (len(section.causes) + 2)
+
+
+def chunk_starts(section: Tolerances, design: Design) -> list[int]:
+    """Number of the first sample of each chunk."""
+    return list(range(0, sizes(section, design), section.chunk_samples))
+
+
+def correlation_matrix(section: Tolerances) -> NDArray[np.float64] | None:
+    """Correlation of the normal scores (causes, causes); None where there is none."""
+    if not section.correlations:
+        return None
+    place = {cause.name: number for number, cause in enumerate(section.causes)}
+    matrix = np.eye(len(place))
+    for pair in section.correlations:
+        one, other = (place[name] for name in pair.between)
+        matrix[one, other] = matrix[other, one] = pair.coefficient
+    return matrix
+
+
+def population(section: Tolerances) -> "Population":
+    """The causes with their distributions, as they are sampled."""
+    # Imported here: a config is read without scipy.stats.
+    from facegear.scenarios.distributions import Distribution, Shape
+    from facegear.scenarios.sampling import Cause, Population
+
+    causes = tuple(
+        Cause(
+            cause.name,
+            Distribution(Shape(cause.shape), cause.centre, cause.spread or 0.0, cause.limits, cause.values),
+            tuple(cause.moves.items()),
+            cause.source,
+        )
+        for cause in section.causes
+    )
+    return Population(causes, section.seed, correlation_matrix(section))

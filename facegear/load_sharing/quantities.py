@@ -1,0 +1,73 @@
+"""What one machine among many is judged by: a few numbers of its load sharing, quasi-static or in motion."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.motion import Settings
+from facegear.load_sharing.coefficients import sharing_coefficient
+from facegear.load_sharing.groups import load_groups
+from facegear.load_sharing.hunting import hunting_cycle, hunting_length
+from facegear.load_sharing.options import SharingOptions
+from facegear.load_sharing.run import load_sharing
+from facegear.transmission.layout import Layout
+from facegear.transmission.machine import Machine
+
+POSITIONS = 8
+"""Positions of a mesh cycle in the quasi-static motion."""
+PEAK, OPEN, REVERSED = "peak_mesh_force_n", "open_share", "reversed_share"
+
+
+def quantity_names(layout: Layout, dynamic: bool) -> tuple[str, ...]:
+    """Columns of a sample.
+
+    `k_gamma <mesh>`: largest quasi-static load of a path over an even share of its group's mean;
+    `k_gamma_k_v <mesh>`: the same of the motion, so the product of K_gamma and the dynamic factor;
+    `coefficient <group>`: mean over time of the largest load over the mean (equations (25), (26));
+    then the largest load of a mesh, the share of time in which some mesh that shares a load carries
+    nothing, and in which some mesh is loaded on the flank that it does not work on.
+    """
+    groups = load_groups(layout)
+    factor = "k_gamma_k_v" if dynamic else "k_gamma"
+    paths = [f"{factor} {layout.mesh_names[mesh]}" for group in groups for mesh in group.meshes]
+    return (*paths, *(f"coefficient {group.name}" for group in groups), PEAK, OPEN, REVERSED)
+
+
+def quasi_static_quantities(machine: Machine, cycles: int) -> dict[str, float]:
+    """Of `cycles` mesh cycles spread over the hunting cycle. Raises NotConverged."""
+    run = hunting_cycle(machine, POSITIONS, max(hunting_length(machine) // cycles, 1))
+    drive, back = np.split(run.found.flank_forces, 2, axis=1)
+    return _quantities(machine.layout, np.maximum(drive, back), _reversed(drive, back), dynamic=False)
+
+
+def dynamic_quantities(
+    machine: Machine, speed_rpm: float, settings: Settings, options: SharingOptions
+) -> dict[str, float]:
+    """Of the motion reached from static equilibrium. Raises NotConverged naming the speed."""
+    forces = load_sharing(machine, speed_rpm, settings, options).response.forces
+    drive, back = np.maximum(forces, 0.0), np.maximum(-forces, 0.0)
+    return _quantities(machine.layout, np.abs(forces), _reversed(drive, back), dynamic=True)
+
+
+def _reversed(drive: NDArray[np.float64], back: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Where a mesh is loaded on the flank that carries less on average (K,); loads of both (K, meshes)."""
+    works_back = back.mean(axis=0) > drive.mean(axis=0)
+    return np.any(np.where(works_back, drive, back) > 0.0, axis=1)
+
+
+def _quantities(
+    layout: Layout, loads: NDArray[np.float64], reversed_: NDArray[np.bool_], dynamic: bool
+) -> dict[str, float]:
+    """From the loads of all meshes (K, meshes), N, and where one of them is reversed (K,)."""
+    groups = load_groups(layout)
+    shared = sorted({mesh for group in groups for mesh in group.meshes})
+    factors, coefficients = [], []
+    for group in groups:
+        own = loads[:, list(group.meshes)]
+        even = own.mean()
+        factors += list(own.max(axis=0) / even if even > 0.0 else np.full(own.shape[1], np.nan))
+        coefficient = sharing_coefficient(own)
+        defined = coefficient[~np.isnan(coefficient)]
+        coefficients.append(defined.mean() if defined.size else np.nan)
+    opened = (loads[:, shared] == 0.0).any(axis=1).mean() if shared else 0.0
+    found = (*factors, *coefficients, loads.max(), opened, reversed_.mean())
+    return dict(zip(quantity_names(layout, dynamic), map(float, found), strict=True))

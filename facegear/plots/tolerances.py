@@ -1,0 +1,119 @@
+"""Samples of a machine with its tolerances: distributions, which errors decide them, and how."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from facegear.plots.style import NARROW, styled
+
+COLOURS = ("#0072B2", "#D55E00")
+PERCENTILE_LINES = {50.0: ":", 95.0: "--", 99.0: "-"}
+SHOWN = 5
+"""Quantities drawn, the worst paths and the largest mesh force."""
+BARS = 12
+WORDS = {
+    "k_gamma": r"$K_\gamma$ of",
+    "k_gamma_k_v": r"$K_\gamma K_v$ of",
+    "coefficient": "Mean coefficient,",
+    "peak_mesh_force_n": "Largest mesh force (N)",
+    "open_share": "Share of time with an open mesh",
+    "reversed_share": "Share of time on the other flank",
+}
+
+
+def in_words(quantity: str) -> str:
+    """A column of the table of samples as an axis label."""
+    first, _, rest = quantity.partition(" ")
+    return f"{WORDS.get(first, first)} {rest}".strip()
+
+
+def worst_first(percentiles: pd.DataFrame) -> list[str]:
+    """Path factors by their 99th percentile, the largest first, then the largest mesh force."""
+    top = percentiles[percentiles["percentile"] == 99.0].set_index("quantity")["value"]
+    factors = top[top.index.str.startswith("k_gamma")].sort_values(ascending=False, kind="stable")
+    return [*factors.index, *(name for name in ("peak_mesh_force_n",) if name in top.index)]
+
+
+def distribution_figure(samples: pd.DataFrame, percentiles: pd.DataFrame) -> Figure:
+    """Share of the samples above each value, one panel a quantity, with its percentiles."""
+    *factors, force = worst_first(percentiles) or [""]
+    names = [name for name in (*factors[: SHOWN - 1], force) if name]
+    with styled():
+        figure, axes = plt.subplots(
+            max(len(names), 1), 1, figsize=(NARROW, 0.8 + 1.55 * max(len(names), 1)), squeeze=False
+        )
+        for axis, name in zip(axes[:, 0], names, strict=False):
+            _exceedance(
+                axis, samples[name].dropna().to_numpy(float), percentiles[percentiles["quantity"] == name]
+            )
+            axis.set_xlabel(in_words(name))
+        figure.supylabel("Share of samples above (%)", fontsize=9)
+        figure.suptitle("Distributions; lines: 50 %, 95 % and 99 % stay below", fontsize=9)
+    return figure
+
+
+def importance_figure(percentiles: pd.DataFrame, importance: pd.DataFrame, indices: pd.DataFrame) -> Figure:
+    """Which cause decides: total Sobol indices where they were computed, else rank correlations."""
+    table, value = _sizes(importance, indices)
+    quantities = worst_first(percentiles)
+    names = list(dict.fromkeys((*quantities[:1], *quantities[-1:])))
+    own = table[table["quantity"].isin(names)]
+    causes = list(own.groupby("cause")["size"].max().sort_values(ascending=False).index[:BARS])[::-1]
+    with styled():
+        figure, axis = plt.subplots(figsize=(NARROW, 1.4 + 0.34 * max(len(causes), 1)))
+        for number, (name, colour) in enumerate(zip(names, COLOURS, strict=False)):
+            rows = own[own["quantity"] == name].set_index("cause").reindex(causes)
+            ends = None
+            if value == "total":
+                ends = np.array([rows[value] - rows["total_low"], rows["total_high"] - rows[value]]).clip(0.0)
+            places = np.arange(len(causes)) + 0.19 * (1 - 2 * number)
+            axis.barh(places, rows[value], 0.36, xerr=ends, color=colour, label=in_words(name))
+        axis.set_yticks(np.arange(len(causes)), [cause.replace("_", " ") for cause in causes])
+        axis.axvline(0.0, color="black", lw=0.6)
+        axis.set_xlabel("Total Sobol index" if value == "total" else "Rank correlation")
+        axis.grid(axis="y", visible=False)
+        if names:
+            figure.legend(loc="outside lower center")
+        figure.suptitle("Which tolerance matters", fontsize=9)
+    return figure
+
+
+def scatter_figure(
+    samples: pd.DataFrame, percentiles: pd.DataFrame, importance: pd.DataFrame, indices: pd.DataFrame
+) -> Figure:
+    """The worst path's factor against the two causes that matter most for it."""
+    name = (worst_first(percentiles) or [""])[0]
+    table, _ = _sizes(importance, indices)
+    own = table[table["quantity"] == name].sort_values("size", ascending=False)
+    causes = list(own["cause"][:2])
+    rows = max(len(causes), 1)
+    with styled():
+        figure, axes = plt.subplots(rows, 1, figsize=(NARROW, 0.6 + 2.3 * rows), squeeze=False)
+        for axis, cause in zip(axes[:, 0], causes, strict=False):
+            axis.plot(
+                samples[cause], samples[name], ".", ms=2.5, color=COLOURS[0], alpha=0.5, rasterized=True
+            )
+            axis.set_xlabel(f"{cause.replace('_', ' ')} (units of the cause)")
+            axis.set_ylabel(in_words(name))
+        figure.suptitle("Every sample, against the two tolerances that matter most", fontsize=9)
+    return figure
+
+
+def _sizes(importance: pd.DataFrame, indices: pd.DataFrame) -> tuple[pd.DataFrame, str]:
+    """The table that tells what matters, with its size, and the column that holds it."""
+    table, value = (indices, "total") if not indices.empty else (importance.dropna(), "rank_correlation")
+    return table.assign(size=table[value].abs()), value
+
+
+def _exceedance(axis: Axes, values: np.ndarray, percentiles: pd.DataFrame) -> None:
+    ordered = np.sort(values)
+    axis.step(
+        ordered, 100.0 * (1.0 - np.arange(1, ordered.size + 1) / ordered.size), where="post", color=COLOURS[0]
+    )
+    axis.set_ylim(0.0, 100.0)
+    for row in percentiles.itertuples():
+        axis.axvline(row.value, color=COLOURS[1], lw=1.0, ls=PERCENTILE_LINES[row.percentile])
+        if np.isfinite([row.low, row.high]).all():
+            axis.axvspan(row.low, row.high, color=COLOURS[1], alpha=0.15, lw=0)

@@ -1,0 +1,49 @@
+"""What thousands of machines with their tolerances say."""
+
+from typing import TYPE_CHECKING, ClassVar
+
+import pandas as pd
+
+from facegear.errors import chosen
+from facegear.results.base import Kept, Result
+
+if TYPE_CHECKING:
+    from facegear.plots.style import Figure
+
+KINDS = ("distributions", "importance", "scatter")
+
+
+class TolerancesResult(Result):
+    """Percentiles of K_gamma and mesh forces, shares of machines that open or reverse, what matters most."""
+
+    FILES: ClassVar = {
+        "samples": Kept("tolerances/samples.parquet", ("sample", "error")),
+        "percentiles": Kept("tolerances/percentiles.csv", ("percentile", "value"), may_be_empty=True),
+        "shares": Kept("tolerances/shares.csv", ("share",)),
+        "importance": Kept("tolerances/importance.csv"),
+        "indices": Kept("tolerances/indices.csv", may_be_empty=True),
+    }
+
+    def table(self) -> pd.DataFrame:
+        """One row a quantity and percentile: value, and the confidence interval that holds it."""
+        return self.content["percentiles"].copy()
+
+    def samples(self) -> pd.DataFrame:
+        """One row a sample: its causes, what was found, and the error where it failed."""
+        return self.content["samples"].copy()
+
+    def indices(self) -> pd.DataFrame:
+        """First-order and total Sobol index of every quantity and cause, with confidence intervals."""
+        return self.content["indices"].copy()
+
+    def plot(self, kind: str = "distributions") -> "Figure":
+        """One of distributions, importance, scatter."""
+        from facegear.plots.tolerances import distribution_figure, importance_figure, scatter_figure
+
+        content = self.content
+        if chosen(kind, KINDS, "kind") == "distributions":
+            return distribution_figure(content["samples"], content["percentiles"])
+        if kind == "importance":
+            return importance_figure(content["percentiles"], content["importance"], content["indices"])
+        given = (content[name] for name in ("samples", "percentiles", "importance", "indices"))
+        return scatter_figure(*given)

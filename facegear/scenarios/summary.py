@@ -1,0 +1,93 @@
+"""Tables of what many samples say of each quantity."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+import scipy.stats
+
+from facegear.scenarios.chunks import ERROR, SAMPLE
+from facegear.scenarios.statistics import Estimate, percentile, share, sobol_indices
+
+PERCENTILES = (0.5, 0.95, 0.99)
+INDEX_COLUMNS = (
+    "quantity",
+    "cause",
+    "first",
+    "first_low",
+    "first_high",
+    "total",
+    "total_low",
+    "total_high",
+    "blocks",
+    "blocks_failed",
+)
+
+
+def quantities_of(samples: pd.DataFrame, causes: Sequence[str]) -> list[str]:
+    """Columns of a table of samples that hold what was found."""
+    return [name for name in samples.columns if name not in (SAMPLE, *causes, ERROR)]
+
+
+def percentile_table(samples: pd.DataFrame, causes: Sequence[str], confidence: float) -> pd.DataFrame:
+    """One row a quantity and percentile: value, and the interval that holds it; empty ends are unbounded.
+
+    Samples that failed are left out; `samples` counts the others.
+    """
+    rows = []
+    for name in quantities_of(samples, causes):
+        values = samples[name].to_numpy(float)
+        values = values[np.isfinite(values)]
+        for probability in PERCENTILES if values.size else ():
+            found = _bounded(percentile(values, probability, confidence))
+            rows.append((name, 100.0 * probability, *found, values.size))
+    return pd.DataFrame(rows, columns=["quantity", "percentile", "value", "low", "high", "samples"])
+
+
+def share_table(samples: pd.DataFrame, shares: dict[str, str], confidence: float) -> pd.DataFrame:
+    """Share of the samples that failed, and of those in which a share of time is above zero.
+
+    `shares`: column -> what it means in words. Columns: what, share, low, high, samples.
+    """
+    failed = samples[ERROR].to_numpy() != ""
+    rows = [("cannot be built or computed", failed)]
+    rows += [(told, samples.loc[~failed, name].to_numpy(float) > 0.0) for name, told in shares.items()]
+    found = [(told, share(hits, confidence), hits.size) for told, hits in rows if hits.size]
+    return pd.DataFrame(
+        [(told, one.value, one.low, one.high, size) for told, one, size in found],
+        columns=["what", "share", "low", "high", "samples"],
+    )
+
+
+def importance_table(samples: pd.DataFrame, causes: Sequence[str]) -> pd.DataFrame:
+    """Rank correlation (Spearman) of every quantity with every cause; empty where one never changes."""
+    whole = samples[samples[ERROR] == ""]
+    rows = []
+    for name in quantities_of(samples, causes):
+        found = whole[name].to_numpy(float)
+        known = np.isfinite(found)
+        for cause in causes:
+            given = whole[cause].to_numpy(float)[known]
+            changes = known.sum() > 2 and np.ptp(found[known]) > 0.0 and np.ptp(given) > 0.0
+            rank = scipy.stats.spearmanr(given, found[known]).statistic if changes else np.nan
+            rows.append((name, cause, rank))
+    return pd.DataFrame(rows, columns=["quantity", "cause", "rank_correlation"])
+
+
+def index_table(samples: pd.DataFrame, causes: Sequence[str], confidence: float) -> pd.DataFrame:
+    """Sobol indices of every quantity that changes, from the results of Saltelli's design."""
+    rows = []
+    for name in quantities_of(samples, causes) if len(samples) else ():
+        values = samples[name].to_numpy(float)
+        if not np.isfinite(values).any() or np.nanmax(values) == np.nanmin(values):
+            continue
+        found = sobol_indices(values, len(causes), confidence)
+        for cause, first, total in zip(causes, found.first, found.total, strict=True):
+            ends = (first.value, first.low, first.high, total.value, total.low, total.high)
+            rows.append((name, cause, *ends, found.blocks, found.failed))
+    return pd.DataFrame(rows, columns=list(INDEX_COLUMNS))
+
+
+def _bounded(one: Estimate) -> tuple[float, float, float]:
+    low, high = (end if np.isfinite(end) else np.nan for end in (one.low, one.high))
+    return one.value, low, high

@@ -1,0 +1,167 @@
+"""A machine with its tolerances: bad input, failed samples, equal bits, closed form where it is linear."""
+
+import json
+from statistics import NormalDist
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import facegear
+from facegear.config.tolerances import Tolerances, chunk_starts
+from facegear.errors import ConfigErrors, FacegearError
+from facegear.stages.tolerances import tolerances
+from facegear.stages.tolerances_chunk import tolerances_chunk
+
+MEAN = "transmission.single_meshes"
+LINEAR = {
+    "mesh_stiffness.table": [{"order": 1, "a_n_per_m": 0.0, "b_n_per_m": 0.0}],
+    "transmission.mesh_kinematics": "geometric",
+    "transmission.face_gear.mesh_radius_mm": None,
+    "transmission.transmission_error": {"amplitude_um": 0},
+    "load_sharing.samples_per_cycle": 32,
+}
+
+
+def cause(name, key, spread=4.0, **others):
+    return {"name": name, "spread": spread, "moves": {key: 1.0}, "source": "drawing", **others}
+
+
+RIGHT, LEFT = (cause(f"{side}_teeth", f"{MEAN}.{side} input/lower.error_um") for side in ("right", "left"))
+Y = cause("right_y", "transmission.single_pinions.right input.position_um.y", 3.0)
+
+
+def machine(causes=(RIGHT, LEFT, Y), **section):
+    """The paper's layout with geometric meshes of constant stiffness: linear as long as no mesh opens."""
+    given = {"causes": list(causes), "samples": 64, "chunk_samples": 64, **section}
+    start = facegear.load("config/harmonics_only.yaml", results=None)
+    return start.with_values({**LINEAR, "tolerances": given})
+
+
+@pytest.fixture(scope="module")
+def gearbox():
+    return machine()
+
+
+def chunk(gearbox, first, last, design="samples", **others):
+    harmonics = gearbox.stiffness().content["harmonics"]
+    needs = gearbox._needs("tolerances_chunk")
+    return tolerances_chunk(design, first, last, harmonics, **needs, **others).content["chunk"]
+
+
+@pytest.mark.parametrize(
+    ("section", "line"),
+    [
+        ({"causes": []}, "at least one"),
+        ({"causes": [RIGHT, RIGHT]}, "a name of its own"),
+        ({"causes": [{**RIGHT, "spread": -1.0}]}, r"spread = -1\.0"),
+        ({"causes": [{**RIGHT, "spread": None}]}, "required by shape normal"),
+        ({"causes": [{**RIGHT, "shape": "uniform"}]}, "required by shape uniform"),
+        ({"causes": [{**RIGHT, "limits": [3, -3]}]}, "the lower one first"),
+        ({"causes": [{**RIGHT, "moves": {"transmission.pinion.mas_kg": 1.0}}]}, "pinion.mas_kg"),
+        ({"causes": [{**RIGHT, "moves": {"tooth_pair.module_mm": 1.0}}]}, "a number of transmission"),
+        ({"causes": [{**RIGHT, "moves": {f"{MEAN}.nobody/lower.error_um": 1.0}}]}, "nobody/lower"),
+        ({"samples": 100}, "a multiple of chunk_samples"),
+        ({"index_blocks": 3}, "a power of two"),
+        ({"samples": 1024, "chunk_samples": 1}, "at least 3"),
+        (
+            {"correlations": [{"between": ["right_teeth", "nobody"], "coefficient": 0.5}]},
+            "two of right_teeth",
+        ),
+        (
+            {
+                "correlations": [
+                    {"between": ["right_teeth", "left_teeth"], "coefficient": 0.9},
+                    {"between": ["right_teeth", "right_y"], "coefficient": 0.9},
+                    {"between": ["left_teeth", "right_y"], "coefficient": -0.9},
+                ]
+            },
+            "the matrix is not positive",
+        ),
+        (
+            {
+                "index_blocks": 4,
+                "correlations": [{"between": ["right_teeth", "left_teeth"], "coefficient": 0.9}],
+            },
+            "indices are undefined",
+        ),
+    ],
+)
+def test_a_mistake_in_the_section_is_one_clear_line(section, line):
+    with pytest.raises(ConfigErrors, match=line) as caught:
+        machine(**section)
+    assert len(str(caught.value).splitlines()) == 1
+
+
+def test_a_machine_without_tolerances_says_so():
+    with pytest.raises(FacegearError, match="tolerances = None"):
+        facegear.load("config/harmonics_only.yaml", results=None).tolerances()
+
+
+def test_samples_are_equal_to_the_bit_for_any_size_of_chunk(gearbox):
+    whole = chunk(gearbox, 0, 13)
+    for size in (1, 7):
+        parts = [chunk(gearbox, first, first + size - 1) for first in range(0, 14, size)]
+        pd.testing.assert_frame_equal(pd.concat(parts, ignore_index=True), whole, check_exact=True)
+
+
+def test_a_sample_that_cannot_be_built_is_a_row_with_its_error_and_is_counted():
+    jams = cause("shim", "transmission.single_pinions.right input.position_um.y", 80.0)
+    found = machine([jams]).tolerances()
+    told = found.samples()["error"]
+    assert 0 < (told != "").sum() < len(told)
+    assert all("jams" in text or "um between" in text for text in told[told != ""])
+    shares = found.content["shares"].set_index("what")
+    assert shares.loc["cannot be built or computed", "share"] == (told != "").mean()
+    assert (found.table()["samples"] == (told == "").sum()).all()
+
+
+def test_percentiles_and_indices_of_a_linear_machine_follow_from_its_gradient():
+    gearbox = machine(samples=512, chunk_samples=512, index_blocks=128)
+    found = gearbox.tolerances()
+    name = "k_gamma right input/lower"
+    nominal = gearbox.with_values({"tolerances.causes": [{**RIGHT, "spread": 1e-9}]})
+    start = chunk(nominal, 0, 0)[name].iloc[0]
+    slopes = []
+    for key in (RIGHT, LEFT, Y):
+        step = {"shape": "choice", "spread": None, "values": [1.0]}
+        moved = gearbox.with_values({"tolerances.causes": [{**key, **step}]})
+        slopes.append((chunk(moved, 0, 0)[name].iloc[0] - start) * key["spread"])
+    spread = float(np.linalg.norm(slopes))
+    table = found.table().query("quantity == @name").set_index("percentile")
+    for level in (50.0, 95.0, 99.0):
+        expected = start + spread * NormalDist().inv_cdf(level / 100.0)
+        assert table.loc[level, "low"] - 0.02 * spread <= expected <= table.loc[level, "high"] + 0.02 * spread
+        assert table.loc[level, "value"] == pytest.approx(expected, abs=0.08 * spread)
+    indices = found.indices().query("quantity == @name")
+    exact = np.square(slopes) / spread**2
+    for kind in ("first", "total"):
+        assert (indices[f"{kind}_low"] <= exact).all() and (exact <= indices[f"{kind}_high"]).all()
+    np.testing.assert_allclose(indices["total"], exact, atol=0.08)
+
+
+def test_adding_samples_keeps_the_chunks_that_exist():
+    section = {"causes": [RIGHT], "chunk_samples": 64}
+    few, many = (Tolerances.model_validate_json(json.dumps({**section, "samples": n})) for n in (128, 512))
+    assert chunk_starts(many, "samples")[:2] == chunk_starts(few, "samples")
+
+
+def test_statistics_do_not_depend_on_how_the_samples_were_cut(gearbox):
+    needs = gearbox._needs("tolerances")
+    one = tolerances([chunk(gearbox, 0, 15)], [], **needs)
+    two = tolerances([chunk(gearbox, 0, 7), chunk(gearbox, 8, 15)], [], **needs)
+    for name, table in one.content.items():
+        pd.testing.assert_frame_equal(two.content[name], table, check_exact=True)
+
+
+@pytest.mark.parametrize("model", ["quasi_static", "dynamic"])
+def test_the_nominal_machine_among_the_samples_is_the_one_without_tolerances(model):
+    still = machine([{**RIGHT, "shape": "choice", "spread": None, "values": [0.0]}], model=model)
+    row = chunk(still, 0, 0).iloc[0]
+    if model == "dynamic":
+        table = still.load_sharing().table().set_index("group")
+        for group, mean in table["mean"].items():
+            assert row[f"coefficient {group}"] == pytest.approx(mean, rel=1e-6)
+    else:
+        paths = [row[f"k_gamma right input/{side}"] for side in ("lower", "upper")]
+        assert sum(paths) == pytest.approx(2.0, rel=1e-9)  # constant loads: an even share of the mean

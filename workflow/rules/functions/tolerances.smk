@@ -1,0 +1,17 @@
+from facegear.config.tolerances import Tolerances as TolerancesSection
+from facegear.config.tolerances import chunk_starts
+
+
+def tolerance_chunks(design):
+    """Function of the wildcards giving the chunk files of a design, named by the samples they hold."""
+
+    def files(wildcards):
+        section = parse_section(TolerancesSection, CASES[wildcards.case]["tolerances"])
+        return [
+            rules.tolerances_chunk.output.chunk.format(
+                case=wildcards.case, design=design, first=first, last=first + section.chunk_samples - 1
+            )
+            for first in chunk_starts(section, design)
+        ]
+
+    return files

@@ -1,0 +1,26 @@
+"""A chunk of samples of the machine with its tolerances."""
+
+from pathlib import Path
+
+from facegear.io import tables
+from facegear.io.files import write_all
+from facegear.provenance.stage import stage
+from facegear.stages.tolerances_chunk import tolerances_chunk
+from facegear.stiffness.tables import HARMONICS_COLUMNS
+
+with stage(snakemake) as run:
+    wildcards, params = snakemake.wildcards, snakemake.params
+    harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
+    partial = Path(snakemake.output.chunk).with_suffix(".partial")
+    found = tolerances_chunk(
+        wildcards.design,
+        int(wildcards.first),
+        int(wildcards.last),
+        harmonics,
+        **params.needs,
+        partial=partial,
+        code=params.code,
+    )
+    write_all(found.content, snakemake.output)
+    partial.unlink()
+    run.summary(found.summary)
