@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from facegear.results.geometry import GeometryResult
     from facegear.results.load_sharing import LoadSharingResult
     from facegear.results.modal import ModesResult
+    from facegear.results.rating import RatingResult
     from facegear.results.response import ResponseResult
     from facegear.results.root_stress import RootStressResult
     from facegear.results.stiffness import StiffnessResult
@@ -155,6 +156,24 @@ class Gearbox:
             return root_stress(pinion, face_gear, gearbox.contact().content["loads"])
 
         return gearbox.store.result("root_stress", gearbox.values, RootStressResult, compute)
+
+    def rating(self) -> "RatingResult":
+        """Safety and life of the pair under the duty cycle of section `strength`.
+
+        Raises ConfigError without that section, and what `contact` raises.
+
+        >>> import facegear
+        >>> facegear.example().rating().table()["failure"].unique().tolist()
+        ['bending', 'pitting']
+        """
+        from facegear.results.rating import RatingResult
+
+        def compute() -> "Outcome":
+            from facegear.stages.rating import rating
+
+            return rating(self.root_stress().content["stress"], **self._needs("rating"))
+
+        return self.store.result("rating", self.values, RatingResult, compute)
 
     def stiffness(self) -> "StiffnessResult":
         """k(t) of one mesh at the config's load, or from given harmonics.

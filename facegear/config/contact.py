@@ -44,7 +44,9 @@ class Contact(Section):
     neighbour_coupling: bool = Field(default=True, description="a loaded tooth moves its neighbours")
 
     edge_contact: bool = Field(default=True, description="tip edges carry loads of their own")
-    root_stress: bool = Field(default=False, description="strain gauges on the fillets of both gears")
+    root_stress: bool = Field(
+        default=False, description="gauges on the fillets of both gears; section strength brings them"
+    )
 
     @model_validator(mode="after")
     def _rising(self) -> "Contact":

@@ -10,7 +10,13 @@ from facegear.config.model import Config
 from facegear.config.yaml_file import numbers, read_yaml
 from facegear.errors import ConfigErrors
 
-FILE_KEYS = (("reproduction",), ("mesh_stiffness", "csv"))
+FILE_KEYS = (
+    ("reproduction",),
+    ("mesh_stiffness", "csv"),
+    ("strength", "duty_csv"),
+    ("strength", "pinion", "card"),
+    ("strength", "face_gear", "card"),
+)
 """Keys whose value is the name of a file; it counts from the folder of the config file that sets it."""
 
 

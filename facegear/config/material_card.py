@@ -64,7 +64,11 @@ class Card(Section):
 
 def material_card(path: str | Path) -> MaterialCard:
     """Read a material card in SI units. Raises ConfigErrors with one line for every mistake."""
-    card = parse(Card, read_yaml(path), source=str(path))
+    return limits_of(parse(Card, read_yaml(path), source=str(path)))
+
+
+def limits_of(card: Card) -> MaterialCard:
+    """A material card in SI units."""
     bending, pitting = card.bending, card.pitting
     return MaterialCard(
         name=card.name,

@@ -23,6 +23,7 @@ from facegear.config.dynamics import Dynamics
 from facegear.config.load_sharing import LoadSharing
 from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.stiffness import MeshStiffness
+from facegear.config.strength import Strength
 from facegear.config.studies import NAME, Study
 from facegear.config.tolerances import Tolerances
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
@@ -40,6 +41,7 @@ class Config(Section):
     mesh: Mesh = Mesh()
     contact: Contact = Contact()
     mesh_stiffness: MeshStiffness = MeshStiffness()
+    strength: Strength | None = Field(None, description="safety and life of the pair; null: not rated")
     transmission: Transmission | None = Field(
         None, description="null: geometry, contact and stiffness only; modes, dynamics, load sharing need it"
     )
@@ -74,16 +76,31 @@ class Config(Section):
         check_load(self.mesh_stiffness, self.contact)
         if pair.pinion is not None:
             geometric_backlash(pair)
-        elif self.contact.root_stress:
-            raise ConfigError("tooth_pair.pinion", None, "required by contact.root_stress")
+        elif self._root_stress:
+            raise ConfigError("tooth_pair.pinion", None, "required by contact.root_stress and strength")
         elif self.mesh_stiffness.source != "harmonics":
             allowed = "required, as mesh_stiffness.source is not harmonics"
             raise ConfigError("tooth_pair.pinion", None, allowed)
-        if self.mesh_stiffness.source != "harmonics" or self.contact.root_stress:
+        if self.mesh_stiffness.source != "harmonics" or self._root_stress:
             design = pair_design(pair)
             sizes = mesh_sizes(self.mesh, design.module)
             check_resolution(design, materials(pair), sizes, contact_plan(self.contact))
             check_memory(design, sizes, contact_plan(self.contact), memory_here())
+        self._check_strength()
+
+    @property
+    def _root_stress(self) -> bool:
+        return self.contact.root_stress or self.strength is not None
+
+    def _check_strength(self) -> None:
+        if self.strength is None:
+            return
+        solved, asked = self.contact.torques_n_m[-1], self.strength.largest_torque
+        if asked > solved:
+            allowed = f"at least {asked:g}, the duty cycle's largest torque with all factors of strength"
+            raise ConfigError("contact.torques_n_m", solved, allowed)
+        if self.contact.element != "hex27":
+            raise ConfigError("contact.element", self.contact.element, "hex27, where strength is asked for")
 
     def _check_machine(self) -> None:
         pair, machine = self.tooth_pair, self.transmission
@@ -115,10 +132,16 @@ class Config(Section):
 def resolved(config: Config) -> dict[str, Any]:
     """Plain values of a config with what follows from other keys filled in.
 
-    That is the mean stiffness where order 0 of the harmonics gives it, the torque at which k is taken, and
-    the backlash of the dynamics.
+    That is the mean stiffness where order 0 of the harmonics gives it, the torque at which k is taken, the
+    backlash of the dynamics, the gauges that a rating needs and how often a turn loads a tooth: an input
+    pinion's once by every face gear, a face gear's once by every pinion.
     """
     filled = config.model_dump(mode="json")
+    if config.strength is not None and (machine := config.transmission) is not None:
+        for body, meshes in (("pinion", machine.face_gears), ("face_gear", machine.pinions)):
+            section = filled["strength"][body]
+            section["cycles_per_turn"] = section["cycles_per_turn"] or len(meshes)
+    filled["contact"]["root_stress"] = config.contact.root_stress or config.strength is not None
     stiffness = filled["mesh_stiffness"]
     stiffness["mean_n_per_m"] = config.mesh_stiffness.mean
     if stiffness["source"] != "harmonics" and stiffness["torque_n_m"] is None:

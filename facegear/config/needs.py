@@ -26,6 +26,7 @@ NEEDS: dict[str, Slice] = {
     "compliance": _COMPLIANCE,
     "contact": {**_PAIR, "contact": "contact"},
     "root_stress": {},
+    "rating": {**_PAIR, "strength": "strength"},
     "stiffness": {"mesh_stiffness": "mesh_stiffness"},
     "modal": {**_MACHINE, "mean_stiffness": "mesh_stiffness.mean_n_per_m"},
     "dynamics_response": {**_MACHINE, **_ACCURACY, "speed_rpm": "dynamics.speed_rpm"},
@@ -71,6 +72,7 @@ NEEDS: dict[str, Slice] = {
 UPSTREAM = {
     "contact": ("compliance",),
     "root_stress": ("contact",),
+    "rating": ("root_stress",),
     "stiffness": ("contact",),
     "dynamics_response": ("stiffness",),
     "dynamics_sweep": ("stiffness",),

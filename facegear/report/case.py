@@ -34,6 +34,12 @@ STUDY_COLUMNS = [
     *("study", "label", "torque_n_m", "k_average_mean_n_per_m", "ste_peak_to_peak_um"),
     *("path_radius_mm", "path_shift_mm", "unloaded_path_shift_mm", "backlash_um"),
 ]
+RATING = (
+    "Safety and life under the duty cycle. The pinion after ISO 6336 where a method says so; there is no "
+    "standard for face gears: bending by the finite elements' root stress against the same limits, pitting "
+    "with the gear's flank as a rack's. Stress: of the hardest bin; safety: factor on all stresses at which "
+    "Miner's sum is 1; green: as required, amber: lasts the duty cycle, red: does not"
+)
 DRAWINGS = ("layout", "tooth_pair")
 """Figures that show the machine; the first that exists stands on the first screen."""
 LARGEST_SVG = 1_500_000
@@ -106,6 +112,9 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
         return [Table(ROOT_STRESS, tables["root_stress"], 4)]
     if title == STUDIED_CONTACT and "studies" in tables:
         return [Table("Every case and torque", tables["studies"][STUDY_COLUMNS], 4)]
+    if title == "Strength" and "root_stress" in tables:
+        rated = [Table(RATING, tables["rating"], 4)] if "rating" in tables else []
+        return [*rated, Table(ROOT_STRESS, tables["root_stress"], 4)]
     if title == "Mesh stiffness" and "harmonics" in tables:
         return [Table("Harmonics kept", tables["harmonics"].iloc[:, :4], 5)]
     if title == "Modes" and "frequencies" in tables:

@@ -77,7 +77,7 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         ("contact_pattern", "contact_curves"),
     ),
     (
-        "Root stress",
+        "Strength",
         "Normal stress down the fillets from surface strain gauges on the finite element model, under all "
         "contacts of the tooth and its neighbours. Passage: 0 to 1 while the tooth belongs to the pair in "
         "the middle of the mesh.",

@@ -10,7 +10,7 @@ from facegear.strength.columns import (
     ALONG_FACE_COLUMNS,
     PASSAGE_COLUMNS,
     ROOT_STRESS_ARRAYS,
-    ROOT_STRESS_COLUMNS,
+    ROOT_STRESS_FINITE,
 )
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ class RootStressResult(Result):
     """Stress at the fillets of both gears while a tooth passes through the mesh."""
 
     FILES: ClassVar = {
-        "summary": Kept("strength/root_stress.csv", ROOT_STRESS_COLUMNS),
+        "summary": Kept("strength/root_stress.csv", ROOT_STRESS_FINITE),
         "passage": Kept("strength/passage.csv", PASSAGE_COLUMNS),
         "along_face": Kept("strength/along_face.csv", ALONG_FACE_COLUMNS),
         "stress": Kept("strength/root_stress.npz", ROOT_STRESS_ARRAYS),

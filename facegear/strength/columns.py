@@ -31,3 +31,34 @@ ROOT_STRESS_ARRAYS = {
     },
 }
 """Stress over torque, place in the passage, fillet, gauges down the fillet and along the face."""
+
+RATING_COLUMNS = (
+    "body",
+    "failure",
+    "method",
+    "stress_mpa",
+    "allowed_mpa",
+    "cycles",
+    "safety",
+    "required",
+    "verdict",
+    "damage",
+    "life_hours",
+)
+DAMAGE_COLUMNS = (
+    "body",
+    "failure",
+    "method",
+    "bin",
+    "torque_n_m",
+    "speed_rpm",
+    "hours",
+    "stress_mpa",
+    "cycles",
+    "damage",
+)
+
+RATING_FINITE = tuple(name for name in RATING_COLUMNS if name not in ("damage", "life_hours"))
+DAMAGE_FINITE = tuple(name for name in DAMAGE_COLUMNS if name != "damage")
+ROOT_STRESS_FINITE = tuple(name for name in ROOT_STRESS_COLUMNS if name != "at_30_deg_mpa")
+"""Columns whose numbers are always finite: life may last for ever, and 30 degrees lie beside the gauges."""

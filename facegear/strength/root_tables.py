@@ -78,3 +78,15 @@ def root_arrays(
         arrays[f"{body}_position_m"] = positions[body]
         arrays[f"{body}_tangent_rad"] = root.angle
     return arrays
+
+
+def root_from_arrays(arrays: Mapping[str, NDArray], body: str) -> RootStress:
+    """Root stress of a body from ROOT_STRESS_ARRAYS."""
+    x, y, _ = np.moveaxis(arrays[f"{body}_position_m"], -1, 0)
+    return RootStress(
+        torques=arrays["torque_n_m"],
+        passage=arrays[f"{body}_passage"],
+        stress=arrays[f"{body}_stress_pa"],
+        along=(y if body == "pinion" else np.hypot(x, y)).mean(axis=(0, 1)),
+        angle=arrays[f"{body}_tangent_rad"],
+    )

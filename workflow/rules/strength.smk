@@ -24,3 +24,15 @@ rule root_stress_figures:
         manifest="results/{case}/figures/root_stress.provenance.json",
     script:
         "../scripts/root_stress_figures.py"
+
+
+rule rating:
+    "Safety and life of the tooth pair"
+    input:
+        stress=shared("root_stress", "stress"),
+    output:
+        rating="results/{case}/strength/rating.csv",
+        damage="results/{case}/strength/damage.csv",
+        manifest="results/{case}/strength/rating.provenance.json",
+    script:
+        "../scripts/rating.py"

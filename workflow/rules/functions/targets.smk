@@ -7,6 +7,8 @@ def stages(case):
     if CASES[case]["contact"]["root_stress"]:
         found += [rules.root_stress, rules.root_stress_figures]
     found += [rules.contact_studies] if CONTACT_STUDIES else []
+    if CASES[case]["strength"]:
+        found += [rules.rating]
     if CASES[case]["transmission"] is None:
         return found
     found += [rules.machine_code, rules.ratings, rules.modal, rules.modal_figure]
@@ -46,6 +48,8 @@ def report_tables(wildcards):
     tables += [rules.contact_studies.output.table] if CONTACT_STUDIES else []
     if CASES[wildcards.case]["tolerances"]:
         tables += [rules.tolerances.output[name] for name in ("percentiles", "shares")]
+    if CASES[wildcards.case]["strength"]:
+        tables += [rules.rating.output.rating]
     tables += [rules.scorecard.output.csv] if REPRODUCTION else []
     return [path.format(case=wildcards.case) for path in tables]
 

@@ -1,0 +1,137 @@
+"""Config section `strength`: materials, duty cycle and factors of the rating of a tooth pair."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import Field, field_validator, model_validator
+
+from facegear.config.base import Section, parse, refuse
+from facegear.config.csv_file import CsvFault, read_numbers
+from facegear.config.material_card import CARDS, Card, limits_of
+from facegear.config.yaml_file import read_yaml
+from facegear.errors import ConfigErrors
+from facegear.strength.rating import DutyBin, RatedBody, RatingRequest
+
+BIN_COLUMNS = ("torque_n_m", "speed_rpm", "hours")
+
+
+class DutySection(Section):
+    """One bin of the duty cycle: the pinion's torque in this mesh, its speed, and how long."""
+
+    torque_n_m: float = Field(gt=0, le=1e7)
+    speed_rpm: float = Field(gt=0, le=1e6)
+    hours: float = Field(ge=0, le=1e7)
+
+
+class BodyStrength(Section):
+    """What the rating has to know of one gear."""
+
+    card: Card = Field(description="name of a card of the package, a yaml file, or the card itself")
+    root_roughness_um: float = Field(gt=0, le=200, description="Rz of the fillet")
+    cycles_per_turn: int | None = Field(
+        default=None,
+        ge=1,
+        le=100,
+        description="how often the same flank of a tooth is loaded in a turn; null: as on an input pinion "
+        "and on the face gears of transmission, 1 without",
+    )
+    both_ways: bool = Field(default=False, description="the other flank is loaded as well, as on an idler")
+
+    @field_validator("card", mode="before")
+    @classmethod
+    def _read(cls, card: Any) -> Any:
+        """A card is read here, so that a fault in it is told with all others before any work."""
+        if not isinstance(card, str | Mapping):
+            return card
+        try:
+            return parse(Card, read_yaml(_card_file(card)) if isinstance(card, str) else card, "the card")
+        except ConfigErrors as error:
+            refuse("", card if isinstance(card, str) else card.get("name"), " ".join(str(error).split()))
+
+
+def _card_file(name: str) -> Path:
+    """A name without an ending is that of a card of the package, wherever it was looked for."""
+    path = Path(name)
+    return path if path.suffix else CARDS / f"{path.name}.yaml"
+
+
+class Strength(Section):
+    """Safety and life of the pair under a duty cycle."""
+
+    pinion: BodyStrength
+    face_gear: BodyStrength
+    duty: tuple[DutySection, ...] = Field(default=(), max_length=10000, description="bins of the duty cycle")
+    duty_csv: str | None = Field(
+        default=None,
+        description=f"csv of the bins with columns {', '.join(BIN_COLUMNS)}; the name counts from this file",
+    )
+    application_factor: float = Field(default=1.0, ge=0.1, le=10, description="K_A")
+    dynamic_factor: float = Field(default=1.0, ge=0.1, le=10, description="K_v")
+    mesh_load_factor: float = Field(default=1.0, ge=0.1, le=10, description="K_gamma of parallel meshes")
+    least_bending_safety: float = Field(default=1.4, ge=1, le=10)
+    least_pitting_safety: float = Field(default=1.0, ge=1, le=10)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _bins(cls, values: Any) -> Any:
+        if not isinstance(values, Mapping):
+            return values
+        if isinstance(values.get("duty"), list):
+            values = {**values, "duty": tuple(values["duty"])}
+        if not isinstance(name := values.get("duty_csv"), str):
+            return values
+        if values.get("duty"):
+            refuse("duty_csv", name, "either duty_csv or duty, not both")
+        try:
+            duty = tuple(row.values for row in read_numbers(name, BIN_COLUMNS))
+        except CsvFault as fault:
+            refuse("duty_csv", name, str(fault))
+        return {**values, "duty_csv": None, "duty": duty}
+
+    @model_validator(mode="after")
+    def _complete(self) -> "Strength":
+        if not any(one.hours > 0 for one in self.duty):
+            refuse("duty", [], "at least one bin with hours, here or in duty_csv")
+        for name in ("pinion", "face_gear"):
+            card = getattr(self, name).card
+            for part in ("pitting", "bending"):
+                if getattr(card, part) is None:
+                    refuse(f"{name}.card", card.name, f"a card with {part}, which the rating needs")
+            if card.bending.slip_layer_mm is None:
+                refuse(f"{name}.card", card.name, "a card with bending.slip_layer_mm, which the rating needs")
+            if getattr(self, name).both_ways and card.bending.mean_stress is None:
+                refuse(f"{name}.card", card.name, "a card with bending.mean_stress, which both_ways needs")
+        return self
+
+    @property
+    def largest_torque(self) -> float:
+        """Of the duty cycle with all factors, N m."""
+        return max(one.torque_n_m for one in self.duty) * self.factor
+
+    @property
+    def factor(self) -> float:
+        """K_A K_v K_gamma."""
+        return self.application_factor * self.dynamic_factor * self.mesh_load_factor
+
+
+def rating_request(section: Strength) -> RatingRequest:
+    """What the rating needs, in SI units."""
+    bodies = {
+        name: RatedBody(
+            card=limits_of(body.card),
+            root_roughness=1e-6 * body.root_roughness_um,
+            cycles_per_turn=body.cycles_per_turn or 1,
+            both_ways=body.both_ways,
+        )
+        for name, body in (("pinion", section.pinion), ("face_gear", section.face_gear))
+    }
+    return RatingRequest(
+        bodies=bodies,
+        duty=tuple(
+            DutyBin(section.factor * one.torque_n_m, one.speed_rpm / 60.0, 3600.0 * one.hours)
+            for one in section.duty
+        ),
+        least_bending=section.least_bending_safety,
+        least_pitting=section.least_pitting_safety,
+    )

@@ -1,0 +1,25 @@
+"""Safety and life of the tooth pair."""
+
+from typing import ClassVar
+
+import pandas as pd
+
+from facegear.results.base import Kept, Result
+from facegear.strength.columns import DAMAGE_FINITE, RATING_FINITE
+
+
+class RatingResult(Result):
+    """Safety against tooth breakage and pitting, and life, under the duty cycle of section strength."""
+
+    FILES: ClassVar = {
+        "rating": Kept("strength/rating.csv", RATING_FINITE),
+        "damage": Kept("strength/damage.csv", DAMAGE_FINITE),
+    }
+
+    def table(self) -> pd.DataFrame:
+        """A row a body, failure and method: stress, safety, verdict and life (docs/strength.md)."""
+        return self.content["rating"].copy()
+
+    def damage(self) -> pd.DataFrame:
+        """Stress, cycles and damage of each bin of the duty cycle."""
+        return self.content["damage"].copy()

@@ -1,0 +1,141 @@
+"""Safety and life under a duty cycle: closed forms, bad input, what reversed bending costs."""
+
+from dataclasses import replace
+from math import pi, sqrt, tan
+
+import numpy as np
+import pytest
+from contact_bodies import pair_design
+from hypothesis import given
+from hypothesis import strategies as st
+
+from facegear.config.base import parse
+from facegear.config.material_card import CARDS, material_card
+from facegear.config.model import Config, resolved
+from facegear.config.strength import Strength, rating_request
+from facegear.config.yaml_file import read_yaml
+from facegear.errors import ConfigErrors
+from facegear.geometry.analysis import section_contact_ratio
+from facegear.strength.materials import Life
+from facegear.strength.rating import DutyBin, RatedBody, RatingRequest, hertz_stress, rate, reversal, safety
+from facegear.strength.rating_tables import damage_table, rating_table
+from facegear.strength.root_stress import RootStress
+
+CARD = material_card(CARDS / "case_carburised_din3990_11.yaml")
+BODY = {"card": "case_carburised_din3990_11", "root_roughness_um": 16}
+DUTY = [{"torque_n_m": 400, "speed_rpm": 1000, "hours": 100}]
+SECTION = {"pinion": BODY, "face_gear": BODY, "duty": DUTY}
+
+
+def request(*duty, both_ways=False):
+    body = RatedBody(card=CARD, root_roughness=16e-6, cycles_per_turn=1, both_ways=both_ways)
+    return RatingRequest({"pinion": body, "face_gear": body}, duty, least_bending=1.4, least_pitting=1.0)
+
+
+def root(largest):
+    """Tension `largest` (Pa) below the loaded flank and as much compression below the other, at 500 N m."""
+    stress = np.zeros((1, 3, 2, 4, 2))
+    stress[0, 1, 0], stress[0, 1, 1] = largest, -largest
+    return RootStress(np.array([500.0]), np.arange(3.0), stress, np.array([0.25, 0.27]), np.ones((2, 4, 2)))
+
+
+def rated(duty, **options):
+    design = pair_design()
+    roots = {"pinion": root(300e6), "face_gear": root(400e6)}
+    found = rate(design, section_contact_ratio(design), roots, request(*duty, **options))
+    return {(one.body, one.failure, one.method): one for one in found}, found
+
+
+@given(stress=st.floats(1e8, 1e9), exponent=st.floats(3.5, 9.0), allowed=st.floats(2e8, 2e9))
+def test_safety_of_a_single_load_is_the_allowed_stress_at_its_cycles_over_its_stress(
+    stress, exponent, allowed
+):
+    life, cycles = Life((1e3, 3e6, 1e10), (2.5, 1.0, 0.85)), 10.0**exponent
+    found = safety(np.array([stress]), np.array([cycles]), allowed, life)
+    assert found == pytest.approx(allowed * float(life.factor(cycles)) / stress, rel=1e-9)
+
+
+def test_damage_adds_up_over_the_bins_and_an_empty_bin_does_none():
+    one, two = DutyBin(500.0, 20.0, 3600.0), DutyBin(900.0, 20.0, 36000.0)
+    both, found = rated([one, two, DutyBin(900.0, 20.0, 0.0)])
+    key = ("face_gear", "bending", "finite elements")
+    apart = [rated([load])[0][key].damage.sum() for load in (one, two)]
+    assert both[key].damage.sum() == pytest.approx(sum(apart))
+    assert both[key].damage[2] == 0.0
+    table = damage_table(found, (one, two, DutyBin(900.0, 20.0, 0.0)))
+    total = table.groupby(["body", "failure", "method"])["damage"].sum()
+    np.testing.assert_allclose(
+        [total[row.body, row.failure, row.method] for row in rating_table(found).itertuples()],
+        rating_table(found)["damage"],
+    )
+
+
+def test_teeth_bent_both_ways_are_allowed_less():
+    load = [DutyBin(500.0, 20.0, 3600.0)]
+    key = ("pinion", "bending", "finite elements")
+    one_way, both_ways = (rated(load, both_ways=flag)[0][key].allowed for flag in (False, True))
+    assert reversal(root(300e6)) == -1.0
+    mean = 0.8 - 0.15 * 2.0  # M of the card with Y_S = 2
+    assert both_ways / one_way == pytest.approx(1.0 / (1.0 + (1.0 - mean) / (1.0 + mean)))
+
+
+def test_gear_turns_slower_than_the_pinion_and_its_teeth_see_fewer_cycles():
+    found, _ = rated([DutyBin(500.0, 20.0, 3600.0)])
+    cycles = {key[0]: float(one.cycles.sum()) for key, one in found.items()}
+    assert cycles == pytest.approx({"pinion": 72000.0, "face_gear": 72000.0 * 23 / 143})
+
+
+def test_pitting_stress_at_the_pitch_point_is_hertz_of_a_cylinder_on_a_plane():
+    design = replace(pair_design())
+    ratio, torque = section_contact_ratio(design), 500.0
+    found = hertz_stress(design, ratio, request())["face_gear"](torque)
+    face = design.face_gear.outer_radius - design.face_gear.inner_radius
+    load = torque / design.pinion_base_radius / min(face, design.pinion.width)
+    soft = 2 * (1 - CARD.poisson_ratio**2) / CARD.young_modulus
+    hertz = sqrt(load / (pi * soft * design.pinion_base_radius * tan(design.pressure_angle)))
+    assert found == pytest.approx(hertz * sqrt((4 - ratio) / 3), rel=1e-12)
+
+
+def told(**changes):
+    with pytest.raises(ConfigErrors) as caught:
+        parse(Strength, {**SECTION, **changes})
+    return str(caught.value)
+
+
+def test_a_card_without_what_the_rating_needs_stops_it_by_name():
+    card = read_yaml(CARDS / "case_carburised_din3990_11.yaml")
+    for part in ("pitting", "bending"):
+        without = {**BODY, "card": {key: value for key, value in card.items() if key != part}}
+        assert f"a card with {part}" in told(pinion=without)
+    bending = {key: value for key, value in card["bending"].items() if key != "mean_stress"}
+    assert "bending.mean_stress" in told(
+        face_gear={**BODY, "card": {**card, "bending": bending}, "both_ways": True}
+    )
+
+
+def test_bad_duty_cycles_are_told_in_one_line(tmp_path):
+    assert "duty[0].hours = -1" in told(duty=[{**DUTY[0], "hours": -1}])
+    assert "at least one bin with hours" in told(duty=[])
+    path = tmp_path / "duty.csv"
+    path.write_text("torque_n_m,speed_rpm,hours\n400,1000,abc\n")
+    line = told(duty=[], duty_csv=str(path))
+    assert "line 2: hours = 'abc' is not a finite number" in line and "\n" not in line
+    assert "either duty_csv or duty" in told(duty_csv=str(path))
+
+
+def test_a_duty_cycle_from_a_csv_is_that_of_the_config(tmp_path):
+    path = tmp_path / "duty.csv"
+    path.write_text("torque_n_m,speed_rpm,hours\n400,1000,100\n")
+    from_csv = parse(Strength, {"pinion": BODY, "face_gear": BODY, "duty_csv": str(path)})
+    assert rating_request(from_csv) == rating_request(parse(Strength, SECTION))
+    assert parse(Strength, from_csv.model_dump(mode="json")) == from_csv
+
+
+def test_a_rating_brings_root_stress_and_counts_the_meshes_of_a_turn():
+    values = read_yaml("facegear/example.yaml")
+    filled = resolved(parse(Config, values))
+    assert filled["contact"]["root_stress"]
+    assert [filled["strength"][body]["cycles_per_turn"] for body in ("pinion", "face_gear")] == [2, 5]
+    values["strength"]["application_factor"] = 2.0
+    with pytest.raises(ConfigErrors, match=r"contact\.torques_n_m = 1000.0: at least 1800"):
+        parse(Config, values)
