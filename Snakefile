@@ -63,6 +63,7 @@ localrules:
     contact_figures,
     load_dependence,
     root_stress_figures,
+    rating_figures,
     stiffness_figures,
     load_dependence_figure,
     modal_figure,

@@ -43,3 +43,38 @@ def _both(table: pd.DataFrame, place: str, label: str) -> Figure:
         for axis in axes if place != "passage" else axes[1:]:
             axis.set_xlabel(label)
     return figure
+
+
+def life(damage: pd.DataFrame, curves: pd.DataFrame) -> Figure:
+    """Stress and cycles of every bin of a duty cycle, and the stress that may be repeated so often."""
+    colours = {"pinion": "tab:blue", "face_gear": "tab:orange"}
+    lines = {"finite elements": "-", "ISO 6336-3": "--", "ISO 6336-2": "-"}
+    marks = {"pinion": "o", "face_gear": "s"}
+    with styled():
+        figure, axes = plt.subplots(2, 1, figsize=(NARROW, 7.4))
+        for axis, failure in zip(axes, ("bending", "pitting"), strict=True):
+            for (body, method), curve in curves[curves["failure"] == failure].groupby(
+                ["body", "method"], sort=False
+            ):
+                bins = damage[
+                    (damage["failure"] == failure) & (damage["body"] == body) & (damage["method"] == method)
+                ]
+                bins = bins[bins["cycles"] > 0]
+                look = {"color": colours[body]}
+                axis.loglog(curve["cycles"], curve["allowed_mpa"], lines[method], lw=1.2, **look)
+                label = f"{BODIES[body]}, {method}"
+                axis.loglog(
+                    bins["cycles"],
+                    bins["stress_mpa"],
+                    "x" if method == "ISO 6336-3" else marks[body],
+                    ls="none",
+                    label=label,
+                    **look,
+                )
+            stress = "Root stress" if failure == "bending" else "Contact stress"
+            axis.set(xlabel="Load cycles", ylabel=f"{stress} (MPa)\nlines: allowed, marks: bins")
+            axis.yaxis.set_major_formatter("{x:g}")
+            axis.yaxis.set_minor_formatter("{x:g}")
+            axis.tick_params(axis="y", which="minor", labelsize=7)
+            legend_above(axis, 1)
+    return figure

@@ -9,6 +9,7 @@ CAPTIONS = {
     "separation": "Gap between the unloaded flanks, and the path of the contact over the gear's flank.",
     "contact_curves": "Static transmission error, stiffness and load share against position.",
     "contact_pattern": "Largest pressure each point of the flank sees over a pitch.",
+    "life": "Every bin of the duty cycle beside the stress that may be repeated so often.",
     "root_stress_passage": "Root stress of a tooth on its way through the mesh: largest tension below the "
     "loaded flank, largest compression below the other.",
     "root_stress_along_face": "Root stress along the face, the largest over a passage.",
@@ -81,7 +82,7 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "Normal stress down the fillets from surface strain gauges on the finite element model, under all "
         "contacts of the tooth and its neighbours. Passage: 0 to 1 while the tooth belongs to the pair in "
         "the middle of the mesh.",
-        ("root_stress_passage", "root_stress_along_face"),
+        ("root_stress_passage", "root_stress_along_face", "life"),
     ),
     (
         STUDIED_CONTACT,

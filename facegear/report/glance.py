@@ -42,6 +42,11 @@ def verdicts(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None)
             f"mean stiffness {row.k_average_mean_n_per_m / 1e8:.3f}e8 N/m, peak-to-peak transmission error "
             f"{row.ste_peak_to_peak_um:.2f} um",
         )
+    for row in tables.get("rating", pd.DataFrame()).itertuples():
+        yield (
+            f"{row.body.replace('_', ' ')}, {row.failure} ({row.method})",
+            f"{row.verdict}: safety {row.safety:.2f} where {row.required:g} is required",
+        )
     for row in _nominal(tables).itertuples():
         width = f" ± {row.half_width:.2f}" if row.half_width > 0.005 else ""
         yield f"load sharing, {row.group}", f"mean coefficient {row.mean:.3f}{width}, {row.motion}"

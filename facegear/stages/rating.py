@@ -12,14 +12,14 @@ from facegear.errors import ConfigError
 from facegear.geometry.analysis import section_contact_ratio
 from facegear.stages.outcome import Outcome
 from facegear.strength.rating import rate
-from facegear.strength.rating_tables import damage_table, rating_table
+from facegear.strength.rating_tables import curve_table, damage_table, rating_table
 from facegear.strength.root_tables import root_from_arrays
 
 
 def rating(
     stress: Mapping[str, NDArray], tooth_pair: Mapping[str, Any], strength: Mapping[str, Any] | None
 ) -> Outcome:
-    """`rating` and `damage` (tables) from the root stress of stage root_stress.
+    """`rating`, `damage` and `curves` (tables) from the root stress of stage root_stress.
 
     Raises ConfigError without section strength.
     """
@@ -31,6 +31,10 @@ def rating(
     worst = min(found, key=lambda one: one.safety / one.required)
     told = f"{worst.body.replace('_', ' ')}, {worst.failure} ({worst.method})"
     return Outcome(
-        {"rating": rating_table(found), "damage": damage_table(found, request.duty)},
+        {
+            "rating": rating_table(found),
+            "damage": damage_table(found, request.duty),
+            "curves": curve_table(found),
+        },
         f"nearest to its limit: {told}, safety {worst.safety:.2f} where {worst.required:g} is required",
     )

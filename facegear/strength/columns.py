@@ -45,6 +45,7 @@ RATING_COLUMNS = (
     "damage",
     "life_hours",
 )
+CURVE_COLUMNS = ("body", "failure", "method", "cycles", "allowed_mpa")
 DAMAGE_COLUMNS = (
     "body",
     "failure",

@@ -70,8 +70,8 @@ class Rated:
     """One way in which a gear may fail.
 
     `stress` (n,) Pa, `cycles` (n,) and `damage` (n,) by bin; `allowed` (Pa): stress that may be repeated for
-    ever before life factors; `safety`: by how much all stresses may rise until Miner's sum is 1; `life`: of
-    the duty cycle in seconds.
+    ever before life factors, which `limit` gives; `safety`: by how much all stresses may rise until Miner's
+    sum is 1; `life`: of the duty cycle in seconds.
     """
 
     body: str
@@ -80,6 +80,7 @@ class Rated:
     stress: Array
     cycles: Array
     allowed: float
+    limit: Life
     damage: Array
     safety: float
     required: float
@@ -139,6 +140,7 @@ def _rated(
         stress=by_bin,
         cycles=cycles,
         allowed=allowed,
+        limit=life,
         damage=harm,
         safety=safety(by_bin, cycles, allowed, life),
         required=request.least_bending if failure == "bending" else request.least_pitting,

@@ -5,8 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from facegear.strength.columns import DAMAGE_COLUMNS, RATING_COLUMNS
+from facegear.strength.columns import CURVE_COLUMNS, DAMAGE_COLUMNS, RATING_COLUMNS
 from facegear.strength.rating import DutyBin, Rated
+
+POINTS = 61
+"""Of a curve of allowed stress."""
 
 
 def rating_table(found: Sequence[Rated]) -> pd.DataFrame:
@@ -28,6 +31,17 @@ def rating_table(found: Sequence[Rated]) -> pd.DataFrame:
         for one in found
     ]
     return pd.DataFrame(rows, columns=list(RATING_COLUMNS))
+
+
+def curve_table(found: Sequence[Rated]) -> pd.DataFrame:
+    """Stress that may be repeated so many times, columns as CURVE_COLUMNS."""
+    parts = []
+    for one in found:
+        cycles = np.geomspace(one.limit.cycles[0], one.limit.cycles[-1], POINTS)
+        stress = 1e-6 * one.allowed * one.limit.factor(cycles)
+        columns = (one.body, one.failure, one.method, cycles, stress)
+        parts.append(pd.DataFrame(dict(zip(CURVE_COLUMNS, columns, strict=True))))
+    return pd.concat(parts, ignore_index=True)
 
 
 def damage_table(found: Sequence[Rated], duty: Sequence[DutyBin]) -> pd.DataFrame:

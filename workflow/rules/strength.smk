@@ -33,6 +33,19 @@ rule rating:
     output:
         rating="results/{case}/strength/rating.csv",
         damage="results/{case}/strength/damage.csv",
+        curves="results/{case}/strength/curves.csv",
         manifest="results/{case}/strength/rating.provenance.json",
     script:
         "../scripts/rating.py"
+
+
+rule rating_figures:
+    "Bins of the duty cycle beside the stress that may be repeated so often"
+    input:
+        damage=rules.rating.output.damage,
+        curves=rules.rating.output.curves,
+    output:
+        **pictures("strength", "life"),
+        manifest="results/{case}/figures/rating.provenance.json",
+    script:
+        "../scripts/rating_figures.py"

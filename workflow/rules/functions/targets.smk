@@ -8,7 +8,7 @@ def stages(case):
         found += [rules.root_stress, rules.root_stress_figures]
     found += [rules.contact_studies] if CONTACT_STUDIES else []
     if CASES[case]["strength"]:
-        found += [rules.rating]
+        found += [rules.rating, rules.rating_figures]
     if CASES[case]["transmission"] is None:
         return found
     found += [rules.machine_code, rules.ratings, rules.modal, rules.modal_figure]
