@@ -47,7 +47,7 @@ def smallest_gaps(design: PairDesign, phi1: ArrayLike, phi2: ArrayLike) -> dict[
     for side, pair, sign in (("drive", design, 1.0), ("back", mirrored(design), -1.0)):
         turns = sign * phi1, sign * phi2
         outline = pinion_outline(pair)
-        for gear_part, points in _gear_points(pair).items():
+        for gear_part, points in gear_points(pair).items():
             section = to_pinion_section(pair, *turns, TOOTH_NUMBERS).points(points)
             distance, nearest = signed_distance(pair, outline, section, 0.5 * design.module)
             for number, pinion_part in enumerate(PINION_PARTS):
@@ -73,7 +73,7 @@ def _lever(design: PairDesign, spot: tuple[Array, Array, Array, Array], normal: 
     return float((after - before).ravel()[:2] @ normal) / (2 * step)
 
 
-def _gear_points(design: PairDesign) -> dict[str, Array]:
+def gear_points(design: PairDesign) -> dict[str, Array]:
     """Points (n, 3) of the gear's left side in the body frame of its tooth 0."""
     face = design.face_gear
     radius = np.linspace(face.inner_radius, face.outer_radius, 27)[None, :]
