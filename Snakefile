@@ -71,5 +71,7 @@ localrules:
     branches_figures,
     load_sharing_summary,
     load_sharing_figures,
+    contact_studies,
+    contact_studies_figures,
     identify_roads,
     report,

@@ -68,7 +68,9 @@ def pattern_panels(panels: Mapping[str, tuple[Mapping[str, NDArray], float]]) ->
             rows, 1, figsize=(NARROW, 0.9 + 1.7 * rows), sharex=True, sharey=True, squeeze=False
         )
         for axis, (title, (along, radius, field)) in zip(axes[:, 0], found.items(), strict=True):
-            drawn = axis.pcolormesh(along, radius, field, vmin=0, vmax=top, cmap="inferno", shading="gouraud")
+            drawn = axis.pcolormesh(
+                along, radius, field, vmin=0, vmax=top, cmap="inferno", shading="gouraud", rasterized=True
+            )
             axis.set_title(title)
             axis.grid(visible=False)
             axis.set_ylabel("Pinion radius (mm)")

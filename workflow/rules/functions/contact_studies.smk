@@ -23,6 +23,12 @@ def studied(rule, output):
     return [path.format(case=shared_source(CASES, case, rule)) for case in [CASE, *CONTACT_CASES]]
 
 
+def studied_contacts():
+    """All that is known of the contact of those cases."""
+    files = {kind: studied("contact", kind) for kind in ("ltca", "by_torque", "pressure")}
+    return {"pair": studied("geometry", "pair"), **files}
+
+
 def studied_names():
     """Study, point and label of those cases; the machine itself is nominal."""
     keys = [tuple(case.split("/")[-2:]) for case in CONTACT_CASES]

@@ -6,7 +6,7 @@ def stages(case):
         found += [rules.contact, rules.contact_figures, rules.load_dependence, rules.load_dependence_figure]
     if CASES[case]["contact"]["root_stress"]:
         found += [rules.root_stress, rules.root_stress_figures]
-    found += [rules.contact_studies] if CONTACT_STUDIES else []
+    found += [rules.contact_studies, rules.contact_studies_figures] if CONTACT_STUDIES else []
     if CASES[case]["strength"]:
         found += [rules.rating, rules.rating_figures]
     if CASES[case]["transmission"] is None:
