@@ -7,10 +7,11 @@ import pytest
 from matplotlib.text import Text
 
 from facegear.contact.columns import LTCA_COLUMNS, SHARES
-from facegear.plots.contact import closed
+from facegear.plots.contact import closed, contact_pattern
 from facegear.plots.load_sharing import sharing_figure
 from facegear.plots.modal import amplitudes, mode_shapes, typical_modes
 from facegear.plots.response import deflections
+from facegear.plots.style import save
 
 
 @pytest.fixture
@@ -119,3 +120,20 @@ def test_inputs_named_under_a_load_sharing_figure_stay_inside_it():
         if text.get_text() and box.width:
             assert whole.x0 <= box.x0 and box.x1 <= whole.x1, text.get_text()
     plt.close(figure)
+
+
+def test_the_drawing_of_a_fine_contact_pattern_stays_small(tmp_path):
+    """Every cell as a triangle of its own made 61 MB of config/paper.yaml's."""
+    along, across = np.meshgrid(np.linspace(0.25, 0.275, 60), np.linspace(0.04, 0.046, 60))
+    points = np.stack([across, along, np.zeros_like(along)], axis=-1).reshape(-1, 3)
+    nodes = np.arange(len(points))
+    arrays = {
+        "shape": np.array(along.shape),
+        "point_m": points,
+        "torque_n_m": np.full(len(points), 100.0),
+        "whole": np.ones(len(points), bool),
+        "node": nodes,
+        "pressure_pa": 1e9 * np.sin(0.01 * nodes) ** 2,
+    }
+    save(contact_pattern(arrays), tmp_path / "pattern.svg")
+    assert (tmp_path / "pattern.svg").stat().st_size < 300_000
