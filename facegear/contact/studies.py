@@ -54,16 +54,18 @@ def stored_cases(names: Sequence[Sequence[str]], files: Mapping[str, Sequence[st
     """The cases of which study, point and label are given, from as many files `pair`, `ltca`, `by_torque` and
     `pressure`. Raises CorruptFile for a file that is missing or altered.
     """
-    kinds = ("pair", "ltca", "by_torque", "pressure")
+    kinds = [files[kind] for kind in ("pair", "ltca", "by_torque", "pressure")]
     return [
         StudiedContact(
-            *one,
+            study=study,
+            point=point,
+            label=label,
             pair=documents.read(pair, ["unloaded", "backlash_um"]),
             ltca=tables.read(ltca, LTCA_COLUMNS),
             by_torque=tables.read(by_torque, ["torque_n_m", "path_radius_mm"]),
             pressure=arrays.read(pressure, PRESSURE_ARRAYS),
         )
-        for one, pair, ltca, by_torque, pressure in zip(names, *(files[kind] for kind in kinds), strict=True)
+        for (study, point, label), pair, ltca, by_torque, pressure in zip(names, *kinds, strict=True)
     ]
 
 

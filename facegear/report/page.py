@@ -19,6 +19,7 @@ UNITS = {
     "n_per_m": "N/m",
     "n_m": "N m",
     "rpm": "rpm",
+    "deg": "deg",
     "mpa": "MPa",
     "hz": "Hz",
     "um": "um",
@@ -85,7 +86,7 @@ class Table:
     def _cell(self, value: object, power: bool) -> str:
         """A cell; stiffnesses (N/m) all with a power of ten, so that they can be read down a column."""
         if isinstance(value, float):
-            return "" if value != value else _scientific(value, self.digits) if power else self._plain(value)
+            return "" if value != value else scientific(value, self.digits) if power else self._plain(value)
         return str(value)
 
     def _plain(self, value: float) -> str:
@@ -122,6 +123,7 @@ def render(title: str, lead: str, chapters: Sequence[Chapter]) -> str:
     return pages.render(TEMPLATE, title=title, lead=lead, chapters=chapters, viewer=viewer)
 
 
-def _scientific(value: float, digits: int) -> str:
+def scientific(value: float, digits: int) -> str:
+    """A number with a power of ten, `digits` of it significant."""
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
     return f"{mantissa}e{int(exponent)}"

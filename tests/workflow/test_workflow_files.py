@@ -2,6 +2,7 @@
 
 import ast
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -142,3 +143,20 @@ def test_scripts_only_adapt():
         text = script.read_text()
         assert len(text.splitlines()) <= 45, script
         assert "with stage(snakemake)" in text, script
+
+
+READ_ON = sorted((ROOT / "workflow" / "rules").glob("*.smk"))
+READ_ON = [path for path in READ_ON if "benchmark" not in path.stem and path.stem != "identify"]
+"""Rules whose outputs others read."""
+
+
+@pytest.mark.parametrize("path", READ_ON, ids=lambda path: path.stem)
+def test_every_file_of_a_rule_lies_beside_its_manifest(path):
+    """Readers look for the manifest in the folder of a file: one that drew elsewhere stopped the report."""
+    for rule in re.split(r"^rule ", path.read_text(), flags=re.MULTILINE)[1:]:
+        outputs = re.search(r"    output:\n((?: {8}.*\n)+)", rule)[1].replace("{{case}}", "{case}")
+        folders = {str(Path(name).parent) for name in re.findall(r'"(results/[^"]+)"', outputs)}
+        if "picture" in outputs:
+            folders.add("results/{case}/figures")
+        if "provenance.json" in outputs:
+            assert len(folders) == 1, rule.splitlines()[0]

@@ -78,6 +78,9 @@ def test_the_first_screen_warns_of_what_the_results_hide(example):
     ):
         assert any(words in one for one in told), words
     assert len(told) == len(set(told))
+    most = tables["meshes"]["pinion_torque_n_m"].abs().max()
+    barely = found | {"by_torque": pd.DataFrame(contact).assign(torque_n_m=most * (1 - 1e-12))}
+    assert not any("solved up to" in row[1] for row in warnings(values, barely, pair)), "rounding"
     clean = {"gap_um": 7.8} | gap
     quiet = pd.DataFrame(contact).assign(ste_peak_to_peak_half_um=4.0, torque_n_m=2000.0)
     pair = {"interference": None, "smallest_gap": clean, "backlash_um": {"smallest": 100.0}}
