@@ -25,23 +25,31 @@ def quarter_annulus(across, around):
     return replace(mesh, doflocs=bent), nodes
 
 
+def displaced(mesh, given, force=None):
+    """Displacements (3 n,) with those `given` (n, 3) where not nan, and nodal forces (n, 3)."""
+    count = mesh.doflocs.shape[1]
+    stiffness = stiffness_matrix(
+        [Part(mesh, np.arange(mesh.nelements), np.arange(count))], count, STEEL
+    ).tocsr()
+    free = np.isnan(given).ravel()
+    u = np.nan_to_num(given).ravel()
+    load = np.zeros(u.size) if force is None else force.ravel()
+    u[free] = solve_sparse(stiffness[free][:, free], (load - stiffness @ u)[free][:, None])[:, 0]
+    return u
+
+
 def stresses(across, around, outer_displacement):
     """Angles and hoop stress at the gauges of the hole, for displacements (n, 2) on the outer radius."""
     mesh, hole = quarter_annulus(across, around)
     points = mesh.doflocs.T
     count = len(points)
-    part = Part(mesh, np.arange(mesh.nelements), np.arange(count))
-    stiffness = stiffness_matrix([part], count, STEEL).tocsr()
     given = np.full((count, 3), np.nan)
     given[:, 2] = 0.0
     given[points[:, 1] < 1e-12, 1] = 0.0
     given[points[:, 0] < 1e-12, 0] = 0.0
     outer = np.hypot(points[:, 0], points[:, 1]) > OUTER * (1 - 1e-9)
     given[outer, :2] = outer_displacement(points[outer])
-    fixed = np.isfinite(given).ravel()
-    u = np.where(fixed, np.nan_to_num(given).ravel(), 0.0)
-    free = ~fixed
-    u[free] = solve_sparse(stiffness[free][:, free], -(stiffness[free] @ u)[:, None])[:, 0]
+    u = displaced(mesh, given)
     gauges = gauges_on(points, hole, STEEL)
     angle = np.arctan2(gauges.position[..., 1], gauges.position[..., 0])
     return angle[:, 0], (gauges.normal @ u).reshape(angle.shape)[:, 0]
@@ -90,3 +98,72 @@ def test_stress_of_a_free_hole_converges_with_order_three_or_better(field, exact
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert errors[-1] < 4e-3, errors
     assert orders.min() > 2.5, (errors, orders)
+
+
+def strip(columns, rows, mapping):
+    """Strip one element thick over the unit square, bent by `mapping`; its nodes on y = 1 and y = 0."""
+    mesh = MeshHex2.from_mesh(MeshHex1.init_tensor(columns, rows, [0.0, 0.1]))
+    x, y, z = mesh.doflocs
+    sides = []
+    for level in (1.0, 0.0):
+        on = np.flatnonzero(y == level)
+        sides.append(on[np.lexsort(np.round(np.array([z, x])[:, on], 9))].reshape(-1, 3))
+    bent = np.stack([*mapping(x, y), z])
+    return replace(mesh, doflocs=bent), *sides
+
+
+def test_moment_of_the_gauges_over_a_section_is_the_one_applied():
+    length, height, force = 5.0, 1.0, 2.0
+    mesh, top, bottom = strip(
+        np.linspace(0, 1, 21), np.linspace(0, 1, 5), lambda x, y: (length * x, height * (y - 0.5))
+    )
+    points = mesh.doflocs.T
+    given = np.full(points.shape, np.nan)
+    given[:, 2] = 0.0
+    given[points[:, 0] < 1e-12] = 0.0
+    end = np.flatnonzero(points[:, 0] > length * (1 - 1e-12))
+    load = np.zeros(points.shape)
+    load[end, 1] = force / end.size
+    u = displaced(mesh, given, load)
+    readings = []
+    for side in (top, bottom):
+        gauges = gauges_on(points, side, STEEL)
+        readings.append((gauges.normal @ u).reshape(gauges.position.shape[:2]).mean(axis=1))
+    at = gauges.position[:, 0, 0]
+    middle = np.abs(at - length / 2) < 0.3 * length
+    moment = 0.1 * height**2 / 6 * 0.5 * (readings[1] - readings[0])
+    np.testing.assert_allclose(moment[middle], force * (length - at[middle]), rtol=5e-3)
+
+
+def test_notched_strip_has_the_stress_concentration_of_the_charts():
+    """Opposite half-round notches in tension, each a quarter of the width deep: Peterson, net section."""
+    radius, half, length = 0.5, 1.0, 4.0
+    arc = 10
+
+    def mapping(s, y):
+        angle = np.minimum(s / 0.5, 1.0) * np.pi / 2
+        beyond = np.maximum(s - 0.5, 0.0) / 0.5
+        top_x = radius * np.sin(angle) + (length - radius) * beyond**1.5
+        top = half - radius * np.cos(angle)
+        bottom_x = length * (np.where(s < 0.5, 0.3 * s / 0.5, 0.3 + 0.7 * beyond**1.5))
+        graded = 1 - (1 - y) ** 1.5
+        return bottom_x + (top_x - bottom_x) * graded, top * graded
+
+    ends = np.concatenate([np.linspace(0, 0.5, arc + 1), np.linspace(0.5, 1, 9)[1:]])
+    mesh, top, _ = strip(ends, np.linspace(0, 1, 9), mapping)
+    points = mesh.doflocs.T
+    given = np.full(points.shape, np.nan)
+    given[:, 2] = 0.0
+    given[points[:, 0] < 1e-9, 0] = 0.0
+    given[points[:, 1] < 1e-9, 1] = 0.0
+    far = points[:, 0] > length * (1 - 1e-9)
+    given[far, 0] = 1e-6
+    u = displaced(mesh, given)
+    gauges = gauges_on(points, top, STEEL)
+    largest = (gauges.normal @ u).max()
+    whole = Part(mesh, np.arange(mesh.nelements), np.arange(len(points)))
+    force = (stiffness_matrix([whole], len(points), STEEL) @ u).reshape(-1, 3)[far, 0].sum()
+    nominal = force / (0.1 * (half - radius))
+    part = radius / half
+    chart = 3.065 - 3.472 * part + 1.009 * part**2 + 0.405 * part**3
+    assert largest / nominal == pytest.approx(chart, rel=0.015)
