@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from facegear.results.branch_loci import BranchLociResult
     from facegear.results.branches import BranchesResult
     from facegear.results.contact import ContactResult
+    from facegear.results.dynamic_stress import DynamicStressResult
     from facegear.results.geometry import GeometryResult
     from facegear.results.load_sharing import LoadSharingResult
     from facegear.results.modal import ModesResult
@@ -174,6 +175,29 @@ class Gearbox:
             return rating(self.root_stress().content["stress"], **self._needs("rating"))
 
         return self.store.result("rating", self.values, RatingResult, compute)
+
+    def dynamic_stress(self, speed_rpm: float | None = None) -> "DynamicStressResult":
+        """Root stress of every mesh while the machine runs at a pinion speed, the config's unless given.
+
+        Raises what `root_stress` and `response` raise.
+
+        >>> import facegear
+        >>> table = facegear.example().dynamic_stress(1000).table()
+        >>> bool((table["pinion_largest_mpa"] >= table["pinion_mean_mpa"]).all())
+        True
+        """
+        changes = {"contact.root_stress": True, **_given({"dynamics.speed_rpm": speed_rpm})}
+        gearbox = self._changed("dynamic_stress", changes)
+
+        from facegear.results.dynamic_stress import DynamicStressResult
+
+        def compute() -> "Outcome":
+            from facegear.stages.dynamic_root_stress import dynamic_root_stress
+
+            response, stress = gearbox.response().content["response"], gearbox.root_stress().content["stress"]
+            return dynamic_root_stress(response, stress, **gearbox._needs("dynamic_root_stress"))
+
+        return gearbox.store.result("dynamic_root_stress", gearbox.values, DynamicStressResult, compute)
 
     def stiffness(self) -> "StiffnessResult":
         """k(t) of one mesh at the config's load, or from given harmonics.

@@ -63,3 +63,17 @@ RATING_FINITE = tuple(name for name in RATING_COLUMNS if name not in ("damage", 
 DAMAGE_FINITE = tuple(name for name in DAMAGE_COLUMNS if name != "damage")
 ROOT_STRESS_FINITE = tuple(name for name in ROOT_STRESS_COLUMNS if name != "at_30_deg_mpa")
 """Columns whose numbers are always finite: life may last for ever, and 30 degrees lie beside the gauges."""
+
+DYNAMIC_STRESS_COLUMNS = (
+    "mesh",
+    "mean_force_n",
+    "largest_force_n",
+    "dynamic_factor",
+    "pinion_mean_mpa",
+    "pinion_largest_mpa",
+    "face_gear_mean_mpa",
+    "face_gear_largest_mpa",
+    "within_torques_solved",
+)
+DYNAMIC_STRESS_FINITE = tuple(name for name in DYNAMIC_STRESS_COLUMNS if name != "dynamic_factor")
+"""Columns whose numbers are always finite: an open mesh has no dynamic factor."""

@@ -49,3 +49,15 @@ rule rating_figures:
         manifest="results/{case}/figures/rating.provenance.json",
     script:
         "../scripts/rating_figures.py"
+
+
+rule dynamic_root_stress:
+    "Root stress of the running machine"
+    input:
+        response="results/{case}/dynamics/response.csv",
+        stress=shared("root_stress", "stress"),
+    output:
+        dynamic_stress="results/{case}/strength/dynamic_stress.csv",
+        manifest="results/{case}/strength/dynamic_stress.provenance.json",
+    script:
+        "../scripts/dynamic_root_stress.py"

@@ -17,6 +17,7 @@ from facegear.contact.root_gauges import root_gauges
 from facegear.contact.teeth import elastic_tooth
 from facegear.geometry import pinion
 from facegear.mesh.sizes import named_sizes
+from facegear.strength.dynamic_stress import dynamic_stress_table
 from facegear.strength.root_form import root_form
 from facegear.strength.root_stress import root_stress
 from facegear.strength.root_tables import root_tables
@@ -106,3 +107,22 @@ def test_spur_pinion_in_plane_strain_agrees_with_the_standard(rack_tip_radius):
     form = root_form(spur, float(radius))
     nominal_stress = cos(design.pressure_angle) / (width * m) * form.form_factor * form.stress_correction
     assert 0.90 < stress[0].max() / nominal_stress < 1.05
+
+
+def test_running_machine_is_judged_by_the_magnitude_of_each_mesh_force():
+    _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
+    forces = {
+        "pulsing": np.array([1000.0, 3000.0]),
+        "back": np.array([-2000.0, -2000.0]),
+        "open": np.zeros(2),
+    }
+    table = dynamic_stress_table(forces, 0.1, {"pinion": found, "face_gear": found}).set_index("mesh")
+    assert table["dynamic_factor"].iloc[:2].tolist() == pytest.approx([1.5, 1.0])
+    assert np.isnan(table.loc["open", "dynamic_factor"])
+    assert table.loc["pulsing", "pinion_mean_mpa"] == pytest.approx(table.loc["back", "pinion_largest_mpa"])
+    solved = root_tables({"pinion": found})["summary"]
+    largest = solved[solved["torque_n_m"] == 300.0]["largest_mpa"].max()
+    assert table.loc["pulsing", "face_gear_largest_mpa"] == pytest.approx(largest)
+    assert table["within_torques_solved"].all()
+    beyond = dynamic_stress_table({"high": np.array([4000.0])}, 0.1, {"pinion": found, "face_gear": found})
+    assert not beyond["within_torques_solved"].any()

@@ -13,6 +13,8 @@ def stages(case):
         return found
     found += [rules.machine_code, rules.ratings, rules.modal, rules.modal_figure]
     found += [rules.dynamics_response, rules.dynamics_sweep, rules.dynamics_figures]
+    if CASES[case]["contact"]["root_stress"]:
+        found += [rules.dynamic_root_stress]
     if CASES[case]["branches"]:
         found += [rules.branches, rules.branches_loci, rules.branches_figures]
     if SHARING_KINDS:
@@ -50,6 +52,8 @@ def report_tables(wildcards):
         tables += [rules.tolerances.output[name] for name in ("percentiles", "shares")]
     if CASES[wildcards.case]["strength"]:
         tables += [rules.rating.output.rating]
+    if rules.dynamic_root_stress in stages(wildcards.case):
+        tables += [rules.dynamic_root_stress.output.dynamic_stress]
     tables += [rules.scorecard.output.csv] if REPRODUCTION else []
     return [path.format(case=wildcards.case) for path in tables]
 
