@@ -118,7 +118,7 @@ class PeriodMap:
         contact = (log.shares[1:, : packed.m].sum(axis=0) > 0.0) | (
             packed.lower[: packed.m] >= packed.upper[: packed.m]
         )
-        for x in range(packed.m - ROWS * packed.ring_stiffness.size, packed.m, ROWS):
+        for x in range(packed.m - ROWS * packed.rings, packed.m, ROWS):
             contact[x : x + 2] = contact[x + 2]
         return Linear(
             gap=gap,

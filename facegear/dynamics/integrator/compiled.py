@@ -22,8 +22,8 @@ class Packed(NamedTuple):
     (harmonics + 1, 2, width), sine part first. pieces (pieces, degree + 1, m) add to the stiffness
     from one of `breaks` (rad) to the next; stiffness and error have one column for each of the kinds that
     stiffness_kind and error_kind (m,) name. drift (terms, m): polynomial in s added to the error of this
-    period, or none. leverage (m,): sum of squares of a row of mesh_jacobian. ring_stiffness over w^2,
-    ring_play (R,), ring_lag (w times the bearings' damping): of the rings in the last 3 R rows of the m.
+    period, or none. leverage (m,): sum of squares of a row of mesh_jacobian. rings: their number R, in
+    the last 3 R rows of the m; ring_stiffness over w^2, ring_play, padded; ring_lag: w times their damping.
     """
 
     n: int
@@ -48,6 +48,7 @@ class Packed(NamedTuple):
     fastest: float
     damping_when_open: bool
     scale: float
+    rings: int
     ring_stiffness: Array
     ring_play: Array
     ring_lag: float
@@ -87,8 +88,9 @@ def pack(system: System, frequency: float) -> Packed:
         fastest=natural / frequency + harmonics,
         damping_when_open=system.damping_when_open,
         scale=system.scale,
-        ring_stiffness=system.ring_stiffness / frequency**2,
-        ring_play=system.ring_play,
+        rings=system.ring_play.size,
+        ring_stiffness=_padded(system.ring_stiffness, _whole(system.ring_play.size)) / frequency**2,
+        ring_play=_padded(system.ring_play, _whole(system.ring_play.size)),
         ring_lag=system.ring_lag * frequency,
     )
 

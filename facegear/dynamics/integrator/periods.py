@@ -86,7 +86,7 @@ def run_periods(
                     _switch_tangents(packed, work, acting, tangents)
                 for m in range(acting.size):
                     acting[m] = work.acting[m]
-                for m in range(packed.m - ROWS * packed.ring_stiffness.size, packed.m):
+                for m in range(packed.m - ROWS * packed.rings, packed.m):
                     acting[m] = work.active[m]
                 ring_slopes(packed, work)
                 _move_tangents(packed, work, length, tangents)
@@ -164,8 +164,8 @@ def _switch_tangents(packed: Packed, work: Work, acting: Array, tangents: Array)
 
     Stiffness alone gives none, since the force is continuous at the edge.
     """
-    contacts = packed.m - ROWS * packed.ring_stiffness.size
-    for r in range(packed.ring_stiffness.size):
+    contacts = packed.m - ROWS * packed.rings
+    for r in range(packed.rings):
         m = contacts + ROWS * r + 2
         if acting[m] != work.active[m]:
             switch_ring(packed, work, r, work.active[m] - acting[m], tangents)

@@ -18,8 +18,8 @@ class Work(NamedTuple):
     edge, active, acting, state, at_edge describe the contact of each mesh during the step. powers (rows,
     harmonics) holds the Taylor coefficients of cos(j s) (even rows) and sin(j s) (odd rows) at 0; parts and
     kinds are used by Fourier series. bernstein holds the deflections' Bernstein coefficients over the step,
-    least and most their bounds. nodes: of the rule that integrates products of polynomials. ring_square to
-    ring_slope: series of the bearings with play, r^2 and its powers, forces, their slopes.
+    least and most their bounds. nodes: of the rule that integrates products of polynomials. ring_x to
+    ring_slope_yy: series of the bearings with play, place, tangent, r^2 and its powers, forces, their slopes.
     """
 
     order: int
@@ -53,12 +53,20 @@ class Work(NamedTuple):
     least: Array
     most: Array
     nodes: Array
+    ring_x: Array
+    ring_y: Array
+    ring_dx: Array
+    ring_dy: Array
     ring_square: Array
+    ring_reciprocal: Array
     ring_inverse: Array
     ring_cube: Array
-    ring_force: Array
+    ring_force_x: Array
+    ring_force_y: Array
     ring_product: Array
-    ring_slope: Array
+    ring_slope_xx: Array
+    ring_slope_xy: Array
+    ring_slope_yy: Array
 
 
 def make_work(packed: Packed, order: int) -> Work:
@@ -66,7 +74,7 @@ def make_work(packed: Packed, order: int) -> Work:
     n, m = packed.mesh_jacobian.shape
     rows = order + 1
     harmonics = max(len(packed.stiffness), len(packed.error), len(packed.load))
-    rings = packed.ring_stiffness.size
+    rings = packed.ring_play.size
     widest = max(packed.stiffness.shape[2], packed.error.shape[2])
     return Work(
         order=order,
@@ -100,12 +108,20 @@ def make_work(packed: Packed, order: int) -> Work:
         least=np.zeros(m),
         most=np.zeros(m),
         nodes=_gauss(order // 2 + 1),
+        ring_x=np.zeros((rows, rings)),
+        ring_y=np.zeros((rows, rings)),
+        ring_dx=np.zeros((rows, rings)),
+        ring_dy=np.zeros((rows, rings)),
         ring_square=np.zeros((rows, rings)),
+        ring_reciprocal=np.zeros(rings),
         ring_inverse=np.zeros((rows, rings)),
         ring_cube=np.zeros((rows, rings)),
-        ring_force=np.zeros((rows, 2 * rings)),
-        ring_product=np.zeros((rows, 3 * rings)),
-        ring_slope=np.zeros((rows, 3 * rings)),
+        ring_force_x=np.zeros((rows, rings)),
+        ring_force_y=np.zeros((rows, rings)),
+        ring_product=np.zeros((rows, rings)),
+        ring_slope_xx=np.zeros((rows, rings)),
+        ring_slope_xy=np.zeros((rows, rings)),
+        ring_slope_yy=np.zeros((rows, rings)),
     )
 
 
