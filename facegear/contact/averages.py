@@ -65,14 +65,14 @@ def hat_averages(
     values: NDArray[np.float64],
     area: NDArray[np.float64],
     least: NDArray[np.float64],
-) -> tuple[Rows, NDArray[np.int64], NDArray[np.float64]]:
+) -> tuple[Rows, NDArray[np.int64]]:
     """Averages by area over hats, from points (q,) of known area.
 
     `hats`, `values` (q, h): the hats that a point lies under and their values there; `least` (n,): the area
-    below which a hat is left out. Returns the rows, their hats (m,) and the area (m,) under each.
+    below which a hat is left out. Returns the rows and their hats (m,).
     """
-    pointer, index, weight, chosen, covered = _hat_averages(hats, values, area, least)
-    return Rows(pointer, index, weight), chosen, covered
+    pointer, index, weight, chosen = _hat_averages(hats, values, area, least)
+    return Rows(pointer, index, weight), chosen
 
 
 @njit(cache=True)
@@ -95,7 +95,7 @@ def _hat_averages(hats, values, area, least):  # type: ignore[no-untyped-def]
                 index[slot[hat]] = q
                 weight[slot[hat]] = values[q, h] * area[q] / covered[hat]
                 slot[hat] += 1
-    return pointer, index, weight, chosen, covered[chosen]
+    return pointer, index, weight, chosen
 
 
 def spread(

@@ -16,8 +16,8 @@ class Candidates:
     edge.
 
     hats (m,) lattice nodes and their `column` along the width; gap (m,) m and lever_arm (m,) m averaged over
-    the hat; area (m,) m2, `whole` where no edge cuts it; loads on the lattice nodes `pinion` (m, n1) and
-    `gear` (m, n2), and on the unrefined ones `pinion_coarse`, `gear_coarse`.
+    the hat; loads on the lattice nodes `pinion` (m, n1) and `gear` (m, n2), and on the unrefined ones
+    `pinion_coarse`, `gear_coarse`.
     """
 
     tooth: int
@@ -25,8 +25,6 @@ class Candidates:
     column: NDArray[np.int64]
     gap: NDArray[np.float64]
     lever_arm: NDArray[np.float64]
-    area: NDArray[np.float64]
-    whole: NDArray[np.bool_]
     pinion: sp.csr_matrix
     gear: sp.csr_matrix
     pinion_coarse: sp.csr_matrix
@@ -63,8 +61,6 @@ def candidates_of(
         column=loads.hats[near] % pinion.shape[1],
         gap=gap[near],
         lever_arm=lever_arm[near],
-        area=loads.area[near],
-        whole=loads.whole[near],
         pinion=on_pinion,
         gear=on_gear,
         pinion_coarse=pinion_coarse,

@@ -12,8 +12,10 @@ LTCA_COLUMNS = (
     "k_local_n_per_m",
     "pairs_in_contact",
     *SHARES,
-    "peak_pressure_mpa",
-    "edge_pressure_mpa",
+    "pressure_mpa",
+    "pressure_error_mpa",
+    "tip_line_load_n_per_mm",
+    "tip_length_mm",
     "kkt_residual",
     "torque_residual",
 )
@@ -24,13 +26,23 @@ PRESSURE_ARRAYS = {
     "tooth": (None,),
     "node": (None,),
     "force_n": (None,),
-    "pressure_pa": (None,),
-    "whole": (None,),
     "shape": (2,),
     "point_m": (None, 3),
-    "area_m2": (None,),
+    "line_torque_n_m": (None,),
+    "line_position": (None,),
+    "line_tooth": (None,),
+    "line_plane": (None,),
+    "line_where": (None,),
+    "line_length_m": (None,),
+    "line_load_n_per_m": (None,),
+    "line_pressure_pa": (None,),
+    "line_error_pa": (None,),
+    "line_half_width_m": (None,),
+    "contact_position": (None,),
+    "contact_tooth": (None,),
+    "contact_point_m": (None, None, 3),
 }
-"""Arrays of the pressure file: one loaded hat a row, then the lattice the nodes belong to."""
+"""Arrays of the pressure file, see `facegear.contact.tables.pressure_arrays`."""
 
 LOAD_ARRAYS = {
     "torque_n_m": (None,),
@@ -43,3 +55,6 @@ LOAD_ARRAYS = {
     "nodes": (2,),
 }
 """Arrays of the loads file: an entry a case, a row a loaded node of a body, and the numbers of nodes."""
+
+EDGES = ("inside", "pinion tip", "gear tip", "end")
+"""Where a loaded plane's strip of contact lies: `where` of the line loads numbers these."""

@@ -47,6 +47,11 @@ class PinionSurface:
         return self.exact(at.astype(float)).position
 
     @cached_property
+    def planes(self) -> NDArray[np.float64]:
+        """Positions (nv,) m along the pinion's axis of the lattice's planes."""
+        return self.nodes.reshape(*self.shape, 3)[0, :, 1]
+
+    @cached_property
     def pressure(self) -> Basis:
         return pressure_basis(self.shape)
 
@@ -74,11 +79,6 @@ class PinionSurface:
     def full_area(self) -> NDArray[np.float64]:
         """Area (n,) of each hat where nothing is cut off."""
         return self.hats.T @ self.area
-
-    @cached_property
-    def row_height(self) -> float:
-        """Mean distance (m) of node rows: the height that a pressure at an edge is averaged over."""
-        return float(self.area.sum()) / self.width / (self.shape[0] - 1)
 
     @property
     def width(self) -> float:

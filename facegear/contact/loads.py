@@ -55,14 +55,12 @@ def facing(
 class Loads:
     """Unit forces of one tooth pair, each spread over points of the pinion or of an edge by a row of `rows`.
 
-    For m forces: `hats`, `area` and `whole` as in `Candidates`. For q points: `gap` (m), `lever_arm` (m), and
+    For m forces: `hats` as in `Candidates`. For q points: `gap` (m), `lever_arm` (m), and
     where they are on both refined lattices, `pinion` and `gear` (q, 2).
     """
 
     rows: Rows
     hats: NDArray[np.int64]
-    area: NDArray[np.float64]
-    whole: NDArray[np.bool_]
     gap: NDArray[np.float64]
     lever_arm: NDArray[np.float64]
     pinion: NDArray[np.float64]
@@ -84,10 +82,9 @@ def pair_loads(
     pinion, gear = pair.pinion, pair.gear
     loads = []
     if options.edges:
-        face = pair.design.face_gear
         on_pinion = pinion.coordinates(feet.flank, feet.fillet, feet.y)
         edge = facing(feet.gap, feet.lever_arm, on_pinion, gear.tip[0])
-        loads += edge_loads(pinion, edge, gear.lattice.shape[1], face.outer_radius - face.inner_radius)
+        loads += edge_loads(pinion, edge, gear.lattice.shape[1])
     if hits is None:
         return loads
     coordinates, tip = pinion.tip
@@ -98,7 +95,7 @@ def pair_loads(
     loads += flank_loads(pinion, facing(usable, pinion.lever_arm[points], at, on_gear[:count], points))
     if options.edges:
         edge = facing(gap[count:], tip.lever_arm, coordinates, on_gear[count:])
-        loads += edge_loads(pinion, edge, pinion.shape[1], pinion.width)
+        loads += edge_loads(pinion, edge, pinion.shape[1])
     return loads
 
 
@@ -107,51 +104,35 @@ def flank_loads(surface: PinionSurface, points: Facing) -> list[Loads]:
     if points.index.size == 0:
         return []
     under, values = surface.hats.indices.reshape(-1, 4), surface.hats.data.reshape(-1, 4)
-    rows, hats, area = hat_averages(
+    rows, hats = hat_averages(
         under[points.index],
         values[points.index],
         surface.area[points.index],
         SMALLEST_COVER * surface.full_area,
     )
-    return [_loads(rows, hats, area, _whole(surface, hats, area), points)]
+    return [_loads(rows, hats, points)]
 
 
-def edge_loads(surface: PinionSurface, points: Facing, columns: int, length: float) -> list[Loads]:
-    """Loads along a tip edge of `columns` nodes and a length (m), over points of `edge_hats`."""
+def edge_loads(surface: PinionSurface, points: Facing, columns: int) -> list[Loads]:
+    """Loads along a tip edge of `columns` nodes, over points of `edge_hats`."""
     _, hats_here, values = edge_hats(columns)
     least = np.full(columns, SMALLEST_COVER)
     least[[0, -1]] *= 0.5
-    rows, hats, covered = hat_averages(
+    rows, hats = hat_averages(
         hats_here[points.index], values[points.index], np.full(points.index.size, 0.5), least
     )
     if hats.size == 0:
         return []
     nearest = np.rint(points.pinion).astype(np.int64) @ np.array([surface.shape[1], 1])
-    area = covered * length / (columns - 1) * surface.row_height
-    return [_loads(rows, nearest[rows.heaviest()], area, np.zeros(hats.size, dtype=bool), points)]
+    return [_loads(rows, nearest[rows.heaviest()], points)]
 
 
-def _loads(
-    rows: Rows,
-    hats: NDArray[np.int64],
-    area: NDArray[np.float64],
-    whole: NDArray[np.bool_],
-    points: Facing,
-) -> Loads:
+def _loads(rows: Rows, hats: NDArray[np.int64], points: Facing) -> Loads:
     return Loads(
         rows=rows,
         hats=hats,
-        area=area,
-        whole=whole,
         gap=points.gap,
         lever_arm=points.lever_arm,
         pinion=points.pinion,
         gear=points.gear,
     )
-
-
-def _whole(surface: PinionSurface, hats: NDArray[np.int64], area: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Hats that neither the gear's edges cut nor the pinion's, which are those of its lattice."""
-    row, column = np.divmod(hats, surface.shape[1])
-    inside = (row > 0) & (column > 0) & (column < surface.shape[1] - 1)
-    return inside & (area > (1 - 1e-9) * surface.full_area[hats])

@@ -42,17 +42,14 @@ class PairAtPosition(Bodies, Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Spot:
-    """Loaded hats of one pair at one position and torque: lattice node, force (N), pressure (Pa).
+    """Loaded hats of one pair at one position and torque: lattice node, force (N).
 
-    `whole` marks hats that no edge of either tooth cuts. `on_pinion` and `on_gear`: the same forces (N) on
-    the nodes of both contact surfaces before refinement.
+    `on_pinion` and `on_gear`: the same forces (N) on the nodes of both contact surfaces before refinement.
     """
 
     tooth: int
     hats: NDArray[np.int64]
     force: NDArray[np.float64]
-    pressure: NDArray[np.float64]
-    whole: NDArray[np.bool_]
     on_pinion: NDArray[np.float64]
     on_gear: NDArray[np.float64]
 
@@ -81,16 +78,6 @@ class LoadedPosition:
     @property
     def pairs_in_contact(self) -> int:
         return int(np.count_nonzero(self.share))
-
-    @property
-    def peak_pressure(self) -> float:
-        """Largest pressure away from edges, Pa."""
-        return max((float(spot.pressure[spot.whole].max(initial=0.0)) for spot in self.spots), default=0.0)
-
-    @property
-    def edge_pressure(self) -> float:
-        """Largest pressure at an edge, Pa; without relief it grows as the mesh is refined."""
-        return max((float(spot.pressure[~spot.whole].max(initial=0.0)) for spot in self.spots), default=0.0)
 
 
 def solve_position(
@@ -144,8 +131,6 @@ def _result(
                     tooth=loads.tooth,
                     hats=loads.hats[on],
                     force=force[on],
-                    pressure=force[on] / loads.area[on],
-                    whole=loads.whole[on],
                     on_pinion=loads.pinion_coarse.T @ force,
                     on_gear=loads.gear_coarse.T @ force,
                 )

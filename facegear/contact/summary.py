@@ -1,7 +1,4 @@
-"""What the contact table says of each torque: stiffness, peak-to-peak transmission error, path.
-
-The largest pressure of the contact table is left out: beside tip edges it grows as the mesh is refined.
-"""
+"""What the contact table says of each torque: stiffness, peak-to-peak transmission error, pressure, path."""
 
 from collections.abc import Mapping
 
@@ -21,6 +18,10 @@ COLUMNS = (
     "unloaded_peak_to_peak_um",
     "pairs_min",
     "pairs_max",
+    "pressure_mpa",
+    "pressure_error_mpa",
+    "tip_line_load_n_per_mm",
+    "tip_length_mm",
 )
 
 
@@ -34,7 +35,9 @@ def contact_summary(ltca: pd.DataFrame) -> pd.DataFrame:
 
     A peak-to-peak value is the largest less the smallest of the `positions` solved in a pitch, so it cannot
     exceed the true one; `ste_peak_to_peak_half_um` takes every second position alone and shows how much
-    their number matters (NaN for an odd number, whose every second position is not spread evenly).
+    their number matters (NaN for an odd number, whose every second position is not spread evenly). The
+    pressure and its error are those of the position where it is largest; line loads and the loaded length of
+    tip edges are the largest of all positions, which need not be one position's.
     """
     rows = [_row(float(torque), found) for torque, found in ltca.groupby("torque_n_m", sort=True)]
     return pd.DataFrame(rows, columns=list(COLUMNS))
@@ -55,7 +58,18 @@ def _row(torque: float, found: pd.DataFrame) -> tuple[float, ...]:
         float(np.ptp(at["unloaded_ste_um"])),
         int(at["pairs_in_contact"].min()),
         int(at["pairs_in_contact"].max()),
+        *_largest_pressure(at),
+        at["tip_line_load_n_per_mm"].max(),
+        at["tip_length_mm"].max(),
     )
+
+
+def _largest_pressure(found: pd.DataFrame) -> tuple[float, float]:
+    """The largest of all positions with its error (MPa); nan where no position has one."""
+    if found["pressure_mpa"].isna().all():
+        return np.nan, np.nan
+    row = found.loc[found["pressure_mpa"].idxmax()]
+    return float(row["pressure_mpa"]), float(row["pressure_error_mpa"])
 
 
 def path_radii(pressure: Mapping[str, NDArray]) -> pd.DataFrame:

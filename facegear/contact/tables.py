@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from facegear.contact.columns import LTCA_COLUMNS
 from facegear.contact.flanks import PinionSurface
 from facegear.contact.position import LoadedPosition
+from facegear.contact.pressure import FlankPressure, LineLoads
 
 
-def ltca_table(results: Sequence[LoadedPosition]) -> pd.DataFrame:
-    """One row a torque and position, columns as LTCA_COLUMNS."""
+def ltca_table(results: Sequence[LoadedPosition], pressure: FlankPressure) -> pd.DataFrame:
+    """One row a torque and position, columns as LTCA_COLUMNS; no pressure (nan) where none is inside."""
     rows = [
         (
             r.torque,
@@ -23,54 +24,68 @@ def ltca_table(results: Sequence[LoadedPosition]) -> pd.DataFrame:
             r.k_local,
             r.pairs_in_contact,
             *r.share,
-            1e-6 * r.peak_pressure,
-            1e-6 * r.edge_pressure,
+            *_pressures(loads),
             r.residual,
             abs(r.share.sum() - 1.0),
         )
-        for r in results
+        for r, loads in zip(results, pressure.loads, strict=True)
     ]
     frame = pd.DataFrame(rows, columns=list(LTCA_COLUMNS))
     return frame.sort_values(["torque_n_m", "position"], ignore_index=True)
 
 
-def pressure_arrays(results: Sequence[LoadedPosition], surface: PinionSurface) -> dict[str, NDArray]:
-    """All loaded hats, one a row, and the lattice they belong to, as PRESSURE_ARRAYS.
+def _pressures(loads: LineLoads) -> tuple[float, ...]:
+    """Largest pressure inside and its error (MPa), line load (N/mm) and loaded length (mm) of tip edges."""
+    largest, error = loads.largest()
+    tip, length = loads.at_tips()
+    return 1e-6 * largest, 1e-6 * error, 1e-3 * tip, 1e3 * length
 
-    `whole` is false for hats cut by an edge of either tooth, whose pressure has no limit as the mesh is
-    refined.
+
+def pressure_arrays(
+    results: Sequence[LoadedPosition], surface: PinionSurface, pressure: FlankPressure
+) -> dict[str, NDArray]:
+    """Loads and pressures, as PRESSURE_ARRAYS.
+
+    First the forces of all loaded hats, one a row, and the lattice (`shape`, `point_m`) of their nodes. Then
+    `line_*`, one loaded plane across the pinion's axis a row: its number, the line load along the contact
+    line and the length it stands for, where it is (a number in EDGES), and what is known of the pressure
+    there: 0 with an error of 0 unless inside. Last the contact lines: a pair's points on the pinion in all
+    planes, whether loaded or not.
     """
-    names = ("torque_n_m", "position", "tooth", "node", "force_n", "pressure_pa", "whole")
-    rows: dict[str, list[NDArray]] = {name: [] for name in names}
-    for result in results:
-        for spot in result.spots:
-            count = spot.hats.size
-            rows["torque_n_m"].append(np.full(count, result.torque))
-            rows["position"].append(np.full(count, result.position))
-            rows["tooth"].append(np.full(count, spot.tooth))
-            rows["node"].append(spot.hats)
-            rows["force_n"].append(spot.force)
-            rows["pressure_pa"].append(spot.pressure)
-            rows["whole"].append(spot.whole)
-    arrays = {name: np.concatenate(parts) for name, parts in rows.items()}
-    return arrays | {"shape": np.array(surface.shape), "point_m": surface.nodes, "area_m2": surface.full_area}
+    lines: dict[str, list[NDArray]] = {}
+    for result, loads in zip(results, pressure.loads, strict=True):
+        rows = {
+            "line_torque_n_m": np.full(loads.line.size, result.torque),
+            "line_position": np.full(loads.line.size, result.position),
+            "line_tooth": pressure.tooth[loads.line],
+            "line_plane": loads.plane,
+            "line_where": loads.where,
+            "line_length_m": loads.length,
+            "line_load_n_per_m": loads.line_load,
+            "line_pressure_pa": np.nan_to_num(loads.pressure),
+            "line_error_pa": np.nan_to_num(loads.error),
+            "line_half_width_m": np.nan_to_num(loads.half_width),
+        }
+        for name, values in rows.items():
+            lines.setdefault(name, []).append(values)
+    return {
+        **_forces(results),
+        "shape": np.array(surface.shape),
+        "point_m": surface.nodes,
+        **{name: np.concatenate(parts) for name, parts in lines.items()},
+        "contact_position": pressure.position,
+        "contact_tooth": pressure.tooth,
+        "contact_point_m": pressure.points,
+    }
 
 
-def pressure_surface(
-    arrays: dict[str, NDArray],
-) -> tuple[NDArray[np.float64], dict[str, NDArray[np.int64]], dict[str, NDArray[np.float64]]]:
-    """Pinion flank as quadrilaterals for ParaView: points, cells, and the largest pressure (Pa) at each
-    torque.
-
-    The largest is over all positions and teeth, as one tooth passes through the mesh.
-    """
-    nu, nv = arrays["shape"]
-    nodes = np.arange(nu * nv).reshape(nu, nv)
-    corners = nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]
-    fields = {}
-    for torque in np.unique(arrays["torque_n_m"]):
-        on = (arrays["torque_n_m"] == torque) & arrays["whole"]
-        largest = np.zeros(nu * nv)
-        np.maximum.at(largest, arrays["node"][on], arrays["pressure_pa"][on])
-        fields[f"largest_pressure_pa_at_{torque:g}_n_m"] = largest
-    return arrays["point_m"], {"quad": np.stack([c.ravel() for c in corners], axis=-1)}, fields
+def _forces(results: Sequence[LoadedPosition]) -> dict[str, NDArray]:
+    found = [(result, spot) for result in results for spot in result.spots]
+    count = [spot.hats.size for _, spot in found]
+    return {
+        "torque_n_m": np.repeat([result.torque for result, _ in found], count),
+        "position": np.repeat([result.position for result, _ in found], count),
+        "tooth": np.repeat([spot.tooth for _, spot in found], count),
+        "node": np.concatenate([spot.hats for _, spot in found]),
+        "force_n": np.concatenate([spot.force for _, spot in found]),
+    }

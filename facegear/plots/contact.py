@@ -5,13 +5,22 @@ from collections.abc import Mapping
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from facegear.contact.columns import SHARES
+from facegear.contact.columns import EDGES, SHARES
+from facegear.contact.pattern import Pattern, pattern
 from facegear.plots.style import NARROW, legend_above, styled
 
 PAIR_NAMES = ("-2", "-1", "0", "1", "2")
+
+MARKS = (
+    (("pinion tip", "gear tip"), "s", "#0072b2", "tip edge: line load only"),
+    (("end",), "D", "#009e73", "end of the face: the same"),
+)
+"""Kinds of edges, marker, colour and legend: where a flank carries load and no pressure is known."""
 
 
 def contact_curves(ltca: pd.DataFrame) -> Figure:
@@ -54,38 +63,68 @@ def closed(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def contact_pattern(arrays: Mapping[str, NDArray]) -> Figure:
-    """Largest pressure over a pitch on the pinion's flank, one panel a torque, one scale."""
-    return pattern_panels({f"{torque:g} N m": (arrays, torque) for torque in np.unique(arrays["torque_n_m"])})
+    """Pressure each point of the pinion's flank sees as it passes through the mesh, one panel a torque."""
+    torques = np.unique(arrays["line_torque_n_m"])
+    return pattern_panels({_told(arrays, torque): (arrays, torque) for torque in torques})
 
 
 def pattern_panels(panels: Mapping[str, tuple[Mapping[str, NDArray], float]]) -> Figure:
-    """`contact_pattern` with panels by title: the arrays and the torque (N m) that each shows."""
-    found = {title: _largest_pressure(arrays, torque) for title, (arrays, torque) in panels.items()}
-    top = max(np.nanquantile(field, 0.995) for _, _, field in found.values())
+    """`contact_pattern` with panels by title: the arrays and the torque (N m) that each shows.
+
+    All have one scale, which ends at their largest pressure; marks stand where only a line load is known.
+    """
+    found = {title: (pattern(arrays), float(torque)) for title, (arrays, torque) in panels.items()}
+    top = max(np.nanmax(seen.pressure[torque], initial=0.0) for seen, torque in found.values())
     rows = len(found)
     with styled():
         figure, axes = plt.subplots(
-            rows, 1, figsize=(NARROW, 0.9 + 1.7 * rows), sharex=True, sharey=True, squeeze=False
+            rows, 1, figsize=(NARROW, 1.3 + 1.7 * rows), sharex=True, sharey=True, squeeze=False
         )
-        for axis, (title, (along, radius, field)) in zip(axes[:, 0], found.items(), strict=True):
-            drawn = axis.pcolormesh(
-                along, radius, field, vmin=0, vmax=top, cmap="inferno", shading="gouraud", rasterized=True
-            )
+        for axis, (title, (seen, torque)), (arrays, _) in zip(
+            axes.flat, found.items(), panels.values(), strict=True
+        ):
+            drawn = _panel(axis, seen, torque, 1e-6 * top or 1.0)
+            nodes = 1e3 * arrays["point_m"]
+            height = np.hypot(nodes[:, 0], nodes[:, 2])
+            axis.set(xlim=(nodes[:, 1].min(), nodes[:, 1].max()), ylim=(height.min(), height.max()))
             axis.set_title(title)
-            axis.grid(visible=False)
             axis.set_ylabel("Pinion radius (mm)")
-        axes[-1, 0].set_xlabel("Gear radius (mm)")
-        figure.colorbar(
-            drawn, ax=axes, location="top", aspect=40, label="Largest pressure over a pitch (MPa)"
-        )
+        axes[-1, 0].set_xlabel("Along the pinion's axis, from the gear's (mm)")
+        figure.colorbar(drawn, ax=axes, location="top", aspect=40, label="Pressure (MPa)")
+        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return figure
 
 
-def _largest_pressure(arrays: Mapping[str, NDArray], torque: float) -> tuple[NDArray, NDArray, NDArray]:
-    """Gear radius and pinion radius (mm) of the flank's nodes, and the largest pressure (MPa) each sees."""
-    shape = tuple(int(n) for n in arrays["shape"])
-    points = 1e3 * arrays["point_m"].reshape(*shape, 3)
-    on = (arrays["torque_n_m"] == torque) & arrays["whole"]
-    field: NDArray[np.float64] = np.zeros(shape[0] * shape[1])
-    np.maximum.at(field, arrays["node"][on], 1e-6 * arrays["pressure_pa"][on])
-    return points[..., 1], np.hypot(points[..., 0], points[..., 2]), field.reshape(shape)
+def _panel(axis: Axes, seen: Pattern, torque: float, top: float) -> QuadMesh:
+    """Pressures (MPa) up to `top` on the surface that the contact lines sweep, and marks at edges."""
+    width = 1e3 * seen.points[..., 1]
+    radius = 1e3 * np.hypot(seen.points[..., 0], seen.points[..., 2])
+    where = seen.where[torque]
+    field = np.ma.masked_invalid(1e-6 * _faded(seen.pressure[torque], where))
+    axis.set_facecolor("0.92")
+    axis.grid(visible=False)
+    for kinds, marker, colour, name in MARKS:
+        on = np.isin(where, [EDGES.index(kind) for kind in kinds])
+        axis.plot(width[on], radius[on], marker, color=colour, ms=2.5, label=name, rasterized=True)
+    look = {"cmap": "inferno", "shading": "gouraud", "rasterized": True}
+    return axis.pcolormesh(width, radius, field, vmin=0, vmax=top, **look)
+
+
+def _faded(field: NDArray[np.float64], where: NDArray[np.int64]) -> NDArray[np.float64]:
+    """The pressures, with zeros in unloaded planes next to them, where the loaded length ends."""
+    known = np.isfinite(field)
+    beside = np.zeros_like(known)
+    beside[:, 1:] |= known[:, :-1]
+    beside[:, :-1] |= known[:, 1:]
+    return np.where(beside & (where < 0), 0.0, field)
+
+
+def _told(arrays: Mapping[str, NDArray], torque: float) -> str:
+    """Title of a panel: torque, largest pressure with its error, largest line load of a tip edge."""
+    on = arrays["line_torque_n_m"] == torque
+    at = np.argmax(arrays["line_pressure_pa"][on])
+    pressure, error = (1e-6 * arrays[f"line_{name}_pa"][on][at] for name in ("pressure", "error"))
+    tips = np.isin(arrays["line_where"][on], [EDGES.index("pinion tip"), EDGES.index("gear tip")])
+    tip = 1e-3 * arrays["line_load_n_per_m"][on][tips].max(initial=0.0)
+    edge = f"; tip edges up to {tip:.0f} N/mm" if tip > 0 else ""
+    return f"{torque:g} N m: {pressure:.0f} ± {error:.0f} MPa{edge}"

@@ -14,6 +14,8 @@ from facegear.report.page import Chapter, Picture, Table, View, render
 BY_TORQUE = (
     "Over a pitch, for each torque on the pinion. Peak-to-peak transmission error (ste): largest less "
     "smallest of the positions solved, so never more than the true value; half: of every second one. "
+    "Pressure: the largest away from edges, with the error that the mesh leaves. Tip line load: the "
+    "largest at a tip edge, where pressure has no limit, and the greatest length that carries any. "
     "Path radius: where the contact forces have their centroid, distance from the gear's axis"
 )
 BEARINGS = (

@@ -8,7 +8,7 @@ CAPTIONS = {
     "tooth_sections": "Sections of both teeth, with the radii between which the gear's teeth can exist.",
     "separation": "Gap between the unloaded flanks, and the path of the contact over the gear's flank.",
     "contact_curves": "Static transmission error, stiffness and load share against position.",
-    "contact_pattern": "Largest pressure each point of the flank sees over a pitch.",
+    "contact_pattern": "Pressure on the flank that contact lines sweep; at edges only line loads are known.",
     "life": "Every bin of the duty cycle beside the stress that may be repeated so often.",
     "root_stress_passage": "Root stress of a tooth on its way through the mesh: largest tension below the "
     "loaded flank, largest compression below the other.",

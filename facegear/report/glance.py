@@ -1,6 +1,7 @@
 """The report's first screen: machine drawing, key numbers, verdicts and warnings."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from math import nan
 from typing import Any
 
 import pandas as pd
@@ -40,7 +41,7 @@ def verdicts(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None)
         yield (
             f"contact at {row.torque_n_m:g} N m",
             f"mean stiffness {scientific(row.k_average_mean_n_per_m, 4)} N/m, peak-to-peak transmission "
-            f"error {row.ste_peak_to_peak_um:.2f} um",
+            f"error {row.ste_peak_to_peak_um:.2f} um{_pressure(row)}",
         )
     for row in tables.get("rating", pd.DataFrame()).itertuples():
         yield (
@@ -57,6 +58,13 @@ def verdicts(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None)
     if "scorecard" in tables:
         counted = tables["scorecard"][tables["scorecard"]["counted"]]["verdict"].value_counts(sort=False)
         yield "claims of the paper", ", ".join(f"{name} {rows}" for name, rows in counted.items())
+
+
+def _pressure(row: Any) -> str:
+    """The largest pressure with its error, where one is known."""
+    if not getattr(row, "pressure_mpa", nan) > 0.0:
+        return ""
+    return f", flank pressure up to {row.pressure_mpa:.0f} ± {row.pressure_error_mpa:.0f} MPa away from edges"
 
 
 def warnings(
@@ -92,10 +100,17 @@ def _contact_warnings(
     if values["mesh_stiffness"]["source"] == "fem_scaled":
         yield "mesh stiffness", "only its shape is computed; its mean is the config's"
     if "ltca" in tables:
-        edges = tables["ltca"].groupby("torque_n_m")["edge_pressure_mpa"].max()
-        if (edges > 0.0).any():
-            told = f"from {edges.index[edges > 0.0][0]:g} N m on edges of teeth carry load"
-            yield "contact", f"{told}; the pressure there has no limit as the mesh is refined"
+        columns = ["tip_line_load_n_per_mm", "tip_length_mm"]
+        tips = tables["ltca"].groupby("torque_n_m")[columns].max()
+        loaded = tips[tips["tip_length_mm"] > 0.0]
+        if len(loaded):
+            load, length = loaded.max()
+            yield (
+                "contact",
+                f"from {loaded.index[0]:g} N m on tip edges carry load, up to {load:.0f} N/mm over "
+                f"{length:.1f} mm; pressure at a sharp edge has no limit: tip relief or a chamfer takes "
+                "the load off the pinion's, root relief off the gear's",
+            )
     if "by_torque" not in tables:
         return
     found = tables["by_torque"]

@@ -37,10 +37,11 @@ class ContactResult(Result):
         return self.content["by_torque"].copy()
 
     def pressures(self) -> "xr.Dataset":
-        """Pressure (MPa) over torque, position, pair of teeth, and the nodes of the pinion's flank.
+        """Pressure (MPa) with its error, and line load (N/mm), over torque, position, pair and plane.
 
-        Coordinates `pinion_radius_mm` and `gear_radius_mm` (profile, width) place the nodes. Nodes that an
-        edge of either tooth cuts, whose pressure has no limit as the mesh is refined, count as unloaded.
+        Planes lie across the pinion's axis; coordinates say where its contact line meets each. Where a tip
+        edge or an end of the face is nearer than the strip's half-width, pressure has no limit: nan, and
+        `where` says what is near.
         """
         from facegear.results.pressures import pressure_dataset
 
@@ -56,7 +57,7 @@ class ContactResult(Result):
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write two tables, `pressure.npz`, `loads.npz` and, for ParaView, `pressure.vtu`."""
-        from facegear.contact.tables import pressure_surface
+        from facegear.contact.pattern import pressure_surface
         from facegear.io.meshes import write_vtu
 
         vtu = Path(folder) / "contact" / "pressure.vtu"

@@ -1,4 +1,4 @@
-"""The stored pressures of the loaded hats as one labelled array."""
+"""Pressures along the contact lines as one labelled dataset."""
 
 from collections.abc import Mapping
 
@@ -6,29 +6,46 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from facegear.contact.columns import EDGES
+
 
 def pressure_dataset(arrays: Mapping[str, NDArray]) -> xr.Dataset:
-    """`pressure_mpa` over torque_n_m, position, pair, and the pinion flank's nodes (profile, width)."""
-    axes = {name: np.unique(arrays[name]) for name in ("torque_n_m", "position", "tooth")}
-    shape = tuple(int(n) for n in arrays["shape"])
-    values = np.zeros((*(axis.size for axis in axes.values()), shape[0] * shape[1]))
-    on = arrays["whole"].astype(bool)
-    rows = [np.searchsorted(axis, arrays[name][on]) for name, axis in axes.items()]
-    values[(*rows, arrays["node"][on])] = 1e-6 * arrays["pressure_pa"][on]
-    points = 1e3 * arrays["point_m"].reshape(*shape, 3)
-    nodes = ("profile", "width")
+    """Over torque_n_m, position, pair and plane, from arrays as PRESSURE_ARRAYS.
+
+    `pressure_mpa`, `pressure_error_mpa` and `half_width_mm`: nan unless inside; `line_load_n_per_mm`: zero
+    where unloaded; `where`: one of EDGES, empty where unloaded. Coordinates `pinion_radius_mm` (position,
+    pair, plane) and `axial_mm` (plane) place the contact lines on the pinion's flank.
+    """
+    axes = {name: np.unique(arrays[f"contact_{name}"]) for name in ("position", "tooth")}
+    axes = {"torque_n_m": np.unique(arrays["line_torque_n_m"]), **axes}
+    points = 1e3 * arrays["contact_point_m"]
+    shape = (*(axis.size for axis in axes.values()), points.shape[1])
+    rows = [np.searchsorted(axis, arrays[f"line_{name}"]) for name, axis in axes.items()]
+    cells = (*rows, arrays["line_plane"])
+    inside = arrays["line_where"] == EDGES.index("inside")
+
+    def spread(values: NDArray, rest: float | str) -> tuple[tuple[str, ...], NDArray]:
+        array = np.full(shape, rest, dtype=object if isinstance(rest, str) else float)
+        array[cells] = values
+        return ("torque_n_m", "position", "pair", "plane"), array.astype(str) if rest == "" else array
+
+    def known(name: str, scale: float) -> tuple[tuple[str, ...], NDArray]:
+        return spread(np.where(inside, scale * arrays[name], np.nan), np.nan)
+
+    lines = np.hypot(points[..., 0], points[..., 2]).reshape(*shape[1:])
     return xr.Dataset(
         {
-            "pressure_mpa": (
-                ("torque_n_m", "position", "pair", *nodes),
-                values.reshape(*values.shape[:3], *shape),
-            )
+            "pressure_mpa": known("line_pressure_pa", 1e-6),
+            "pressure_error_mpa": known("line_error_pa", 1e-6),
+            "half_width_mm": known("line_half_width_m", 1e3),
+            "line_load_n_per_mm": spread(1e-3 * arrays["line_load_n_per_m"], 0.0),
+            "where": spread(np.array(EDGES, dtype=object)[arrays["line_where"]], ""),
         },
         coords={
             "torque_n_m": axes["torque_n_m"],
             "position": axes["position"],
             "pair": axes["tooth"],
-            "pinion_radius_mm": (nodes, np.hypot(points[..., 0], points[..., 2])),
-            "gear_radius_mm": (nodes, points[..., 1]),
+            "axial_mm": ("plane", points[0, :, 1]),
+            "pinion_radius_mm": (("position", "pair", "plane"), lines),
         },
     )

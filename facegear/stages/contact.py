@@ -10,6 +10,7 @@ from facegear.contact.gear_flank import GearFlank
 from facegear.contact.ltca import even_positions, loaded_contact
 from facegear.contact.nodal_loads import load_arrays
 from facegear.contact.pair import contact_model
+from facegear.contact.pressure import flank_pressure
 from facegear.contact.summary import by_torque
 from facegear.contact.tables import ltca_table, pressure_arrays
 from facegear.stages.outcome import Outcome
@@ -23,11 +24,13 @@ def contact(
     Raises NotConverged naming position and torque.
     """
     plan = contact_plan(parse(Contact, contact))
-    model = contact_model(pair(tooth_pair).design, pinion, face_gear)
+    teeth = pair(tooth_pair)
+    model = contact_model(teeth.design, pinion, face_gear)
     found = loaded_contact(model, even_positions(plan.positions), plan.torques, plan.options)
-    table = ltca_table(found)
+    pressed = flank_pressure(found, model.flanks, teeth.materials)
+    table = ltca_table(found, pressed)
     worst, mean = table["kkt_residual"].max(), table["k_average_n_per_m"].mean()
-    pressure = pressure_arrays(found, model.flanks.pinion)
+    pressure = pressure_arrays(found, model.flanks.pinion, pressed)
     return Outcome(
         {
             "ltca": table,

@@ -1,7 +1,7 @@
 """Loaded tooth contact at every position and torque."""
 
 from facegear.contact.gear_flank import STORED, from_arrays
-from facegear.contact.tables import pressure_surface
+from facegear.contact.pattern import pressure_surface
 from facegear.io import arrays
 from facegear.io.files import write_all
 from facegear.io.meshes import write_vtu

@@ -4,6 +4,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
+from contact_patterns import line_arrays
 
 from facegear.contact.columns import LTCA_COLUMNS
 from facegear.contact.studies import StudiedContact, study_table
@@ -18,16 +19,16 @@ def case(name, moved_mm, torques=TORQUES):
     keys = [(torque, position) for torque in torques for position in (0.0, 0.5)]
     radius = 1e-3 * (260.0 + moved_mm + np.array([-1.0, 0.0, 1.0]))
     grid = np.broadcast_to(radius, (3, 3))
+    height = 0.001 * np.arange(3)[:, None]
+    points = np.stack([0 * grid, grid, 0.04 + height + 0 * grid], axis=-1)
     pressure = {
         "torque_n_m": np.repeat([torque for torque, _ in keys], 2),
         "position": np.repeat([position for _, position in keys], 2),
         "node": np.tile([3, 5], len(keys)),
         "force_n": np.tile([50.0, 50.0, 75.0, 25.0], len(torques)),
-        "pressure_pa": np.full(2 * len(keys), 5e8),
-        "whole": np.full(2 * len(keys), True),
         "shape": np.array([3, 3]),
-        "point_m": np.stack([0 * grid, grid, 0.04 + 0 * grid], axis=-1).reshape(-1, 3),
-    }
+        "point_m": points.reshape(-1, 3),
+    } | line_arrays(points, torques, np.full((3, 3), 5e8))
     ltca = pd.DataFrame(1.0, index=range(len(keys)), columns=list(LTCA_COLUMNS))
     ltca[["torque_n_m", "position"]] = keys
     path = {"path_pinion_y_mm": [259.0 + moved_mm, 261.0 + moved_mm]}

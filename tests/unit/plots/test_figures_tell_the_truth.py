@@ -4,6 +4,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
+from contact_patterns import line_arrays
 from matplotlib.text import Text
 
 from facegear.contact.columns import LTCA_COLUMNS, SHARES
@@ -125,15 +126,8 @@ def test_inputs_named_under_a_load_sharing_figure_stay_inside_it():
 def test_the_drawing_of_a_fine_contact_pattern_stays_small(tmp_path):
     """Every cell as a triangle of its own made 61 MB of config/paper.yaml's."""
     along, across = np.meshgrid(np.linspace(0.25, 0.275, 60), np.linspace(0.04, 0.046, 60))
-    points = np.stack([across, along, np.zeros_like(along)], axis=-1).reshape(-1, 3)
-    nodes = np.arange(len(points))
-    arrays = {
-        "shape": np.array(along.shape),
-        "point_m": points,
-        "torque_n_m": np.full(len(points), 100.0),
-        "whole": np.ones(len(points), bool),
-        "node": nodes,
-        "pressure_pa": 1e9 * np.sin(0.01 * nodes) ** 2,
-    }
+    points = np.stack([across, along, np.zeros_like(along)], axis=-1)
+    pressure = 1e9 * np.sin(0.01 * np.arange(along.size)) ** 2
+    arrays = {"point_m": points.reshape(-1, 3)} | line_arrays(points, [100.0], pressure)
     save(contact_pattern(arrays), tmp_path / "pattern.svg")
     assert (tmp_path / "pattern.svg").stat().st_size < 300_000

@@ -64,14 +64,20 @@ def test_the_first_screen_warns_of_what_the_results_hide(example):
         "ste_peak_to_peak_um": 4.0,
         "ste_peak_to_peak_half_um": [3.99, 3.0],
     }
-    edges = pd.DataFrame({"torque_n_m": [300.0, 600.0], "edge_pressure_mpa": [0.0, 900.0]})
+    edges = pd.DataFrame(
+        {
+            "torque_n_m": [300.0, 600.0],
+            "tip_line_load_n_per_mm": [0.0, 412.3],
+            "tip_length_mm": [0.0, 7.26],
+        }
+    )
     gap = {"gap_um": 7.8, "gear_part": "tip edge", "pinion_part": "fillet", "gear_radius_mm": 259.6}
     pair = {"interference": gap, "smallest_gap": gap, "backlash_um": {"smallest": 60.0}}
     found = {**tables, "by_torque": pd.DataFrame(contact), "ltca": edges}
     told = [" ".join(row) for row in warnings(values, found, pair)]
     for words in (
         "the bodies interfere",
-        "from 600 N m on edges",
+        "from 600 N m on tip edges carry load, up to 412 N/mm over 7.3 mm",
         "contact at 600 N m peak-to-peak",
         "solved up to 600 N m",
         "the dynamics take 100 um, the teeth as assembled have 60.0 um",

@@ -1,0 +1,59 @@
+"""Hertz pressure of a strip of contact from the load it carries per length and its relative curvature.
+
+Source: Johnson, Contact Mechanics, chapter 4, for a semi-elliptic pressure over a half-width b across the
+contact line and a half-length a along it. Both the line contact (a far above b) and the sphere (a = b) are
+met exactly.
+"""
+
+from math import pi
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.special import ellipe, ellipkm1
+
+from facegear.geometry.design import Material
+
+Array = NDArray[np.float64]
+
+STEPS = 8
+"""Of the fixed point of pressure and half-width, each of which gains more than a digit."""
+
+
+def contact_modulus(materials: tuple[Material, Material]) -> float:
+    """E* (Pa) with 1/E* = sum of (1 - nu^2)/E."""
+    return 1.0 / sum((1 - m.poisson_ratio**2) / m.young_modulus for m in materials)
+
+
+def line_half_width(line_load: ArrayLike, curvature: ArrayLike, modulus: float) -> Array:
+    """Half-width (m) of a long strip under a load (N/m), relative curvature (1/m) across it."""
+    return np.sqrt(4 * np.asarray(line_load) / (pi * modulus * np.asarray(curvature)))
+
+
+def strip_pressure(
+    line_load: ArrayLike, curvature: ArrayLike, modulus: float, half_length: ArrayLike = np.inf
+) -> tuple[Array, Array]:
+    """Largest pressure (Pa) and half-width (m) of a strip that carries `line_load` (N/m, at its middle).
+
+    `curvature` (1/m) across the strip, `half_length` (m) of the loaded line. A footprint wider than long is
+    taken as round.
+    """
+    load, across = np.asarray(line_load, float), np.asarray(curvature, float)
+    long = np.sqrt(across * modulus * load / pi)
+    pressure = long
+    for _ in range(STEPS):
+        width = _half_width(load, pressure)
+        pressure = long / np.sqrt(_shortness(width / np.asarray(half_length, float)))
+    return pressure, _half_width(load, pressure)
+
+
+def _half_width(load: Array, pressure: Array) -> Array:
+    return 2 * load / (pi * np.where(pressure == 0, 1.0, pressure))
+
+
+def _shortness(ratio: Array) -> Array:
+    """Curvature across an ellipse of this ratio b/a over that of a long strip of equal b and pressure.
+
+    1 for a strip, pi/4 for a circle.
+    """
+    square = np.clip(ratio, 1e-12, 1.0 - 1e-9) ** 2
+    return (ellipe(1 - square) - square * ellipkm1(square)) / (1 - square)

@@ -1,0 +1,157 @@
+"""Contact lines: where the gap between exact flanks is least in every plane across the pinion's axis.
+
+They do not depend on load: a tooth bends by less than 1 mrad, which moves its contact line by some 0.01 mm.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from facegear.geometry import face_gear, pinion
+from facegear.geometry.curvature import opposite_curvatures
+from facegear.geometry.design import PairDesign
+from facegear.geometry.pinion_surface import SurfacePoints, flank_points
+from facegear.geometry.placement import to_left_flank
+from facegear.geometry.separation import FLANK, separation
+
+Array = NDArray[np.float64]
+
+SAMPLES = 25
+"""Points looked at along a profile before the parabola through the lowest and its neighbours."""
+
+BEYOND = 0.1
+"""Part of the flank's height that the involute is followed beyond its tip, to see which lines leave it."""
+
+FINER = (0.1, 0.02)
+"""Steps of the next parabolas, in those of the first."""
+
+
+@dataclass(frozen=True, eq=False)
+class ContactLines:
+    """Contact lines of p placements of pairs of teeth, on n planes across the pinion's axis at `y` (n,) m.
+
+    All others (p, n): `roll` (rad) on the pinion; `curvature` (1/m) across the line, positive; `slope` (rad)
+    of the line against the pinion's axis, seen along the common normal; how far (m) the line is from the
+    pinion's and the gear's tip edge and from the nearest end of both faces, negative beyond the pinion's tip
+    and the ends. What needs the gear's flank is nan where there is none. `face` is the width (m) of
+    each plane that both faces cover, planes being as wide as they are apart.
+    """
+
+    y: Array
+    roll: Array
+    curvature: Array
+    slope: Array
+    to_pinion_tip: Array
+    to_gear_tip: Array
+    to_end: Array
+    face: Array
+
+
+def contact_lines(design: PairDesign, phi1: Array, phi2: Array, tooth: ArrayLike, y: Array) -> ContactLines:
+    """Lines of the pairs `tooth` (p,) at the unloaded angles phi1, phi2 (p,) rad on planes y (n,) m.
+
+    Raises NotConverged as `separation` does.
+    """
+    tooth = np.asarray(tooth, float)
+    roll = _least_gap(design, (phi1, phi2, tooth), y)
+    points = flank_points(design, roll, y)
+    seen = separation(design, points, phi1, phi2, tooth)
+    flank = (seen.part == FLANK) & (roll > _lowest_roll(design))
+    gear_roll, psi = np.where(flank, seen.u, np.nan), np.where(flank, seen.v, np.nan)
+    curvature, slope = (np.full(roll.shape, np.nan) for _ in range(2))
+    turns = np.broadcast_to(to_left_flank(design, phi1, phi2, tooth).matrix[:, None], (*roll.shape, 3, 3))
+    curvature[flank], _, slope[flank] = opposite_curvatures(
+        design, roll[flank], gear_roll[flank], psi[flank], turns[flank]
+    )
+    point = face_gear.flank_point(design, gear_roll, psi)
+    radius = _radius(y, np.hypot(point[..., 0], point[..., 1]))
+    to_gear_tip = np.full(roll.shape, np.nan)
+    edge = face_gear.tip_edge(design, radius[flank])
+    to_gear_tip[flank] = np.linalg.norm(point[flank] - edge, axis=1)
+    face, half = design.face_gear, design.pinion.width / 2
+    ends = np.minimum(radius - face.inner_radius, face.outer_radius - radius)
+    return ContactLines(
+        y=y,
+        roll=roll,
+        curvature=curvature,
+        slope=slope,
+        to_pinion_tip=_arc(design, design.pinion_tip_roll) - _arc(design, roll),
+        to_gear_tip=to_gear_tip,
+        to_end=np.minimum(ends, half - np.abs(y - design.mean_radius)),
+        face=_covered(design, y, radius),
+    )
+
+
+def _lowest_roll(design: PairDesign) -> float:
+    return max(pinion.junction_roll(design), 0.0)
+
+
+def _arc(design: PairDesign, roll: Array | float) -> Array:
+    """Length (m) of the involute from the base circle."""
+    return design.pinion_base_radius * np.square(roll) / 2
+
+
+def _least_gap(design: PairDesign, placement: tuple[Array, Array, Array], y: Array) -> Array:
+    """Roll (p, n) of the least gap in each plane; at an end of the profile where it falls up to there."""
+    top, bottom = design.pinion_tip_roll**2, _lowest_roll(design) ** 2
+    squares = np.linspace(bottom, top + BEYOND * (top - bottom), SAMPLES)
+    step = squares[1] - squares[0]
+    gap = _gaps(design, placement, np.broadcast_to(squares[:, None], (SAMPLES, y.size)), y)
+    lowest = np.clip(np.argmin(gap, axis=1), 1, SAMPLES - 2)
+    square = squares[lowest] + step * _vertex(
+        *(np.take_along_axis(gap, (lowest + side)[:, None], 1)[:, 0] for side in (-1, 0, 1))
+    )
+    for part in FINER:
+        around = square[:, None] + part * step * np.array([-1.0, 0.0, 1.0])[:, None]
+        square = square + part * step * _vertex(*np.moveaxis(_gaps(design, placement, around, y), 1, 0))
+    return np.sqrt(np.clip(square, bottom, None))
+
+
+def _gaps(design: PairDesign, placement: tuple[Array, Array, Array], squares: Array, y: Array) -> Array:
+    """Gaps (p, k, n) at squares (k, n) or (p, k, n) of the roll, to the gear's flank continued."""
+    points = flank_points(design, np.sqrt(np.maximum(squares, 0.0)), y)
+    flat = (*squares.shape[:-2], -1, 3)
+    flat_points = SurfacePoints(points.position.reshape(flat), points.normal.reshape(flat))
+    seen = separation(design, flat_points, *placement)
+    gap = np.where(np.isfinite(seen.continued), seen.continued, np.inf)
+    return gap.reshape(placement[0].size, *squares.shape[-2:])
+
+
+def _vertex(before: Array, middle: Array, after: Array) -> Array:
+    """Where a parabola through three values at -1, 0, 1 is lowest, within -1..1; 0 where there is none."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        lowest = 0.5 * (before - after) / (before - 2 * middle + after)
+    return np.clip(np.nan_to_num(lowest, nan=0.0, posinf=0.0, neginf=0.0), -1.0, 1.0)
+
+
+def _radius(y: Array, known: Array) -> Array:
+    """Gear radius (p, n), where `known` (p, n) is nan as far from y as at the nearest known plane."""
+    filled = known - y
+    for row in filled:
+        on = np.flatnonzero(np.isfinite(row))
+        row[:] = np.interp(np.arange(row.size), on, row[on]) if on.size else 0.0
+    return y + filled
+
+
+def _covered(design: PairDesign, y: Array, radius: Array) -> Array:
+    """Widths (p, n) under the linear hats of planes at y (n,) between the ends of the gear's face.
+
+    radius (p, n): gear radius (m) of the line.
+    """
+    face = design.face_gear
+    rows = np.arange(len(radius))
+    inner, outer = (
+        limit - (radius - y)[rows, np.argmin(np.abs(radius - limit), axis=1)]
+        for limit in (face.inner_radius, face.outer_radius)
+    )
+    return _hat_integral(y, outer[:, None]) - _hat_integral(y, inner[:, None])
+
+
+def _hat_integral(y: Array, end: Array) -> Array:
+    """Integrals (m) of the linear hats of evenly spaced planes y (n,) from the first plane to `end`."""
+    step = y[1] - y[0]
+    at = np.clip((np.clip(end, y[0], y[-1]) - y) / step, -1.0, 1.0)
+    whole = 0.5 * (1.0 + at) ** 2 - np.where(at > 0, at**2, 0.0)
+    whole[..., 0] -= 0.5
+    return step * np.maximum(whole, 0.0)

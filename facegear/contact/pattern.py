@@ -1,0 +1,66 @@
+"""The contact pattern: pressures of one tooth's passage on the surface that its contact lines sweep."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.contact.columns import EDGES
+
+
+@dataclass(frozen=True, eq=False)
+class Pattern:
+    """One tooth's passage through the mesh in p steps and n planes across the pinion's axis.
+
+    points (p, n, 3) m: its contact lines, on the right flank in the pinion's body frame; for each torque:
+    `pressure` (p, n) Pa, nan where none is known, and `where` (p, n), a number in EDGES, -1 where unloaded;
+    `line_load` (p, n) N/m.
+    """
+
+    points: NDArray[np.float64]
+    pressure: dict[float, NDArray[np.float64]]
+    where: dict[float, NDArray[np.int64]]
+    line_load: dict[float, NDArray[np.float64]]
+
+    @property
+    def largest(self) -> float:
+        """Largest pressure of all torques, Pa; 0 where there is none."""
+        return max((float(np.nanmax(p, initial=0.0)) for p in self.pressure.values()), default=0.0)
+
+
+def pattern(arrays: Mapping[str, NDArray]) -> Pattern:
+    """Of arrays as PRESSURE_ARRAYS: pair j at position x is where pair 0 is at position x + j."""
+    stage = np.round(arrays["contact_position"] + arrays["contact_tooth"], 9)
+    stages, first = np.unique(stage, return_index=True)
+    points = arrays["contact_point_m"][first]
+    at = np.searchsorted(stages, np.round(arrays["line_position"] + arrays["line_tooth"], 9))
+    shape = points.shape[:2]
+    pressure, where, line_load = {}, {}, {}
+    for torque in np.unique(arrays["line_torque_n_m"]):
+        on = arrays["line_torque_n_m"] == torque
+        cells = at[on], arrays["line_plane"][on]
+        told, kind, load = np.full(shape, np.nan), np.full(shape, -1), np.zeros(shape)
+        inside = arrays["line_where"][on] == EDGES.index("inside")
+        told[cells] = np.where(inside, arrays["line_pressure_pa"][on], np.nan)
+        kind[cells], load[cells] = arrays["line_where"][on], arrays["line_load_n_per_m"][on]
+        pressure[float(torque)], where[float(torque)], line_load[float(torque)] = told, kind, load
+    return Pattern(points=points, pressure=pressure, where=where, line_load=line_load)
+
+
+def pressure_surface(
+    arrays: Mapping[str, NDArray],
+) -> tuple[NDArray[np.float64], dict[str, NDArray[np.int64]], dict[str, NDArray[np.float64]]]:
+    """The pattern as quadrilaterals for ParaView: points, cells, and pressure (Pa) and line load (N/m) at
+    each torque; a pressure of nan where none is known.
+    """
+    found = pattern(arrays)
+    steps, planes = found.points.shape[:2]
+    nodes = np.arange(steps * planes).reshape(steps, planes)
+    corners = nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]
+    told = {}
+    for torque in found.pressure:
+        told[f"pressure_pa_at_{torque:g}_n_m"] = found.pressure[torque].ravel()
+        told[f"line_load_n_per_m_at_{torque:g}_n_m"] = found.line_load[torque].ravel()
+    cells = {"quad": np.stack([c.ravel() for c in corners], axis=-1)}
+    return found.points.reshape(-1, 3), cells, told

@@ -1,0 +1,183 @@
+"""Pressure on the flanks from line loads: what a load carried along a contact line means for the flank.
+
+The loads of single hats depend on how the mesh lies to the strip of contact; what a plane across the pinion's
+axis carries does not. So the pressure is that of Hertz for the line load and the exact relative curvature.
+Where a tip edge or an end of the face is closer than the strip's half-width, pressure has no limit as a mesh
+is refined, and the line load is all that can be said.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import binary_closing, maximum_filter1d
+
+from facegear.contact.columns import EDGES
+from facegear.contact.flanks import FlankPair
+from facegear.contact.hertz import contact_modulus, strip_pressure
+from facegear.contact.lines import ContactLines, contact_lines
+from facegear.contact.position import LoadedPosition, Spot
+from facegear.geometry.design import Material
+from facegear.geometry.pinion_surface import flank_points
+from facegear.geometry.placement import conjugate_angle
+from facegear.geometry.unloaded import PAIRS
+
+Array = NDArray[np.float64]
+
+INSIDE, PINION_TIP, GEAR_TIP, END = range(len(EDGES))
+
+KERNEL = np.array([1.0, 2.0, 1.0]) / 4
+"""Weights of neighbouring planes, over an element of the face: forces alternate between its nodes."""
+
+WIDER = np.array([1.0, 2.0, 2.0, 2.0, 1.0]) / 8
+"""The same over two elements; the difference shows what the planes' distance leaves open."""
+
+NEIGHBOURHOOD = 5
+"""Planes among which the largest difference is taken, as it may vanish at one by chance."""
+
+
+@dataclass(frozen=True, eq=False)
+class LineLoads:
+    """Loaded planes across the pinion's axis, all (m,).
+
+    `line` the row in `ContactLines`, `plane` its column; `length` (m) of the line that the plane stands
+    for; `line_load` (N/m) along the line; `where` one of INSIDE, PINION_TIP, GEAR_TIP, END; `pressure` (Pa)
+    and its `error` (Pa), nan unless inside; `half_width` (m) of the strip, nan off the flanks.
+    """
+
+    line: NDArray[np.int64]
+    plane: NDArray[np.int64]
+    length: Array
+    line_load: Array
+    where: NDArray[np.int64]
+    pressure: Array
+    error: Array
+    half_width: Array
+
+    def largest(self) -> tuple[float, float]:
+        """Largest pressure (Pa) and its error; nan where none is inside."""
+        if not (self.where == INSIDE).any():
+            return np.nan, np.nan
+        at = np.nanargmax(self.pressure)
+        return float(self.pressure[at]), float(self.error[at])
+
+    def at_tips(self) -> tuple[float, float]:
+        """Largest line load (N/m) at tip edges and the length (m) that carries any; zero without."""
+        on = np.isin(self.where, (PINION_TIP, GEAR_TIP))
+        return float(self.line_load[on].max(initial=0.0)), float(self.length[on].sum())
+
+
+@dataclass(frozen=True, eq=False)
+class FlankPressure:
+    """Contact lines of all pairs at all positions, and what they carry at each position and torque.
+
+    `position` and `tooth` (p,) of the lines and `points` (p, n, 3) of theirs on the pinion's right flank in
+    its body frame, m; `loads` in the order of the results they were made from.
+    """
+
+    position: Array
+    tooth: NDArray[np.int64]
+    lines: ContactLines
+    points: Array
+    loads: tuple[LineLoads, ...]
+
+
+def flank_pressure(
+    results: Sequence[LoadedPosition], flanks: FlankPair, materials: tuple[Material, Material]
+) -> FlankPressure:
+    """Line loads and pressures of all results; pairs -2..2 at every position.
+
+    Raises NotConverged as `facegear.geometry.separation` does.
+    """
+    design = flanks.design
+    unloaded = {result.position: result.unloaded for result in results}
+    position, tooth = np.repeat(sorted(unloaded), PAIRS.size), np.tile(PAIRS, len(unloaded))
+    error = np.repeat([-unloaded[at] for at in sorted(unloaded)], PAIRS.size)
+    phi1 = (position - 0.5) * 2 * pi / design.pinion.teeth
+    phi2 = conjugate_angle(design, phi1) + error / design.gear_base_radius
+    lines = contact_lines(design, phi1, phi2, tooth, flanks.pinion.planes)
+    row = {key: i for i, key in enumerate(zip(position.tolist(), tooth.tolist(), strict=True))}
+    modulus = contact_modulus(materials)
+    loads = tuple(
+        line_loads(result.spots, [row[result.position, spot.tooth] for spot in result.spots], lines, modulus)
+        for result in results
+    )
+    points = flank_points(design, lines.roll, lines.y).position
+    return FlankPressure(position=position, tooth=tooth, lines=lines, points=points, loads=loads)
+
+
+def line_loads(spots: Sequence[Spot], rows: Sequence[int], lines: ContactLines, modulus: float) -> LineLoads:
+    """Loads of one position and torque along its contact lines.
+
+    `rows` numbers the line of each spot; `modulus` E* (Pa).
+    """
+    planes = lines.y.size
+    parts = []
+    for spot, row in zip(spots, rows, strict=True):
+        force = np.zeros(planes)
+        np.add.at(force, spot.hats % planes, spot.force)
+        parts.append(_along(force, lines, row, modulus))
+    names = [field.name for field in fields(LineLoads)]
+    return LineLoads(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+
+
+def _along(force: Array, lines: ContactLines, row: int, modulus: float) -> LineLoads:
+    """Of the forces (n,) N that the planes of one line carry."""
+    face = lines.face[row]
+    owner = _owners(face, lines.y[1] - lines.y[0])
+    merged, widths = np.zeros_like(force), np.zeros_like(face)
+    np.add.at(merged, owner, force)
+    np.add.at(widths, owner, face)
+    load, wider = (_smoothed(merged, widths, weights)[owner] for weights in (KERNEL, WIDER))
+    carries = binary_closing(np.pad(merged > 0, 2))[2:-2][owner]
+    loaded = np.flatnonzero(carries & (face > 0))
+    slope = np.nan_to_num(lines.slope[row, loaded])
+    half = 0.5 * face[loaded].sum()
+    along = half / np.cos(slope)
+    line_load = load[loaded] * half / along
+    pressure, width = strip_pressure(line_load, lines.curvature[row, loaded], modulus, along)
+    cut = owner[loaded] != loaded
+    where = _where(lines, row, loaded, width / np.cos(slope), cut)
+    inside = where == INSIDE
+    apart = maximum_filter1d(np.abs(wider - load)[loaded], NEIGHBOURHOOD, mode="nearest")
+    return LineLoads(
+        line=np.full(loaded.size, row),
+        plane=loaded,
+        length=face[loaded] / np.cos(slope),
+        line_load=line_load,
+        where=where,
+        pressure=np.where(inside, pressure, np.nan),
+        error=np.where(inside, 0.5 * apart / load[loaded] * pressure, np.nan),
+        half_width=width,
+    )
+
+
+def _owners(face: Array, step: float) -> NDArray[np.int64]:
+    """The plane (n,) that each one's load is counted with: itself, or the nearest that no end cuts.
+
+    How two planes share their load where an end cuts one is arbitrary: their hats almost coincide.
+    """
+    whole = np.flatnonzero(face > (1 - 1e-9) * step)
+    planes = np.arange(face.size)
+    return np.clip(planes, whole[0], whole[-1]) if whole.size else planes
+
+
+def _smoothed(force: Array, face: Array, weights: Array) -> Array:
+    """Load per width (n,) N/m over neighbouring planes."""
+    carried, width = (np.convolve(values, weights, mode="same") for values in (force, face))
+    return carried / np.where(width > 0, width, 1.0)
+
+
+def _where(
+    lines: ContactLines, row: int, planes: NDArray[np.int64], width: Array, cut: NDArray[np.bool_]
+) -> NDArray[np.int64]:
+    to_pinion, to_gear, to_end = (
+        values[row, planes] for values in (lines.to_pinion_tip, lines.to_gear_tip, lines.to_end)
+    )
+    where = np.full(planes.size, INSIDE)
+    where[cut | (to_end < width) | (to_end < 0)] = END
+    where[(np.isnan(to_gear) & (to_end >= 0)) | (to_gear < width)] = GEAR_TIP
+    where[(to_pinion < width) | (to_pinion <= 0)] = PINION_TIP
+    return where
