@@ -4,7 +4,7 @@ import numpy as np
 
 
 def line_arrays(points, torques, pressure_pa):
-    """Contact lines `points` (p, n, 3) of pair 0, loaded everywhere at every torque by `pressure_pa` (p, n)."""
+    """Contact lines `points` (p, n, 3) of pair 0, loaded everywhere by `pressure_pa` (p, n)."""
     steps, planes = points.shape[:2]
     position = np.arange(steps) / steps
     count = steps * planes
