@@ -59,6 +59,11 @@ def test_long_strips_and_spheres_meet_their_closed_forms():
     assert strip_pressure(0.5 * np.pi * peak * b, 1 / radius, PLANE, b)[0] == pytest.approx(peak, rel=1e-4)
 
 
+def spot_of(hats, force):
+    """Loaded hats of pair 0; their forces on nodes before refinement do not enter pressures."""
+    return Spot(tooth=0, hats=hats, force=force, on_pinion=force, on_gear=force)
+
+
 def flat_lines(y, curvature, slope=0.0):
     """A single contact line far from all edges."""
     shape = (1, y.size)
@@ -87,7 +92,7 @@ def test_sphere_pressed_on_finite_elements_has_hertz_pressure_within_a_percent()
     whole = 2 * np.concatenate([quarter[:0:-1], [2 * quarter[0]], quarter[1:]])
     y = np.concatenate([-planes[:0:-1], planes])
     hats = np.arange(y.size)
-    loads = line_loads([Spot(0, hats, whole)], [0], flat_lines(y, 1 / radius), PLANE)
+    loads = line_loads([spot_of(hats, whole)], [0], flat_lines(y, 1 / radius), PLANE)
     pressure, error = loads.largest()
     assert pressure == pytest.approx(1.5 * force / (np.pi * b**2), rel=0.01)
     assert error < 0.03 * pressure
@@ -198,7 +203,7 @@ def test_crossed_bodies_aslant_to_the_planes_meet_hertz_and_the_half_space_withi
     found = pressures(half_space(gap.shape, step, PLANE), gap, carried / step[0])
     assert found.max() == pytest.approx(peak, rel=0.01)
     loaded = np.abs(y) < half
-    spot = Spot(0, np.arange(y.size), np.where(loaded, carried * step[1], 0.0))
+    spot = spot_of(np.arange(y.size), np.where(loaded, carried * step[1], 0.0))
     loads = line_loads([spot], [0], flat_lines(y, across, slope), PLANE)
     assert loads.largest()[0] == pytest.approx(peak, rel=0.01)
 
