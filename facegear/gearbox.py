@@ -294,7 +294,8 @@ class Gearbox:
         ConfigErrors for values that the config would refuse, NotConverged without a motion of period one.
 
         >>> import facegear
-        >>> found = facegear.example().branches(7000, 7600, starts=2)
+        >>> quick = facegear.example().with_values({"dynamics.sweep.points": 2})
+        >>> found = quick.branches(7450, 7550, starts=1)
         >>> found.table()["period"].unique().tolist()
         [1]
         """

@@ -146,7 +146,7 @@ def _by_chord(
     flow: PeriodMap, x: Array, guess: Array, row: Array, linear: Linear, goal: float
 ) -> tuple[Array, float]:
     """Broyden's steps from a matrix nearby while they gain: the best point reached and its change."""
-    inverse = np.linalg.pinv(bordered(linear, row), rcond=SINGULAR)
+    inverse = _inverse(bordered(linear, row))
     right, step = np.zeros(len(inverse)), np.zeros(len(inverse))
     best, found, before = np.inf, x, np.zeros(len(inverse))
     for count in range(CHORD_STEPS):
@@ -175,12 +175,19 @@ def _newton_step(linear: Linear, gap: Array, row: Array, moved: Array) -> Array:
     right = np.zeros(gap.size + 1 + linear.afloat.shape[1])
     right[: gap.size], right[gap.size] = -gap, -row @ moved
     right[gap.size + 1 :] = -linear.afloat.T @ moved[:-1]
-    return _solved(bordered(linear, row), right)[: gap.size + 1]
+    return (_inverse(bordered(linear, row)) @ right)[: gap.size + 1]
 
 
-def _solved(matrix: Array, right: Array) -> Array:
-    """Solution of least norm: at a branch point the bordered matrix is singular, and only there."""
-    return np.asarray(np.linalg.lstsq(matrix, right, rcond=SINGULAR)[0], float)
+def _inverse(matrix: Array) -> Array:
+    """The inverse; at a branch point, where alone a bordered matrix is singular, that of least norm."""
+    try:
+        inverse = np.asarray(np.linalg.inv(matrix), float)
+    except np.linalg.LinAlgError:
+        return np.asarray(np.linalg.pinv(matrix, rcond=SINGULAR), float)
+    # The product of the norms is at least the ratio of the largest to the smallest singular value.
+    if np.linalg.norm(matrix) * np.linalg.norm(inverse) < 1.0 / SINGULAR:
+        return inverse
+    return np.asarray(np.linalg.pinv(matrix, rcond=SINGULAR), float)
 
 
 def make_point(flow: PeriodMap, x: Array, linear: Linear, forward: Array) -> Point:
@@ -188,7 +195,7 @@ def make_point(flow: PeriodMap, x: Array, linear: Linear, forward: Array) -> Poi
     matrix = bordered(linear, forward)
     right = np.zeros(len(matrix))
     right[x.size - 1] = 1.0
-    tangent = _solved(matrix, right)[: x.size]
+    tangent = (_inverse(matrix) @ right)[: x.size]
     tangent /= np.linalg.norm(tangent)
     return Point(
         x=x,
