@@ -40,6 +40,7 @@ rule benchmarks:
                 "dynamics_sweep",
                 "dynamics_convergence",
                 "dynamics_labels",
+                "branches",
             ],
         ),
 

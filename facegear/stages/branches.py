@@ -51,6 +51,7 @@ def branches(
     seen = machine_survey(model, plan, found, swept, tell)
     ranges, losses = several(seen.branches), margins(model, plan, seen.branches)
     within = jumps[jumps["speed_before_rpm"].between(plan.from_rpm, plan.to_rpm)]
+    spacing = (swept_plan.last_rpm - swept_plan.first_rpm) / (swept_plan.points - 1)
     content = {
         "branches": tables.branch_table(layout, seen.branches),
         "ends": tables.end_table(seen.branches),
@@ -61,7 +62,7 @@ def branches(
         "ranges": operating_tables.range_table(ranges),
         "margins": operating_tables.margin_table(losses),
         "swept": operating_tables.swept_table(swept, seen.branches, plan.longest_found),
-        "jumps": operating_tables.jump_table(within, seen.branches, swept_plan.jump_resolution_rpm),
+        "jumps": operating_tables.jump_table(within, seen.branches, swept_plan.jump_resolution_rpm, spacing),
         "orbits": special_arrays(seen.branches),
     }
     return Outcome(content, survey_summary(seen, ranges, losses, content["swept"], content["jumps"]))

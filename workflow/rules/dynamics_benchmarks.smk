@@ -29,6 +29,21 @@ rule dynamics_costs:
         "../scripts/dynamics_costs.py"
 
 
+rule branches_benchmark:
+    "Branches: error against tolerance, cost against settling"
+    input:
+        harmonics=shared("stiffness", "harmonics"),
+    output:
+        table="results/{case}/benchmarks/branches.csv",
+        costs="results/{case}/benchmarks/branches_costs.csv",
+        manifest="results/{case}/benchmarks/branches.provenance.json",
+    params:
+        **values_of(speed_rpm="dynamics.speed_rpm"),
+        machine=needs("machine"),
+    script:
+        "../scripts/branches_benchmark.py"
+
+
 rule dynamics_convergence:
     "Convergence of the sweep"
     input:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from facegear.dynamics.branches.continuation import Branch
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point, at_parameter
+from facegear.dynamics.branches.segment import cubic
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import steady_state
 from facegear.errors import NotConverged
@@ -21,6 +22,8 @@ SAME = 1e-4
 """States of one orbit differ by less, in length scales."""
 ALONG = 0.2
 """Greatest distance from a branch's chord at which Newton's method is tried from it."""
+REAL = 1e-9
+"""Rounding of the share of a chord."""
 BLOCK = 8
 PATIENCE = 40
 
@@ -123,17 +126,12 @@ def _same(flow: PeriodMap, u: float, one: Found, other: Found) -> bool:
 def crossings(branch: Branch, value: float) -> list[Point]:
     """The branch's orbits at a parameter, one for each passage."""
     u, found = float(np.log(value)), []
-    for here, there in pairwise(branch.points):
-        if not min(here.u, there.u) <= u < max(here.u, there.u):
-            continue
-        share = (u - here.u) / (there.u - here.u)
-        guess = here.x + share * (there.x - here.x)
-        reach = np.linalg.norm(there.x - here.x)
+    for guess, reach in _passages(branch, u):
         try:
-            point = at_parameter(branch.flow, guess[:-1], u)
+            point = at_parameter(branch.flow, guess, u)
         except (NotConverged, np.linalg.LinAlgError):
             continue
-        if np.linalg.norm(point.x - guess) < 0.5 * reach:
+        if np.linalg.norm(point.z - guess) < 0.5 * reach:
             found.append(point)
     return found
 
@@ -166,8 +164,17 @@ def distance(branch: Branch, z: Array, period: int, value: float) -> float:
 
 
 def _passages(branch: Branch, u: float) -> Iterator[tuple[Array, float]]:
-    """States on the chords where a branch passes a parameter's logarithm, with the chords' lengths."""
+    """States at which a branch passes a parameter's logarithm, on the cubics between its points, with the
+    lengths of their chords.
+    """
     for here, there in pairwise(branch.points):
-        if min(here.u, there.u) <= u <= max(here.u, there.u):
-            share = (u - here.u) / (there.u - here.u) if there.u != here.u else 0.0
-            yield (here.x + share * (there.x - here.x))[:-1], float(np.linalg.norm(there.x - here.x))
+        turns = here.tangent[-1] * there.tangent[-1] < 0.0
+        if not turns and not min(here.u, there.u) <= u <= max(here.u, there.u):
+            continue
+        coefficients = cubic(here, there)
+        shares = np.polynomial.Polynomial(coefficients[:, -1] - [u, 0.0, 0.0, 0.0]).roots()
+        reach = float(np.linalg.norm(there.x - here.x))
+        for share in shares[np.abs(shares.imag) < REAL].real:
+            # A point at which two cubics meet belongs to the first of them.
+            if REAL < share <= 1.0 + REAL or (abs(share) <= REAL and here is branch.points[0]):
+                yield (share ** np.arange(4) @ coefficients)[:-1], reach

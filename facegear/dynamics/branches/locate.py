@@ -155,7 +155,8 @@ def _refined(segment: Segment, low: float, high: float, event: _Event) -> Specia
     # At a fold the parameter stands still along the arc, so its place need not be as sharp.
     tolerance = segment.flow.tolerance
     goal = max(1e-3 * np.sqrt(tolerance), 1e-10) if event.kind is Kind.FOLD else max(0.1 * tolerance, 1e-13)
-    share = zero(test, low, high, goal)
+    # Changes that lie closer together than SHORTEST are not told apart, nor is their order known.
+    share = zero(test, low, high, goal) if high - low > SHORTEST else high
     point = segment.at(share)
     off = event.test(point.turning) if event.kind is Kind.GRAZE else np.nan
     multiplier, proof = evidence(event.kind, off, segment.at(low), point, segment.at(high))

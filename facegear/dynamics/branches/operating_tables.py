@@ -105,11 +105,14 @@ def swept_table(swept: Sequence[Swept], branches: Sequence[Branch], longest: int
     return pd.DataFrame(rows, columns=list(SWEPT_COLUMNS))
 
 
-def jump_table(jumps: pd.DataFrame, branches: Sequence[Branch], resolution_rpm: float) -> pd.DataFrame:
+def jump_table(
+    jumps: pd.DataFrame, branches: Sequence[Branch], resolution_rpm: float, spacing_rpm: float
+) -> pd.DataFrame:
     """JUMP_COLUMNS: each jump of the sweep with the special point its motion runs into, or why there is none.
 
-    A point counts within the jump's bracket or up to `resolution_rpm` beside it, since a motion that has just
-    ended still holds a run for a while.
+    A point counts within the jump's bracket or up to `resolution_rpm` beside it, else up to `spacing_rpm`, the
+    sweep's step, before it in the direction of running: a run holds on to a motion that has just lost its
+    stability until disturbances have grown.
     """
     rows = []
     for jump in jumps.itertuples():
@@ -124,17 +127,21 @@ def jump_table(jumps: pd.DataFrame, branches: Sequence[Branch], resolution_rpm: 
             "speed_rpm": np.nan,
             "note": "",
         }
-        rows.append(row | _named(before, after, str(jump.class_before), branches, resolution_rpm))
+        found = _named(before, after, str(jump.class_before), branches, resolution_rpm, spacing_rpm)
+        rows.append(row | found)
     return pd.DataFrame(rows, columns=list(JUMP_COLUMNS))
 
 
 def _named(
-    before: float, after: float, label: str, branches: Sequence[Branch], resolution_rpm: float
+    before: float, after: float, label: str, branches: Sequence[Branch], resolution: float, spacing: float
 ) -> dict[str, object]:
     if not label.startswith("period-"):
         return {"note": f"the motion before it is {label}: no branch of periodic motions ends there"}
     period = int(label.removeprefix("period-"))
-    hits = passed_by(branches, before, after, period, resolution_rpm)
+    hits = passed_by(branches, before, after, period, resolution)
+    if not hits:
+        passed = passed_by(branches, before - np.copysign(spacing, after - before), before, period, 0.0)
+        hits = sorted(passed, key=lambda hit: abs(hit[1].point.value - before))
     if not hits:
         followed = any(branch.flow.period == period for branch in branches)
         told = "no followed branch loses stability in the bracket"

@@ -11,8 +11,26 @@ from facegear.dynamics.branches.points import Point, correct_state, solve_point
 from facegear.errors import NotConverged
 
 Array = NDArray[np.float64]
+ALIGNED = 0.3
+"""Least cosine between a chord and a tangent of the same branch."""
 EXACT = 1e-13
 """Part of a step down to which a zero is placed."""
+
+
+def cubic(here: Point, there: Point) -> Array:
+    """The cubic through two points of a branch along their tangents, in ascending powers of the share of their
+    chord: coefficients (4, 2 n + 1).
+    """
+    chord = there.x - here.x
+    first, second = (_slope(chord, point.tangent) for point in (here, there))
+    return np.array([here.x, first, 3.0 * chord - 2.0 * first - second, first + second - 2.0 * chord])
+
+
+def _slope(chord: Array, tangent: Array) -> Array:
+    """A tangent as long as the chord along it; the chord itself at a junction, where the tangent is another's."""
+    along = chord @ tangent
+    length = np.linalg.norm(chord)
+    return chord if along < ALIGNED * length else length**2 / along * tangent
 
 
 class Segment:
@@ -47,17 +65,8 @@ class Segment:
         """Cubic between the nearest known points, with their tangents."""
         low = max(other for other in self.known if other < share)
         high = min(other for other in self.known if other > share)
-        a, b = self.known[low], self.known[high]
-        width = (high - low) * self.length
-        row = self.chord / self.length
         t = (share - low) / (high - low)
-        first, second = (width * p.tangent / (row @ p.tangent) for p in (a, b))
-        return (
-            (1 + 2 * t) * (1 - t) ** 2 * a.x
-            + t * (1 - t) ** 2 * first
-            + t**2 * (3 - 2 * t) * b.x
-            - t**2 * (1 - t) * second
-        )
+        return t ** np.arange(4) @ cubic(self.known[low], self.known[high])
 
 
 def zero(test: Callable[[float], float], low: float, high: float, goal: float) -> float:

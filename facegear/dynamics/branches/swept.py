@@ -16,6 +16,8 @@ from facegear.errors import NotConverged
 Array = NDArray[np.float64]
 REPEATS = 1e-5
 """An orbit whose states one shorter period apart differ by less, in length scales, has that period."""
+ON = 1e-5
+"""A branch whose orbit at the same speed is this close, in length scales, is the motion's."""
 ELSEWHERE = 0.1
 """An orbit farther than this from the sweep's state is not the sweep's motion."""
 
@@ -92,4 +94,4 @@ def nearest_branch(motion: Swept, branches: Sequence[Branch]) -> tuple[int | Non
         return None, np.nan
     far = [distance(branch, motion.point.z, motion.period, motion.speed_rpm) for branch in branches]
     nearest = int(np.argmin(far))
-    return (nearest, far[nearest]) if np.isfinite(far[nearest]) else (None, np.nan)
+    return (nearest, far[nearest]) if far[nearest] < ON else (None, np.nan)
