@@ -15,9 +15,7 @@ Parameter = Literal["torque", "backlash", "mesh_damping", "bearing_stiffness"]
 class Explore(Section):
     """Random starts at chosen speeds."""
 
-    speeds_rpm: tuple[float, ...] = Field(
-        (), max_length=200, description="empty: the nominal speed alone, or the nearest to it in the range"
-    )
+    speeds_rpm: tuple[float, ...] = Field((), max_length=200, description="empty: the nominal speed alone")
     starts: int = Field(100, ge=1, le=1_000_000, description="at each speed")
     spread_um: float = Field(
         100.0, gt=0, le=1e5, description="half width of the box of starts around rest, as mesh deflection"
@@ -69,7 +67,6 @@ def read_branch_plan(section: Mapping[str, Any] | None, nominal_rpm: float) -> B
 
 def branch_plan(section: Branches, nominal_rpm: float) -> BranchPlan:
     """What the stage does, in SI units but for speeds in rpm."""
-    within = min(max(nominal_rpm, section.from_rpm), section.to_rpm)
     return BranchPlan(
         from_rpm=section.from_rpm,
         to_rpm=section.to_rpm,
@@ -78,7 +75,7 @@ def branch_plan(section: Branches, nominal_rpm: float) -> BranchPlan:
         longest_period=section.longest_period,
         longest_found=section.longest_found,
         most_branches=section.most_branches,
-        speeds_rpm=section.explore.speeds_rpm or (within,),
+        speeds_rpm=section.explore.speeds_rpm or (nominal_rpm,),
         starts=section.explore.starts,
         spread=1e-6 * section.explore.spread_um,
         seed=section.explore.seed,

@@ -110,9 +110,9 @@ def jump_table(
 ) -> pd.DataFrame:
     """JUMP_COLUMNS: each jump of the sweep with the special point its motion runs into, or why there is none.
 
-    A point counts within the jump's bracket or up to `resolution_rpm` beside it, else up to `spacing_rpm`, the
-    sweep's step, before it in the direction of running: a run holds on to a motion that has just lost its
-    stability until disturbances have grown.
+    A point counts within the jump's bracket or up to `resolution_rpm` beside it, else up to `spacing_rpm`,
+    the sweep's step, before it in the direction of running: a run holds on to a motion that has just lost
+    its stability until disturbances have grown.
     """
     rows = []
     for jump in jumps.itertuples():

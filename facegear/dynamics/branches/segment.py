@@ -18,8 +18,8 @@ EXACT = 1e-13
 
 
 def cubic(here: Point, there: Point) -> Array:
-    """The cubic through two points of a branch along their tangents, in ascending powers of the share of their
-    chord: coefficients (4, 2 n + 1).
+    """The cubic through two points of a branch along their tangents: coefficients (4, 2 n + 1) of ascending
+    powers of the share of their chord.
     """
     chord = there.x - here.x
     first, second = (_slope(chord, point.tangent) for point in (here, there))
@@ -27,7 +27,7 @@ def cubic(here: Point, there: Point) -> Array:
 
 
 def _slope(chord: Array, tangent: Array) -> Array:
-    """A tangent as long as the chord along it; the chord itself at a junction, where the tangent is another's."""
+    """A tangent as long as the chord along it; the chord at a junction, whose tangent is another branch's."""
     along = chord @ tangent
     length = np.linalg.norm(chord)
     return chord if along < ALIGNED * length else length**2 / along * tangent
