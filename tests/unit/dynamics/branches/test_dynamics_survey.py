@@ -7,7 +7,7 @@ import pytest
 from lumped_machines import make_machine
 from oscillators import backlash_oscillator
 
-from facegear.dynamics.branches.continuation import End, Run, branch_at, follow
+from facegear.dynamics.branches.continuation import End, Run, branch_at, follow, turned
 from facegear.dynamics.branches.explore import box, crossings, explore, lies_on
 from facegear.dynamics.branches.family import Family, machine_plane, speed_family
 from facegear.dynamics.branches.margins import losses, passed_by, several
@@ -104,21 +104,34 @@ def test_matrix_of_the_map_agrees_with_differences_of_the_map(machine_branch):
         assert slope == pytest.approx(point.linear.matrix[:, column], abs=2e-4)
 
 
-def test_machine_has_the_same_points_with_other_steps_and_from_the_other_end(machine_branch):
+def without_grazes(branch):
+    """A mesh that touches and leaves an edge within one step leaves no trace: grazes may lack such pairs."""
+    found = sorted((s.kind.value, s.point.value) for s in branch.specials if s.kind is not Kind.GRAZE)
+    return [kind for kind, _ in found], [speed for _, speed in found]
+
+
+@pytest.mark.parametrize("factor", [4.0, 0.25])
+def test_machine_has_the_same_points_from_the_other_end_with_other_steps(machine_branch, factor):
     _, flow, branch = machine_branch
-    last = branch.points[-1]
-    back = follow(
-        flow, replace(last, tangent=-last.tangent, parity=-last.parity), Run(5000.0, 9000.0, largest=0.1)
-    )
-    assert branch.ends == (End.LIMIT, End.LIMIT)
-    # A mesh that touches and leaves an edge within one step leaves no trace: grazes may lack such pairs.
-    first, second = (
-        sorted((s.kind.value, s.point.value) for s in one.specials if s.kind is not Kind.GRAZE)
-        for one in (branch, back)
-    )
-    assert [kind for kind, _ in first] == [kind for kind, _ in second]
-    assert [speed for _, speed in first] == pytest.approx([speed for _, speed in second], rel=1e-7)
+    run = Run(5000.0, 9000.0)
+    run = replace(run, first=factor * run.first, largest=factor * run.largest)
+    back = follow(flow, turned(branch.points[-1]), run, both=False)
+    assert (branch.ends, back.ends[1]) == ((End.LIMIT, End.LIMIT), End.LIMIT)
+    first, second = without_grazes(branch), without_grazes(back)
+    assert first[0] == second[0]
+    assert first[1] == pytest.approx(second[1], rel=1e-7)
     assert branch.of(Kind.FOLD)
+
+
+@pytest.mark.parametrize(("tolerance", "moved"), [(1e-6, 4e-6), (1e-10, 1e-6)])
+def test_machine_has_the_same_points_at_other_tolerances(machine_branch, tolerance, moved):
+    _, flow, branch = machine_branch
+    other = replace(flow, tolerance=tolerance, memory={})
+    start = at_parameter(other, branch.points[0].z, branch.points[0].u)
+    again = follow(other, start, Run(5000.0, 9000.0), both=False)
+    first, second = without_grazes(branch), without_grazes(again)
+    assert first[0] == second[0]
+    assert first[1] == pytest.approx(second[1], rel=moved)
 
 
 def test_scaling_torque_backlash_and_error_together_moves_no_special_point(machine_branch):
