@@ -56,29 +56,12 @@ class Packed(NamedTuple):
 
 def pack(system: System, frequency: float) -> Packed:
     """Pack a system at an angular mesh frequency w in rad/s."""
-    at_one = _packed_at_one(system)
-    natural, harmonics = _fastest(system)
-    return at_one._replace(
-        omega_squared=at_one.omega_squared / frequency**2,
-        damping=at_one.damping / frequency,
-        mesh_damping=at_one.mesh_damping / frequency,
-        stiffness=at_one.stiffness / frequency**2,
-        load=at_one.load / frequency**2,
-        pieces=at_one.pieces / frequency**2,
-        fastest=natural / frequency + harmonics,
-        ring_stiffness=at_one.ring_stiffness / frequency**2,
-        ring_lag=at_one.ring_lag * frequency,
-    )
-
-
-@lru_cache(maxsize=16)
-def _packed_at_one(system: System) -> Packed:
-    """A system packed at an angular mesh frequency of 1 rad/s; its arrays are shared and never written."""
     m, n = system.mesh_jacobian.shape
     wide_n, wide_m = _whole(n), _whole(m)
     transposed = np.zeros((wide_m, wide_n))
     transposed[:m, :n] = system.mesh_jacobian
     breaks, pieces = _pieces(system, wide_m)
+    natural, harmonics = _fastest(system)
     # A clearance within rounding of the deflections is none: its edges could not be told apart.
     closed = system.upper - system.lower <= LEAST_CLEARANCE * system.scale
     lower = np.where(closed, system.upper, system.lower)
@@ -87,28 +70,28 @@ def _packed_at_one(system: System) -> Packed:
         m=m,
         mesh_jacobian=np.ascontiguousarray(transposed.T),
         transposed=transposed,
-        omega_squared=_padded(system.omega_squared, wide_n),
-        damping=_padded(system.damping, wide_n),
-        mesh_damping=_padded(system.mesh_damping, wide_m),
+        omega_squared=_padded(system.omega_squared, wide_n) / frequency**2,
+        damping=_padded(system.damping, wide_n) / frequency,
+        mesh_damping=_padded(system.mesh_damping, wide_m) / frequency,
         lower=_padded(lower, wide_m),
         upper=_padded(system.upper, wide_m),
-        stiffness=_series(system.stiffness),
+        stiffness=_series(system.stiffness) / frequency**2,
         stiffness_kind=system.stiffness_kind,
         error=_series(system.error),
         error_kind=system.error_kind,
         drift=np.zeros((0, wide_m)),
-        load=_series(system.load),
+        load=_series(system.load) / frequency**2,
         breaks=breaks,
-        pieces=pieces,
+        pieces=pieces / frequency**2,
         weights=np.abs(transposed).max(axis=0),
         leverage=(transposed**2).sum(axis=1),
-        fastest=sum(_fastest(system)),
+        fastest=natural / frequency + harmonics,
         damping_when_open=system.damping_when_open,
         scale=system.scale,
         rings=system.ring_play.size,
-        ring_stiffness=_padded(system.ring_stiffness, _whole(system.ring_play.size)),
+        ring_stiffness=_padded(system.ring_stiffness, _whole(system.ring_play.size)) / frequency**2,
         ring_play=_padded(system.ring_play, _whole(system.ring_play.size)),
-        ring_lag=system.ring_lag,
+        ring_lag=system.ring_lag * frequency,
     )
 
 
