@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 Array = NDArray[np.float64]
 
@@ -76,5 +76,5 @@ def root_stress(
 def down_the_fillet(values: Array) -> Array:
     """Values (..., a, b) at FINER times as many points from the first to the last gauge, by splines."""
     rows = values.shape[-2]
-    kind = CubicSpline(np.arange(rows), values, axis=-2)
+    kind = scipy.interpolate.CubicSpline(np.arange(rows), values, axis=-2)
     return kind(np.linspace(0.0, rows - 1.0, FINER * rows))
