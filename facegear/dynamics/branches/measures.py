@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import mesh_averages, mesh_response, mesh_shares
+from facegear.dynamics.steady_state.mesh_samples import mesh_response, mesh_shares
 from facegear.dynamics.steady_state.window import run_window
 
 Array = NDArray[np.float64]
@@ -39,8 +39,8 @@ def measures(flow: PeriodMap, point: Point) -> Measures:
     wide[0, : packed.n], wide[1, : packed.n] = state.displacement, state.velocity / frequency
     settings = Settings(tolerance=flow.tolerance, samples=SAMPLES)
     window = run_window(packed, flow.work(packed), wide, flow.period, settings)
-    deflections, forces = mesh_response(system, window.samples, window.per_period)
-    found = mesh_averages(system, frequency, window, deflections, forces).meshes(True)
+    _, forces = mesh_response(system, window.samples, window.per_period)
+    found = window.averages.meshes(True)
     return Measures(
         ac_rms=found.ac_rms,
         rms=found.rms,

@@ -1,5 +1,7 @@
 """First zero of a polynomial in an interval, certain to be found or excluded (Bernstein subdivision)."""
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,6 +13,7 @@ CLOSE = 1e-10
 """Newton's last step, over the interval: the error after it is of the order of its square."""
 
 
+@cache
 def bernstein_matrix(degree: int) -> Array:
     """Conversion from power to Bernstein coefficients on [0, 1], shape (degree + 1, degree + 1), lower
     triangular.

@@ -1,8 +1,9 @@
 """Integrals and extremes of the motion, taken from the step polynomials themselves.
 
-Products of two polynomials are integrated by Gauss's rule with half the order's number of nodes, whose error
-lies far below that of the step; extremes are the polynomials' own turning points. So nothing depends on how
-densely the motion is sampled.
+Products of two polynomials are integrated by Gauss's rule with a quarter of the order's number of nodes and
+one more, whose error lies below that of the step (a term that the rule misses is the square of one half way
+to the last); extremes are the polynomials' own turning points. So nothing depends on how densely the motion
+is sampled.
 """
 
 from typing import NamedTuple
@@ -37,7 +38,8 @@ class Sums(NamedTuple):
 
     coordinates (B, n) of y and products (B, n, n) of y y^T, both about `origin` (n,); deflections and squares
     (B, m) about `level` (m,); forces (2, m): elastic mesh force over w^2 and its magnitude. lowest, highest
-    (m,): extremes of the deflections.
+    (m,): extremes of the deflections. Of meshes with two flanks the first `pairs` columns hold half the
+    difference of the deflections of the two from their edges, and the difference of their forces.
     """
 
     origin: Array
@@ -74,22 +76,55 @@ def start_sums(packed: Packed, work: Work, sums: Sums) -> None:
         sums.origin[k] = work.y[0, k]
     for m in range(packed.m):
         sums.level[m] = work.deflection[0, m] + work.edge[m]
+    for m in range(packed.pairs):
+        sums.level[m] = _between(packed, sums.level, sums.level, m)
 
 
 @inlined
 def add_step(packed: Packed, work: Work, length: float, sums: Sums, batch: int) -> None:
-    """Add a step to the batch."""
+    """Add a step to the batch; work.scaled is used up."""
     for node in range(work.nodes.shape[1]):
         ahead, weight = length * work.nodes[0, node], length * work.nodes[1, node]
         evaluate(work.y, work.order, ahead, work.sample, work.scratch)
         _add_coordinates(packed, work.sample, weight, sums, batch)
-        _add_meshes(work, ahead, weight, sums, batch)
+        _add_meshes(packed, work, ahead, weight, sums, batch)
+    if packed.pairs > 0:
+        _pair_extremes(packed, work, length, sums)
+        return
     for m in range(packed.m):
         edge = work.edge[m]
         if work.most[m] + edge > sums.highest[m]:
-            sums.highest[m] = max(sums.highest[m], edge + _highest(work, m, length, 1.0))
+            highest = edge + _highest(work.deflection, work.order, m, length, 1.0)
+            sums.highest[m] = max(sums.highest[m], highest)
         if work.least[m] + edge < sums.lowest[m]:
-            sums.lowest[m] = min(sums.lowest[m], edge - _highest(work, m, length, -1.0))
+            lowest = edge - _highest(work.deflection, work.order, m, length, -1.0)
+            sums.lowest[m] = min(sums.lowest[m], lowest)
+
+
+@inlined
+def _between(packed: Packed, drive: Array, back: Array, m: int) -> float:
+    """Half of what the drive flank's deflection is above its edge less what the back flank's is."""
+    other = m + packed.pairs
+    return 0.5 * ((drive[m] - packed.upper[m]) - (back[other] - packed.upper[other]))
+
+
+@inlined
+def _pair_extremes(packed: Packed, work: Work, length: float, sums: Sums) -> None:
+    """Extremes of meshes with two flanks; their polynomials go to work.scaled."""
+    for m in range(packed.m):
+        work.least[m] += work.edge[m]
+        work.most[m] += work.edge[m]
+        work.scaled[0, m] = work.deflection[0, m] + work.edge[m]
+    for m in range(packed.pairs):
+        for i in range(1, work.order + 1):
+            work.scaled[i, m] = 0.5 * (work.deflection[i, m] - work.deflection[i, m + packed.pairs])
+        work.scaled[0, m] = _between(packed, work.scaled[0], work.scaled[0], m)
+        if _between(packed, work.most, work.least, m) > sums.highest[m]:
+            highest = _highest(work.scaled, work.order, m, length, 1.0)
+            sums.highest[m] = max(sums.highest[m], highest)
+        if _between(packed, work.least, work.most, m) < sums.lowest[m]:
+            lowest = -_highest(work.scaled, work.order, m, length, -1.0)
+            sums.lowest[m] = min(sums.lowest[m], lowest)
 
 
 @inlined
@@ -110,43 +145,49 @@ def _add_coordinates(packed: Packed, y: Array, weight: float, sums: Sums, batch:
 
 
 @inlined
-def _add_meshes(work: Work, ahead: float, weight: float, sums: Sums, batch: int) -> None:
+def _add_meshes(packed: Packed, work: Work, ahead: float, weight: float, sums: Sums, batch: int) -> None:
     wide = work.edge.size
     step, heavy, minus = splat(ahead), splat(weight), splat(-1.0)
+    value, force = work.scaled[0], work.force
     for c in range(0, wide, LANES):
-        value, stiffness = splat(0.0), splat(0.0)
+        deflection, stiffness = splat(0.0), splat(0.0)
         for i in range(work.order, -1, -1):
-            value = multiply_add(value, step, load(work.deflection, i * wide + c))
+            deflection = multiply_add(deflection, step, load(work.deflection, i * wide + c))
             stiffness = multiply_add(stiffness, step, load(work.stiffness, i * wide + c))
-        force = multiply(multiply(load(work.active, c), stiffness), value)
-        off = add(value, multiply_add(minus, load(sums.level, c), load(work.edge, c)))
+        store(value, c, add(deflection, load(work.edge, c)))
+        store(force, c, multiply(multiply(load(work.active, c), stiffness), deflection))
+    for m in range(packed.pairs):
+        value[m] = _between(packed, value, value, m)
+        force[m] -= force[m + packed.pairs]
+    for c in range(0, wide, LANES):
+        off, pushed = multiply_add(minus, load(sums.level, c), load(value, c)), load(force, c)
         at = batch * wide + c
         store(sums.deflections, at, multiply_add(heavy, off, load(sums.deflections, at)))
         store(sums.squares, at, multiply_add(multiply(heavy, off), off, load(sums.squares, at)))
-        store(sums.forces, c, multiply_add(heavy, force, load(sums.forces, c)))
-        store(sums.forces, wide + c, multiply_add(heavy, magnitude(force), load(sums.forces, wide + c)))
+        store(sums.forces, c, multiply_add(heavy, pushed, load(sums.forces, c)))
+        store(sums.forces, wide + c, multiply_add(heavy, magnitude(pushed), load(sums.forces, wide + c)))
 
 
 @inlined
-def _highest(work: Work, m: int, length: float, sign: float) -> float:
-    """Largest value of sign times deflection m (from its edge) over a step: the best of a few points, then
+def _highest(table: Array, order: int, m: int, length: float, sign: float) -> float:
+    """Largest value of sign times the polynomial in column m over a step: the best of a few points, then
     Newton's method on the slope between that point's neighbours.
     """
     best, at = -np.inf, 0.0
     for look in range(LOOKS + 1):
         t = length * look / LOOKS
         value = 0.0
-        for i in range(work.order, -1, -1):
-            value = value * t + sign * work.deflection[i, m]
+        for i in range(order, -1, -1):
+            value = value * t + sign * table[i, m]
         if value > best:
             best, at = value, t
     low, high = max(0.0, at - length / LOOKS), min(length, at + length / LOOKS)
     for _ in range(TURNS):
         value, slope, bend = 0.0, 0.0, 0.0
-        for i in range(work.order, -1, -1):
+        for i in range(order, -1, -1):
             bend = bend * at + 2.0 * slope
             slope = slope * at + value
-            value = value * at + sign * work.deflection[i, m]
+            value = value * at + sign * table[i, m]
         best = max(best, value)
         if not bend < 0.0:
             break

@@ -72,6 +72,11 @@ class System:
         """Number of the m rows that are meshes or flanks, and not of rings."""
         return len(self.mesh_jacobian) - 3 * self.ring_stiffness.size
 
+    @property
+    def pairs(self) -> int:
+        """Number of meshes with two flanks."""
+        return self.contacts // 2 if self.two_flanks else 0
+
 
 def machine_system(machine: Machine, reduced: Reduced) -> System:
     """The system of a machine in its reduced coordinates; runouts and pitch deviations are left out."""

@@ -1,5 +1,6 @@
 """Scratch space of the kernels."""
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +21,7 @@ class Work(NamedTuple):
     kinds are used by Fourier series. bernstein holds the deflections' Bernstein coefficients over the step,
     least and most their bounds. nodes: of the rule that integrates products of polynomials. ring_x to
     ring_slope_yy: series of the bearings with play, place, tangent, r^2 and its powers, forces, their slopes.
+    Tables that hang on sizes alone (powers, conversion, nodes) are shared and only read.
     """
 
     order: int
@@ -107,7 +109,7 @@ def make_work(packed: Packed, order: int) -> Work:
         was_acting=np.zeros(m),
         least=np.zeros(m),
         most=np.zeros(m),
-        nodes=_gauss(order // 2 + 1),
+        nodes=_gauss(order // 4 + 1),
         ring_x=np.zeros((rows, rings)),
         ring_y=np.zeros((rows, rings)),
         ring_dx=np.zeros((rows, rings)),
@@ -125,12 +127,14 @@ def make_work(packed: Packed, order: int) -> Work:
     )
 
 
+@cache
 def _gauss(count: int) -> Array:
     """Nodes and weights of Gauss's rule on [0, 1], shape (2, count)."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
     return np.array([0.5 + 0.5 * nodes, 0.5 * weights])
 
 
+@cache
 def _powers(harmonics: int, rows: int) -> Array:
     """j^i / i! with the signs of the cosine's and the sine's series, shape (rows, harmonics)."""
     table = np.ones((rows, harmonics))

@@ -88,12 +88,12 @@ class Averages:
         return replace(self, **{name: getattr(self, name)[batches] for name in names})
 
     def _whole(self, batches: Array) -> Array:
-        return np.average(batches, axis=0, weights=self.weight)
+        return np.tensordot(self.weight / self.weight.sum(), batches, 1)
 
 
 def averages(packed: Packed, sums: Sums, periods: int) -> Averages:
     """Means from the integrals over a run of `periods` mesh periods."""
-    n, m = packed.n, packed.m
+    n, m = packed.n, packed.pairs or packed.m
     batches = len(sums.coordinates)
     weight = np.bincount(np.arange(periods) * batches // periods, minlength=batches).astype(float)
     phase = TAU * weight[:, None]
@@ -108,28 +108,6 @@ def averages(packed: Packed, sums: Sums, periods: int) -> Averages:
         origin=sums.origin[:n],
         centre=sums.coordinates[:, :n] / phase,
         products=sums.products[:, :n, :n] / phase[:, None],
-    )
-
-
-def sampled(known: Averages, deflections: Array, forces: Array, per_period: int) -> Averages:
-    """The same with the meshes' averages from samples (K, M) over whole periods, forces in N."""
-    periods = len(deflections) // per_period
-    batch = np.arange(periods) * len(known.weight) // periods
-    by_period = deflections.reshape(periods, per_period, -1)
-
-    def batches(values: Array) -> Array:
-        sums = np.zeros((len(known.weight), values.shape[2]))
-        np.add.at(sums, batch, values.mean(axis=1))
-        return sums / known.weight[:, None]
-
-    return replace(
-        known,
-        level=np.zeros(deflections.shape[1]),
-        deflection=batches(by_period),
-        square=batches(by_period**2),
-        lowest=deflections.min(axis=0),
-        highest=deflections.max(axis=0),
-        force=np.array([forces.mean(axis=0), np.abs(forces).mean(axis=0)]),
     )
 
 

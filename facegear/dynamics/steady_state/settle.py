@@ -1,6 +1,6 @@
 """From any start to the periodic motion that the run itself comes to, if it does."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,8 @@ KICK = 0.01
 MOST_KICKS = 2
 LONGER = 4
 """A run that comes nearer and nearer is watched for so many times as long."""
+FINER = 0.1
+"""Tolerance of the steps, over the one asked for, where Newton's method does not confirm a closed run."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +35,7 @@ class Settled:
     """Where a run came to rest: state (2, n) by phase, period (0: none found), residual over it, periods run.
 
     ends (periods, 2, n): the last states at the end of a period. orbit: with its multipliers, if refined.
+    tolerance: of the steps at the end of the run.
     """
 
     state: Array
@@ -41,6 +44,7 @@ class Settled:
     orbit: Orbit | None
     periods_run: int
     ends: Array
+    tolerance: float
 
 
 def settle(
@@ -65,6 +69,7 @@ class Run:
         self, packed: Packed, work: Work, state: Array, settings: Settings, ends: Array | None
     ) -> None:
         self.packed, self.work, self.settings = packed, work, settings
+        self.finer, self.patience = False, settings.settle
         self.state = state.copy()
         self.ends = np.zeros((0, *state.shape)) if ends is None else ends
         self.known = len(self.ends)
@@ -80,22 +85,26 @@ class Run:
             self._advance()
             if self.periods_run < self.dwell and not self.known:
                 continue
-            last = self.periods_run >= self.settings.settle
+            last = self.periods_run >= self.patience
             near = closing(self.packed, self.ends, self.settings)
             result = self._refined(near, last) if self.settings.refine else None
-            if result is None and len(self.ends):  # a kick leaves none: the run begins anew
+            if result is None and len(self.ends):
                 result = self._by_itself(near)
             if result is not None:
                 return result
+            if not len(self.ends):  # after a kick, or with finer steps, the run begins anew
+                continue
             closer = near.shrinking and near.trend < 1.0
-            if last and not (closer and self.periods_run < LONGER * self.settings.settle):
+            if last and not (closer and self.periods_run < LONGER * self.patience):
                 return self._result(0, near.residual, None)
 
     def _advance(self) -> None:
         settings = self.settings
         block = min(max(self.block, self.periods_run // 2), max(self.block, LONG_BLOCK))
-        if self.periods_run < settings.settle:
-            block = min(block, settings.settle - self.periods_run)
+        if not self.known:
+            block = max(block, self.dwell - self.periods_run)
+        if self.periods_run < self.patience:
+            block = min(block, self.patience - self.periods_run)
         log = make_log(self.packed, block)
         none = np.zeros((0, *self.state.shape))
         displacement, velocity = self.state
@@ -129,7 +138,7 @@ class Run:
         """Whether Newton's method is the cheaper way to go on, and has not failed here before."""
         again = near.residual < 0.1 * self.tried.get(near.period, np.inf)
         cost = NEWTON_STEPS * NEWTON_COST * near.period
-        cheap = self.newton_cost + cost <= self.periods_run or last
+        cheap = self.newton_cost + cost <= self.periods_run or (last and near.period <= SHORT)
         slow = near.periods_left(self.settings.periodic_residual) > NEWTON_COST * near.period
         near_enough = near.period <= SHORT or near.residual < VERY_SMALL
         worth = near.shrinking and near_enough and again and cheap and (slow or last)
@@ -161,7 +170,18 @@ class Run:
             return None
         if orbit is not None and not self._is_here(orbit):
             orbit = None
+        if self.settings.refine and orbit is None and not self.finer:
+            self._look_closer()
+            return None
         return self._result(period if orbit is None else orbit.period, near.residual, orbit)
+
+    def _look_closer(self) -> None:
+        """Go on with finer steps: those of a long period may alternate, and close only over two."""
+        self.finer = True
+        self.settings = replace(self.settings, tolerance=FINER * self.settings.tolerance)
+        self.patience += self.periods_run
+        self.ends = self.ends[:0]
+        self.known = 0
 
     def _is_here(self, orbit: Orbit) -> bool:
         """Whether an orbit is the one that the run stands on: what is left to decay, and errors of steps."""
@@ -194,7 +214,15 @@ class Run:
     def _result(self, period: int, residual: float, orbit: Orbit | None) -> Settled:
         state = self.state if orbit is None else np.array([orbit.displacement, orbit.velocity])
         residual = residual if orbit is None else orbit.residual
-        return Settled(state, period, residual, orbit, self.periods_run, self.ends)
+        return Settled(
+            state=state,
+            period=period,
+            residual=residual,
+            orbit=orbit,
+            periods_run=self.periods_run,
+            ends=self.ends,
+            tolerance=self.settings.tolerance,
+        )
 
 
 def _blocks(packed: Packed, settings: Settings) -> tuple[int, int]:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,15 +13,15 @@ from facegear.dynamics.integrator.reduction import Reduced, reduce
 from facegear.dynamics.integrator.system import System, machine_system
 from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.steady_state.averages import Averages, Moments, sampled
+from facegear.dynamics.steady_state.averages import Averages, Moments
 from facegear.dynamics.steady_state.closing import FALLING, SMALL, closing
 from facegear.dynamics.steady_state.exponent import Exponent, Growth, largest_exponent
+from facegear.dynamics.steady_state.mesh_samples import by_mesh, each_deflection, mesh_forces, mesh_shares
 from facegear.dynamics.steady_state.prepare import prepare
 from facegear.dynamics.steady_state.settle import Settled, settle
 from facegear.dynamics.steady_state.statistics import drifts
 from facegear.dynamics.steady_state.window import Window, run_window
 from facegear.errors import NotConverged
-from facegear.harmonics.series import stacked_values
 from facegear.transmission.machine import Machine, mesh_frequency
 from facegear.transmission.matrices import mass_diagonal
 from facegear.transmission.statics import static_equilibrium
@@ -35,14 +36,15 @@ ESCAPING = 1e-3
 class SteadyState:
     """The response over `periods` mesh periods (the orbit's own period, else the window), sampled evenly.
 
-    samples K = periods * per_period: deflections (K, meshes) in m with e(t) taken off, forces (K, meshes)
-    elastic mesh forces k f(d) in N, coordinates (K, n); displacements(machine) gives all DOF. shares (3,
-    meshes): fraction of time open, on the drive flank, on the back flank. residual: change over the period,
-    over the length scale. multipliers (2 n,) of a refined periodic orbit. exponent: largest Lyapunov
-    exponent per mesh period with its 95 % half-width, for motions that are not periodic. periods_run: for how
-    many mesh periods the motion was watched in all before it was named so. averages: over the whole response.
+    samples K = periods * per_period: deflections (K, meshes) in m with e(t) taken off, coordinates (K, n) of
+    the system; displacements(machine) gives all DOF. shares (3, meshes): fraction of time open, on the drive
+    flank, on the back flank. residual: change over the period, over the length scale. multipliers (2 n,) of a
+    refined periodic orbit. exponent: largest Lyapunov exponent per mesh period with its 95 % half-width, for
+    motions that are not periodic. periods_run: for how many mesh periods the motion was watched in all before
+    it was named so. averages: over the whole response.
     """
 
+    system: System
     motion: Motion
     period: int
     frequency: float
@@ -50,7 +52,6 @@ class SteadyState:
     periods: int
     per_period: int
     deflections: Array
-    forces: Array
     coordinates: Array
     averages: Averages
     shares: Array
@@ -64,6 +65,12 @@ class SteadyState:
     def label(self) -> str:
         """`period-n` or the class of motion."""
         return f"period-{self.period}" if self.motion is Motion.PERIODIC else self.motion.value
+
+    @cached_property
+    def forces(self) -> Array:
+        """Elastic mesh forces k f(d) of the samples (K, meshes), N."""
+        each = each_deflection(self.system, self.coordinates, self.per_period)
+        return mesh_forces(self.system, each, self.per_period)
 
     @property
     def moments(self) -> Moments:
@@ -150,30 +157,31 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
         settled = settle(packed, work, state, settings, ends)
         periods_run += settled.periods_run
         if settled.period:
-            window = run_window(packed, work, settled.state, settled.period, settings)
-            response = mesh_response(system, window.samples, window.per_period)
+            as_settled = replace(settings, tolerance=settled.tolerance)
+            window = run_window(packed, work, settled.state, settled.period, as_settled)
+            deflections = _deflections(system, window)
             exponent, motion = None, Motion.PERIODIC
             break
         exponent = largest_exponent(packed, work, settled.state, settings)
         window = exponent.window
-        response = mesh_response(system, window.samples, window.per_period)
-        motion = _class(packed, settled, exponent, window, response[0], settings)
+        deflections = _deflections(system, window)
+        motion = _class(packed, settled, exponent, window, deflections, settings)
         periods_run += len(exponent.ends)
         if motion is not Motion.NOT_SETTLED or exponent.growth is Growth.UNKNOWN:
             break
         state, ends = window.ends[-1], exponent.ends
     orbit, end = settled.orbit, window.ends[-1][:, : packed.n]
     return SteadyState(
+        system=system,
         motion=motion,
         period=settled.period,
         frequency=frequency,
         residual=settled.residual,
         periods=window.periods,
         per_period=window.per_period,
-        deflections=response[0],
-        forces=response[1],
+        deflections=deflections,
         coordinates=window.samples,
-        averages=mesh_averages(system, frequency, window, *response),
+        averages=replace(window.averages, force=window.averages.force * frequency**2),
         shares=mesh_shares(system, window.shares),
         multipliers=orbit.multipliers if orbit else None,
         liouville=orbit.liouville if orbit else None,
@@ -202,63 +210,9 @@ def _class(
     return motion
 
 
-def mesh_response(system: System, coordinates: Array, per_period: int) -> tuple[Array, Array]:
-    """Deflections and elastic mesh forces (K, meshes) of samples that start with a mesh period."""
-    cycles = np.arange(per_period) / per_period
-    contacts = system.contacts
-    error = stacked_values(system.error, cycles)[:, system.error_kind[:contacts]]
-    stiffness = stacked_values(system.stiffness, cycles)
-    for kind, piece in enumerate(system.pieces):
-        index = np.searchsorted(piece.breaks, cycles, side="right") - 1
-        ahead = cycles - piece.breaks[index]
-        stiffness[:, kind] += (
-            piece.coefficients[index] * np.vander(ahead, piece.coefficients.shape[1], True)
-        ).sum(1)
-    stiffness = stiffness[:, system.stiffness_kind[:contacts]]
-    deflections = (coordinates @ system.mesh_jacobian[:contacts].T).reshape(-1, per_period, contacts)
-    deflections -= error
-    if system.two_flanks:
-        return flank_response(system, deflections.reshape(len(coordinates), -1), stiffness)
-    # Without clearance everything counts from the upper edge.
-    linear = system.lower >= system.upper
-    lower, upper = (np.where(linear, system.upper, edge) for edge in (system.lower, system.upper))
-    forces = np.clip(deflections, lower, upper)
-    np.subtract(deflections, forces, out=forces)
-    forces *= stiffness
-    return deflections.reshape(len(coordinates), -1), forces.reshape(len(coordinates), -1)
-
-
-def flank_response(system: System, deflections: Array, stiffness: Array) -> tuple[Array, Array]:
-    """Tangential deflection and transmitted force of each mesh (K, meshes) from its flanks (K, 2 meshes).
-
-    stiffness (per_period, 2 meshes) repeats.
-    """
-    over = (deflections - system.upper[: system.contacts]).reshape(-1, *stiffness.shape)
-    forces = (np.maximum(over, 0.0) * stiffness).reshape(deflections.shape)
-    over = over.reshape(deflections.shape)
-    meshes = deflections.shape[1] // 2
-    tangential = 0.5 * (over[:, :meshes] - over[:, meshes:])
-    return tangential, forces[:, :meshes] - forces[:, meshes:]
-
-
-def mesh_shares(system: System, shares: Array) -> Array:
-    """Time open, on the drive and on the back flank (3, meshes) from that of each flank, where there are two.
-
-    Time with both flanks wedged counts on both, so that the three may add up to more than one.
-    """
-    if not system.two_flanks:
-        return shares
-    drive, back = np.split(shares[1, : system.contacts], 2)
-    return np.stack([np.maximum(1.0 - drive - back, 0.0), drive, back])
-
-
-def mesh_averages(
-    system: System, frequency: float, window: Window, deflections: Array, forces: Array
-) -> Averages:
-    """Averages by mesh, forces in N; those of a mesh with two flanks come from the samples."""
-    if system.two_flanks:
-        return sampled(window.averages, deflections, forces, window.per_period)
-    return replace(window.averages, force=window.averages.force * frequency**2)
+def _deflections(system: System, window: Window) -> Array:
+    """Deflections (K, meshes) of a window's samples."""
+    return by_mesh(system, each_deflection(system, window.samples, window.per_period))
 
 
 def by_phase(packed: Packed, state: State, frequency: float) -> Array:

@@ -140,7 +140,8 @@ def _row(
     meshes = response.moments
     rms, ac_rms, interval = response.averages.views(views, periodic)
     modal = ac_rms[directions:]
-    strongest = response.coordinates @ views[:, [directions + modal.argmax()]]
+    by_period = response.coordinates.reshape(response.periods, response.per_period, -1)
+    strongest = (by_period @ views[:, directions + modal.argmax()]).reshape(-1, 1)
     orders, lines = spectrum(strongest - strongest.mean(), response.per_period, periodic)
     exponent, half = response.exponent or (np.nan, np.nan)
     leading = np.nan if response.multipliers is None else abs(response.multipliers[0])

@@ -5,12 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.averages import sampled
+from facegear.dynamics.steady_state.averages import Averages
 from facegear.dynamics.steady_state.simulate import Model, SteadyState
 from facegear.dynamics.sweeps.sweep import Piece, collect, joined, run_speeds, tighter
 
+Array = NDArray[np.float64]
 CONVERGED = 1e-3
 SAMPLES = 4096
 
@@ -42,6 +44,28 @@ def sampled_response(found: tuple[float, SteadyState]) -> tuple[float, SteadySta
     speed, response = found
     averages = sampled(response.averages, response.deflections, response.forces, response.per_period)
     return speed, replace(response, averages=averages)
+
+
+def sampled(known: Averages, deflections: Array, forces: Array, per_period: int) -> Averages:
+    """Averages with those of the meshes from samples (K, M) over whole periods, forces in N."""
+    periods = len(deflections) // per_period
+    batch = np.arange(periods) * len(known.weight) // periods
+    by_period = deflections.reshape(periods, per_period, -1)
+
+    def batches(values: Array) -> Array:
+        sums = np.zeros((len(known.weight), values.shape[2]))
+        np.add.at(sums, batch, values.mean(axis=1))
+        return sums / known.weight[:, None]
+
+    return replace(
+        known,
+        level=np.zeros(deflections.shape[1]),
+        deflection=batches(by_period),
+        square=batches(by_period**2),
+        lowest=deflections.min(axis=0),
+        highest=deflections.max(axis=0),
+        force=np.array([forces.mean(axis=0), np.abs(forces).mean(axis=0)]),
+    )
 
 
 def convergence_table(direction: str, piece: Piece, finer: Piece) -> pd.DataFrame:

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from facegear.dynamics.steady_state.simulate import mesh_response
+from facegear.dynamics.steady_state.mesh_samples import mesh_response
 from facegear.dynamics.steady_state.statistics import moments
 from facegear.validation.dynamics.methods import Method, our_tangents, ours, prepare_ours
 from facegear.validation.dynamics.problems import SAMPLES, Compared, Problem

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-from lumped_machines import make_machine
+from lumped_machines import make_layout, make_machine
 
 from facegear.dynamics.integrator.trajectory import record
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate, steady_state
+from facegear.transmission.layout import MeshKinematics
 from facegear.validation.dynamics.oscillators import (
     Oscillator,
     closed_form_run,
@@ -82,3 +83,20 @@ def test_averages_and_extremes_do_not_depend_on_how_densely_the_motion_is_sample
     for mesh in range(3):
         extremes = coarse.moments.least[mesh], coarse.moments.most[mesh]
         np.testing.assert_allclose(extremes, run.extremes(mesh), atol=2e-6 * model.system.scale)
+
+
+@pytest.mark.parametrize("speed", [400.0, 15000.0])
+def test_averages_and_extremes_of_meshes_with_two_flanks_come_from_polynomials_too(speed):
+    model = build_model(make_machine(make_layout(kinematics=MeshKinematics.GEOMETRIC), torque=100.0))
+    fine = simulate(model, speed, Settings(tolerance=1e-6, settle=256, window=16, samples=4096))
+    moments = fine.moments
+    rtol = 1e-6 if fine.motion is Motion.PERIODIC else 1e-3
+    least = rtol * moments.ac_rms.max()
+    np.testing.assert_allclose(moments.mean, fine.deflections.mean(axis=0), rtol=rtol, atol=least)
+    np.testing.assert_allclose(moments.ac_rms, fine.deflections.std(axis=0), rtol=rtol)
+    np.testing.assert_allclose(moments.least, fine.deflections.min(axis=0), atol=1e-5 * model.system.scale)
+    np.testing.assert_allclose(moments.most, fine.deflections.max(axis=0), atol=1e-5 * model.system.scale)
+    assert (moments.most >= fine.deflections.max(axis=0) - 1e-9 * model.system.scale).all()
+    np.testing.assert_allclose(fine.mean_forces[0], fine.forces.mean(axis=0), rtol=1e-4, atol=1e-2)
+    # The magnitude of what two wedged flanks transmit has a corner inside a step.
+    np.testing.assert_allclose(fine.mean_forces[1], np.abs(fine.forces).mean(axis=0), rtol=2e-3)

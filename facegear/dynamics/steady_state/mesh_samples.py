@@ -1,0 +1,75 @@
+"""Deflections and elastic forces of the meshes at evenly spaced instants of a motion."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.integrator.system import System
+from facegear.harmonics.series import stacked_values
+
+Array = NDArray[np.float64]
+
+
+def mesh_response(system: System, coordinates: Array, per_period: int) -> tuple[Array, Array]:
+    """Deflections and elastic mesh forces (K, meshes) of samples (K, n) that start with a mesh period."""
+    each = each_deflection(system, coordinates, per_period)
+    return by_mesh(system, each), mesh_forces(system, each, per_period)
+
+
+def each_deflection(system: System, coordinates: Array, per_period: int) -> Array:
+    """Deflections G y - e of samples (K, n) that start with a mesh period, one column for each mesh or
+    flank.
+    """
+    cycles = np.arange(per_period) / per_period
+    contacts = system.contacts
+    # Period by period: one large product would start threads, which then wait at full speed.
+    by_period = coordinates.reshape(-1, per_period, coordinates.shape[1])
+    deflections = by_period @ system.mesh_jacobian[:contacts].T
+    deflections -= stacked_values(system.error, cycles)[:, system.error_kind[:contacts]]
+    return deflections.reshape(len(coordinates), -1)
+
+
+def by_mesh(system: System, each: Array) -> Array:
+    """Deflection of each mesh (K, meshes) from each_deflection(); with two flanks half the difference of what
+    they are above their edges.
+    """
+    if not system.two_flanks:
+        return each
+    drive, back = np.split(each - system.upper[: system.contacts], 2, axis=1)
+    return 0.5 * (drive - back)
+
+
+def mesh_forces(system: System, each: Array, per_period: int) -> Array:
+    """Elastic forces k f(d) (K, meshes), N, from each_deflection(); with two flanks what both transmit."""
+    # Without clearance everything counts from the upper edge.
+    lower, upper = system.lower[: system.contacts], system.upper[: system.contacts]
+    lower = np.where(lower >= upper, upper, lower)
+    forces = np.clip(each, lower, upper)
+    np.subtract(each, forces, out=forces)
+    cycles = np.arange(per_period) / per_period
+    forces = (forces.reshape(-1, per_period, len(upper)) * _stiffness(system, cycles)).reshape(each.shape)
+    if not system.two_flanks:
+        return forces
+    drive, back = np.split(forces, 2, axis=1)
+    return drive - back
+
+
+def mesh_shares(system: System, shares: Array) -> Array:
+    """Time open, on the drive and on the back flank (3, meshes) from that of each flank, where there are two.
+
+    Time with both flanks wedged counts on both, so that the three may add up to more than one.
+    """
+    if not system.two_flanks:
+        return shares
+    drive, back = np.split(shares[1, : system.contacts], 2)
+    return np.stack([np.maximum(1.0 - drive - back, 0.0), drive, back])
+
+
+def _stiffness(system: System, cycles: Array) -> Array:
+    """Stiffness (times, m) at times in mesh periods."""
+    stiffness = stacked_values(system.stiffness, cycles)
+    for kind, piece in enumerate(system.pieces):
+        index = np.searchsorted(piece.breaks, cycles, side="right") - 1
+        ahead = cycles - piece.breaks[index]
+        powers = np.vander(ahead, piece.coefficients.shape[1], True)
+        stiffness[:, kind] += (piece.coefficients[index] * powers).sum(1)
+    return stiffness[:, system.stiffness_kind[: system.contacts]]
