@@ -1,6 +1,6 @@
 """From any start to the periodic motion that the run itself comes to, if it does."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ from facegear.dynamics.integrator.periods import make_log, run_periods
 from facegear.dynamics.integrator.work import Work
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.closing import TREND, VERY_SMALL, Closing, closed, closing
-from facegear.dynamics.steady_state.orbits import AFLOAT, Orbit, change, drawn_in, require, shoot
+from facegear.dynamics.steady_state.orbits import AFLOAT, Orbit, change, changes, drawn_in, require, shoot
 
 Array = NDArray[np.float64]
 NEWTON_COST = 20
@@ -26,8 +26,9 @@ KICK = 0.01
 MOST_KICKS = 2
 LONGER = 4
 """A run that comes nearer and nearer is watched for so many times as long."""
-FINER = 0.1
-"""Tolerance of the steps, over the one asked for, where Newton's method does not confirm a closed run."""
+NOISE, DRAWN = 50.0, 0.95
+"""Steps chosen anew in each period may move a run by NOISE times the tolerance; an orbit whose multipliers
+are below DRAWN holds it there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +36,6 @@ class Settled:
     """Where a run came to rest: state (2, n) by phase, period (0: none found), residual over it, periods run.
 
     ends (periods, 2, n): the last states at the end of a period. orbit: with its multipliers, if refined.
-    tolerance: of the steps at the end of the run.
     """
 
     state: Array
@@ -44,7 +44,6 @@ class Settled:
     orbit: Orbit | None
     periods_run: int
     ends: Array
-    tolerance: float
 
 
 def settle(
@@ -69,7 +68,6 @@ class Run:
         self, packed: Packed, work: Work, state: Array, settings: Settings, ends: Array | None
     ) -> None:
         self.packed, self.work, self.settings = packed, work, settings
-        self.finer, self.patience = False, settings.settle
         self.state = state.copy()
         self.ends = np.zeros((0, *state.shape)) if ends is None else ends
         self.known = len(self.ends)
@@ -85,26 +83,26 @@ class Run:
             self._advance()
             if self.periods_run < self.dwell and not self.known:
                 continue
-            last = self.periods_run >= self.patience
+            last = self.periods_run >= self.settings.settle
             near = closing(self.packed, self.ends, self.settings)
             result = self._refined(near, last) if self.settings.refine else None
             if result is None and len(self.ends):
                 result = self._by_itself(near)
             if result is not None:
                 return result
-            if not len(self.ends):  # after a kick, or with finer steps, the run begins anew
+            if not len(self.ends):  # after a kick the run begins anew
                 continue
             closer = near.shrinking and near.trend < 1.0
-            if last and not (closer and self.periods_run < LONGER * self.patience):
-                return self._result(0, near.residual, None)
+            if last and not (closer and self.periods_run < LONGER * self.settings.settle):
+                return self._in_noise(near) or self._result(0, near.residual, None)
 
     def _advance(self) -> None:
         settings = self.settings
         block = min(max(self.block, self.periods_run // 2), max(self.block, LONG_BLOCK))
         if not self.known:
             block = max(block, self.dwell - self.periods_run)
-        if self.periods_run < self.patience:
-            block = min(block, self.patience - self.periods_run)
+        if self.periods_run < settings.settle:
+            block = min(block, settings.settle - self.periods_run)
         log = make_log(self.packed, block)
         none = np.zeros((0, *self.state.shape))
         displacement, velocity = self.state
@@ -138,7 +136,7 @@ class Run:
         """Whether Newton's method is the cheaper way to go on, and has not failed here before."""
         again = near.residual < 0.1 * self.tried.get(near.period, np.inf)
         cost = NEWTON_STEPS * NEWTON_COST * near.period
-        cheap = self.newton_cost + cost <= self.periods_run or (last and near.period <= SHORT)
+        cheap = self.newton_cost + cost <= self.periods_run or last
         slow = near.periods_left(self.settings.periodic_residual) > NEWTON_COST * near.period
         near_enough = near.period <= SHORT or near.residual < VERY_SMALL
         worth = near.shrinking and near_enough and again and cheap and (slow or last)
@@ -170,18 +168,20 @@ class Run:
             return None
         if orbit is not None and not self._is_here(orbit):
             orbit = None
-        if self.settings.refine and orbit is None and not self.finer:
-            self._look_closer()
-            return None
+        if orbit is None and period > 1 and (within := self._in_noise(near)):
+            return within
         return self._result(period if orbit is None else orbit.period, near.residual, orbit)
 
-    def _look_closer(self) -> None:
-        """Go on with finer steps: those of a long period may alternate, and close only over two."""
-        self.finer = True
-        self.settings = replace(self.settings, tolerance=FINER * self.settings.tolerance)
-        self.patience += self.periods_run
-        self.ends = self.ends[:0]
-        self.known = 0
+    def _in_noise(self, near: Closing) -> Settled | None:
+        """The motion of the shortest period about which nothing but the choice of steps moves the run."""
+        noise = NOISE * self.settings.tolerance
+        close = np.flatnonzero(changes(self.packed, self.ends, self.settings.longest_period) < noise)
+        orbit = self._shot(int(close[0]) + 1) if close.size else None
+        if orbit is None or abs(orbit.multipliers[0]) > DRAWN:
+            return None
+        if change(self.packed, self.state, np.array([orbit.displacement, orbit.velocity])) > noise:
+            return None
+        return self._result(orbit.period, near.residual, orbit if self.settings.refine else None)
 
     def _is_here(self, orbit: Orbit) -> bool:
         """Whether an orbit is the one that the run stands on: what is left to decay, and errors of steps."""
@@ -214,15 +214,7 @@ class Run:
     def _result(self, period: int, residual: float, orbit: Orbit | None) -> Settled:
         state = self.state if orbit is None else np.array([orbit.displacement, orbit.velocity])
         residual = residual if orbit is None else orbit.residual
-        return Settled(
-            state=state,
-            period=period,
-            residual=residual,
-            orbit=orbit,
-            periods_run=self.periods_run,
-            ends=self.ends,
-            tolerance=self.settings.tolerance,
-        )
+        return Settled(state, period, residual, orbit, self.periods_run, self.ends)
 
 
 def _blocks(packed: Packed, settings: Settings) -> tuple[int, int]:

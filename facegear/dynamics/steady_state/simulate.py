@@ -157,8 +157,7 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
         settled = settle(packed, work, state, settings, ends)
         periods_run += settled.periods_run
         if settled.period:
-            as_settled = replace(settings, tolerance=settled.tolerance)
-            window = run_window(packed, work, settled.state, settled.period, as_settled)
+            window = run_window(packed, work, settled.state, settled.period, settings)
             deflections = _deflections(system, window)
             exponent, motion = None, Motion.PERIODIC
             break

@@ -1,5 +1,7 @@
 """A label survives longer watching, and an orbit is the one that the run itself comes to."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from lumped_machines import make_layout, make_machine
@@ -7,6 +9,7 @@ from lumped_machines import make_layout, make_machine
 from facegear.dynamics.integrator.trajectory import record
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate, steady_state
+from facegear.harmonics.series import Harmonics
 from facegear.transmission.layout import MeshKinematics
 from facegear.validation.dynamics.oscillators import (
     Oscillator,
@@ -100,3 +103,26 @@ def test_averages_and_extremes_of_meshes_with_two_flanks_come_from_polynomials_t
     np.testing.assert_allclose(fine.mean_forces[0], fine.forces.mean(axis=0), rtol=1e-4, atol=1e-2)
     # The magnitude of what two wedged flanks transmit has a corner inside a step.
     np.testing.assert_allclose(fine.mean_forces[1], np.abs(fine.forces).mean(axis=0), rtol=2e-3)
+
+
+def paper_machine():
+    """The machine of config/paper.yaml: its torques, error and stiffness (to 1e4 N/m)."""
+    sines = [0.0, 2.934e7, -4.22e6, -1.91e6, 4.8e5, 2.9e5, -4e5, -1.6e5, 9e4]
+    cosines = [4.1e8, 4.93e6, 5.14e6, -4.8e5, -1.39e6, 1.7e5, 4e4, -2.8e5, -2e4]
+    machine = make_machine(
+        torque=1327.6, tail_share=0.034, stiffness=Harmonics(np.array(sines), np.array(cosines))
+    )
+    error = Harmonics(np.array([0.0, -2.26761004e-5]), np.array([0.0, -1.05258953e-5]))
+    return replace(machine, error=error, error_in_step=True)
+
+
+@pytest.mark.parametrize("refine", [True, False])
+def test_steps_that_alternate_do_not_make_a_motion_of_twice_its_period(refine):
+    """Some 170 steps a period at 1e-4, chosen by the motion itself, once made this period-2 at 200 rpm."""
+    model = build_model(paper_machine())
+    coarse = Settings(tolerance=1e-4, periodic_residual=1e-5, settle=128, samples=32, refine=refine)
+    found = simulate(model, 200.0, coarse)
+    exact = simulate(model, 200.0, Settings(tolerance=1e-10, periodic_residual=1e-9))
+    assert found.label == exact.label == "period-1"
+    largest = exact.moments.ac_rms.max()
+    np.testing.assert_allclose(found.moments.ac_rms, exact.moments.ac_rms, atol=1e-3 * largest)
