@@ -22,14 +22,9 @@ class Packed(NamedTuple):
     (harmonics + 1, 2, width), sine part first. pieces (pieces, degree + 1, m) add to the stiffness
     from one of `breaks` (rad) to the next; stiffness and error have one column for each of the kinds that
     stiffness_kind and error_kind (m,) name. drift (terms, m): polynomial in s added to the error of this
-<<<<<<< HEAD
-    period, or none. leverage (m,): sum of squares of a row of mesh_jacobian. rings: their number R, in
-    the last 3 R rows of the m; ring_stiffness over w^2, ring_play, padded; ring_lag: w times their damping.
-=======
     period, or none. leverage (m,): sum of squares of a row of mesh_jacobian. pairs: meshes whose two flanks
-    stand at j and j + pairs; 0 where every mesh stands for itself. ring_stiffness over w^2, ring_play (R,),
-    ring_lag (w times the bearings' damping): of the rings in the last 3 R rows of the m.
->>>>>>> b8b94ad (Two-flank meshes take averages and extremes from step polynomials; forces of samples only where asked for; fewer nodes, shared tables)
+    stand at j and j + pairs; 0 where every mesh stands for itself. rings: their number R, in the last 3 R
+    rows of the m; ring_stiffness over w^2, ring_play, padded; ring_lag: w times their damping.
     """
 
     n: int
