@@ -52,7 +52,7 @@ class Sweep(Section):
     accuracy: Accuracy = Accuracy(
         tolerance=1e-4,
         dwell_periods=32,
-        settle_periods=128,
+        settle_periods=256,
         window_periods=160,
         longest_period=64,
         periodic_residual=1e-5,
