@@ -52,7 +52,7 @@ rule peers:
 
 rule identify:
     input:
-        expand(f"results/{CASE}/identify/{{name}}.csv", name=["sets", "roads"] if IDENTIFY else []),
+        expand(f"results/{CASE}/identify/{{name}}.csv", name=["sets", "load_estimates"] if IDENTIFY else []),
 
 
 localrules:
@@ -74,5 +74,5 @@ localrules:
     load_sharing_figures,
     contact_studies,
     contact_studies_figures,
-    identify_roads,
+    identify_load_estimates,
     report,

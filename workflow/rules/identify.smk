@@ -36,16 +36,16 @@ rule identify_sets:
         "../scripts/identify_sets.py"
 
 
-rule identify_roads:
+rule identify_load_estimates:
     "Load of the paper's mean stiffness for several gear designs"
     input:
         ltca=shared("contact", "ltca"),
         designs=[f"results/{{case}}/designs/{name}/contact/ltca.csv" for name in DESIGNS],
     output:
-        roads="results/{case}/identify/roads.csv",
-        manifest="results/{case}/identify/roads.provenance.json",
+        estimates="results/{case}/identify/load_estimates.csv",
+        manifest="results/{case}/identify/load_estimates.provenance.json",
     params:
         **values_of(stiffness="mesh_stiffness"),
         designs=DESIGNS,
     script:
-        "../scripts/identify_roads.py"
+        "../scripts/identify_load_estimates.py"

@@ -75,7 +75,9 @@ class Identify(Section):
         ("operating", "mean"), min_length=1, description="load at which k(t) has its shape"
     )
     budget: SearchBudget = SearchBudget()
-    designs: tuple[Point, ...] = Field((), description="other plausible gear data for the first road")
+    designs: tuple[Point, ...] = Field(
+        (), description="other plausible gear data for the first estimate of the load"
+    )
 
     @model_validator(mode="after")
     def _distinct(self) -> "Identify":

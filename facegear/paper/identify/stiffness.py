@@ -1,4 +1,4 @@
-"""The first road: the load at which contact analysis gives the paper's mean stiffness; k(t) at any load."""
+"""The first estimate: the load of the paper's mean stiffness in contact analysis; k(t) at any load."""
 
 from collections.abc import Callable
 

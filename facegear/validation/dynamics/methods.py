@@ -32,14 +32,14 @@ STEPS = (16, 32, 64, 128, 256, 512, 1024, 2048, 4096)
 
 @dataclass(frozen=True)
 class Method:
-    """A name, how to prepare a run of it, and its ladder of settings (tolerances, or steps a period).
+    """A name, how to prepare a run of it, and its settings: tolerances, or steps a period.
 
     A run takes `together` trajectories at once, of which the first is returned.
     """
 
     name: str
     prepare: Prepare
-    ladder: Sequence[float]
+    settings: Sequence[float]
     together: int = 1
 
 

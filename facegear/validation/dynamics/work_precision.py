@@ -25,7 +25,7 @@ COLUMNS = ["problem", "method", "setting", "error", "interval", "seconds", "prep
 class Budget:
     """Most repeats of each run for the median CPU time, fewer once they take `longest` seconds together.
 
-    A run longer than that ends its ladder.
+    A method stops at its first run longer than that.
     """
 
     repeats: int = 9
@@ -53,8 +53,8 @@ def work_precision(
     rows = []
     for method in methods:
         for problem in problems:
-            method.prepare(replace(problem, periods=1), method.ladder[0])()
-            for setting in method.ladder:
+            method.prepare(replace(problem, periods=1), method.settings[0])()
+            for setting in method.settings:
                 found = measure(problem, method, setting, references[problem.name], budget)
                 rows.append((problem.name, method.name, setting, *found))
                 *_, seconds, _, failure = found
@@ -150,8 +150,8 @@ def cheapest_within_chance(table: pd.DataFrame, problem: str) -> pd.DataFrame:
 
 
 def seconds_at(table: pd.DataFrame, problem: str, method: str, error: float) -> float:
-    """Time of a method at an error, interpolated between its settings in logarithms; NaN beyond its
-    ladder.
+    """Time of a method at an error, interpolated between its settings in logarithms; NaN beyond
+    them.
     """
     rows = table[(table["problem"] == problem) & (table["method"] == method)].dropna(subset="error")
     best = rows.sort_values("error")

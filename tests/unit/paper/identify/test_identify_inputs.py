@@ -20,8 +20,8 @@ from facegear.paper.identify.inputs import (
     error_series,
     machine_with,
 )
+from facegear.paper.identify.load_estimates import estimate_table
 from facegear.paper.identify.optima import separate_optima
-from facegear.paper.identify.roads import roads_table
 from facegear.paper.identify.search import inputs_of, inputs_row
 from facegear.paper.identify.sets import config_changes
 from facegear.paper.identify.stiffness import load_for_mean, scaled_stiffness
@@ -107,9 +107,9 @@ def test_neighbours_count_as_one_optimum_and_phase_is_cyclic():
     assert len(separate_optima(rows, SPACE, most=1)) == 1
 
 
-def test_roads_table_says_where_a_design_reaches_the_mean_and_what_it_has_at_the_configs_load():
+def test_estimate_table_says_where_a_design_reaches_the_mean_and_what_it_has_at_the_configs_load():
     softer = LoadTable(TORQUES, POSITIONS, 0.8 * CURVES, 0.8 * CURVES)
-    table = roads_table({"config": TABLE, "thin rim": softer}, 4e8, "average", 800.0).set_index("design")
+    table = estimate_table({"config": TABLE, "thin rim": softer}, 4e8, "average", 800.0).set_index("design")
     assert table.loc["config", "load_from_mean_stiffness_n_m"] == pytest.approx(200.0, rel=1e-9)
     assert table.loc["config", "ratio_to_paper"] == pytest.approx(1.5, rel=1e-12)
     assert table.loc["thin rim", "load_from_mean_stiffness_n_m"] > 200.0
@@ -117,5 +117,5 @@ def test_roads_table_says_where_a_design_reaches_the_mean_and_what_it_has_at_the
 
 
 def test_a_load_beyond_those_solved_is_left_empty():
-    table = roads_table({"config": TABLE}, 4e8, "average", 900.0)
+    table = estimate_table({"config": TABLE}, 4e8, "average", 900.0)
     assert table["mean_at_config_load_n_per_m"].isna().all()

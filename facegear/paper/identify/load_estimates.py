@@ -1,4 +1,4 @@
-"""The first road to the undisclosed load, and whether the config's load agrees with it."""
+"""The first estimate of the undisclosed load, and whether the config's load agrees with it."""
 
 from collections.abc import Mapping
 
@@ -9,13 +9,13 @@ from facegear.stiffness.curve import LoadTable
 from facegear.stiffness.request import Definition
 
 
-def roads_table(
+def estimate_table(
     tables: Mapping[str, LoadTable], mean: float, definition: Definition, load: float
 ) -> pd.DataFrame:
     """One row a gear design: the load of the paper's mean stiffness, and the mean at the fitted load.
 
-    Loads are torques on the pinion of one mesh, N m. The first road needs no dynamics; the roads agree for a
-    design whose mean at the config's load is the paper's. Empty where a load lies outside those solved.
+    Loads are torques on the pinion of one mesh, N m. The first estimate needs no dynamics; the two agree for
+    a design whose mean at the config's load is the paper's. Empty where a load lies outside those solved.
     """
     rows = []
     for name, table in tables.items():
