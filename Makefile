@@ -11,13 +11,14 @@ all: check
 
 env: $(READY)
 
-# uv fetches and unpacks in parallel, a quarter of pip's time; pip does it where only pip knows the package index.
+# uv fetches, unpacks and compiles in parallel; pip does it where only pip knows the package index. Without compiled
+# modules every job would compile the libraries anew where Python may not write them (PYTHONDONTWRITEBYTECODE).
 # The repository installs itself editable, so that notebooks and scripts find it from any folder.
 $(READY): requirements.lock pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	awk '/^[^ ]/ {wanted = /^uv==/} wanted' requirements.lock > $(VENV)/uv.lock
 	$(BIN)/python -m pip install --quiet --require-hashes -r $(VENV)/uv.lock
-	$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r requirements.lock \
+	$(BIN)/uv pip install --quiet --compile-bytecode --python $(BIN)/python --require-hashes -r requirements.lock \
 		|| $(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
 	$(BIN)/uv pip install --quiet --python $(BIN)/python --no-deps --no-build-isolation --editable .
 	touch $@
