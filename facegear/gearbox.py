@@ -130,6 +130,8 @@ class Gearbox:
         if torques is not None:
             changes["contact.torques_n_m"] = torques if isinstance(torques, Iterable) else [torques]
             changes["mesh_stiffness.torque_n_m"] = None  # need not lie within these
+            if self.values["strength"] is not None:  # nor its duty cycle; the fillets keep their gauges
+                changes |= {"strength": None, "contact.root_stress": self.values["contact"]["root_stress"]}
         gearbox = self._changed("contact", changes)
 
         from facegear.results.contact import ContactResult
