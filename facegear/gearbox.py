@@ -1,7 +1,7 @@
 """The front door: one object that answers for a machine, from its teeth to its load sharing."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cache, cached_property
 from importlib.resources import files
 from pathlib import Path
@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING, Any
 from facegear.config.cases import changed_config
 from facegear.config.load import load_config
 from facegear.config.model import Config, resolved
-from facegear.config.needs import stage_needs
 from facegear.errors import ConfigError, extras_named
+from facegear.results.chain import Chain
 from facegear.results.store import Store, case_folder
 
 if TYPE_CHECKING:
-    from facegear.contact.gear_flank import GearFlank
     from facegear.results.branch_loci import BranchLociResult
     from facegear.results.branches import BranchesResult
     from facegear.results.contact import ContactResult
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
     from facegear.results.stiffness import StiffnessResult
     from facegear.results.sweep import SweepResult
     from facegear.results.tolerances import TolerancesResult
-    from facegear.stages.outcome import Outcome
 
 
 def load(config: str | Path, results: str | Path | None = "results") -> "Gearbox":
@@ -103,14 +101,7 @@ class Gearbox:
         >>> facegear.example().geometry().summary.split(",")[0]
         'contact ratio 1.548'
         """
-        from facegear.results.geometry import GeometryResult
-
-        def compute() -> "Outcome":
-            from facegear.stages.geometry import geometry
-
-            return geometry(**self._needs("geometry"))
-
-        return self.store.result("geometry", self.values, GeometryResult, compute)
+        return self._chain.geometry()
 
     def contact(
         self, torques: float | Iterable[float] | None = None, positions: int | None = None
@@ -132,11 +123,7 @@ class Gearbox:
             changes["mesh_stiffness.torque_n_m"] = None  # need not lie within these
             if self.values["strength"] is not None:  # nor its duty cycle; the fillets keep their gauges
                 changes |= {"strength": None, "contact.root_stress": self.values["contact"]["root_stress"]}
-        gearbox = self._changed("contact", changes)
-
-        from facegear.results.contact import ContactResult
-
-        return gearbox.store.result("contact", gearbox.values, ContactResult, gearbox._contact)
+        return self._changed("contact", changes)._chain.contact()
 
     def root_stress(self) -> "RootStressResult":
         """Stress at the fillets of both gears over a tooth's passage, at the contact analysis' torques.
@@ -148,17 +135,7 @@ class Gearbox:
         >>> table["body"].unique().tolist()
         ['pinion', 'face_gear']
         """
-        gearbox = self._changed("root_stress", {"contact.root_stress": True})
-
-        from facegear.results.root_stress import RootStressResult
-
-        def compute() -> "Outcome":
-            from facegear.stages.root_stress import root_stress
-
-            pinion, face_gear = gearbox._compliance("pinion"), gearbox._compliance("face_gear")
-            return root_stress(pinion, face_gear, gearbox.contact().content["loads"])
-
-        return gearbox.store.result("root_stress", gearbox.values, RootStressResult, compute)
+        return self._changed("root_stress", {"contact.root_stress": True})._chain.root_stress()
 
     def rating(self) -> "RatingResult":
         """Safety and life of the pair under the duty cycle of section `strength`.
@@ -169,14 +146,7 @@ class Gearbox:
         >>> facegear.example().rating().table()["failure"].unique().tolist()
         ['bending', 'pitting']
         """
-        from facegear.results.rating import RatingResult
-
-        def compute() -> "Outcome":
-            from facegear.stages.rating import rating
-
-            return rating(self.root_stress().content["stress"], **self._needs("rating"))
-
-        return self.store.result("rating", self.values, RatingResult, compute)
+        return self._chain.rating()
 
     def dynamic_stress(self, speed_rpm: float | None = None) -> "DynamicStressResult":
         """Root stress of every mesh while the machine runs at a pinion speed, the config's unless given.
@@ -189,17 +159,7 @@ class Gearbox:
         True
         """
         changes = {"contact.root_stress": True, **_given({"dynamics.speed_rpm": speed_rpm})}
-        gearbox = self._changed("dynamic_stress", changes)
-
-        from facegear.results.dynamic_stress import DynamicStressResult
-
-        def compute() -> "Outcome":
-            from facegear.stages.dynamic_root_stress import dynamic_root_stress
-
-            response, stress = gearbox.response().content["response"], gearbox.root_stress().content["stress"]
-            return dynamic_root_stress(response, stress, **gearbox._needs("dynamic_root_stress"))
-
-        return gearbox.store.result("dynamic_root_stress", gearbox.values, DynamicStressResult, compute)
+        return self._changed("dynamic_stress", changes)._chain.dynamic_stress()
 
     def stiffness(self) -> "StiffnessResult":
         """k(t) of one mesh at the config's load, or from given harmonics.
@@ -210,9 +170,7 @@ class Gearbox:
         >>> facegear.example().stiffness().table()["b_n_per_m"].round(-3).to_list()[0]
         410000000.0
         """
-        from facegear.results.stiffness import StiffnessResult
-
-        return self.store.result("stiffness", self.values, StiffnessResult, self._stiffness)
+        return self._chain.stiffness()
 
     def modes(self) -> "ModesResult":
         """Natural frequencies, classes and shapes; needs neither mesh nor contact.
@@ -221,15 +179,7 @@ class Gearbox:
         >>> int((facegear.example().modes().table()["class"] == "rigid body").sum())
         6
         """
-        from facegear.results.modal import ModesResult
-
-        def compute() -> "Outcome":
-            from facegear.stages.modal import modal
-
-            given = self.values["mesh_stiffness"]["mean_n_per_m"] is not None
-            return modal(**self._needs("modal"), harmonics=None if given else self._harmonics())
-
-        return self.store.result("modal", self.values, ModesResult, compute)
+        return self._chain.modes()
 
     def response(self, speed_rpm: float | None = None) -> "ResponseResult":
         """Steady state at a pinion speed, the config's unless given.
@@ -240,16 +190,7 @@ class Gearbox:
         >>> facegear.example().response(1000).table()["class"].iloc[0]
         'period-1'
         """
-        from facegear.results.response import ResponseResult
-
-        gearbox = self._changed("response", _given({"dynamics.speed_rpm": speed_rpm}))
-
-        def compute() -> "Outcome":
-            from facegear.stages.dynamics_response import dynamics_response
-
-            return dynamics_response(gearbox._harmonics(), **gearbox._needs("dynamics_response"))
-
-        return gearbox.store.result("dynamics_response", gearbox.values, ResponseResult, compute)
+        return self._changed("response", _given({"dynamics.speed_rpm": speed_rpm}))._chain.response()
 
     def sweep(
         self,
@@ -273,14 +214,7 @@ class Gearbox:
         changes = _given({f"dynamics.sweep.{key}": value for key, value in given.items()})
         if points is not None and points < self.values["dynamics"]["sweep"]["chunks"]:
             changes["dynamics.sweep.chunks"] = 1
-        gearbox = self._changed("sweep", changes)
-
-        from facegear.results.sweep import SweepResult
-
-        found = gearbox.store.result(
-            "dynamics_sweep", gearbox.values, SweepResult, lambda: gearbox._sweep(threads)
-        )
-        return replace(found, content={**found.content, "frequencies": gearbox.modes().table()})
+        return self._changed("sweep", changes)._chain.sweep(threads)
 
     def branches(
         self,
@@ -303,7 +237,7 @@ class Gearbox:
         """
         explore = _given({"starts": starts})
         changes = _given({"from_rpm": from_rpm, "to_rpm": to_rpm, "longest_period": longest_period})
-        return self._with_branches({**changes, **({"explore": explore} if explore else {})})._branches()
+        return self._with_branches({**changes, **({"explore": explore} if explore else {})})._chain.branches()
 
     def branch_loci(
         self, parameters: Sequence[str] | None = None, nearest: int | None = None
@@ -315,11 +249,7 @@ class Gearbox:
         Raises ConfigErrors for values that the config would refuse.
         """
         loci = _given({"parameters": parameters, "nearest": nearest})
-        gearbox = self._with_branches({"loci": loci} if loci else {})
-
-        from facegear.results.branch_loci import BranchLociResult
-
-        return gearbox.store.result("branches_loci", gearbox.values, BranchLociResult, gearbox._loci)
+        return self._with_branches({"loci": loci} if loci else {})._chain.branch_loci()
 
     def load_sharing(self, speed_rpm: float | None = None) -> "LoadSharingResult":
         """Load-sharing coefficients at a pinion speed, the config's unless given, averaged as section
@@ -331,16 +261,7 @@ class Gearbox:
         >>> facegear.example().load_sharing().table()["group"].to_list()
         ['right input', 'left input', 'idlers']
         """
-        from facegear.results.load_sharing import LoadSharingResult
-
-        gearbox = self._changed("load_sharing", _given({"dynamics.speed_rpm": speed_rpm}))
-
-        def compute() -> "Outcome":
-            from facegear.stages.load_sharing import load_sharing
-
-            return load_sharing(gearbox._harmonics(), **gearbox._needs("load_sharing"))
-
-        return gearbox.store.result("load_sharing", gearbox.values, LoadSharingResult, compute)
+        return self._changed("load_sharing", _given({"dynamics.speed_rpm": speed_rpm}))._chain.load_sharing()
 
     def export(self, path: str | Path, body: str = "pinion", teeth: int | None = None) -> Path:
         """Write the exact teeth of a body, modifications included, as STEP or STL (mm), by the path's ending.
@@ -353,34 +274,17 @@ class Gearbox:
 
             return export(path, body, teeth, self.values["tooth_pair"])
 
-    def _with_branches(self, changes: Mapping[str, Any]) -> "Gearbox":
-        """A copy with a section `branches`, in which some values differ from the config's."""
-        section = self.values["branches"] or {}
-        inner = {
-            key: {**section.get(key, {}), **value} if isinstance(value, Mapping) else value
-            for key, value in changes.items()
-        }
-        return self._changed("branches", {"branches": {**section, **inner}})
-
-    def _branches(self) -> "BranchesResult":
-        from facegear.results.branches import BranchesResult
-
-        found = self.store.result("branches", self.values, BranchesResult, self._follow_branches)
-        return replace(found, content={**found.content, "sweep": self.sweep().content["sweep"]})
-
     def tolerances(self, samples: int | None = None) -> "TolerancesResult":
         """Percentiles, shares and Sobol indices of the machine with its tolerances, in one process.
 
         `samples`: as many instead of the config's, without Sobol indices. Raises ConfigErrors without a
         section `tolerances`.
         """
-        from facegear.results.tolerances import TolerancesResult
-
         changes = {} if samples is None else {"samples": samples, "chunk_samples": samples, "index_blocks": 0}
         if self.values["tolerances"] is None:
             raise ConfigError("tolerances", None, "a section of the config: causes and what is asked of them")
-        gearbox = self._changed("tolerances", {f"tolerances.{key}": value for key, value in changes.items()})
-        return gearbox.store.result("tolerances", gearbox.values, TolerancesResult, gearbox._tolerances)
+        given = {f"tolerances.{key}": value for key, value in changes.items()}
+        return self._changed("tolerances", given)._chain.tolerances()
 
     def __repr__(self) -> str:
         pair, machine = self.config.tooth_pair, self.config.transmission
@@ -390,6 +294,15 @@ class Gearbox:
             f"face gears {gears} x {pair.face_gear_teeth} teeth)"
         )
 
+    def _with_branches(self, changes: Mapping[str, Any]) -> "Gearbox":
+        """A copy with a section `branches`, in which some values differ from the config's."""
+        section = self.values["branches"] or {}
+        inner = {
+            key: {**section.get(key, {}), **value} if isinstance(value, Mapping) else value
+            for key, value in changes.items()
+        }
+        return self._changed("branches", {"branches": {**section, **inner}})
+
     def _changed(self, where: str, changes: Mapping[str, Any]) -> "Gearbox":
         if not changes:
             return self
@@ -397,110 +310,9 @@ class Gearbox:
         config = changed_config(self.config.model_dump(mode="json"), plain, where)
         return Gearbox(config, self.store)
 
-    def _needs(self, rule: str) -> dict[str, Any]:
-        return stage_needs(rule, self.values)
-
-    def _contact(self) -> "Outcome":
-        from facegear.stages.contact import contact
-
-        pinion, face_gear = self._compliance("pinion"), self._compliance("face_gear")
-        return contact(pinion, face_gear, **self._needs("contact"))
-
-    def _compliance(self, body: str) -> "GearFlank":
-        from facegear.contact.gear_flank import STORED, from_arrays
-        from facegear.io import arrays
-        from facegear.stages.compliance import compliance
-
-        return self.store.part(
-            "compliance",
-            body,
-            self.values,
-            f"compliance/{body}.npz",
-            lambda path: from_arrays(arrays.read(path, STORED)),
-            lambda: compliance(body, **self._needs("compliance")),
-        )
-
-    def _stiffness(self) -> "Outcome":
-        from facegear.stages.stiffness import stiffness
-
-        section = self.values["mesh_stiffness"]
-        given = section["source"] == "harmonics"
-        return stiffness(section, ltca=None if given else self.contact().content["ltca"])
-
-    def _tolerances(self) -> "Outcome":
-        from facegear.config.base import parse
-        from facegear.config.tolerances import Design, Tolerances, sizes
-        from facegear.stages.tolerances import tolerances
-        from facegear.stages.tolerances_chunk import tolerances_chunk
-
-        harmonics, needs = self._harmonics(), self._needs("tolerances_chunk")
-        section = parse(Tolerances, self.values["tolerances"])
-
-        def chunks(design: Design) -> list[Any]:
-            count = sizes(section, design)
-            found = [tolerances_chunk(design, 0, count - 1, harmonics, **needs)] if count else []
-            return [one.content["chunk"] for one in found]
-
-        return tolerances(chunks("samples"), chunks("indices"), **self._needs("tolerances"))
-
-    def _harmonics(self) -> Any:
-        return self.stiffness().content["harmonics"]
-
-    def _sweep(self, threads: int) -> "Outcome":
-        from facegear.stages.dynamics_sweep import dynamics_sweep
-
-        needs = self._needs("dynamics_sweep")
-        return dynamics_sweep(self._chunks(), self._harmonics(), **needs, threads=threads)
-
-    def _chunks(self) -> list[Any]:
-        """Arrays of the sweep's chunks, direction by direction."""
-        sweep = self.values["dynamics"]["sweep"]
-        return [self._chunk(name, n) for name in sweep["directions"] for n in range(sweep["chunks"])]
-
-    def _chunk(self, direction: str, number: int) -> Any:
-        from facegear.dynamics.sweeps.stored import SHAPES
-        from facegear.io import arrays
-        from facegear.stages.dynamics_sweep_chunk import dynamics_sweep_chunk
-
-        name, needs = f"{direction}_{number}", self._needs("dynamics_sweep_chunk")
-        return self.store.part(
-            "dynamics_sweep_chunk",
-            name,
-            self.values,
-            f"dynamics/chunks/{name}.npz",
-            lambda path: arrays.read(path, SHAPES),
-            lambda: dynamics_sweep_chunk(direction, number, self._harmonics(), **needs).content["chunk"],
-        )
-
-    def _follow_branches(self) -> "Outcome":
-        from facegear.stages.branches import branches
-
-        count = max(len(self.values["branches"]["explore"]["speeds_rpm"]), 1)
-        starts = [self._starts(number) for number in range(count)]
-        jumps = self.sweep().content["jumps"]
-        return branches(starts, self._chunks(), jumps, self._harmonics(), **self._needs("branches"))
-
-    def _starts(self, number: int) -> Any:
-        from facegear.dynamics.branches.stored import SHAPES
-        from facegear.io import arrays
-        from facegear.stages.branches_starts import branches_starts
-
-        return self.store.part(
-            "branches_starts",
-            str(number),
-            self.values,
-            f"branches/starts/{number}.npz",
-            lambda path: arrays.read(path, SHAPES),
-            lambda: branches_starts(number, self._harmonics(), **self._needs("branches_starts")).content[
-                "found"
-            ],
-        )
-
-    def _loci(self) -> "Outcome":
-        from facegear.stages.branches_loci import branches_loci
-
-        orbits = self._branches().content["orbits"]
-        return branches_loci(orbits, self._harmonics(), **self._needs("branches_loci"))
+    @cached_property
+    def _chain(self) -> Chain:
+        return Chain(self.values, self.store)
 
 
 def _given(changes: Mapping[str, Any]) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 import facegear
+from facegear.config.needs import stage_needs
 from facegear.config.tolerances import Tolerances, chunk_starts
 from facegear.errors import ConfigErrors, FacegearError
 from facegear.stages.tolerances import tolerances
@@ -45,7 +46,7 @@ def gearbox():
 
 def chunk(gearbox, first, last, design="samples", **others):
     harmonics = gearbox.stiffness().content["harmonics"]
-    needs = gearbox._needs("tolerances_chunk")
+    needs = stage_needs("tolerances_chunk", gearbox.values)
     return tolerances_chunk(design, first, last, harmonics, **needs, **others).content["chunk"]
 
 
@@ -147,7 +148,7 @@ def test_adding_samples_keeps_the_chunks_that_exist():
 
 
 def test_statistics_do_not_depend_on_how_the_samples_were_cut(gearbox):
-    needs = gearbox._needs("tolerances")
+    needs = stage_needs("tolerances", gearbox.values)
     one = tolerances([chunk(gearbox, 0, 15)], [], **needs)
     two = tolerances([chunk(gearbox, 0, 7), chunk(gearbox, 8, 15)], [], **needs)
     for name, table in one.content.items():
