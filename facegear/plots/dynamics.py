@@ -1,6 +1,6 @@
 """The figures of a speed sweep by name, from its tables alone."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,10 +12,10 @@ from facegear.plots.sweep import mesh_sweeps, translations
 
 @dataclass(frozen=True)
 class Machine:
-    """What the figures show of a machine: pinions (names), one of each role, sides of its gears, teeth."""
+    """What the figures show of a machine: pinions (names), those with a panel, sides of its gears, teeth."""
 
     pinions: tuple[str, ...]
-    typical: tuple[str, ...]
+    shown: tuple[str, ...]
     sides: tuple[str, ...]
     teeth: int
 
@@ -30,19 +30,21 @@ class Machine:
         return [f"{name}/{side}" for side in reversed(self.sides) for name in self.pinions]
 
 
-def drawn_machine(
-    pinions: Sequence[Mapping[str, Any]], face_gears: Sequence[str], pinion_teeth: int
-) -> Machine:
-    """From the plain values of the config's keys `pinions` and `face_gears`."""
-    names = [place["name"] for place in pinions]
+def drawn_machine(transmission: Mapping[str, Any], pinion_teeth: int) -> Machine:
+    """From the plain values of the config's section `transmission`.
+
+    Pinions of one role stand for each other, the first is shown; all are where parts differ singly.
+    """
+    pinions, gears = transmission["pinions"], transmission["face_gears"]
+    differ = any(transmission[key] for key in ("single_pinions", "single_meshes", "single_gears"))
     roles = [place["role"] for place in pinions]
-    typical = [name for i, name in enumerate(names) if roles[i] not in roles[:i]]
-    sides = [side for side in ("upper", "lower") if side in face_gears]
-    return Machine(tuple(names), tuple(typical), tuple(sides), pinion_teeth)
+    shown = [place["name"] for i, place in enumerate(pinions) if differ or roles[i] not in roles[:i]]
+    sides = [side for side in ("upper", "lower") if side in gears]
+    return Machine(tuple(place["name"] for place in pinions), tuple(shown), tuple(sides), pinion_teeth)
 
 
 def _waterfall(found: Mapping[str, Any], machine: Machine) -> Figure:
-    shown = f"{machine.typical[-1]}/{machine.sides[0]}"
+    shown = f"{machine.shown[-1]}/{machine.sides[0]}"
     return waterfall(found["waterfall"], machine.meshes.index(shown), shown, machine.teeth)
 
 
@@ -52,10 +54,10 @@ def _campbell(found: Mapping[str, Any], machine: Machine) -> Figure:
 
 
 SWEEP_FIGURES: dict[str, Callable[[Mapping[str, Any], Machine], Figure]] = {
-    "pinions": lambda found, machine: translations(found["sweep"], machine.typical, "xy"),
+    "pinions": lambda found, machine: translations(found["sweep"], machine.shown, "xy"),
     "gears": lambda found, machine: translations(found["sweep"], machine.gears, "xyz"),
     "meshes": lambda found, machine: mesh_sweeps(
-        found["sweep"], found["jumps"], machine.typical, machine.sides
+        found["sweep"], found["jumps"], machine.shown, machine.sides
     ),
     "campbell": _campbell,
     "waterfall": _waterfall,

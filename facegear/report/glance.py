@@ -51,13 +51,25 @@ def verdicts(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None)
     for row in _nominal(tables).itertuples():
         width = f" ± {row.half_width:.2f}" if row.half_width > 0.005 else ""
         yield f"load sharing, {row.group}", f"mean coefficient {row.mean:.3f}{width}, {row.motion}"
+    for row in tables.get("following_groups", pd.DataFrame()).itertuples():
+        yield (
+            f"K_gamma, {row.group}",
+            f"{row.k_gamma:.3f} at {row.speed_rpm:.0f} rpm, {row.k_gamma_static:.3f} at rest, over "
+            f"{row.mesh_cycles} mesh cycles while the runouts turn",
+        )
     if "jumps" in tables:
         speeds = tables["jumps"].groupby("direction")["speed_after_rpm"].unique()
-        told = [f"{len(at)} {name} ({at.min():.0f} to {at.max():.0f} rpm)" for name, at in speeds.items()]
+        told = [f"{len(at)} {name} ({_range(at.min(), at.max())} rpm)" for name, at in speeds.items()]
         yield "jumps in the sweep", ", ".join(told) or "none"
     if "scorecard" in tables:
         counted = tables["scorecard"][tables["scorecard"]["counted"]]["verdict"].value_counts(sort=False)
         yield "claims of the paper", ", ".join(f"{name} {rows}" for name, rows in counted.items())
+
+
+def _range(first: float, last: float) -> str:
+    """Both ends of a range, or the one number they are when rounded."""
+    ends = dict.fromkeys((f"{first:.0f}", f"{last:.0f}"))
+    return " to ".join(ends)
 
 
 def _pressure(row: Any) -> str:

@@ -16,6 +16,7 @@ VIEWER = Path(__file__).with_name("pair_view.js")
 SCREEN_DPI, PNG_DPI = 96, 160
 """Points an inch of a page, and of a stored png."""
 UNITS = {
+    "n_per_mm": "N/mm",
     "n_per_m": "N/m",
     "n_m": "N m",
     "rpm": "rpm",
@@ -29,6 +30,8 @@ UNITS = {
     "n": "N",
 }
 """Units that end a column's name, as they are written."""
+ROUNDING = 1e-9
+"""A number below this part of the largest one with its unit is zero but for rounding, and is written as 0."""
 
 
 @dataclass(frozen=True)
@@ -69,28 +72,36 @@ class Table:
 
     @staticmethod
     def _words(name: str) -> str:
-        for ending, unit in UNITS.items():
-            if f"_{ending} " in f"{name} ":
-                name = f"{name} ".replace(f"_{ending} ", f" ({unit}) ").strip()
-                break
-        return name.replace("_", " ")
+        ending = _unit(name)
+        return (
+            (f"{name} ".replace(f"_{ending} ", f" ({UNITS[ending]}) ") if ending else name)
+            .replace("_", " ")
+            .strip()
+        )
 
     def rows(self) -> list[list[str]]:
         """Cells as text."""
-        stiffness = [f"{name} ".find("_n_per_m ") >= 0 for name in self.frame.columns]
+        units = [_unit(str(name)) for name in self.frame.columns]
+        zero = [ROUNDING * self._largest(unit, units) for unit in units]
         return [
-            [self._cell(value, power) for value, power in zip(row, stiffness, strict=True)]
+            [self._cell(*cell) for cell in zip(row, units, zero, strict=True)]
             for row in self.frame.itertuples(index=False)
         ]
 
-    def _cell(self, value: object, power: bool) -> str:
-        """A cell; stiffnesses (N/m) all with a power of ten, so that they can be read down a column."""
-        if isinstance(value, float):
-            return "" if value != value else scientific(value, self.digits) if power else self._plain(value)
-        return str(value)
+    def _largest(self, unit: str, units: Sequence[str]) -> float:
+        """The largest number of all columns with a unit; nothing for numbers without one."""
+        columns = [self.frame.iloc[:, i] for i, other in enumerate(units) if unit and other == unit]
+        numbers = [column.abs().max() for column in columns if pd.api.types.is_float_dtype(column)]
+        return max((float(number) for number in numbers if number == number), default=0.0)
 
-    def _plain(self, value: float) -> str:
-        return f"{value:.{self.digits}g}"
+    def _cell(self, value: object, unit: str, zero: float) -> str:
+        """A cell; stiffnesses (N/m) all with a power of ten, so that they can be read down a column."""
+        if not isinstance(value, float):
+            return str(value)
+        if value != value:
+            return ""
+        number = 0.0 if abs(value) < zero else value
+        return scientific(number, self.digits) if unit == "n_per_m" else f"{number:.{self.digits}g}"
 
 
 @dataclass(frozen=True)
@@ -121,6 +132,11 @@ def render(title: str, lead: str, chapters: Sequence[Chapter]) -> str:
     """The page as HTML text that needs no other file."""
     viewer = VIEWER.read_text(encoding="utf-8") if any(chapter.view for chapter in chapters) else ""
     return pages.render(TEMPLATE, title=title, lead=lead, chapters=chapters, viewer=viewer)
+
+
+def _unit(name: str) -> str:
+    """The unit in a column's name, a key of UNITS; nothing where it has none."""
+    return next((ending for ending in UNITS if f"_{ending} " in f"{name} "), "")
 
 
 def scientific(value: float, digits: int) -> str:

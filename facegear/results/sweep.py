@@ -48,5 +48,5 @@ class SweepResult(Result):
         from facegear.plots.dynamics import SWEEP_FIGURES, drawn_machine
 
         draw = SWEEP_FIGURES[chosen(what, tuple(SWEEP_FIGURES), "plot")]
-        machine, teeth = self.values["transmission"], self.values["tooth_pair"]["pinion_teeth"]
-        return draw(self.content, drawn_machine(machine["pinions"], machine["face_gears"], teeth))
+        teeth = self.values["tooth_pair"]["pinion_teeth"]
+        return draw(self.content, drawn_machine(self.values["transmission"], teeth))

@@ -77,9 +77,8 @@ rule dynamics_figures:
         manifest="results/{case}/figures/dynamics_figures.provenance.json",
     params:
         **values_of(
+            "transmission",
             pinion_teeth="tooth_pair.pinion_teeth",
-            pinions="transmission.pinions",
-            gears="transmission.face_gears",
             speed_rpm="dynamics.speed_rpm",
         ),
     script:

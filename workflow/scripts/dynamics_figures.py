@@ -8,7 +8,7 @@ from facegear.provenance.stage import stage
 
 with stage(snakemake) as run:
     params, given = snakemake.params, snakemake.input
-    machine = drawn_machine(params.pinions, params.gears, params.pinion_teeth)
+    machine = drawn_machine(params.transmission, params.pinion_teeth)
     response = tables.read(given.response, ["mesh_cycle", "mesh", "deflection_um"])
     spectrum = tables.read(given.spectrum, ["mesh", "order", "amplitude_um"])
     found = {

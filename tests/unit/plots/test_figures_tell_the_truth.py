@@ -9,6 +9,7 @@ from matplotlib.text import Text
 
 from facegear.contact.columns import LTCA_COLUMNS, SHARES
 from facegear.plots.contact import closed, contact_pattern
+from facegear.plots.dynamics import drawn_machine
 from facegear.plots.load_sharing import sharing_figure
 from facegear.plots.modal import amplitudes, mode_shapes, typical_modes
 from facegear.plots.response import deflections
@@ -131,3 +132,17 @@ def test_the_drawing_of_a_fine_contact_pattern_stays_small(tmp_path):
     arrays = {"point_m": points.reshape(-1, 3)} | line_arrays(points, [100.0], pressure)
     save(contact_pattern(arrays), tmp_path / "pattern.svg")
     assert (tmp_path / "pattern.svg").stat().st_size < 300_000
+
+
+@pytest.mark.parametrize(
+    ("singled", "shown"),
+    [({}, ("tail", "right")), ({"left": {"position_um": {"x": 5.0}}}, ("tail", "right", "left"))],
+)
+def test_every_pinion_has_a_panel_where_parts_differ_singly(singled, shown):
+    pinions = [
+        {"name": name, "role": role}
+        for name, role in (("tail", "tail"), ("right", "input"), ("left", "input"))
+    ]
+    singles = {"single_pinions": singled, "single_meshes": {}, "single_gears": {}}
+    drawn = drawn_machine({"pinions": pinions, "face_gears": ["lower", "upper"], **singles}, 23)
+    assert drawn.shown == shown

@@ -94,3 +94,15 @@ def test_the_first_screen_warns_of_what_the_results_hide(example):
         row for row in warnings(values, {**tables, "by_torque": quiet}, pair) if row[0] != "mesh stiffness"
     ]
     assert next(verdicts(found, pair))[1].startswith("free; smallest gap beside the contact 7.8 um")
+
+
+def test_the_first_screen_names_k_gamma_of_the_running_machine_beside_that_at_rest():
+    row = {
+        "group": "idlers",
+        "k_gamma": 1.4164,
+        "k_gamma_static": 1.2685,
+        "speed_rpm": 7500.0,
+        "mesh_cycles": 99,
+    }
+    told = dict(verdicts({"following_groups": pd.DataFrame([row])}, None))
+    assert told["K_gamma, idlers"].startswith("1.416 at 7500 rpm, 1.269 at rest, over 99 mesh cycles")

@@ -31,11 +31,14 @@ def test_text_is_escaped_and_missing_numbers_are_blank(tmp_path):
 
 
 def test_units_in_column_names_are_written_out():
-    frame = pd.DataFrame(columns=["torque_n_m", "k_average_n_per_m mean", "speed_before_rpm", "motion"])
+    frame = pd.DataFrame(
+        columns=["torque_n_m", "k_average_n_per_m mean", "speed_before_rpm", "line_load_n_per_mm", "motion"]
+    )
     assert Table("T", frame).header() == [
         "torque (N m)",
         "k average (N/m) mean",
         "speed before (rpm)",
+        "line load (N/mm)",
         "motion",
     ]
 
@@ -67,3 +70,8 @@ def test_text_of_pictures_keeps_its_size_on_a_telephone(tmp_path):
         text = render("Case", "Lead", [Chapter("C", "", (Picture(path, "P"),))])
         assert f'width="{round(points * 4 / 3)}"' in text
         assert ("class=narrow" in text) == narrow
+
+
+def test_rounding_is_written_as_zero_and_small_numbers_of_their_own_unit_are_kept():
+    frame = pd.DataFrame({"mean_n": [3.3e-12, 2.1e4], "rms_n": [10.2, 0.5], "energy_share": [1e-12, 0.1]})
+    assert Table("T", frame).rows() == [["0", "10.2", "1e-12"], ["21000", "0.5", "0.1"]]
