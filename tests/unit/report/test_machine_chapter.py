@@ -100,9 +100,9 @@ def test_the_first_screen_names_k_gamma_of_the_running_machine_beside_that_at_re
     row = {
         "group": "idlers",
         "k_gamma": 1.4164,
-        "k_gamma_static": 1.2685,
+        "k_gamma_static": 1.2684,
         "speed_rpm": 7500.0,
         "mesh_cycles": 99,
     }
     told = dict(verdicts({"following_groups": pd.DataFrame([row])}, None))
-    assert told["K_gamma, idlers"].startswith("1.416 at 7500 rpm, 1.269 at rest, over 99 mesh cycles")
+    assert told["K_gamma, idlers"].startswith("1.416 at 7500 rpm, 1.268 at rest, over 99 mesh cycles")
