@@ -7,6 +7,10 @@ from typing import Any
 
 from numba import njit
 from numba.core.caching import FunctionCache
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
+from numba.core.compiler_machinery import register_pass
+from numba.core.typed_passes import NativeLowering
 
 
 def text_of(sources: Path) -> str:
@@ -41,3 +45,63 @@ def compiler(sources: Path, **options: Any) -> Callable[[Callable[..., Any]], An
         return dispatcher
 
     return compiled
+
+
+class _CodeForCallers(JITCodeLibrary):
+    """LLVM code that waits, as it was written, to be linked into what calls it."""
+
+    def _optimize_final_module(self) -> None:
+        pass
+
+    def _finalize_final_module(self) -> None:
+        self._finalized = True
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _LowerForCallers(NativeLowering):
+    _name = "lower_for_callers"
+
+    def run_pass(self, state: Any) -> bool:
+        flags = state.flags
+        flags.no_compile = flags.no_cpython_wrapper = flags.no_cfunc_wrapper = True
+        state.library = _CodeForCallers(state.targetctx.codegen(), state.func_id.func_qualname)
+        super().run_pass(state)
+        lowered = state["cr"]
+
+        def entry(*arguments: Any) -> None:
+            raise TypeError(f"{lowered.fndesc.qualname} is only for compiled callers")
+
+        state.targetctx.insert_user_function(entry, lowered.fndesc, [state.library])
+        state["cr"] = lowered._replace(cfunc=entry)
+        return True
+
+
+class _ForCallers(Compiler):
+    def define_pipelines(self) -> list[Any]:
+        pipelines = super().define_pipelines()
+        for pipeline in pipelines:
+            pipeline.passes = [
+                (_LowerForCallers, told) if step is NativeLowering else (step, told)
+                for step, told in pipeline.passes
+            ]
+            pipeline.finalize()
+        return pipelines
+
+
+def for_callers(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Decorator for functions that are inlined into compiled callers and have no machine code of their own.
+
+    Numba optimises and compiles every function that another one calls, with all that it calls in turn, and
+    so a function at depth d of a tree d times; here only the root is. Python cannot call such a function.
+    """
+
+    def typed(function: Callable[..., Any]) -> Any:
+        dispatcher = njit(forceinline=True, pipeline_class=_ForCallers, **options)(function)
+
+        def add_overload(found: Any) -> None:
+            dispatcher.overloads[tuple(found.signature.args)] = found
+
+        dispatcher.add_overload = add_overload
+        return dispatcher
+
+    return typed

@@ -61,7 +61,7 @@ def follow(
 
     The lead is doubled until two starts agree, up to MOST_LEAD cycles. Raises NotConverged if a step fails.
     """
-    prepare()
+    prepare(model.system.ring_play.size > 0)
     settings = settings or Settings()
     frequency = TAU * mesh_frequency(model.machine.layout, speed_rpm)
     packed = pack(model.system, frequency)

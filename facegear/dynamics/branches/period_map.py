@@ -60,7 +60,8 @@ class PeriodMap:
 
     def work(self, packed: Packed) -> Work:
         """Scratch space, kept for systems of one shape."""
-        key = (*packed.mesh_jacobian.shape, len(packed.stiffness), len(packed.error), len(packed.load))
+        series = (len(packed.stiffness), len(packed.error), len(packed.load))
+        key = (*packed.mesh_jacobian.shape, packed.contacts, *series)
         if key not in self.memory:
             self.memory[key] = make_work(packed, Settings(tolerance=self.tolerance).taylor_order)
         return cast(Work, self.memory[key])
@@ -118,7 +119,7 @@ class PeriodMap:
         contact = (log.shares[1:, : packed.m].sum(axis=0) > 0.0) | (
             packed.lower[: packed.m] >= packed.upper[: packed.m]
         )
-        for x in range(packed.m - ROWS * packed.rings, packed.m, ROWS):
+        for x in range(packed.contacts, packed.m, ROWS):
             contact[x : x + 2] = contact[x + 2]
         return Linear(
             gap=gap,

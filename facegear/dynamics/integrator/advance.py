@@ -52,12 +52,11 @@ def advance(
         work.y[0, k] = displacement[k]
         work.y[1, k] = velocity[k]
     excitation(packed, work, s, piece, work.order + 1)
-    deflect(packed, work.y, 0, work.error, work.deflection)
-    deflect(packed, work.y, 1, work.error, work.deflection)
     for m in range(packed.m):
         work.active[m] = 0.0
-    ring_row(packed, work, 0)
-    ring_row(packed, work, 1)
+    for row in range(2):
+        deflect(packed, work.y, row, work.error, work.deflection)
+        ring_row(packed.rings, work.rings, work, row)
     _find_state(packed, work)
     for _ in range(MOST_GUESSES):
         recurrence(packed, work, work.error, work.load, work.y, work.deflection, False)
@@ -90,23 +89,22 @@ def _find_state(packed: Packed, work: Work) -> None:
         work.at_edge[m] = 0
         work.edge[m] = 0.0
         lower, upper = packed.lower[m], packed.upper[m]
-        if lower >= upper:
-            set_state(packed, work, m, DRIVE)
-            continue
         deflection, rate = work.deflection[0, m], work.deflection[1, m]
         margin = EDGE * packed.scale + BRIEFEST * abs(rate)
-        if abs(deflection - upper) <= margin:
+        state = OPEN
+        if lower >= upper:
+            state = DRIVE
+        elif abs(deflection - upper) <= margin:
             work.at_edge[m] = 1
-            set_state(packed, work, m, DRIVE if rate > 0.0 else OPEN)
+            state = DRIVE if rate > 0.0 else OPEN
         elif abs(deflection - lower) <= margin:
             work.at_edge[m] = -1
-            set_state(packed, work, m, BACK if rate < 0.0 else OPEN)
+            state = BACK if rate < 0.0 else OPEN
         elif deflection > upper:
-            set_state(packed, work, m, DRIVE)
+            state = DRIVE
         elif deflection < lower:
-            set_state(packed, work, m, BACK)
-        else:
-            set_state(packed, work, m, OPEN)
+            state = BACK
+        set_state(packed, work, m, state)
 
 
 @inlined

@@ -14,6 +14,18 @@ TAU = 2.0 * np.pi
 LEAST_CLEARANCE = 1e-12
 
 
+class Rings(NamedTuple):
+    """Bearings with play: their number R, the first of their 3 R rows among the meshes, stiffness over w^2
+    and play, padded; lag: w times damping over stiffness.
+    """
+
+    number: int
+    first: int
+    stiffness: Array
+    play: Array
+    lag: float
+
+
 class Packed(NamedTuple):
     """Arrays padded to whole SIMD lanes; padded meshes and coordinates are zero and stay at rest.
 
@@ -23,8 +35,9 @@ class Packed(NamedTuple):
     from one of `breaks` (rad) to the next; stiffness and error have one column for each of the kinds that
     stiffness_kind and error_kind (m,) name. drift (terms, m): polynomial in s added to the error of this
     period, or none. leverage (m,): sum of squares of a row of mesh_jacobian. pairs: meshes whose two flanks
-    stand at j and j + pairs; 0 where every mesh stands for itself. rings: their number R, in the last 3 R
-    rows of the m; ring_stiffness over w^2, ring_play, padded; ring_lag: w times their damping.
+    stand at j and j + pairs; 0 where every mesh stands for itself. contacts: rows of the m that are meshes or
+    flanks; the others belong to the rings of bearings with play. Without any, `rings` is None, and the
+    kernels are compiled without them: another type is another machine code.
     """
 
     n: int
@@ -50,10 +63,8 @@ class Packed(NamedTuple):
     damping_when_open: bool
     pairs: int
     scale: float
-    rings: int
-    ring_stiffness: Array
-    ring_play: Array
-    ring_lag: float
+    contacts: int
+    rings: Rings | None
 
 
 def pack(system: System, frequency: float) -> Packed:
@@ -91,10 +102,21 @@ def pack(system: System, frequency: float) -> Packed:
         damping_when_open=system.damping_when_open,
         pairs=system.pairs,
         scale=system.scale,
-        rings=system.ring_play.size,
-        ring_stiffness=_padded(system.ring_stiffness, _whole(system.ring_play.size)) / frequency**2,
-        ring_play=_padded(system.ring_play, _whole(system.ring_play.size)),
-        ring_lag=system.ring_lag * frequency,
+        contacts=system.contacts,
+        rings=_rings(system, frequency),
+    )
+
+
+def _rings(system: System, frequency: float) -> Rings | None:
+    count = system.ring_play.size
+    if count == 0:
+        return None
+    return Rings(
+        number=count,
+        first=system.contacts,
+        stiffness=_padded(system.ring_stiffness, _whole(count)) / frequency**2,
+        play=_padded(system.ring_play, _whole(count)),
+        lag=system.ring_lag * frequency,
     )
 
 

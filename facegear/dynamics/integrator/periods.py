@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from facegear.dynamics.integrator.advance import advance, after, move
 from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.kernel import inlined, kernel
-from facegear.dynamics.integrator.rings import ROWS, ring_slopes, ring_trace, switch_ring
+from facegear.dynamics.integrator.rings import ring_slopes, ring_switches, ring_trace
 from facegear.dynamics.integrator.sums import Sums, add_step, make_sums, start_sums
 from facegear.dynamics.integrator.taylor import deflect, evaluate, recurrence
 from facegear.dynamics.integrator.work import Work
@@ -86,11 +86,12 @@ def run_periods(
                     _switch_tangents(packed, work, acting, tangents)
                 for m in range(acting.size):
                     acting[m] = work.acting[m]
-                for m in range(packed.m - ROWS * packed.rings, packed.m):
+                for m in range(packed.contacts, packed.m):
                     acting[m] = work.active[m]
-                ring_slopes(packed, work)
+                ring_slopes(packed.rings, work.rings, work.order)
                 _move_tangents(packed, work, length, tangents)
-                log.divergence[0] -= length * _trace(packed, work) + ring_trace(packed, work, length)
+                of_rings = ring_trace(packed.rings, work.rings, packed, work, length)
+                log.divergence[0] -= length * _trace(packed, work) + of_rings
             if batches > 0:
                 if first:
                     start_sums(packed, work, log.sums)
@@ -164,12 +165,8 @@ def _switch_tangents(packed: Packed, work: Work, acting: Array, tangents: Array)
 
     Stiffness alone gives none, since the force is continuous at the edge.
     """
-    contacts = packed.m - ROWS * packed.rings
-    for r in range(packed.rings):
-        m = contacts + ROWS * r + 2
-        if acting[m] != work.active[m]:
-            switch_ring(packed, work, r, work.active[m] - acting[m], tangents)
-    for m in range(contacts):
+    ring_switches(packed.rings, packed, work, acting, tangents)
+    for m in range(packed.contacts):
         jump = acting[m] - work.acting[m]
         if jump == 0.0:
             continue
@@ -189,8 +186,8 @@ def _move_tangents(packed: Packed, work: Work, length: float, tangents: Array) -
         for k in range(n):
             work.tangent[0, k] = tangents[column, 0, k]
             work.tangent[1, k] = tangents[column, 1, k]
-        deflect(packed, work.tangent, 0, work.zero_error, work.tangent_deflection)
-        deflect(packed, work.tangent, 1, work.zero_error, work.tangent_deflection)
+        for row in range(2):
+            deflect(packed, work.tangent, row, work.zero_error, work.tangent_deflection)
         tangent = work.tangent_deflection
         recurrence(packed, work, work.zero_error, work.zero_load, work.tangent, tangent, True)
         evaluate(work.tangent, work.order, length, tangents[column, 0], tangents[column, 1])

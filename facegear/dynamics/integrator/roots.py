@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.integrator.kernel import kernel
+from facegear.dynamics.integrator.kernel import inlined, kernel
 
 Array = NDArray[np.float64]
 MAX_DEPTH = 48
@@ -74,7 +74,7 @@ def first_root(coefficients: Array, degree: int, conversion: Array, work: Array)
         _restart(coefficients, degree, conversion, left, width, work, depth)
 
 
-@kernel
+@inlined
 def _next(left: float, width: float, depth: int) -> tuple[int, float]:
     """Depth and width of the largest dyadic interval that starts at `left` within [0, 1]; -1 at the end."""
     if left >= 1.0:
@@ -85,7 +85,7 @@ def _next(left: float, width: float, depth: int) -> tuple[int, float]:
     return depth, width
 
 
-@kernel
+@inlined
 def _halve(work: Array, depth: int, degree: int) -> None:
     """Bernstein coefficients of the left half, from row `depth` into row `depth + 1` (de Casteljau)."""
     for i in range(degree + 1):
@@ -95,7 +95,7 @@ def _halve(work: Array, depth: int, degree: int) -> None:
             work[depth + 1, i] = 0.5 * (work[depth + 1, i] + work[depth + 1, i - 1])
 
 
-@kernel
+@inlined
 def _restart(
     coefficients: Array, degree: int, conversion: Array, left: float, width: float, work: Array, depth: int
 ) -> None:

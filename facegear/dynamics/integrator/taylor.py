@@ -82,8 +82,8 @@ def recurrence(
     n, wide = packed.mesh_jacobian.shape
     force, stiffness = work.force, work.stiffness
     minus = splat(-1.0)
-    _ring(packed, work, 0, deflection, tangent)
-    _ring(packed, work, 1, deflection, tangent)
+    for i in range(2):
+        _ring(packed, work, i, deflection, tangent)
     for i in range(work.order - 1):
         rate = splat(float(i + 1))
         # Forces push back; they carry the factor of the next coefficient already.
@@ -99,7 +99,7 @@ def recurrence(
             damping = multiply(load(work.acting, c), rate)
             total = multiply_add(damping, load(deflection, (i + 1) * wide + c), total)
             store(force, c, multiply(pushed, total))
-        ring_push(packed, work, i, force, -1.0 / ((i + 1) * (i + 2)))
+        ring_push(packed.rings, work.rings, work.active, i, force, -1.0 / ((i + 1) * (i + 2)))
         factor = splat(1.0 / ((i + 1) * (i + 2)))
         for c in range(0, n, LANES):
             total = multiply(load(packed.damping, c), multiply(rate, load(y, (i + 1) * n + c)))
@@ -114,9 +114,9 @@ def recurrence(
 @inlined
 def _ring(packed: Packed, work: Work, i: int, deflection: Array, tangent: bool) -> None:
     if tangent:
-        ring_tangent_row(packed, work, i, deflection)
+        ring_tangent_row(packed.rings, work.rings, deflection, i)
     else:
-        ring_row(packed, work, i)
+        ring_row(packed.rings, work.rings, work, i)
 
 
 @inlined

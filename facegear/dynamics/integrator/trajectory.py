@@ -7,13 +7,27 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.advance import advance, after, move
 from facegear.dynamics.integrator.compiled import TAU, Packed, pack
+from facegear.dynamics.integrator.kernel import kernel
 from facegear.dynamics.integrator.system import System
-from facegear.dynamics.integrator.work import make_work
+from facegear.dynamics.integrator.work import Work, make_work
 from facegear.dynamics.motion import Settings, State
 from facegear.errors import NotConverged
 
 Array = NDArray[np.float64]
 MOST_STEPS = 200_000
+
+
+@kernel
+def step(
+    packed: Packed, work: Work, s: float, stop: float, displacement: Array, velocity: Array, tolerance: float
+) -> tuple[float, float]:
+    """Make one step from s: displacement and velocity (n,) are moved, work holds its polynomials.
+
+    Returns its length and the phase at its end.
+    """
+    length = advance(packed, work, s, stop, displacement, velocity, tolerance)
+    move(work, length, displacement, velocity)
+    return length, after(s, length)
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,16 +84,14 @@ def record(
     for period in range(periods):
         s = 0.0
         while s < TAU:
-            length = advance(packed, work, s, TAU, displacement, velocity, settings.tolerance)
             starts.append(period * TAU + s)
+            length, s = step(packed, work, s, TAU, displacement, velocity, settings.tolerance)
             lengths.append(length)
             coordinates.append(work.y[:, : packed.n].copy())
             polynomial = work.deflection[:, : packed.m].copy()
             polynomial[0] += work.edge[: packed.m]
             deflections.append(polynomial)
             states.append(work.state[: packed.m].copy())
-            move(work, length, displacement, velocity)
-            s = after(s, length)
             if len(starts) > MOST_STEPS or not np.isfinite(length):
                 raise NotConverged("dynamics", f"mesh phase {s:.6g} rad", f"{len(starts)} steps")
     return Trajectory(

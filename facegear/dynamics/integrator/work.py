@@ -13,15 +13,35 @@ from facegear.dynamics.integrator.roots import MAX_DEPTH, bernstein_matrix
 Array = NDArray[np.float64]
 
 
+class RingSeries(NamedTuple):
+    """Series of the bearings with play, (rows, rings): place, its tangent, r^2 and its powers, forces, their
+    slopes; reciprocal (rings,) of r^2 where a ring presses, else 0.
+    """
+
+    x: Array
+    y: Array
+    dx: Array
+    dy: Array
+    square: Array
+    reciprocal: Array
+    inverse: Array
+    cube: Array
+    force_x: Array
+    force_y: Array
+    product: Array
+    slope_xx: Array
+    slope_xy: Array
+    slope_yy: Array
+
+
 class Work(NamedTuple):
     """Scratch space for one thread and one order p: coefficient tables have one row for each power of s.
 
     edge, active, acting, state, at_edge describe the contact of each mesh during the step. powers (rows,
     harmonics) holds the Taylor coefficients of cos(j s) (even rows) and sin(j s) (odd rows) at 0; parts and
     kinds are used by Fourier series. bernstein holds the deflections' Bernstein coefficients over the step,
-    least and most their bounds. nodes: of the rule that integrates products of polynomials. ring_x to
-    ring_slope_yy: series of the bearings with play, place, tangent, r^2 and its powers, forces, their slopes.
-    Tables that hang on sizes alone (powers, conversion, nodes) are shared and only read.
+    least and most their bounds. nodes: of the rule that integrates products of polynomials. rings: None
+    without play. Tables that hang on sizes alone (powers, conversion, nodes) are shared and only read.
     """
 
     order: int
@@ -55,20 +75,7 @@ class Work(NamedTuple):
     least: Array
     most: Array
     nodes: Array
-    ring_x: Array
-    ring_y: Array
-    ring_dx: Array
-    ring_dy: Array
-    ring_square: Array
-    ring_reciprocal: Array
-    ring_inverse: Array
-    ring_cube: Array
-    ring_force_x: Array
-    ring_force_y: Array
-    ring_product: Array
-    ring_slope_xx: Array
-    ring_slope_xy: Array
-    ring_slope_yy: Array
+    rings: RingSeries | None
 
 
 def make_work(packed: Packed, order: int) -> Work:
@@ -76,7 +83,6 @@ def make_work(packed: Packed, order: int) -> Work:
     n, m = packed.mesh_jacobian.shape
     rows = order + 1
     harmonics = max(len(packed.stiffness), len(packed.error), len(packed.load))
-    rings = packed.ring_play.size
     widest = max(packed.stiffness.shape[2], packed.error.shape[2])
     return Work(
         order=order,
@@ -110,21 +116,13 @@ def make_work(packed: Packed, order: int) -> Work:
         least=np.zeros(m),
         most=np.zeros(m),
         nodes=_gauss(order // 4 + 1),
-        ring_x=np.zeros((rows, rings)),
-        ring_y=np.zeros((rows, rings)),
-        ring_dx=np.zeros((rows, rings)),
-        ring_dy=np.zeros((rows, rings)),
-        ring_square=np.zeros((rows, rings)),
-        ring_reciprocal=np.zeros(rings),
-        ring_inverse=np.zeros((rows, rings)),
-        ring_cube=np.zeros((rows, rings)),
-        ring_force_x=np.zeros((rows, rings)),
-        ring_force_y=np.zeros((rows, rings)),
-        ring_product=np.zeros((rows, rings)),
-        ring_slope_xx=np.zeros((rows, rings)),
-        ring_slope_xy=np.zeros((rows, rings)),
-        ring_slope_yy=np.zeros((rows, rings)),
+        rings=_ring_series(rows, packed.rings.play.size) if packed.rings else None,
     )
+
+
+def _ring_series(rows: int, wide: int) -> RingSeries:
+    tables = {name: np.zeros((rows, wide)) for name in RingSeries._fields}
+    return RingSeries(**{**tables, "reciprocal": np.zeros(wide)})
 
 
 @cache

@@ -148,7 +148,7 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
     A run that shows no sign of closing while it is watched gets its largest exponent on the window that it is
     measured on, which is also a second watch. Where the two do not agree it is watched for longer.
     """
-    prepare()
+    prepare(system.ring_play.size > 0)
     packed = pack(system, frequency)
     work = make_work(packed, settings.taylor_order)
     state, ends = by_phase(packed, start, frequency), None

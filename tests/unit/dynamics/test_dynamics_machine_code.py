@@ -4,11 +4,19 @@ import os
 import subprocess
 import sys
 
-CALLED = "from own import kernel\n\n@kernel\ndef called(x):\n    return x + {added}\n"
+import pytest
+
+from facegear.machine_code import for_callers
+
+CALLED = (
+    "from own import inlined, kernel\n\n"
+    "@inlined\ndef within(x):\n    return x + {added}\n\n"
+    "@kernel\ndef called(x):\n    return within(x)\n"
+)
 FILES = {
     "own.py": (
-        "from pathlib import Path\nfrom facegear.machine_code import compiler\n"
-        "kernel = compiler(Path(__file__).parent)\n"
+        "from pathlib import Path\nfrom facegear.machine_code import compiler, for_callers\n"
+        "kernel = compiler(Path(__file__).parent)\ninlined = for_callers()\n"
     ),
     "called.py": CALLED.format(added=1.0),
     "caller.py": (
@@ -35,6 +43,14 @@ def test_a_kernel_sees_a_change_of_the_kernel_it_calls_in_another_file(tmp_path)
     assert run() == ["4.0", "1"]
     (tmp_path / "called.py").write_text(CALLED.format(added=2.0))
     assert run() == ["6.0", "0"]
+
+
+def test_a_function_for_compiled_callers_says_so_when_python_calls_it():
+    def twice(x):
+        return 2.0 * x
+
+    with pytest.raises(TypeError, match=r"twice is only for compiled callers"):
+        for_callers()(twice)(1.0)
 
 
 def test_importing_the_kernels_leaves_numba_as_it_was():
