@@ -33,12 +33,12 @@ class Machine:
 def drawn_machine(transmission: Mapping[str, Any], pinion_teeth: int) -> Machine:
     """From the plain values of the config's section `transmission`.
 
-    Pinions of one role stand for each other, the first is shown; all are where parts differ singly.
+    Pinions of one role and torque stand for each other, the first is shown; all are where parts differ singly.
     """
     pinions, gears = transmission["pinions"], transmission["face_gears"]
     differ = any(transmission[key] for key in ("single_pinions", "single_meshes", "single_gears"))
-    roles = [place["role"] for place in pinions]
-    shown = [place["name"] for i, place in enumerate(pinions) if differ or roles[i] not in roles[:i]]
+    kinds = [(place["role"], place["torque_n_m"]) for place in pinions]
+    shown = [place["name"] for i, place in enumerate(pinions) if differ or kinds[i] not in kinds[:i]]
     sides = [side for side in ("upper", "lower") if side in gears]
     return Machine(tuple(place["name"] for place in pinions), tuple(shown), tuple(sides), pinion_teeth)
 

@@ -135,14 +135,16 @@ def test_the_drawing_of_a_fine_contact_pattern_stays_small(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("singled", "shown"),
-    [({}, ("tail", "right")), ({"left": {"position_um": {"x": 5.0}}}, ("tail", "right", "left"))],
+    ("singled", "torque", "shown"),
+    [
+        ({}, None, ("tail", "right")),
+        ({"left": {"position_um": {"x": 5.0}}}, None, ("tail", "right", "left")),
+        ({}, 500.0, ("tail", "right", "left")),
+    ],
 )
-def test_every_pinion_has_a_panel_where_parts_differ_singly(singled, shown):
-    pinions = [
-        {"name": name, "role": role}
-        for name, role in (("tail", "tail"), ("right", "input"), ("left", "input"))
-    ]
+def test_every_pinion_has_a_panel_where_parts_or_torques_differ(singled, torque, shown):
+    roles = (("tail", "tail", None), ("right", "input", None), ("left", "input", torque))
+    pinions = [{"name": name, "role": role, "torque_n_m": own} for name, role, own in roles]
     singles = {"single_pinions": singled, "single_meshes": {}, "single_gears": {}}
     drawn = drawn_machine({"pinions": pinions, "face_gears": ["lower", "upper"], **singles}, 23)
     assert drawn.shown == shown
