@@ -33,7 +33,7 @@ class Machine:
 def drawn_machine(transmission: Mapping[str, Any], pinion_teeth: int) -> Machine:
     """From the plain values of the config's section `transmission`.
 
-    Pinions of one role and torque stand for each other, the first is shown; all are where parts differ singly.
+    Pinions of one role and torque stand for each other, the first is shown; where parts differ singly, all.
     """
     pinions, gears = transmission["pinions"], transmission["face_gears"]
     differ = any(transmission[key] for key in ("single_pinions", "single_meshes", "single_gears"))
