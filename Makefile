@@ -38,7 +38,8 @@ lint: env
 docs: env
 	$(BIN)/sphinx-build --jobs $(CORES) --fail-on-warning --keep-going --quiet docs docs/build
 
-# What CI runs: a complaint of lint or docs stops it before the tests.
+# What CI runs: a complaint of lint or docs stops it before the tests. Here a study is also run on a Slurm of its own.
+ci: export FACEGEAR_SLURM = 1
 ci: lint docs test
 
 notebooks: env

@@ -104,9 +104,9 @@ class Tolerances(Section):
             refuse("index_blocks", self.index_blocks, "a power of two, or 0")
         if self.index_blocks and self.correlations:
             refuse("index_blocks", self.index_blocks, "0 where causes are correlated: indices are undefined")
-        chunks = len(chunk_starts(self, "samples")) + len(chunk_starts(self, "indices"))
-        if chunks > MOST_CHUNKS:
-            least = -(-self.chunk_samples * chunks // MOST_CHUNKS)
+        count = len(chunks(self, "samples")) + len(chunks(self, "indices"))
+        if count > MOST_CHUNKS:
+            least = -(-self.chunk_samples * count // MOST_CHUNKS)
             refuse("chunk_samples", self.chunk_samples, f"at least {least}, for at most {MOST_CHUNKS} jobs")
         return self
 
@@ -120,9 +120,10 @@ def sizes(section: Tolerances, design: Design) -> int:
     return section.samples if design == "samples" else section.index_blocks * (len(section.causes) + 2)
 
 
-def chunk_starts(section: Tolerances, design: Design) -> list[int]:
-    """Number of the first sample of each chunk."""
-    return list(range(0, sizes(section, design), section.chunk_samples))
+def chunks(section: Tolerances, design: Design) -> list[tuple[int, int]]:
+    """Numbers of the first and last sample of each chunk."""
+    size, step = sizes(section, design), section.chunk_samples
+    return [(first, min(first + step, size) - 1) for first in range(0, size, step)]
 
 
 def correlation_matrix(section: Tolerances) -> NDArray[np.float64] | None:

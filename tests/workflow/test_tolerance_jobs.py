@@ -6,6 +6,7 @@ import subprocess
 import time
 
 import pandas as pd
+import psutil
 import pytest
 from projects import ROOT, Project, environment
 
@@ -56,7 +57,7 @@ def test_samples_are_equal_to_the_bit_in_other_chunks_and_added_ones_run_alone(w
     pd.testing.assert_frame_equal(pd.read_parquet(tmp_path / FILE), whole, check_exact=True)
 
 
-def test_a_killed_chunk_goes_on_inside_and_gives_the_same_table(whole, tmp_path):
+def test_a_chunk_whose_scheduler_was_killed_goes_on_inside_and_gives_the_same_table(whole, tmp_path):
     found, target = project(tmp_path, 64, 64)
     running = subprocess.Popen(
         found.command(*target), env=environment(), stderr=subprocess.DEVNULL, start_new_session=True
@@ -67,10 +68,14 @@ def test_a_killed_chunk_goes_on_inside_and_gives_the_same_table(whole, tmp_path)
         if partial.exists() and len(partial.read_bytes().splitlines()) > 4:
             break
         time.sleep(0.005)
-    os.killpg(running.pid, signal.SIGKILL)
+    jobs = psutil.Process(running.pid).children(recursive=True)
+    for job in jobs:
+        job.suspend()
+    os.kill(running.pid, signal.SIGKILL)  # its jobs live on
     running.wait()
     done = len(partial.read_bytes().splitlines()) - 1
     assert 0 < done < 64
-    found.run(*target)
+    assert "ending jobs that a killed run has left working" in found.run(*target).stderr
+    assert not any(job.is_running() for job in jobs)
     assert not partial.exists()
     pd.testing.assert_frame_equal(pd.read_parquet(tmp_path / FILE), whole, check_exact=True)

@@ -117,10 +117,11 @@ def _words(node):
     return {node.value} if isinstance(node, ast.Constant) else set()
 
 
-def test_the_profile_names_rules_that_exist(rules):
-    profile = read_yaml(ROOT / "workflow" / "profiles" / "default" / "config.yaml")
-    assert set(profile["set-threads"]) | set(profile["set-resources"]) <= set(rules)
-    assert {name for name, rule in rules.items() if rule["threads"] > 1} == set(profile["set-threads"])
+def test_every_profile_says_what_the_one_says_that_loads_by_itself():
+    folder = ROOT / "workflow" / "profiles"
+    default, *others = (read_yaml(folder / name / "config.yaml") for name in ("default", "local", "slurm"))
+    for other in others:
+        assert {key: other[key] for key in default} == default
 
 
 def test_rules_are_formatted():

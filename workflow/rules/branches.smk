@@ -10,6 +10,8 @@ rule branches_starts:
         manifest="results/{case}/branches/starts/{number}.provenance.json",
     wildcard_constraints:
         number=r"\d+",
+    resources:
+        runtime=30,
     script:
         "../scripts/branches_starts.py"
 
@@ -34,6 +36,9 @@ rule branches:
         jumps="results/{case}/branches/jumps.csv",
         orbits="results/{case}/branches/special_points.npz",
         manifest="results/{case}/branches/branches.provenance.json",
+    resources:
+        mem_mb=1300,
+        runtime=60,
     script:
         "../scripts/branches.py"
 
@@ -46,6 +51,8 @@ rule branches_loci:
     output:
         loci="results/{case}/branches/loci.csv",
         manifest="results/{case}/branches/loci.provenance.json",
+    resources:
+        runtime=60,
     script:
         "../scripts/branches_loci.py"
 

@@ -50,6 +50,8 @@ wildcard_constraints:
 
 
 include: "functions/terminal.smk"
+include: "functions/jobs.smk"
+include: "functions/orphans.smk"
 
 
 if workflow.exec_mode.name == "DEFAULT":
@@ -68,6 +70,10 @@ onstart:
     RUN_LOCKS.append(hold(".snakemake/facegear.lock"))
     if RUN_LOCKS[-1] is None:
         raise WorkflowError(f"another run is working in {os.getcwd()}; wait for it or stop it first")
+    orphans = end_orphans()
+    if settle() or orphans:  # what there is to do was found out before: begin again from the command line
+        os.execv(sys.executable, sys.orig_argv)
+    logger.addHandler(Jobs())
     if any(path.is_file() for path in Path(".snakemake/incomplete").rglob("*")):
         print("resuming a run that was stopped: its unfinished jobs are made again", file=sys.stderr)
     for note in notes(CONFIG):

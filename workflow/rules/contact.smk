@@ -10,6 +10,9 @@ rule contact:
         loads="results/{case}/contact/loads.npz",
         vtu="results/{case}/contact/pressure.vtu",
         manifest="results/{case}/contact/contact.provenance.json",
+    resources:
+        mem_mb=4000,
+        runtime=30,
     script:
         "../scripts/contact.py"
 

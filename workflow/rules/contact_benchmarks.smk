@@ -6,6 +6,10 @@ rule contact_level:
     output:
         table="results/{case}/benchmarks/contact/{level}.csv",
         manifest="results/{case}/benchmarks/contact/{level}.provenance.json",
+    threads: 2
+    resources:
+        mem_mb=9000,
+        runtime=60,
     params:
         **values_of("tooth_pair", "contact"),
     script:
@@ -17,6 +21,9 @@ rule contact_growth:
     output:
         table="results/{case}/benchmarks/contact_growth.csv",
         manifest="results/{case}/benchmarks/contact_growth.provenance.json",
+    threads: 2
+    resources:
+        mem_mb=3000,
     params:
         **values_of("tooth_pair", "contact"),
     script:
@@ -42,6 +49,10 @@ rule contact_shortcuts:
     output:
         table="results/{case}/benchmarks/contact_shortcuts.csv",
         manifest="results/{case}/benchmarks/contact_shortcuts.provenance.json",
+    threads: 2
+    resources:
+        mem_mb=4000,
+        runtime=60,
     params:
         **values_of("tooth_pair"),
     script:
@@ -53,6 +64,10 @@ rule twin_benchmark:
     output:
         table="results/{case}/benchmarks/twin.csv",
         manifest="results/{case}/benchmarks/twin.provenance.json",
+    threads: 2
+    resources:
+        mem_mb=4000,
+        runtime=60,
     params:
         **values_of("tooth_pair"),
     script:
@@ -64,6 +79,10 @@ rule calculix_peer:
     output:
         table="results/{case}/benchmarks/calculix.csv",
         manifest="results/{case}/benchmarks/calculix.provenance.json",
+    threads: 2
+    resources:
+        mem_mb=12000,
+        runtime=240,
     params:
         **values_of("tooth_pair"),
     script:

@@ -34,6 +34,8 @@ rule dynamics_sweep_chunk:
     wildcard_constraints:
         direction="up|down",
         number=r"\d+",
+    resources:
+        runtime=60,
     script:
         "../scripts/dynamics_sweep_chunk.py"
 
@@ -50,6 +52,9 @@ rule dynamics_sweep:
         seams="results/{case}/dynamics/seams.csv",
         waterfall="results/{case}/dynamics/waterfall.npz",
         manifest="results/{case}/dynamics/sweep.provenance.json",
+    resources:
+        mem_mb=1300,
+        runtime=60,
     script:
         "../scripts/dynamics_sweep.py"
 
@@ -75,6 +80,8 @@ rule dynamics_figures:
             "waterfall",
         ),
         manifest="results/{case}/figures/dynamics_figures.provenance.json",
+    resources:
+        mem_mb=1300,
     params:
         **values_of(
             "transmission",

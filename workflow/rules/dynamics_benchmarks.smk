@@ -7,6 +7,10 @@ rule dynamics_work_precision:
         svg="results/{case}/figures/dynamics_work_precision.svg",
         png="results/{case}/figures/dynamics_work_precision.png",
         manifest="results/{case}/benchmarks/dynamics.provenance.json",
+    threads: 2
+    resources:
+        mem_mb=1300,
+        runtime=30,
     params:
         **values_of(speed_rpm="dynamics.speed_rpm"),
         machine=needs("machine"),
@@ -22,6 +26,10 @@ rule dynamics_costs:
         sweep="results/{case}/benchmarks/dynamics_sweep.csv",
         scaling="results/{case}/benchmarks/dynamics_scaling.csv",
         manifest="results/{case}/benchmarks/dynamics_costs.provenance.json",
+    threads: 2
+    resources:
+        mem_mb=1300,
+        runtime=30,
     params:
         **values_of(speed_rpm="dynamics.speed_rpm", sweep="dynamics.sweep"),
         machine=needs("machine"),
@@ -52,6 +60,8 @@ rule dynamics_convergence:
     output:
         table="results/{case}/benchmarks/dynamics_convergence.csv",
         manifest="results/{case}/benchmarks/dynamics_convergence.provenance.json",
+    resources:
+        runtime=60,
     params:
         **values_of(sweep="dynamics.sweep"),
         machine=needs("machine"),

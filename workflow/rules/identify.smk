@@ -10,6 +10,8 @@ rule identify_branch:
         manifest="results/{case}/identify/branches/{branch}.provenance.json",
     wildcard_constraints:
         branch="[a-z_-]+",
+    resources:
+        runtime=120,
     params:
         values=sections("tooth_pair", "transmission", "mesh_stiffness", "dynamics"),
         identify=IDENTIFY_VALUES,
@@ -29,6 +31,8 @@ rule identify_sets:
         svg="results/{case}/figures/identify_landscape.svg",
         png="results/{case}/figures/identify_landscape.png",
         manifest="results/{case}/identify/identify.provenance.json",
+    resources:
+        runtime=30,
     params:
         values=sections("tooth_pair", "transmission", "mesh_stiffness", "dynamics"),
         identify=IDENTIFY_VALUES,

@@ -21,6 +21,8 @@ rule load_sharing_reference:
         reference="results/{case}/load_sharing/reference.csv",
         speeds="results/{case}/load_sharing/speed_range.csv",
         manifest="results/{case}/load_sharing/reference.provenance.json",
+    resources:
+        runtime=15,
     script:
         "../scripts/load_sharing_reference.py"
 

@@ -9,6 +9,8 @@ rule mesh:
         face_gear_inp="results/{case}/mesh/face_gear.inp",
         quality="results/{case}/mesh/quality.csv",
         manifest="results/{case}/mesh/mesh.provenance.json",
+    resources:
+        mem_mb=2000,
     script:
         "../scripts/mesh.py"
 
@@ -18,6 +20,8 @@ rule mesh_growth:
     output:
         table="results/{case}/benchmarks/mesh.csv",
         manifest="results/{case}/benchmarks/mesh.provenance.json",
+    resources:
+        mem_mb=2000,
     params:
         **values_of("tooth_pair"),
     script:

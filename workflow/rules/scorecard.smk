@@ -11,6 +11,9 @@ rule scorecard_set:
         manifest="results/{case}/scorecard/sets/{set}.provenance.json",
     wildcard_constraints:
         set="[A-Za-z0-9_]+",
+    resources:
+        mem_mb=1300,
+        runtime=30,
     params:
         cases=set_cases,
         points=STUDY_POINTS,
@@ -39,6 +42,8 @@ rule scorecard:
         csv="results/{case}/scorecard.csv",
         html="results/{case}/scorecard.html",
         manifest="results/{case}/scorecard.provenance.json",
+    resources:
+        mem_mb=1300,
     params:
         values=sections("tooth_pair", "transmission", "mesh_stiffness"),
     script:

@@ -9,7 +9,7 @@ import pytest
 
 import facegear
 from facegear.config.needs import stage_needs
-from facegear.config.tolerances import Tolerances, chunk_starts
+from facegear.config.tolerances import Tolerances, chunks
 from facegear.errors import ConfigErrors, FacegearError
 from facegear.stages.tolerances import tolerances
 from facegear.stages.tolerances_chunk import tolerances_chunk
@@ -144,7 +144,14 @@ def test_percentiles_and_indices_of_a_linear_machine_follow_from_its_gradient():
 def test_adding_samples_keeps_the_chunks_that_exist():
     section = {"causes": [RIGHT], "chunk_samples": 64}
     few, many = (Tolerances.model_validate_json(json.dumps({**section, "samples": n})) for n in (128, 512))
-    assert chunk_starts(many, "samples")[:2] == chunk_starts(few, "samples")
+    assert chunks(many, "samples")[:2] == chunks(few, "samples")
+
+
+def test_the_last_chunk_of_the_design_for_indices_holds_no_sample_beyond_it():
+    section = Tolerances.model_validate_json(
+        json.dumps({"causes": [RIGHT], "samples": 64, "chunk_samples": 64, "index_blocks": 32})
+    )
+    assert chunks(section, "indices") == [(0, 63), (64, 95)]
 
 
 def test_statistics_do_not_depend_on_how_the_samples_were_cut(gearbox):

@@ -1,5 +1,5 @@
 from facegear.config.tolerances import Tolerances as TolerancesSection
-from facegear.config.tolerances import chunk_starts
+from facegear.config.tolerances import chunks
 
 
 def tolerance_chunks(design):
@@ -9,9 +9,9 @@ def tolerance_chunks(design):
         section = parse_section(TolerancesSection, CASES[wildcards.case]["tolerances"])
         return [
             rules.tolerances_chunk.output.chunk.format(
-                case=wildcards.case, design=design, first=first, last=first + section.chunk_samples - 1
+                case=wildcards.case, design=design, first=first, last=last
             )
-            for first in chunk_starts(section, design)
+            for first, last in chunks(section, design)
         ]
 
     return files

@@ -1,0 +1,79 @@
+"""A chunked study on a throw-away Slurm of two nodes: killed, changed, run again, equal to the bit."""
+
+import os
+import re
+import signal
+import subprocess
+import time
+from importlib.util import find_spec
+from itertools import pairwise
+
+import pandas as pd
+import pytest
+from projects import ROOT, environment
+from slurm_cluster import cluster, missing
+from test_tolerance_jobs import FILE, project
+
+import facegear
+
+PROFILE = ("--workflow-profile", str(ROOT / "workflow" / "profiles" / "slurm"))
+CHUNKS = ("samples_0_199", "samples_200_399")
+
+
+def why_not():
+    if not os.environ.get("FACEGEAR_SLURM"):
+        return "only where FACEGEAR_SLURM is set, as by `make ci`: a minute, and a Slurm of its own"
+    if find_spec("snakemake_executor_plugin_slurm") is None:
+        return "snakemake-executor-plugin-slurm is not installed (extra `cluster`)"
+    return missing()
+
+
+pytestmark = [pytest.mark.workflow, pytest.mark.skipif(bool(why_not()), reason=why_not())]
+
+
+def jobs():
+    """Of every job that Slurm remembers: chunk, node, start and end in seconds, state."""
+    told = subprocess.run(
+        ["scontrol", "--oneliner", "show", "job"], capture_output=True, text=True, check=True
+    )
+    found = []
+    for line in told.stdout.splitlines():
+        fields = dict(re.findall(r"(\w+)=(\S*)", line))
+        start, end = (pd.Timestamp(fields[key]) for key in ("StartTime", "EndTime"))
+        found.append((fields["Comment"], fields["NodeList"], start, end, fields["JobState"]))
+    return found
+
+
+def started(folder):
+    """Whether every chunk has written down some samples."""
+    partials = [folder / f"results/tolerances/tolerances/chunks/{name}.partial" for name in CHUNKS]
+    return all(path.exists() and len(path.read_bytes().splitlines()) > 4 for path in partials)
+
+
+def test_a_killed_study_on_two_nodes_runs_no_chunk_twice_at_once_and_keeps_nothing_stale(tmp_path):
+    found, target = project(tmp_path / "run", 400, 200)
+    with cluster(tmp_path / "slurm"):
+        running = subprocess.Popen(
+            found.command(*PROFILE, *target),
+            env=environment(),
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+        deadline = time.monotonic() + 120
+        while not started(found.folder) and running.poll() is None and time.monotonic() < deadline:
+            time.sleep(0.01)
+        os.killpg(running.pid, signal.SIGKILL)
+        running.wait()
+        assert [job[-1] for job in jobs()].count("RUNNING") == 2, "Slurm goes on without the scheduler"
+        own = found.folder / "config" / "own.yaml"
+        own.write_text(own.read_text().replace("index_blocks: 0", "index_blocks: 0, hunting_cycles: 30"))
+        told = found.run(*PROFILE, *target).stderr
+        every = jobs()
+    assert "ending jobs that a killed run has left working" in told
+    assert "tolerances_chunk tolerances samples 200 399: 200 samples, 0 of them" in told
+    for name in {job[0] for job in every}:
+        times = sorted(job[2:4] for job in every if job[0] == name)
+        assert all(one[1] <= other[0] for one, other in pairwise(times)), name
+    assert sorted(node for _, node, *_, state in every if state == "COMPLETED") == ["n0", "n1"]
+    whole = facegear.load(own, results=None).tolerances(400).samples()
+    pd.testing.assert_frame_equal(pd.read_parquet(found.folder / FILE), whole, check_exact=True)
