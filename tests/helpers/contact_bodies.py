@@ -11,10 +11,15 @@ from facegear.contact.bodies.body import ElasticBody
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.bodies.substructure import condense
 from facegear.contact.bodies.surface import cell_areas, cell_points, hat_values, interpolation, pressure_basis
+from facegear.contact.options import Refinement
 from facegear.contact.solver import solve_contact
-from facegear.geometry.design import FaceGear, Material, PairDesign, Pinion, Relief, Shaper
+from facegear.geometry.design import FaceGear, Material, PairDesign, Pinion, Shaper
+from facegear.mesh.sizes import MeshSizes
 
 STEEL = Material(206e9, 0.3)
+FINE = MeshSizes(1.5e-3, 3.2e-3, 3e-3), Refinement(4, 2, 2, 2.0)
+COARSE = MeshSizes(1.5e-3, 6e-3, 3e-3), Refinement(2, 1, 1)
+"""Resolutions of the paper's pair: sizes of the mesh, cuts of the layer under the flank."""
 
 
 def stations(ends):
@@ -119,10 +124,7 @@ def pair_design(
     rack_tip_radius: float = 0.1,
     pinion_width: float = 0.030,
     radii: tuple[float, float] = (0.250, 0.275),
-    tip_relief: Relief | None = None,
 ) -> PairDesign:
     m = 3.75e-3
-    pinion = Pinion(
-        23, pinion_width, m, 1.25 * m, rack_tip_radius * m, 0.025, tip_relief=tip_relief or Relief()
-    )
+    pinion = Pinion(23, pinion_width, m, 1.25 * m, rack_tip_radius * m, 0.025)
     return PairDesign(m, radians(25), pinion, FaceGear(143, *radii, m, 0.012), Shaper(shaper_teeth, 1.25 * m))

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 import pytest
-from contact_bodies import STEEL, pair_design
+from contact_bodies import COARSE, FINE, STEEL, pair_design
 
 from facegear.contact.ltca import ContactModel
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
@@ -11,11 +11,15 @@ from facegear.contact.pair import contact_model, gear_flank
 from facegear.geometry.design import PairDesign
 from facegear.mesh.sizes import MeshSizes
 
-SIZES = MeshSizes(1.5e-3, 3.2e-3, 3e-3)
-CUTS = Refinement(4, 2, 2, 2.0)
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """All tests of the pair's models go to one process, which condenses each of them once."""
+    for item in items:
+        if "model_of" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.xdist_group("contact_models"))
 
 
-def build_model(design: PairDesign, cuts: Refinement = CUTS, sizes: MeshSizes = SIZES) -> ContactModel:
+def build_model(design: PairDesign, sizes: MeshSizes, cuts: Refinement) -> ContactModel:
     plan = ContactPlan((600.0,), 4, cuts, Sector(), ContactOptions())
     bodies = [gear_flank(design, body, sizes, STEEL, plan) for body in ("pinion", "face_gear")]
     return contact_model(design, *bodies)
@@ -23,13 +27,13 @@ def build_model(design: PairDesign, cuts: Refinement = CUTS, sizes: MeshSizes = 
 
 @pytest.fixture(scope="session")
 def model_of() -> Callable[..., ContactModel]:
-    """Contact models by design, each condensed once."""
-    known: dict[PairDesign, ContactModel] = {}
+    """Contact models by design and resolution, each condensed once."""
+    known: dict[tuple[PairDesign, bool], ContactModel] = {}
 
-    def model(**changes: object) -> ContactModel:
-        design = pair_design(**changes)
-        if design not in known:
-            known[design] = build_model(design)
-        return known[design]
+    def model(coarse: bool = False, **changes: object) -> ContactModel:
+        key = pair_design(**changes), coarse
+        if key not in known:
+            known[key] = build_model(key[0], *(COARSE if coarse else FINE))
+        return known[key]
 
     return model

@@ -21,7 +21,7 @@ from facegear.contact.teeth import elastic_tooth
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.mesh.sizes import MeshSizes
 
-CUTS = Refinement(3, 2, 2, 2.0)
+CUTS = Refinement(2, 1, 2, 2.0)
 TORQUE = 400.0
 
 

@@ -5,23 +5,21 @@ from math import radians
 
 import numpy as np
 import pytest
-from contact_bodies import STEEL, pair_design
+from contact_bodies import COARSE, STEEL
 
 from facegear.config.base import parse
 from facegear.config.stiffness import MeshStiffness, stiffness_request
 from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.flanks import FlankPair
-from facegear.contact.gear_flank import GearFlank
 from facegear.contact.ltca import loaded_contact
-from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
-from facegear.contact.pair import BUILDERS, contact_model, gear_flank
+from facegear.contact.options import ContactOptions, ContactPlan, Sector
+from facegear.contact.pair import BUILDERS, NEIGHBOURS, contact_model, gear_flank
 from facegear.contact.pressure import PINION_TIP, flank_pressure
 from facegear.contact.tables import ltca_table
 from facegear.contact.teeth import LOADED_SIDE, elastic_tooth
 from facegear.geometry.clearance import smallest_gaps
-from facegear.geometry.design import Assembly, Material, Relief
+from facegear.geometry.design import Assembly, Relief
 from facegear.geometry.unloaded import unloaded_contact
-from facegear.mesh.sizes import MeshSizes
 from facegear.stiffness.source import stiffness_from_contact
 from facegear.stiffness.tables import unloaded_error
 from facegear.stiffness.unloaded import unloaded_series
@@ -90,38 +88,33 @@ def test_result_repeats_after_a_pitch_with_the_next_tooth(model_of):
     np.testing.assert_allclose(second.share[:-1], first.share[1:], atol=1e-8)
 
 
-@pytest.mark.parametrize("body", ["pinion", "face_gear"])
-def test_opposite_flank_is_as_compliant_by_mirror_symmetry(model_of, body):
-    design = model_of().design
-    tooth = BUILDERS[body](design, MeshSizes(1.5e-3, 6e-3, 3e-3))
-    both = {}
-    for side in ("left", "right"):
-        elastic, _ = elastic_tooth(design, tooth, Material(206e9, 0.3), side)
-        both[side] = flank_compliance(elastic, Refinement(2, 1, 1), tooth.teeth, 1)
-    loaded = LOADED_SIDE[body]
-    other = both["left" if loaded == "right" else "right"]
-    scale = both[loaded].own.max()
-    np.testing.assert_allclose(other.own, both[loaded].own, atol=1e-8 * scale)
-    np.testing.assert_allclose(other.block(1), both[loaded].block(-1), atol=1e-8 * scale)
-
-
-def test_contact_of_the_opposite_flanks_is_the_mirror_image_s():
-    design = pair_design()
-    sizes, cuts = MeshSizes(1.5e-3, 6e-3, 3e-3), Refinement(2, 1, 1)
-    sides = {"drive": {}, "back": {}}
+@pytest.fixture(scope="module")
+def back_sides(model_of):
+    """Compliances of the flanks of the coarse model's gears that it does not load."""
+    design, (sizes, cuts) = model_of(coarse=True).design, COARSE
+    found = []
     for body, build in BUILDERS.items():
-        tooth = build(design, sizes)
-        for name, mirrored in (("drive", False), ("back", True)):
-            side = LOADED_SIDE[body]
-            side = {"left": "right", "right": "left"}[side] if mirrored else side
-            elastic, surface = elastic_tooth(design, tooth, Material(206e9, 0.3), side)
-            sides[name][body] = GearFlank(surface, flank_compliance(elastic, cuts, tooth.teeth, 2))
-    drive = contact_model(design, *sides["drive"].values())
+        tooth, other = build(design, sizes), "left" if LOADED_SIDE[body] == "right" else "right"
+        elastic, _ = elastic_tooth(design, tooth, STEEL, other)
+        found.append(flank_compliance(elastic, cuts, tooth.teeth, NEIGHBOURS))
+    return found
+
+
+@pytest.mark.parametrize("body", [0, 1], ids=list(BUILDERS))
+def test_opposite_flank_is_as_compliant_by_mirror_symmetry(model_of, back_sides, body):
+    model = model_of(coarse=True)
+    loaded, other = (model.pinion, model.gear)[body], back_sides[body]
+    scale = loaded.own.max()
+    np.testing.assert_allclose(other.own, loaded.own, atol=1e-8 * scale)
+    for apart in (1, 2):
+        np.testing.assert_allclose(other.block(apart), loaded.block(-apart), atol=1e-8 * scale)
+
+
+def test_contact_of_the_opposite_flanks_is_the_mirror_image_s(model_of, back_sides):
     # seen in the mirror, the tooth to the right is the one to the left
-    mirrored = [flank.compliance for flank in sides["back"].values()]
-    back = [replace(body, others=body.others[::-1]) for body in mirrored]
+    back = [replace(body, others=body.others[::-1]) for body in back_sides]
     for errors in ({}, {"offset": 0.1e-3, "shaft_angle_error": radians(0.05)}):
-        here = misaligned(drive, **errors)
+        here = misaligned(model_of(coarse=True), **errors)
         there = replace(here, pinion=back[0], gear=back[1])
         for one, other in zip(*(loaded_contact(m, [0.1, 0.7], TORQUES) for m in (here, there)), strict=True):
             assert other.ste == pytest.approx(one.ste, rel=1e-8)
@@ -157,7 +150,7 @@ def test_very_small_and_very_large_torques_converge(model_of, torque):
 
 
 def test_line_contact_pair_spreads_its_load_over_the_face(model_of):
-    line, crowned = model_of(shaper_teeth=23), model_of()
+    line, crowned = (model_of(coarse=True, shaper_teeth=teeth) for teeth in (23, 26))
     reach = {}
     for name, model in (("line", line), ("crowned", crowned)):
         result = sound(loaded_contact(model, [0.5], [100.0]))[0]
@@ -194,12 +187,15 @@ def test_gear_pressed_into_the_pinion_still_drives_while_its_back_sides_overlap(
 
 @pytest.mark.parametrize(("width", "radii"), [(0.005, (0.262, 0.267)), (0.046, (0.250, 0.290))])
 def test_narrow_and_wide_faces_converge(model_of, width, radii):
-    results = sound(loaded_contact(model_of(pinion_width=width, radii=radii), np.arange(4) / 4, TORQUES))
+    model = model_of(coarse=True, pinion_width=width, radii=radii)
+    results = sound(loaded_contact(model, np.arange(4) / 4, TORQUES))
     assert all(result.k_average < 2e9 for result in results)
 
 
 def test_tip_relief_takes_load_off_the_pair_that_comes_into_contact(model_of):
-    sharp, eased = model_of(), model_of(tip_relief=Relief(20e-6, 0.0, 2e-3))
+    sharp = model_of()
+    relieved_pinion = replace(sharp.design.pinion, tip_relief=Relief(20e-6, 0.0, 2e-3))
+    eased = redesigned(sharp, replace(sharp.design, pinion=relieved_pinion))
     plain, relieved = (sound(loaded_contact(m, np.arange(8) / 8, [600.0])) for m in (sharp, eased))
     assert min(r.k_average for r in relieved) < min(r.k_average for r in plain)
     at_tips = [
@@ -213,7 +209,7 @@ def test_tip_relief_takes_load_off_the_pair_that_comes_into_contact(model_of):
 
 
 def test_interfering_pair_is_stiffened_by_its_fillets_and_the_switch_shows_it(model_of):
-    model = model_of(rack_tip_radius=0.25)
+    model = model_of(coarse=True, rack_tip_radius=0.25)
     positions = np.arange(8) / 8
     with_fillet = sound(loaded_contact(model, positions, [600.0]))
     without = sound(loaded_contact(model, positions, [600.0], ContactOptions(fillet=False)))
@@ -238,13 +234,16 @@ def test_stiffness_is_continuous_through_a_hand_over(model_of):
 
 def test_linear_elements_on_the_same_nodes_are_too_stiff(model_of):
     """Trilinear hexahedra by about a percent, tetrahedra by several."""
-    design, sizes, steel = model_of().design, MeshSizes(1.5e-3, 3.2e-3, 3e-3), Material(206e9, 0.3)
-    stiffness = {}
-    for element in ("hex27", "hex8", "tet4"):
-        plan = ContactPlan((600.0,), 4, Refinement(2, 1, 1), Sector(), ContactOptions(), element)
-        bodies = [gear_flank(design, body, sizes, steel, plan) for body in BUILDERS]
-        results = loaded_contact(contact_model(design, *bodies), [0.1, 0.6], [600.0])
-        stiffness[element] = np.mean([result.k_average for result in results])
+    models = {"hex27": model_of(coarse=True)}
+    design, (sizes, cuts) = models["hex27"].design, COARSE
+    for element in ("hex8", "tet4"):
+        plan = ContactPlan((600.0,), 4, cuts, Sector(), ContactOptions(), element)
+        bodies = [gear_flank(design, body, sizes, STEEL, plan) for body in BUILDERS]
+        models[element] = contact_model(design, *bodies)
+    stiffness = {
+        element: np.mean([result.k_average for result in loaded_contact(model, [0.1, 0.6], [600.0])])
+        for element, model in models.items()
+    }
     assert 1.003 < stiffness["hex8"] / stiffness["hex27"] < 1.03
     assert 1.03 < stiffness["tet4"] / stiffness["hex27"] < 1.15
 

@@ -1,36 +1,17 @@
 """What the geometry and mesh stages leave behind, as users and later stages read it."""
 
-import os
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from facegear.io import arrays, documents, tables
 from facegear.io.meshes import read_msh
 
-ROOT = Path(__file__).parents[2]
+pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
 
 
-@pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("teeth")
-    targets = [f"results/quick/{name}" for name in ("mesh/quality.csv", "figures/tooth_pair.svg")]
-    command = [sys.executable, "-m", "snakemake", "--cores", "1", "--snakefile", str(ROOT / "Snakefile")]
-    command += [
-        "--directory",
-        str(folder),
-        "--configfile",
-        str(ROOT / "config" / "quick.yaml"),
-        "--",
-        *targets,
-    ]
-    kept = {key: value for key, value in os.environ.items() if not key.startswith("SNAKEMAKE")}
-    done = subprocess.run(command, capture_output=True, text=True, env=kept, check=False)
-    assert done.returncode == 0, done.stderr[-4000:]
-    return folder / "results" / "quick"
+@pytest.fixture
+def results(quick):
+    return quick.folder / "results" / "quick"
 
 
 def test_pair_record_holds_radii_limits_path_and_gaps(results):
