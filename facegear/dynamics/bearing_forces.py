@@ -2,8 +2,8 @@
 
 import numpy as np
 import pandas as pd
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.steady_state.simulate import Model, SteadyState
@@ -62,8 +62,8 @@ def velocities(response: SteadyState) -> Array:
     time = np.arange(len(response.coordinates) + 1) * TAU / (response.frequency * response.per_period)
     if response.period > 0:
         closed = np.concatenate([response.coordinates, response.coordinates[:1]])
-        return CubicSpline(time, closed, bc_type="periodic")(time[:-1], 1)
-    return CubicSpline(time[:-1], response.coordinates)(time[:-1], 1)
+        return scipy.interpolate.CubicSpline(time, closed, bc_type="periodic")(time[:-1], 1)
+    return scipy.interpolate.CubicSpline(time[:-1], response.coordinates)(time[:-1], 1)
 
 
 def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
 from facegear.errors import ConfigError
 from facegear.stiffness.request import Definition
@@ -35,7 +35,7 @@ class LoadTable:
         if not low <= torque <= high:
             allowed = f"within contact.torques_n_m, {low:g} to {high:g}"
             raise ConfigError("mesh_stiffness.torque_n_m", torque, allowed)
-        return PchipInterpolator(np.log(self.torques), values, axis=0)(np.log(torque))
+        return scipy.interpolate.PchipInterpolator(np.log(self.torques), values, axis=0)(np.log(torque))
 
     def interpolation_error(self, torque: float, definition: Definition) -> float:
         """Largest relative change of the curve if the nearest inner torque had not been solved; nan if there

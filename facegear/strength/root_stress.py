@@ -2,11 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy
-import scipy.sparse as sp
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import scipy.sparse as sp
 
 Array = NDArray[np.float64]
 
@@ -44,7 +47,7 @@ class RootStress:
 
 def root_stress(
     readings: Array,
-    loads: Mapping[int, sp.csr_matrix],
+    loads: Mapping[int, "sp.csr_matrix"],
     torques: Array,
     positions: Array,
     along: Array,

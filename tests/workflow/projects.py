@@ -4,19 +4,40 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+
+from facegear.provenance.fingerprint import fingerprint, remember
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("workflow", "profiles", "facegear", "config")
+PARSED = "facegear_sources.json"
+"""In Snakemake's folder: what counts of each source file."""
 
 
 @dataclass(frozen=True)
 class Project:
-    """A folder that results go to, and the sources that make them."""
+    """A folder that results go to, and the sources that make them.
+
+    It holds what a run leaves behind of the sources it parsed, so that not every start parses them anew.
+    """
 
     folder: Path
     sources: Path = ROOT
+
+    def __post_init__(self) -> None:
+        parsed = self.folder / ".snakemake" / PARSED
+        parsed.parent.mkdir(parents=True, exist_ok=True)
+        if not parsed.exists():
+            parsed.write_bytes(parsed_sources())
+
+    def copied(self, folder: Path) -> "Project":
+        """The same results, and what Snakemake knows of them, in another folder."""
+        for name in ("results", ".snakemake"):
+            shutil.copytree(self.folder / name, folder / name)
+        return Project(folder, self.sources)
 
     def command(self, *arguments: str) -> list[str]:
         return [
@@ -37,6 +58,16 @@ class Project:
         """Names of the rules that a dry run would execute."""
         done = self.run("-n", *arguments)
         return rules_in(done.stdout + done.stderr) - {"all"}
+
+
+@cache
+def parsed_sources() -> bytes:
+    """What `remember` stores of this checkout's sources."""
+    for script in (ROOT / "workflow" / "scripts").glob("*.py"):
+        fingerprint(script, ROOT)
+    with tempfile.TemporaryDirectory() as folder:
+        remember(Path(folder) / PARSED)
+        return (Path(folder) / PARSED).read_bytes()
 
 
 def rules_in(text: str) -> set[str]:

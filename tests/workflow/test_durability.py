@@ -27,14 +27,12 @@ def data_files(project):
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_killed_run_started_again_gives_the_same_files(quick, tmp_path, seed):
-    project = Project(tmp_path)
+    project = quick.copied(tmp_path)
     targets = [
         "results/quick/modal/frequencies.csv",
         "results/quick/dynamics/response.csv",
         "results/quick/load_sharing/nominal.csv",
     ]
-    shutil.copytree(quick.folder / "results", tmp_path / "results")
-    shutil.copytree(quick.folder / ".snakemake", tmp_path / ".snakemake")
     for stage in ("modal", "dynamics", "load_sharing"):
         shutil.rmtree(tmp_path / "results" / "quick" / stage)
     process = subprocess.Popen(
@@ -55,9 +53,7 @@ def test_a_killed_run_started_again_gives_the_same_files(quick, tmp_path, seed):
 
 
 def test_a_run_killed_in_the_contact_stage_resumes_and_says_so(quick, tmp_path):
-    project = Project(tmp_path)
-    shutil.copytree(quick.folder / "results", tmp_path / "results")
-    shutil.copytree(quick.folder / ".snakemake", tmp_path / ".snakemake")
+    project = quick.copied(tmp_path)
     shutil.rmtree(tmp_path / "results" / "quick" / "contact")
     log = tmp_path / "results" / "quick" / "logs" / "contact.log"
     log.unlink()
@@ -94,9 +90,9 @@ def test_no_spelling_of_a_dry_run_changes_anything_on_disk(tmp_path, spelling):
 
 
 def test_a_dry_run_beside_a_working_run_is_told_the_plan(tmp_path):
-    (tmp_path / ".snakemake").mkdir()
+    project = Project(tmp_path)
     with hold(tmp_path / ".snakemake" / "facegear.lock"):
-        assert Project(tmp_path).planned("results/paper/modal/frequencies.csv") == {"modal"}
+        assert project.planned("results/paper/modal/frequencies.csv") == {"modal"}
 
 
 def small_disk(folder, size, *command):
@@ -143,9 +139,7 @@ def test_a_full_disk_stops_the_stage_in_one_line_and_nothing_half_written_stays(
     ],
 )
 def test_an_altered_intermediate_is_named_with_the_command_that_rebuilds_it(quick, tmp_path, file, target):
-    project = Project(tmp_path)
-    shutil.copytree(quick.folder / "results", tmp_path / "results")
-    shutil.copytree(quick.folder / ".snakemake", tmp_path / ".snakemake")
+    project = quick.copied(tmp_path)
     path = tmp_path / "results" / "quick" / file
     times = path.stat()
     path.write_bytes(path.read_bytes()[:-20] + b"1" * 20)
@@ -176,7 +170,6 @@ def test_a_config_mistake_stops_before_any_work_in_one_line(tmp_path, old, new, 
     config = tmp_path / "bad.yaml"
     config.write_text(text.replace(old, new, 1))
     project = Project(tmp_path / "run")
-    project.folder.mkdir()
     done = project.run("--configfile", str(config), check=False)
     assert done.returncode != 0
     told = [told for told in done.stderr.splitlines() if told.strip()]

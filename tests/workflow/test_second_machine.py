@@ -6,11 +6,20 @@ from projects import ROOT, Project
 
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("second_machine")]
 
+COARSER = """
+mesh: {resolution: {profile_mm: 2, width_mm: 8, thickness_mm: 5}}
+contact: {positions_per_pitch: 6, refinement: {depth: 1}}
+dynamics: {sweep: {points: 8}}
+load_sharing: {cycles: 50, starts: 2, speed_range: {points: 4}}
+"""
+
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory):
     project = Project(tmp_path_factory.mktemp("second"))
-    project.run("--configfile", str(ROOT / "config" / "two_pinion.yaml"))
+    coarser = project.folder / "coarser.yaml"
+    coarser.write_text(COARSER)
+    project.run("--configfile", str(ROOT / "config" / "two_pinion.yaml"), str(coarser))
     return project.folder / "results" / "two_pinion"
 
 

@@ -1,17 +1,13 @@
 """Snakemake's own report of a finished run."""
 
-import shutil
-
 import pytest
-from projects import ROOT, Project
+from projects import ROOT
 
 pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
 
 
 def test_snakemake_report_holds_the_figures_and_their_captions(quick, tmp_path):
-    project = Project(tmp_path)
-    shutil.copytree(quick.folder / "results", tmp_path / "results")
-    shutil.copytree(quick.folder / ".snakemake", tmp_path / ".snakemake")
+    project = quick.copied(tmp_path)
     config = str(ROOT / "config" / "quick.yaml")
     project.run("--report", str(tmp_path / "report.html"), "--configfile", config)
     page = (tmp_path / "report.html").read_text()

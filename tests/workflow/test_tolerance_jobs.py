@@ -12,7 +12,7 @@ from projects import ROOT, Project, environment
 
 import facegear
 
-pytestmark = pytest.mark.workflow
+pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("tolerance_jobs")]
 FILE = "results/tolerances/tolerances/samples.parquet"
 CONFIG = """
 extends: tolerances.yaml

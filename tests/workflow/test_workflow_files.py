@@ -14,6 +14,7 @@ from facegear.config.load import load_values
 from facegear.config.yaml_file import read_yaml
 from facegear.report.inputs import inputs_in_words
 
+pytestmark = pytest.mark.xdist_group("workflow_files")
 SCRIPTS = sorted((ROOT / "workflow" / "scripts").glob("*.py"))
 STAGES = sorted((ROOT / "facegear" / "stages").glob("*.py"))
 TOLD = """

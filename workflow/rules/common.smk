@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
+from snakemake.persistence import PersistenceBase
 
 ROOT = Path(workflow.basedir)
 sys.path.insert(0, str(ROOT))
@@ -17,6 +18,10 @@ from facegear.errors import FacegearError
 from facegear.io.run_lock import hold
 from facegear.paper.config.reproduction import design_cases, read_reproduction
 from facegear.provenance.fingerprint import fingerprint, recall, remember
+
+if hasattr(PersistenceBase, "_serialize_param_builtin"):
+    # Snakemake imports pandas, 0.5 s of every start, only to ask whether a parameter is a table; none is here.
+    PersistenceBase._serialize_param = PersistenceBase._serialize_param_builtin
 
 DEFAULT_CONFIGFILE = ROOT / "config" / "paper.yaml"
 CONFIGFILES = [Path(file) for file in workflow.configfiles] or [DEFAULT_CONFIGFILE]

@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.stats import t as student
 
 from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.sums import Sums
@@ -133,4 +133,4 @@ def _root_interval(squares: Array, root: Array, periodic: bool) -> Array:
 @cache
 def _student(freedom: int, confidence: float) -> float:
     """Two-sided quantile of Student's distribution."""
-    return float(student.ppf(0.5 + 0.5 * confidence, freedom))
+    return float(scipy.special.stdtrit(freedom, 0.5 + 0.5 * confidence))

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.signal import find_peaks
 
 from facegear.dynamics.sweeps.sweep import Piece
 from facegear.transmission.modes import Modes
@@ -65,6 +65,6 @@ def peaks(piece: Piece) -> list[tuple[str, int, int, float]]:
 
 def maxima(curve: Array) -> list[int]:
     """Positions of the maxima that are PROMINENT times the higher of the valleys beside them."""
-    found, facts = find_peaks(curve, height=SMALL * curve.max(), prominence=0.0)
+    found, facts = scipy.signal.find_peaks(curve, height=SMALL * curve.max(), prominence=0.0)
     valleys = curve[found] - facts["prominences"]
     return [int(i) for i in found[curve[found] > PROMINENT * valleys]]

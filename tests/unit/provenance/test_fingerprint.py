@@ -106,7 +106,7 @@ def test_reading_configs_leaves_solvers_and_tables_unloaded():
         "from facegear.config.load import load_values\n"
         "expand_cases(load_values(['config/paper.yaml'], {}))\n"
         "print(*{'numba', 'pandas', 'skfem', 'xarray', 'matplotlib', 'scipy.optimize', 'scipy.spatial', "
-        "'scipy.interpolate'} & {*sys.modules})"
+        "'scipy.interpolate', 'scipy.sparse'} & {*sys.modules})"
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     assert done.stdout.strip() == ""
