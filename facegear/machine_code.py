@@ -1,9 +1,11 @@
 """Compiled functions, their machine code stored and found again only while its sources are the same."""
 
 import hashlib
+import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 from numba import njit
 from numba.core.caching import FunctionCache
@@ -11,6 +13,11 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.compiler_machinery import register_pass
 from numba.core.typed_passes import NativeLowering
+
+from facegear.io.run_lock import hold
+
+PATIENCE = 300.0
+"""How long (s) another process may compile a function before this one compiles it as well."""
 
 
 def text_of(sources: Path) -> str:
@@ -25,11 +32,42 @@ class SourcesCache(FunctionCache):
     """Machine code of a function, found again only while the text of all files in a folder is the same.
 
     Numba notices a change of the file a kernel stands in, but not of the kernels it calls in other files.
+    Of processes that miss the same function one compiles it, and the others wait for what it stores.
     """
 
     def __init__(self, function: Callable[..., Any], text: str) -> None:
         super().__init__(function)
         self._text = text
+        self._turn = f"{function.__module__.rpartition('.')[2]}.{function.__qualname__}.lock"
+        self._lock: TextIO | None = None
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        found = super().load_overload(sig, target_context)
+        if found is None and self._lock is None:
+            self._lock = self._wait()
+            found = super().load_overload(sig, target_context)
+            if found is not None:
+                self._end()
+        return found
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        super().save_overload(sig, data)
+        self._end()
+
+    def _wait(self) -> TextIO | None:
+        """The lock of the one process that compiles; None after PATIENCE and where nothing can be written."""
+        end = time.monotonic() + PATIENCE
+        with suppress(OSError):
+            while time.monotonic() < end:
+                if (lock := hold(Path(self.cache_path) / self._turn)) is not None:
+                    return lock
+                time.sleep(0.02)
+        return None
+
+    def _end(self) -> None:
+        if self._lock is not None:
+            self._lock.close()
+            self._lock = None
 
     def _index_key(self, sig: Any, codegen: Any) -> tuple[Any, ...]:
         return (*super()._index_key(sig, codegen), self._text)

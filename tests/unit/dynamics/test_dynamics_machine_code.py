@@ -53,6 +53,17 @@ def test_a_function_for_compiled_callers_says_so_when_python_calls_it():
         for_callers()(twice)(1.0)
 
 
+def test_of_two_processes_that_start_together_one_compiles(tmp_path):
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text)
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])}
+    both = [
+        subprocess.Popen([sys.executable, "-c", PRINT], env=environment, stdout=subprocess.PIPE, text=True)
+        for _ in range(2)
+    ]
+    assert sorted(one.communicate(timeout=60)[0] for one in both) == ["4.0 0\n", "4.0 1\n"]
+
+
 def test_importing_the_kernels_leaves_numba_as_it_was():
     code = (
         "import numba; before = numba.config.CACHE_DIR; import facegear.dynamics.integrator.advance; "
