@@ -105,7 +105,7 @@ def machine(
             damping.mesh_n_s_per_m, damping.mass_per_s, damping.bearing_s, OpenFlanks(damping.open_flanks)
         ),
         phase_convention=PhaseConvention(section.phase_convention),
-        error_in_step=section.transmission_error.phasing == "in_step",
+        error_lags=error_lags(section, shape),
         imperfections=imperfections(section, shape, unloaded),
     )
 
@@ -150,6 +150,20 @@ def given_torques(section: Transmission, shape: Layout) -> NDArray[np.float64]:
     by_role = pinion_torques(shape, section.torque.per_input_n_m, section.torque.tail_share)
     own = np.array([np.nan if place.torque_n_m is None else place.torque_n_m for place in section.pinions])
     return np.where(np.isnan(own), by_role, own)
+
+
+def error_lags(section: Transmission, shape: Layout) -> NDArray[np.float64] | None:
+    """Lag of e(t) at each mesh in mesh periods, shape (meshes,); None where it is that of the stiffness.
+
+    A mesh named itself keeps its own lag, then that of its pinion's role; one not named has none.
+    """
+    phasing = section.transmission_error.phasing
+    if phasing == "mesh":
+        return None
+    named: Mapping[str, float] = {} if phasing == "in_step" else phasing
+    roles = [f"{shape.pinions[i].role}/{shape.gears[g].side}" for i, g in shape.meshes]
+    pairs = zip(shape.mesh_names, roles, strict=True)
+    return np.array([named.get(mesh, named.get(role, 0.0)) for mesh, role in pairs])
 
 
 def other_gear_torque(section: Transmission) -> float:

@@ -75,6 +75,9 @@ def _kind(schema: Mapping[str, Any], option: Mapping[str, Any]) -> str:
     kind = option.get("type", "any value")
     if kind == "array":
         return f"list{_bounds(option, ('minItems', 'maxItems'))}"
+    inside = option.get("additionalProperties")
+    if kind == "object" and isinstance(inside, Mapping) and inside.get("type") == "number":
+        return f"names, each with a {_kind(schema, inside)}"
     told = {"integer": "whole number", "object": "section", "string": "text", "boolean": "true, false"}
     return told.get(kind, kind) + _bounds(option, ("minimum", "maximum"))
 

@@ -92,6 +92,20 @@ class Transmission(Section):
         return self
 
     @model_validator(mode="after")
+    def _lags(self) -> "Transmission":
+        phasing = self.transmission_error.phasing
+        places = [*(place.name for place in self.pinions), *dict.fromkeys(one.role for one in self.pinions)]
+        known = [f"{place}/{side}" for side in self.face_gears for place in places]
+        for name in phasing if isinstance(phasing, dict) else ():
+            if name not in known:
+                refuse(f"transmission_error.phasing.{name}", name, f"one of {', '.join(known)}")
+        for name, one in self.single_meshes.items():
+            if one.transmission_error and isinstance(one.transmission_error.phasing, dict):
+                key = f"single_meshes.{name}.transmission_error.phasing"
+                refuse(key, one.transmission_error.phasing, "left out: one mesh has no pattern")
+        return self
+
+    @model_validator(mode="after")
     def _kinematics(self) -> "Transmission":
         radius = self.face_gear.mesh_radius_mm
         if self.mesh_kinematics == "geometric":

@@ -1,7 +1,7 @@
 """Config of the transmission error e(t), and its Fourier series."""
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -11,6 +11,9 @@ from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
 
 FROM_CONTACT = "numbers, where mesh_stiffness.source is harmonics: no contact analysis gives e(t)"
+
+
+Lag = Annotated[float, Field(ge=0, lt=1)]
 
 
 class ErrorHarmonic(Section):
@@ -36,7 +39,11 @@ class TransmissionError(Section):
     )
     meaning: Literal["amplitude", "range"] = "amplitude"
     phase_deg: float = Field(0.0, ge=-360, le=360)
-    phasing: Literal["mesh", "in_step"] = "mesh"
+    phasing: Literal["mesh", "in_step"] | dict[str, Lag] = Field(
+        "mesh",
+        description="mesh: like the stiffness; in_step: all together; or lags in mesh periods by "
+        "`pinion/side` or `role/side`, all others in step",
+    )
     more_harmonics: tuple[ErrorHarmonic, ...] = ()
 
     @model_validator(mode="before")
@@ -46,6 +53,17 @@ class TransmissionError(Section):
             return {"source": "from_contact"}
         if isinstance(values, Mapping) and isinstance(more := values.get("more_harmonics"), list):
             return {**values, "more_harmonics": tuple(more)}
+        return values
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_phasing(cls, values: Any) -> Any:
+        given = values.get("phasing", "mesh") if isinstance(values, Mapping) else "mesh"
+        for name, lag in given.items() if isinstance(given, Mapping) else ():
+            if not isinstance(lag, int | float) or not 0 <= lag < 1:
+                refuse(f"phasing.{name}", lag, "a number from 0 to below 1")
+        if not isinstance(given, Mapping) and given not in ("mesh", "in_step"):
+            refuse("phasing", given, "mesh, in_step, or lags by `pinion/side` or `role/side`")
         return values
 
     @model_validator(mode="after")

@@ -14,7 +14,7 @@ def inputs_in_words(values: Mapping[str, Any]) -> list[str]:
         f"harmonic {term['order']}: {term['amplitude_um']:g} um" for term in error["more_harmonics"]
     )
     mean = "" if stiffness["source"] == "fem" else f", mean {stiffness['mean_n_per_m']:.3g} N/m"
-    phasing = "in step at all meshes" if error["phasing"] == "in_step" else "shifted like the mesh stiffness"
+    phasing = _phasing(error["phasing"])
     teeth = (
         []
         if pinion is None
@@ -38,6 +38,13 @@ def inputs_in_words(values: Mapping[str, Any]) -> list[str]:
         _kinematics(transmission),
         *teeth,
     ]
+
+
+def _phasing(phasing: str | Mapping[str, float]) -> str:
+    if isinstance(phasing, str):
+        return {"in_step": "in step at all meshes", "mesh": "shifted like the mesh stiffness"}[phasing]
+    lags = ", ".join(f"{mesh} {lag:g}" for mesh, lag in phasing.items())
+    return f"in step but for lags in mesh periods: {lags}"
 
 
 def _kinematics(transmission: Mapping[str, Any]) -> str:

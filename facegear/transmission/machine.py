@@ -36,8 +36,8 @@ class Damping:
 class Machine:
     """Layout, torques on the bodies (N m), reference mesh stiffness and error, half backlash (m).
 
-    `error` is a Fourier series in m on the reference mesh; each mesh lags by its stiffness phase, or all
-    move together if `error_in_step`. `imperfections` default to none.
+    `error` is a Fourier series in m on the reference mesh; each mesh lags by its `error_lags` (meshes,), in
+    mesh periods, or by its stiffness phase if there are none. `imperfections` default to none.
     """
 
     layout: Layout
@@ -47,7 +47,7 @@ class Machine:
     half_backlash: float
     damping: Damping
     phase_convention: PhaseConvention = PhaseConvention.GEOMETRIC
-    error_in_step: bool = False
+    error_lags: NDArray[np.float64] | None = None
     imperfections: Imperfections = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
@@ -72,7 +72,7 @@ class Machine:
     @property
     def error_phases(self) -> NDArray[np.float64]:
         """Transmission error phase of each mesh in mesh periods, shape (meshes,)."""
-        return np.zeros(len(self.layout.meshes)) if self.error_in_step else self.phases
+        return self.phases if self.error_lags is None else self.error_lags
 
 
 def mesh_frequency(layout: Layout, speed_rpm: float) -> float:

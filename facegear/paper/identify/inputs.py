@@ -126,5 +126,5 @@ def machine_with(
         stiffness=stiffness(stiffness_torque(base, inputs, load_for_mean)),
         error=error_series(error_size, inputs.branch, inputs.error_phase),
         phase_convention=inputs.branch.convention,
-        error_in_step=inputs.branch.in_step,
+        error_lags=np.zeros(len(layout.meshes)) if inputs.branch.in_step else None,
     )

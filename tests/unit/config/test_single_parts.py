@@ -56,7 +56,7 @@ def test_errors_from_contact_are_those_of_the_unloaded_pair_and_one_mesh_may_dif
         found = machine(parse(Transmission, section(transmission_error=spelling)), TEETH, STIFFNESS, unloaded)
         np.testing.assert_array_equal(found.error.a, unloaded.a)
         np.testing.assert_array_equal(found.error.b, unloaded.b)
-        assert not found.error_in_step
+        assert found.error_lags is None
     own = {**values, "single_meshes": {"two/lower": {"transmission_error": {"amplitude_um": 3}}}}
     found = machine(parse(Transmission, own), TEETH, STIFFNESS, unloaded)
     assert found.imperfections.series[1].amplitudes[1] == pytest.approx(3e-6)
@@ -89,6 +89,47 @@ def test_an_error_from_contact_is_refused_where_stiffness_is_given(changes):
     given = {"mesh_stiffness": {"source": "harmonics", "table": [{"order": 0, "b_n_per_m": 4e8}]}}
     with pytest.raises(ConfigErrors, match="no contact analysis gives e"):
         facegear.example().with_values(given | changes)
+
+
+def lags_of_error(phasing):
+    error = {"amplitude_um": 10, "phasing": phasing}
+    return machine(parse(Transmission, section(transmission_error=error)), TEETH, STIFFNESS)
+
+
+def test_error_lags_where_a_pattern_says_so_and_a_mesh_goes_before_its_role():
+    found = lags_of_error({"input/lower": 0.5, "two/lower": 0.25})
+    names = found.layout.mesh_names
+    np.testing.assert_array_equal(
+        found.error_phases, [{"one/lower": 0.5, "two/lower": 0.25}.get(name, 0.0) for name in names]
+    )
+
+
+def test_pattern_of_the_stiffness_lags_is_the_phasing_by_mesh():
+    by_mesh = lags_of_error("mesh")
+    pattern = dict(zip(by_mesh.layout.mesh_names, by_mesh.phases.tolist(), strict=True))
+    np.testing.assert_array_equal(lags_of_error(pattern).error_phases, by_mesh.error_phases)
+    assert not lags_of_error({}).error_phases.any()
+
+
+@pytest.mark.parametrize(
+    ("changes", "line"),
+    [
+        ({"transmission_error": {"phasing": "in step"}}, 'phasing = "in step": mesh, in_step, or lags'),
+        ({"transmission_error": {"phasing": {"one/lower": 1.0}}}, "phasing.one/lower = 1.0: a number from"),
+        ({"transmission_error": {"phasing": {"idler/lower": 0.5}}}, "one of one/lower"),
+        (
+            {"single_meshes": {"one/lower": {"transmission_error": {"phasing": {}}}}},
+            "one mesh has no pattern",
+        ),
+    ],
+)
+def test_pattern_that_names_no_mesh_or_no_part_of_a_period_is_refused_in_one_line(changes, line):
+    for error in (changes, *changes.get("single_meshes", {}).values()):
+        error.get("transmission_error", {})["amplitude_um"] = 10
+    with pytest.raises(ConfigErrors) as caught:
+        parse(Transmission, section(**changes))
+    assert line in str(caught.value)
+    assert len(str(caught.value).splitlines()) == 1
 
 
 def test_one_line_overrides_one_body():

@@ -113,7 +113,7 @@ def paper_machine():
         torque=1327.6, tail_share=0.034, stiffness=Harmonics(np.array(sines), np.array(cosines))
     )
     error = Harmonics(np.array([0.0, -2.26761004e-5]), np.array([0.0, -1.05258953e-5]))
-    return replace(machine, error=error, error_in_step=True)
+    return replace(machine, error=error, error_lags=np.zeros(len(machine.layout.meshes)))
 
 
 @pytest.mark.parametrize("refine", [True, False])
