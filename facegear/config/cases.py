@@ -1,6 +1,7 @@
 """The cases of a config: the machine itself, and one case for every point of every study."""
 
 import itertools
+import json
 import re
 from collections.abc import Mapping
 from copy import deepcopy
@@ -8,20 +9,9 @@ from typing import Any
 
 from facegear.config.base import parse
 from facegear.config.model import Config, resolved
+from facegear.config.needs import stage_needs, stages_before
 from facegear.config.studies import Point, Study
 from facegear.errors import ConfigError, ConfigErrors
-
-STAGE_KEYS: dict[str, tuple[str, ...]] = {
-    "geometry": ("tooth_pair",),
-    "contact": ("tooth_pair", "mesh", "contact"),
-    "root_stress": ("tooth_pair", "mesh", "contact"),
-    "stiffness": ("tooth_pair", "mesh", "contact", "mesh_stiffness"),
-    "load_sharing": (
-        *("tooth_pair", "mesh", "contact", "mesh_stiffness"),
-        *("transmission", "dynamics", "load_sharing"),
-    ),
-}
-"""Config keys that each stage's results depend on, those of the stages before it included."""
 
 
 def expand_cases(values: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
@@ -87,12 +77,14 @@ def set_key(values: dict[str, Any], key: str, value: Any) -> None:
     inside[_position(inside, parts[-1], key, value)] = value
 
 
-def shared_source(cases: Mapping[str, Mapping[str, Any]], case: str, stage: str) -> str:
-    """The first case whose config agrees with that of `case` in everything `stage` depends on."""
-    wanted = [cases[case][key] for key in STAGE_KEYS[stage]]
-    return next(
-        other for other, values in cases.items() if [values[key] for key in STAGE_KEYS[stage]] == wanted
-    )
+def shared_sources(cases: Mapping[str, Mapping[str, Any]], stage: str) -> dict[str, str]:
+    """Of each case the first whose config agrees with it in everything that `stage` depends on."""
+    first: dict[str, str] = {}
+    found = {}
+    for case, values in cases.items():
+        needs = [stage_needs(rule, values) for rule in stages_before(stage, values)]
+        found[case] = first.setdefault(json.dumps(needs, sort_keys=True), case)
+    return found
 
 
 def _position(inside: Any, part: str, key: str, value: Any) -> str | int:

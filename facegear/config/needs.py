@@ -70,6 +70,13 @@ NEEDS: dict[str, Slice] = {
     },
 }
 
+GAPS_ONLY = {
+    "compliance": {
+        "tooth_pair": ("assembly", "pinion.tip_relief", "pinion.root_relief", "pinion.lead_crowning")
+    }
+}
+"""Keys inside an argument that a stage does without: they move unloaded flanks, and no node of the bodies."""
+
 UPSTREAM = {
     "contact": ("compliance",),
     "root_stress": ("contact",),
@@ -96,12 +103,16 @@ def stage_needs(rule: str, values: Mapping[str, Any]) -> dict[str, Any]:
     """
     if "transmission" in NEEDS[rule] and values["transmission"] is None:
         raise ConfigError("transmission", None, "required for modes, dynamics and load sharing")
-    return {
+    found = {
         name: _value(values, keys)
         if isinstance(keys, str)
         else {key.rsplit(".", 1)[-1]: _value(values, key) for key in keys}
         for name, keys in NEEDS[rule].items()
     }
+    for name, keys in GAPS_ONLY.get(rule, {}).items():
+        for key in keys:
+            found[name] = _without(found[name], key.split("."))
+    return found
 
 
 def stages_before(rule: str, values: Mapping[str, Any]) -> list[str]:
@@ -118,3 +129,11 @@ def _value(values: Any, key: str) -> Any:
     for part in key.split("."):
         values = values[part] if values is not None else None
     return values
+
+
+def _without(values: Any, parts: list[str]) -> Any:
+    """A copy of nested mappings without one key, given by its parts."""
+    if not isinstance(values, Mapping) or parts[0] not in values:
+        return values
+    rest = {key: value for key, value in values.items() if key != parts[0]}
+    return {**rest, parts[0]: _without(values[parts[0]], parts[1:])} if parts[1:] else rest

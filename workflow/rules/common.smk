@@ -1,6 +1,7 @@
 import os
 import re
 import sys
+from functools import cache
 from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
@@ -10,7 +11,7 @@ ROOT = Path(workflow.basedir)
 sys.path.insert(0, str(ROOT))
 os.environ.update(PYTHONPATH=str(ROOT), MPLBACKEND="Agg")
 
-from facegear.config.cases import expand_cases, shared_source
+from facegear.config.cases import expand_cases, shared_sources
 from facegear.config.load import load_values
 from facegear.config.needs import NEEDS, stage_needs
 from facegear.config.notes import notes, turns
@@ -131,10 +132,16 @@ def sections(*keys):
     return lambda wildcards: {key: CASES[wildcards.case][key] for key in keys}
 
 
+@cache
+def sources(rule):
+    """Of each case the one whose results of a rule it shares."""
+    return shared_sources(CASES, rule)
+
+
 def shared(rule, output):
     """Function of the wildcards giving an output of an earlier rule, shared by all cases alike up to it."""
     return lambda wildcards: str(getattr(rules, rule).output[output]).format(
-        case=shared_source(CASES, wildcards.case, rule)
+        case=sources(rule)[wildcards.case]
     )
 
 

@@ -1,3 +1,6 @@
+include: "functions/compliance.smk"
+
+
 rule compliance:
     "Flank compliance"
     output:

@@ -1,8 +1,8 @@
 rule contact:
     "Loaded tooth contact"
     input:
-        pinion="results/{case}/compliance/pinion.npz",
-        face_gear="results/{case}/compliance/face_gear.npz",
+        pinion=compliance("pinion"),
+        face_gear=compliance("face_gear"),
     output:
         ltca="results/{case}/contact/ltca.csv",
         by_torque="results/{case}/contact/by_torque.csv",

@@ -1,8 +1,8 @@
 rule root_stress:
     "Root stress of both gears"
     input:
-        pinion="results/{case}/compliance/pinion.npz",
-        face_gear="results/{case}/compliance/face_gear.npz",
+        pinion=compliance("pinion"),
+        face_gear=compliance("face_gear"),
         loads=shared("contact", "loads"),
     output:
         summary="results/{case}/strength/root_stress.csv",

@@ -1,6 +1,6 @@
 def changes_contact(case):
     """Whether a study's case solves a loaded contact of its own."""
-    return has_contact(case) and shared_source(CASES, case, "contact") != CASE
+    return has_contact(case) and sources("contact")[case] != CASE
 
 
 def contact_cases(study):
@@ -20,7 +20,7 @@ CONTACT_STUDY_FIGURES = [
 def studied(rule, output):
     """A file of the machine itself and of every case that a study of the contact shows."""
     path = str(getattr(rules, rule).output[output])
-    return [path.format(case=shared_source(CASES, case, rule)) for case in [CASE, *CONTACT_CASES]]
+    return [path.format(case=sources(rule)[case]) for case in [CASE, *CONTACT_CASES]]
 
 
 def studied_contacts():

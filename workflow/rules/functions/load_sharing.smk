@@ -22,7 +22,7 @@ def sharing_files(output, nominal=False):
     def files(wildcards):
         points = [f"{wildcards.case}/studies/{study}/{point}" for study, point in STUDY_POINTS]
         cases = [wildcards.case] * nominal + points
-        alike = [shared_source(CASES, case, "load_sharing") for case in cases]
+        alike = [sources("load_sharing")[case] for case in cases]
         return [rules.load_sharing.output[output].format(case=case) for case in alike]
 
     return files

@@ -1,0 +1,57 @@
+"""Designs that differ in their unloaded gaps alone share bodies and compliance."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from contact_bodies import STEEL, pair_design
+
+import facegear
+from facegear.config.cases import shared_sources
+from facegear.config.needs import stage_needs
+from facegear.contact.pair import BUILDERS
+from facegear.contact.teeth import elastic_tooth
+from facegear.geometry.design import Assembly, Relief
+from facegear.mesh.sizes import MeshSizes
+
+RELIEF = {"amount_um": 10, "start_mm": 0, "length_mm": 1}
+GAPS = {
+    "tooth_pair.assembly": {"offset_um": 20, "shaft_angle_error_deg": 0.01, "axial_shift_um": 30},
+    "tooth_pair.pinion.tip_relief": RELIEF,
+    "tooth_pair.pinion.root_relief": RELIEF,
+    "tooth_pair.pinion.lead_crowning": {**RELIEF, "length_mm": 10},
+}
+
+
+@pytest.mark.parametrize("body", ["pinion", "face_gear"])
+def test_assembly_errors_and_modifications_move_no_node_of_the_bodies(body):
+    nominal = pair_design()
+    relief = Relief(1e-5, 0.0, 1e-3)
+    teeth = replace(nominal.pinion, tip_relief=relief, root_relief=relief, lead_crowning=relief)
+    changed = replace(nominal, pinion=teeth, assembly=Assembly(2e-5, 2e-4, 3e-5))
+    meshes = [BUILDERS[body](design, MeshSizes(1.5e-3, 3.2e-3, 3e-3)) for design in (nominal, changed)]
+    np.testing.assert_array_equal(meshes[0].nodes, meshes[1].nodes)
+    designs = zip((nominal, changed), meshes, strict=True)
+    sides = [elastic_tooth(design, mesh, STEEL)[1] for design, mesh in designs]
+    for field in fields(sides[0]):
+        np.testing.assert_array_equal(getattr(sides[0], field.name), getattr(sides[1], field.name))
+
+
+def test_cases_that_differ_in_gaps_alone_share_one_compliance_but_no_contact():
+    nominal = facegear.example()
+    cases = {"nominal": nominal.values, "gaps": nominal.with_values({**GAPS, **wide()}).values}
+    cases["thick"] = nominal.with_values({"tooth_pair.pinion.width_mm": 18}).values
+    assert shared_sources(cases, "compliance") == {"nominal": "nominal", "gaps": "nominal", "thick": "thick"}
+    assert shared_sources(cases, "contact") == {name: name for name in cases}
+
+
+def test_what_is_left_out_for_the_compliance_stays_in_the_needs_of_the_contact():
+    changed = facegear.example().with_values({**GAPS, **wide()})
+    needs = {rule: stage_needs(rule, changed.values)["tooth_pair"] for rule in ("compliance", "contact")}
+    assert "assembly" not in needs["compliance"] and "tip_relief" not in needs["compliance"]["pinion"]
+    assert needs["contact"]["assembly"]["offset_um"] == 20
+
+
+def wide():
+    """Teeth of the example are thin enough already for these errors; only the machine's backlash is given."""
+    return {"transmission.backlash_um": 100}
