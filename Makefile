@@ -2,60 +2,76 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.locked
+TOOLS := $(VENV)/.tools
 CORES ?= 2
 
-.PHONY: all env check test lint docs ci notebooks benchmarks peers identify lock clean
+.PHONY: all env tools check test lint docs ci notebooks benchmarks peers identify lock clean
 
 all: check
 	$(BIN)/snakemake --cores $(CORES)
 
 env: $(READY)
 
-# uv fetches, unpacks and compiles in parallel; pip does it where only pip knows the package index. Without compiled
-# modules every job would compile the libraries anew where Python may not write them (PYTHONDONTWRITEBYTECODE).
+tools: $(TOOLS)
+
+# uv fetches and unpacks in parallel; pip does it where only pip knows the package index.
+define install
+	$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r $(1) \
+		|| $(BIN)/python -m pip install --quiet --require-hashes -r $(1)
+	$(BIN)/python -m compileall -q -j $(CORES) -x '/tests?/' $(VENV)/lib
+endef
+
+# What a run needs. Without compiled modules every job would compile the libraries anew where Python may not write
+# them (PYTHONDONTWRITEBYTECODE); nothing imports their tests.
 # The repository installs itself editable, so that notebooks and scripts find it from any folder.
-$(READY): requirements.lock pyproject.toml
+$(READY): requirements-run.lock pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	awk '/^[^ ]/ {wanted = /^uv==/} wanted' requirements.lock > $(VENV)/uv.lock
-	$(BIN)/python -m pip install --quiet --require-hashes -r $(VENV)/uv.lock
-	$(BIN)/uv pip install --quiet --compile-bytecode --python $(BIN)/python --require-hashes -r requirements.lock \
-		|| $(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
+	awk '/^[^ ]/ {wanted = /^(uv|setuptools)==/} wanted' requirements.lock > $(VENV)/installers.lock
+	$(BIN)/python -m pip install --quiet --require-hashes -r $(VENV)/installers.lock
+	$(call install,requirements-run.lock)
 	$(BIN)/uv pip install --quiet --python $(BIN)/python --no-deps --no-build-isolation --editable .
+	touch $@
+
+# What tests, checks, documentation and benchmarks need beside it.
+$(TOOLS): requirements.lock $(READY)
+	$(call install,requirements.lock)
 	touch $@
 
 check: env
 	@$(BIN)/python -m facegear.system_check
 
-test: check
+test: check tools
 	$(BIN)/python -m pytest -n $(CORES) --dist loadgroup
 
-lint: env
+lint: tools
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/snakefmt --check Snakefile workflow
 	$(BIN)/mypy
 
-docs: env
+docs: tools
 	$(BIN)/sphinx-build --jobs $(CORES) --fail-on-warning --keep-going --quiet docs docs/build
 
 # What CI runs: a complaint of lint or docs stops it before the tests. Here a study is also run on a Slurm of its own.
 ci: export FACEGEAR_SLURM = 1
 ci: lint docs test
 
-notebooks: env
+notebooks: tools
 	$(BIN)/jupyter execute --inplace examples/*.ipynb
 
-benchmarks: check
+benchmarks: check tools
 	$(BIN)/snakemake --cores $(CORES) benchmarks
 
-peers: check
+peers: check tools
 	$(BIN)/snakemake --cores $(CORES) peers
 
 identify: check
 	$(BIN)/snakemake --cores $(CORES) identify
 
+LOCK := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes pyproject.toml
 lock: env
-	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --extra dev --extra benchmark pyproject.toml -o requirements.lock
+	$(LOCK) --extra dev --extra benchmark -o requirements.lock
+	$(LOCK) --extra workflow -c requirements.lock -o requirements-run.lock
 
 clean:
 	rm -rf results/*/ .snakemake

@@ -15,3 +15,12 @@ def test_conda_file_holds_the_locked_versions():
     assert len(pinned) > 10
     for requirement in pinned:
         assert re.search(rf"^{re.escape(requirement)}( |$)", lock, re.M), requirement
+
+
+def test_runs_and_tests_use_the_same_versions():
+    run, whole = (
+        dict(re.findall(r"^(\S+)==(\S+)", (ROOT / name).read_text(), re.M))
+        for name in ("requirements-run.lock", "requirements.lock")
+    )
+    assert len(run) > 50
+    assert {name: whole.get(name) for name in run} == run
