@@ -91,6 +91,13 @@ def closed(packed: Packed, ends: Array, near: Closing, settings: Settings) -> in
     return near.period
 
 
+def wanders(packed: Packed, ends: Array, period: int) -> bool:
+    """Whether what changes over a period adds up instead of coming round: a drift, and no torus."""
+    gaps = ends[period:] - ends[:-period]
+    steady = (packed.weights * np.abs(gaps.mean(axis=0))).max()
+    return bool(steady > 0.5 * (packed.weights * np.abs(gaps)).max())
+
+
 def _at_rest(near: Closing, goal: float) -> bool:
     if near.residual > goal or np.isnan(near.trend):
         return False

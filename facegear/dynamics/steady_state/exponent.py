@@ -13,7 +13,10 @@ from facegear.dynamics.steady_state.averages import BATCHES, mean_interval
 from facegear.dynamics.steady_state.window import Window, run_disturbed, run_window
 
 Array = NDArray[np.float64]
-ALIGN = 2
+ALIGN, LEAST_ALIGN = 2, 32
+"""Batches, and least periods, for which a disturbance turns before its growth counts."""
+LEAST_WINDOW = 8 * BATCHES
+"""Growth over batches shorter than this swings from one to the next: its mean says nothing yet."""
 NEUTRAL = 2e-3
 """An exponent known to lie within this of zero, per mesh period, is neutral."""
 
@@ -51,12 +54,12 @@ def largest_exponent(packed: Packed, work: Work, state: Array, settings: Setting
     tangent[0, :, : packed.n] = np.random.default_rng(0).normal(size=(2, packed.n))
     tangent /= np.sqrt(((packed.weights * tangent) ** 2).sum())
     # The vector first turns into the direction of fastest growth.
-    align = ALIGN * max(1, settings.window // BATCHES)
+    align = max(ALIGN * settings.window // BATCHES, LEAST_ALIGN)
     ends, _ = run_disturbed(packed, work, state, tangent, align, settings)
     rates = np.zeros(0)
-    if settings.window < BATCHES:
-        # Too short a window to tell growth by.
-        more, rates = run_disturbed(packed, work, ends[-1], tangent, BATCHES, settings)
+    if settings.window < LEAST_WINDOW:
+        missing = LEAST_WINDOW - settings.window
+        more, rates = run_disturbed(packed, work, ends[-1], tangent, missing, settings)
         ends = np.concatenate([ends, more])
     for windows in range(1, 2**settings.extensions + 1):
         window = run_window(packed, work, ends[-1], settings.window, settings, tangent)

@@ -49,11 +49,33 @@ class Orbit:
     vectors: NDArray[np.complex128]
     liouville: float
 
+    @property
+    def moving(self) -> NDArray[np.bool_]:
+        """Which multipliers (2 n,) lie off the unit circle: all but the neutral ones of bodies afloat."""
+        return np.abs(1.0 - np.abs(self.multipliers)) > AFLOAT
+
+    @property
+    def holding(self) -> float:
+        """By which factor a period brings the slowest disturbance back, those of bodies afloat left out."""
+        return float(np.abs(self.multipliers[self.moving]).max(initial=0.0))
+
     def parts(self, packed: Packed, off: Array) -> NDArray[np.complex128]:
         """Components (..., 2 n) of states (..., 2, padded n) off the orbit along its own directions."""
         flat = off[..., : packed.n].reshape(*off.shape[:-2], -1)
         found = np.linalg.lstsq(self.vectors, np.atleast_2d(flat).T.astype(complex), rcond=None)[0]
         return np.reshape(found.T, flat.shape)
+
+    def distance(self, packed: Packed, state: Array, rates: float = 1.0) -> float:
+        """How far a state (2, padded n) is off, as a change(), wherever bodies afloat may be.
+
+        rates: by which velocities are divided.
+        """
+        off = state - np.array([self.displacement, self.velocity])
+        afloat = ~self.moving
+        shifted = self.vectors[:, afloat] @ self.parts(packed, off)[afloat]
+        off[:, : packed.n] -= shifted.real.reshape(2, -1)
+        off[1] /= rates
+        return change(packed, off, 0.0 * off)
 
     def leaving(self, packed: Packed, off: Array) -> Array:
         """A state (2, padded n) of change() one along the leading direction, to the side of `off`."""
@@ -240,8 +262,7 @@ def drawn_in(packed: Packed, orbit: Orbit, ends: Array, since: int, tolerance: f
     if len(back) < RETURNS + 1:
         return False
     off = back - np.array([orbit.displacement, orbit.velocity])
-    moving = np.abs(1.0 - np.abs(orbit.multipliers)) > AFLOAT
-    slow = 1.0 - float(np.abs(orbit.multipliers[moving]).max(initial=0.0))
+    moving, slow = orbit.moving, 1.0 - orbit.holding
     distance = (packed.weights * np.abs(off[-1])).max() / packed.scale
     if distance <= min(10.0 * tolerance / slow, 0.1 * slow):
         return True

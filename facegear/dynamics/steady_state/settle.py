@@ -10,7 +10,7 @@ from facegear.dynamics.integrator.periods import make_log, run_periods
 from facegear.dynamics.integrator.work import Work
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.closing import TREND, VERY_SMALL, Closing, closed, closing
-from facegear.dynamics.steady_state.orbits import AFLOAT, Orbit, change, changes, drawn_in, require, shoot
+from facegear.dynamics.steady_state.orbits import AFLOAT, Orbit, changes, drawn_in, require, shoot
 
 Array = NDArray[np.float64]
 NEWTON_COST = 20
@@ -28,7 +28,7 @@ LONGER = 4
 """A run that comes nearer and nearer is watched for so many times as long."""
 NOISE, DRAWN = 50.0, 0.95
 """Steps chosen anew in each period may move a run by NOISE times the tolerance; an orbit whose multipliers
-are below DRAWN holds it there."""
+are below DRAWN holds it there. They also push a body afloat, whose multiplier is one, on and on."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,15 +177,16 @@ class Run:
         noise = NOISE * self.settings.tolerance
         close = np.flatnonzero(changes(self.packed, self.ends, self.settings.longest_period) < noise)
         orbit = self._shot(int(close[0]) + 1) if close.size else None
-        if orbit is None or abs(orbit.multipliers[0]) > DRAWN:
+        if orbit is None or orbit.holding > DRAWN:
             return None
-        if change(self.packed, self.state, np.array([orbit.displacement, orbit.velocity])) > noise:
+        # Tolerances are those of places: the fastest motion may err in its velocity by so much more.
+        if orbit.distance(self.packed, self.state, max(self.packed.fastest, 1.0)) > noise:
             return None
         return self._result(orbit.period, near.residual, orbit if self.settings.refine else None)
 
     def _is_here(self, orbit: Orbit) -> bool:
         """Whether an orbit is the one that the run stands on: what is left to decay, and errors of steps."""
-        moved = change(self.packed, self.state, np.array([orbit.displacement, orbit.velocity]))
+        moved = orbit.distance(self.packed, self.state)
         settings, slow = self.settings, max(1.0 - abs(orbit.multipliers[0]), 1e-3)
         return moved <= max(20.0 * settings.periodic_residual, 10.0 * settings.tolerance) / slow
 

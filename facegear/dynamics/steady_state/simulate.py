@@ -14,7 +14,7 @@ from facegear.dynamics.integrator.system import System, machine_system
 from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.averages import Averages, Moments
-from facegear.dynamics.steady_state.closing import FALLING, SMALL, closing
+from facegear.dynamics.steady_state.closing import FALLING, SMALL, closing, wanders
 from facegear.dynamics.steady_state.exponent import Exponent, Growth, largest_exponent
 from facegear.dynamics.steady_state.mesh_samples import by_mesh, each_deflection, mesh_forces, mesh_shares
 from facegear.dynamics.steady_state.prepare import prepare
@@ -204,7 +204,8 @@ def _class(
     escaping = motion is Motion.CHAOTIC and min(settled.residual, near.residual) < ESCAPING
     by_period = deflections.reshape(window.periods, window.per_period, -1).std(axis=1)
     converging = near.residual < SMALL and near.trend < FALLING
-    if escaping or converging or drifts(window.averages, by_period):
+    drifting = motion is Motion.QUASI_PERIODIC and wanders(packed, window.ends, near.period)
+    if escaping or converging or drifting or drifts(window.averages, by_period):
         return Motion.NOT_SETTLED
     return motion
 
