@@ -30,14 +30,21 @@ PROGRAM = "ccx"
 
 
 @dataclass(frozen=True)
-class PeerResult:
-    """Moment about the pinion's axis (N m), wall time (s), memory (GB), free dof and version of a run."""
+class Run:
+    """Wall time (s), memory (GB) and version of a run."""
 
-    torque: float
     seconds: float
     gigabytes: float
-    dof: int
     version: str
+
+
+@dataclass(frozen=True)
+class PeerResult:
+    """Moment about the pinion's axis (N m), free dof, and what the run took."""
+
+    torque: float
+    dof: int
+    run: Run
 
 
 def program() -> str | None:
@@ -108,6 +115,21 @@ def run_deck(path: Path, threads: int, dof: int, timeout: float = 3600.0) -> Pee
 
     Raises FacegearError if ccx is not installed, fails, or prints no moment.
     """
+    run = run_program(path, threads, timeout)
+    result = path.with_suffix(".dat")
+    moments = re.findall(
+        r"^\s*\d+\s+(\S+)\s+(\S+)\s+(\S+)\s*$", result.read_text() if result.exists() else "", re.M
+    )
+    if not moments:
+        raise FacegearError(f"{PROGRAM} printed no moment for {path}: see {path.with_suffix('.log')}")
+    return PeerResult(torque=1e-3 * abs(float(moments[-1][1])), dof=dof, run=run)
+
+
+def run_program(path: Path, threads: int, timeout: float = 3600.0) -> Run:
+    """Run ccx on a deck, its output in a log beside it.
+
+    Raises FacegearError if ccx is not installed or fails.
+    """
     found = program()
     if found is None:
         raise FacegearError(f"{PROGRAM} is not installed (Debian: apt-get install calculix-ccx)")
@@ -127,22 +149,12 @@ def run_deck(path: Path, threads: int, dof: int, timeout: float = 3600.0) -> Pee
     )
     seconds = time.perf_counter() - start
     memory = max(before, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
-    (path.parent / f"{path.stem}.log").write_text(done.stdout + done.stderr, encoding="utf-8")
-    result = path.with_suffix(".dat")
-    moments = re.findall(
-        r"^\s*\d+\s+(\S+)\s+(\S+)\s+(\S+)\s*$", result.read_text() if result.exists() else "", re.M
-    )
-    if done.returncode != 0 or not moments:
-        raise FacegearError(f"{PROGRAM} failed on {path}: see {path.parent / f'{path.stem}.log'}")
+    log = path.with_suffix(".log")
+    log.write_text(done.stdout + done.stderr, encoding="utf-8")
+    if done.returncode != 0:
+        raise FacegearError(f"{PROGRAM} failed on {path}: see {log}")
     version = re.search(r"Version ([\d.]+)", done.stdout)
-    along = float(moments[-1][1])
-    return PeerResult(
-        torque=1e-3 * abs(along),
-        seconds=seconds,
-        gigabytes=memory * 1024 / 1e9,
-        dof=dof,
-        version=version.group(1) if version else "unknown",
-    )
+    return Run(seconds, memory * 1024 / 1e9, version.group(1) if version else "unknown")
 
 
 def _placed(

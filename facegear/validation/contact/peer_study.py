@@ -88,10 +88,10 @@ def peer_study(
                         "error_percent": 100 * (torque / exact - 1),
                         "calculix_error_percent": 100 * (peer.torque / exact - 1),
                         "seconds": seconds,
-                        "calculix_seconds": peer.seconds,
-                        "time_ratio": peer.seconds / seconds,
-                        "calculix_memory_gb": peer.gigabytes,
-                        "calculix_version": peer.version,
+                        "calculix_seconds": peer.run.seconds,
+                        "time_ratio": peer.run.seconds / seconds,
+                        "calculix_memory_gb": peer.run.gigabytes,
+                        "calculix_version": peer.run.version,
                     }
                 )
     return pd.DataFrame(rows)

@@ -1,0 +1,74 @@
+"""Root stress under an even load along a line of the flank: what meshes and solvers are compared by."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.contact.bodies.compliance import flank_compliance
+from facegear.contact.bodies.surface import interpolation
+from facegear.contact.options import Ends, Refinement
+from facegear.contact.pair import BUILDERS
+from facegear.contact.root_gauges import RootGauges, root_gauges
+from facegear.contact.teeth import ContactSide, elastic_tooth
+from facegear.geometry.design import Material, PairDesign
+from facegear.mesh.sizes import MeshSizes
+from facegear.mesh.tooth import ToothMesh
+
+Array = NDArray[np.float64]
+
+HEIGHT = 0.25
+"""Where on the flank the line lies, 0 at its tip end to 1 at its root end, evenly in the mesh's rows."""
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedTooth:
+    """A tooth under an even line load of 1 N in all: forces `load` (nu, nv, 3) N on its flank's nodes.
+
+    `stress` (2, a, b) Pa at the gauges of its fillets.
+    """
+
+    mesh: ToothMesh
+    side: ContactSide
+    load: Array
+    gauges: RootGauges
+    stress: Array
+
+
+def loaded_tooth(
+    design: PairDesign,
+    body: str,
+    sizes: MeshSizes,
+    material: Material,
+    teeth: int,
+    ends: Ends = "free",
+    on_corners: bool = False,
+) -> LoadedTooth:
+    """Stress of the middle one of `teeth` teeth of `pinion` or `face_gear`.
+
+    `on_corners` moves the line to the nearest row of element corners, which 20-node elements share.
+    Raises FacegearError if the mesh cannot be factorised.
+    """
+    mesh = BUILDERS[body](design, sizes)
+    elastic, side = elastic_tooth(design, mesh, material)
+    gauges, rows = root_gauges(mesh, material)
+    found = flank_compliance(elastic, Refinement(), teeth, 0, ends, gauges=rows)
+    load = line_load(elastic.points[elastic.flank], side, on_corners)
+    stress = -(found.readings[0] @ load).reshape(gauges.position.shape[:3])
+    forces = -load.reshape(*side.shape, 1) * elastic.normals
+    return LoadedTooth(mesh, side, forces, gauges, stress)
+
+
+def line_load(points: Array, side: ContactSide, on_corners: bool) -> Array:
+    """Forces (n,) N on the nodes of a contact surface with `points` (nu, nv, 3), 1 N in all."""
+    row = HEIGHT * (side.flank_rows - 1)
+    row = 2.0 * round(row / 2.0) if on_corners else row
+    columns = side.shape[1]
+    at = np.stack([np.full(columns, row), np.arange(float(columns))], axis=1)
+    along = interpolation(at, side.shape)
+    line = along @ points.reshape(-1, 3)
+    lengths = np.linalg.norm(line[2::2] - line[:-2:2], axis=1)
+    weights = np.zeros(columns)
+    for offset, part in ((0, 1.0), (1, 4.0), (2, 1.0)):
+        weights[offset : columns - 2 + offset : 2] += part * lengths / 6.0
+    return np.asarray(along.T @ (weights / weights.sum()))
