@@ -47,7 +47,7 @@ rule benchmarks:
 
 rule peers:
     input:
-        f"results/{CASE}/benchmarks/calculix.csv",
+        expand(f"results/{CASE}/benchmarks/{{name}}.csv", name=["calculix", "calculix_stress"]),
 
 
 rule identify:

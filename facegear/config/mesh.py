@@ -1,11 +1,12 @@
 """The section mesh: a named resolution or sizes of one's own."""
 
+from dataclasses import replace
 from typing import Literal
 
 from pydantic import Field
 
 from facegear.config.base import Section
-from facegear.mesh.sizes import MeshSizes, named_sizes
+from facegear.mesh.sizes import MeshSizes, named_sizes, thin_fillet
 
 
 class SizesSection(Section):
@@ -17,12 +18,19 @@ class SizesSection(Section):
     fillet_mm: float | None = Field(
         default=None, gt=0, le=100, description="along the fillet's profile; null: as across the flank"
     )
+    fillet_depth_mm: float | None = Field(
+        default=None, gt=0, le=100, description="below a thin fillet; null: half of profile_mm"
+    )
 
 
 class Mesh(Section):
     """How fine both bodies are meshed."""
 
     resolution: Literal["coarse", "medium", "fine", "finest"] | SizesSection = "coarse"
+    thin_fillet: bool | None = Field(
+        default=None,
+        description="first row of elements thinner below the fillets; null: where root stress is asked for",
+    )
     exported_teeth: int = Field(
         default=3, ge=1, le=2000, description="teeth in mesh files, at most all of them"
     )
@@ -30,12 +38,18 @@ class Mesh(Section):
 
 def mesh_sizes(section: Mesh, module: float) -> MeshSizes:
     """Sizes in SI units for a module (m)."""
-    sizes = section.resolution
-    if isinstance(sizes, str):
-        return named_sizes(sizes, module)
+    asked = section.resolution
+    name = asked if isinstance(asked, str) else ""
+    sizes = own_sizes(asked) if isinstance(asked, SizesSection) else named_sizes(asked, module)
+    return thin_fillet(sizes, name) if section.thin_fillet else replace(sizes, fillet_depth=None)
+
+
+def own_sizes(sizes: SizesSection) -> MeshSizes:
+    """Sizes of one's own in SI units."""
     return MeshSizes(
         profile=1e-3 * sizes.profile_mm,
         width=1e-3 * sizes.width_mm,
         thickness=1e-3 * sizes.thickness_mm,
         fillet=None if sizes.fillet_mm is None else 1e-3 * sizes.fillet_mm,
+        fillet_depth=None if sizes.fillet_depth_mm is None else 1e-3 * sizes.fillet_depth_mm,
     )

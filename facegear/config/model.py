@@ -1,5 +1,6 @@
 """The whole config and the checks that reach across its sections."""
 
+from dataclasses import replace
 from typing import Any
 
 from pydantic import Field, model_validator
@@ -29,7 +30,7 @@ from facegear.config.tolerances import Tolerances
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
 from facegear.config.transmission import Transmission
 from facegear.config.transmission_error import FROM_CONTACT
-from facegear.contact.resolution import check_memory, check_resolution
+from facegear.contact.resolution import check_fillet, check_memory, check_resolution
 from facegear.errors import ConfigError
 
 
@@ -83,10 +84,18 @@ class Config(Section):
             raise ConfigError("tooth_pair.pinion", None, allowed)
         if self.mesh_stiffness.source != "harmonics" or self._root_stress:
             design = pair_design(pair)
-            sizes = mesh_sizes(self.mesh, design.module)
-            check_resolution(design, materials(pair), sizes, contact_plan(self.contact))
-            check_memory(design, sizes, contact_plan(self.contact), memory_here())
+            sizes = mesh_sizes(self.mesh_used, design.module)
+            plan = contact_plan(self.contact)
+            check_resolution(design, materials(pair), sizes, plan)
+            check_fillet(design, sizes, replace(plan, root_stress=self._root_stress))
+            check_memory(design, sizes, plan, memory_here())
         self._check_strength()
+
+    @property
+    def mesh_used(self) -> Mesh:
+        """The mesh with fillets as root stress needs them, unless it says itself what they are."""
+        asked = self.mesh.thin_fillet
+        return self.mesh.model_copy(update={"thin_fillet": self._root_stress if asked is None else asked})
 
     @property
     def _root_stress(self) -> bool:
@@ -133,8 +142,8 @@ def resolved(config: Config) -> dict[str, Any]:
     """Plain values of a config with what follows from other keys filled in.
 
     That is the mean stiffness where order 0 of the harmonics gives it, the torque at which k is taken, the
-    backlash of the dynamics, the gauges that a rating needs and how often a turn loads a tooth: an input
-    pinion's once by every face gear, a face gear's once by every pinion.
+    backlash of the dynamics, the gauges that a rating needs, the fillets that gauges need, and how often a
+    turn loads a tooth: an input pinion's once by every face gear, a face gear's once by every pinion.
     """
     filled = config.model_dump(mode="json")
     if config.strength is not None and (machine := config.transmission) is not None:
@@ -142,6 +151,7 @@ def resolved(config: Config) -> dict[str, Any]:
             section = filled["strength"][body]
             section["cycles_per_turn"] = section["cycles_per_turn"] or len(meshes)
     filled["contact"]["root_stress"] = config.contact.root_stress or config.strength is not None
+    filled["mesh"] = config.mesh_used.model_dump(mode="json")
     stiffness = filled["mesh_stiffness"]
     stiffness["mean_n_per_m"] = config.mesh_stiffness.mean
     if stiffness["source"] != "harmonics" and stiffness["torque_n_m"] is None:

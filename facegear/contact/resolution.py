@@ -5,10 +5,13 @@ from math import pi, sin, sqrt
 from facegear.contact.options import ContactPlan
 from facegear.errors import ConfigError
 from facegear.geometry.design import Material, PairDesign
+from facegear.geometry.fillets import smallest_radius
 from facegear.mesh.sizes import MeshSizes
 
 COARSEST = 1.5
 """Node distance over the strip's half-width that is still let through: one or two nodes in contact."""
+DEEPEST = 2.0
+"""Depth of the first row of elements below a fillet over its smallest radius: root stress errs by some 6 %."""
 MEMORY_ERROR = 1.2
 """Largest factor between the estimate of memory and what was measured."""
 
@@ -79,3 +82,18 @@ def check_resolution(
             f"too coarse to resolve contact: at most {largest:.3g} mm with contact.refinement.profile = "
             f"{plan.refinement.profile}",
         )
+
+
+def check_fillet(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) -> None:
+    """Refuse a mesh whose elements are too large for the sharpest fillet, where its stress is asked for.
+
+    Raises ConfigError.
+    """
+    radius = min(smallest_radius(design, body) for body in ("pinion", "face_gear"))
+    depth = sizes.fillet_depth or sizes.profile
+    if plan.root_stress and depth > DEEPEST * radius:
+        allowed = (
+            f"too coarse to resolve the fillets' stress: at most {1e3 * DEEPEST * radius:.3g} mm, "
+            f"{DEEPEST:g} times their smallest radius"
+        )
+        raise ConfigError("mesh.resolution", f"{1e3 * depth:.3g} mm below the fillets", allowed)

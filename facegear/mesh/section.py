@@ -15,11 +15,18 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class SectionPlan:
-    """Where the outline's segments begin and end in sigma, and the topology."""
+    """Where the outline's segments begin and end in sigma, and the topology.
+
+    first_rows: depths t at which the first two rows end; thinner: what the first row keeps of its depth below
+    the fillet; ramp: columns over which it does so on the flank's side.
+    """
 
     breaks: dict[str, tuple[float, float]]
     half: HalfSection
     floor_height: float
+    first_rows: tuple[float, float]
+    thinner: float
+    ramp: float
 
 
 def plan_section(outline: Outline, sizes: MeshSizes) -> SectionPlan:
@@ -58,7 +65,16 @@ def plan_section(outline: Outline, sizes: MeshSizes) -> SectionPlan:
     block = max(1, round(below / (1.5 * sizes.thickness)))
     column_levels = [levels] * wall + [floor_levels] * floor_columns
     half = half_section(rows, column_levels, (wall, floor_columns), block)
-    return SectionPlan(breaks, half, floor)
+    first, second = rows[0].t1, rows[min(1, len(rows) - 1)].t1
+    thinner = (sizes.fillet_depth or np.inf) / (first * depth) if second > first else 1.0
+    return SectionPlan(
+        breaks=breaks,
+        half=half,
+        floor_height=floor,
+        first_rows=(first, second),
+        thinner=min(1.0, thinner),
+        ramp=1.0 / fine,
+    )
 
 
 def _floor_height(outline: Outline) -> float:
@@ -104,7 +120,7 @@ def section_nodes(outline: Outline, plan: SectionPlan) -> tuple[Array, Array]:
             outer_angle[on], outer_height[on] = outline.points(name, fraction)
     inner_angle, inner_height = _inner_line(outline, plan, sigma)
 
-    inward = np.minimum(half.t, 1.0)[:, None]
+    inward = _depth(plan, sigma[index])[:, None]
     angle = (1 - inward) * outer_angle[index] + inward * inner_angle[index][:, None]
     height = (1 - inward) * outer_height[index] + inward * inner_height[index]
     below = half.t > 1
@@ -112,6 +128,19 @@ def section_nodes(outline: Outline, plan: SectionPlan) -> tuple[Array, Array]:
     for values in (angle, height):
         _straighten(half, values)
     return angle, height
+
+
+def _depth(plan: SectionPlan, sigma: Array) -> Array:
+    """Depth (nodes,) of the half section's nodes at sigma, the first row thinner below the fillet."""
+    t = np.minimum(plan.half.t, 1.0)
+    if plan.thinner == 1.0:
+        return t
+    first, second = plan.first_rows
+    (start, _), (_, end) = plan.breaks["fillet_upper"], plan.breaks["fillet_lower"]
+    below = np.interp(sigma, [start, start + plan.ramp, end, end + 1.0], [0.0, 1.0, 1.0, 0.0])
+    kept = 1.0 - (1.0 - plan.thinner) * below
+    beyond = kept * first + (t - first) * (second - kept * first) / (second - first)
+    return np.where(t <= first, kept * t, np.where(t < second, beyond, t))
 
 
 def _straighten(half: HalfSection, values: Array) -> None:

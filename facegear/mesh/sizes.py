@@ -1,6 +1,6 @@
-"""How fine a mesh is: three lengths, and the named resolutions."""
+"""How fine a mesh is: three lengths, what the fillet takes for itself, and the named resolutions."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -9,13 +9,15 @@ class MeshSizes:
 
     profile: along the flank's profile at its surface; width: along the face; thickness: largest size inside
     the tooth and the body below it. Between surface and inside the mesh coarsens three to one per level.
-    fillet: along the fillet's profile, None as along the flank's.
+    fillet: along the fillet's profile, None as along the flank's; fillet_depth: of the first row of elements
+    below the fillet, None as below the flank.
     """
 
     profile: float
     width: float
     thickness: float
     fillet: float | None = None
+    fillet_depth: float | None = None
 
 
 RESOLUTIONS = {
@@ -25,6 +27,18 @@ RESOLUTIONS = {
     "finest": (0.027, 0.16, 0.27),
 }
 """Profile, width and thickness in modules: at m = 3.75 mm the finest resolves 0.1 mm across the profile."""
+
+THIN = {"coarse": 0.4}
+"""First row below the fillet where stress is read, in `profile`, from convergence (docs/strength.md)."""
+THIN_ROW = 0.5
+"""The same of other resolutions."""
+
+
+def thin_fillet(sizes: MeshSizes, name: str = "") -> MeshSizes:
+    """Sizes with the row below the fillet that reading stress there takes, unless they give one."""
+    if sizes.fillet_depth is not None:
+        return sizes
+    return replace(sizes, fillet_depth=THIN.get(name, THIN_ROW) * sizes.profile)
 
 
 def named_sizes(name: str, module: float) -> MeshSizes:

@@ -87,3 +87,15 @@ rule calculix_peer:
         **values_of("tooth_pair"),
     script:
         "../scripts/calculix_peer.py"
+
+
+rule calculix_stress_peer:
+    "Fillet stress by CalculiX"
+    output:
+        table="results/{case}/benchmarks/calculix_stress.csv",
+        manifest="results/{case}/benchmarks/calculix_stress.provenance.json",
+    threads: 2
+    params:
+        **values_of("tooth_pair"),
+    script:
+        "../scripts/calculix_stress_peer.py"

@@ -47,7 +47,7 @@ def loaded_tooth(
     """Stress of the middle one of `teeth` teeth of `pinion` or `face_gear`.
 
     `on_corners` moves the line to the nearest row of element corners, which 20-node elements share.
-    Raises FacegearError if the mesh cannot be factorised.
+    Sizes as they are given. Raises FacegearError if the mesh cannot be factorised.
     """
     mesh = BUILDERS[body](design, sizes)
     elastic, side = elastic_tooth(design, mesh, material)

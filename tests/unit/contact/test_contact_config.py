@@ -1,3 +1,4 @@
+from dataclasses import replace
 from math import radians
 
 import pytest
@@ -6,10 +7,10 @@ from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
 from facegear.contact.pair import gear_flank
-from facegear.contact.resolution import check_resolution, half_width
+from facegear.contact.resolution import check_fillet, check_resolution, half_width
 from facegear.errors import ConfigError, ConfigErrors
 from facegear.geometry.design import FaceGear, Material, PairDesign, Pinion, Shaper
-from facegear.mesh.sizes import MeshSizes, named_sizes
+from facegear.mesh.sizes import MeshSizes, named_sizes, thin_fillet
 
 STEEL = Material(206e9, 0.3)
 M = 3.75e-3
@@ -51,6 +52,14 @@ def test_mesh_that_cannot_see_the_strip_is_refused_with_the_size_that_can():
     check_resolution(DESIGN, (STEEL, STEEL), named_sizes("coarse", M), plan())
     with pytest.raises(ConfigError, match="at most"):
         check_resolution(DESIGN, (STEEL, STEEL), MeshSizes(6e-3, 6e-3, 6e-3), plan(cuts=Refinement()))
+
+
+def test_mesh_too_coarse_for_the_sharpest_fillet_is_refused_where_its_stress_is_asked_for():
+    sizes = named_sizes("coarse", M)
+    check_fillet(DESIGN, sizes, plan())
+    check_fillet(DESIGN, thin_fillet(sizes, "coarse"), replace(plan(), root_stress=True))
+    with pytest.raises(ConfigError, match=r"0.75 mm below the fillets.*at most 0.442 mm"):
+        check_fillet(DESIGN, sizes, replace(plan(), root_stress=True))
 
 
 def test_sector_larger_than_the_gear_is_refused():

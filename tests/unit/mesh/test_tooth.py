@@ -9,7 +9,7 @@ from skfem import ElementHex2
 from facegear.geometry import face_gear, pinion
 from facegear.mesh.hexahedra import facet_basis, hex_mesh
 from facegear.mesh.quality import scaled_jacobians, volume
-from facegear.mesh.sizes import RESOLUTIONS, named_sizes
+from facegear.mesh.sizes import RESOLUTIONS, named_sizes, thin_fillet
 from facegear.mesh.tooth import CORNERS, gear_tooth, pinion_tooth
 
 
@@ -32,6 +32,25 @@ def test_flank_and_fillet_nodes_lie_on_the_analytic_surface_at_every_level(desig
             exact = surface_points(design, mesh.body, name, grid) * [sign, 1, 1]
             assert np.max(np.abs(mesh.nodes[grid.nodes] - exact)) < 1e-12
     assert scaled_jacobians(mesh.nodes, mesh.hexes).min() > 0
+
+
+@pytest.mark.parametrize("level", ["coarse", "medium"])
+@pytest.mark.parametrize("build", [pinion_tooth, gear_tooth])
+def test_thin_fillet_moves_nothing_but_the_first_rows_below_it(design, build, level):
+    sizes = thin_fillet(named_sizes(level, design.module), level)
+    plain, thin = (build(design, one) for one in (replace(sizes, fillet_depth=None), sizes))
+    assert scaled_jacobians(thin.nodes, thin.hexes).min() > 0
+    moved = np.linalg.norm(thin.nodes - plain.nodes, axis=1) > 1e-12
+    for name in ("flank_right", "fillet_right"):
+        assert not moved[thin.surfaces[name].nodes].any()
+    fillet = thin.surfaces["fillet_right"].nodes[len(thin.surfaces["fillet_right"].nodes) // 2]
+    below = np.isin(thin.hexes, fillet).any(axis=1)
+    inner = [np.setdiff1d(one.hexes[below], one.surfaces["fillet_right"].nodes) for one in (thin, plain)]
+    depths = [
+        np.linalg.norm(one.nodes[rows][:, None] - one.nodes[fillet], axis=2).min(axis=0).mean()
+        for one, rows in zip((thin, plain), inner, strict=True)
+    ]
+    assert depths[0] == pytest.approx(sizes.fillet_depth / sizes.profile * depths[1], rel=0.3)
 
 
 def test_opposite_side_is_the_exact_mirror(tooth):

@@ -1,0 +1,29 @@
+"""How sharp the fillets of both gears are."""
+
+import numpy as np
+
+from facegear.geometry import face_gear, pinion
+from facegear.geometry.design import PairDesign
+
+SAMPLES = 401
+"""Points of a section, evenly in its parameter."""
+
+
+def smallest_radius(design: PairDesign, body: str) -> float:
+    """Smallest radius of curvature (m) of a fillet's sections: the pinion's, or the gear's at both ends."""
+    if body == "pinion":
+        gamma = np.linspace(design.pressure_angle, np.pi / 2, SAMPLES)
+        radius, angle = pinion.trochoid_point(design, gamma)
+        return _sharpest(radius * np.sin(angle), radius * np.cos(angle))
+    found = []
+    for end in (design.face_gear.inner_radius, design.face_gear.outer_radius):
+        chi = float(face_gear.fillet_end(design, end)) * np.linspace(1.0, 0.0, SAMPLES)
+        angle, z = face_gear.fillet_section(design, end, chi)
+        found.append(_sharpest(end * angle, z))
+    return min(found)
+
+
+def _sharpest(x: np.ndarray, z: np.ndarray) -> float:
+    dx, dz = np.gradient(x), np.gradient(z)
+    bend = np.abs(dx * np.gradient(dz) - dz * np.gradient(dx)) / np.hypot(dx, dz) ** 3
+    return float(1.0 / bend[2:-2].max())
