@@ -11,7 +11,7 @@ from facegear.mesh.sizes import MeshSizes
 COARSEST = 1.5
 """Node distance over the strip's half-width that is still let through: one or two nodes in contact."""
 DEEPEST = 2.0
-"""Depth of the first row of elements below a fillet over its smallest radius: root stress errs by some 6 %."""
+"""Depth of the first row below a fillet over its smallest radius, with which root stress errs by some 6 %."""
 MEMORY_ERROR = 1.2
 """Largest factor between the estimate of memory and what was measured."""
 

@@ -1,6 +1,6 @@
 """Fillet stress beside CalculiX's own: the same sector, mesh and nodal forces, C3D20 elements, no contact.
 
-Two comparisons: its displacements read by our gauges (two solutions, one way from displacement to stress), and
+Two comparisons: its displacements read by our gauges (two solutions, one way on from there), and
 its own stresses at the nodes of the surface, brought there from the integration points of its elements and
 averaged (two ways to a stress as well).
 """
