@@ -25,9 +25,22 @@ def load_sharing_reference(
     """`reference` and `speeds` (tables). Raises NotConverged naming the speed."""
     machine = wired_machine(transmission, teeth, harmonics)
     wanted = sharing_options(parse(LoadSharing, options))
-    reference = reference_table(machine, settings(parse(Accuracy, accuracy)), wanted)
     speeds = speed_range_table(machine, settings(parse(Accuracy, range_accuracy)), wanted)
+    reference = slow_reference(harmonics, transmission, teeth, accuracy, options)
     return Outcome({"reference": reference, "speeds": speeds}, _summary(speeds))
+
+
+def slow_reference(
+    harmonics: pd.DataFrame,
+    transmission: Mapping[str, Any],
+    teeth: Mapping[str, Any],
+    accuracy: Mapping[str, Any],
+    options: Mapping[str, Any],
+) -> pd.DataFrame:
+    """The table `reference` alone: at rest and running slowly, without the range of speeds."""
+    machine = wired_machine(transmission, teeth, harmonics)
+    wanted = sharing_options(parse(LoadSharing, options))
+    return reference_table(machine, settings(parse(Accuracy, accuracy)), wanted)
 
 
 def _summary(speeds: pd.DataFrame) -> str:

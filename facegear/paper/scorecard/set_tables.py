@@ -12,7 +12,7 @@ from facegear.stages.dynamics_response import dynamics_response
 from facegear.stages.dynamics_sweep import dynamics_sweep
 from facegear.stages.dynamics_sweep_chunk import dynamics_sweep_chunk
 from facegear.stages.load_sharing import load_sharing
-from facegear.stages.load_sharing_reference import load_sharing_reference
+from facegear.stages.load_sharing_reference import slow_reference
 from facegear.stages.outcome import Outcome
 from facegear.stages.stiffness import stiffness
 
@@ -27,13 +27,14 @@ def set_tables(base: Values, points: Mapping[tuple[str, str], Values], ltca: pd.
     harmonics = stiffness(**stage_needs("stiffness", base), ltca=ltca).content["harmonics"]
     response = dynamics_response(harmonics, **stage_needs("dynamics_response", base))
     sharing = _sharing({(NOMINAL, NOMINAL): base, **points}, harmonics)
-    reference = load_sharing_reference(harmonics, **stage_needs("load_sharing_reference", base))
+    needs = stage_needs("load_sharing_reference", base)
+    reference = slow_reference(harmonics, **{key: needs[key] for key in needs if key != "range_accuracy"})
     return {
         **response.content,
         **_sweep(base, harmonics),
         "sharing": collected({key: one.content["summary"] for key, one in sharing.items()}),
         "curves": collected({key: one.content["curve"] for key, one in sharing.items()}),
-        "reference": reference.content["reference"],
+        "reference": reference,
     }
 
 
