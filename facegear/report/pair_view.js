@@ -3,19 +3,20 @@
 (() => {
   const VERTEX = `#version 300 es
     uniform mat4 camera; uniform mat3 turn;
-    in vec3 point; in vec2 load;
-    out vec3 place; out vec2 carried;
+    in vec3 point; in vec3 load;
+    out vec3 place; out vec3 carried;
     void main() { place = turn * point; carried = load; gl_Position = camera * vec4(place, 1.0); }`;
   const FRAGMENT = `#version 300 es
     precision highp float;
     uniform vec4 colour; uniform bool painted; uniform vec3 scale[9]; uniform vec3 eye;
-    in vec3 place; in vec2 carried; out vec4 shown;
+    in vec3 place; in vec3 carried; out vec4 shown;
     void main() {
       vec3 normal = normalize(cross(dFdx(place), dFdy(place)));
       float light = 0.45 + 0.55 * abs(dot(normal, normalize(eye + vec3(0.3, -0.2, 0.5))));
       if (!painted) { shown = vec4(colour.rgb * light, colour.a); return; }
       if (carried.y < 0.35) discard;
-      float at = clamp(carried.x / carried.y, 0.0, 1.0) * 8.0;
+      if (carried.z < 0.5 * carried.y) { shown = vec4(vec3(0.62), 1.0); return; }
+      float at = clamp(carried.x / carried.z, 0.0, 1.0) * 8.0;
       shown = vec4(mix(scale[int(at)], scale[min(int(at) + 1, 8)], fract(at)), 1.0);
     }`;
   const KINDS = { f: Float32Array, H: Uint16Array, b: Int8Array, B: Uint8Array };
@@ -104,13 +105,17 @@
     }
     const flank = shape(decoded(data.lattice.points, "f"), cells(data.lattice.shape));
     const [rows, columns] = data.lattice.shape, nodes = rows * columns;
-    const carried = new Float32Array(2 * nodes), buffer = gl.createBuffer();
+    // of every node: its value, whether it carries, whether a value is known
+    const carried = new Float32Array(3 * nodes), buffer = gl.createBuffer();
     gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
     gl.bufferData(gl.ARRAY_BUFFER, carried, gl.DYNAMIC_DRAW);
     gl.enableVertexAttribArray(1);
-    gl.vertexAttribPointer(1, 2, gl.FLOAT, false, 0, 0);
-    for (const found of data.torques)
-      Object.assign(found, { node: decoded(found.node, "H"), tooth: decoded(found.tooth, "b"), load: decoded(found.load, "B") });
+    gl.vertexAttribPointer(1, 3, gl.FLOAT, false, 0, 0);
+    for (const found of data.torques) {
+      Object.assign(found, { node: decoded(found.node, "H"), tooth: decoded(found.tooth, "b") });
+      for (const { key } of data.quantities) found.values[key] = decoded(found.values[key], "B");
+    }
+    const quantity = () => data.quantities[+find("quantity").value];
 
     const [pinion, gear] = data.bodies;
     const home = { azimuth: -2.35, height: 0.62, zoom: 1.6 };
@@ -138,6 +143,7 @@
     }
 
     function drawLoads(found, index, angle) {
+      const values = found.values[quantity().key];
       gl.bindVertexArray(flank.array);
       gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
       gl.uniform1i(places.painted, 1);
@@ -151,8 +157,7 @@
             any = true;
             for (const node of [found.node[k] - columns, found.node[k], found.node[k] + columns])
               if (node >= 0 && node < nodes) {
-                carried[2 * node] = found.load[k] / 255;
-                carried[2 * node + 1] = 1;
+                carried.set([values[k] / 255, 1, values[k] > 0 ? 1 : 0], 3 * node);
               }
           }
         if (!any) continue;
@@ -203,7 +208,8 @@
       const pairs = share.map(([pair, part]) => `pair ${pair}: ${(100 * part).toFixed(0)} %`).join(", ");
       root.querySelector("output").textContent =
         `Position ${position.toFixed(3)} of a pitch. ${pairs}. Transmission error ${found.error_um[index].toFixed(2)} µm.`;
-      root.querySelector(".most").textContent = `${found.largest.toFixed(0)} N/mm`;
+      root.querySelector(".most").textContent = `${found.largest[quantity().key].toFixed(0)} ${quantity().unit}`;
+      root.querySelector("p.quantity").textContent = quantity().told;
     }
 
     function redraw() {
@@ -225,7 +231,7 @@
     });
     for (const name of ["pointerup", "pointercancel"])
       canvas.addEventListener(name, (event) => held.delete(event.pointerId));
-    for (const name of ["position", "torque", "clear"]) find(name).addEventListener("input", redraw);
+    for (const name of ["position", "torque", "quantity", "clear"]) find(name).addEventListener("input", redraw);
     const zoomed = (factor) => () => { view.zoom = Math.max(0.4, Math.min(12, view.zoom * factor)); redraw(); };
     find("nearer").addEventListener("click", zoomed(1.35));
     find("further").addEventListener("click", zoomed(1 / 1.35));

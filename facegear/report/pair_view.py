@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from facegear.contact.columns import SHARES
+from facegear.contact.columns import EDGES, SHARES
 from facegear.geometry.design import PairDesign
 from facegear.geometry.solids import BODIES, Body, solid, teeth_of
 from facegear.report.page import View
@@ -21,14 +21,28 @@ COLOURS = (
 PROFILE, WIDTH = 17, 7
 """Points of each drawn patch."""
 SHOWN_GEAR_TEETH = 13
-QUANTITY = "Load per millimetre of face width (N/mm)"
+QUANTITIES = (
+    {
+        "key": "pressure",
+        "name": "pressure",
+        "unit": "MPa",
+        "told": "Largest pressure across each line of contact; grey where an edge carries the load",
+    },
+    {
+        "key": "load",
+        "name": "load",
+        "unit": "N/mm",
+        "told": "Load per millimetre of face width, edges included",
+    },
+)
+"""What the colours may show."""
 
 
 def pair_view(design: PairDesign, loads: Mapping[str, NDArray], ltca: pd.DataFrame) -> View:
     """The pair at every solved position and torque; `loads` as PRESSURE_ARRAYS, `ltca` as LTCA_COLUMNS.
 
-    Lengths in mm. Colours show the load of every loaded node's column of the flank over the column's width:
-    unlike the pressure it has a limit as the mesh is refined, edges included.
+    Lengths in mm. Colours show the pressure or the load of the line of contact at every loaded node's column
+    of the flank, the largest of each torque at the end of the scale.
     """
     torques = np.unique(loads["torque_n_m"])
     positions = np.unique(loads["position"])
@@ -42,13 +56,13 @@ def pair_view(design: PairDesign, loads: Mapping[str, NDArray], ltca: pd.DataFra
         },
         "positions": positions.tolist(),
         "colours": COLOURS,
-        "quantity": QUANTITY,
+        "quantities": QUANTITIES,
         "torques": [_torque(float(torque), loads, ltca, positions) for torque in torques],
     }
     return View(
         data,
-        "The pair in mesh, turning through a pitch: drag to look around. Colours: load along each line of "
-        "contact, drawn wider than it is, at the positions that were solved.",
+        "The pair in mesh, turning through a pitch: drag to look around. Colours: pressure or load along "
+        "each line of contact, drawn wider than it is, at the positions that were solved.",
     )
 
 
@@ -74,19 +88,34 @@ def _torque(
     on = loads["torque_n_m"] == torque
     row = np.searchsorted(positions, loads["position"][on])
     order = np.argsort(row, kind="stable")
-    load = line_load(loads, on)[order]
+    shown = {"pressure": line_pressure(loads, on)[order], "load": line_load(loads, on)[order]}
     rows = ltca[ltca["torque_n_m"] == torque].sort_values("position")
-    top = float(load.max())
+    top = {key: float(np.nanmax(values, initial=0.0)) for key, values in shown.items()}
     return {
         "torque_n_m": torque,
         "largest": top,
         "start": np.searchsorted(row[order], np.arange(positions.size + 1)).tolist(),
         "node": _encoded(loads["node"][on][order], np.uint16),
         "tooth": _encoded(loads["tooth"][on][order], np.int8),
-        "load": _encoded(np.ceil(255 * load / top), np.uint8),
+        "values": {key: _parts(values, top[key]) for key, values in shown.items()},
         "error_um": rows["ste_um"].round(3).tolist(),
         "share": rows[list(SHARES)].round(4).to_numpy().tolist(),
     }
+
+
+def line_pressure(loads: Mapping[str, NDArray], on: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Pressure (MPa) at each chosen node: that of the line of contact in its column, nan where an edge
+    carries the load.
+    """
+    keys = ["torque_n_m", "position", "tooth", "plane"]
+    known = pd.Series(
+        1e-6 * loads["line_pressure_pa"],
+        pd.MultiIndex.from_arrays([loads[f"line_{key}"] for key in keys], names=keys),
+    )
+    known = known[loads["line_where"] == EDGES.index("inside")].groupby(level=keys).max()
+    columns = int(loads["shape"][1])
+    nodes = [loads[key][on] for key in keys[:-1]]
+    return known.reindex(pd.MultiIndex.from_arrays([*nodes, loads["node"][on] % columns])).to_numpy()
 
 
 def line_load(loads: Mapping[str, NDArray], on: NDArray[np.bool_]) -> NDArray[np.float64]:
@@ -101,6 +130,11 @@ def line_load(loads: Mapping[str, NDArray], on: NDArray[np.bool_]) -> NDArray[np
     frame = pd.DataFrame({name: loads[name][on] for name in ("position", "tooth", "force_n")})
     total = frame.groupby(["position", "tooth", column])["force_n"].transform("sum").to_numpy()
     return total / width[column]
+
+
+def _parts(values: NDArray, largest: float) -> str:
+    """Values in 255ths of the largest, rounded up; 0 where there is none."""
+    return _encoded(np.nan_to_num(np.ceil(255 * values / (largest or 1.0))), np.uint8)
 
 
 def _encoded(values: NDArray, kind: type) -> str:

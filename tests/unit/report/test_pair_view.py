@@ -37,6 +37,12 @@ def loads():
         "force_n": chance.uniform(1.0, 100.0, size),
         "shape": np.array([ROWS, COLUMNS]),
         "point_m": np.stack([0 * grid, grid, 0 * grid], axis=-1).reshape(-1, 3),
+        "line_torque_n_m": np.repeat([torque for torque, _ in keys], COLUMNS),
+        "line_position": np.repeat([position for _, position in keys], COLUMNS),
+        "line_tooth": np.repeat([-1, 0, 1, 0], COLUMNS),
+        "line_plane": np.tile(np.arange(COLUMNS), len(keys)),
+        "line_where": np.tile([1, 0, 0, 3], len(keys)),
+        "line_pressure_pa": chance.uniform(1e8, 1e9, len(keys) * COLUMNS),
     }
 
 
@@ -65,14 +71,18 @@ def test_load_along_the_face_adds_up_to_the_force(loads):
 def test_the_viewer_holds_every_loaded_node_at_its_torque_and_position(loads, view):
     for found in view.data["torques"]:
         node, tooth = decoded(found["node"], "<u2"), decoded(found["tooth"], "i1")
-        load = decoded(found["load"], "u1")
+        load, pressure = (decoded(found["values"][key], "u1") for key in ("load", "pressure"))
         for index, position in enumerate(view.data["positions"]):
             here = slice(*found["start"][index : index + 2])
             on = (loads["torque_n_m"] == found["torque_n_m"]) & (loads["position"] == position)
             np.testing.assert_array_equal(node[here], loads["node"][on])
             np.testing.assert_array_equal(tooth[here], loads["tooth"][on])
-            drawn = load[here] / 255 * found["largest"]
-            np.testing.assert_allclose(drawn, line_load(loads, on), atol=found["largest"] / 255)
+            drawn = load[here] / 255 * found["largest"]["load"]
+            np.testing.assert_allclose(drawn, line_load(loads, on), atol=found["largest"]["load"] / 255)
+            lines = (loads["line_torque_n_m"] == found["torque_n_m"]) & (loads["line_position"] == position)
+            told = np.tile(np.where([0, 1, 1, 0], 1e-6 * loads["line_pressure_pa"][lines], 0.0), 2)
+            drawn = pressure[here] / 255 * found["largest"]["pressure"]
+            np.testing.assert_allclose(drawn, told, atol=found["largest"]["pressure"] / 255)
     assert [found["error_um"] for found in view.data["torques"]] == [[1.0, 2.0], [3.0, 4.0]]
 
 
