@@ -62,7 +62,9 @@ def branches(
         "ranges": operating_tables.range_table(ranges),
         "margins": operating_tables.margin_table(losses),
         "swept": operating_tables.swept_table(swept, seen.branches, plan.longest_found),
-        "jumps": operating_tables.jump_table(within, seen.branches, swept_plan.jump_resolution_rpm, spacing),
+        "jumps": operating_tables.jump_table(
+            within, swept, seen.branches, swept_plan.jump_resolution_rpm, spacing
+        ),
         "orbits": special_arrays(seen.branches),
     }
     return Outcome(content, survey_summary(seen, ranges, losses, content["swept"], content["jumps"]))

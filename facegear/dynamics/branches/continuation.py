@@ -19,6 +19,8 @@ STRAIGHT = 0.9
 """Least cosine between neighbouring tangents."""
 CORRECTION = 0.2
 """Largest correction over the step."""
+TURN, AIM, FASTEST = 0.3, 0.15, 2.5
+"""Angle between tangents and correction over the step that steps are made for; their fastest growth."""
 DRIFT = 0.3
 """Largest change of the multipliers' moduli near the unit circle over a step."""
 SURE = 1e-3
@@ -27,6 +29,8 @@ SURE = 1e-3
 
 JUNCTION = 1e-6
 """Logarithms of the parameter that differ by less belong to one junction of branches."""
+NEAR_JUNCTION = 3.0
+"""Fold and branch point of a junction lie within this many steps."""
 PASSED = (Kind.GRAZE, Kind.AFLOAT)
 """Special points at which a motion neither ends nor changes its stability."""
 
@@ -36,6 +40,7 @@ class End(StrEnum):
 
     LIMIT = "limit of the parameter"
     CLOSED = "closed"
+    START = "where it was begun"
     DOUBLING = "period doubling of another branch"
     SYMMETRY = "branch point"
     POLE = "amplitude without bound"
@@ -110,7 +115,8 @@ def follow(
     """The branch through `start`, along its tangent and (with `both`) against it."""
     ahead = _track(flow, start, run, progress)
     if not both or ahead.end is End.CLOSED:
-        return Branch(flow, ahead.points, ahead.specials, (End.LIMIT, ahead.end), ahead.tried)
+        first = End.CLOSED if ahead.end is End.CLOSED else End.START
+        return Branch(flow, ahead.points, ahead.specials, (first, ahead.end), ahead.tried)
     behind = _track(flow, turned(start), run, progress)
     count = len(behind.points) - 1
     points = [turned(point) for point in behind.points[:0:-1]] + ahead.points
@@ -127,6 +133,9 @@ def turned(point: Point) -> Point:
 
 def _track(flow: PeriodMap, start: Point, run: Run, progress: Callable[[Point], None]) -> _Track:
     track, step, before = _Track([start]), run.first, None
+    if any(abs(start.u - np.log(limit)) < JUNCTION for limit in (run.low, run.high)) and _outward(start, run):
+        track.end = End.LIMIT
+        return track
     images = _images(flow, start)
     while len(track.points) < run.points:
         here = track.points[-1]
@@ -143,6 +152,8 @@ def _track(flow: PeriodMap, start: Point, run: Run, progress: Callable[[Point], 
         track.specials += [replace(one, after=base + one.after) for one in found]
         track.points += last or [there]
         progress(there)
+        if _cut_at_junction(track):
+            junction = End.SYMMETRY
         if junction is not None:
             end = junction
         if end is not None:
@@ -151,9 +162,15 @@ def _track(flow: PeriodMap, start: Point, run: Run, progress: Callable[[Point], 
         if run.to_first and any(one.kind not in PASSED for one in found):
             track.end = End.SPECIAL
             return track
+        step = min(_longer(step, before, here, there), run.largest)
         before = here
-        step = min(step * _growth(here, there), run.largest)
     return track
+
+
+def _outward(start: Point, run: Run) -> bool:
+    """Whether a point at a limit of the parameter looks beyond it."""
+    upper = abs(start.u - np.log(run.high)) < abs(start.u - np.log(run.low))
+    return bool(start.tangent[-1] > 0.0) == upper
 
 
 def _next(
@@ -175,20 +192,21 @@ def _next(
 
 def _step(flow: PeriodMap, here: Point, before: Point | None, step: float) -> Point:
     """One step along the tangent, bent as over the step before."""
-    guess = here.x + step * here.tangent
-    if before is not None:
-        last = np.linalg.norm(here.x - before.x)
-        bend = (here.tangent - before.tangent) / last
-        if np.linalg.norm(bend) * step < 0.5:
-            guess = guess + 0.5 * step**2 * bend
-    row = here.tangent
-    there = solve_point(flow, guess, row, row, here.linear)
+    guess = _ahead(here, before, step)
+    there = solve_point(flow, guess, here.tangent, here.tangent, here.linear, CORRECTION * step)
     reason = _refusal(here, there, step)
-    if np.linalg.norm(there.x - guess) > CORRECTION * step:
-        reason = "correction above the step"
     if reason:
         raise NotConverged("branches", f"{flow.family.name} = {there.value:.9g}", reason)
     return there
+
+
+def _ahead(here: Point, before: Point | None, step: float) -> Array:
+    """A guess at a step's length ahead."""
+    guess = here.x + step * here.tangent
+    if before is None:
+        return guess
+    bend = (here.tangent - before.tangent) / np.linalg.norm(here.x - before.x)
+    return guess + 0.5 * step**2 * bend if np.linalg.norm(bend) * step < 0.5 else guess
 
 
 def _refusal(here: Point, there: Point, step: float) -> str:
@@ -216,9 +234,12 @@ def _drift(here: Point, there: Point) -> float:
     return float((np.abs(first - second) / scale)[near].max(initial=0.0))
 
 
-def _growth(here: Point, there: Point) -> float:
-    angle = np.arccos(np.clip(here.tangent @ there.tangent, -1.0, 1.0))
-    return float(np.clip(0.25 / max(float(angle), 1e-6), 0.5, 1.7))
+def _longer(step: float, before: Point | None, here: Point, there: Point) -> float:
+    """The next step: one that turns by TURN and needs a correction of AIM, as far as the last one tells."""
+    angle = float(np.arccos(np.clip(here.tangent @ there.tangent, -1.0, 1.0)))
+    off = float(np.linalg.norm(there.x - _ahead(here, before, step))) / step
+    growth = min(TURN / max(angle, 1e-6), np.sqrt(AIM / max(off, 1e-9)))
+    return step * float(np.clip(growth, 0.5, FASTEST))
 
 
 def _onto_limit(flow: PeriodMap, here: Point, there: Point, limit: float) -> Point:
@@ -263,12 +284,21 @@ def _between_points(
     if meeting is not None:
         found = [one for one in locate(flow, here, meeting[0]) if not _at(one, meeting[1])]
         return found, list(meeting), End.DOUBLING
-    found = locate(flow, here, there)
-    for one in found:
-        if one.kind is Kind.BRANCH and any(o.kind is Kind.FOLD and _at(o, one.point) for o in found):
-            before = [other for other in found if other.after < one.after and not _at(other, one.point)]
-            return before, [one.point], End.SYMMETRY
-    return found, [], None
+    return locate(flow, here, there), [], None
+
+
+def _cut_at_junction(track: _Track) -> bool:
+    """Whether the track has just met a branch point at which it turns round: it ends there, where the other
+    branch goes through, and what follows is its own mirror image.
+    """
+    late = [one for one in track.specials if one.after > len(track.points) - 1 - NEAR_JUNCTION]
+    for one in late:
+        if one.kind is Kind.BRANCH and any(o.kind is Kind.FOLD and _at(o, one.point) for o in late):
+            before = [o for o in track.specials if o.after < one.after and not _at(o, one.point)]
+            track.specials = before
+            track.points = [*track.points[: int(one.after) + 1], one.point]
+            return True
+    return False
 
 
 def _at(special: Special, point: Point) -> bool:

@@ -1,6 +1,6 @@
 """Which motions exist at a speed: random starts, the share of them that ends on each, and what is new."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -120,13 +120,23 @@ def _same(flow: PeriodMap, u: float, one: Found, other: Found) -> bool:
         return False
     if one.point is None or other.point is None:
         return one.point is other.point
-    return any(np.abs(one.z - z).max() < SAME for z in flow.over(other.period).images(other.z, u))
+    loose = one.point.linear.afloat, other.point.linear.afloat
+    return _apart(one.z, flow.over(other.period).images(other.z, u), loose) < SAME
+
+
+def _apart(z: Array, images: Sequence[Array], loose: tuple[Array, Array]) -> float:
+    """Largest difference of a state from the nearest image of another but for shifts of bodies afloat, of
+    the orbit with more of them.
+    """
+    afloat = max(loose, key=lambda shifts: shifts.shape[1])
+    apart = np.array(images) - z
+    return float(np.abs(apart - apart @ afloat @ afloat.T).max(axis=1).min())
 
 
 def crossings(branch: Branch, value: float) -> list[Point]:
     """The branch's orbits at a parameter, one for each passage."""
     u, found = float(np.log(value)), []
-    for guess, reach in _passages(branch, u):
+    for guess, reach, _ in _passages(branch, u):
         try:
             point = at_parameter(branch.flow, guess, u)
         except (NotConverged, np.linalg.LinAlgError):
@@ -136,36 +146,37 @@ def crossings(branch: Branch, value: float) -> list[Point]:
     return found
 
 
-def lies_on(branch: Branch, z: Array, period: int, value: float) -> bool:
-    """Whether the orbit of a period through the weighted state z at a parameter belongs to a branch."""
-    return distance(branch, z, period, value) < SAME
+def lies_on(branch: Branch, orbit: Point, period: int) -> bool:
+    """Whether an orbit of a period belongs to a branch."""
+    return distance(branch, orbit, period) < SAME
 
 
-def distance(branch: Branch, z: Array, period: int, value: float) -> float:
-    """How far, in length scales, the orbit of a period through the weighted state z lies from the nearest
-    orbit of a branch at the same parameter; infinite if none is near.
+def distance(branch: Branch, orbit: Point, period: int) -> float:
+    """How far, in length scales, an orbit of a period lies from the nearest one of a branch at the same
+    parameter; infinite if none is near. Where bodies float in either orbit, their place is free and not
+    compared: along a branch such a body is left where it is until a mesh pushes it.
     """
-    if branch.flow.period != period or not branch.values.min() <= value <= branch.values.max():
+    values, u = branch.values, orbit.u
+    if branch.flow.period != period or not values.min() <= orbit.value <= values.max():
         return np.inf
-    u = float(np.log(value))
-    images = branch.flow.images(z, u)
+    images, loose = branch.flow.images(orbit.z, u), orbit.linear.afloat
     nearest = np.inf
-    for guess, reach in _passages(branch, u):
-        if min(np.abs(guess - image).max() for image in images) > ALONG * max(1.0, reach):
+    for guess, reach, afloat in _passages(branch, u):
+        if _apart(guess, images, (loose, afloat)) > ALONG * max(1.0, reach):
             continue
         try:
             point = at_parameter(branch.flow, guess, u)
         except (NotConverged, np.linalg.LinAlgError):
             continue
-        nearest = min(nearest, *(float(np.abs(point.z - image).max()) for image in images))
+        nearest = min(nearest, _apart(point.z, images, (loose, point.linear.afloat)))
         if nearest < SAME:
             break
     return nearest
 
 
-def _passages(branch: Branch, u: float) -> Iterator[tuple[Array, float]]:
+def _passages(branch: Branch, u: float) -> Iterator[tuple[Array, float, Array]]:
     """States at which a branch passes a parameter's logarithm, on the cubics between its points, with the
-    lengths of their chords.
+    lengths of their chords and the shifts of bodies afloat.
     """
     for here, there in pairwise(branch.points):
         turns = here.tangent[-1] * there.tangent[-1] < 0.0
@@ -177,4 +188,4 @@ def _passages(branch: Branch, u: float) -> Iterator[tuple[Array, float]]:
         for share in shares[np.abs(shares.imag) < REAL].real:
             # A point at which two cubics meet belongs to the first of them.
             if REAL < share <= 1.0 + REAL or (abs(share) <= REAL and here is branch.points[0]):
-                yield (share ** np.arange(4) @ coefficients)[:-1], reach
+                yield (share ** np.arange(4) @ coefficients)[:-1], reach, here.linear.afloat

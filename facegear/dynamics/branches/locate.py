@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from facegear.dynamics.branches.grazes import grazes, hidden_graze
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point
 from facegear.dynamics.branches.segment import Segment, zero
@@ -20,6 +21,7 @@ LOOKS = 2
 """How often a stretch is halved on the mere chance that a multiplier crosses the unit circle twice in it."""
 CLOSE = 0.02
 """A multiplier this close to the unit circle at an end of a stretch may cross it inside."""
+NEAR_CIRCLE = 0.4
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,30 +40,52 @@ def locate(flow: PeriodMap, here: Point, there: Point) -> list[Special]:
     return sorted(_between(segment, 0.0, 1.0), key=lambda special: special.after)
 
 
-def _between(segment: Segment, low: float, high: float, depth: int = 0) -> list[Special]:
+def _between(
+    segment: Segment, low: float, high: float, depth: int = 0, bend: float | None = None
+) -> list[Special]:
     first, second = segment.at(low), segment.at(high)
     if first.linear.afloat.shape != second.linear.afloat.shape:
         return _loosening(segment, low, high)
     events, mixed = _events(segment.flow, first, second)
-    if (mixed and high - low > SHORTEST) or (depth < LOOKS and _may_hide(first, second)):
-        middle = 0.5 * (low + high)
-        segment.at(middle)
-        return _between(segment, low, middle, depth + 1) + _between(segment, middle, high, depth + 1)
-    return [_refined(segment, low, high, event) for event in events]
+    between = None
+    if (mixed and high - low > SHORTEST) or (depth < LOOKS and _may_hide(first, second, bend)):
+        between = 0.5 * (low + high)
+    elif depth < LOOKS:
+        between = hidden_graze(segment, low, high)
+    if between is None:
+        return [_refined(segment, low, high, event) for event in events]
+    bend = _bend(first, segment.at(between), second)
+    left = _between(segment, low, between, depth + 1, bend)
+    return left + _between(segment, between, high, depth + 1, bend)
 
 
-def _may_hide(first: Point, second: Point) -> bool:
-    """Whether a multiplier may have left the unit circle and come back between two points."""
+def _may_hide(first: Point, second: Point, bend: float | None) -> bool:
+    """Whether a multiplier may have left the unit circle and come back between two points.
+
+    bend: see _bend(), over a stretch twice as long that holds them.
+    """
     if first.outside != second.outside or first.multipliers.size != second.multipliers.size:
         return False
     one, two = np.abs(first.multipliers), np.abs(second.multipliers)
     closest = np.minimum(np.abs(one - 1.0), np.abs(two - 1.0))
-    return bool((closest < np.clip(np.abs(one - two), CLOSE, 0.2)).any())
+    # A parabola rises above the nearer end of half its stretch by at most a 32nd of its second difference.
+    reach = np.clip(np.abs(one - two), CLOSE, 0.2) if bend is None else np.full(one.size, bend / 8.0)
+    return bool((closest < reach).any())
+
+
+def _bend(first: Point, middle: Point, second: Point) -> float | None:
+    """Largest second difference of moduli near the unit circle; None where they cannot be compared."""
+    sizes = [np.abs(point.multipliers) for point in (first, middle, second)]
+    if len({size.size for size in sizes}) > 1:
+        return None
+    near = np.abs(sizes[1] - 1.0) < NEAR_CIRCLE
+    return float(np.abs(sizes[0] - 2.0 * sizes[1] + sizes[2])[near].max(initial=0.0))
 
 
 def _events(flow: PeriodMap, first: Point, second: Point) -> tuple[list[_Event], bool]:
     """Changes between two points; True if more than one of a kind is among them."""
-    events, mixed = _contact_events(flow, first, second)
+    touched, mixed = grazes(flow, first, second)
+    events = [_Event(Kind.GRAZE, graze.test, graze.meshes, graze.edge) for graze in touched]
     ones, minus, pairs = np.subtract(second.outside, first.outside)
     folds = _turns(first, second)
     if folds:
@@ -93,44 +117,6 @@ def _ranked(values: Array, rank: int, missing: float = 0.0) -> float:
 def _turns(first: Point, second: Point) -> bool:
     a, b = first.tangent[-1], second.tangent[-1]
     return bool(a * b < 0.0 and max(abs(a), abs(b)) > LEVEL)
-
-
-def _contact_events(flow: PeriodMap, first: Point, second: Point) -> tuple[list[_Event], bool]:
-    """Extremes of the mesh deflections that have passed an edge; True if some cannot be told apart yet.
-
-    Maxima less minima above an edge count its passages. A maximum and a minimum that are born together change
-    none. Meshes that symmetry moves alike make one event.
-    """
-    events: dict[tuple, _Event] = {}
-    mixed = False
-    lower, upper = flow.edges(first.u)
-    for mesh, (one, two) in enumerate(zip(first.turning, second.turning, strict=True)):
-        for edge, level in ((-1, lower[mesh]), (1, upper[mesh])):
-            counts = [[np.count_nonzero(values > level) for values in side] for side in (one, two)]
-            changes = np.subtract(counts[1], counts[0])
-            if not np.isfinite(level) or changes[0] == changes[1]:
-                continue
-            kind = int(changes[0] == 0)
-            mixed = mixed or bool(changes.all()) or abs(changes[kind]) > 1
-            rank = int(min(counts[0][kind], counts[1][kind]))
-            test = _distance(flow, first.u, mesh, edge, kind, rank)
-            alike = (edge, kind, *(round(test(turning), 7) for turning in (first.turning, second.turning)))
-            meshes = (*events[alike].meshes, mesh) if alike in events else (mesh,)
-            events[alike] = _Event(Kind.GRAZE, test, meshes, edge)
-    return list(events.values()), mixed
-
-
-def _distance(
-    flow: PeriodMap, u: float, mesh: int, edge: int, kind: int, rank: int
-) -> Callable[[list[tuple[Array, Array]]], float]:
-    """How far the extreme of a rank, counted from the largest, lies above an edge."""
-    level = float(flow.edges(u)[0 if edge < 0 else 1][mesh])
-
-    def test(turning: list[tuple[Array, Array]]) -> float:
-        values = np.sort(turning[mesh][kind])[::-1]
-        return float(values[rank] - level) if rank < values.size else -1.0
-
-    return test
 
 
 def _loosening(segment: Segment, low: float, high: float) -> list[Special]:

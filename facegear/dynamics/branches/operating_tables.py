@@ -10,8 +10,10 @@ from facegear.dynamics.branches.continuation import Branch
 from facegear.dynamics.branches.explore import Found, lies_on
 from facegear.dynamics.branches.margins import Loss, passed_by
 from facegear.dynamics.branches.swept import Swept, nearest_branch
+from facegear.dynamics.motion import Motion
 
 IRREGULAR = "not periodic"
+AFLOAT = "on it but for the place of a body that touches nothing, which is free"
 
 
 def coexistence_table(
@@ -42,7 +44,7 @@ def _branch_of(motion: Found, speed: float, branches: Sequence[Branch]) -> str:
     if motion.point is None:
         return IRREGULAR
     for number, branch in enumerate(branches):
-        if lies_on(branch, motion.point.z, motion.period, speed):
+        if lies_on(branch, motion.point, motion.period):
             return str(number)
     return "not followed"
 
@@ -87,8 +89,9 @@ def swept_table(swept: Sequence[Swept], branches: Sequence[Branch], longest: int
         number, distance = nearest_branch(motion, branches)
         note = motion.reason
         if number is None and not note:
-            long = motion.period > longest
-            note = f"periods above longest_found = {longest} are not followed" if long else "not followed"
+            note = _not_followed(motion.period, longest)
+        elif number is not None and motion.point is not None and motion.point.linear.afloat.size:
+            note = AFLOAT
         branch = "" if number is None else str(number)
         rows.append(
             (
@@ -105,14 +108,25 @@ def swept_table(swept: Sequence[Swept], branches: Sequence[Branch], longest: int
     return pd.DataFrame(rows, columns=list(SWEPT_COLUMNS))
 
 
+def _not_followed(period: int, longest: int) -> str:
+    if period > longest:
+        return f"the orbit is found; periods above longest_found = {longest} are not followed"
+    return "not followed"
+
+
 def jump_table(
-    jumps: pd.DataFrame, branches: Sequence[Branch], resolution_rpm: float, spacing_rpm: float
+    jumps: pd.DataFrame,
+    swept: Sequence[Swept],
+    branches: Sequence[Branch],
+    resolution_rpm: float,
+    spacing_rpm: float,
 ) -> pd.DataFrame:
     """JUMP_COLUMNS: each jump of the sweep with the special point its motion runs into, or why there is none.
 
     A point counts within the jump's bracket or up to `resolution_rpm` beside it, else up to `spacing_rpm`,
     the sweep's step, before it in the direction of running: a run holds on to a motion that has just lost
-    its stability until disturbances have grown.
+    its stability until disturbances have grown. A motion that has not settled there is taken for the one of
+    the sweep's last speed, if that was periodic.
     """
     rows = []
     for jump in jumps.itertuples():
@@ -127,9 +141,24 @@ def jump_table(
             "speed_rpm": np.nan,
             "note": "",
         }
-        found = _named(before, after, str(jump.class_before), branches, resolution_rpm, spacing_rpm)
-        rows.append(row | found)
+        label = str(jump.class_before)
+        if label == Motion.NOT_SETTLED:
+            label = _last_class(str(jump.direction), before, after, swept, spacing_rpm) or label
+        rows.append(row | _named(before, after, label, branches, resolution_rpm, spacing_rpm))
     return pd.DataFrame(rows, columns=list(JUMP_COLUMNS))
+
+
+def _last_class(
+    direction: str, before: float, after: float, swept: Sequence[Swept], spacing: float
+) -> str | None:
+    """Class of the sweep's periodic motion at most one step of the sweep before a jump."""
+    onward = np.sign(after - before)
+    behind = {
+        onward * (before - one.speed_rpm): one.label
+        for one in swept
+        if one.direction == direction and 0.0 <= onward * (before - one.speed_rpm) <= spacing
+    }
+    return behind[min(behind)] if behind else None
 
 
 def _named(

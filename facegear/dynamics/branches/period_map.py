@@ -25,7 +25,7 @@ RIGID = 1e-10
 class Linear:
     """The map near a state: change end - start (2 n,), matrix (2 n, 2 n), slope by the parameter's logarithm
     (2 n,), contact (meshes,): whether it is ever in contact, afloat (2 n, k): directions of bodies that touch
-    nothing, orthonormal, divergence: integral of the trace.
+    nothing, orthonormal, divergence: integral of the trace. inverses: of the matrix bordered by a row.
     """
 
     gap: Array
@@ -34,6 +34,7 @@ class Linear:
     contact: NDArray[np.bool_]
     afloat: Array
     divergence: float
+    inverses: dict[bytes, Array] = field(default_factory=dict, repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,13 +145,14 @@ class PeriodMap:
             self.memory[key] = np.linalg.qr(shifts)[0]
         return cast(Array, self.memory[key])
 
-    def turning(self, z: Array, u: float) -> list[tuple[Array, Array]]:
-        """Maxima and minima of each mesh deflection over the period, over the length scale, each sorted from
-        the one deepest in contact: maxima falling, minima rising.
+    def turning(self, z: Array, u: float) -> Array:
+        """Maxima and minima of each mesh deflection over the period, over the length scale.
+
+        Shape (m, 2, most), each falling, and minus infinity where there are fewer.
         """
         packed = self.packed(u)
         displacement, velocity = _split(packed, z / self.weights(packed))
-        values = np.zeros((packed.m, 2, MOST * self.period))
+        values = np.full((packed.m, 2, MOST * self.period), -np.inf)
         counts = np.zeros((packed.m, 2), dtype=np.int64)
         work = self.work(packed)
         longest = disturbance_step(packed, work.order, self.tolerance)
@@ -159,12 +161,7 @@ class PeriodMap:
                 packed, work, displacement, velocity, self.period, self.tolerance, longest, values, counts
             )
         )
-        kept = np.minimum(counts, values.shape[2])
-        values /= packed.scale
-        return [
-            (np.sort(rows[0, : few[0]])[::-1], np.sort(rows[1, : few[1]]))
-            for rows, few in zip(values, kept, strict=True)
-        ]
+        return -np.sort(-values[:, :, : min(counts.max(), values.shape[2])]) / packed.scale
 
     def edges(self, u: float) -> tuple[Array, Array]:
         """Lower and upper edge of each mesh over the length scale; infinite where it never opens."""

@@ -37,7 +37,7 @@ class Point:
     tangent: Array
     parity: float
     linear: Linear
-    turning: list[tuple[Array, Array]]
+    turning: Array
 
     @property
     def z(self) -> Array:
@@ -102,15 +102,20 @@ def bordered(linear: Linear, row: Array) -> Array:
     return matrix
 
 
-def correct(flow: PeriodMap, guess: Array, row: Array, linear: Linear | None = None) -> tuple[Array, Linear]:
+def correct(
+    flow: PeriodMap, guess: Array, row: Array, linear: Linear | None = None, farthest: float = np.inf
+) -> tuple[Array, Linear]:
     """The orbit next to `guess` (2 n + 1,) with row . (x - guess) = 0, and the map there.
 
-    A matrix from nearby serves as long as it gains. Raises NotConverged.
+    A matrix from nearby serves as long as it gains. Raises NotConverged, also where the orbit would lie
+    beyond `farthest` from the guess.
     """
     x, goal, chord, before = guess.copy(), _goal(flow), linear, np.inf
     for _ in range(NEWTON_STEPS):
         if chord is not None:
             x, _ = _by_chord(flow, x, guess, row, chord, goal)
+        if np.linalg.norm(x - guess) > farthest:
+            raise NotConverged("branches", _place(flow, guess), "correction above the step")
         chord = flow.linear(x[:-1], x[-1])
         size = float(np.abs(chord.gap).max())
         if not np.isfinite(size) or size > 1e6:
@@ -126,7 +131,11 @@ def correct(flow: PeriodMap, guess: Array, row: Array, linear: Linear | None = N
         x, before = x + step, size
         if np.abs(step).max() <= 1e-3 * np.sqrt(goal) and np.abs(flow.gap(x[:-1], x[-1])).max() <= goal:
             return x, chord
-    raise NotConverged("branches", f"{flow.family.name} = {np.exp(guess[-1]):.9g}", "bordered Newton")
+    raise NotConverged("branches", _place(flow, guess), "bordered Newton")
+
+
+def _place(flow: PeriodMap, x: Array) -> str:
+    return f"{flow.family.name} = {np.exp(x[-1]):.9g}"
 
 
 def correct_state(flow: PeriodMap, guess: Array, row: Array, linear: Linear) -> Array:
@@ -146,7 +155,7 @@ def _by_chord(
     flow: PeriodMap, x: Array, guess: Array, row: Array, linear: Linear, goal: float
 ) -> tuple[Array, float]:
     """Broyden's steps from a matrix nearby while they gain: the best point reached and its change."""
-    inverse = _inverse(bordered(linear, row))
+    inverse = _bordered_inverse(linear, row)
     right, step = np.zeros(len(inverse)), np.zeros(len(inverse))
     best, found, before = np.inf, x, np.zeros(len(inverse))
     for count in range(CHORD_STEPS):
@@ -162,7 +171,7 @@ def _by_chord(
         if count > 0:
             along = step @ inverse
             changed = inverse @ (right - before)
-            inverse += np.outer(step - changed, along) / (along @ (right - before))
+            inverse = inverse + np.outer(step - changed, along) / (along @ (right - before))
         before = right.copy()
         step = -inverse @ right
         if abs(step[x.size - 1]) > FARTHEST:
@@ -175,7 +184,16 @@ def _newton_step(linear: Linear, gap: Array, row: Array, moved: Array) -> Array:
     right = np.zeros(gap.size + 1 + linear.afloat.shape[1])
     right[: gap.size], right[gap.size] = -gap, -row @ moved
     right[gap.size + 1 :] = -linear.afloat.T @ moved[:-1]
-    return (_inverse(bordered(linear, row)) @ right)[: gap.size + 1]
+    return (_bordered_inverse(linear, row) @ right)[: gap.size + 1]
+
+
+def _bordered_inverse(linear: Linear, row: Array) -> Array:
+    """Inverse of bordered(), kept for the last row."""
+    key = row.tobytes()
+    if key not in linear.inverses:
+        linear.inverses.clear()
+        linear.inverses[key] = _inverse(bordered(linear, row))
+    return linear.inverses[key]
 
 
 def _inverse(matrix: Array) -> Array:
@@ -193,9 +211,7 @@ def _inverse(matrix: Array) -> Array:
 def make_point(flow: PeriodMap, x: Array, linear: Linear, forward: Array) -> Point:
     """A point of a branch whose tangent looks along `forward` (2 n + 1,)."""
     matrix = bordered(linear, forward)
-    right = np.zeros(len(matrix))
-    right[x.size - 1] = 1.0
-    tangent = (_inverse(matrix) @ right)[: x.size]
+    tangent = _bordered_inverse(linear, forward)[: x.size, x.size - 1].copy()
     tangent /= np.linalg.norm(tangent)
     return Point(
         x=x,
@@ -207,10 +223,15 @@ def make_point(flow: PeriodMap, x: Array, linear: Linear, forward: Array) -> Poi
 
 
 def solve_point(
-    flow: PeriodMap, guess: Array, row: Array, forward: Array, linear: Linear | None = None
+    flow: PeriodMap,
+    guess: Array,
+    row: Array,
+    forward: Array,
+    linear: Linear | None = None,
+    farthest: float = np.inf,
 ) -> Point:
     """correct() and make_point() in one."""
-    x, found = correct(flow, guess, row, linear)
+    x, found = correct(flow, guess, row, linear, farthest)
     return make_point(flow, x, found, forward)
 
 

@@ -13,6 +13,8 @@ from facegear.errors import NotConverged
 Array = NDArray[np.float64]
 ALIGNED = 0.3
 """Least cosine between a chord and a tangent of the same branch."""
+SMALL = 1e-5
+"""Step along the tangent, in length scales, over which slopes are taken."""
 EXACT = 1e-13
 """Part of a step down to which a zero is placed."""
 
@@ -50,13 +52,27 @@ class Segment:
             self.known[share] = solve_point(self.flow, self._guess(share), row, row, linear)
         return self.known[share]
 
-    def turning(self, share: float) -> list[tuple[Array, Array]]:
+    def turning(self, share: float) -> Array:
         """Turning points of the deflections at a share, without the matrix of the map."""
         if share in self.known:
             return self.known[share].turning
         row = self.chord / self.length
         x = correct_state(self.flow, self._guess(share), row, self._near(share).linear)
         return self.flow.turning(x[:-1], x[-1])
+
+    def turning_slope(self, share: float, stretch: float) -> Array:
+        """Change of the turning points of a known point with its place on a stretch of the chord, by a small
+        step along the tangent.
+        """
+        point = self.known[share]
+        along = _slope(stretch * self.chord, point.tangent)
+        step = SMALL / float(np.linalg.norm(along))
+        x = point.x + step * along
+        ahead = self.flow.turning(x[:-1], x[-1])
+        most = min(ahead.shape[2], point.turning.shape[2])
+        now, then = point.turning[:, :, :most], ahead[:, :, :most]
+        known = np.isfinite(now) & np.isfinite(then)
+        return np.divide(np.subtract(then, now, where=known, out=np.zeros(now.shape)), step)
 
     def _near(self, share: float) -> Point:
         return self.known[min(self.known, key=lambda other: abs(other - share))]

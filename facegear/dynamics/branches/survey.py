@@ -116,7 +116,7 @@ class _Search:
         return branch
 
     def _is_known(self, period: int, point: Point) -> bool:
-        return any(lies_on(branch, point.z, period, point.value) for branch in self.branches)
+        return any(lies_on(branch, point, period) for branch in self.branches)
 
     def _was_met(self, period: int, u: float) -> bool:
         return any(other == period and abs(u - place) < MET for other, place in self.met)

@@ -10,6 +10,8 @@ from facegear.dynamics.branches.continuation import Branch
 from facegear.dynamics.branches.explore import distance
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point, at_parameter
+from facegear.dynamics.motion import Motion, Settings
+from facegear.dynamics.steady_state.simulate import steady_state
 from facegear.dynamics.sweeps.sweep import Piece
 from facegear.errors import NotConverged
 
@@ -66,17 +68,32 @@ def _orbit(flow: PeriodMap, direction: str, piece: Piece, index: int) -> Swept:
     u = float(np.log(speed))
     z = flow.weighted(piece.state(index), u)
     try:
-        point = at_parameter(flow.over(period), z, u)
-        least = _least_period(flow, point, period)
-        if least < period:
-            point = at_parameter(flow.over(least), point.z, u)
+        point, least = _next_to(flow, z, u, period)
     except (NotConverged, np.linalg.LinAlgError) as failure:
         return Swept(direction, speed, label, period, None, np.nan, f"no orbit next to it: {failure}")
-    error = float(np.abs(point.z - z).max())
+    error = min(float(np.abs(image - z).max()) for image in flow.over(least).images(point.z, u))
     if error > ELSEWHERE:
         reason = f"the nearest orbit lies {error:.2g} length scales away"
         return Swept(direction, speed, label, period, None, error, reason)
     return Swept(direction, speed, label, least, point, error)
+
+
+def _next_to(flow: PeriodMap, z: Array, u: float, period: int) -> tuple[Point, int]:
+    """The orbit next to a state and its least period; where a long orbit magnifies the state's error too
+    much for Newton's method, that of a run from there at the branches' tolerance.
+    """
+    try:
+        point = at_parameter(flow.over(period), z, u)
+    except (NotConverged, np.linalg.LinAlgError):
+        system, frequency = flow.family.at(float(np.exp(u)))
+        settled = steady_state(system, frequency, Settings(tolerance=flow.tolerance), flow.state(z, u))
+        if settled.motion is not Motion.PERIODIC:
+            what = f"at a tolerance of {flow.tolerance:g} a run from it is {settled.label}"
+            raise NotConverged("branches", f"{np.exp(u):.9g} rpm", what) from None
+        period = settled.period
+        point = at_parameter(flow.over(period), flow.weighted(settled.state, u), u)
+    least = _least_period(flow, point, period)
+    return (point if least == period else at_parameter(flow.over(least), point.z, u)), least
 
 
 def _least_period(flow: PeriodMap, point: Point, period: int) -> int:
@@ -92,6 +109,6 @@ def nearest_branch(motion: Swept, branches: Sequence[Branch]) -> tuple[int | Non
     """Number of the branch that a motion lies on, and how far its orbit there is, in length scales."""
     if motion.point is None:
         return None, np.nan
-    far = [distance(branch, motion.point.z, motion.period, motion.speed_rpm) for branch in branches]
+    far = [distance(branch, motion.point, motion.period) for branch in branches]
     nearest = int(np.argmin(far))
     return (nearest, far[nearest]) if far[nearest] < ON else (None, np.nan)

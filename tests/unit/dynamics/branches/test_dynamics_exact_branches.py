@@ -158,6 +158,12 @@ def test_oracle_d_breaks_its_symmetry_at_a_branch_point():
     deepest, shallowest = point.turning[0][0][0], point.turning[0][1][0]
     assert abs(deepest + shallowest) > 1e-3
     assert np.abs(flow.gap(point.z, point.u)).max() < 1e-9
+    middle = aside.points[len(aside.points) // 2]
+    for largest in (0.3, 0.05, 0.011):
+        again = follow(flow, middle, Run(0.345, 0.6, largest=largest))
+        assert again.ends[0] is End.SYMMETRY, "its mirror image is a branch of its own"
+        assert again.points[0].value == pytest.approx(0.348540186191, rel=1e-8)
+        assert not again.of(Kind.FOLD, Kind.BRANCH)
 
 
 SYMMETRIC = (1.674260831215, 0.364887573423)
@@ -181,6 +187,17 @@ def test_two_coordinates_lose_stability_to_a_torus_and_regain_it():
     for special in branch.specials:
         assert abs(special.multiplier) == pytest.approx(1.0, abs=1e-9)
     assert branch.specials[0].multiplier == pytest.approx(-0.532627694 + 0.846349655j, abs=1e-8)
+
+
+def test_a_brief_loss_of_contact_at_resonance_is_met_by_long_steps():
+    """At the peak of a linear resonance the amplitude exceeds the mean deflection by 1 in 4000 only."""
+    amplitude, mean, damping = 0.00999, 0.1, 0.1
+    squares = np.roots([1.0 - (amplitude / mean) ** 2, damping**2 - 2.0, 1.0])
+    branch = branch_at(backlash(amplitude, mean=mean), np.array([1.1, 0.0]), 0.5, Run(0.5, 2.0))
+    assert places(branch, Kind.GRAZE) == pytest.approx(np.sqrt(np.sort(squares)), rel=1e-9)
+    between = (branch.values**2 > squares.min()) & (branch.values**2 < squares.max())
+    assert not between.any()
+    assert np.diff(branch.values).min() > 0.0
 
 
 @pytest.mark.parametrize("largest", [1.2, 0.075])

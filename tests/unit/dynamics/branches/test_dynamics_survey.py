@@ -3,18 +3,22 @@
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 from lumped_machines import make_machine
 from oscillators import backlash_oscillator
 
+from facegear.dynamics.branches.columns import SWEEP_JUMPS
 from facegear.dynamics.branches.continuation import End, Run, branch_at, follow, turned
 from facegear.dynamics.branches.explore import box, crossings, explore, lies_on
 from facegear.dynamics.branches.family import Family, machine_plane, speed_family
 from facegear.dynamics.branches.margins import losses, passed_by, several
+from facegear.dynamics.branches.operating_tables import jump_table
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import at_parameter
 from facegear.dynamics.branches.special import Kind
 from facegear.dynamics.branches.survey import survey
+from facegear.dynamics.branches.swept import Swept
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.errors import NotConverged
@@ -60,9 +64,10 @@ def test_an_orbit_off_the_branch_does_not_lie_on_it():
     flow = oscillator(0.1)
     branch = branch_at(flow, np.array([1.1, 0.0]), 0.3, Run(0.25, 1.5))
     point = crossings(branch, 1.3)[0]
-    assert lies_on(branch, point.z, 1, 1.3)
-    assert not lies_on(branch, point.z + 0.05, 1, 1.3)
-    assert not lies_on(branch, point.z, 2, 1.3)
+    aside = replace(point, x=point.x + 0.05 * np.array([1.0, 1.0, 0.0]))
+    assert lies_on(branch, point, 1)
+    assert not lies_on(branch, aside, 1)
+    assert not lies_on(branch, point, 2)
 
 
 def test_margins_are_the_distances_to_the_folds():
@@ -80,6 +85,18 @@ def test_a_jump_is_named_by_the_fold_in_its_bracket():
     assert (number, special.kind) == (0, Kind.FOLD)
     assert passed_by([branch], 0.77, 0.78, 1, 0.0) == []
     assert passed_by([branch], 0.828, 0.829, 2, 0.0) == []
+
+
+def test_a_jump_from_a_motion_that_has_not_settled_is_named_by_the_sweeps_last_periodic_motion():
+    """Beside a fold a motion settles too slowly for a sweep: what it was one step before is known."""
+    branch = branch_at(oscillator(), np.array([1.1, 0.0]), 0.3, WIDE)
+    jumps = pd.DataFrame([("up", 0.828, 0.829, "not settled")], columns=list(SWEEP_JUMPS))
+    last = Swept("up", 0.8275, "period-1", 1, None, np.nan)
+    named = jump_table(jumps, [last], [branch], 1e-3, 1e-3)
+    assert named["kind"][0] == "fold"
+    assert named["speed_rpm"][0] == pytest.approx(0.828463984388, rel=1e-9)
+    for other in (replace(last, direction="down"), replace(last, speed_rpm=0.82)):
+        assert jump_table(jumps, [other], [branch], 1e-3, 1e-3)["note"][0].startswith("the motion before")
 
 
 @pytest.fixture(scope="module")
