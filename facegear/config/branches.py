@@ -38,7 +38,10 @@ class Branches(Section):
     from_rpm: float = Field(200, gt=0, le=MAX_SPEED_RPM)
     to_rpm: float = Field(20_000, gt=0, le=MAX_SPEED_RPM)
     tolerance: float = Field(
-        1e-8, ge=1e-14, le=1e-5, description="local error of a step over the length scale"
+        1e-7,
+        ge=1e-14,
+        le=1e-5,
+        description="about the error of orbits in length scales and of special points over the speed",
     )
     longest_period: int = Field(
         2, ge=1, le=64, description="longest period followed through doublings, in mesh periods"

@@ -50,8 +50,9 @@ def grazes(flow: PeriodMap, first: Point, second: Point) -> tuple[list[Graze], b
 
 
 def _levels(flow: PeriodMap, u: float) -> Array:
-    """Edges of all meshes, shape (2, m)."""
-    return np.array(flow.edges(u))
+    """Edges of all meshes, shape (2, m); NaN where a mesh never opens."""
+    levels = np.array(flow.edges(u))
+    return np.where(np.isfinite(levels), levels, np.nan)
 
 
 def _above(turning: Array, levels: Array) -> NDArray[np.int64]:
@@ -79,7 +80,7 @@ def hidden_graze(segment: Segment, low: float, high: float) -> float | None:
     levels = _levels(segment.flow, points[0].u)
     most = min(point.turning.shape[2] for point in points)
     turning = [point.turning[:, :, :most] for point in points]
-    near = [_near(*turning, level, reach) for level in levels]
+    near = [_near(turning[0], turning[1], level, reach) for level in levels]
     if not any(one.any() for one in near):
         return None
     slopes = [segment.turning_slope(share, high - low)[:, :, :most] for share in (low, high)]

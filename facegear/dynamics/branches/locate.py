@@ -139,7 +139,7 @@ def _refined(segment: Segment, low: float, high: float, event: _Event) -> Specia
         return event.test(segment.at(share))
 
     # At a fold the parameter stands still along the arc, so its place need not be as sharp.
-    tolerance = segment.flow.tolerance
+    tolerance = segment.flow.step_tolerance
     goal = max(1e-3 * np.sqrt(tolerance), 1e-10) if event.kind is Kind.FOLD else max(0.1 * tolerance, 1e-13)
     # Changes that lie closer together than SHORTEST are not told apart, nor is their order known.
     share = zero(test, low, high, goal) if high - low > SHORTEST else high

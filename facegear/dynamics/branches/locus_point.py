@@ -111,7 +111,7 @@ def solve_on_locus(
     The change of the test along the orbits comes from differences of the matrix, once for each point. Raises
     NotConverged naming the two parameters.
     """
-    x, goal = guess.copy(), max(0.1 * problem.flow.tolerance, 2e-13)
+    x, goal = guess.copy(), max(0.1 * problem.flow.step_tolerance, 2e-13)
     before = np.inf
     for count in range(NEWTON_STEPS):
         linear, surface, normal = _surface(problem, x)

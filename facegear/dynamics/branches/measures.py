@@ -37,7 +37,7 @@ def measures(flow: PeriodMap, point: Point) -> Measures:
     state = flow.state(point.z, point.u)
     wide = np.zeros((2, packed.omega_squared.size))
     wide[0, : packed.n], wide[1, : packed.n] = state.displacement, state.velocity / frequency
-    settings = Settings(tolerance=flow.tolerance, samples=SAMPLES)
+    settings = Settings(tolerance=flow.step_tolerance, samples=SAMPLES)
     window = run_window(packed, flow.work(packed), wide, flow.period, settings)
     _, forces = mesh_response(system, window.samples, window.per_period)
     found = window.averages.meshes(True)

@@ -19,6 +19,9 @@ Array = NDArray[np.float64]
 PARAMETER_STEP = 1e-5
 """Change of the parameter's logarithm in the central difference of the map."""
 RIGID = 1e-10
+STEPS = 0.1
+"""Part of the tolerance to which each step is held: their errors add up."""
+FINEST = 1e-14
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +42,8 @@ class Linear:
 
 @dataclass(frozen=True, eq=False)
 class PeriodMap:
-    """P(z, u) over `period` mesh periods at one tolerance.
+    """P(z, u) over `period` mesh periods at one tolerance: about the error of orbits in length scales, and of
+    special points relative to the parameter.
 
     z (2 n,): places, then velocities by mesh phase, as mesh deflections over the length scale; u: logarithm
     of the family's parameter.
@@ -49,6 +53,11 @@ class PeriodMap:
     period: int = 1
     tolerance: float = 1e-10
     memory: dict[tuple, Work | Array] = field(default_factory=dict, repr=False)
+
+    @property
+    def step_tolerance(self) -> float:
+        """Local error of a step over the length scale."""
+        return max(STEPS * self.tolerance, FINEST)
 
     def over(self, period: int) -> "PeriodMap":
         """The same over another number of mesh periods."""
@@ -64,7 +73,7 @@ class PeriodMap:
         series = (len(packed.stiffness), len(packed.error), len(packed.load))
         key = (*packed.mesh_jacobian.shape, packed.contacts, *series)
         if key not in self.memory:
-            self.memory[key] = make_work(packed, Settings(tolerance=self.tolerance).taylor_order)
+            self.memory[key] = make_work(packed, Settings(tolerance=self.step_tolerance).taylor_order)
         return cast(Work, self.memory[key])
 
     def weights(self, packed: Packed) -> Array:
@@ -97,9 +106,10 @@ class PeriodMap:
         displacement, velocity = _split(packed, values)
         log = make_log(packed, self.period)
         work = self.work(packed)
-        longest = disturbance_step(packed, work.order, self.tolerance)
+        tolerance = self.step_tolerance
+        longest = disturbance_step(packed, work.order, tolerance)
         status = run_periods(
-            packed, work, displacement, velocity, tangents, self.period, 0, self.tolerance, log, longest
+            packed, work, displacement, velocity, tangents, self.period, 0, tolerance, log, longest
         )
         require(status)
         return displacement[: packed.n], velocity[: packed.n], log
@@ -155,10 +165,11 @@ class PeriodMap:
         values = np.full((packed.m, 2, MOST * self.period), -np.inf)
         counts = np.zeros((packed.m, 2), dtype=np.int64)
         work = self.work(packed)
-        longest = disturbance_step(packed, work.order, self.tolerance)
+        tolerance = self.step_tolerance
+        longest = disturbance_step(packed, work.order, tolerance)
         require(
             turning_points(
-                packed, work, displacement, velocity, self.period, self.tolerance, longest, values, counts
+                packed, work, displacement, velocity, self.period, tolerance, longest, values, counts
             )
         )
         return -np.sort(-values[:, :, : min(counts.max(), values.shape[2])]) / packed.scale

@@ -148,7 +148,7 @@ def correct_state(flow: PeriodMap, guess: Array, row: Array, linear: Linear) -> 
 
 def _goal(flow: PeriodMap) -> float:
     """Change over the period at which an orbit is found: below the steps' errors."""
-    return max(0.1 * flow.tolerance, 2e-13)
+    return max(0.1 * flow.step_tolerance, 2e-13)
 
 
 def _by_chord(

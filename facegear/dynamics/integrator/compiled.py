@@ -69,12 +69,28 @@ class Packed(NamedTuple):
 
 def pack(system: System, frequency: float) -> Packed:
     """Pack a system at an angular mesh frequency w in rad/s."""
+    one, square = _packed(system), frequency**2
+    natural, harmonics = _fastest(system)
+    return one._replace(
+        omega_squared=one.omega_squared / square,
+        damping=one.damping / frequency,
+        mesh_damping=one.mesh_damping / frequency,
+        stiffness=one.stiffness / square,
+        load=one.load / square,
+        pieces=one.pieces / square,
+        fastest=natural / frequency + harmonics,
+        rings=_rings(system, frequency),
+    )
+
+
+@lru_cache(maxsize=16)
+def _packed(system: System) -> Packed:
+    """What pack() gives at 1 rad/s, without rings; its arrays are shared and only read."""
     m, n = system.mesh_jacobian.shape
     wide_n, wide_m = _whole(n), _whole(m)
     transposed = np.zeros((wide_m, wide_n))
     transposed[:m, :n] = system.mesh_jacobian
     breaks, pieces = _pieces(system, wide_m)
-    natural, harmonics = _fastest(system)
     # A clearance within rounding of the deflections is none: its edges could not be told apart.
     closed = system.upper - system.lower <= LEAST_CLEARANCE * system.scale
     lower = np.where(closed, system.upper, system.lower)
@@ -83,27 +99,27 @@ def pack(system: System, frequency: float) -> Packed:
         m=m,
         mesh_jacobian=np.ascontiguousarray(transposed.T),
         transposed=transposed,
-        omega_squared=_padded(system.omega_squared, wide_n) / frequency**2,
-        damping=_padded(system.damping, wide_n) / frequency,
-        mesh_damping=_padded(system.mesh_damping, wide_m) / frequency,
+        omega_squared=_padded(system.omega_squared, wide_n),
+        damping=_padded(system.damping, wide_n),
+        mesh_damping=_padded(system.mesh_damping, wide_m),
         lower=_padded(lower, wide_m),
         upper=_padded(system.upper, wide_m),
-        stiffness=_series(system.stiffness) / frequency**2,
+        stiffness=_series(system.stiffness),
         stiffness_kind=system.stiffness_kind,
         error=_series(system.error),
         error_kind=system.error_kind,
         drift=np.zeros((0, wide_m)),
-        load=_series(system.load) / frequency**2,
+        load=_series(system.load),
         breaks=breaks,
-        pieces=pieces / frequency**2,
+        pieces=pieces,
         weights=np.abs(transposed).max(axis=0),
         leverage=(transposed**2).sum(axis=1),
-        fastest=natural / frequency + harmonics,
+        fastest=sum(_fastest(system)),
         damping_when_open=system.damping_when_open,
         pairs=system.pairs,
         scale=system.scale,
         contacts=system.contacts,
-        rings=_rings(system, frequency),
+        rings=None,
     )
 
 

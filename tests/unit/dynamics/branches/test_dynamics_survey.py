@@ -140,15 +140,15 @@ def test_machine_has_the_same_points_from_the_other_end_with_other_steps(machine
     assert branch.of(Kind.FOLD)
 
 
-@pytest.mark.parametrize(("tolerance", "moved"), [(1e-6, 4e-6), (1e-10, 1e-6)])
-def test_machine_has_the_same_points_at_other_tolerances(machine_branch, tolerance, moved):
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
+def test_machine_has_the_same_points_at_other_tolerances(machine_branch, tolerance):
     _, flow, branch = machine_branch
     other = replace(flow, tolerance=tolerance, memory={})
     start = at_parameter(other, branch.points[0].z, branch.points[0].u)
     again = follow(other, start, Run(5000.0, 9000.0), both=False)
     first, second = without_grazes(branch), without_grazes(again)
     assert first[0] == second[0]
-    assert first[1] == pytest.approx(second[1], rel=moved)
+    assert first[1] == pytest.approx(second[1], rel=4e-7), "so the lists at 1e-6 and 1e-10 agree to 1e-6"
 
 
 def test_scaling_torque_backlash_and_error_together_moves_no_special_point(machine_branch):
