@@ -13,6 +13,7 @@ include: "workflow/rules/contact_benchmarks.smk"
 include: "workflow/rules/load_sharing.smk"
 include: "workflow/rules/contact_studies.smk"
 include: "workflow/rules/tolerances.smk"
+include: "workflow/rules/search.smk"
 include: "workflow/rules/scorecard.smk"
 include: "workflow/rules/identify.smk"
 include: "workflow/rules/report.smk"
@@ -79,5 +80,6 @@ localrules:
     contact_studies_figures,
     tolerances,
     tolerances_figures,
+    search_figures,
     identify_load_estimates,
     report,

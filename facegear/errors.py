@@ -61,6 +61,7 @@ EXTRAS = {
     "jinja2": "workflow",
     "snakemake": "workflow",
     "pyarrow": "workflow",
+    "pymoo": "search",
 }
 """Modules that the core does without, and the extra that holds each."""
 

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from facegear.results.rating import RatingResult
     from facegear.results.response import ResponseResult
     from facegear.results.root_stress import RootStressResult
+    from facegear.results.search import SearchResult
     from facegear.results.stiffness import StiffnessResult
     from facegear.results.sweep import SweepResult
     from facegear.results.tolerances import TolerancesResult
@@ -285,6 +286,17 @@ class Gearbox:
             raise ConfigError("tolerances", None, "a section of the config: causes and what is asked of them")
         given = {f"tolerances.{key}": value for key, value in changes.items()}
         return self._changed("tolerances", given)._chain.tolerances()
+
+    def search(self, generations: int | None = None, seeds: Sequence[int] | None = None) -> "SearchResult":
+        """Designs that no other beats in every objective of the config's section `search`, in one process.
+
+        `generations` and `seeds` as in the config unless given. Raises ConfigErrors without a section
+        `search`, and FacegearError naming the extra where pymoo is not installed.
+        """
+        if self.values["search"] is None:
+            raise ConfigError("search", None, "a section of the config: variables and objectives")
+        given = _given({"search.generations": generations, "search.seeds": seeds})
+        return self._changed("search", given)._chain.search()
 
     def __repr__(self) -> str:
         pair, machine = self.config.tooth_pair, self.config.transmission

@@ -9,12 +9,13 @@ import numpy as np
 from facegear.config.base import parse
 from facegear.config.contact import Contact
 from facegear.config.lumped_model import ToothNumbers, given_torques, layout, other_gear_torque, tooth_numbers
+from facegear.config.search import Search
 from facegear.config.stiffness import MeshStiffness
 from facegear.config.studies import Study
 from facegear.config.tolerances import Tolerances
 from facegear.config.tooth_pair import ToothPair, pair_design
 from facegear.config.transmission import Transmission
-from facegear.config.variants import movable
+from facegear.config.variants import SPEED, movable
 from facegear.errors import ConfigError, ConfigErrors, NotConverged
 
 MOST_POINTS = 200
@@ -133,6 +134,27 @@ def check_tolerances(section: Tolerances, machine: Transmission) -> None:
         raise ConfigError(
             "tolerances.causes.moves", keys, f"keys that this machine can have; {told}"
         ) from None
+
+
+def check_search(
+    section: Search, tolerances: Tolerances | None, pair: ToothPair, machine: Transmission
+) -> None:
+    """Variables are numbers of this machine, goals quantities that it has. Raises ConfigError."""
+    # Imported here: only a search needs to know what machines are judged by.
+    from facegear.load_sharing.quantity_names import columns_of, quantity_names
+
+    keys = [key for variable in section.variables for key in variable.sets]
+    if SPEED in keys:
+        raise ConfigError("search.variables.sets", SPEED, "a number of transmission")
+    movable(machine.model_dump(mode="json"), keys, "search.variables.sets")
+    names = quantity_names(layout(machine, pair_teeth(pair)), section.model == "dynamic")
+    for goal in (*section.objectives, *section.constraints):
+        for start in goal.largest_of:
+            if not columns_of(start, names):
+                allowed = f"the beginning of one of: {', '.join(names)}"
+                raise ConfigError(f"search: {goal.name}.largest_of", start, allowed)
+    if section.robust and tolerances is None:
+        raise ConfigError("tolerances", None, "required by percentiles in search")
 
 
 def _pinion_body(pair: ToothPair) -> tuple[float, float]:

@@ -11,6 +11,7 @@ from facegear.config.buildable import require_buildable
 from facegear.config.checks import (
     check_load,
     check_places,
+    check_search,
     check_studies,
     check_tolerances,
     check_torques,
@@ -23,6 +24,7 @@ from facegear.config.contact import Contact, contact_plan
 from facegear.config.dynamics import Dynamics
 from facegear.config.load_sharing import LoadSharing
 from facegear.config.mesh import Mesh, mesh_sizes
+from facegear.config.search import Search
 from facegear.config.stiffness import MeshStiffness
 from facegear.config.strength import Strength
 from facegear.config.studies import NAME, Study
@@ -51,6 +53,9 @@ class Config(Section):
     load_sharing: LoadSharing = LoadSharing()
     tolerances: Tolerances | None = Field(
         None, description="thousands of machines with their tolerances: percentiles, indices; null: not done"
+    )
+    search: Search | None = Field(
+        None, description="designs that no other beats in every objective; null: not done"
     )
     studies: tuple[Study, ...] = ()
     reproduction: str | None = Field(
@@ -114,7 +119,7 @@ class Config(Section):
     def _check_machine(self) -> None:
         pair, machine = self.tooth_pair, self.transmission
         if machine is None:
-            for key in ("studies", "tolerances", "reproduction"):
+            for key in ("studies", "tolerances", "search", "reproduction"):
                 if getattr(self, key):
                     raise ConfigError("transmission", None, f"required by {key}")
             return
@@ -136,6 +141,8 @@ class Config(Section):
         require_buildable(complete, pair_teeth(pair))
         if self.tolerances is not None:
             check_tolerances(self.tolerances, complete)
+        if self.search is not None:
+            check_search(self.search, self.tolerances, pair, complete)
 
 
 def resolved(config: Config) -> dict[str, Any]:

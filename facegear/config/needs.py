@@ -18,6 +18,15 @@ _COMPLIANCE: Slice = {**_MESH, "contact": "contact"}
 _MACHINE: Slice = {"transmission": "transmission", "teeth": tuple(f"tooth_pair.{key}" for key in TEETH)}
 _BRANCHES: Slice = {**_MACHINE, "branches": "branches", "speed_rpm": "dynamics.speed_rpm"}
 _ACCURACY: Slice = {"accuracy": "dynamics.accuracy"}
+_SEARCH: Slice = {
+    **_PAIR,
+    **_ACCURACY,
+    "transmission": "transmission",
+    "speed_rpm": "dynamics.speed_rpm",
+    "options": "load_sharing",
+    "search": "search",
+    "tolerances": "tolerances",
+}
 
 NEEDS: dict[str, Slice] = {
     "geometry": _PAIR,
@@ -59,6 +68,8 @@ NEEDS: dict[str, Slice] = {
         ),
     },
     "tolerances": {"tolerances": "tolerances"},
+    "search_island": _SEARCH,
+    "search": _SEARCH,
     "ratings": {**_MACHINE, "speed_rpm": "dynamics.speed_rpm"},
     "machine": _MACHINE,
     "hunting": {**_MACHINE, "positions": "load_sharing.hunting_positions"},
@@ -92,6 +103,8 @@ UPSTREAM = {
     "hunting": ("stiffness",),
     "tolerances_chunk": ("stiffness",),
     "tolerances": ("tolerances_chunk",),
+    "search_island": ("stiffness",),
+    "search": ("search_island",),
 }
 """Stages whose results a stage uses."""
 

@@ -15,18 +15,20 @@ START = {"position_um": {"x": 0.0, "y": 0.0}, "runout": {"eccentricity_um": 0.0,
 PLAIN = {"error_um": 0.0, "stiffness_factor": 1.0, "clocking_deg": 0.0}
 
 
-def movable(transmission: Mapping[str, Any], keys: Iterable[str]) -> dict[str, Any]:
+def movable(
+    transmission: Mapping[str, Any], keys: Iterable[str], told: str = "tolerances.causes.moves"
+) -> dict[str, Any]:
     """Section `transmission` with an entry for every part that one of the keys names.
 
-    What such an entry leaves open is filled with what all parts have. Raises ConfigError naming the first
-    key that is no number of the section.
+    What such an entry leaves open is filled with what all parts have. Raises ConfigError for `told`, naming
+    the first key that is no number of the section.
     """
     complete = deepcopy(dict(transmission))
     for key in keys:
         if key == SPEED:
             continue
         if not key.startswith(MACHINE):
-            raise ConfigError("tolerances.causes.moves", key, f"a number of transmission, or {SPEED}")
+            raise ConfigError(told, key, f"a number of transmission, or {SPEED}")
         parts = key.removeprefix(MACHINE).split(".")
         if len(parts) > 2 and parts[0] in SHARED and isinstance(complete.get(parts[0]), dict):
             _enter(complete, parts)
@@ -34,7 +36,7 @@ def movable(transmission: Mapping[str, Any], keys: Iterable[str]) -> dict[str, A
         found = inside[last] if _has(inside, last) else None
         if isinstance(found, bool) or not isinstance(found, int | float):
             allowed = "a key of transmission whose nominal value is a number"
-            raise ConfigError("tolerances.causes.moves", key, allowed)
+            raise ConfigError(told, key, allowed)
     return complete
 
 
@@ -50,6 +52,15 @@ def moved(
         inside, last = _holder(changed, key.removeprefix(MACHINE).split("."))
         inside[last] = inside[last] + added
     return changed, speed_rpm
+
+
+def placed(transmission: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, Any]:
+    """A section made by `movable` with numbers put in the place of nominal ones."""
+    changed = deepcopy(dict(transmission))
+    for key, value in values.items():
+        inside, last = _holder(changed, key.removeprefix(MACHINE).split("."))
+        inside[last] = value
+    return changed
 
 
 def _enter(section: dict[str, Any], parts: list[str]) -> None:

@@ -29,6 +29,8 @@ CAPTIONS = {
     "tolerance_distributions": "Share of samples above each value, with percentiles and their intervals.",
     "tolerance_importance": "Which tolerance matters: total Sobol indices, or rank correlations.",
     "tolerance_scatter": "Every sample against the two tolerances that matter most.",
+    "search_front": "Designs tried, the front that none beats, and its winners beside the nominal design.",
+    "search_hypervolume": "How much of the box between best and worst of the front each seed has covered.",
     "sensitivity": "Change of K_gamma per micrometre of each error, largest first.",
 }
 
@@ -117,6 +119,12 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "The machine as a series of machines: causes with their distributions, sampled by scrambled Sobol "
         "sequences. K_gamma is a path's largest load over an even share of the group's mean.",
         ("tolerance_distributions", "tolerance_importance", "tolerance_scatter"),
+    ),
+    (
+        "Design search",
+        "Designs that no other beats in every objective (NSGA-II), from several seeds. The winners are "
+        "computed again at full accuracy.",
+        ("search_front", "search_hypervolume"),
     ),
     (
         "Load sharing",

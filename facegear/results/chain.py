@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from facegear.results.rating import RatingResult
     from facegear.results.response import ResponseResult
     from facegear.results.root_stress import RootStressResult
+    from facegear.results.search import SearchResult
     from facegear.results.stiffness import StiffnessResult
     from facegear.results.sweep import SweepResult
     from facegear.results.tolerances import TolerancesResult
@@ -192,6 +193,23 @@ class Chain:
             return tolerances(samples, indices, **self._needs("tolerances"))
 
         return self.store.result("tolerances", self.values, TolerancesResult, compute)
+
+    def search(self) -> "SearchResult":
+        """Front of designs, island after island, and its winners."""
+        from facegear.results.search import SearchResult
+
+        def compute() -> "Outcome":
+            from facegear.stages.search import search
+            from facegear.stages.search_island import search_island
+
+            needs, harmonics = self._needs("search_island"), self._harmonics()
+            islands = {
+                seed: search_island(seed, harmonics, **needs).content["designs"]
+                for seed in self.values["search"]["seeds"]
+            }
+            return search(islands, harmonics, **self._needs("search"))
+
+        return self.store.result("search", self.values, SearchResult, compute)
 
     def _needs(self, rule: str) -> dict[str, Any]:
         return stage_needs(rule, self.values)

@@ -7,7 +7,7 @@ import pandas as pd
 
 from facegear.config.base import parse
 from facegear.config.tolerances import Tolerances
-from facegear.load_sharing.quantities import OPEN, REVERSED
+from facegear.load_sharing.quantity_names import OPEN, REVERSED
 from facegear.scenarios.summary import (
     importance_table,
     index_table,

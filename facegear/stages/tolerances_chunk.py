@@ -1,7 +1,6 @@
 """A chunk of samples of one machine with its tolerances."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import replace
+from collections.abc import Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -9,22 +8,16 @@ from typing import Any
 import pandas as pd
 
 from facegear.config.base import parse
-from facegear.config.buildable import require_buildable
-from facegear.config.dynamics import Accuracy, settings
-from facegear.config.load_sharing import LoadSharing, sharing_options
-from facegear.config.lumped_model import TEETH, layout, machine, tooth_numbers
+from facegear.config.lumped_model import TEETH, layout, tooth_numbers
 from facegear.config.tolerances import Design, Tolerances, population
 from facegear.config.transmission import Transmission
 from facegear.config.variants import movable, moved
-from facegear.load_sharing.quantities import dynamic_quantities, quantity_names, quasi_static_quantities
+from facegear.load_sharing.quantity_names import quantity_names
 from facegear.progress import Progress
 from facegear.scenarios.chunks import Evaluate, identity, run_chunk
 from facegear.scenarios.sampling import changes, index_samples, samples
+from facegear.stages.many_machines import builder, judge
 from facegear.stages.outcome import Outcome
-from facegear.stiffness.tables import series_of, unloaded_error
-
-SOURCE = "this sample"
-Quantities = Callable[[Any, float], dict[str, float]]
 
 
 def tolerances_chunk(
@@ -53,12 +46,12 @@ def tolerances_chunk(
     start = movable(transmission, [key for cause in causes.causes for key, _ in cause.gains])
     shape = layout(parse(Transmission, start), tooth_numbers(**{key: teeth[key] for key in TEETH}))
     names = quantity_names(shape, section.model == "dynamic")
-    judge = _quantities(section, accuracy, options)
-    build = _builder(harmonics, teeth)
+    ask = judge(section.model, section.hunting_cycles, accuracy, options)
+    build = builder(harmonics, teeth, "this sample")
 
     def evaluate(number: int) -> dict[str, float]:
         changed, speed = moved(start, speed_rpm, changes(causes, values[number - first]))
-        return judge(build(changed), speed)
+        return ask(build(changed), speed)
 
     same = identity(
         design, transmission, teeth, accuracy, speed_rpm, options, tolerances, harmonics.to_csv(), code
@@ -83,24 +76,3 @@ def _run(
         return run_chunk(evaluate, numbers, names, partial, same, progress.step)
     with TemporaryDirectory() as folder:
         return run_chunk(evaluate, numbers, names, Path(folder) / "partial", same, progress.step)
-
-
-def _quantities(section: Tolerances, accuracy: Mapping[str, Any], options: Mapping[str, Any]) -> Quantities:
-    if section.model == "quasi_static":
-        return lambda built, speed: quasi_static_quantities(built, section.hunting_cycles)
-    precise = settings(parse(Accuracy, accuracy))
-    one_start = replace(sharing_options(parse(LoadSharing, options)), starts=1)
-    return lambda built, speed: dynamic_quantities(built, speed, precise, one_start)
-
-
-def _builder(harmonics: pd.DataFrame, teeth: Mapping[str, Any]) -> Callable[[Mapping[str, Any]], Any]:
-    """Function that puts a machine together from its section, or raises the error that a config gets."""
-    numbers = tooth_numbers(**{key: teeth[key] for key in TEETH})
-    stiffness, unloaded = series_of(harmonics), unloaded_error(harmonics)
-
-    def build(transmission: Mapping[str, Any]) -> Any:
-        section = parse(Transmission, transmission, SOURCE)
-        require_buildable(section, numbers)
-        return machine(section, numbers, stiffness, unloaded)
-
-    return build

@@ -1,0 +1,89 @@
+"""Config section `search`: which numbers of a machine are free, what is wanted of it, what it must hold."""
+
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from facegear.config.base import Section, refuse
+
+NAME = r"^[a-z][a-z0-9_]{0,39}$"
+
+
+class VariableSection(Section):
+    """A number that is free, and the keys of the machine that take it."""
+
+    name: str = Field(pattern=NAME)
+    sets: tuple[str, ...] = Field(min_length=1, description="dotted keys of numbers of `transmission`")
+    limits: tuple[float, float]
+    steps: int | None = Field(
+        None,
+        ge=2,
+        le=100_000,
+        description="so many evenly spaced values only, as of angles that fit the teeth",
+    )
+    scale: Literal["linear", "log"] = Field("linear", description="log: evenly spaced in orders of magnitude")
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "VariableSection":
+        if self.limits[1] <= self.limits[0]:
+            refuse("limits", list(self.limits), "the lower one first")
+        if self.scale == "log" and self.limits[0] <= 0.0:
+            refuse("limits", list(self.limits), "above 0 where scale is log")
+        return self
+
+
+class ObjectiveSection(Section):
+    """Something that is to be small."""
+
+    name: str = Field(pattern=NAME)
+    largest_of: tuple[str, ...] = Field(
+        min_length=1,
+        description="quantities of tolerances/samples.parquet, or what several begin with",
+    )
+    percentile: float | None = Field(
+        None, gt=0, lt=100, description="over the causes of `tolerances`; null: of the machine as designed"
+    )
+
+
+class ConstraintSection(ObjectiveSection):
+    """Something that may not be larger than a limit."""
+
+    at_most: float
+
+
+class Search(Section):
+    """Designs that no other beats in every objective."""
+
+    variables: tuple[VariableSection, ...] = Field(min_length=1, max_length=50)
+    objectives: tuple[ObjectiveSection, ...] = Field(min_length=1, max_length=4)
+    constraints: tuple[ConstraintSection, ...] = Field((), max_length=20)
+    model: Literal["quasi_static", "dynamic"] = "quasi_static"
+    hunting_cycles: int = Field(
+        8, ge=1, le=100_000, description="mesh cycles taken from the hunting cycle; winners take all of them"
+    )
+    samples: int = Field(32, ge=2, le=100_000, description="of each design, where a percentile is asked for")
+    winner_samples: int = Field(256, ge=2, le=100_000, description="the same of the winners")
+    population: int = Field(24, ge=4, le=10_000, description="designs of a generation")
+    generations: int = Field(20, ge=1, le=10_000)
+    seeds: tuple[int, ...] = Field(
+        (1, 2, 3), min_length=1, max_length=100, description="one island, a job, each"
+    )
+
+    @property
+    def robust(self) -> bool:
+        """Whether some objective or constraint is a percentile."""
+        return any(one.percentile is not None for one in (*self.objectives, *self.constraints))
+
+    @model_validator(mode="after")
+    def _told_apart(self) -> "Search":
+        goals = [one.name for one in (*self.objectives, *self.constraints)]
+        names = [*(one.name for one in self.variables), *goals]
+        for number, name in enumerate(names):
+            if name in names[:number]:
+                refuse("name", name, "one of its own for each variable, objective and constraint")
+        keys = [key for variable in self.variables for key in variable.sets]
+        if len(set(keys)) < len(keys):
+            refuse("variables.sets", keys, "each key once")
+        if len(set(self.seeds)) < len(self.seeds) or min(self.seeds) < 0:
+            refuse("seeds", list(self.seeds), "different numbers from 0 on")
+        return self

@@ -1,0 +1,50 @@
+"""Designs that no other beats in everything asked for."""
+
+from typing import TYPE_CHECKING, ClassVar
+
+import pandas as pd
+
+from facegear.errors import chosen
+from facegear.results.base import Kept, Result
+
+if TYPE_CHECKING:
+    from facegear.plots.style import Figure
+
+KINDS = ("front", "hypervolume")
+
+
+class SearchResult(Result):
+    """Front of a design search, the winners beside the nominal design, and the spread over seeds."""
+
+    FILES: ClassVar = {
+        "designs": Kept("search/designs.parquet", ("generation", "seed", "error")),
+        "front": Kept("search/front.csv", may_be_empty=True),
+        "hypervolume": Kept("search/hypervolume.csv", may_be_empty=True),
+        "winners": Kept("search/winners.csv"),
+    }
+
+    def table(self) -> pd.DataFrame:
+        """One row a design of the front: variables and goals."""
+        return self.content["front"].copy()
+
+    def winners(self) -> pd.DataFrame:
+        """The nominal design and the winners at full accuracy, beside what the search found of them."""
+        return self.content["winners"].copy()
+
+    def designs(self) -> pd.DataFrame:
+        """Every design tried, with its generation and seed, and the error where it cannot be built."""
+        return self.content["designs"].copy()
+
+    def hypervolume(self) -> pd.DataFrame:
+        """Share of the box of all fronts that each seed has covered, by generation."""
+        return self.content["hypervolume"].copy()
+
+    def plot(self, kind: str = "front") -> "Figure":
+        """One of front, hypervolume."""
+        from facegear.plots.search import front_figure, hypervolume_figure
+
+        content = self.content
+        if chosen(kind, KINDS, "kind") == "hypervolume":
+            return hypervolume_figure(content["hypervolume"])
+        objectives = [one["name"] for one in self.values["search"]["objectives"]]
+        return front_figure(content["designs"], content["front"], content["winners"], objectives)

@@ -1,0 +1,192 @@
+"""Pareto fronts by evolution (NSGA-II of pymoo): every design is written down, so that a kill costs none."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from facegear.errors import FacegearError
+from facegear.io import journal
+
+Array = NDArray[np.float64]
+Evaluate = Callable[[tuple[float, ...]], Mapping[str, float]]
+"""What is wanted of a design, by name, given the values of its variables. Raises FacegearError if none."""
+GENERATION, ERROR = "generation", "error"
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A number of a design between `low` and `high`, on `steps` evenly spaced values where they are given."""
+
+    name: str
+    low: float
+    high: float
+    steps: int | None = None
+    logarithmic: bool = False
+
+    def snapped(self, part: Array) -> Array:
+        """Parts 0 to 1 of the range (same shape), moved to the nearest that is allowed."""
+        return part if self.steps is None else np.round(part * (self.steps - 1)) / (self.steps - 1)
+
+    def value(self, part: float) -> float:
+        """The number at a part of the range."""
+        if self.logarithmic:
+            return float(self.low * (self.high / self.low) ** part)
+        return float(self.low + (self.high - self.low) * part)
+
+
+@dataclass(frozen=True)
+class Task:
+    """Variables, names of what is to be small, and of what may not exceed a limit."""
+
+    variables: tuple[Variable, ...]
+    objectives: tuple[str, ...]
+    limits: tuple[tuple[str, float], ...] = ()
+
+    @property
+    def goals(self) -> tuple[str, ...]:
+        """All that is asked of a design."""
+        return (*self.objectives, *(name for name, _ in self.limits))
+
+
+@dataclass(frozen=True)
+class Effort:
+    """Designs of a generation, generations, and the seed of all that is random."""
+
+    population: int
+    generations: int
+    seed: int
+
+
+def evolve(
+    task: Task,
+    evaluate: Evaluate,
+    effort: Effort,
+    partial: str | Path,
+    identity: str,
+    told: Callable[[], None] = lambda: None,
+) -> pd.DataFrame:
+    """Every design tried, in order. Columns: generation, the variables, the goals, error.
+
+    `partial` keeps every design as soon as it is known; under the same `identity` a killed evolution is
+    replayed from it and goes on. A design without results is a row with its error and breaks all limits.
+    """
+    known = {tuple(row["design"]): row for row in journal.read(partial, identity)}
+    rows: list[tuple[Any, ...]] = []
+    algorithm = _algorithm(task, effort)
+    with journal.appending(partial, identity) as append:
+        while algorithm.has_next():
+            asked = algorithm.ask()
+            found = []
+            for parts in asked.get("X"):
+                design = tuple(one.value(part) for one, part in zip(task.variables, parts, strict=True))
+                if design not in known:
+                    known[design] = _row(evaluate, design, task.goals)
+                    append(known[design])
+                told()
+                found.append(known[design])
+                values = found[-1]["values"] or [np.nan] * len(task.goals)
+                rows.append((algorithm.n_gen, *design, *values, found[-1][ERROR]))
+            _tell(algorithm, asked, found, task)
+    names = [one.name for one in task.variables]
+    return pd.DataFrame(rows, columns=[GENERATION, *names, *task.goals, ERROR])
+
+
+def feasible(designs: pd.DataFrame, task: Task) -> NDArray[np.bool_]:
+    """Which designs have results and hold every limit."""
+    held = np.array(designs[ERROR] == "")
+    for name, most in task.limits:
+        held &= designs[name].to_numpy() <= most
+    return held
+
+
+def front(designs: pd.DataFrame, task: Task) -> pd.DataFrame:
+    """The feasible designs that no other beats in every objective, each once, by the first objective."""
+    from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
+
+    names = [one.name for one in task.variables]
+    held = designs[feasible(designs, task)].drop_duplicates(names)
+    if held.empty:
+        return held
+    best = NonDominatedSorting().do(held[list(task.objectives)].to_numpy(), only_non_dominated_front=True)
+    return held.iloc[np.sort(best)].sort_values(list(task.objectives), kind="stable").reset_index(drop=True)
+
+
+def hypervolumes(islands: Mapping[int, pd.DataFrame], task: Task) -> pd.DataFrame:
+    """Share of the box between the best and the worst of all islands' front that each island has covered.
+
+    Of all its designs up to each generation; a tenth is added to the box, so that its corners count.
+    Columns: seed, generation, hypervolume. Empty where no design is feasible.
+    """
+    from pymoo.indicators.hv import HV
+
+    whole = front(pd.concat(islands.values(), ignore_index=True), task)
+    rows = []
+    goals = list(task.objectives)
+    ideal, worst = (whole[goals].min().to_numpy(), whole[goals].max().to_numpy()) if len(whole) else (0, 1)
+    span = np.where(worst > ideal, np.subtract(worst, ideal), 1.0)
+    box = HV(ref_point=np.full(len(goals), 1.1))
+    for seed, designs in islands.items() if len(whole) else ():
+        for generation in sorted(designs[GENERATION].unique()):
+            held = front(designs[designs[GENERATION] <= generation], task)
+            parts = (held[goals].to_numpy() - ideal) / span
+            rows.append((seed, generation, float(box(parts)) / 1.1 ** len(goals) if len(held) else 0.0))
+    return pd.DataFrame(rows, columns=["seed", GENERATION, "hypervolume"])
+
+
+def _row(evaluate: Evaluate, design: tuple[float, ...], goals: Sequence[str]) -> dict[str, Any]:
+    try:
+        values = evaluate(design)
+        found = [float(values[name]) for name in goals]
+    except FacegearError as error:
+        return {"design": design, "values": None, ERROR: str(error).splitlines()[0]}
+    if not np.isfinite(found).all():
+        missing = next(name for name, value in zip(goals, found, strict=True) if not np.isfinite(value))
+        return {"design": design, "values": None, ERROR: f"{missing} is not defined for every sample"}
+    return {"design": design, "values": found, ERROR: ""}
+
+
+def _algorithm(task: Task, effort: Effort) -> Any:
+    from pymoo.algorithms.moo.nsga2 import NSGA2
+    from pymoo.core.problem import Problem
+    from pymoo.core.repair import Repair
+
+    class Snap(Repair):
+        def _do(self, problem: Any, X: Array, **_: Any) -> Array:
+            return np.column_stack([one.snapped(X[:, i]) for i, one in enumerate(task.variables)])
+
+    count = len(task.variables)
+    problem = Problem(
+        n_var=count, n_obj=len(task.objectives), n_ieq_constr=len(task.limits) + 1, xl=0.0, xu=1.0
+    )
+    algorithm = NSGA2(pop_size=effort.population, repair=Snap())
+    algorithm.setup(problem, termination=("n_gen", effort.generations), seed=effort.seed, verbose=False)
+    return algorithm
+
+
+def _tell(algorithm: Any, asked: Any, found: list[dict[str, Any]], task: Task) -> None:
+    """Give the algorithm the objectives and by how much limits are broken, 1e9 for what has no results."""
+    from pymoo.core.evaluator import Evaluator
+    from pymoo.problems.static import StaticProblem
+
+    size = len(task.objectives)
+    most = [limit for _, limit in task.limits]
+    nothing = ([1e9] * size, [1e9] * (len(most) + 1))
+    told = [
+        (
+            row["values"][:size],
+            [value - limit for value, limit in zip(row["values"][size:], most, strict=True)] + [0.0],
+        )
+        if row["values"]
+        else nothing
+        for row in found
+    ]
+    static = StaticProblem(
+        algorithm.problem, F=np.array([row[0] for row in told]), G=np.array([row[1] for row in told])
+    )
+    Evaluator().eval(static, asked)
+    algorithm.tell(infills=asked)

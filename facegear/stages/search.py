@@ -1,0 +1,82 @@
+"""The front of all islands of a search, how far it may be trusted, and its winners at full accuracy."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from facegear.config.base import parse
+from facegear.config.search import Search
+from facegear.scenarios.evolution import Task, front, hypervolumes
+from facegear.stages.designs import Machine, assessor, task
+from facegear.stages.outcome import Outcome
+
+WHOLE = 2**31
+"""More mesh cycles than any hunting cycle has: all of them."""
+
+
+def search(
+    islands: Mapping[int, pd.DataFrame],
+    harmonics: pd.DataFrame,
+    tooth_pair: Mapping[str, Any],
+    transmission: Mapping[str, Any],
+    accuracy: Mapping[str, Any],
+    speed_rpm: float,
+    options: Mapping[str, Any],
+    search: Mapping[str, Any],
+    tolerances: Mapping[str, Any] | None,
+) -> Outcome:
+    """`designs`, `front`, `hypervolume`, `winners` (tables) from the designs of each island by its seed."""
+    section = parse(Search, search)
+    asked = task(section)
+    every = pd.concat([one.assign(seed=seed) for seed, one in islands.items()], ignore_index=True)
+    best = front(every, asked)
+    covered = hypervolumes(islands, asked)
+    given = Machine(harmonics, tooth_pair, transmission, accuracy, speed_rpm, options, tolerances)
+    return Outcome(
+        {
+            "designs": every,
+            "front": best,
+            "hypervolume": covered,
+            "winners": _winners(best, asked, given, section),
+        },
+        f"front of {len(best)} designs out of {len(every)}; {_spread(covered)}",
+    )
+
+
+def _spread(covered: pd.DataFrame) -> str:
+    if covered.empty:
+        return "none of them holds every limit"
+    last = covered.groupby("seed")["hypervolume"].last()
+    percent = 100.0 * (last.max() - last.min()) / last.mean()
+    return f"hypervolume of {len(last)} seeds within {percent:.2g} %"
+
+
+def _winners(best: pd.DataFrame, asked: Task, given: Machine, section: Search) -> pd.DataFrame:
+    """The nominal design and those of the front that win: goals as searched, and all at full accuracy."""
+    coarse = assessor(given, section, section.hunting_cycles, section.samples)
+    full = assessor(given, section, WHOLE, section.winner_samples)
+    names = [one.name for one in asked.variables]
+    rows = []
+    for told, design in {"nominal": None, **chosen(best, asked)}.items():
+        searched, (goals, quantities) = coarse(design)[0], full(design)
+        values = dict(zip(names, design, strict=True)) if design is not None else {}
+        compared = {f"{goal}_searched": searched[goal] for goal in asked.goals}
+        rows.append({"design": told, **values, **goals, **compared, **quantities})
+    columns = ["design", *names, *(key for key in rows[0] if key not in ("design", *names))]
+    return pd.DataFrame(rows, columns=columns)
+
+
+def chosen(best: pd.DataFrame, asked: Task) -> dict[str, tuple[float, ...]]:
+    """Designs of a front: the best in each objective, and of several objectives the nearest to all bests."""
+    if best.empty:
+        return {}
+    goals = best[list(asked.objectives)].to_numpy()
+    places = {f"least {name}": int(goals[:, i].argmin()) for i, name in enumerate(asked.objectives)}
+    span = np.ptp(goals, axis=0)
+    if len(asked.objectives) > 1:
+        parts = (goals - goals.min(axis=0)) / np.where(span > 0.0, span, 1.0)
+        places["compromise"] = int(np.linalg.norm(parts, axis=1).argmin())
+    names = [one.name for one in asked.variables]
+    return {told: tuple(map(float, best.loc[place, names])) for told, place in places.items()}

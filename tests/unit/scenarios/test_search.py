@@ -1,0 +1,151 @@
+"""A search of designs: a known optimum, the spread over seeds, resumption, bad input, winners."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import facegear
+from facegear.errors import ConfigErrors, FacegearError
+from facegear.scenarios.evolution import ERROR, Effort, Task, Variable, evolve, front, hypervolumes
+
+INPUTS, IDLERS = ("right input", "left input"), ("tail idler", "right idler", "left idler")
+STIFF = "bearing_stiffness_n_per_m"
+LINEAR = {
+    "mesh_stiffness.table": [{"order": 1, "a_n_per_m": 0.0, "b_n_per_m": 0.0}],
+    "transmission.mesh_kinematics": "geometric",
+    "transmission.face_gear.mesh_radius_mm": None,
+    "transmission.transmission_error": {"amplitude_um": 0},
+}
+
+
+def bearings(parts):
+    return [f"transmission.single_pinions.{part}.{STIFF}.{axis}" for part in parts for axis in "xy"]
+
+
+VARIABLES = [
+    {"name": "inputs", "limits": [4e7, 2e8], "scale": "log", "steps": 9, "sets": bearings(INPUTS)},
+    {"name": "idlers", "limits": [2e7, 1e9], "scale": "log", "steps": 9, "sets": bearings(IDLERS)},
+    {
+        "name": "clocking",
+        "limits": [-0.05, 0.05],
+        "steps": 11,
+        "sets": [f"transmission.single_pinions.{part}.clocking_deg" for part in IDLERS],
+    },
+]
+SHARING = {"name": "k_inputs", "largest_of": [f"k_gamma {part}" for part in INPUTS]}
+SEARCH = {"variables": VARIABLES, "objectives": [SHARING], "population": 16, "generations": 10, "seeds": [1]}
+
+
+def machine(tolerances=None, **section):
+    start = facegear.load("config/harmonics_only.yaml", results=None)
+    return start.with_values({**LINEAR, "search": {**SEARCH, **section}, "tolerances": tolerances})
+
+
+def difference(inputs, idlers, clocking):
+    """F_u - F_l of an input after docs/theory.md, of which K_gamma of the inputs is a growing function.
+
+    Clocking of the idlers (deg) takes its length at the base circle from the play of two flanks.
+    """
+    force, k, base, pressure = 6.4e3, 4.1e8, 0.0391, np.radians(25.0)
+    play = 1e-4 + np.radians(clocking) * base
+    return (2 * force + play * k + 4 * force * k * np.cos(pressure) ** 2 / idlers) / (1 + 2 * k / inputs)
+
+
+def test_the_optimum_of_the_closed_form_is_found():
+    grid = [np.geomspace(4e7, 2e8, 9), np.geomspace(2e7, 1e9, 9), np.linspace(-0.05, 0.05, 11)]
+    values = np.array(np.meshgrid(*grid, indexing="ij")).reshape(3, -1)
+    found = machine().search()
+    best = found.table()[["inputs", "idlers", "clocking"]].iloc[0]
+    np.testing.assert_allclose(best, values[:, difference(*values).argmin()])
+    sharing = found.winners().set_index("design")["k_inputs"]
+    assert sharing["least k_inputs"] < sharing["nominal"]
+
+
+def spheres(design):
+    """Squared distances from (0, 0) and (1, 0): the front is the line between them."""
+    x, y = design
+    return {"f": x**2 + y**2, "g": (x - 1.0) ** 2 + y**2}
+
+
+SPHERES = Task((Variable("x", -1.0, 2.0), Variable("y", -1.0, 1.0)), ("f", "g"))
+
+
+def islands(folder, seeds, generations=30):
+    return {
+        seed: evolve(SPHERES, spheres, Effort(24, generations, seed), folder / f"{seed}", "same")
+        for seed in seeds
+    }
+
+
+def test_the_front_of_two_spheres_is_the_line_between_and_seeds_differ_by_little(tmp_path):
+    found = islands(tmp_path, (1, 2, 3))
+    best = front(pd.concat(found.values()), SPHERES)
+    np.testing.assert_allclose(np.sqrt(best["f"]) + np.sqrt(best["g"]), 1.0, atol=0.02)
+    last = hypervolumes(found, SPHERES).groupby("seed")["hypervolume"].last()
+    assert np.ptp(last) / last.mean() < 0.02
+    exact = 1.0 - 1.0 / 6.0 / 1.1**2  # the area below sqrt(f) + sqrt(g) = 1 is a sixth
+    assert last.mean() == pytest.approx(exact, abs=0.02)
+
+
+def test_a_killed_evolution_goes_on_from_what_it_had_and_ends_the_same(tmp_path):
+    whole = islands(tmp_path, (7,), 6)[7]
+    tried = []
+
+    def counted(design):
+        tried.append(design)
+        if len(tried) == 50:
+            raise KeyboardInterrupt
+        return spheres(design)
+
+    with pytest.raises(KeyboardInterrupt):
+        evolve(SPHERES, counted, Effort(24, 6, 7), tmp_path / "killed", "same")
+    again = evolve(SPHERES, counted, Effort(24, 6, 7), tmp_path / "killed", "same")
+    pd.testing.assert_frame_equal(again, whole, check_exact=True)
+    assert len(tried) - 1 == len(set(tried)) == len(whole.drop_duplicates(["x", "y"]))
+
+
+def test_a_design_that_cannot_be_built_is_a_row_and_never_in_the_front(tmp_path):
+    def half(design):
+        if design[0] < 0.5:
+            raise FacegearError("too small")
+        return spheres(design)
+
+    designs = evolve(SPHERES, half, Effort(16, 8, 1), tmp_path / "half", "same")
+    assert (designs[ERROR] == "too small").sum() > 0
+    assert (front(designs, SPHERES)["x"] >= 0.5).all()
+
+
+def test_a_robust_search_asks_for_percentiles_over_the_tolerances():
+    cause = {
+        "name": "teeth",
+        "spread": 8.0,
+        "moves": {"transmission.single_meshes.right input/lower.error_um": 1.0},
+        "source": "drawing",
+    }
+    robust = {**SHARING, "percentile": 95.0}
+    sizes = {"population": 4, "generations": 1, "samples": 8, "winner_samples": 8}
+    tolerances = {"causes": [cause], "samples": 8, "chunk_samples": 8}
+    found = machine(tolerances, objectives=[robust], variables=VARIABLES[:1], **sizes).search()
+    table = found.winners()
+    assert (
+        table["k_inputs"] > table[["k_gamma right input/upper", "k_gamma left input/upper"]].max(axis=1)
+    ).all()
+
+
+@pytest.mark.parametrize(
+    ("section", "line"),
+    [
+        ({"objectives": [{**SHARING, "largest_of": ["k_gama"]}]}, "k_inputs.largest_of = .k_gama"),
+        ({"objectives": [{**SHARING, "percentile": 95.0}]}, "required by percentiles"),
+        ({"objectives": [{**SHARING, "name": "inputs"}]}, "one of its own"),
+        ({"variables": [{**VARIABLES[0], "limits": [1.0, 1.0]}]}, "the lower one first"),
+        ({"variables": [{**VARIABLES[2], "scale": "log"}]}, "above 0 where scale is log"),
+        ({"variables": [{**VARIABLES[0], "sets": ["transmission.pinion.mas_kg"]}]}, "pinion.mas_kg"),
+        ({"variables": [{**VARIABLES[0], "sets": ["dynamics.speed_rpm"]}]}, "a number of transmission"),
+        ({"seeds": [1, 1]}, "different numbers"),
+    ],
+)
+def test_a_mistake_in_the_section_is_one_clear_line(section, line):
+    with pytest.raises(ConfigErrors, match=line) as caught:
+        machine(**section)
+    assert "Traceback" not in str(caught.value) and len(str(caught.value).splitlines()) <= 2
