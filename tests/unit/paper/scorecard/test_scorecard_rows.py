@@ -1,3 +1,4 @@
+import re
 from pathlib import Path
 
 import pandas as pd
@@ -111,3 +112,17 @@ def test_claim_that_repeats_an_unknown_row_is_refused(tmp_path):
     file.write_text("source: x\nclaims:\n- {id: a, where: b, claim: c, criterion: d, same_as: z}\n")
     with pytest.raises(ConfigErrors, match="same_as"):
         read_claims(file)
+
+
+def test_the_pages_count_the_claims_that_are_judged():
+    """A row a claim: the README's number of them, and the dynamic ones that the sets are judged by."""
+    claims = read_claims(CLAIMS).claims
+    root = CLAIMS.parents[2]
+    (rows,) = re.findall(
+        r"scorecard with three other sets of inputs \|.*\| (\d+) rows", (root / "README.md").read_text()
+    )
+    (dynamic,) = re.findall(
+        r"more of the dynamic claims \(\d+ of (\d+),", (root / "docs" / "validation.md").read_text()
+    )
+    assert int(rows) == len(claims)
+    assert int(dynamic) == sum(claim.dynamic for claim in claims)
