@@ -6,17 +6,15 @@ point and n a unit direction.
 """
 
 from math import atan, atan2, hypot, inf, isfinite, isnan, nan, sin, sqrt
-from pathlib import Path
 
 from facegear.geometry import closed_forms
-from facegear.machine_code import compiler
+from facegear.machine_code import for_callers
 
 NEWTON_STEPS = 40
 LARGEST_STEP = 0.2
 PSI_STEPS = 60
 
-compiled = compiler(Path(__file__).parent)
-inlined = compiler(Path(__file__).parent, forceinline=True)
+inlined = for_callers()
 
 flank_frame = inlined(closed_forms.flank_frame)
 flank_normal = inlined(closed_forms.flank_normal)
@@ -27,7 +25,7 @@ roll_at_height = inlined(closed_forms.roll_at_height)
 first_psi = inlined(closed_forms.first_psi)
 
 
-@compiled
+@inlined
 def cut_flank(blank, p, n, inside):  # type: ignore[no-untyped-def]
     """From the generating section that the point lies in."""
     cosine = blank.base / (blank.ratio * inside)
@@ -37,7 +35,7 @@ def cut_flank(blank, p, n, inside):  # type: ignore[no-untyped-def]
     return cut_flank_from(blank, p, n, roll, atan2(sine, cosine))
 
 
-@compiled
+@inlined
 def cut_flank_from(blank, p, n, roll, psi):  # type: ignore[no-untyped-def]
     roll, psi, distance, x, y, z, done = _newton(blank, False, p, n, roll, psi)
     nx, ny, nz = flank_normal(blank.ratio, blank.space, roll, psi)
@@ -48,7 +46,7 @@ def cut_flank_from(blank, p, n, roll, psi):  # type: ignore[no-untyped-def]
     return distance, straight, roll, psi, done
 
 
-@compiled
+@inlined
 def cut_fillet(blank, p, n, radius):  # type: ignore[no-untyped-def]
     cosine = min(max((blank.lift - p[2]) / blank.tip_radius, 0.5), 1.0)
     chi = -atan2(sqrt(max(1 - cosine * cosine, 0.0)), cosine)
@@ -62,7 +60,7 @@ def cut_fillet(blank, p, n, radius):  # type: ignore[no-untyped-def]
     return (distance if chi >= end else inf), chi, radius
 
 
-@compiled
+@inlined
 def cut_land(blank, p, n, height):  # type: ignore[no-untyped-def]
     """Distance, gear angle and radius where the ray meets the plane, inf beside the blank."""
     if not n[2] < -1e-9:
@@ -75,7 +73,7 @@ def cut_land(blank, p, n, height):  # type: ignore[no-untyped-def]
     return distance, atan2(x, y), radius
 
 
-@compiled
+@inlined
 def tip_angle(blank, radius):  # type: ignore[no-untyped-def]
     """Gear angle of the tip edge at a gear radius."""
     height = (blank.lift - blank.tip_plane) / blank.base
@@ -92,7 +90,7 @@ def tip_angle(blank, radius):  # type: ignore[no-untyped-def]
     return atan2(x, y)
 
 
-@compiled
+@inlined
 def _psi_at(blank, radius, roll):  # type: ignore[no-untyped-def]
     psi = first_psi(blank.base, blank.ratio, radius)
     for _ in range(PSI_STEPS):
@@ -104,12 +102,12 @@ def _psi_at(blank, radius, roll):  # type: ignore[no-untyped-def]
     return psi if abs(step) < 1e-12 else nan
 
 
-@compiled
+@inlined
 def _flank_frame(blank, roll, psi):  # type: ignore[no-untyped-def]
     return flank_frame(blank.base, blank.ratio, blank.space, blank.lift, roll, psi)
 
 
-@compiled
+@inlined
 def _fillet_frame(blank, chi, radius):  # type: ignore[no-untyped-def]
     """Point and derivatives with respect to chi and gear radius; nan where the locus does not reach."""
     if not radius > abs(blank.tip_radius * sin(chi)):
@@ -117,7 +115,7 @@ def _fillet_frame(blank, chi, radius):  # type: ignore[no-untyped-def]
     return fillet_frame(blank.tip_radius, blank.ratio, blank.lift, blank.edge_start, chi, radius)
 
 
-@compiled
+@inlined
 def _newton(blank, fillet, p, n, a, b):  # type: ignore[no-untyped-def]
     """Cut a ray with X(a, b): a, b, distance along the ray, the point hit, and whether it converged."""
     length = hypot(n[0], n[2])

@@ -4,22 +4,24 @@ All angles in rad, all lengths in m, for the right side of tooth 0 in the gear's
 """
 
 from math import hypot, inf, isnan, nan
+from pathlib import Path
 
 import numpy as np
 
 from facegear.geometry.ray_surfaces import (
-    compiled,
     cut_fillet,
     cut_flank,
     cut_flank_from,
     cut_land,
+    inlined,
     tip_angle,
 )
+from facegear.machine_code import compiler
 
 NONE, FLANK, FILLET, TIP_LAND, ROOT_LAND = range(5)
 
 
-@compiled
+@compiler(Path(__file__).parent)
 def cut(blank, position, normal, search_radius, points, normals, rolls, psis, inner, spacing):  # type: ignore[no-untyped-def]
     """Cut rays (n, 3), unit `normal` (n, 3), with the gear, as far as `search_radius` along them.
 
@@ -74,7 +76,7 @@ def cut(blank, position, normal, search_radius, points, normals, rolls, psis, in
     return gap, part, u, v, continued, lost
 
 
-@compiled
+@inlined
 def _nearest(p, n, search_radius, points, normals, spacing):  # type: ignore[no-untyped-def]
     """The sampled flank point that the ray passes closest, if it does so within `spacing`, else -1."""
     least, best = spacing * spacing, -1
