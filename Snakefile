@@ -14,6 +14,7 @@ include: "workflow/rules/load_sharing.smk"
 include: "workflow/rules/contact_studies.smk"
 include: "workflow/rules/tolerances.smk"
 include: "workflow/rules/search.smk"
+include: "workflow/rules/scenarios_benchmarks.smk"
 include: "workflow/rules/scorecard.smk"
 include: "workflow/rules/identify.smk"
 include: "workflow/rules/report.smk"
@@ -42,6 +43,7 @@ rule benchmarks:
                 "dynamics_convergence",
                 "dynamics_labels",
                 "branches",
+                *(["scenarios"] if CASES[CASE]["tolerances"] else []),
             ],
         ),
 

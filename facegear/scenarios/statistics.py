@@ -54,7 +54,9 @@ class SobolIndices:
     failed: int
 
 
-def sobol_indices(values: Array, causes: int, confidence: float = 0.95, seed: int = 0) -> SobolIndices:
+def sobol_indices(
+    values: Array, causes: int, confidence: float = 0.95, seed: int = 0, resamples: int = RESAMPLES
+) -> SobolIndices:
     """Sobol indices of one output from the results (samples,) of Saltelli's design, in its order.
 
     Blocks that hold a failed sample (NaN) are left out and counted. The first of the others are used, as many
@@ -66,17 +68,20 @@ def sobol_indices(values: Array, causes: int, confidence: float = 0.95, seed: in
     if not whole.any():
         raise ValueError("no block of the design is whole")
     kept = blocks[whole][: 2 ** int(np.log2(whole.sum()))]
-    functions = {"f_A": kept[None, :, 0], "f_B": kept[None, :, 1], "f_AB": kept[:, 2:].T[:, None, :]}
-    found = scipy.stats.sobol_indices(func=functions, n=len(kept), rng=np.random.default_rng(seed))
-    spread = found.bootstrap(confidence_level=confidence, n_resamples=RESAMPLES)
-    return SobolIndices(
-        first=_estimates(found.first_order, spread.first_order.confidence_interval),
-        total=_estimates(found.total_order, spread.total_order.confidence_interval),
-        blocks=len(kept),
-        failed=int((~whole).sum()),
+    found = _indices(kept)
+    draw = np.random.default_rng(seed)
+    resampled = [_indices(kept[draw.integers(0, len(kept), len(kept))]) for _ in range(resamples)]
+    tail = 0.5 * (1.0 - confidence)
+    low, high = np.nanquantile(resampled, [tail, 1.0 - tail], axis=0)
+    first, total = (
+        tuple(Estimate(*map(float, row)) for row in zip(*parts, strict=True))
+        for parts in zip(found, low, high, strict=True)
     )
+    return SobolIndices(first, total, blocks=len(kept), failed=int((~whole).sum()))
 
 
-def _estimates(values: Array, interval: "scipy.stats._common.ConfidenceInterval") -> tuple[Estimate, ...]:
-    rows = np.broadcast_arrays(values, interval.low, interval.high)
-    return tuple(Estimate(*map(float, row)) for row in zip(*(part.ravel() for part in rows), strict=True))
+def _indices(blocks: Array) -> Array:
+    """First-order and total indices (2, causes) of whole blocks; a resample at a time, to save memory."""
+    functions = {"f_A": blocks[None, :, 0], "f_B": blocks[None, :, 1], "f_AB": blocks[:, 2:].T[:, None, :]}
+    found = scipy.stats.sobol_indices(func=functions, n=len(blocks))
+    return np.array([found.first_order.ravel(), found.total_order.ravel()])

@@ -1,0 +1,1 @@
+"""Thousands of samples: what they cost, and how the error of their statistics falls with their number."""

@@ -1,0 +1,45 @@
+"""What a sample costs: time of a core, bytes on disk, memory of a job."""
+
+import resource
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import pandas as pd
+
+from facegear.io import columnar
+from facegear.stages.tolerances_chunk import tolerances_chunk
+
+MODELS = ("quasi_static", "dynamic")
+WANTED, CORES = 10_000, 2
+
+
+def costs(harmonics: pd.DataFrame, needs: Mapping[str, Any], samples: int) -> pd.DataFrame:
+    """One row a model, from `samples` of them in this process, compiled before.
+
+    `needs`: the arguments of a chunk. `minutes_extrapolated` is what WANTED samples would take on CORES idle
+    cores, start-up of the jobs left out.
+    """
+    rows = []
+    for model in MODELS:
+        given = {**needs, "tolerances": {**needs["tolerances"], "model": model}}
+        tolerances_chunk("samples", 0, 0, harmonics, **given)
+        start = time.process_time()
+        chunk = tolerances_chunk("samples", 0, samples - 1, harmonics, **given).content["chunk"]
+        seconds = (time.process_time() - start) / samples
+        memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+        minutes = seconds * WANTED / CORES / 60.0
+        rows.append((model, samples, 1e3 * seconds, minutes, _bytes(chunk) / samples, memory))
+    return pd.DataFrame(
+        rows,
+        columns=["model", "samples", "ms_a_sample", "minutes_extrapolated", "bytes_a_sample", "memory_mb"],
+    )
+
+
+def _bytes(chunk: pd.DataFrame) -> int:
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "chunk.parquet"
+        columnar.write(path, chunk)
+        return path.stat().st_size

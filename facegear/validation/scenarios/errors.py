@@ -1,0 +1,43 @@
+"""Error of percentiles and Sobol indices against the closed form of a linear machine with normal causes."""
+
+from collections.abc import Sequence
+from statistics import NormalDist
+
+import numpy as np
+import pandas as pd
+
+from facegear.scenarios.distributions import Distribution, Shape
+from facegear.scenarios.sampling import Cause, Population, index_samples, samples
+from facegear.scenarios.statistics import percentile, sobol_indices
+
+WEIGHTS = np.array([4.0, 3.0, 2.0, 1.0, 0.5, 0.25])
+SEEDS = range(6)
+
+
+def statistics_errors(sizes: Sequence[int]) -> pd.DataFrame:
+    """RMS over seeds: percentiles (share of the spread above the mean), total indices (of the largest one).
+
+    `sizes`: samples, and blocks of the design for indices, powers of two.
+    """
+    spread = float(np.linalg.norm(WEIGHTS))
+    exact = WEIGHTS**2 / spread**2
+    rows = []
+    for size in sizes:
+        found: dict[str, list[float]] = {"p95": [], "p99": [], "total_index": []}
+        for seed in SEEDS:
+            population = _population(seed)
+            values = samples(population, 0, size) @ WEIGHTS
+            for level in (95, 99):
+                closed = spread * NormalDist().inv_cdf(level / 100.0)
+                found[f"p{level}"].append(percentile(values, level / 100.0).value / closed - 1.0)
+            design = index_samples(population, 0, size * (WEIGHTS.size + 2)) @ WEIGHTS
+            indices = sobol_indices(design, WEIGHTS.size, resamples=1)
+            found["total_index"].append(indices.total[0].value / exact[0] - 1.0)
+        rows.append((size, *(float(np.sqrt(np.mean(np.square(errors)))) for errors in found.values())))
+    return pd.DataFrame(rows, columns=["samples", *(f"{name}_error" for name in found)])
+
+
+def _population(seed: int) -> Population:
+    normal = Distribution(Shape.NORMAL, spread=1.0)
+    causes = tuple(Cause(f"x{i}", normal, ((f"x{i}", 1.0),), "standard normal") for i in range(WEIGHTS.size))
+    return Population(causes, seed)

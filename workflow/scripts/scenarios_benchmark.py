@@ -1,0 +1,16 @@
+"""What samples cost, and the error of their statistics against their number."""
+
+from facegear.io import tables
+from facegear.provenance.stage import stage
+from facegear.stiffness.tables import HARMONICS_COLUMNS
+from facegear.validation.scenarios.costs import costs
+from facegear.validation.scenarios.errors import statistics_errors
+
+with stage(snakemake) as run:
+    params = snakemake.params
+    harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
+    found = costs(harmonics, params.chunk, params.samples)
+    tables.write(snakemake.output.costs, found)
+    tables.write(snakemake.output.errors, statistics_errors([2**power for power in range(7, 14)]))
+    told = ", ".join(f"{row.model} {row.ms_a_sample:.3g} ms" for row in found.itertuples())
+    run.summary(f"a sample takes: {told}")
