@@ -21,7 +21,7 @@ def test_twin_of_a_modified_pair_is_the_standard_pair_without_backlash():
 
 
 def test_twin_is_within_half_a_percent_of_brute_force_where_one_pair_carries():
-    table = twin_study(design_with(), 23, (0.2, 0.1), positions=(0.6,), line_loads=(6e5,), sector=7)
+    table = twin_study(design_with(), 23, (0.4, 0.1), positions=(0.6,), line_loads=(6e5,), sector=7)
     assert abs(table["difference_percent"].iloc[0]) < 0.5
     iso = table["iso_6336_c_gamma_n_per_mm_um"].iloc[0]
     assert table["k_n_per_mm_um"].iloc[0] == pytest.approx(iso, rel=0.3)
