@@ -16,6 +16,7 @@ from facegear.plots.sweep import select
 
 PERIOD_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
 """Okabe and Ito's colours, told apart by the colour-blind; of period 1, 2, 4 and any other."""
+NAMED = (1, 2, 4)
 MARKERS = {
     "fold": ("^", "black"),
     "period doubling": ("s", "black"),
@@ -23,7 +24,9 @@ MARKERS = {
     "branch point": ("o", "black"),
 }
 SWEEPS = {"up": ("1", "0.45"), "down": ("2", "0.7")}
-BARS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442")
+IRREGULAR = "0.55"
+SHOWN = 0.06
+"""Least share of a bar that has room for its number."""
 
 
 def typical_meshes(pinions: Sequence[Mapping[str, Any]], meshes: Iterable[str]) -> list[str]:
@@ -44,6 +47,8 @@ def amplitudes(
     """RMS without mean of mesh deflections over speed, a panel for each mesh: stable parts solid, unstable
     dashed, special points marked, points of the sweep beneath; the operating speed as a line.
     """
+    low, high = branches["speed_rpm"].min(), branches["speed_rpm"].max()
+    sweep = sweep[sweep["speed_rpm"].between(low, high)]
     with styled():
         figure, axes = plt.subplots(
             len(meshes), 1, figsize=(7.5, 2.6 * len(meshes) + 0.8), sharex=True, squeeze=False
@@ -60,6 +65,7 @@ def amplitudes(
             axis.set_title(f"mesh {mesh}", fontsize=9)
             axis.set_ylabel("RMS of d (µm)")
             axis.set_ylim(bottom=0)
+            axis.set_xlim(low - 0.02 * (high - low), high + 0.02 * (high - low))
         axes[-1, 0].set_xlabel("pinion speed (rpm)")
         figure.legend(
             handles=_keys(branches, special), loc="outside lower center", ncols=4, fontsize=8, frameon=False
@@ -89,13 +95,13 @@ def _points(axis: Axes, branch: pd.DataFrame, special: pd.DataFrame) -> None:
 
 
 def _colour(period: int) -> str:
-    return PERIOD_COLOURS[{1: 0, 2: 1, 4: 2}.get(period, 3)]
+    return PERIOD_COLOURS[NAMED.index(period) if period in NAMED else len(NAMED)]
 
 
 def _keys(branches: pd.DataFrame, special: pd.DataFrame) -> list[Line2D]:
     keys = [
-        Line2D([], [], color=_colour(period), lw=1.6, label=f"period {period}")
-        for period in sorted(branches["period"].unique())
+        Line2D([], [], color=colour, lw=1.6, label=name)
+        for name, colour in dict.fromkeys(_motion(f"period-{one}") for one in _by_size(branches["period"]))
     ]
     keys += [
         Line2D([], [], color="0.3", lw=1.6, label="stable"),
@@ -111,6 +117,11 @@ def _keys(branches: pd.DataFrame, special: pd.DataFrame) -> list[Line2D]:
         for direction, (marker, colour) in SWEEPS.items()
     ]
     return [*keys, Line2D([], [], color="0.5", lw=0.8, ls=":", label="nominal speed")]
+
+
+def _by_size(periods: pd.Series) -> list[int]:
+    """Periods with a colour of their own first."""
+    return sorted(periods.unique(), key=lambda one: (one not in NAMED, one))
 
 
 def loci(table: pd.DataFrame, speed_rpm: float) -> Figure:
@@ -143,39 +154,45 @@ def loci(table: pd.DataFrame, speed_rpm: float) -> Figure:
 
 
 def shares(table: pd.DataFrame) -> Figure:
-    """Share of random starts that ends on each motion, a stacked bar for each speed with standard errors."""
+    """Share of random starts that ends on each motion, a stacked bar for each speed with standard errors.
+
+    Colours tell the period as in amplitudes(), numbers the branch.
+    """
     speeds = sorted(table["speed_rpm"].unique())
-    names = [
-        name if name == "not periodic" else f"branch {name}" if name.isdigit() else name
-        for name in dict.fromkeys(_motion(row) for row in table.itertuples())
-    ]
+    used: dict[str, str] = {}
     with styled():
-        figure, axis = plt.subplots(figsize=(7, 3.6))
+        figure, axis = plt.subplots(figsize=(7, 4))
         for place, speed in enumerate(speeds):
             bottom = 0.0
             for row in table[table["speed_rpm"] == speed].itertuples():
-                index = list(dict.fromkeys(_motion(r) for r in table.itertuples())).index(_motion(row))
-                colour = BARS[index % len(BARS)]
+                name, colour = _motion(str(row.motion))
+                used[name] = colour
                 axis.bar(place, row.share, 0.7, bottom=bottom, color=colour, edgecolor="white")
+                if str(row.branch).isdigit() and row.share > SHOWN:
+                    middle = bottom + 0.5 * row.share
+                    axis.text(place, middle, row.branch, ha="center", va="center", color="white", fontsize=8)
                 bottom += row.share
-                if 0.0 < row.share < 1.0:
+                if 0.0 < row.share < 1.0 and bottom < 1.0 - 1e-9:
                     axis.errorbar(place, bottom, row.error, color="black", capsize=3, lw=0.8)
         axis.set_xticks(range(len(speeds)), [f"{speed:g}" for speed in speeds])
         axis.set_xlabel("pinion speed (rpm)")
         axis.set_ylabel("share of random starts")
         axis.set_ylim(0, 1.02)
         axis.grid(False, axis="x")
-        keys = [plt.Rectangle((0, 0), 1, 1, color=BARS[i % len(BARS)]) for i in range(len(names))]
-        figure.legend(
-            keys, names, loc="outside lower center", ncols=min(len(names), 4), fontsize=8, frameon=False
-        )
-        figure.suptitle("Which motion the machine is likely to be on; bars: one standard error")
+        keys = [plt.Rectangle((0, 0), 1, 1, color=used[name], label=name) for name in sorted(used)]
+        figure.legend(handles=keys, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
+        figure.suptitle("Which motion the machine is likely to be on; number: branch, bar: standard error")
     return figure
 
 
-def _motion(row: Any) -> str:
-    branch, motion = str(row.branch), str(row.motion)
-    return motion if branch in ("not periodic", "not followed") else f"branch {branch}, {motion}"
+def _motion(label: str) -> tuple[str, str]:
+    """Name and colour of a class of motion."""
+    if not label.startswith("period-"):
+        return "not periodic", IRREGULAR
+    period = int(label.removeprefix("period-"))
+    if period in NAMED:
+        return f"period {period}", _colour(period)
+    return "other periods", _colour(period)
 
 
 def multipliers(table: pd.DataFrame, branch: int = 0) -> Figure:
