@@ -55,7 +55,10 @@ rule peers:
 
 rule identify:
     input:
-        expand(f"results/{CASE}/identify/{{name}}.csv", name=["sets", "load_estimates"] if IDENTIFY else []),
+        expand(
+            f"results/{CASE}/identify/{{name}}.csv",
+            name=["sets", "load_estimates", "random"] if IDENTIFY else [],
+        ),
 
 
 localrules:
@@ -84,4 +87,5 @@ localrules:
     tolerances_figures,
     search_figures,
     identify_load_estimates,
+    identify_verdicts,
     report,

@@ -1,32 +1,13 @@
 include: "functions/scorecard.smk"
 
 
-rule scorecard_set:
-    "Claims of the paper with another set of undisclosed inputs"
-    input:
-        ltca=shared("contact", "ltca"),
-        claims=REPRODUCTION.claims if REPRODUCTION else [],
-    output:
-        outcomes="results/{case}/scorecard/sets/{set}.csv",
-        manifest="results/{case}/scorecard/sets/{set}.provenance.json",
-    wildcard_constraints:
-        set="[A-Za-z0-9_]+",
-    resources:
-        mem_mb=1300,
-        runtime=30,
-    params:
-        cases=set_cases,
-        points=STUDY_POINTS,
-    script:
-        "../scripts/scorecard_set.py"
-
-
 rule scorecard:
     "Scorecard"
     input:
         claims=REPRODUCTION.claims if REPRODUCTION else [],
-        sets=REPRODUCTION.sets if REPRODUCTION and REPRODUCTION.sets else [],
-        outcomes=expand(rules.scorecard_set.output.outcomes, set=list(SETS), allow_missing=True),
+        sets=stored("sets"),
+        runs=stored("runs"),
+        random=stored("random"),
         frequencies=rules.modal.output.frequencies,
         tvms=rules.stiffness.output.tvms,
         load_dependence=rules.load_dependence.output.table,
@@ -46,5 +27,6 @@ rule scorecard:
         mem_mb=1300,
     params:
         values=sections("tooth_pair", "transmission", "mesh_stiffness"),
+        case=whole_case,
     script:
         "../scripts/scorecard.py"

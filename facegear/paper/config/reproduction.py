@@ -18,6 +18,8 @@ class Reproduction(Section):
 
     claims: str = Field(min_length=1, description="its claims (yaml)")
     sets: str | None = Field(None, min_length=1, description="sets of undisclosed inputs that fit (csv)")
+    runs: str | None = Field(None, min_length=1, description="runs of those sets and of the config (csv)")
+    random: str | None = Field(None, min_length=1, description="claims held by random inputs (csv)")
     identify: Identify | None = None
 
 
@@ -30,7 +32,10 @@ def read_reproduction(path: str | Path) -> Reproduction:
     return read.model_copy(
         update={
             "claims": located(read.claims, folder),
-            "sets": None if read.sets is None else located(read.sets, folder),
+            **{
+                key: None if (file := getattr(read, key)) is None else located(file, folder)
+                for key in ("sets", "runs", "random")
+            },
         }
     )
 

@@ -9,7 +9,9 @@ from facegear.config.base import parse
 from facegear.config.machines import case_machine
 from facegear.config.stiffness import MeshStiffness
 from facegear.errors import ConfigError
-from facegear.paper.config.sections import Identify, fit_targets, search_space
+from facegear.paper.config.sections import Design, Identify, RandomInputs, fit_targets, search_space
+from facegear.paper.identify.patterns import READINGS, half_turn_patterns
+from facegear.paper.identify.random_inputs import Plausible
 from facegear.paper.identify.search import Problem
 from facegear.paper.identify.stiffness import load_for_mean, scaled_stiffness
 from facegear.stiffness.curve import load_table
@@ -37,3 +39,11 @@ def search_problem(values: Mapping[str, Any], section: Identify, ltca: pd.DataFr
         targets=fit_targets(section.targets, values["dynamics"]["speed_rpm"]),
         space=search_space(section.ranges),
     )
+
+
+def plausible_inputs(
+    section: RandomInputs, design: Design, loads: tuple[float, float], gears: int
+) -> Plausible:
+    """What the random inputs of a design are drawn from; loads in N m on the pinion of one mesh."""
+    phasings = READINGS if design == "random" else half_turn_patterns()
+    return Plausible(search_space(section.ranges), phasings, loads, gears, section.seed)

@@ -9,8 +9,12 @@ from facegear.config.base import Section, refuse
 from facegear.config.studies import Point
 from facegear.paper.identify.budget import Budget
 from facegear.paper.identify.inputs import Branch, Meaning, Space, StiffnessLoad, Waveform
+from facegear.paper.identify.patterns import half_turn_patterns
 from facegear.paper.identify.targets import BacklashTarget, Targets
 from facegear.transmission.phases import PhaseConvention
+
+Design = Literal["random", "structures"]
+"""Random inputs with every reading of e(t), or the same random inputs with each pattern of half turns."""
 
 
 class BacklashClaim(Section):
@@ -60,6 +64,16 @@ class SearchBudget(Section):
     seed: int = Field(1, ge=0, le=2**31)
 
 
+class RandomInputs(Section):
+    """Random plausible inputs: how often they hold each claim, and what patterns of e(t) do."""
+
+    ranges: Ranges = Ranges(per_input_n_m=(80.0, 2000.0), tail_share=(0.0, 0.45))
+    samples: int = Field(64, ge=1, le=100_000)
+    structure_samples: int = Field(4, ge=1, le=10_000, description="with which each pattern is tried")
+    chunk_samples: int = Field(16, ge=1, le=10_000, description="judged by one job")
+    seed: int = Field(1, ge=0, le=2**31)
+
+
 class Identify(Section):
     """The search for what the paper leaves out; run with `snakemake identify`."""
 
@@ -75,6 +89,8 @@ class Identify(Section):
         ("operating", "mean"), min_length=1, description="load at which k(t) has its shape"
     )
     budget: SearchBudget = SearchBudget()
+    random: RandomInputs = RandomInputs()
+    runs: int = Field(2, ge=1, le=1000, description="of each set; all but the first moved by 1e-12")
     designs: tuple[Point, ...] = Field(
         (), description="other plausible gear data for the first estimate of the load"
     )
@@ -115,6 +131,17 @@ def search_space(section: Ranges) -> Space:
 def search_budget(section: SearchBudget) -> Budget:
     """Evaluations of one branch."""
     return Budget(section.scan, section.population, section.generations, section.seed)
+
+
+def design_size(section: RandomInputs, design: Design) -> int:
+    """Samples of a design."""
+    return section.samples if design == "random" else section.structure_samples * len(half_turn_patterns())
+
+
+def design_chunks(section: RandomInputs, design: Design) -> list[tuple[int, int]]:
+    """Numbers of the first and the last sample of each chunk."""
+    size, step = design_size(section, design), section.chunk_samples
+    return [(first, min(first + step, size) - 1) for first in range(0, size, step)]
 
 
 def fit_targets(section: FitTargets, speed_rpm: float) -> Targets:

@@ -3,10 +3,12 @@
 import csv
 from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
+from facegear.paper.identify.cases import Cases, changed_cases
 from facegear.paper.identify.inputs import WAVEFORM_TERMS, Waveform
 
 
@@ -31,11 +33,21 @@ def config_changes(row: Mapping[str, Any], error_um: float) -> dict[str, Any]:
             "amplitude_um": error_um * first[1],
             "meaning": str(row["meaning"]),
             "phase_deg": _wrapped(phase),
-            "phasing": str(row["phasing"]),
+            "phasing": row["phasing"],
             "more_harmonics": more,
         },
         "mesh_stiffness.torque_n_m": float(row["stiffness_torque_n_m"]),
     }
+
+
+def set_cases(
+    values: Mapping[str, Any],
+    row: Mapping[str, Any] | None,
+    settings: Mapping[str, Any] = MappingProxyType({}),
+) -> Cases:
+    """Cases of a config with the inputs of a row of a sets file (its own for None) and other keys set."""
+    size = values["transmission"]["transmission_error"]["amplitude_um"]
+    return changed_cases(values, {**settings, **({} if row is None else config_changes(row, size))})
 
 
 def stored_sets(path: str | Path) -> dict[str, dict[str, str]]:

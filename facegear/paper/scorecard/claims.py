@@ -48,8 +48,9 @@ class Claim(Section):
 
     @property
     def dynamic(self) -> bool:
-        """Whether the row hangs on inputs of the dynamics that the paper leaves out."""
-        return TORQUE in self.undisclosed and GEAR_DATA not in self.undisclosed
+        """Whether the row is about this model and hangs on undisclosed inputs of its dynamics."""
+        hangs = TORQUE in self.undisclosed and GEAR_DATA not in self.undisclosed
+        return hangs and self.about == "this model"
 
 
 class Claims(Section):

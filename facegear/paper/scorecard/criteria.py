@@ -23,3 +23,8 @@ CRITERIA: Mapping[str, Criterion] = MappingProxyType(
     }
 )
 """Every public function of the criteria modules."""
+
+
+def reads_sweep(criterion: str) -> bool:
+    """Whether a criterion judges the speed sweep."""
+    return CRITERIA[criterion].__module__ == criteria_sweep.__name__

@@ -1,12 +1,15 @@
 """Criteria on load-sharing coefficients; tables `sharing`, `curves`, `reference`."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
 
 from facegear.paper.scorecard.outcome import Outcome, Tables, number, statement
 
+WINDOWS = ("cycle", "starts")
+"""The summary holds the lowest and the highest mean of these."""
 NEARLY_ONE_CARRIER = 0.02
 BOUNDS = {"inputs": 2.0, "idlers": 3.0}
 """The coefficient where one mesh of the group carries all."""
@@ -22,12 +25,17 @@ mesh of the group carries load there.
 def sharing(tables: Tables, kind: str, column: str = "mean", study: str = "", point: Point = "") -> Outcome:
     """A column of the load-sharing summary, averaged over the input pinions where kind is inputs; no number
     where the coefficient is undefined for half the cycle or more.
+
+    The mean is also that of single cycles and from other starts.
     """
     undefined = _value(tables, kind, "undefined_share", study, point)
+    value = _value(tables, kind, column, study, point)
     if undefined >= MOST_UNDEFINED:
-        value = _value(tables, kind, column, study, point)
         return Outcome(None, f"{value:.4g}, but undefined for {100 * undefined:.0f} % of the cycle")
-    return number(_value(tables, kind, column, study, point), 4)
+    if column != "mean":
+        return number(value, 4)
+    ends = [_value(tables, kind, f"{of}_{end}", study, point) for of in WINDOWS for end in ("low", "high")]
+    return replace(number(value, 4), windows=(float(np.nanmin(ends)), float(np.nanmax(ends))))
 
 
 def reference(tables: Tables, kind: str, quantity: str, column: str = "mean") -> Outcome:

@@ -16,7 +16,8 @@ class Outcome:
     """Our number (None for a statement), the same in words, and whether the statement holds.
 
     For a number `holds` is decided by the claim's tolerance and left None here. A number that is the nearest
-    of several names all of them in `candidates`, and in `span` the range in which they were looked for.
+    of several names all of them in `candidates`, and in `span` the range in which they were looked for. One
+    that is not the same in every cycle, or from every start, names its range in `windows`.
     """
 
     value: float | None
@@ -24,6 +25,7 @@ class Outcome:
     holds: bool | None = None
     candidates: tuple[float, ...] = ()
     span: tuple[float, float] | None = None
+    windows: tuple[float, float] | None = None
 
     def chance(self, tolerance: float) -> float | None:
         """Share of the span from which some candidate is within the tolerance.

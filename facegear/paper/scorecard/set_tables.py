@@ -12,29 +12,28 @@ from facegear.stages.dynamics_response import dynamics_response
 from facegear.stages.dynamics_sweep import dynamics_sweep
 from facegear.stages.dynamics_sweep_chunk import dynamics_sweep_chunk
 from facegear.stages.load_sharing import load_sharing
-from facegear.stages.load_sharing_reference import slow_reference
 from facegear.stages.outcome import Outcome
 from facegear.stages.stiffness import stiffness
 
 Values = Mapping[str, Any]
 
 
-def set_tables(base: Values, points: Mapping[tuple[str, str], Values], ltca: pd.DataFrame) -> dict[str, Any]:
+def set_tables(
+    base: Values, points: Mapping[tuple[str, str], Values], ltca: pd.DataFrame, swept: bool = True
+) -> dict[str, Any]:
     """Tables by name, as the criteria read them, from plain config values and the contact table.
 
-    `points`: config values of each (study, point). All share the case's mesh stiffness.
+    `points`: config values of each (study, point). All share the case's mesh stiffness. Without the sweep its
+    two tables are not there.
     """
     harmonics = stiffness(**stage_needs("stiffness", base), ltca=ltca).content["harmonics"]
     response = dynamics_response(harmonics, **stage_needs("dynamics_response", base))
     sharing = _sharing({(NOMINAL, NOMINAL): base, **points}, harmonics)
-    needs = stage_needs("load_sharing_reference", base)
-    reference = slow_reference(harmonics, **{key: needs[key] for key in needs if key != "range_accuracy"})
     return {
         **response.content,
-        **_sweep(base, harmonics),
+        **(_sweep(base, harmonics) if swept else {}),
         "sharing": collected({key: one.content["summary"] for key, one in sharing.items()}),
         "curves": collected({key: one.content["curve"] for key, one in sharing.items()}),
-        "reference": reference,
     }
 
 

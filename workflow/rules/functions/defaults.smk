@@ -3,7 +3,6 @@ PRIORITIES = {
     "compliance": 90,
     "contact": 80,
     "stiffness": 75,
-    "scorecard_set": 70,
     "dynamics_sweep_chunk": 60,
     "dynamics_sweep": 60,
     "dynamics_figures": 60,

@@ -1,7 +1,24 @@
 from facegear.paper.config.reproduction import design_points
-from facegear.paper.config.sections import branches
+from facegear.paper.config.sections import branches, design_chunks
 
 IDENTIFY = REPRODUCTION.identify if REPRODUCTION else None
 IDENTIFY_VALUES = IDENTIFY.model_dump(mode="json") if IDENTIFY else None
 DESIGNS = list(design_points(IDENTIFY))
 BRANCHES = [branch.name for branch in branches(IDENTIFY)] if IDENTIFY else []
+CLAIMS = REPRODUCTION.claims if REPRODUCTION else []
+STORED_SETS = REPRODUCTION.sets if REPRODUCTION and REPRODUCTION.sets else []
+
+
+def judged_sets():
+    """The config's own inputs, and the sets that fit about as well."""
+    if not STORED_SETS:
+        return ["config"]
+    from facegear.paper.identify.sets import stored_sets
+
+    return ["config", *stored_sets(STORED_SETS)]
+
+
+def random_chunks(design):
+    """Function of the wildcards giving the chunk files of a design of random inputs."""
+    chunks = design_chunks(IDENTIFY.random, design) if IDENTIFY else []
+    return [f"results/{{case}}/identify/chunks/{design}_{first}_{last}.csv" for first, last in chunks]

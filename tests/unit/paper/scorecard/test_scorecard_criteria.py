@@ -293,4 +293,14 @@ def test_orders_and_extremes_of_a_study_follow_its_means():
 
 def test_points_named_by_numbers_are_found():
     tables = sharing(**{"80": 1.7})
+    ends = dict.fromkeys(("cycle_low", "cycle_high", "starts_low", "starts_high"), 1.7)
+    tables["sharing"] = tables["sharing"].assign(**ends)
     assert CRITERIA["sharing"](tables, study="s", point=80.0, kind="idlers").value == 1.7
+
+
+def test_mean_spans_single_cycles_and_starts():
+    ends = {"cycle_low": 1.6, "cycle_high": 1.8, "starts_low": 1.5, "starts_high": np.nan}
+    tables = sharing(**{"80": 1.7})
+    tables["sharing"] = tables["sharing"].assign(**ends)
+    found = CRITERIA["sharing"](tables, study="s", point=80.0, kind="idlers")
+    assert found.windows == (1.5, 1.8)

@@ -1,0 +1,54 @@
+"""The cases of a config with some of its keys changed: the machine itself and every study's points."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from facegear.config.base import parse
+from facegear.config.cases import expand_cases, set_key
+from facegear.config.model import Config
+
+DECISIVE = (
+    *("tooth_pair", "mesh", "contact", "mesh_stiffness"),
+    *("transmission", "dynamics", "load_sharing"),
+)
+"""Config sections on which the dynamics of a case depends."""
+
+Cases = tuple[dict[str, Any], dict[tuple[str, str], dict[str, Any]]]
+"""Plain config values of the machine, and of each (study, point)."""
+
+
+def changed_cases(values: Mapping[str, Any], changes: Mapping[str, Any]) -> Cases:
+    """Cases of a config with dotted keys set to new values; a study's own keys come after them.
+
+    Raises ConfigErrors for a value that the config refuses.
+    """
+    changed = json.loads(json.dumps({**values, "reproduction": None}))
+    for key, value in changes.items():
+        set_key(changed, key, value)
+    cases = expand_cases(changed)
+    base = cases.pop(changed["case"])
+    return base, {_study_and_point(case): found for case, found in cases.items()}
+
+
+def settings_key(base: Mapping[str, Any], points: Mapping[tuple[str, str], Mapping[str, Any]]) -> str:
+    """Text that differs whenever a key on which the dynamics of a case or of its studies depends does.
+
+    Keys left at their defaults do not count, nor what decides no result: chunks of the sweep.
+    """
+    text = json.dumps([_decisive(values) for values in (base, *points.values())], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _decisive(values: Mapping[str, Any]) -> dict[str, Any]:
+    """What decides the dynamics, of the full plain values of a case, less what stands at its default."""
+    case = json.loads(json.dumps({**values, "case": "any"}))
+    case["dynamics"]["sweep"]["chunks"] = 1
+    case["mesh"]["thin_fillet"] = case["mesh"]["thin_fillet"] or None  # false is filled in where null stood
+    return parse(Config, case).model_dump(mode="json", exclude_defaults=True, include=set(DECISIVE))
+
+
+def _study_and_point(case: str) -> tuple[str, str]:
+    study, point = case.split("/")[-2:]
+    return study, point

@@ -1,0 +1,79 @@
+"""Which dynamic claims hold with other inputs than the config's."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+import pandas as pd
+
+from facegear.paper.identify.perturbed import perturbed
+from facegear.paper.identify.sets import set_cases
+from facegear.paper.scorecard.claims import Claim
+from facegear.paper.scorecard.criteria import reads_sweep
+from facegear.paper.scorecard.rows import outcome_table
+from facegear.paper.scorecard.set_tables import set_tables
+
+QUICK: Mapping[str, Any] = MappingProxyType(
+    {
+        "dynamics.accuracy": {
+            "tolerance": 1e-3,
+            "refine": False,
+            "extensions": 0,
+            "longest_period": 8,
+            "dwell_periods": 64,
+            "settle_periods": 128,
+            "window_periods": 64,
+            "periodic_residual": 1e-4,
+        },
+        "dynamics.sweep.points": 200,
+        "dynamics.sweep.jump_resolution_rpm": 25,
+        "dynamics.sweep.accuracy": {
+            "tolerance": 1e-3,
+            "refine": False,
+            "extensions": 0,
+            "longest_period": 8,
+            "dwell_periods": 32,
+            "settle_periods": 48,
+            "window_periods": 16,
+            "periodic_residual": 1e-3,
+            "samples_per_period": 32,
+        },
+        "load_sharing.cycles": 64,
+        "load_sharing.starts": 1,
+        "load_sharing.samples_per_cycle": 128,
+    }
+)
+"""Config keys of a quick run, four CPU seconds instead of fifty."""
+
+
+@dataclass(frozen=True, eq=False)
+class ClaimJudge:
+    """Judges dynamic claims with other inputs of a config; `ltca` is its contact table, `settings` are config
+    keys that are the same for all of them.
+    """
+
+    values: Mapping[str, Any]
+    ltca: pd.DataFrame
+    claims: Sequence[Claim]
+    settings: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def names(self) -> list[str]:
+        """Ids of the claims."""
+        return [claim.id for claim in self.claims]
+
+    def outcomes(self, row: Mapping[str, Any] | None, run: int = 0) -> pd.DataFrame:
+        """What the criteria find with the inputs of a row of a sets file, or with the config's own for None.
+
+        Runs above 0 are perturbed by rounding. Raises FacegearError where the inputs have no result.
+        """
+        base, points = set_cases(self.values, row, self.settings)
+        moved = {key: perturbed(point, run) for key, point in points.items()}
+        swept = any(reads_sweep(claim.criterion) for claim in self.claims)
+        return outcome_table(self.claims, set_tables(perturbed(base, run), moved, self.ltca, swept))
+
+    def held(self, row: Mapping[str, Any]) -> dict[str, float]:
+        """1 for each claim that holds with the inputs of the row, 0 for each that does not."""
+        found = self.outcomes(row)
+        return dict(zip(found["id"], found["holds"].astype(float), strict=True))

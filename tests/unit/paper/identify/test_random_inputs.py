@@ -1,0 +1,93 @@
+"""Random plausible inputs: by number, within their ranges, patterns that differ."""
+
+import copy
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from facegear.config.cases import set_key
+from facegear.config.load import load_values
+from facegear.config.machines import case_machine
+from facegear.harmonics.series import Harmonics
+from facegear.paper.identify.claim_judge import QUICK, ClaimJudge
+from facegear.paper.identify.inputs import Space
+from facegear.paper.identify.patterns import READINGS, half_turn_patterns
+from facegear.paper.identify.random_inputs import Plausible
+from facegear.paper.identify.random_verdicts import judged_samples
+from facegear.paper.scorecard.claims import read_claims
+from facegear.paper.scorecard.criteria import reads_sweep
+
+CONFIG = Path(__file__).parents[4] / "config"
+VALUES = load_values([CONFIG / "paper.yaml"], {})
+STIFFNESS = Harmonics(np.zeros(2), np.array([4.1e8, 2e7]))
+DRAWN = Plausible(Space((80.0, 2000.0), (0.0, 0.45)), READINGS, (100.0, 900.0), gears=2, seed=1)
+PATTERNS = Plausible(DRAWN.space, half_turn_patterns(), DRAWN.loads, gears=2, seed=1)
+
+
+@pytest.mark.parametrize("split", [1, 5, 15])
+def test_samples_are_the_same_in_chunks_of_any_size(split):
+    for rows in (DRAWN.rows, PATTERNS.rows_by_pattern):
+        assert rows(range(split)) + rows(range(split, 16)) == rows(range(16))
+
+
+def test_inputs_fill_their_ranges_and_every_choice_is_drawn():
+    rows = DRAWN.rows(range(64))
+    torques = [row["per_input_n_m"] for row in rows]
+    assert 80.0 <= min(torques) < 100.0 and 1600.0 < max(torques) <= 2000.0
+    assert sum(torque < 400.0 for torque in torques) == pytest.approx(32, abs=2)  # logarithmic
+    for name, count in (("pattern", 3), ("meaning", 2), ("phase_convention", 2), ("waveform", 3)):
+        drawn = Counter(row[name] for row in rows)
+        assert len(drawn) == count and min(drawn.values()) > 64 / count / 2
+    assert all(100.0 <= row["stiffness_torque_n_m"] <= 900.0 for row in rows)
+
+
+def test_every_pattern_meets_the_same_other_inputs():
+    rows = PATTERNS.rows_by_pattern(range(64))
+    assert [row["pattern"] for row in rows[:32]] == [row["pattern"] for row in rows[32:]]
+    assert len({row["pattern"] for row in rows}) == 32
+    others = [{key: value for key, value in row.items() if key[0] != "p"} for row in rows]
+    assert others[0] == others[31] != others[32] == others[63]
+
+
+def lags(phasing, convention):
+    values = copy.deepcopy(VALUES)
+    set_key(values, "transmission.transmission_error.phasing", phasing)
+    set_key(values, "transmission.phase_convention", convention)
+    found = case_machine(values, STIFFNESS).error_phases
+    return tuple(np.round((found - found[5]) % 1.0, 9) % 1.0)  # against the tail idler's upper mesh
+
+
+def test_patterns_differ_and_every_reading_of_the_paper_is_one_of_them():
+    found = {lags(pattern, "geometric") for pattern in half_turn_patterns().values()}
+    assert len(found) == 32
+    for convention in ("geometric", "printed"):
+        assert {lags(reading, convention) for reading in READINGS.values()} <= found
+
+
+def contact_table():
+    """Mesh stiffness that grows with the load, made up."""
+    torques, positions = np.meshgrid([100.0, 1000.0], np.arange(16) / 16, indexing="ij")
+    curve = (3e8 + 1e5 * torques) * (1.0 + 0.08 * np.sin(2.0 * np.pi * positions))
+    columns = {
+        "torque_n_m": torques,
+        "position": positions,
+        "ste_um": 0.0 * curve,
+        "unloaded_ste_um": 0.0 * curve,
+    }
+    columns |= {"k_average_n_per_m": curve, "k_local_n_per_m": curve}
+    return pd.DataFrame({name: values.ravel() for name, values in columns.items()})
+
+
+def test_random_inputs_are_judged_and_a_chunk_that_was_killed_goes_on(tmp_path):
+    claims = [one for one in read_claims(CONFIG / "claims" / "paper.yaml").claims if one.dynamic]
+    claims = [one for one in claims if not reads_sweep(one.criterion)]
+    judge = ClaimJudge(VALUES, contact_table(), claims, QUICK)
+    first = judged_samples(judge, DRAWN.rows([3]), [3], tmp_path / "partial", "same")
+    assert first["error"].tolist() == [""]
+    assert set(first[judge.names].to_numpy().ravel()) == {0.0, 1.0}
+    kept = ClaimJudge({}, pd.DataFrame(), claims)  # cannot judge anything anew
+    again = judged_samples(kept, DRAWN.rows([3]), [3], tmp_path / "partial", "same")
+    pd.testing.assert_frame_equal(again, first)

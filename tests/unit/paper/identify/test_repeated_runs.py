@@ -1,0 +1,85 @@
+"""Runs that differ by rounding, and the stored ones of the committed config."""
+
+import copy
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from facegear.config.load import load_values
+from facegear.paper.config.reproduction import read_reproduction
+from facegear.paper.identify.cases import settings_key
+from facegear.paper.identify.perturbed import SIZE, perturbed
+from facegear.paper.identify.repeated import run_columns, run_table, runs_of_config
+from facegear.paper.identify.sets import set_cases, stored_sets
+from facegear.paper.scorecard.claims import read_claims
+
+ROOT = Path(__file__).parents[4]
+VALUES = load_values([ROOT / "config" / "paper.yaml"], {})
+STORED = read_reproduction(ROOT / "config" / "reproduction" / "paper.yaml")
+
+
+def changes(before, after, place=""):
+    """Relative change of every number, by its place; what is no number must be equal."""
+    if isinstance(before, dict):
+        assert before.keys() == after.keys()
+        return {
+            at: by for key in before for at, by in changes(before[key], after[key], f"{place}.{key}").items()
+        }
+    if isinstance(before, list | tuple):
+        return {
+            at: by
+            for row in range(len(before))
+            for at, by in changes(before[row], after[row], f"{place}.{row}").items()
+        }
+    if isinstance(before, float) and before:
+        return {place: after / before - 1.0}
+    assert before == after
+    return {}
+
+
+def test_a_perturbed_run_moves_every_number_of_the_machine_by_rounding_and_nothing_else():
+    assert perturbed(VALUES, 0) == VALUES
+    by = changes(VALUES, perturbed(VALUES, 1))
+    moved = {place for place, change in by.items() if change}
+    assert {".transmission.torque.per_input_n_m", ".transmission.backlash_um"} <= moved
+    assert {place.split(".")[1] for place in moved} == {"transmission", "mesh_stiffness"}
+    machine = [place for place in by if place.startswith(".transmission")]
+    assert moved.issuperset(machine)
+    assert all(abs(by[place]) == pytest.approx(SIZE, rel=1e-3) for place in moved)
+    assert by != changes(VALUES, perturbed(VALUES, 2))
+
+
+def test_run_table_counts_the_runs_that_hold_a_claim():
+    runs = pd.DataFrame([[1.0, 1.7, 0.0, 2.0], [0.0, 1.9, 0.0, 2.1]], columns=run_columns(["one", "two"]))
+    table = run_table("a", runs, ["one", "two"], "key").set_index("id")
+    assert table["held"].tolist() == [1, 0]
+    assert table["runs"].tolist() == [2, 2]
+    assert (table.loc["one", "low"], table.loc["one", "high"]) == (1.7, 1.9)
+
+
+@pytest.mark.parametrize(
+    ("section", "key", "value", "same"),
+    [
+        ("dynamics", "sweep", {**VALUES["dynamics"]["sweep"], "chunks": 2}, True),
+        ("mesh", "thin_fillet", False, True),
+        ("transmission", "backlash_um", 100.0 + 1e-9, False),
+        ("load_sharing", "cycles", 300, False),
+    ],
+)
+def test_stored_runs_count_only_for_the_settings_that_decide_them(section, key, value, same):
+    other = copy.deepcopy(VALUES)
+    other[section][key] = value
+    keys = [settings_key(*set_cases(values, None)) for values in (VALUES, other)]
+    assert (keys[0] == keys[1]) == same
+
+
+def test_stored_runs_are_those_of_the_committed_config_and_of_every_set():
+    """Where this fails the config or a set was changed: renew the runs with `snakemake identify`."""
+    stored, sets = pd.read_csv(STORED.runs), stored_sets(STORED.sets)
+    kept = runs_of_config(stored, VALUES, sets)
+    dynamic = {claim.id for claim in read_claims(STORED.claims).claims if claim.dynamic}
+    assert set(kept["set"]) == {"config", *sets}
+    for _, rows in kept.groupby("set"):
+        assert set(rows["id"]) == dynamic
+    assert dynamic <= set(pd.read_csv(STORED.random).columns)

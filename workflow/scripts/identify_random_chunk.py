@@ -1,0 +1,37 @@
+"""Which claims a chunk of random inputs holds."""
+
+from pathlib import Path
+
+from facegear.config.base import parse
+from facegear.contact.columns import LTCA_COLUMNS
+from facegear.io import tables
+from facegear.paper.config.search import plausible_inputs
+from facegear.paper.config.sections import Identify
+from facegear.paper.identify.claim_judge import QUICK, ClaimJudge
+from facegear.paper.identify.random_verdicts import judged_samples
+from facegear.paper.scorecard.claims import read_claims
+from facegear.paper.scorecard.criteria import reads_sweep
+from facegear.progress import Progress
+from facegear.provenance.stage import stage
+from facegear.scenarios.chunks import identity
+
+with stage(snakemake) as run:
+    wildcards, params = snakemake.wildcards, snakemake.params
+    ltca = tables.read(snakemake.input.ltca, LTCA_COLUMNS)
+    loads = ltca["torque_n_m"].min(), ltca["torque_n_m"].max()
+    random = wildcards.design == "random"
+    claims = [claim for claim in read_claims(snakemake.input.claims).claims if claim.dynamic]
+    claims = [claim for claim in claims if random or not reads_sweep(claim.criterion)]
+    judge = ClaimJudge(params.case, ltca, claims, QUICK)
+    section = parse(Identify, params.identify).random
+    drawn = plausible_inputs(section, wildcards.design, loads, len(params.case["transmission"]["face_gears"]))
+    numbers = range(int(wildcards.first), int(wildcards.last) + 1)
+    rows = drawn.rows(numbers) if random else drawn.rows_by_pattern(numbers)
+    partial = Path(snakemake.output.samples).with_suffix(".partial")
+    same = identity(params.case, params.identify, ltca.to_csv(), params.code)
+    progress = Progress(f"{wildcards.design} inputs {wildcards.first} to {wildcards.last}", len(numbers))
+    found = judged_samples(judge, rows, numbers, partial, same, progress.step)
+    tables.write(snakemake.output.samples, found)
+    partial.unlink()
+    held = found[judge.names].sum(axis=1).mean()
+    run.summary(f"{len(found)} random inputs hold {held:.1f} of {len(judge.names)} claims on average")
