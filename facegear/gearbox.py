@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from facegear.results.stiffness import StiffnessResult
     from facegear.results.sweep import SweepResult
     from facegear.results.tolerances import TolerancesResult
+    from facegear.scenarios.inverse import Loosest
 
 
 def load(config: str | Path, results: str | Path | None = "results") -> "Gearbox":
@@ -286,6 +287,42 @@ class Gearbox:
             raise ConfigError("tolerances", None, "a section of the config: causes and what is asked of them")
         given = {f"tolerances.{key}": value for key, value in changes.items()}
         return self._changed("tolerances", given)._chain.tolerances()
+
+    def loosest_tolerances(
+        self,
+        quantity: str,
+        at_most: float,
+        percentile: float = 99.0,
+        causes: Sequence[str] | None = None,
+        samples: int = 512,
+        most: float = 4.0,
+    ) -> "Loosest":
+        """By how much the deviations of all causes, or of those named, may grow until a percentile of a
+        quantity exceeds a limit; `quantity` is a column of the samples.
+
+        Twelve times `samples` machines are computed. Raises ConfigErrors without a section `tolerances`,
+        FacegearError for names that do not exist, or a limit exceeded without any deviation.
+        """
+        from facegear.errors import chosen
+        from facegear.scenarios.inverse import loosest
+
+        if self.values["tolerances"] is None:
+            raise ConfigError("tolerances", None, "a section of the config: causes and what is asked of them")
+        given = self.values["tolerances"]["causes"]
+        names = [cause["name"] for cause in given]
+        named = [chosen(name, names, "causes") for name in (names if causes is None else causes)]
+
+        def sampled(scale: float) -> Any:
+            scaled = [
+                {**cause, "moves": {key: gain * scale for key, gain in cause["moves"].items()}}
+                if cause["name"] in named
+                else cause
+                for cause in given
+            ]
+            frame = self._changed("tolerances", {"tolerances.causes": scaled}).tolerances(samples).samples()
+            return frame[chosen(quantity, list(frame.columns), "quantity")].to_numpy(float)
+
+        return loosest(sampled, at_most, percentile / 100.0, most)
 
     def search(self, generations: int | None = None, seeds: Sequence[int] | None = None) -> "SearchResult":
         """Designs that no other beats in every objective of the config's section `search`, in one process.

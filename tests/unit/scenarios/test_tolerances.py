@@ -141,6 +141,21 @@ def test_percentiles_and_indices_of_a_linear_machine_follow_from_its_gradient():
     np.testing.assert_allclose(indices["total"], exact, atol=0.08)
 
 
+def test_the_loosest_tolerances_of_a_linear_machine_are_those_of_the_closed_form():
+    gearbox = machine([RIGHT], samples=16, chunk_samples=16)
+    name = "k_gamma right input/upper"
+    start = chunk(machine([{**RIGHT, "spread": 1e-9}]), 0, 0)[name].iloc[0]
+    usual = np.quantile(gearbox.tolerances().samples()[name], 0.95)
+    limit = start + 1.5 * (usual - start)
+    found = gearbox.loosest_tolerances(name, limit, percentile=95.0, samples=16)
+    assert found.scale == pytest.approx(1.5, rel=0.01)
+    assert found.percentile.value <= limit
+    with pytest.raises(FacegearError, match="without any deviation"):
+        gearbox.loosest_tolerances(name, 1.0, samples=1)
+    with pytest.raises(FacegearError, match="quantity = 'k': one of"):
+        gearbox.loosest_tolerances("k", limit, samples=1)
+
+
 def test_adding_samples_keeps_the_chunks_that_exist():
     section = {"causes": [RIGHT], "chunk_samples": 64}
     few, many = (Tolerances.model_validate_json(json.dumps({**section, "samples": n})) for n in (128, 512))

@@ -1,0 +1,57 @@
+"""The loosest tolerances that keep a percentile below a limit."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from facegear.errors import FacegearError
+from facegear.scenarios.statistics import Estimate, percentile
+
+HALVINGS = 10
+"""Halvings of the range of scales: its width falls to a thousandth."""
+
+
+@dataclass(frozen=True, eq=False)
+class Loosest:
+    """`scale` that all deviations may be multiplied by, what the percentile is there, and all that was tried.
+
+    `trials`: scale, value, low, high (the interval of the percentile), failed (samples without result).
+    """
+
+    scale: float
+    percentile: Estimate
+    trials: pd.DataFrame
+
+
+def loosest(
+    sampled: Callable[[float], NDArray[np.float64]], at_most: float, level: float, most: float
+) -> Loosest:
+    """The largest scale up to `most` at which the percentile `level` (0 to 1) does not exceed a limit.
+
+    `sampled` gives the results of the same samples at a scale of their deviations, nan where one has none,
+    which counts as above every limit. The percentile is taken to rise with the scale. Raises FacegearError
+    if the limit is exceeded by the machine without any deviation.
+    """
+    tried: dict[float, tuple[Estimate, int]] = {}
+
+    def holds(scale: float) -> bool:
+        values = sampled(scale)
+        failed = np.isnan(values)
+        tried[scale] = percentile(np.where(failed, np.inf, values), level), int(failed.sum())
+        return bool(tried[scale][0].value <= at_most)  # inf and nan do not hold
+
+    if not holds(0.0):
+        told = f"already {tried[0.0][0].value:.6g} without any deviation"
+        raise FacegearError(f"at_most = {at_most:g}: {told}")
+    low, high = 0.0, most
+    if holds(most):
+        low = most
+    for _ in range(HALVINGS if low < most else 0):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if holds(middle) else (low, middle)
+    rows = [(scale, one.value, one.low, one.high, failed) for scale, (one, failed) in sorted(tried.items())]
+    trials = pd.DataFrame(rows, columns=["scale", "value", "low", "high", "failed"])
+    return Loosest(low, tried[low][0], trials)
