@@ -152,6 +152,28 @@ def given_torques(section: Transmission, shape: Layout) -> NDArray[np.float64]:
     return np.where(np.isnan(own), by_role, own)
 
 
+def at_mesh_torque(transmission: Mapping[str, Any], torque: float) -> dict[str, Any]:
+    """Section `transmission` with all torques in proportion, an input's shared by its face gears `torque` each.
+
+    torque (N m) on a pinion in one mesh. Raises ConfigError where inputs carry no torque.
+    """
+    given = transmission["torque"]["per_input_n_m"]
+    if given == 0.0:
+        raise ConfigError("transmission.torque.per_input_n_m", given, "not 0, for the bins of a duty cycle")
+    part = torque * len(transmission["face_gears"]) / abs(given)
+
+    def scaled(section: Mapping[str, Any]) -> dict[str, Any]:
+        own = section.get("torque_n_m")
+        return {**section, "torque_n_m": own if own is None else part * own}
+
+    return {
+        **transmission,
+        "torque": {**transmission["torque"], "per_input_n_m": part * given},
+        "pinions": [scaled(place) for place in transmission["pinions"]],
+        "single_gears": {name: scaled(gear) for name, gear in transmission["single_gears"].items()},
+    }
+
+
 def error_lags(section: Transmission, shape: Layout) -> NDArray[np.float64] | None:
     """Lag of e(t) at each mesh in mesh periods, shape (meshes,); None where it is that of the stiffness.
 

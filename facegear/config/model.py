@@ -122,6 +122,8 @@ class Config(Section):
             for key in ("studies", "tolerances", "search", "reproduction"):
                 if getattr(self, key):
                     raise ConfigError("transmission", None, f"required by {key}")
+            if self.strength is not None and self.strength.load_factors == "machine":
+                raise ConfigError("transmission", None, "required by strength.load_factors = machine")
             return
         check_places(pair, machine)
         check_torques(pair, machine)

@@ -35,6 +35,7 @@ NEEDS: dict[str, Slice] = {
     "compliance": _COMPLIANCE,
     "contact": {**_PAIR, "contact": "contact"},
     "root_stress": {},
+    "duty_loads": {**_MACHINE, **_ACCURACY, "strength": "strength"},
     "rating": {**_PAIR, "strength": "strength"},
     "dynamic_root_stress": _PAIR,
     "stiffness": {"mesh_stiffness": "mesh_stiffness"},
@@ -92,6 +93,7 @@ UPSTREAM = {
     "contact": ("compliance",),
     "root_stress": ("contact",),
     "rating": ("root_stress",),
+    "duty_loads": ("stiffness",),
     "dynamic_root_stress": ("root_stress", "dynamics_response"),
     "stiffness": ("contact",),
     "dynamics_response": ("stiffness",),
@@ -135,7 +137,15 @@ def stages_before(rule: str, values: Mapping[str, Any]) -> list[str]:
         return [rule]
     if rule == "modal" and stiffness["mean_n_per_m"] is None:
         return [rule, *stages_before("stiffness", values)]
-    return [rule, *(other for near in UPSTREAM.get(rule, ()) for other in stages_before(near, values))]
+    before = UPSTREAM.get(rule, ())
+    if rule == "rating" and loads_from_machine(values):
+        before = (*before, "duty_loads")
+    return [rule, *(other for near in before for other in stages_before(near, values))]
+
+
+def loads_from_machine(values: Mapping[str, Any]) -> bool:
+    """Whether the rating takes K_v and K_gamma from the machine's motion, by the plain values of a config."""
+    return values["strength"] is not None and values["strength"]["load_factors"] == "machine"
 
 
 def _value(values: Any, key: str) -> Any:

@@ -1,8 +1,8 @@
 """Config section `strength`: materials, duty cycle and factors of the rating of a tooth pair."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
@@ -67,6 +67,9 @@ class Strength(Section):
         description=f"csv of the bins with columns {', '.join(BIN_COLUMNS)}; the name counts from this file",
     )
     application_factor: float = Field(default=1.0, ge=0.1, le=10, description="K_A")
+    load_factors: Literal["given", "machine"] = Field(
+        default="given", description="K_v and K_gamma: given here, or of each bin from the machine's motion"
+    )
     dynamic_factor: float = Field(default=1.0, ge=0.1, le=10, description="K_v")
     mesh_load_factor: float = Field(default=1.0, ge=0.1, le=10, description="K_gamma of parallel meshes")
     least_bending_safety: float = Field(default=1.4, ge=1, le=10)
@@ -91,6 +94,9 @@ class Strength(Section):
 
     @model_validator(mode="after")
     def _complete(self) -> "Strength":
+        for key in ("dynamic_factor", "mesh_load_factor"):
+            if self.load_factors == "machine" and getattr(self, key) != 1.0:
+                refuse(key, getattr(self, key), "left out where load_factors is machine")
         if not any(one.hours > 0 for one in self.duty):
             refuse("duty", [], "at least one bin with hours, here or in duty_csv")
         for name in ("pinion", "face_gear"):
@@ -111,12 +117,12 @@ class Strength(Section):
 
     @property
     def factor(self) -> float:
-        """K_A K_v K_gamma."""
+        """K_A K_v K_gamma, those of the machine left out."""
         return self.application_factor * self.dynamic_factor * self.mesh_load_factor
 
 
-def rating_request(section: Strength) -> RatingRequest:
-    """What the rating needs, in SI units."""
+def rating_request(section: Strength, loads: Sequence[float] | None = None) -> RatingRequest:
+    """What the rating needs, in SI units; `loads` the machine's K_v K_gamma of each bin."""
     bodies = {
         name: RatedBody(
             card=limits_of(body.card),
@@ -129,8 +135,8 @@ def rating_request(section: Strength) -> RatingRequest:
     return RatingRequest(
         bodies=bodies,
         duty=tuple(
-            DutyBin(section.factor * one.torque_n_m, one.speed_rpm / 60.0, 3600.0 * one.hours)
-            for one in section.duty
+            DutyBin(section.factor * load * one.torque_n_m, one.speed_rpm / 60.0, 3600.0 * one.hours)
+            for one, load in zip(section.duty, loads or [1.0] * len(section.duty), strict=True)
         ),
         least_bending=section.least_bending_safety,
         least_pitting=section.least_pitting_safety,

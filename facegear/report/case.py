@@ -42,6 +42,10 @@ RATING = (
     "with the gear's flank as a rack's. Stress: of the hardest bin; safety: factor on all stresses at which "
     "Miner's sum is 1; green: as required, amber: lasts the duty cycle, red: does not"
 )
+DUTY_LOADS = (
+    "Loads of the running machine in every bin of the duty cycle: K_gamma, the largest mean mesh force over "
+    "that of the bin's torque, K_v, the largest force over it, and the mesh that carries that"
+)
 DYNAMIC = (
     "Largest root stress of every mesh at the nominal speed with its mean force, and with its largest force "
     "all through the passage, which bounds the stress in this motion. Beyond the torques of the contact "
@@ -121,8 +125,9 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
         return [Table("Every case and torque", tables["studies"][STUDY_COLUMNS], 4)]
     if title == "Strength" and "root_stress" in tables:
         rated = [Table(RATING, tables["rating"], 4)] if "rating" in tables else []
+        loads = [Table(DUTY_LOADS, tables["duty_loads"], 4)] if "duty_loads" in tables else []
         moving = [Table(DYNAMIC, tables["dynamic_stress"], 4)] if "dynamic_stress" in tables else []
-        return [*rated, *moving, Table(ROOT_STRESS, tables["root_stress"], 4)]
+        return [*rated, *loads, *moving, Table(ROOT_STRESS, tables["root_stress"], 4)]
     if title == "Mesh stiffness" and "harmonics" in tables:
         return [Table("Harmonics kept", tables["harmonics"].iloc[:, :4], 5)]
     if title == "Modes" and "frequencies" in tables:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from facegear.config.needs import stage_needs
+from facegear.config.needs import loads_from_machine, stage_needs
 from facegear.results.store import Store
 
 if TYPE_CHECKING:
@@ -73,13 +73,14 @@ class Chain:
         return self.store.result("root_stress", self.values, RootStressResult, compute)
 
     def rating(self) -> "RatingResult":
-        """Safety and life, from the root stress."""
+        """Safety and life, from the root stress and, where asked for, the machine's motion in every bin."""
         from facegear.results.rating import RatingResult
 
         def compute() -> "Outcome":
             from facegear.stages.rating import rating
 
-            return rating(self.root_stress().content["stress"], **self._needs("rating"))
+            loads = [self._duty_loads()] if loads_from_machine(self.values) else []
+            return rating(self.root_stress().content["stress"], *loads, **self._needs("rating"))
 
         return self.store.result("rating", self.values, RatingResult, compute)
 
@@ -229,6 +230,20 @@ class Chain:
             f"compliance/{body}.npz",
             lambda path: from_arrays(arrays.read(path, STORED)),
             lambda: compliance(body, **self._needs("compliance")),
+        )
+
+    def _duty_loads(self) -> Any:
+        from facegear.io import tables
+        from facegear.stages.duty_loads import duty_loads
+        from facegear.strength.columns import DUTY_LOAD_COLUMNS
+
+        return self.store.part(
+            "duty_loads",
+            "",
+            self.values,
+            "strength/duty_loads.csv",
+            lambda path: tables.read(path, DUTY_LOAD_COLUMNS),
+            lambda: duty_loads(self._harmonics(), **self._needs("duty_loads")).content["duty_loads"],
         )
 
     def _chunks(self) -> list[Any]:

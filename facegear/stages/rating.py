@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+import pandas as pd
 from numpy.typing import NDArray
 
 from facegear.config.base import parse
@@ -17,15 +18,23 @@ from facegear.strength.root_tables import root_from_arrays
 
 
 def rating(
-    stress: Mapping[str, NDArray], tooth_pair: Mapping[str, Any], strength: Mapping[str, Any] | None
+    stress: Mapping[str, NDArray],
+    duty_loads: pd.DataFrame | None = None,
+    *,
+    tooth_pair: Mapping[str, Any],
+    strength: Mapping[str, Any] | None,
 ) -> Outcome:
     """`rating`, `damage` and `curves` (tables) from the root stress of stage root_stress.
 
-    Raises ConfigError without section strength.
+    `duty_loads`: table of that stage, where K_v and K_gamma are the machine's. Raises ConfigError without
+    section strength.
     """
     if strength is None:
         raise ConfigError("strength", None, "required for safety and life")
-    design, request = pair(tooth_pair).design, rating_request(parse(Strength, strength))
+    loads = None
+    if duty_loads is not None:
+        loads = (duty_loads["mesh_load_factor"] * duty_loads["dynamic_factor"]).tolist()
+    design, request = pair(tooth_pair).design, rating_request(parse(Strength, strength), loads)
     roots = {body: root_from_arrays(stress, body) for body in request.bodies}
     found = rate(design, section_contact_ratio(design), roots, request)
     worst = min(found, key=lambda one: one.safety / one.required)

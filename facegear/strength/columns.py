@@ -59,6 +59,17 @@ DAMAGE_COLUMNS = (
     "damage",
 )
 
+DUTY_LOAD_COLUMNS = (
+    "bin",
+    "torque_n_m",
+    "speed_rpm",
+    "mesh_load_factor",
+    "dynamic_factor",
+    "mesh",
+    "motion",
+)
+"""Of the table of loads in every bin of the duty cycle; `mesh` carries the largest force."""
+
 RATING_FINITE = tuple(name for name in RATING_COLUMNS if name not in ("damage", "life_hours"))
 DAMAGE_FINITE = tuple(name for name in DAMAGE_COLUMNS if name != "damage")
 ROOT_STRESS_FINITE = tuple(name for name in ROOT_STRESS_COLUMNS if name != "at_30_deg_mpa")

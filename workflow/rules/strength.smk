@@ -1,3 +1,6 @@
+include: "functions/strength.smk"
+
+
 rule root_stress:
     "Root stress of both gears"
     input:
@@ -26,10 +29,22 @@ rule root_stress_figures:
         "../scripts/root_stress_figures.py"
 
 
+rule duty_loads:
+    "Loads of the running machine in every bin of the duty cycle"
+    input:
+        harmonics=shared("stiffness", "harmonics"),
+    output:
+        duty_loads="results/{case}/strength/duty_loads.csv",
+        manifest="results/{case}/strength/duty_loads.provenance.json",
+    script:
+        "../scripts/duty_loads.py"
+
+
 rule rating:
     "Safety and life of the tooth pair"
     input:
         stress=shared("root_stress", "stress"),
+        duty_loads=machine_loads,
     output:
         rating="results/{case}/strength/rating.csv",
         damage="results/{case}/strength/damage.csv",

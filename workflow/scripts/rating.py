@@ -1,12 +1,14 @@
 """Safety and life of the tooth pair."""
 
-from facegear.io import arrays
+from facegear.io import arrays, tables
 from facegear.io.files import write_all
 from facegear.provenance.stage import stage
 from facegear.stages.rating import rating
-from facegear.strength.columns import ROOT_STRESS_ARRAYS
+from facegear.strength.columns import DUTY_LOAD_COLUMNS, ROOT_STRESS_ARRAYS
 
 with stage(snakemake) as run:
-    found = rating(arrays.read(snakemake.input.stress, ROOT_STRESS_ARRAYS), **snakemake.params.needs)
+    stress = arrays.read(snakemake.input.stress, ROOT_STRESS_ARRAYS)
+    loads = [tables.read(path, DUTY_LOAD_COLUMNS) for path in snakemake.input.duty_loads]
+    found = rating(stress, *loads, **snakemake.params.needs)
     write_all(found.content, snakemake.output)
     run.summary(found.summary)
