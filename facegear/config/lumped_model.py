@@ -153,9 +153,9 @@ def given_torques(section: Transmission, shape: Layout) -> NDArray[np.float64]:
 
 
 def at_mesh_torque(transmission: Mapping[str, Any], torque: float) -> dict[str, Any]:
-    """Section `transmission` with all torques in proportion, an input's shared by its face gears `torque` each.
+    """Section `transmission` with all torques in proportion, so that an input has `torque` in each mesh.
 
-    torque (N m) on a pinion in one mesh. Raises ConfigError where inputs carry no torque.
+    torque in N m on the pinion. Raises ConfigError where inputs carry none.
     """
     given = transmission["torque"]["per_input_n_m"]
     if given == 0.0:
