@@ -54,6 +54,15 @@ def moved(
     return changed, speed_rpm
 
 
+def nominal(transmission: Mapping[str, Any], keys: Iterable[str]) -> float:
+    """The number that all keys of a section made by `movable` have; nan where they differ."""
+    found = set()
+    for key in keys:
+        inside, last = _holder(transmission, key.removeprefix(MACHINE).split("."))
+        found.add(float(inside[last]))
+    return found.pop() if len(found) == 1 else float("nan")
+
+
 def placed(transmission: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, Any]:
     """A section made by `movable` with numbers put in the place of nominal ones."""
     changed = deepcopy(dict(transmission))

@@ -8,6 +8,7 @@ import pandas as pd
 
 from facegear.config.base import parse
 from facegear.config.search import Search
+from facegear.config.variants import movable, nominal
 from facegear.scenarios.evolution import Task, front, hypervolumes
 from facegear.stages.designs import Machine, assessor, task
 from facegear.stages.outcome import Outcome
@@ -61,11 +62,17 @@ def _winners(best: pd.DataFrame, asked: Task, given: Machine, section: Search) -
     rows = []
     for told, design in {"nominal": None, **chosen(best, asked)}.items():
         searched, (goals, quantities) = coarse(design)[0], full(design)
-        values = dict(zip(names, design, strict=True)) if design is not None else {}
+        values = dict(zip(names, design if design is not None else _nominal(given, section), strict=True))
         compared = {f"{goal}_searched": searched[goal] for goal in asked.goals}
         rows.append({"design": told, **values, **goals, **compared, **quantities})
     columns = ["design", *names, *(key for key in rows[0] if key not in ("design", *names))]
     return pd.DataFrame(rows, columns=columns)
+
+
+def _nominal(given: Machine, section: Search) -> list[float]:
+    """Values of the variables in the config; nan where the keys of one differ."""
+    start = movable(given.transmission, [key for variable in section.variables for key in variable.sets])
+    return [nominal(start, variable.sets) for variable in section.variables]
 
 
 def chosen(best: pd.DataFrame, asked: Task) -> dict[str, tuple[float, ...]]:

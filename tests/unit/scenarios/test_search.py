@@ -59,6 +59,8 @@ def test_the_optimum_of_the_closed_form_is_found():
     np.testing.assert_allclose(best, values[:, difference(*values).argmin()])
     sharing = found.winners().set_index("design")["k_inputs"]
     assert sharing["least k_inputs"] < sharing["nominal"]
+    nominal = found.winners().set_index("design").loc["nominal", ["inputs", "idlers", "clocking"]]
+    np.testing.assert_allclose(nominal.astype(float), [6.5e7, 6.5e7, 0.0])
 
 
 def spheres(design):
