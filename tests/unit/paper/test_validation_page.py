@@ -12,6 +12,8 @@ ROOT = Path(__file__).parents[3]
 STORED = read_reproduction(ROOT / "config" / "reproduction" / "paper.yaml")
 PAGE = (ROOT / "docs" / "validation.md").read_text()
 CLAIMS = read_claims(STORED.claims).claims
+SHOWN = 3
+INPUT_MESHES = ("input/lower", "input/upper")
 
 
 def chance_row():
@@ -38,6 +40,24 @@ def run_rows():
     return rows
 
 
+def pattern_rows():
+    """The best and the worst patterns, and the readings of the paper."""
+    frame = pd.read_csv(Path(STORED.runs).with_name("structures.csv"))
+    shown = pd.concat([frame.head(SHOWN), frame.tail(SHOWN)])
+    shown["pattern"] = shown["pattern"].str.replace("+", ", ")
+    told = "| {0.pattern} | {0.samples} | {0.mean:.1f} | {0.upper:.1f} | {0.most:.0f} |"
+    return [told.format(row) for row in shown.itertuples()]
+
+
+def both_meshes_row():
+    """Mean where the two meshes of an input are half a turn apart in e(t), and where they are together."""
+    frame = pd.read_csv(Path(STORED.runs).with_name("structures.csv"))
+    turned = [frame["pattern"].str.split("+").map(lambda names, of=of: of in names) for of in INPUT_MESHES]
+    means = frame.groupby(turned[0] != turned[1])["mean"].mean()
+    apart, together = means[True], means[False]
+    return f"half a turn apart hold {apart:.1f} on average, those that leave them together {together:.1f}"
+
+
 def test_what_chance_holds_is_told_as_stored():
     distinct = sum(claim.dynamic and claim.counts for claim in CLAIMS)
     assert f"| inputs | distinct claims held, of {distinct} |" in PAGE
@@ -47,3 +67,9 @@ def test_what_chance_holds_is_told_as_stored():
 def test_what_repeated_runs_hold_is_told_as_stored():
     for row in run_rows():
         assert row in PAGE
+
+
+def test_patterns_of_e_are_told_as_stored():
+    for row in pattern_rows():
+        assert row in PAGE
+    assert both_meshes_row() in PAGE
