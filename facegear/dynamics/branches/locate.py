@@ -47,14 +47,13 @@ def _between(
     if first.linear.afloat.shape != second.linear.afloat.shape:
         return _loosening(segment, low, high)
     events, mixed = _events(segment.flow, first, second)
-    between = None
     if (mixed and high - low > SHORTEST) or (depth < LOOKS and _may_hide(first, second, bend)):
-        between = 0.5 * (low + high)
-    elif depth < LOOKS:
-        between = hidden_graze(segment, low, high)
+        between: float | None = 0.5 * (low + high)
+        bend = _bend(first, segment.at(0.5 * (low + high)), second)
+    else:
+        between, bend = hidden_graze(segment, low, high) if depth < LOOKS else None, None
     if between is None:
         return [_refined(segment, low, high, event) for event in events]
-    bend = _bend(first, segment.at(between), second)
     left = _between(segment, low, between, depth + 1, bend)
     return left + _between(segment, between, high, depth + 1, bend)
 
