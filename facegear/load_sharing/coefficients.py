@@ -11,14 +11,19 @@ def sharing_coefficient(forces: NDArray[np.float64]) -> NDArray[np.float64]:
     [1, paths]: 1 for equal loads, the number of paths where one carries all. Where all forces vanish the
     coefficient is undefined and NaN stands there. Equation (25) with two paths, (26) with three.
     """
-    sizes = np.abs(np.asarray(forces, dtype=float))
-    largest = sizes.max(axis=-1)
+    sizes = np.abs(_path_by_path(forces))
+    largest = sizes.max(axis=0)
     loaded = largest > 0.0
-    relative = sizes / np.where(loaded, largest, 1.0)[..., None]
-    mean = np.where(loaded, relative.mean(axis=-1), 1.0)
-    return np.where(loaded, np.clip(1.0 / mean, 1.0, sizes.shape[-1]), np.nan)
+    sizes /= np.where(loaded, largest, 1.0)
+    mean = np.where(loaded, sizes.mean(axis=0), 1.0)
+    return np.where(loaded, np.clip(1.0 / mean, 1.0, len(sizes)), np.nan)
 
 
 def lost_contact(forces: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Where at least one of the paths carries nothing, shape (...) for forces (..., paths)."""
-    return (np.asarray(forces) == 0.0).any(axis=-1)
+    return (_path_by_path(forces) == 0.0).any(axis=0)
+
+
+def _path_by_path(forces: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Forces (paths, ...), each path in one piece: sums over two or three neighbours in memory are slow."""
+    return np.ascontiguousarray(np.moveaxis(np.asarray(forces, dtype=float), -1, 0))

@@ -104,6 +104,7 @@ def group_average(
 
 def _group(group: LoadGroup, responses: list[SteadyState], confidence: float) -> GroupSharing:
     coefficients, lost, first = group_average(responses[0], group, confidence)
-    means = [group_average(response, group, confidence)[2].mean for response in responses]
+    others = [group_average(response, group, confidence)[2].mean for response in responses[1:]]
+    means = [first.mean, *others]
     defined = [mean for mean in means if not np.isnan(mean)] or [float("nan")]
     return GroupSharing(group, coefficients, lost, first, min(defined), max(defined))

@@ -160,6 +160,16 @@ class _Tangent:
         off = np.abs(1.0 - np.abs(self.multipliers))
         return max(float(off[off > AFLOAT].min(initial=1.0)), 1e-3)
 
+    def correction(self, gap: Array) -> Array:
+        """Newton's step for a change (2 n,) over the period.
+
+        A body afloat in its backlash has a place of its own choice: least norm leaves it where it is.
+        """
+        matrix = np.eye(gap.size) - self.matrix
+        if np.abs(1.0 - self.multipliers).min() > AFLOAT:
+            return np.linalg.solve(matrix, gap)
+        return np.linalg.lstsq(matrix, gap, rcond=NEUTRAL)[0]
+
 
 def shoot(
     packed: Packed,
@@ -206,8 +216,7 @@ def shoot(
         gained = residual / best if np.isfinite(best) else 0.0
         best = min(best, residual)
         gap = (there - here)[:, :n].ravel()
-        # A body afloat in its backlash has a place of its own choice: least norm leaves it where it is.
-        correction = np.linalg.lstsq(np.eye(2 * n) - tangent.matrix, gap, rcond=NEUTRAL)[0]
+        correction = tangent.correction(gap)
         displacement[:n] += correction[:n]
         velocity[:n] += correction[n:]
     return None

@@ -69,7 +69,9 @@ class SteadyState:
     @cached_property
     def forces(self) -> Array:
         """Elastic mesh forces k f(d) of the samples (K, meshes), N."""
-        each = each_deflection(self.system, self.coordinates, self.per_period)
+        each = self.deflections
+        if self.system.two_flanks:
+            each = each_deflection(self.system, self.coordinates, self.per_period)
         return mesh_forces(self.system, each, self.per_period)
 
     @property
