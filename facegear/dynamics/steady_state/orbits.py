@@ -167,8 +167,8 @@ class _Tangent:
         """
         matrix = np.eye(gap.size) - self.matrix
         if np.abs(1.0 - self.multipliers).min() > AFLOAT:
-            return np.linalg.solve(matrix, gap)
-        return np.linalg.lstsq(matrix, gap, rcond=NEUTRAL)[0]
+            return np.asarray(np.linalg.solve(matrix, gap), np.float64)
+        return np.asarray(np.linalg.lstsq(matrix, gap, rcond=NEUTRAL)[0], np.float64)
 
 
 def shoot(
