@@ -40,7 +40,7 @@ def _text() -> str:
 
 def _compile(done: Path, play: bool) -> None:
     if not done.exists():
-        print("compiling the time integration once, some 10 s", file=sys.stderr, flush=True)
+        print("compiling the time integration once, some 15 s", file=sys.stderr, flush=True)
     packed = pack(_smallest(play), 1.0)
     work = make_work(packed, 6)
     state, none = np.zeros((2, 4)), np.zeros((0, 2, 4))
