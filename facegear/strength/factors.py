@@ -2,8 +2,6 @@
 
 from math import pi, sqrt
 
-from facegear.strength.spur import SpurMesh
-
 STRESS_CORRECTION_REFERENCE = 2.0
 """Y_ST: stress correction of the reference gear for which the bending limits hold."""
 REFERENCE_NOTCH = 2.5
@@ -21,22 +19,6 @@ def elasticity_factor(first: tuple[float, float], second: tuple[float, float]) -
 def contact_ratio_factor(contact_ratio: float) -> float:
     """Z_epsilon of spur gears."""
     return sqrt((4.0 - contact_ratio) / 3.0)
-
-
-def single_contact_factors(mesh: SpurMesh) -> tuple[float, float]:
-    """Z_B of the pinion and Z_D of the wheel: from the pitch point to the inner point of single contact.
-
-    The contact stress is judged where it is larger, so neither is below 1.
-    """
-    tangent = (mesh.pinion.base_radius + mesh.wheel.base_radius) ** 2
-    product = (mesh.centre_distance**2 - tangent) / (1.0 + mesh.ratio) ** 2 * mesh.ratio
-    length = sqrt(mesh.centre_distance**2 - tangent)
-    found = []
-    for gear in (mesh.wheel, mesh.pinion):
-        # the inner point of single contact of one gear is where the pair before it leaves at the other's tip
-        inner = length - (gear.tip_roll - (mesh.contact_ratio - 1.0) * gear.base_pitch)
-        found.append(sqrt(product / (inner * (length - inner))))
-    return max(1.0, found[0]), max(1.0, found[1])
 
 
 def relative_notch_sensitivity(slip_layer: float, notch_parameter: float) -> float:
