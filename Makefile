@@ -3,6 +3,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.locked
 TOOLS := $(VENV)/.tools
+CLUSTER := $(VENV)/.cluster
 CORES ?= 2
 
 .PHONY: all env tools check test lint docs ci notebooks benchmarks peers identify lock clean
@@ -37,6 +38,11 @@ $(TOOLS): requirements.lock $(READY)
 	$(call install,requirements.lock)
 	touch $@
 
+# Submission to Slurm: apart, since Snakemake imports every plugin at each start, this one with pandas.
+$(CLUSTER): requirements-cluster.lock $(TOOLS)
+	$(call install,requirements-cluster.lock)
+	touch $@
+
 check: env
 	@$(BIN)/python -m facegear.system_check
 
@@ -54,7 +60,7 @@ docs: tools
 
 # What CI runs: a complaint of lint or docs stops it before the tests. Here a study is also run on a Slurm of its own.
 ci: export FACEGEAR_SLURM = 1
-ci: lint docs test
+ci: lint docs $(CLUSTER) test
 
 notebooks: tools
 	$(BIN)/jupyter execute --inplace examples/*.ipynb
@@ -72,6 +78,7 @@ LOCK := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --genera
 lock: env
 	$(LOCK) --extra dev --extra benchmark -o requirements.lock
 	$(LOCK) --extra workflow -c requirements.lock -o requirements-run.lock
+	$(LOCK) --extra cluster -c requirements.lock -o requirements-cluster.lock
 
 clean:
 	rm -rf results/*/ .snakemake
