@@ -23,6 +23,7 @@ mesh_stiffness:
   torque_n_m: null
   table: [{order: 1, a_n_per_m: 2.0e7, b_n_per_m: 0}]
 transmission: {transmission_error: {amplitude_um: 3}, pinion: {runout: null}, face_gear: {runout: null}}
+strength: null
 tolerances: {samples: SAMPLES, chunk_samples: CHUNK, index_blocks: 0}
 """
 
@@ -32,7 +33,7 @@ def project(folder, samples, chunk):
     configs = folder / "config"
     if not configs.exists():
         configs.mkdir(parents=True)
-        for path in (ROOT / "config").glob("*.yaml"):
+        for path in (ROOT / "config").glob("*.*"):
             (configs / path.name).symlink_to(path)
     own = configs / "own.yaml"
     own.write_text(CONFIG.replace("SAMPLES", str(samples)).replace("CHUNK", str(chunk)))
