@@ -16,6 +16,9 @@ from facegear.transmission.matrices import bearing_diagonal, mesh_directions
 MAX_ITERATIONS = 200
 RESIDUAL = 1e-10
 FIRST_SPRING, LAST_SPRING, ROUNDS = 1e-2, 1e-12, 41
+MORE_ROUNDS = 20
+FARTHEST = 2.0**60
+"""How many steps ahead a line is looked along."""
 
 
 def dead_zone(deflections: NDArray[np.float64], half_width: float) -> NDArray[np.float64]:
@@ -95,7 +98,23 @@ def _minimise(springs: _Springs) -> NDArray[np.float64]:
         place = _newton(springs, tie, last)
         largest = max(size, np.abs(springs.forces(place)).max())
         if tie * np.abs(place - last).max() <= 1e-3 * RESIDUAL * largest:
+            return place
+    return _pushed_on(springs, float(tie), last, place)
+
+
+def _pushed_on(
+    springs: _Springs, tie: float, last: NDArray[np.float64], place: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """A body that a force next to nothing has not yet moved through its backlash goes on as far as it can."""
+    for _ in range(MORE_ROUNDS):
+        size = max(np.abs(springs.applied).max(), np.abs(springs.forces(place)).max())
+        if np.abs(springs.balance(place)).max() <= RESIDUAL * size:
             break
+        step, at = place - last, place
+        last = at + step * _line_minimum(
+            lambda s, step=step, at=at: float(springs.balance(at + s * step) @ step)
+        )
+        place = _newton(springs, tie, last)
     return place
 
 
@@ -127,6 +146,8 @@ def _line_minimum(slope: Callable[[float], float]) -> float:
     if abs(slope(1.0)) <= 1e-12 * abs(at_low):
         return 1.0
     low, high = 0.0, 1.0
-    while slope(high) < 0.0:
+    while slope(high) < 0.0 and high < FARTHEST:
         low, high = high, 2.0 * high
+    if high >= FARTHEST:
+        return high
     return float(scipy.optimize.brentq(slope, low, high, xtol=1e-16, rtol=1e-15, disp=False))
