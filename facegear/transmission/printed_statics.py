@@ -110,10 +110,12 @@ def _pushed_on(
         size = max(np.abs(springs.applied).max(), np.abs(springs.forces(place)).max())
         if np.abs(springs.balance(place)).max() <= RESIDUAL * size:
             break
-        step, at = place - last, place
-        last = at + step * _line_minimum(
-            lambda s, step=step, at=at: float(springs.balance(at + s * step) @ step)
-        )
+        step = place - last
+
+        def slope(s: float, step: NDArray[np.float64] = step, at: NDArray[np.float64] = place) -> float:
+            return float(springs.balance(at + s * step) @ step)
+
+        last = place + step * _line_minimum(slope)
         place = _newton(springs, tie, last)
     return place
 
