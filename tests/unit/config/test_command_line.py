@@ -1,37 +1,56 @@
-"""The command line: limits before radii are chosen, checks, and mistakes in one line."""
+"""Config files that Snakemake could not open are told before it tries."""
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-from facegear.__main__ import main
+from facegear.config.command_line import check_configfiles
 
 ROOT = Path(__file__).parents[3]
-TEETH = ("limits", "--pinion-teeth", "25", "--face-gear-teeth", "160", "--module-mm", "6.35")
-
-
-def test_limits_of_a_gear_are_told_from_tooth_numbers_alone(capsys):
-    assert main(TEETH) == 0
-    assert "with a shaper of 28 teeth: between 465.173 (undercut) and 552.153 (" in capsys.readouterr().out
+PAPER = str(ROOT / "config" / "paper.yaml")
 
 
 @pytest.mark.parametrize(
-    ("arguments", "line"),
+    ("named", "line"),
     [
-        ((*TEETH, "--shaper-teeth", "40"), "shaper_teeth = 40: from 25 (line contact) to 28"),
-        ((*TEETH, "--gear-addendum-modules", "-3"), "gear_addendum_modules = -3.0: from 0.1 to 2"),
-        (("check", "none.yaml"), "none.yaml: no such config file"),
-        (("run", "none.yaml"), "none.yaml: no such config file"),
-        (("run", str(ROOT)), f"{ROOT}: is a directory, not a config file"),
+        ("none.yaml", "none.yaml: no such config file"),
+        ("folder", "folder: is a directory, not a config file"),
+        ("latin.yaml", "latin.yaml"),
+        ("results/paper/report.html", "Write -- before the targets that follow --configfile."),
     ],
 )
-def test_a_mistake_on_the_command_line_ends_in_one_line(capsys, arguments, line):
-    assert main(arguments) == 1
-    told = capsys.readouterr().err
-    assert told.startswith(line) and told.count("\n") == 1
+@pytest.mark.parametrize("option", ["--configfile", "--configfiles"])
+def test_what_cannot_be_read_ends_the_program_with_its_name(tmp_path, monkeypatch, named, line, option):
+    monkeypatch.chdir(tmp_path)
+    Path("folder").mkdir()
+    Path("latin.yaml").write_bytes("case: caf\xe9".encode("latin-1"))
+    with pytest.raises(SystemExit) as ended:
+        check_configfiles(["snakemake", "--cores", "1", option, PAPER, named, "-n"])
+    assert line in str(ended.value)
+    with pytest.raises(SystemExit):
+        check_configfiles([f"{option}={named}"])
 
 
-@pytest.mark.parametrize("name", ["misaligned", "unequal_inputs", "eight_pinions"])
-def test_the_example_machines_are_configs_without_mistakes(capsys, name):
-    assert main(("check", str(ROOT / "examples" / "machines" / f"{name}.yaml"))) == 0
-    assert f"no mistakes; {4 if name == 'misaligned' else 1} case" in capsys.readouterr().out
+def test_good_files_options_and_targets_after_a_dash_pass():
+    check_configfiles(["--configfile", PAPER, "--cores", "2", "none.yaml"])
+    check_configfiles(["--configfile", PAPER, "--", "results/none.csv"])
+    check_configfiles(["--config", "none.yaml"])
+
+
+@pytest.mark.parametrize("profile", ["default", "local", "slurm"])
+def test_every_profile_asks(tmp_path, profile):
+    """As Snakemake does it: the profile is a template, whose definitions are run when it is read."""
+    path = ROOT / "workflow" / "profiles" / profile / "config.yaml"
+    code = (
+        "import sys, yte; sys.argv = ['snakemake', '--configfile', 'none.yaml']; "
+        f"yte.process_yaml(open({str(path)!r}), require_use_yte=True)"
+    )
+    here = {**os.environ, "PYTHONPATH": str(ROOT)}
+    told = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, env=here, capture_output=True, text=True
+    )
+    assert told.returncode == 1
+    assert told.stderr == "none.yaml: no such config file\n"

@@ -1,0 +1,39 @@
+"""Config files named to Snakemake, checked before it opens them itself."""
+
+import sys
+from collections.abc import Iterator, Sequence
+
+from facegear.config.load import read_layers
+from facegear.errors import ConfigErrors
+
+OPTIONS = ("--configfile", "--configfiles")
+ENDINGS = (".yaml", ".yml", ".json")
+
+
+def check_configfiles(arguments: Sequence[str]) -> None:
+    """End the program with one line a mistake if a config file cannot be read.
+
+    The profiles call it with the command line: Snakemake opens these files before any code of a workflow
+    runs, and what it cannot read ends in a traceback.
+    """
+    for name in _named(arguments):
+        try:
+            read_layers(name)
+        except ConfigErrors as error:
+            told = str(error)
+            if not name.endswith(ENDINGS):
+                told += f"\nIs {name} a target? Write -- before the targets that follow --configfile."
+            sys.exit(told)
+
+
+def _named(arguments: Sequence[str]) -> Iterator[str]:
+    """All that stands after an option for config files, up to the next option."""
+    taken = False
+    for one in arguments:
+        option, equals, value = one.partition("=")
+        if one.startswith("-"):
+            taken = option in OPTIONS
+            if taken and equals:
+                yield value
+        elif taken:
+            yield one
