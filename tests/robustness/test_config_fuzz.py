@@ -63,7 +63,8 @@ def test_mutated_configs_are_accepted_or_refused_in_clear_lines(config, tmp_path
     for other in CONFIGS:
         (tmp_path / other.name).write_bytes(other.read_bytes())
     path = tmp_path / "mutated.yaml"
-    for _ in range(520 // len(CONFIGS)):
+    tries = 520 // len(CONFIGS)
+    for _ in range(tries):
         YAML(typ="safe", pure=True).dump(mutate(original, chance), path)
         try:
             expand_cases(load_values([path], {}))
@@ -72,4 +73,4 @@ def test_mutated_configs_are_accepted_or_refused_in_clear_lines(config, tmp_path
             for line in str(error).splitlines():
                 assert len(line) < 600, line
                 assert " = " in line or "line " in line or "mapping" in line or "studies" in line, line
-    assert refused > 50
+    assert refused > tries // 2

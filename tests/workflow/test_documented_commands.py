@@ -4,6 +4,8 @@ import re
 import shlex
 import subprocess
 import sys
+import tomllib
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -33,6 +35,12 @@ def test_shown_command_is_accepted(command, tmp_path):
     if words[0] == "cp":
         assert (ROOT / words[-1]).parent.is_dir()
         return
+    if words[:2] == ["pip", "install"]:
+        extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+        assert words[2].removeprefix("facegear[").removesuffix("]") in extras
+        return
+    if "workflow/profiles/slurm" in words and find_spec("snakemake_executor_plugin_slurm") is None:
+        pytest.skip("snakemake-executor-plugin-slurm is not installed (extra `cluster`, as by `make ci`)")
     if words[0] == "make":
         done = subprocess.run(
             [*words, "-n"], cwd=ROOT, capture_output=True, text=True, env=environment(), check=False

@@ -92,8 +92,13 @@ def closed(packed: Packed, ends: Array, near: Closing, settings: Settings) -> in
 
 
 def wanders(packed: Packed, ends: Array, period: int) -> bool:
-    """Whether what changes over a period adds up instead of coming round: a drift, and no torus."""
-    gaps = ends[period:] - ends[:-period]
+    """Whether what changes over a period adds up instead of coming round: a drift, and no torus.
+
+    Nothing is known of a window of one period or less.
+    """
+    gaps = ends[period:] - ends[:-period] if period else ends[:0]
+    if not len(gaps):
+        return False
     steady = (packed.weights * np.abs(gaps.mean(axis=0))).max()
     return bool(steady > 0.5 * (packed.weights * np.abs(gaps)).max())
 
