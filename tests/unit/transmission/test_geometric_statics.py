@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 
+from facegear.errors import NotConverged
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.contact_energy import Springs
 from facegear.transmission.contact_kernel import settle_all
@@ -311,3 +312,19 @@ def test_next_to_no_torque_on_a_free_pinion_does_not_keep_the_others_from_balanc
     found = mean_equilibrium(machine_with(layout, 50.0, share, 7.9e-5))
     assert found.residual[0] < 1e-12
     assert found.forces[0, 0] == pytest.approx(50.0 / layout.pinion_arm, rel=1e-12)
+
+
+@pytest.mark.parametrize("share", [1e-13, 1e-10, 1e-8, 1e-6])
+def test_next_to_no_torque_against_a_ring_of_play_is_balanced_or_refused_by_name(share):
+    """Below 1e-7 of the others' load the force that turns a free pinion in its ring is lost in rounding."""
+    places = [(f"p{i}", Role.INPUT if i < 5 else Role.TAIL, 20.0 * i) for i in range(6)]
+    layout = make_layout(tuple(places), (Side.LOWER, Side.UPPER), 4.4e8, 1e9, MeshKinematics.GEOMETRIC)
+    flaws = replace(perfect(layout), clearance=np.full(6, 5e-5))
+    machine = make_machine(
+        layout, torque=50.0, tail_share=share, backlash=2e-4, error=0.0, imperfections=flaws
+    )
+    try:
+        assert mean_equilibrium(machine).residual[0] < 1e-11
+    except NotConverged as error:
+        assert share < 1e-7
+        assert "static equilibrium did not converge at mean stiffness" in str(error)
