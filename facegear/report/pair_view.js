@@ -103,17 +103,29 @@
       }
       body.tooth = shape(new Float32Array(points), indices);
     }
-    const flank = shape(decoded(data.lattice.points, "f"), cells(data.lattice.shape));
+    // values that change from picture to picture: of every point its value, whether it carries, whether one is known
+    function painted(points, indices) {
+      const found = shape(points, indices);
+      Object.assign(found, { values: new Float32Array(points.length), buffer: gl.createBuffer() });
+      gl.bindBuffer(gl.ARRAY_BUFFER, found.buffer);
+      gl.bufferData(gl.ARRAY_BUFFER, found.values, gl.DYNAMIC_DRAW);
+      gl.enableVertexAttribArray(1);
+      gl.vertexAttribPointer(1, 3, gl.FLOAT, false, 0, 0);
+      return found;
+    }
+    const flank = painted(decoded(data.lattice.points, "f"), cells(data.lattice.shape));
     const [rows, columns] = data.lattice.shape, nodes = rows * columns;
-    // of every node: its value, whether it carries, whether a value is known
-    const carried = new Float32Array(3 * nodes), buffer = gl.createBuffer();
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, carried, gl.DYNAMIC_DRAW);
-    gl.enableVertexAttribArray(1);
-    gl.vertexAttribPointer(1, 3, gl.FLOAT, false, 0, 0);
+    for (const { fillets } of data.bodies) {
+      if (!fillets) continue;
+      const points = decoded(fillets.points, "f"), half = points.length / 6;
+      fillets.drawn = painted(points, [...cells(fillets.shape), ...cells(fillets.shape, half)]);
+    }
     for (const found of data.torques) {
       Object.assign(found, { node: decoded(found.node, "H"), tooth: decoded(found.tooth, "b") });
-      for (const { key } of data.quantities) found.values[key] = decoded(found.values[key], "B");
+      for (const key of Object.keys(found.values)) found.values[key] = decoded(found.values[key], "B");
+      if (!found.tension) continue;
+      for (const name of Object.keys(found.tension)) found.tension[name] = decoded(found.tension[name], "B");
+      found.largest.root_stress = found.largest_tension;
     }
     const quantity = () => data.quantities[+find("quantity").value];
 
@@ -142,31 +154,43 @@
       gl.disable(gl.BLEND);
     }
 
+    function paint(surface, turn) {
+      gl.bindVertexArray(surface.array);
+      gl.bindBuffer(gl.ARRAY_BUFFER, surface.buffer);
+      gl.bufferSubData(gl.ARRAY_BUFFER, 0, surface.values);
+      gl.uniformMatrix3fv(places.turn, false, turn);
+      gl.drawElements(gl.TRIANGLES, surface.count, gl.UNSIGNED_INT, 0);
+    }
+
     function drawLoads(found, index, angle) {
       const values = found.values[quantity().key];
-      gl.bindVertexArray(flank.array);
-      gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-      gl.uniform1i(places.painted, 1);
-      gl.enable(gl.POLYGON_OFFSET_FILL);
-      gl.polygonOffset(-8, -16);
       for (let tooth = -2; tooth <= 2; tooth++) {
-        carried.fill(0);
+        flank.values.fill(0);
         let any = false;
         for (let k = found.start[index]; k < found.start[index + 1]; k++)
           if (found.tooth[k] === tooth) {
             any = true;
             for (const node of [found.node[k] - columns, found.node[k], found.node[k] + columns])
               if (node >= 0 && node < nodes) {
-                carried.set([values[k] / 255, 1, values[k] > 0 ? 1 : 0], 3 * node);
+                flank.values.set([values[k] / 255, 1, values[k] > 0 ? 1 : 0], 3 * node);
               }
           }
-        if (!any) continue;
-        gl.bufferSubData(gl.ARRAY_BUFFER, 0, carried);
-        gl.uniformMatrix3fv(places.turn, false, turned("pinion", angle + ((tooth - 0.5) * 2 * Math.PI) / pinion.teeth));
-        gl.drawElements(gl.TRIANGLES, flank.count, gl.UNSIGNED_INT, 0);
+        if (any) paint(flank, turned("pinion", angle + ((tooth - 0.5) * 2 * Math.PI) / pinion.teeth));
       }
-      gl.disable(gl.POLYGON_OFFSET_FILL);
-      gl.uniform1i(places.painted, 0);
+    }
+
+    // a tooth's stress at a position of the pitch is that of its passage so many pitches on
+    function drawRootStress(found, index, bodies) {
+      for (const [body, angle] of bodies) {
+        const { drawn, first } = body.fillets, values = found.tension[body.name], gauges = drawn.values.length / 3;
+        const last = first + values.length / gauges / data.positions.length;
+        for (let tooth = Math.max(first, body.first); tooth < Math.min(last, body.first + body.shown); tooth++) {
+          const row = ((tooth - first) * data.positions.length + index) * gauges;
+          for (let k = 0; k < gauges; k++)
+            drawn.values.set([values[row + k] / 255, 1, values[row + k] > 0 ? 1 : 0], 3 * k);
+          paint(drawn, turned(body.name, angle + ((tooth + body.turn) * 2 * Math.PI) / body.teeth));
+        }
+      }
     }
 
     function draw() {
@@ -199,7 +223,13 @@
         for (const [other, turn] of solid) drawBody(other, turn, 1);
         gl.colorMask(true, true, true, true);
       }
-      drawLoads(found, index, phi1);
+      gl.uniform1i(places.painted, 1);
+      gl.enable(gl.POLYGON_OFFSET_FILL);
+      gl.polygonOffset(-8, -16);
+      if (quantity().key === "root_stress") drawRootStress(found, index, bodies);
+      else drawLoads(found, index, phi1);
+      gl.disable(gl.POLYGON_OFFSET_FILL);
+      gl.uniform1i(places.painted, 0);
       tell(found, index, position);
     }
 

@@ -36,18 +36,31 @@ QUANTITIES = (
     },
 )
 """What the colours may show."""
+ROOT_STRESS = {
+    "key": "root_stress",
+    "name": "root stress",
+    "unit": "MPa",
+    "told": "Tension down the fillets; grey where they are pressed",
+}
+"""What they show as well where root stress was computed."""
 
 
-def pair_view(design: PairDesign, loads: Mapping[str, NDArray], ltca: pd.DataFrame) -> View:
-    """The pair at every solved position and torque; `loads` as PRESSURE_ARRAYS, `ltca` as LTCA_COLUMNS.
+def pair_view(
+    design: PairDesign,
+    loads: Mapping[str, NDArray],
+    ltca: pd.DataFrame,
+    stress: Mapping[str, NDArray] | None = None,
+) -> View:
+    """The pair at every solved position and torque; `loads` as PRESSURE_ARRAYS, `ltca` as LTCA_COLUMNS,
+    `stress` as ROOT_STRESS_ARRAYS.
 
     Lengths in mm. Colours show the pressure or the load of the line of contact at every loaded node's column
-    of the flank, the largest of each torque at the end of the scale.
+    of the flank, or the root stress, the largest of each torque at the end of the scale.
     """
     torques = np.unique(loads["torque_n_m"])
     positions = np.unique(loads["position"])
     data = {
-        "bodies": [_body(design, name) for name in BODIES],
+        "bodies": [_body(design, name, stress) for name in BODIES],
         "centre": [0.0, 1e3 * design.mean_radius, -1e3 * design.pinion_pitch_radius],
         "size": 1e3 * (design.pinion_tip_radius + design.pinion.width),
         "lattice": {
@@ -56,17 +69,21 @@ def pair_view(design: PairDesign, loads: Mapping[str, NDArray], ltca: pd.DataFra
         },
         "positions": positions.tolist(),
         "colours": COLOURS,
-        "quantities": QUANTITIES,
-        "torques": [_torque(float(torque), loads, ltca, positions) for torque in torques],
+        "quantities": [*QUANTITIES, *([ROOT_STRESS] if stress is not None else [])],
+        "torques": [
+            _torque(float(torque), loads, ltca, positions) | _root_stress(float(torque), stress)
+            for torque in torques
+        ],
     }
     return View(
         data,
         "The pair in mesh, turning through a pitch: drag to look around. Colours: pressure or load along "
-        "each line of contact, drawn wider than it is, at the positions that were solved.",
+        "each line of contact, drawn wider than it is, at the positions that were solved"
+        + ("." if stress is None else "; or root stress."),
     )
 
 
-def _body(design: PairDesign, name: Body) -> dict[str, Any]:
+def _body(design: PairDesign, name: Body, stress: Mapping[str, NDArray] | None) -> dict[str, Any]:
     teeth = teeth_of(design, name)
     shown = teeth if name == "pinion" else min(teeth, SHOWN_GEAR_TEETH)
     return {
@@ -79,6 +96,30 @@ def _body(design: PairDesign, name: Body) -> dict[str, Any]:
             {"shape": list(patch.shape[:2]), "points": _encoded(1e3 * patch, np.float32)}
             for patch in solid(design, name, 1, PROFILE, WIDTH)
         ],
+        "fillets": None if stress is None else _fillets(stress, name),
+    }
+
+
+def _fillets(stress: Mapping[str, NDArray], name: Body) -> dict[str, Any]:
+    """Where the gauges of a tooth are, and the number of the first tooth of a passage."""
+    place = stress[f"{name}_position_m"]
+    return {
+        "shape": list(place.shape[1:3]),
+        "points": _encoded(1e3 * place, np.float32),
+        "first": int(np.floor(stress[f"{name}_passage"][0])),
+    }
+
+
+def _root_stress(torque: float, stress: Mapping[str, NDArray] | None) -> dict[str, Any]:
+    """Tension at the gauges of both bodies over the passage, in parts of the largest (`largest_tension`)."""
+    if stress is None:
+        return {}
+    row = int(np.flatnonzero(stress["torque_n_m"] == torque)[0])
+    tension = {name: 1e-6 * np.maximum(stress[f"{name}_stress_pa"][row], 0.0) for name in BODIES}
+    largest = max(float(found.max()) for found in tension.values())
+    return {
+        "largest_tension": largest,
+        "tension": {name: _parts(found, largest) for name, found in tension.items()},
     }
 
 

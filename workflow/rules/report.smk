@@ -8,6 +8,7 @@ rule report:
         pictures=report_pictures,
         pair=report_pair,
         loads=report_loads,
+        stress=report_stress,
     output:
         html="results/{case}/report.html",
         manifest="results/{case}/report.provenance.json",

@@ -9,6 +9,7 @@ from facegear.io.atomic import atomic_path
 from facegear.provenance.stage import stage
 from facegear.report.case import case_report
 from facegear.report.pair_view import pair_view
+from facegear.strength.columns import ROOT_STRESS_ARRAYS
 
 with stage(snakemake) as run:
     found = {Path(path).stem: tables.read(path, allow_empty=True) for path in snakemake.input.tables}
@@ -19,7 +20,10 @@ with stage(snakemake) as run:
     view = None
     if snakemake.input.loads:
         loads = arrays.read(snakemake.input.loads[0], PRESSURE_ARRAYS)
-        view = pair_view(tooth_pair(snakemake.params.values["tooth_pair"]).design, loads, found["ltca"])
+        given = snakemake.input.stress
+        stress = arrays.read(given[0], ROOT_STRESS_ARRAYS) if given else None
+        design = tooth_pair(snakemake.params.values["tooth_pair"]).design
+        view = pair_view(design, loads, found["ltca"], stress)
     page = case_report(snakemake.params.values, found, pictures, manifests, pair, view)
     with atomic_path(snakemake.output.html) as temporary:
         temporary.write_text(page, encoding="utf-8")

@@ -52,7 +52,11 @@ def view(loads):
     frame = pd.DataFrame(rows, columns=["torque_n_m", "position", "ste_um"])
     for name in SHARES:
         frame[name] = float(name.endswith("_0"))
-    return pair_view(pair(resolved(load_config(CONFIG))["tooth_pair"]).design, loads, frame)
+    return pair_view(design(), loads, frame)
+
+
+def design():
+    return pair(resolved(load_config(CONFIG))["tooth_pair"]).design
 
 
 def decoded(text, kind):
@@ -96,3 +100,29 @@ def test_the_page_carries_viewer_and_data_below_two_megabytes(view):
     asked = set(re.findall(r'find\("(\w+)"\)', text))
     assert asked == set(re.findall(r'name="?(\w+)"? ?(?:type="range"|type="button"|>)', text)), "controls"
     assert "pair-view" not in re.sub(r"(?s)<style>.*</style>", "", render("C", "L", [Chapter("Modes", "")]))
+
+
+def test_root_stress_colours_the_fillets_of_every_tooth_on_its_passage(loads):
+    chance = np.random.default_rng(2)
+    stress = {"torque_n_m": np.array([100.0, 300.0])}
+    for name, shape in (("pinion", (2, 3)), ("face_gear", (4, 2))):
+        stress[f"{name}_passage"] = np.array([-1.0, -0.5, 0.0, 0.5])  # two teeth at the two positions
+        stress[f"{name}_stress_pa"] = chance.normal(0.0, 1e8, (2, 4, 2, *shape))
+        stress[f"{name}_position_m"] = chance.normal(size=(2, *shape, 3))
+        stress[f"{name}_tangent_rad"] = np.zeros((2, *shape))
+    ltca = pd.DataFrame(
+        [(t, x, 1.0) for t in (100.0, 300.0) for x in (0.0, 0.5)],
+        columns=["torque_n_m", "position", "ste_um"],
+    )
+    seen = pair_view(design(), loads, ltca.assign(**dict.fromkeys(SHARES, 0.0)), stress).data
+    assert [one["name"] for one in seen["quantities"]] == ["pressure", "load", "root stress"]
+    found = seen["torques"][1]
+    largest = 1e-6 * max(stress[f"{name}_stress_pa"][1].max() for name in ("pinion", "face_gear"))
+    assert found["largest_tension"] == pytest.approx(largest)
+    for body in seen["bodies"]:
+        told = decoded(found["tension"][body["name"]], "u1").astype(float) / 255.0 * largest
+        wanted = 1e-6 * np.maximum(stress[f"{body['name']}_stress_pa"][1], 0.0).ravel()
+        assert body["fillets"]["first"] == -1
+        np.testing.assert_allclose(told, wanted, atol=largest / 255.0)
+        points = decoded(body["fillets"]["points"], "<f4")
+        np.testing.assert_allclose(points, 1e3 * stress[f"{body['name']}_position_m"].ravel(), rtol=1e-6)

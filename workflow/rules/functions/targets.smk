@@ -70,6 +70,11 @@ def report_loads(wildcards):
     return [shared("contact", "pressure")(wildcards)] if has_contact(wildcards.case) else []
 
 
+def report_stress(wildcards):
+    """Root stress of every tooth, where a case computes it."""
+    return [rules.root_stress.output.stress] if CASES[wildcards.case]["contact"]["root_stress"] else []
+
+
 def report_pictures(wildcards):
     """Figures that the report of a case shows."""
     return [file for file in targets(wildcards.case) if file.endswith(".svg")]
