@@ -54,6 +54,13 @@ class Machine:
         if self.imperfections is None:
             object.__setattr__(self, "imperfections", perfect(self.layout))
         require_balance(self.layout, self.torques)
+        meshes = len(self.layout.meshes)
+        for key, given in (
+            ("transmission_error.phasing", self.error_lags),
+            ("single_meshes", self.imperfections.half_backlash),
+        ):
+            if given is not None and len(given) != meshes:
+                raise ConfigError(f"transmission.{key}", f"{len(given)} meshes", f"one for each of {meshes}")
         lowest = self.stiffness.minimum
         if lowest <= 0.0:
             raise ConfigError("mesh_stiffness", f"{lowest:.3g} N/m", "positive everywhere in the mesh cycle")

@@ -18,6 +18,7 @@ from facegear.dynamics.steady_state.simulate import Model, build_model, simulate
 from facegear.dynamics.sweeps.plan import SweepPlan
 from facegear.dynamics.sweeps.sweep import Piece, collect, run_speeds
 from facegear.harmonics.series import Harmonics
+from facegear.transmission.imperfections import perfect
 from facegear.transmission.layout import Layout, Role
 from facegear.transmission.machine import Machine, balanced_torques, mesh_frequency
 from facegear.validation.dynamics.methods import scipy_method
@@ -105,7 +106,7 @@ def scaling_costs(machine: Machine, speed_rpm: float) -> pd.DataFrame:
     sizes = [(pinions, order) for pinions in (1, 2, 5, 8, 12)] + [(5, harmonics) for harmonics in (1, 20, 40)]
     rows = []
     for pinions, harmonics in sizes:
-        model = build_model(_resized(machine, pinions, harmonics))
+        model = build_model(resized(machine, pinions, harmonics))
         seconds, steps = _period_cost(model, TAU * mesh_frequency(machine.layout, speed_rpm))
         rows.append((pinions, harmonics, model.system.size, seconds, steps))
     names = ["pinions", "harmonics", "coordinates", "seconds_per_period", "steps_per_period"]
@@ -132,7 +133,7 @@ def _period_cost(model: Model, frequency: float) -> tuple[float, float]:
     return min(times[1:]), float(log.steps[0]) / COST_PERIODS
 
 
-def _resized(machine: Machine, count: int, harmonics: int) -> Machine:
+def resized(machine: Machine, count: int, harmonics: int) -> Machine:
     """The machine with `count` pinions evenly spread, half of them driving, and as many harmonics of k."""
     old = machine.layout
     pinions = tuple(
@@ -148,4 +149,11 @@ def _resized(machine: Machine, count: int, harmonics: int) -> Machine:
     torque = np.where(np.arange(count) % 2 == 0, np.abs(machine.torques).max() / 20.0, 0.0)
     size = np.r_[0.0, machine.stiffness.amplitudes[1:].max() / np.arange(1, harmonics + 1) ** 2]
     series = Harmonics(size, np.r_[machine.stiffness.mean, np.zeros(harmonics)])
-    return replace(machine, layout=layout, torques=balanced_torques(layout, torque), stiffness=series)
+    return replace(
+        machine,
+        layout=layout,
+        torques=balanced_torques(layout, torque),
+        stiffness=series,
+        error_lags=None if machine.error_lags is None else np.zeros(len(layout.meshes)),
+        imperfections=perfect(layout),
+    )

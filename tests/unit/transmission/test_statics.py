@@ -1,9 +1,13 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from lumped_machines import make_machine
 
 from facegear.errors import ConfigError
+from facegear.transmission.imperfections import perfect
 from facegear.transmission.layout import Role, Side
 from facegear.transmission.machine import Machine, balanced_torques
 from facegear.transmission.phases import PhaseConvention, mesh_phases
@@ -21,8 +25,6 @@ from facegear.transmission.statics import static_equilibrium
     torque=1e-5, share=1e-5, backlash=1e-5, cycles=None
 )  # next to nothing pushes the tail through its backlash
 def test_static_mesh_forces_balance_the_torques_on_every_pinion(torque, share, backlash, cycles):
-    from lumped_machines import make_machine
-
     machine = make_machine(torque=torque, tail_share=share, backlash=backlash)
     state = static_equilibrium(machine, cycles)
     layout = machine.layout
@@ -74,3 +76,11 @@ def test_phases_are_the_fractions_of_the_pitch_with_half_a_turn_for_the_lower_ge
     np.testing.assert_allclose(geometric, [0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 0.5, 0.5, 0.5])
     printed = mesh_phases(layout, PhaseConvention.PRINTED)
     np.testing.assert_allclose(printed, [0.5, 0.5, 0.5, 0.5, 0.5, 0.0, 0.5, 0.5, 0.5, 0.5])
+
+
+def test_phases_of_other_meshes_than_the_layouts_are_refused_before_a_kernel_reads_past_them(layout_of):
+    machine = make_machine()
+    with pytest.raises(ConfigError, match="one for each of 10"):
+        replace(machine, error_lags=np.zeros(4))
+    with pytest.raises(ConfigError, match="one for each of 10"):
+        replace(machine, imperfections=perfect(layout_of((("one", Role.INPUT, 0.0),), (Side.UPPER,))))
