@@ -121,8 +121,12 @@ def sizes(section: Tolerances, design: Design) -> int:
 
 
 def chunks(section: Tolerances, design: Design) -> list[tuple[int, int]]:
-    """Numbers of the first and last sample of each chunk."""
-    size, step = sizes(section, design), section.chunk_samples
+    """Numbers of the first and last sample of each chunk of a design."""
+    return chunk_ranges(sizes(section, design), section.chunk_samples)
+
+
+def chunk_ranges(size: int, step: int) -> list[tuple[int, int]]:
+    """Numbers of the first and last of `size` samples in each chunk of at most `step`."""
     return [(first, min(first + step, size) - 1) for first in range(0, size, step)]
 
 

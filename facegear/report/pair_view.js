@@ -123,9 +123,7 @@
     for (const found of data.torques) {
       Object.assign(found, { node: decoded(found.node, "H"), tooth: decoded(found.tooth, "b") });
       for (const key of Object.keys(found.values)) found.values[key] = decoded(found.values[key], "B");
-      if (!found.tension) continue;
       for (const name of Object.keys(found.tension)) found.tension[name] = decoded(found.tension[name], "B");
-      found.largest.root_stress = found.largest_tension;
     }
     const quantity = () => data.quantities[+find("quantity").value];
 

@@ -70,10 +70,7 @@ def pair_view(
         "positions": positions.tolist(),
         "colours": COLOURS,
         "quantities": [*QUANTITIES, *([ROOT_STRESS] if stress is not None else [])],
-        "torques": [
-            _torque(float(torque), loads, ltca, positions) | _root_stress(float(torque), stress)
-            for torque in torques
-        ],
+        "torques": [_torque(float(torque), loads, ltca, positions, stress) for torque in torques],
     }
     return View(
         data,
@@ -110,21 +107,18 @@ def _fillets(stress: Mapping[str, NDArray], name: Body) -> dict[str, Any]:
     }
 
 
-def _root_stress(torque: float, stress: Mapping[str, NDArray] | None) -> dict[str, Any]:
-    """Tension at the gauges of both bodies over the passage, in parts of the largest (`largest_tension`)."""
-    if stress is None:
-        return {}
+def _tension(torque: float, stress: Mapping[str, NDArray]) -> dict[str, NDArray[np.float64]]:
+    """Tension (MPa) at the gauges of both bodies over the passage."""
     row = int(np.flatnonzero(stress["torque_n_m"] == torque)[0])
-    tension = {name: 1e-6 * np.maximum(stress[f"{name}_stress_pa"][row], 0.0) for name in BODIES}
-    largest = max(float(found.max()) for found in tension.values())
-    return {
-        "largest_tension": largest,
-        "tension": {name: _parts(found, largest) for name, found in tension.items()},
-    }
+    return {name: 1e-6 * np.maximum(stress[f"{name}_stress_pa"][row], 0.0) for name in BODIES}
 
 
 def _torque(
-    torque: float, loads: Mapping[str, NDArray], ltca: pd.DataFrame, positions: NDArray
+    torque: float,
+    loads: Mapping[str, NDArray],
+    ltca: pd.DataFrame,
+    positions: NDArray,
+    stress: Mapping[str, NDArray] | None,
 ) -> dict[str, Any]:
     on = loads["torque_n_m"] == torque
     row = np.searchsorted(positions, loads["position"][on])
@@ -132,6 +126,9 @@ def _torque(
     shown = {"pressure": line_pressure(loads, on)[order], "load": line_load(loads, on)[order]}
     rows = ltca[ltca["torque_n_m"] == torque].sort_values("position")
     top = {key: float(np.nanmax(values, initial=0.0)) for key, values in shown.items()}
+    tension = {} if stress is None else _tension(torque, stress)
+    if tension:
+        top[ROOT_STRESS["key"]] = max(float(found.max()) for found in tension.values())
     return {
         "torque_n_m": torque,
         "largest": top,
@@ -139,6 +136,7 @@ def _torque(
         "node": _encoded(loads["node"][on][order], np.uint16),
         "tooth": _encoded(loads["tooth"][on][order], np.int8),
         "values": {key: _parts(values, top[key]) for key, values in shown.items()},
+        "tension": {name: _parts(found, top[ROOT_STRESS["key"]]) for name, found in tension.items()},
         "error_um": rows["ste_um"].round(3).tolist(),
         "share": rows[list(SHARES)].round(4).to_numpy().tolist(),
     }

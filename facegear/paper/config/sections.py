@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
 from facegear.config.studies import Point
+from facegear.config.tolerances import chunk_ranges
 from facegear.paper.identify.budget import Budget
 from facegear.paper.identify.inputs import Branch, Meaning, Space, StiffnessLoad, Waveform
 from facegear.paper.identify.patterns import half_turn_patterns
@@ -140,8 +141,7 @@ def design_size(section: RandomInputs, design: Design) -> int:
 
 def design_chunks(section: RandomInputs, design: Design) -> list[tuple[int, int]]:
     """Numbers of the first and the last sample of each chunk."""
-    size, step = design_size(section, design), section.chunk_samples
-    return [(first, min(first + step, size) - 1) for first in range(0, size, step)]
+    return chunk_ranges(design_size(section, design), section.chunk_samples)
 
 
 def fit_targets(section: FitTargets, speed_rpm: float) -> Targets:

@@ -43,9 +43,9 @@ def base_rates(samples: pd.DataFrame, claims: Iterable[Claim]) -> pd.DataFrame:
 
     `samples` has a column a claim, 1 where it holds; samples that have no result are left out.
     """
-    rows = []
+    rows, judged = [], _sound(samples)
     for claim in claims:
-        held = _sound(samples)[claim.id].to_numpy(bool)
+        held = judged[claim.id].to_numpy(bool)
         found = share(held, CONFIDENCE)
         rows.append((claim.id, held.size, int(held.sum()), found.value, found.low, found.high))
     return pd.DataFrame(rows, columns=list(RATE_COLUMNS))
