@@ -1,4 +1,4 @@
-"""Following a branch of periodic motions through folds, with steps controlled by angle."""
+"""Following a branch of periodic motions through folds until it ends."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -12,21 +12,10 @@ from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point, at_parameter, solve_point
 from facegear.dynamics.branches.segment import reversal
 from facegear.dynamics.branches.special import Kind, Special
+from facegear.dynamics.branches.stepping import next_length, step_along
 from facegear.errors import NotConverged
 
 Array = NDArray[np.float64]
-STRAIGHT = 0.9
-"""Least cosine between neighbouring tangents."""
-CORRECTION = 0.2
-"""Largest correction over the step."""
-TURN, AIM, FASTEST = 0.3, 0.15, 2.5
-"""Angle between tangents and correction over the step that steps are made for; their fastest growth."""
-DRIFT = 0.3
-"""Largest change of the multipliers' moduli near the unit circle over a step."""
-SURE = 1e-3
-"""A change of parity over a longer step is tried again: the other leg of a fold may have been met."""
-
-
 JUNCTION = 1e-6
 """Logarithms of the parameter that differ by less belong to one junction of branches."""
 NEAR_JUNCTION = 3.0
@@ -162,7 +151,7 @@ def _track(flow: PeriodMap, start: Point, run: Run, progress: Callable[[Point], 
         if run.to_first and any(one.kind not in PASSED for one in found):
             track.end = End.SPECIAL
             return track
-        step = min(_longer(step, before, here, there), run.largest)
+        step = min(next_length(step, before, here, there), run.largest)
         before = here
     return track
 
@@ -177,7 +166,7 @@ def _next(
     flow: PeriodMap, here: Point, before: Point | None, step: float, run: Run, images: list[Array]
 ) -> tuple[Point, End | None]:
     """The next point, and why the branch ends there if it does. Raises NotConverged if a step is refused."""
-    there = _step(flow, here, before, step)
+    there = step_along(flow, here, before, step)
     limits = np.log([run.low, run.high])
     end = None
     if not limits[0] <= there.u <= limits[1]:
@@ -188,58 +177,6 @@ def _next(
     if np.abs(there.z).max() > run.bound:
         end = End.POLE
     return there, end
-
-
-def _step(flow: PeriodMap, here: Point, before: Point | None, step: float) -> Point:
-    """One step along the tangent, bent as over the step before."""
-    guess = _ahead(here, before, step)
-    there = solve_point(flow, guess, here.tangent, here.tangent, here.linear, CORRECTION * step)
-    reason = _refusal(here, there, step)
-    if reason:
-        raise NotConverged("branches", f"{flow.family.name} = {there.value:.9g}", reason)
-    return there
-
-
-def _ahead(here: Point, before: Point | None, step: float) -> Array:
-    """A guess at a step's length ahead."""
-    guess = here.x + step * here.tangent
-    if before is None:
-        return guess
-    bend = (here.tangent - before.tangent) / np.linalg.norm(here.x - before.x)
-    return guess + 0.5 * step**2 * bend if np.linalg.norm(bend) * step < 0.5 else guess
-
-
-def _refusal(here: Point, there: Point, step: float) -> str:
-    """Why a step is not accepted, or an empty string."""
-    chord = (there.x - here.x) / np.linalg.norm(there.x - here.x)
-    straight = min(here.tangent @ there.tangent, chord @ here.tangent, chord @ there.tangent)
-    if here.linear.afloat.shape != there.linear.afloat.shape and step <= SURE:
-        return ""
-    if straight < STRAIGHT:
-        return "the branch turns too sharply"
-    if here.parity != there.parity and step > SURE:
-        return "the branch may have been left"
-    if step > SURE and _drift(here, there) > DRIFT:
-        return "multipliers move too far"
-    return ""
-
-
-def _drift(here: Point, there: Point) -> float:
-    """Largest change of a modulus, in sorted order, among those near the unit circle."""
-    first, second = np.abs(here.multipliers), np.abs(there.multipliers)
-    if first.size != second.size:
-        return 0.0
-    near = (first > 0.6) | (second > 0.6)
-    scale = np.maximum(np.maximum(first, second), 1.0)
-    return float((np.abs(first - second) / scale)[near].max(initial=0.0))
-
-
-def _longer(step: float, before: Point | None, here: Point, there: Point) -> float:
-    """The next step: one that turns by TURN and needs a correction of AIM, as far as the last one tells."""
-    angle = float(np.arccos(np.clip(here.tangent @ there.tangent, -1.0, 1.0)))
-    off = float(np.linalg.norm(there.x - _ahead(here, before, step))) / step
-    growth = min(TURN / max(angle, 1e-6), np.sqrt(AIM / max(off, 1e-9)))
-    return step * float(np.clip(growth, 0.5, FASTEST))
 
 
 def _onto_limit(flow: PeriodMap, here: Point, there: Point, limit: float) -> Point:
