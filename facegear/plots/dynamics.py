@@ -11,7 +11,7 @@ from facegear.plots.sweep import mesh_sweeps, translations
 
 
 @dataclass(frozen=True)
-class Machine:
+class DrawnMachine:
     """What the figures show of a machine: pinions (names), those with a panel, sides of its gears, teeth."""
 
     pinions: tuple[str, ...]
@@ -30,7 +30,7 @@ class Machine:
         return [f"{name}/{side}" for side in reversed(self.sides) for name in self.pinions]
 
 
-def drawn_machine(transmission: Mapping[str, Any], pinion_teeth: int) -> Machine:
+def drawn_machine(transmission: Mapping[str, Any], pinion_teeth: int) -> DrawnMachine:
     """From the plain values of the config's section `transmission`.
 
     Pinions of one role and torque stand for each other, the first is shown; where parts differ singly, all.
@@ -40,20 +40,20 @@ def drawn_machine(transmission: Mapping[str, Any], pinion_teeth: int) -> Machine
     kinds = [(place["role"], place["torque_n_m"]) for place in pinions]
     shown = [place["name"] for i, place in enumerate(pinions) if differ or kinds[i] not in kinds[:i]]
     sides = [side for side in ("upper", "lower") if side in gears]
-    return Machine(tuple(place["name"] for place in pinions), tuple(shown), tuple(sides), pinion_teeth)
+    return DrawnMachine(tuple(place["name"] for place in pinions), tuple(shown), tuple(sides), pinion_teeth)
 
 
-def _waterfall(found: Mapping[str, Any], machine: Machine) -> Figure:
+def _waterfall(found: Mapping[str, Any], machine: DrawnMachine) -> Figure:
     shown = f"{machine.shown[-1]}/{machine.sides[0]}"
     return waterfall(found["waterfall"], machine.meshes.index(shown), shown, machine.teeth)
 
 
-def _campbell(found: Mapping[str, Any], machine: Machine) -> Figure:
+def _campbell(found: Mapping[str, Any], machine: DrawnMachine) -> Figure:
     last = found["sweep"]["speed_rpm"].max()
     return campbell(found["frequencies"], found["resonances"], found["jumps"], machine.teeth, last)
 
 
-SWEEP_FIGURES: dict[str, Callable[[Mapping[str, Any], Machine], Figure]] = {
+SWEEP_FIGURES: dict[str, Callable[[Mapping[str, Any], DrawnMachine], Figure]] = {
     "pinions": lambda found, machine: translations(found["sweep"], machine.shown, "xy"),
     "gears": lambda found, machine: translations(found["sweep"], machine.gears, "xyz"),
     "meshes": lambda found, machine: mesh_sweeps(

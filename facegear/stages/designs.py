@@ -24,7 +24,7 @@ Found = dict[str, float]
 
 
 @dataclass(frozen=True, eq=False)
-class Machine:
+class SearchedMachine:
     """The machine whose numbers are free, as plain config values: the arguments of a stage of the search."""
 
     harmonics: pd.DataFrame
@@ -48,7 +48,7 @@ def task(section: Search) -> Task:
 
 
 def assessor(
-    given: Machine, section: Search, cycles: int, count: int
+    given: SearchedMachine, section: Search, cycles: int, count: int
 ) -> Callable[[Sequence[float] | None], tuple[Found, Found]]:
     """Function of a design's values, None for the nominal ones: its goals, and all quantities as designed.
 

@@ -25,8 +25,8 @@ def load_sharing_reference(
     """`reference` and `speeds` (tables). Raises NotConverged naming the speed."""
     machine = wired_machine(transmission, teeth, harmonics)
     wanted = sharing_options(parse(LoadSharing, options))
+    reference = reference_table(machine, settings(parse(Accuracy, accuracy)), wanted)
     speeds = speed_range_table(machine, settings(parse(Accuracy, range_accuracy)), wanted)
-    reference = slow_reference(harmonics, transmission, teeth, accuracy, options)
     return Outcome({"reference": reference, "speeds": speeds}, _summary(speeds))
 
 

@@ -10,7 +10,7 @@ from facegear.config.base import parse
 from facegear.config.search import Search
 from facegear.config.variants import movable, nominal
 from facegear.scenarios.evolution import Task, front, hypervolumes
-from facegear.stages.designs import Machine, assessor, task
+from facegear.stages.designs import SearchedMachine, assessor, task
 from facegear.stages.outcome import Outcome
 
 WHOLE = 2**31
@@ -34,7 +34,7 @@ def search(
     every = pd.concat([one.assign(seed=seed) for seed, one in islands.items()], ignore_index=True)
     best = front(every, asked)
     covered = hypervolumes(islands, asked)
-    given = Machine(harmonics, tooth_pair, transmission, accuracy, speed_rpm, options, tolerances)
+    given = SearchedMachine(harmonics, tooth_pair, transmission, accuracy, speed_rpm, options, tolerances)
     return Outcome(
         {
             "designs": every,
@@ -54,7 +54,7 @@ def _spread(covered: pd.DataFrame) -> str:
     return f"hypervolume of {len(last)} seeds within {percent:.2g} %"
 
 
-def _winners(best: pd.DataFrame, asked: Task, given: Machine, section: Search) -> pd.DataFrame:
+def _winners(best: pd.DataFrame, asked: Task, given: SearchedMachine, section: Search) -> pd.DataFrame:
     """The nominal design and those of the front that win: goals as searched, and all at full accuracy."""
     coarse = assessor(given, section, section.hunting_cycles, section.samples)
     full = assessor(given, section, WHOLE, section.winner_samples)
@@ -69,7 +69,7 @@ def _winners(best: pd.DataFrame, asked: Task, given: Machine, section: Search) -
     return pd.DataFrame(rows, columns=columns)
 
 
-def _nominal(given: Machine, section: Search) -> list[float]:
+def _nominal(given: SearchedMachine, section: Search) -> list[float]:
     """Values of the variables in the config; nan where the keys of one differ."""
     start = movable(given.transmission, [key for variable in section.variables for key in variable.sets])
     return [nominal(start, variable.sets) for variable in section.variables]

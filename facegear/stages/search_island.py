@@ -12,7 +12,7 @@ from facegear.config.search import Search
 from facegear.progress import Progress
 from facegear.scenarios.chunks import identity
 from facegear.scenarios.evolution import Effort, evolve
-from facegear.stages.designs import Machine, assessor, task
+from facegear.stages.designs import SearchedMachine, assessor, task
 from facegear.stages.outcome import Outcome
 
 
@@ -35,7 +35,7 @@ def search_island(
     counts only for the same config and `code`.
     """
     section = parse(Search, search)
-    given = Machine(harmonics, tooth_pair, transmission, accuracy, speed_rpm, options, tolerances)
+    given = SearchedMachine(harmonics, tooth_pair, transmission, accuracy, speed_rpm, options, tolerances)
     assess = assessor(given, section, section.hunting_cycles, section.samples)
     effort = Effort(section.population, section.generations, seed)
     progress = Progress(f"search from seed {seed}", effort.population * effort.generations)
