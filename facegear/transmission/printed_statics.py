@@ -1,13 +1,12 @@
 """Static equilibrium of equation (13) as printed, whose two flanks share one line of action.
 
-Kept apart from the contact problem of geometric meshes: published results rest on its very rounding.
+Kept apart from the contact problem of geometric meshes, where each flank has a gap of its own: here one
+deflection of either sign passes a dead zone.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 
 from facegear.transmission.machine import Machine
@@ -83,6 +82,59 @@ class _Springs:
         active = np.where(np.abs(self.deflections(q)) > self.half_width, self.stiffness, 0.0)
         return np.diag(self.bearing) + (self.directions.T * active) @ self.directions
 
+    def along(
+        self, q: NDArray[np.float64], step: NDArray[np.float64], tie: float, anchor: NDArray[np.float64]
+    ) -> "Line":
+        """The energy's slope along a step, with a spring `tie` to the anchor."""
+        at_start = self.bearing * q + tie * (q - anchor) - self.applied
+        return Line(
+            constant=float(at_start @ step),
+            rise=float((self.bearing * step + tie * step) @ step),
+            deflections=self.deflections(q),
+            rates=self.directions @ step,
+            stiffness=self.stiffness,
+            half_width=self.half_width,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """Slope of the energy along a line: constant + rise s + sum of rates k f(deflections + s rates)."""
+
+    constant: float
+    rise: float
+    deflections: NDArray[np.float64]
+    rates: NDArray[np.float64]
+    stiffness: NDArray[np.float64]
+    half_width: float
+
+    def slopes(self, s: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The slope at some places (K,)."""
+        forces = self.stiffness * dead_zone(self.deflections + s[:, None] * self.rates, self.half_width)
+        return np.asarray(self.constant + self.rise * s + forces @ self.rates)
+
+    def corners(self) -> NDArray[np.float64]:
+        """Where a mesh meets or leaves an edge ahead, in order, with the two ends of the line: between two
+        of them the slope is straight.
+        """
+        moving = self.rates != 0.0
+        edges = np.array([[self.half_width], [-self.half_width]])
+        at = ((edges - self.deflections[moving]) / self.rates[moving]).ravel()
+        inside = np.sort(at[(at > 0.0) & (at < FARTHEST)])
+        return np.concatenate([[0.0], inside, [FARTHEST]])
+
+    def minimum(self) -> float:
+        """The zero of the slope, which only grows; the end of the line where it does not come to zero."""
+        at = self.corners()
+        slopes = self.slopes(at)
+        if slopes[0] >= 0.0:
+            return 0.0
+        if slopes[-1] <= 0.0:
+            return FARTHEST
+        after = int(np.argmax(slopes > 0.0))
+        low, high = slopes[after - 1 : after + 1]
+        return float(at[after - 1] + (at[after] - at[after - 1]) * (low / (low - high)))
+
 
 def _minimise(springs: _Springs) -> NDArray[np.float64]:
     """Proximal point method: each round ties the body to its last place by a spring softer than before.
@@ -111,45 +163,19 @@ def _pushed_on(
         if np.abs(springs.balance(place)).max() <= RESIDUAL * size:
             break
         step = place - last
-
-        def slope(s: float, step: NDArray[np.float64] = step, at: NDArray[np.float64] = place) -> float:
-            return float(springs.balance(at + s * step) @ step)
-
-        last = place + step * _line_minimum(slope)
+        last = place + step * springs.along(place, step, 0.0, place).minimum()
         place = _newton(springs, tie, last)
     return place
 
 
 def _newton(springs: _Springs, tie: float, anchor: NDArray[np.float64]) -> NDArray[np.float64]:
     """Newton's method with an exact line search on the piecewise quadratic energy of one round."""
-
-    def gradient(q: NDArray[np.float64]) -> NDArray[np.float64]:
-        return springs.balance(q) + tie * (q - anchor)
-
     place, ties = anchor, tie * np.eye(len(anchor))
     for _ in range(MAX_ITERATIONS):
-        step = -scipy.linalg.solve(springs.curvature(place) + ties, gradient(place), assume_a="pos")
-
-        def slope(s: float, step: NDArray[np.float64] = step, at: NDArray[np.float64] = place) -> float:
-            return float(gradient(at + s * step) @ step)
-
-        moved = place + step * _line_minimum(slope)
+        gradient = springs.balance(place) + tie * (place - anchor)
+        step = -np.linalg.solve(springs.curvature(place) + ties, gradient)
+        moved = place + step * springs.along(place, step, tie, anchor).minimum()
         if np.abs(moved - place).max() <= 1e-15 * max(np.abs(place).max(), springs.half_width):
             return moved
         place = moved
     return place
-
-
-def _line_minimum(slope: Callable[[float], float]) -> float:
-    """Zero of a slope that only grows along the line, bracketed by doubling."""
-    at_low = slope(0.0)
-    if at_low >= 0.0:
-        return 0.0
-    if abs(slope(1.0)) <= 1e-12 * abs(at_low):
-        return 1.0
-    low, high = 0.0, 1.0
-    while slope(high) < 0.0 and high < FARTHEST:
-        low, high = high, 2.0 * high
-    if high >= FARTHEST:
-        return high
-    return float(scipy.optimize.brentq(slope, low, high, xtol=1e-16, rtol=1e-15, disp=False))

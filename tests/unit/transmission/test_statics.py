@@ -11,6 +11,7 @@ from facegear.transmission.imperfections import perfect
 from facegear.transmission.layout import Role, Side
 from facegear.transmission.machine import Machine, balanced_torques
 from facegear.transmission.phases import PhaseConvention, mesh_phases
+from facegear.transmission.printed_statics import Line
 from facegear.transmission.statics import static_equilibrium
 
 
@@ -84,3 +85,27 @@ def test_phases_of_other_meshes_than_the_layouts_are_refused_before_a_kernel_rea
         replace(machine, error_lags=np.zeros(4))
     with pytest.raises(ConfigError, match="one for each of 10"):
         replace(machine, imperfections=perfect(layout_of((("one", Role.INPUT, 0.0),), (Side.UPPER,))))
+
+
+NUMBERS = st.floats(-10.0, 10.0).filter(lambda x: x == 0.0 or abs(x) > 1e-3)
+
+
+@given(
+    meshes=st.lists(st.tuples(NUMBERS, NUMBERS, st.floats(0.1, 10.0)), min_size=1, max_size=10),
+    rise=st.floats(1e-6, 10.0),
+    constant=st.floats(-100.0, -0.1),
+    half_width=st.floats(0.0, 5.0),
+)
+def test_the_line_search_of_the_statics_stops_where_the_slope_comes_to_zero(
+    meshes, rise, constant, half_width
+):
+    deflections, rates, stiffness = np.array(meshes).T
+    line = Line(constant, rise, deflections, rates, stiffness, half_width)
+    best = line.minimum()
+    before, at, after = line.slopes(best * np.array([1.0 - 1e-9, 1.0, 1.0 + 1e-9]))
+    largest = abs(constant) + stiffness @ (np.abs(rates) * (np.abs(deflections) + np.abs(rates) * best))
+    if line.slopes(np.zeros(1))[0] >= 0.0:
+        assert best == 0.0
+    else:
+        assert before <= after
+        assert abs(at) <= 1e-12 * (largest + rise * best)
