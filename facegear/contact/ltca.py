@@ -6,6 +6,7 @@ from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.candidates import Candidates
@@ -46,7 +47,8 @@ def loaded_contact(
 ) -> list[LoadedPosition]:
     """Solve all torques (N m) at all positions (0..1 of a pitch, 0.5 where phi1 = 0), position by position.
 
-    Raises NotConverged naming the position and the torque.
+    One thread works on it: the matrices of a position are small, and threads of BLAS that wait for one
+    another take several times the work. Raises NotConverged naming the position and the torque.
     """
     options = options or ContactOptions()
     phi1 = (np.asarray(positions, dtype=float) - 0.5) * 2 * pi / model.design.pinion.teeth
@@ -54,17 +56,18 @@ def loaded_contact(
     guess = FIRST_GUESS / model.design.pinion_base_radius
     progress = Progress("loaded contact", len(phi1))
     results: list[LoadedPosition] = []
-    for row, position in enumerate(positions):
-        pair = _PairAtPosition(
-            model=model,
-            options=options,
-            position=float(position),
-            placement=(float(phi1[row]), float(unloaded.phi2[row])),
-            unloaded=-float(unloaded.transmission_error[row]),
-        )
-        solved, guess = solve_position(pair, torques, guess)
-        results += solved
-        progress.step()
+    with threadpool_limits(1):
+        for row, position in enumerate(positions):
+            pair = _PairAtPosition(
+                model=model,
+                options=options,
+                position=float(position),
+                placement=(float(phi1[row]), float(unloaded.phi2[row])),
+                unloaded=-float(unloaded.transmission_error[row]),
+            )
+            solved, guess = solve_position(pair, torques, guess)
+            results += solved
+            progress.step()
     return results
 
 

@@ -12,11 +12,17 @@ from functools import lru_cache
 
 import numpy as np
 import scipy.sparse as sp
+from numba import njit
 from numpy.typing import NDArray
 from skfem import Basis, ElementLineP1, ElementQuad1, ElementQuad2, MeshLine, MeshQuad
 
 TWO_POINTS = 3
 """Degree that two Gauss points integrate exactly."""
+
+LINEAR_STEPS, QUADRATIC_STEPS = (
+    np.rint(size * kind.doflocs).astype(np.int64) for size, kind in ((1, ElementQuad1()), (2, ElementQuad2()))
+)
+"""Places (a, 2) of an element's nodes in nodes from its corner, in the order of the elements' functions."""
 
 
 def face_functions(
@@ -27,15 +33,41 @@ def face_functions(
     Biquadratic over faces of hexahedra; with `linear` bilinear between neighbouring nodes, as 8-node
     hexahedra on the same nodes are. Gradients are by lattice coordinate.
     """
-    element, size = (ElementQuad1(), 1) if linear else (ElementQuad2(), 2)
-    last = np.array(shape) - 1 - size
-    corner = size * np.clip(coordinates // size, 0, last // size)
-    local = ((coordinates - corner) / size).T
-    functions = [element.lbasis(local, i) for i in range(len(element.doflocs))]
-    steps = np.rint(size * element.doflocs)
-    nodes = ((corner[:, None] + steps) @ np.array([shape[1], 1])).astype(np.int64)
-    values = np.stack([value for value, _ in functions], axis=1)
-    return nodes, values, np.stack([gradient.T for _, gradient in functions], axis=1) / size
+    steps = LINEAR_STEPS if linear else QUADRATIC_STEPS
+    return _faces(np.ascontiguousarray(coordinates), shape[0], shape[1], steps)
+
+
+@njit(cache=True)
+def _faces(coordinates, rows, columns, steps):  # type: ignore[no-untyped-def]
+    """`face_functions` of elements whose nodes stand `steps` (a, 2) from their corner."""
+    count, width, size = coordinates.shape[0], steps.shape[0], steps.max()
+    nodes = np.empty((count, width), np.int64)
+    values, gradients = np.empty((count, width)), np.empty((count, width, 2))
+    value, slope = np.empty((2, size + 1)), np.empty((2, size + 1))
+    corner, last = np.empty(2, np.int64), (rows - 1 - size, columns - 1 - size)
+    for point in range(count):
+        for axis in range(2):
+            at = coordinates[point, axis]
+            corner[axis] = size * min(max(int(np.floor(at / size)), 0), last[axis] // size)
+            _interval((at - corner[axis]) / size, size, value[axis], slope[axis])
+        for a in range(width):
+            i, j = steps[a]
+            nodes[point, a] = (corner[0] + i) * columns + corner[1] + j
+            values[point, a] = value[0, i] * value[1, j]
+            gradients[point, a, 0] = slope[0, i] * value[1, j] / size
+            gradients[point, a, 1] = value[0, i] * slope[1, j] / size
+    return nodes, values, gradients
+
+
+@njit(cache=True)
+def _interval(x, degree, value, slope):  # type: ignore[no-untyped-def]
+    """Fill in values and slopes of the Lagrange polynomials of an interval at x in 0..1."""
+    if degree == 1:
+        value[0], value[1] = 1.0 - x, x
+        slope[0], slope[1] = -1.0, 1.0
+        return
+    value[0], value[1], value[2] = (1.0 - x) * (1.0 - 2.0 * x), 4.0 * x * (1.0 - x), x * (2.0 * x - 1.0)
+    slope[0], slope[1], slope[2] = 4.0 * x - 3.0, 4.0 - 8.0 * x, 4.0 * x - 1.0
 
 
 def interpolation(
