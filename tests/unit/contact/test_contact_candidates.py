@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from skfem import ElementQuad1, ElementQuad2
 from test_pair_contact import misaligned
 
 from facegear.contact import strip
 from facegear.contact.averages import Rows, rows_of, spread
-from facegear.contact.bodies.surface import interpolation
+from facegear.contact.bodies.surface import face_functions, interpolation
 from facegear.contact.candidates import candidates_of
 from facegear.contact.influence import displacement, influence_matrix
 from facegear.contact.loads import facing, flank_loads
@@ -95,3 +96,14 @@ def test_loads_spread_in_one_pass_are_the_sparse_product(linear):
     np.testing.assert_allclose(spread(rows, points, shape, linear).toarray(), expected.toarray(), atol=1e-14)
     keep = np.arange(12) % 3 == 0
     np.testing.assert_array_equal(rows_of(matrix, keep).toarray(), matrix.toarray()[keep])
+
+
+@pytest.mark.parametrize(("element", "linear"), [(ElementQuad1(), True), (ElementQuad2(), False)])
+def test_shape_functions_of_the_surface_are_those_of_the_elements(element, linear):
+    size = 1 if linear else 2
+    local = np.random.default_rng(3).random((2, 50))
+    _, values, gradients = face_functions(size * local.T, (size + 1, size + 1), linear)
+    for number in range(len(element.doflocs)):
+        value, gradient = element.lbasis(local, number)
+        np.testing.assert_allclose(values[:, number], value, atol=1e-15)
+        np.testing.assert_allclose(size * gradients[:, number], gradient.T, atol=1e-14)
