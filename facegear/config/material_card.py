@@ -19,6 +19,9 @@ class Limits(Section):
 
     limit_mpa: float = Field(gt=0, le=1e5)
     life: tuple[tuple[float, float], ...] = Field(min_length=2, description="[cycles, factor] points")
+    weibull_shape: float | None = Field(
+        None, gt=0, le=20, description="of the distribution of lives; null: no reliability is stated"
+    )
 
     @model_validator(mode="after")
     def _falling(self) -> "Limits":
@@ -76,12 +79,15 @@ def limits_of(card: Card) -> MaterialCard:
         grade=card.grade,
         young_modulus=1e9 * card.young_modulus_gpa,
         poisson_ratio=card.poisson_ratio,
-        pitting=None if pitting is None else PittingLimits(1e6 * pitting.limit_mpa, pitting.curve),
+        pitting=None
+        if pitting is None
+        else PittingLimits(1e6 * pitting.limit_mpa, pitting.curve, pitting.weibull_shape),
         bending=None
         if bending is None
         else BendingLimits(
             limit=1e6 * bending.limit_mpa,
             life=bending.curve,
+            weibull_shape=bending.weibull_shape,
             slip_layer=None if bending.slip_layer_mm is None else 1e-3 * bending.slip_layer_mm,
             mean_stress=None
             if bending.mean_stress is None

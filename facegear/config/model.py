@@ -116,6 +116,15 @@ class Config(Section):
         if self.contact.element != "hex27":
             raise ConfigError("contact.element", self.contact.element, "hex27, where strength is asked for")
 
+    def _check_duty_speeds(self) -> None:
+        sweep = self.dynamics.sweep
+        if self.strength is None or self.strength.load_factors != "machine":
+            return
+        for number, one in enumerate(self.strength.duty):
+            if not sweep.from_rpm <= one.speed_rpm <= sweep.to_rpm:
+                allowed = f"within dynamics.sweep, {sweep.from_rpm:g} to {sweep.to_rpm:g}"
+                raise ConfigError(f"strength.duty[{number}].speed_rpm", one.speed_rpm, allowed)
+
     def _check_machine(self) -> None:
         pair, machine = self.tooth_pair, self.transmission
         if machine is None:
@@ -125,6 +134,7 @@ class Config(Section):
             if self.strength is not None and self.strength.load_factors == "machine":
                 raise ConfigError("transmission", None, "required by strength.load_factors = machine")
             return
+        self._check_duty_speeds()
         check_places(pair, machine)
         check_torques(pair, machine)
         if machine.backlash_um is None and pair.pinion is None:
@@ -155,7 +165,8 @@ def resolved(config: Config) -> dict[str, Any]:
     turn loads a tooth: an input pinion's once by every face gear, a face gear's once by every pinion.
     """
     filled = config.model_dump(mode="json")
-    if config.strength is not None and (machine := config.transmission) is not None:
+    given = config.strength is not None and config.strength.load_factors == "given"
+    if given and (machine := config.transmission) is not None:
         for body, meshes in (("pinion", machine.face_gears), ("face_gear", machine.pinions)):
             section = filled["strength"][body]
             section["cycles_per_turn"] = section["cycles_per_turn"] or len(meshes)

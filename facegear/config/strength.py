@@ -1,9 +1,10 @@
 """Config section `strength`: materials, duty cycle and factors of the rating of a tooth pair."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal
 
+import pandas as pd
 from pydantic import Field, field_validator, model_validator
 
 from facegear.config.base import Section, parse, refuse
@@ -11,7 +12,9 @@ from facegear.config.csv_file import CsvFault, read_numbers
 from facegear.config.material_card import CARDS, Card, limits_of
 from facegear.config.yaml_file import read_yaml
 from facegear.errors import ConfigErrors
-from facegear.strength.rating import DutyBin, RatedBody, RatingRequest
+from facegear.geometry.design import PairDesign
+from facegear.strength.duty import DutyBin, given_duty, machine_duty
+from facegear.strength.rating import RatedBody, RatingRequest
 
 BIN_COLUMNS = ("torque_n_m", "speed_rpm", "hours")
 
@@ -34,9 +37,12 @@ class BodyStrength(Section):
         ge=1,
         le=100,
         description="how often the same flank of a tooth is loaded in a turn; null: as on an input pinion "
-        "and on the face gears of transmission, 1 without",
+        "and on the face gears of transmission, 1 without; counted where load_factors is machine",
     )
-    both_ways: bool = Field(default=False, description="the other flank is loaded as well, as on an idler")
+    both_ways: bool = Field(
+        default=False,
+        description="the other flank is loaded as well, as on an idler; found where load_factors is machine",
+    )
 
     @field_validator("card", mode="before")
     @classmethod
@@ -68,7 +74,8 @@ class Strength(Section):
     )
     application_factor: float = Field(default=1.0, ge=0.1, le=10, description="K_A")
     load_factors: Literal["given", "machine"] = Field(
-        default="given", description="K_v and K_gamma: given here, or of each bin from the machine's motion"
+        default="given",
+        description="K_v and K_gamma: given here, or the loads of each flank from the machine's motion",
     )
     dynamic_factor: float = Field(default=1.0, ge=0.1, le=10, description="K_v")
     mesh_load_factor: float = Field(default=1.0, ge=0.1, le=10, description="K_gamma of parallel meshes")
@@ -97,6 +104,7 @@ class Strength(Section):
         for key in ("dynamic_factor", "mesh_load_factor"):
             if self.load_factors == "machine" and getattr(self, key) != 1.0:
                 refuse(key, getattr(self, key), "left out where load_factors is machine")
+        self._check_counted()
         if not any(one.hours > 0 for one in self.duty):
             refuse("duty", [], "at least one bin with hours, here or in duty_csv")
         for name in ("pinion", "face_gear"):
@@ -106,9 +114,18 @@ class Strength(Section):
                     refuse(f"{name}.card", card.name, f"a card with {part}, which the rating needs")
             if card.bending.slip_layer_mm is None:
                 refuse(f"{name}.card", card.name, "a card with bending.slip_layer_mm, which the rating needs")
-            if getattr(self, name).both_ways and card.bending.mean_stress is None:
-                refuse(f"{name}.card", card.name, "a card with bending.mean_stress, which both_ways needs")
+            both = getattr(self, name).both_ways or self.load_factors == "machine"
+            if both and card.bending.mean_stress is None:
+                allowed = "a card with bending.mean_stress, which teeth bent both ways need"
+                refuse(f"{name}.card", card.name, allowed)
         return self
+
+    def _check_counted(self) -> None:
+        """How flanks are loaded is either given or counted in the machine."""
+        for name in ("pinion", "face_gear"):
+            for key in ("cycles_per_turn", "both_ways"):
+                if self.load_factors == "machine" and (value := getattr(getattr(self, name), key)):
+                    refuse(f"{name}.{key}", value, "left out where load_factors is machine")
 
     @property
     def largest_torque(self) -> float:
@@ -121,23 +138,34 @@ class Strength(Section):
         return self.application_factor * self.dynamic_factor * self.mesh_load_factor
 
 
-def rating_request(section: Strength, loads: Sequence[float] | None = None) -> RatingRequest:
-    """What the rating needs, in SI units; `loads` the machine's K_v K_gamma of each bin."""
-    bodies = {
-        name: RatedBody(
-            card=limits_of(body.card),
-            root_roughness=1e-6 * body.root_roughness_um,
-            cycles_per_turn=body.cycles_per_turn or 1,
-            both_ways=body.both_ways,
+def duty_bins(section: Strength) -> tuple[DutyBin, ...]:
+    """The bins of the duty cycle with all load factors that section strength gives, in SI units."""
+    return tuple(
+        DutyBin(section.factor * one.torque_n_m, one.speed_rpm / 60.0, 3600.0 * one.hours)
+        for one in section.duty
+    )
+
+
+def rating_request(
+    section: Strength, design: PairDesign, spectrum: pd.DataFrame | None = None
+) -> RatingRequest:
+    """What the rating needs, in SI units; `spectrum` what the machine's teeth meet, of stage duty_loads."""
+    duty, ratio = duty_bins(section), design.pinion.teeth / design.face_gear.teeth
+    sections = {"pinion": section.pinion, "face_gear": section.face_gear}
+    if spectrum is None:
+        flanks = tuple(
+            given_duty(gear, duty, (body.cycles_per_turn or 1) * turns, body.both_ways)
+            for (gear, body), turns in zip(sections.items(), (1.0, ratio), strict=True)
         )
-        for name, body in (("pinion", section.pinion), ("face_gear", section.face_gear))
-    }
+    else:
+        flanks = machine_duty(spectrum, duty, ratio, section.factor * design.pinion_base_radius)
     return RatingRequest(
-        bodies=bodies,
-        duty=tuple(
-            DutyBin(section.factor * load * one.torque_n_m, one.speed_rpm / 60.0, 3600.0 * one.hours)
-            for one, load in zip(section.duty, loads or [1.0] * len(section.duty), strict=True)
-        ),
+        bodies={
+            gear: RatedBody(limits_of(body.card), 1e-6 * body.root_roughness_um)
+            for gear, body in sections.items()
+        },
+        duty=flanks,
+        time=sum(one.time for one in duty),
         least_bending=section.least_bending_safety,
         least_pitting=section.least_pitting_safety,
     )

@@ -36,16 +36,21 @@ STUDY_COLUMNS = [
     *("study", "label", "torque_n_m", "k_average_mean_n_per_m", "ste_peak_to_peak_um"),
     *("path_radius_mm", "path_shift_mm", "unloaded_path_shift_mm", "backlash_um"),
 ]
-RATING = (
-    "Safety and life under the duty cycle. The pinion after ISO 6336 where a method says so; there is no "
-    "standard for face gears: bending by the finite elements' root stress against the same limits, pitting "
-    "with the gear's flank as a rack's. Stress: of the hardest bin; safety: factor on all stresses at which "
-    "Miner's sum is 1; green: as required, amber: lasts the duty cycle, red: does not"
+SAFETY = (
+    "Safety and life of every flank under the duty cycle; drive: the flank with which a pinion drives. "
+    "Safety: factor on all stresses at which Miner's sum is 1. Bending by the finite elements' root stress, "
+    "of pinions after ISO 6336-3 (standard) as well; there is no standard for face gears, which are judged "
+    "by the same limits; pitting after ISO 6336-2 with the gear's flank as a rack's. Life: the shortest; "
+    "inf: no load does damage. Reliability: at the end of the duty cycle, where the card gives a Weibull "
+    "shape and a load does damage. green: as safe as required, amber: lasts the duty cycle, red: does not"
 )
+RATING = "Every way to fail with its limits; stress: of the hardest load"
 DUTY_LOADS = (
-    "Loads of the running machine in every bin of the duty cycle: K_gamma, the largest mean mesh force over "
-    "that of the bin's torque, K_v, the largest force over it, and the mesh that carries that"
+    "Loads of the running machine in every bin of the duty cycle: the flank with the largest force. Mesh "
+    "load factor K_gamma: largest mean of a mesh cycle over the force of the bin's torque; dynamic factor "
+    "K_v: largest force over that mean; followed: through the hunting cycle while runouts turn"
 )
+EVERY_LOAD = "Loads of every flank in every bin"
 DYNAMIC = (
     "Largest root stress of every mesh at the nominal speed with its mean force, and with its largest force "
     "all through the passage, which bounds the stress in this motion. Beyond the torques of the contact "
@@ -124,10 +129,9 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     if title == STUDIED_CONTACT and "studies" in tables:
         return [Table("Every case and torque", tables["studies"][STUDY_COLUMNS], 4)]
     if title == "Strength" and "root_stress" in tables:
-        rated = [Table(RATING, tables["rating"], 4)] if "rating" in tables else []
-        loads = [Table(DUTY_LOADS, tables["duty_loads"], 4)] if "duty_loads" in tables else []
+        rated = _rated(tables) if "rating" in tables else []
         moving = [Table(DYNAMIC, tables["dynamic_stress"], 4)] if "dynamic_stress" in tables else []
-        return [*rated, *loads, *moving, Table(ROOT_STRESS, tables["root_stress"], 4)]
+        return [*rated, *moving, Table(ROOT_STRESS, tables["root_stress"], 4)]
     if title == "Mesh stiffness" and "harmonics" in tables:
         return [Table("Harmonics kept", tables["harmonics"].iloc[:, :4], 5)]
     if title == "Modes" and "frequencies" in tables:
@@ -154,6 +158,15 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
         ]
         return [Table("Means over the cycle with their 95 % half-widths", tables["summary"][columns], 4)]
     return []
+
+
+def _rated(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
+    found = [Table(SAFETY, tables["safety"], 4), Table(RATING, tables["rating"], 4, folded=True)]
+    if "duty_loads" in tables:
+        loads = tables["duty_loads"]
+        hardest = loads.loc[loads.groupby("bin")["largest_force_n"].idxmax()]
+        found += [Table(DUTY_LOADS, hardest, 4), Table(EVERY_LOAD, loads, 4, folded=True)]
+    return found
 
 
 def _jumps(tables: Mapping[str, pd.DataFrame]) -> list[Table]:

@@ -43,10 +43,11 @@ def verdicts(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None)
             f"mean stiffness {scientific(row.k_average_mean_n_per_m, 4)} N/m, peak-to-peak transmission "
             f"error {row.ste_peak_to_peak_um:.2f} um{_pressure(row)}",
         )
-    for row in tables.get("rating", pd.DataFrame()).itertuples():
+    for row in _nearest(tables.get("rating")).itertuples():
         yield (
-            f"{row.body.replace('_', ' ')}, {row.failure} ({row.method})",
-            f"{row.verdict}: safety {row.safety:.2f} where {row.required:g} is required",
+            f"{row.body.replace('_', ' ')}, {row.flank} flank, {row.failure} ({row.method})",
+            f"{row.verdict}: safety {row.safety:.2f} where {row.required:g} is required"
+            f"{'' if row.within_torques_solved else '; beyond the torques of the contact analysis'}",
         )
     for row in _nominal(tables).itertuples():
         width = f" ± {row.half_width:.2f}" if row.half_width > 0.005 else ""
@@ -64,6 +65,14 @@ def verdicts(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None)
     if "scorecard" in tables:
         counted = tables["scorecard"][tables["scorecard"]["counted"]]["verdict"].value_counts(sort=False)
         yield "claims of the paper", ", ".join(f"{name} {rows}" for name, rows in counted.items())
+
+
+def _nearest(rating: pd.DataFrame | None) -> pd.DataFrame:
+    """Of each kind of gear and each failure the row nearest to its limit."""
+    if rating is None:
+        return pd.DataFrame()
+    spare = rating["safety"] / rating["required"]
+    return rating.loc[spare.groupby([rating["gear"], rating["failure"]], sort=False).idxmin()]
 
 
 def _range(first: float, last: float) -> str:

@@ -79,7 +79,7 @@ class Chain:
         def compute() -> "Outcome":
             from facegear.stages.rating import rating
 
-            loads = [self._duty_loads()] if loads_from_machine(self.values) else []
+            loads = [self._duty_spectrum()] if loads_from_machine(self.values) else []
             return rating(self.root_stress().content["stress"], *loads, **self._needs("rating"))
 
         return self.store.result("rating", self.values, RatingResult, compute)
@@ -232,18 +232,18 @@ class Chain:
             lambda: compliance(body, **self._needs("compliance")),
         )
 
-    def _duty_loads(self) -> Any:
+    def _duty_spectrum(self) -> Any:
         from facegear.io import tables
         from facegear.stages.duty_loads import duty_loads
-        from facegear.strength.columns import DUTY_LOAD_COLUMNS
+        from facegear.strength.columns import DUTY_SPECTRUM_COLUMNS
 
         return self.store.part(
             "duty_loads",
             "",
             self.values,
-            "strength/duty_loads.csv",
-            lambda path: tables.read(path, DUTY_LOAD_COLUMNS),
-            lambda: duty_loads(self._harmonics(), **self._needs("duty_loads")).content["duty_loads"],
+            "strength/duty_spectrum.csv",
+            lambda path: tables.read(path, DUTY_SPECTRUM_COLUMNS),
+            lambda: duty_loads(self._harmonics(), **self._needs("duty_loads")).content["duty_spectrum"],
         )
 
     def _chunks(self) -> list[Any]:

@@ -4,8 +4,9 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
+from facegear.errors import chosen
 from facegear.results.base import Kept, Result
-from facegear.strength.columns import CURVE_COLUMNS, DAMAGE_FINITE, RATING_FINITE
+from facegear.strength.columns import CURVE_COLUMNS, DAMAGE_FINITE, RATING_FINITE, SAFETY_FINITE
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -15,21 +16,28 @@ class RatingResult(Result):
     """Safety against tooth breakage and pitting, and life, under the duty cycle of section strength."""
 
     FILES: ClassVar = {
+        "safety": Kept("strength/safety.csv", SAFETY_FINITE),
         "curves": Kept("strength/curves.csv", CURVE_COLUMNS),
         "rating": Kept("strength/rating.csv", RATING_FINITE),
         "damage": Kept("strength/damage.csv", DAMAGE_FINITE),
     }
 
     def table(self) -> pd.DataFrame:
-        """A row a body, failure and method: stress, safety, verdict and life (docs/strength.md)."""
+        """A row a flank, failure and method: stress, safety, verdict and life (docs/strength.md)."""
         return self.content["rating"].copy()
+
+    def safety(self) -> pd.DataFrame:
+        """A row a flank: safety against each failure, life, reliability, verdict."""
+        return self.content["safety"].copy()
 
     def damage(self) -> pd.DataFrame:
         """Stress, cycles and damage of each bin of the duty cycle."""
         return self.content["damage"].copy()
 
-    def plot(self) -> "Figure":
-        """Every bin of the duty cycle beside the stress that may be repeated so often."""
-        from facegear.plots.strength import life
+    def plot(self, what: str = "life") -> "Figure":
+        """Every bin of the duty cycle beside the stress that may be repeated so often, or its `damage`."""
+        from facegear.plots.strength import damage_by_bin, life
 
-        return life(self.content["damage"], self.content["curves"])
+        if chosen(what, ("life", "damage"), "plot") == "life":
+            return life(self.content["rating"], self.content["damage"], self.content["curves"])
+        return damage_by_bin(self.content["rating"], self.content["damage"])

@@ -1,21 +1,51 @@
-"""What the running machine adds to the mesh torque in every bin of the duty cycle."""
+"""Mesh forces of the running machine in every bin of the duty cycle, and what its teeth meet of them."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import lcm
 from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from facegear.config.base import parse
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.lumped_model import at_mesh_torque
 from facegear.config.machines import wired_machine
 from facegear.config.strength import Strength
+from facegear.dynamics.following import FORGOTTEN, follow
+from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.errors import ConfigError
+from facegear.load_sharing.hunting import hunting_length
 from facegear.progress import Progress
 from facegear.stages.outcome import Outcome
-from facegear.strength.columns import DUTY_LOAD_COLUMNS
+from facegear.strength.columns import DUTY_LOAD_COLUMNS, DUTY_SPECTRUM_COLUMNS
+from facegear.strength.passage_loads import classes, hardest_tooth, passage_forces
+from facegear.transmission.flanks import teeth_in_mesh
+from facegear.transmission.layout import Layout
+from facegear.transmission.machine import Machine
+
+POSITIONS = 64
+"""Samples of a mesh cycle while runouts turn."""
+NONE = 1e-9
+"""Share of the largest force of all flanks that counts as none."""
+FLANKS = ("drive", "back")
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """Forces (cycles, positions, 2 meshes) on the flanks of a motion, drive flanks first, N.
+
+    turning: the cycles are those of the hunting cycle, each with its own teeth.
+    """
+
+    layout: Layout
+    forces: NDArray[np.float64]
+    turning: bool
+    motion: str
+    settled: bool
 
 
 def duty_loads(
@@ -25,31 +55,83 @@ def duty_loads(
     accuracy: Mapping[str, Any],
     strength: Mapping[str, Any] | None,
 ) -> Outcome:
-    """`duty_loads` (table): K_gamma and K_v of every bin, from the machine's steady motion in it.
+    """`duty_loads` and `duty_spectrum` (tables) from the machine's motion in every bin.
 
-    K_gamma is the largest mean mesh force over that of the bin's torque, K_v the largest force of all meshes
-    over the largest mean one. Raises ConfigError without section strength, NotConverged naming the speed.
+    K_gamma is the largest mean of a mesh cycle over the force of the bin's torque, K_v the largest force over
+    that mean. Raises ConfigError without section strength, NotConverged naming the speed.
     """
     if strength is None:
         raise ConfigError("strength", None, "required for the loads of its duty cycle")
-    section, known = parse(Strength, strength), parse(Accuracy, accuracy)
-    progress, rows = Progress("duty cycle", len(section.duty)), []
+    section, known = parse(Strength, strength), settings(parse(Accuracy, accuracy))
+    progress, loads, spectrum = Progress("duty cycle", len(section.duty)), [], []
     for number, one in enumerate(section.duty, start=1):
-        loaded = at_mesh_torque(transmission, one.torque_n_m)
-        model = build_model(wired_machine(loaded, teeth, harmonics))
-        found = simulate(model, one.speed_rpm, settings(known))
-        forces, means = np.abs(found.forces).max(axis=0), np.abs(found.mean_forces)
-        worst = int(np.argmax(forces))
-        nominal = one.torque_n_m / model.machine.layout.pinion_arm
-        rows.append(
-            (
-                *(number, one.torque_n_m, one.speed_rpm),
-                *(means.max() / nominal, forces.max() / means.max()),
-                *(model.machine.layout.mesh_names[worst], found.label),
-            )
-        )
+        machine = wired_machine(at_mesh_torque(transmission, one.torque_n_m), teeth, harmonics)
+        history = _history(machine, one.speed_rpm, known)
+        place = (number, one.torque_n_m, one.speed_rpm)
+        loads += [(*place, *row) for row in _load_rows(history, one.torque_n_m)]
+        spectrum += [(number, *row) for row in _spectrum_rows(history)]
         progress.step()
-    table = pd.DataFrame(rows, columns=list(DUTY_LOAD_COLUMNS))
+    content = {
+        "duty_loads": pd.DataFrame(loads, columns=list(DUTY_LOAD_COLUMNS)),
+        "duty_spectrum": pd.DataFrame(spectrum, columns=list(DUTY_SPECTRUM_COLUMNS)),
+    }
+    return Outcome(content, _summary(content["duty_loads"]))
+
+
+def _history(machine: Machine, speed_rpm: float, known: Settings) -> History:
+    """A machine whose runouts turn is followed through its hunting cycle, any other to its steady state."""
+    model, cycles = build_model(machine), hunting_length(machine)
+    layout, flanks = machine.layout, 2 * len(machine.layout.meshes)
+    if layout.is_geometric and cycles > 1:
+        run = follow(model, speed_rpm, 0, cycles, POSITIONS, known)
+        kept = run.memory <= FORGOTTEN
+        forces = run.flank_forces.reshape(-1, POSITIONS, flanks)
+        return History(layout, forces, True, "followed" if kept else "depends on its past", kept)
+    found = simulate(model, speed_rpm, known)
+    both = np.concatenate([np.maximum(found.forces, 0.0), np.maximum(-found.forces, 0.0)], axis=1)
+    forces = both.reshape(found.periods, found.per_period, flanks)
+    return History(layout, forces, False, found.label, found.motion is not Motion.NOT_SETTLED)
+
+
+def _load_rows(history: History, torque: float) -> Iterator[tuple[Any, ...]]:
+    layout, largest = history.layout, history.forces.max(axis=(0, 1))
+    means, nominal = history.forces.mean(axis=1), torque / layout.pinion_arm
+    for flank in np.flatnonzero(largest > NONE * largest.max()):
+        side, mesh = divmod(int(flank), len(layout.meshes))
+        most = float(means[:, flank].max())
+        yield (
+            *(layout.mesh_names[mesh], FLANKS[side]),
+            *(float(means[:, flank].mean()), float(largest[flank])),
+            *(most / nominal, float(largest[flank]) / most),
+            *(history.motion, history.settled),
+        )
+
+
+def _spectrum_rows(history: History) -> Iterator[tuple[Any, ...]]:
+    """Body, gear, flank, mesh, share and force of every class of passages."""
+    layout, passages = history.layout, passage_forces(history.forces)
+    pinions, floor = len(layout.pinions), NONE * passages.max()
+    if history.turning:  # on to where the same two teeth meet again
+        passages = np.tile(passages, (lcm(layout.pinion_teeth, layout.gear_teeth) // len(passages), 1))
+    cycles = np.arange(len(passages), dtype=float)
+    met = np.array([teeth_in_mesh(layout, mesh, cycles) for mesh in range(len(layout.meshes))])
+    for body, name in enumerate(layout.body_names):
+        gear, teeth = ("pinion", layout.pinion_teeth) if body < pinions else ("face_gear", layout.gear_teeth)
+        own = [mesh for mesh, (i, g) in enumerate(layout.meshes) if body in (i, pinions + g)]
+        numbers = np.floor(met[own, int(gear == "face_gear")]).T.astype(np.int64) % teeth
+        for side, flank in enumerate(FLANKS):
+            mine = passages[:, [side * len(layout.meshes) + mesh for mesh in own]]
+            forces = hardest_tooth(mine, numbers) if history.turning else list(mine.T)
+            for mesh, force in zip(own, forces, strict=True):
+                for share, level in classes(force):
+                    if level > floor:
+                        yield name, gear, flank, layout.mesh_names[mesh], share, level
+
+
+def _summary(table: pd.DataFrame) -> str:
     most = table["mesh_load_factor"] * table["dynamic_factor"]
-    told = f"{most.max():.3f} times the bin's torque in bin {table['bin'][most.idxmax()]}"
-    return Outcome({"duty_loads": table}, f"largest load on a mesh {told}")
+    worst = table.loc[most.idxmax()]
+    where = f"{worst['mesh']} in bin {worst['bin']}"
+    told = f"largest force {most.max():.3f} times that of the bin's torque, {where}"
+    loose = ", ".join(str(number) for number in table.loc[~table["settled"], "bin"].unique())
+    return f"{told}; bins without a settled motion: {loose}" if loose else told

@@ -32,10 +32,22 @@ ROOT_STRESS_ARRAYS = {
 }
 """Stress over torque, place in the passage, fillet, gauges down the fillet and along the face."""
 
-RATING_COLUMNS = (
+SAFETY_COLUMNS = (
     "body",
-    "failure",
-    "method",
+    "flank",
+    "bending_safety",
+    "standard_bending_safety",
+    "pitting_safety",
+    "life_hours",
+    "reliability",
+    "nearest_limit",
+    "verdict",
+    "within_torques_solved",
+)
+RATED_FLANK = ("body", "gear", "flank", "failure", "method")
+"""What a row of a rating is about."""
+RATING_COLUMNS = (
+    *RATED_FLANK,
     "stress_mpa",
     "allowed_mpa",
     "cycles",
@@ -44,12 +56,12 @@ RATING_COLUMNS = (
     "verdict",
     "damage",
     "life_hours",
+    "reliability",
+    "within_torques_solved",
 )
-CURVE_COLUMNS = ("body", "failure", "method", "cycles", "allowed_mpa")
+CURVE_COLUMNS = (*RATED_FLANK, "cycles", "allowed_mpa")
 DAMAGE_COLUMNS = (
-    "body",
-    "failure",
-    "method",
+    *RATED_FLANK,
     "bin",
     "torque_n_m",
     "speed_rpm",
@@ -57,21 +69,31 @@ DAMAGE_COLUMNS = (
     "stress_mpa",
     "cycles",
     "damage",
+    "within_torques_solved",
 )
 
 DUTY_LOAD_COLUMNS = (
     "bin",
     "torque_n_m",
     "speed_rpm",
+    "mesh",
+    "flank",
+    "mean_force_n",
+    "largest_force_n",
     "mesh_load_factor",
     "dynamic_factor",
-    "mesh",
     "motion",
+    "settled",
 )
-"""Of the table of loads in every bin of the duty cycle; `mesh` carries the largest force."""
+"""Of the table of loads in every bin of the duty cycle, a row for each flank of a mesh that carries any."""
+DUTY_SPECTRUM_COLUMNS = ("bin", "body", "gear", "flank", "mesh", "share", "force_n")
+"""Of the table of forces that the hardest loaded tooth of a body meets in its passages through a mesh."""
 
-RATING_FINITE = tuple(name for name in RATING_COLUMNS if name not in ("damage", "life_hours"))
+RATING_FINITE = tuple(name for name in RATING_COLUMNS if name not in ("damage", "life_hours", "reliability"))
 DAMAGE_FINITE = tuple(name for name in DAMAGE_COLUMNS if name != "damage")
+SAFETY_FINITE = tuple(
+    name for name in SAFETY_COLUMNS if name not in ("standard_bending_safety", "life_hours", "reliability")
+)
 ROOT_STRESS_FINITE = tuple(name for name in ROOT_STRESS_COLUMNS if name != "at_30_deg_mpa")
 """Columns whose numbers are always finite: life may last for ever, and 30 degrees lie beside the gauges."""
 

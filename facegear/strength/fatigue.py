@@ -1,6 +1,6 @@
 """Damage of a duty cycle by Miner's rule, and reliability by a Weibull distribution."""
 
-from math import log
+from math import log, nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,12 @@ def damage(
     return np.asarray(shares, dtype=float)
 
 
-def life_at_reliability(life: float, reliability: float, shape: float) -> float:
-    """Life at a reliability, from that at 99 % and the shape of the Weibull distribution (two parameters)."""
-    return life * float((log(reliability) / log(LIMIT_RELIABILITY)) ** (1.0 / shape))
+def reliability(total: float, shape: float | None) -> float:
+    """Share of the gears that survive Miner's sum `total`, by a Weibull distribution of lives from 0.
+
+    Sum 1 is the life that LIMIT_RELIABILITY of them reach. nan without a shape, and for a sum of 0: below
+    every limit more than LIMIT_RELIABILITY survive, but the distribution of lives does not say how many.
+    """
+    if shape is None or total == 0.0:
+        return nan
+    return float(np.exp(log(LIMIT_RELIABILITY) * total**shape))

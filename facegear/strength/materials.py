@@ -34,10 +34,14 @@ class Life:
 
 @dataclass(frozen=True)
 class PittingLimits:
-    """Allowable contact stress: `limit` sigma_H lim in Pa."""
+    """Allowable contact stress: `limit` sigma_H lim in Pa.
+
+    weibull_shape: of the distribution of lives; None where the card does not give it.
+    """
 
     limit: float
     life: Life
+    weibull_shape: float | None
 
 
 @dataclass(frozen=True)
@@ -46,11 +50,12 @@ class BendingLimits:
 
     slip_layer: thickness rho' in m; mean_stress: constant and slope of the mean stress ratio
     M = constant - slope Y_S. Either is None where the card does not give it; the factors that need it then
-    stop the rating with its name.
+    stop the rating with its name. weibull_shape as for pitting.
     """
 
     limit: float
     life: Life
+    weibull_shape: float | None
     slip_layer: float | None
     mean_stress: tuple[float, float] | None
 

@@ -1,7 +1,8 @@
 """Safety and life of both gears under a duty cycle: bending from root stress, pitting from line contact."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import pi, sqrt, tan
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from facegear.errors import FacegearError
 from facegear.geometry.design import PairDesign
+from facegear.strength.duty import FlankDuty
 from facegear.strength.factors import (
     STRESS_CORRECTION_REFERENCE,
     contact_ratio_factor,
@@ -18,7 +20,7 @@ from facegear.strength.factors import (
     relative_surface_factor,
     size_factor,
 )
-from facegear.strength.fatigue import damage
+from facegear.strength.fatigue import damage, reliability
 from facegear.strength.materials import BendingLimits, Life, MaterialCard, PittingLimits
 from facegear.strength.root_form import RootForm, root_form
 from facegear.strength.root_stress import RootStress, down_the_fillet
@@ -31,22 +33,11 @@ HALVINGS = 60
 
 
 @dataclass(frozen=True)
-class DutyBin:
-    """Torque (N m) on the pinion with all load factors, its speed (turns a second) and time (s)."""
-
-    torque: float
-    speed: float
-    time: float
-
-
-@dataclass(frozen=True)
 class RatedBody:
-    """Limits, roughness Rz (m) of the fillet, and how the teeth of one gear are loaded."""
+    """Limits of the pinions or of the face gears, and the roughness Rz (m) of their fillets."""
 
     card: MaterialCard
     root_roughness: float
-    cycles_per_turn: int
-    both_ways: bool
 
     def limits(self) -> tuple[PittingLimits, BendingLimits]:
         """Raises FacegearError naming what the card lacks."""
@@ -57,34 +48,39 @@ class RatedBody:
 
 @dataclass(frozen=True)
 class RatingRequest:
-    """What a rating is asked for; bodies `pinion` and `face_gear`."""
+    """What a rating is asked for; bodies `pinion` and `face_gear`, and the flanks of all gears in `duty`.
+
+    time (s) of the whole duty cycle.
+    """
 
     bodies: Mapping[str, RatedBody]
-    duty: tuple[DutyBin, ...]
+    duty: tuple[FlankDuty, ...]
+    time: float
     least_bending: float
     least_pitting: float
 
 
 @dataclass(frozen=True, eq=False)
 class Rated:
-    """One way in which a gear may fail.
+    """One way in which the teeth of a gear may fail on one flank.
 
-    `stress` (n,) Pa, `cycles` (n,) and `damage` (n,) by bin; `allowed` (Pa): stress that may be repeated for
+    `stress` (n,) Pa and `damage` (n,) of the loads in `duty`; `allowed` (Pa): stress that may be repeated for
     ever before life factors, which `limit` gives; `safety`: by how much all stresses may rise until Miner's
-    sum is 1; `life`: of the duty cycle in seconds.
+    sum is 1; `life`: of the duty cycle in seconds. `reliability` at the end of the duty cycle: nan where the
+    card has no Weibull shape, or where no load does damage.
     """
 
-    body: str
+    duty: FlankDuty
     failure: str
     method: str
     stress: Array
-    cycles: Array
     allowed: float
     limit: Life
     damage: Array
     safety: float
     required: float
     life: float
+    reliability: float
 
     @property
     def verdict(self) -> str:
@@ -95,56 +91,53 @@ class Rated:
 def rate(
     design: PairDesign, contact_ratio: float, roots: Mapping[str, RootStress], request: RatingRequest
 ) -> list[Rated]:
-    """Bending and pitting of both gears, and the pinion's bending after the cylindrical standard.
+    """Bending and pitting of every loaded flank, a pinion's bending after the cylindrical standard as well.
 
     `contact_ratio` that of the section of the pitch point; `roots` the root stress of both bodies.
     """
     found = []
     form = pinion_form(design, contact_ratio)
     pitting = hertz_stress(design, contact_ratio, request)
-    for name, body in request.bodies.items():
-        _, limits = body.limits()
-        notch = form.notch_parameter if name == "pinion" else None
-        allowed = permissible_bending(design, body, notch, reversal(roots[name]) if body.both_ways else 0.0)
-        ways = {"finite elements": largest_tension(roots[name])}
-        if name == "pinion":
+    tension = {gear: largest_tension(root) for gear, root in roots.items()}
+    for duty in request.duty:
+        pitting_limits, bending_limits = request.bodies[duty.gear].limits()
+        notch = form.notch_parameter if duty.gear == "pinion" else None
+        ratio = reversal(roots[duty.gear], duty)
+        allowed = permissible_bending(design, request.bodies[duty.gear], notch, ratio)
+        ways = {"finite elements": tension[duty.gear]}
+        if duty.gear == "pinion":
             ways["ISO 6336-3"] = standard_bending(design, form)
         for method, stress in ways.items():
-            found.append(_rated(design, request, name, "bending", method, stress, allowed, limits.life))
-        limit, _ = body.limits()
-        stress = pitting[name]
-        found.append(_rated(design, request, name, "pitting", "ISO 6336-2", stress, limit.limit, limit.life))
+            found.append(_rated(request, duty, "bending", method, stress, allowed, bending_limits))
+        stress, allowed = pitting[duty.gear], pitting_limits.limit
+        found.append(_rated(request, duty, "pitting", "ISO 6336-2", stress, allowed, pitting_limits))
     return found
 
 
 def _rated(
-    design: PairDesign,
     request: RatingRequest,
-    body: str,
+    duty: FlankDuty,
     failure: str,
     method: str,
     stress: Stress,
     allowed: float,
-    life: Life,
+    limits: PittingLimits | BendingLimits,
 ) -> Rated:
-    ratio = 1.0 if body == "pinion" else design.pinion.teeth / design.face_gear.teeth
-    turns = ratio * request.bodies[body].cycles_per_turn
-    by_bin = np.array([stress(one.torque) for one in request.duty])
-    cycles = np.array([turns * one.speed * one.time for one in request.duty])
-    harm = damage(by_bin, cycles, allowed, life)
-    time, total = sum(one.time for one in request.duty), float(harm.sum())
+    by_load = np.array([stress(torque) for torque in duty.torque])
+    harm = damage(by_load, duty.cycles, allowed, limits.life)
+    total = float(harm.sum())
     return Rated(
-        body=body,
+        duty=duty,
         failure=failure,
         method=method,
-        stress=by_bin,
-        cycles=cycles,
+        stress=by_load,
         allowed=allowed,
-        limit=life,
+        limit=limits.life,
         damage=harm,
-        safety=safety(by_bin, cycles, allowed, life),
+        safety=safety(by_load, duty.cycles, allowed, limits.life),
         required=request.least_bending if failure == "bending" else request.least_pitting,
-        life=time / total if total > 0.0 else np.inf,
+        life=request.time / total if total > 0.0 else np.inf,
+        reliability=reliability(total, limits.weibull_shape),
     )
 
 
@@ -162,15 +155,40 @@ def safety(stress: Array, cycles: Array, allowed: float, life: Life) -> float:
 
 def largest_tension(root: RootStress) -> Stress:
     """Largest stress on either fillet over the passage and the face."""
-    return lambda torque: float(down_the_fillet(root.at_torque(torque)).max())
+    places = np.stack([down_the_fillet(one).ravel() for one in root.stress])
+    kept = np.zeros(places.shape[1], dtype=bool)
+    kept[places.argmax(axis=1)] = True
+    for low, high in pairwise(places):
+        kept |= _may_be_largest(low, high)
+    worst = replace(root, stress=places[:, kept])
+    return lambda torque: float(worst.at_torque(torque).max())
 
 
-def reversal(root: RootStress) -> float:
-    """Smallest over largest stress at the worst place where both flanks are loaded alike, one at a time."""
-    stress = down_the_fillet(root.stress[-1])
-    high, low = stress.max(axis=0), stress.min(axis=0)
-    down, along = np.unravel_index(np.argmax(high[0]), high[0].shape)
-    return float(min(low[0, down, along], low[1, down, along]) / high[0, down, along])
+def _may_be_largest(low: Array, high: Array) -> NDArray[np.bool_]:
+    """Which of the lines from `low` to `high` (n,) are anywhere above those that are largest at an end.
+
+    Two lines bound the largest from below by a kinked line, so that it is enough to look at the kink.
+    """
+    first, last = int(np.argmax(low)), int(np.argmax(high))
+    lead, gain = low[first] - low[last], high[last] - high[first]
+    part = lead / (lead + gain) if lead + gain > 0.0 else 0.0
+    there = (1.0 - part) * low + part * high
+    return np.asarray(there > there[first])
+
+
+def reversal(root: RootStress, duty: FlankDuty) -> float:
+    """Smallest over largest stress of a turn at the place of the largest, in the bin of the largest load.
+
+    Compression comes from the loads of the other flank; where it has none stress is taken to rise from 0.
+    """
+    worst = int(np.argmax(np.where(duty.cycles > 0.0, duty.torque, 0.0)))
+    other = duty.opposite[duty.bins[worst]]
+    if other == 0.0:
+        return 0.0
+    tension, pressed = (down_the_fillet(root.at_torque(torque)) for torque in (duty.torque[worst], other))
+    high = tension[:, 0].max(axis=0)
+    down, along = np.unravel_index(np.argmax(high), high.shape)
+    return float(min(tension[:, 0, down, along].min(), pressed[:, 1, down, along].min()) / high[down, along])
 
 
 def permissible_bending(

@@ -1,32 +1,60 @@
-"""Tables of a rating: one row a body and failure, and the damage of each bin."""
+"""Tables of a rating: safety of every flank, a row a way to fail, and the damage of each bin."""
 
 from collections.abc import Sequence
+from itertools import groupby
 
 import numpy as np
 import pandas as pd
 
-from facegear.strength.columns import CURVE_COLUMNS, DAMAGE_COLUMNS, RATING_COLUMNS
-from facegear.strength.rating import DutyBin, Rated
+from facegear.strength.columns import CURVE_COLUMNS, DAMAGE_COLUMNS, RATING_COLUMNS, SAFETY_COLUMNS
+from facegear.strength.duty import DutyBin
+from facegear.strength.rating import Rated
 
 POINTS = 61
 """Of a curve of allowed stress."""
+HARDEST = {"red": 0, "amber": 1, "green": 2}
 
 
-def rating_table(found: Sequence[Rated]) -> pd.DataFrame:
-    """Safety and life, columns as RATING_COLUMNS; stress is that of the hardest bin."""
+def safety_table(found: Sequence[Rated], solved: float) -> pd.DataFrame:
+    """One row a flank, columns as SAFETY_COLUMNS: each way to fail beside the others, and the first to come.
+
+    Reliability is the product of those known. `solved` (N m): the largest torque of the contact analysis.
+    """
+    rows = []
+    for (body, flank), group in groupby(found, key=lambda one: (one.duty.body, one.duty.flank)):
+        ways = list(group)
+        safety = {(one.failure, one.method): one.safety for one in ways}
+        nearest = min(ways, key=lambda one: one.safety / one.required)
+        known = [one.reliability for one in ways if np.isfinite(one.reliability)]
+        rows.append(
+            (
+                *(body, flank, safety["bending", "finite elements"]),
+                *(safety.get(("bending", "ISO 6336-3"), np.nan), safety["pitting", "ISO 6336-2"]),
+                min(one.life for one in ways) / 3600.0,
+                float(np.prod(known)) if known else np.nan,
+                f"{nearest.failure} ({nearest.method})",
+                min((one.verdict for one in ways), key=HARDEST.__getitem__),
+                _within(nearest, solved).all(),
+            )
+        )
+    return pd.DataFrame(rows, columns=list(SAFETY_COLUMNS))
+
+
+def rating_table(found: Sequence[Rated], solved: float) -> pd.DataFrame:
+    """Safety and life, columns as RATING_COLUMNS; stress is that of the hardest load."""
     rows = [
         (
-            one.body,
-            one.failure,
-            one.method,
+            *_subject(one),
             1e-6 * float(one.stress.max()),
             1e-6 * one.allowed,
-            float(one.cycles.sum()),
+            float(one.duty.cycles.sum()),
             one.safety,
             one.required,
             one.verdict,
             float(one.damage.sum()),
             one.life / 3600.0,
+            one.reliability,
+            _within(one, solved).all(),
         )
         for one in found
     ]
@@ -38,23 +66,37 @@ def curve_table(found: Sequence[Rated]) -> pd.DataFrame:
     parts = []
     for one in found:
         cycles = np.geomspace(one.limit.cycles[0], one.limit.cycles[-1], POINTS)
-        stress = 1e-6 * one.allowed * one.limit.factor(cycles)
-        columns = (one.body, one.failure, one.method, cycles, stress)
+        columns = (*_subject(one), cycles, 1e-6 * one.allowed * one.limit.factor(cycles))
         parts.append(pd.DataFrame(dict(zip(CURVE_COLUMNS, columns, strict=True))))
     return pd.concat(parts, ignore_index=True)
 
 
-def damage_table(found: Sequence[Rated], duty: Sequence[DutyBin]) -> pd.DataFrame:
-    """Stress, cycles and damage of each bin, columns as DAMAGE_COLUMNS; torque with all load factors."""
-    parts = []
+def damage_table(found: Sequence[Rated], duty: Sequence[DutyBin], solved: float) -> pd.DataFrame:
+    """Largest torque (with all load factors) and stress, cycles and damage of each bin that loads a flank.
+
+    Columns as DAMAGE_COLUMNS.
+    """
+    rows = []
     for one in found:
-        columns = (
-            *(one.body, one.failure, one.method),
-            np.arange(1, len(duty) + 1),
-            np.array([load.torque for load in duty]),
-            np.array([60.0 * load.speed for load in duty]),
-            np.array([load.time / 3600.0 for load in duty]),
-            *(1e-6 * one.stress, one.cycles, one.damage),
-        )
-        parts.append(pd.DataFrame(dict(zip(DAMAGE_COLUMNS, columns, strict=True))))
-    return pd.concat(parts, ignore_index=True)
+        within = _within(one, solved)
+        for number in np.unique(one.duty.bins):
+            here = one.duty.bins == number
+            rows.append(
+                (
+                    *(*_subject(one), number + 1, float(one.duty.torque[here].max())),
+                    *(60.0 * duty[number].speed, duty[number].time / 3600.0),
+                    1e-6 * float(one.stress[here].max()),
+                    *(float(one.duty.cycles[here].sum()), float(one.damage[here].sum())),
+                    bool(within[here].all()),
+                )
+            )
+    return pd.DataFrame(rows, columns=list(DAMAGE_COLUMNS))
+
+
+def _subject(one: Rated) -> tuple[str, ...]:
+    return one.duty.body, one.duty.gear, one.duty.flank, one.failure, one.method
+
+
+def _within(one: Rated, solved: float) -> np.ndarray:
+    """Whether each load lies within the torques of the contact analysis, (n,)."""
+    return (one.duty.torque <= solved) | (one.duty.cycles == 0.0)

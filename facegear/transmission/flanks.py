@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.assembly import assembly
-from facegear.transmission.layout import Side
+from facegear.transmission.layout import Layout, Side
 from facegear.transmission.machine import Machine
 
 Array = NDArray[np.float64]
@@ -59,7 +59,7 @@ def slow_errors(machine: Machine, cycles: Array) -> Array:
     tangential, separating = np.zeros((2, cycles.size, len(layout.meshes)))
     cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
     for mesh, (i, g) in enumerate(layout.meshes):
-        side, lower = layout.gears[g].sign, layout.gears[g].side is Side.LOWER
+        side = layout.gears[g].sign
         runout = errors.pinion_runout[i]
         turn = 2.0 * np.pi * cycles / layout.pinion_teeth + runout.phase
         tangential[:, mesh] -= side * cosine * runout.amplitude * np.sin(turn)
@@ -67,11 +67,20 @@ def slow_errors(machine: Machine, cycles: Array) -> Array:
         runout = errors.gear_runout[g]
         turn = side * 2.0 * np.pi * cycles / layout.gear_teeth + runout.phase
         tangential[:, mesh] += side * cosine * runout.amplitude * np.cos(turn - layout.angles[i])
-        on_pinion = cycles - (0.5 * layout.pinion_teeth if lower else 0.0)
-        on_gear = cycles - side * layout.pinions[i].pitches
+        on_pinion, on_gear = teeth_in_mesh(layout, mesh, cycles)
         tangential[:, mesh] -= cosine * _deviation(errors.pinion_pitch.get(i), on_pinion)
         tangential[:, mesh] += cosine * _deviation(errors.gear_pitch.get(g), on_gear)
     return _flanks(tangential, separating)
+
+
+def teeth_in_mesh(layout: Layout, mesh: int, cycles: Array) -> tuple[Array, Array]:
+    """Teeth of the pinion and of the face gear (K,) that a mesh has come to, counted on from turn to turn.
+
+    `cycles` (K,) counts mesh cycles of the reference from the start; a fraction lies between two teeth.
+    """
+    i, g = layout.meshes[mesh]
+    half_turn = 0.5 * layout.pinion_teeth if layout.gears[g].side is Side.LOWER else 0.0
+    return cycles - half_turn, cycles - layout.gears[g].sign * layout.pinions[i].pitches
 
 
 def mirrored(series: Harmonics) -> Harmonics:

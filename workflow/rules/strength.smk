@@ -35,6 +35,7 @@ rule duty_loads:
         harmonics=shared("stiffness", "harmonics"),
     output:
         duty_loads="results/{case}/strength/duty_loads.csv",
+        duty_spectrum="results/{case}/strength/duty_spectrum.csv",
         manifest="results/{case}/strength/duty_loads.provenance.json",
     script:
         "../scripts/duty_loads.py"
@@ -44,8 +45,9 @@ rule rating:
     "Safety and life of the tooth pair"
     input:
         stress=shared("root_stress", "stress"),
-        duty_loads=machine_loads,
+        duty_spectrum=machine_loads("duty_spectrum"),
     output:
+        safety="results/{case}/strength/safety.csv",
         rating="results/{case}/strength/rating.csv",
         damage="results/{case}/strength/damage.csv",
         curves="results/{case}/strength/curves.csv",
@@ -55,12 +57,13 @@ rule rating:
 
 
 rule rating_figures:
-    "Bins of the duty cycle beside the stress that may be repeated so often"
+    "Bins of the duty cycle beside the stress that may be repeated so often, and their damage"
     input:
+        rating=rules.rating.output.rating,
         damage=rules.rating.output.damage,
         curves=rules.rating.output.curves,
     output:
-        **pictures("strength", "life"),
+        **pictures("strength", "life", "damage"),
         manifest="results/{case}/figures/rating.provenance.json",
     script:
         "../scripts/rating_figures.py"

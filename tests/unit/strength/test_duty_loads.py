@@ -2,17 +2,20 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import facegear
-from facegear.config.base import parse
 from facegear.config.lumped_model import at_mesh_torque
 from facegear.config.machines import wired_machine
 from facegear.config.needs import stage_needs, stages_before
-from facegear.config.strength import Strength, rating_request
 from facegear.errors import ConfigError, ConfigErrors
 from facegear.stages.duty_loads import duty_loads
+from facegear.strength.duty import DutyBin, machine_duty
+from facegear.strength.passage_loads import classes, hardest_tooth
 from facegear.transmission.ratings import mesh_table
 
+BIN = {"speed_rpm": 7500, "hours": 10}
 SMOOTH = {
     "mesh_stiffness": {"source": "harmonics", "table": [{"order": 0, "b_n_per_m": 4e8}]},
     "transmission.transmission_error.amplitude_um": 0,
@@ -20,17 +23,77 @@ SMOOTH = {
 }
 
 
-def test_smooth_meshes_run_at_their_mean_force_and_the_load_factor_is_that_of_the_statics():
+def test_smooth_meshes_run_at_their_mean_force_on_the_flanks_of_the_statics():
     gearbox = facegear.example().with_values(SMOOTH)
     harmonics = gearbox.stiffness().content["harmonics"]
-    found = duty_loads(harmonics, **stage_needs("duty_loads", gearbox.values)).content["duty_loads"]
-    assert found["torque_n_m"].tolist() == [600.0, 900.0]
-    np.testing.assert_allclose(found["dynamic_factor"], 1.0, rtol=1e-6)
-    for row in found.itertuples():
-        loaded = at_mesh_torque(gearbox.values["transmission"], row.torque_n_m)
-        at_rest = mesh_table(wired_machine(loaded, gearbox.values["tooth_pair"], harmonics), 0.0)
-        largest = at_rest["pinion_torque_n_m"].abs().max()
-        assert row.mesh_load_factor * row.torque_n_m == pytest.approx(largest, rel=1e-3)
+    found = duty_loads(harmonics, **stage_needs("duty_loads", gearbox.values)).content
+    loads = found["duty_loads"]
+    np.testing.assert_allclose(loads["dynamic_factor"], 1.0, rtol=1e-6)
+    assert loads["settled"].all()
+    for number, torque in ((1, 600.0), (2, 900.0)):
+        loaded = at_mesh_torque(gearbox.values["transmission"], torque)
+        machine = wired_machine(loaded, gearbox.values["tooth_pair"], harmonics)
+        at_rest = mesh_table(machine, 0.0).set_index("mesh")
+        running = loads[loads["bin"] == number].set_index("mesh")
+        assert running["flank"].to_dict() == at_rest["flank"].to_dict()
+        expected = at_rest["pinion_torque_n_m"].abs() / torque
+        np.testing.assert_allclose(running["mesh_load_factor"], expected[running.index], rtol=1e-3)
+
+
+def test_teeth_of_each_body_meet_its_own_meshes_and_idlers_bend_both_ways():
+    gearbox = facegear.example().with_values(SMOOTH)
+    harmonics = gearbox.stiffness().content["harmonics"]
+    found = duty_loads(harmonics, **stage_needs("duty_loads", gearbox.values)).content
+    spectrum, loads = found["duty_spectrum"], found["duty_loads"]
+    flanks = {
+        body: set(rows["flank"]) for body, rows in spectrum[spectrum["bin"] == 1].groupby("body", sort=False)
+    }
+    assert flanks["right input"] == flanks["upper face gear"] == {"drive"}
+    assert flanks["right idler"] == flanks["lower face gear"] == {"drive", "back"}
+    most = spectrum.groupby(["bin", "mesh"])["force_n"].max()
+    np.testing.assert_allclose(most, loads.groupby(["bin", "mesh"])["largest_force_n"].max(), rtol=1e-12)
+    duty = [DutyBin(600.0, 125.0, 3600.0), DutyBin(900.0, 80.0, 60.0)]
+    by_body = {(one.body, one.flank): one for one in machine_duty(spectrum, duty, 23 / 143, 0.04)}
+    turns = 125.0 * 3600.0 + 80.0 * 60.0
+    assert by_body["right input", "drive"].cycles.sum() == pytest.approx(2 * turns)
+    assert by_body["right idler", "back"].cycles.sum() == pytest.approx(turns)
+    assert by_body["upper face gear", "drive"].cycles.sum() == pytest.approx(5 * turns * 23 / 143)
+    assert not by_body["right input", "drive"].opposite.any()
+    idler = by_body["right idler", "drive"]
+    np.testing.assert_allclose(idler.opposite, [by_body["right idler", "back"].torque[n] for n in (0, 1)])
+
+
+def test_runouts_load_the_teeth_at_their_high_point_hardest():
+    eccentric = {"runout": {"eccentricity_um": 10}}
+    values = {**SMOOTH, "transmission.single_pinions": {"right input": eccentric}}
+    gearbox = facegear.example().with_values({**values, "strength.duty": [{**BIN, "torque_n_m": 600}]})
+    harmonics = gearbox.stiffness().content["harmonics"]
+    found = duty_loads(harmonics, **stage_needs("duty_loads", gearbox.values)).content
+    assert found["duty_loads"]["motion"].unique().tolist() == ["followed"]
+    spectrum = found["duty_spectrum"][found["duty_spectrum"]["mesh"] == "right input/upper"]
+    own = spectrum[spectrum["body"] == "right input"]["force_n"]
+    seen = spectrum[spectrum["body"] == "upper face gear"]["force_n"]
+    assert len(own) == 1  # a pinion's tooth comes to its high point in every turn
+    assert seen.max() > 1.01 * seen.min()  # a gear's tooth meets all teeth of the pinion
+    assert own.iloc[0] == pytest.approx(seen.max(), rel=1e-3)
+
+
+@given(st.lists(st.floats(0.0, 1e5), min_size=1, max_size=60), st.floats(1.0, 12.0))
+def test_classes_of_passages_never_do_less_harm_than_the_passages(forces, slope):
+    found = list(classes(np.array(forces)))
+    assert sum(share for share, _ in found) == pytest.approx(1.0)
+    assert max(force for _, force in found) == max(forces)
+    harm = sum(share * force**slope for share, force in found)
+    assert harm >= np.mean(np.array(forces) ** slope) * (1.0 - 1e-12)
+
+
+def test_the_hardest_tooth_is_the_one_whose_passages_do_most_harm():
+    met = np.stack([np.arange(12) % 3, (np.arange(12) + 1) % 3], axis=1)
+    passages = np.where(met == 2, 100.0, 90.0) + np.arange(12)[:, None] * 0.01
+    for forces, expected in zip(
+        hardest_tooth(passages, met), (passages[2::3, 0], passages[1::3, 1]), strict=True
+    ):
+        np.testing.assert_allclose(forces, expected)
 
 
 def test_all_torques_follow_the_one_in_an_inputs_mesh():
@@ -45,11 +108,8 @@ def test_all_torques_follow_the_one_in_an_inputs_mesh():
         at_mesh_torque({**given, "torque": {"per_input_n_m": 0.0, "tail_share": 0.0}}, 600.0)
 
 
-def test_factors_of_the_machine_multiply_each_bin_and_come_before_the_rating():
+def test_the_machines_loads_come_before_the_rating_where_it_takes_them():
     values = facegear.example().with_values(SMOOTH).values
-    section = parse(Strength, values["strength"])
-    torques = [one.torque for one in rating_request(section, [1.5, 2.0]).duty]
-    assert torques == pytest.approx([900.0, 1800.0])
     assert "duty_loads" in stages_before("rating", values)
     assert "duty_loads" not in stages_before("rating", facegear.example().values)
 
@@ -57,5 +117,16 @@ def test_factors_of_the_machine_multiply_each_bin_and_come_before_the_rating():
 def test_factors_are_either_given_or_the_machines():
     with pytest.raises(ConfigErrors, match=r"strength\.dynamic_factor = 1\.2: left out where load_factors"):
         facegear.example().with_values({**SMOOTH, "strength.dynamic_factor": 1.2})
+    for key, value in (("pinion.both_ways", True), ("face_gear.cycles_per_turn", 5)):
+        with pytest.raises(ConfigErrors, match=rf"strength\.{key} = (true|5): left out where load_factors"):
+            facegear.example().with_values({**SMOOTH, f"strength.{key}": value})
     with pytest.raises(ConfigErrors, match=r"required by strength\.load_factors = machine"):
         facegear.example().with_values({"strength.load_factors": "machine", "transmission": None})
+
+
+def test_a_bin_outside_the_range_of_speeds_is_told_before_any_work():
+    fast = {**SMOOTH, "strength.duty": [{**BIN, "torque_n_m": 600, "speed_rpm": 25000}]}
+    with pytest.raises(
+        ConfigErrors, match=r"strength\.duty\[0\]\.speed_rpm = 25000.*: within dynamics\.sweep, 200 to"
+    ):
+        facegear.example().with_values(fast)

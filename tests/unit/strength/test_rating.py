@@ -12,14 +12,24 @@ from hypothesis import strategies as st
 from facegear.config.base import parse
 from facegear.config.material_card import CARDS, material_card
 from facegear.config.model import Config, resolved
-from facegear.config.strength import Strength, rating_request
+from facegear.config.strength import Strength, duty_bins
 from facegear.config.yaml_file import read_yaml
 from facegear.errors import ConfigErrors
 from facegear.geometry.analysis import section_contact_ratio
+from facegear.strength.duty import DutyBin, given_duty
+from facegear.strength.fatigue import reliability
 from facegear.strength.materials import Life
-from facegear.strength.rating import DutyBin, RatedBody, RatingRequest, hertz_stress, rate, reversal, safety
-from facegear.strength.rating_tables import damage_table, rating_table
-from facegear.strength.root_stress import RootStress
+from facegear.strength.rating import (
+    RatedBody,
+    RatingRequest,
+    hertz_stress,
+    largest_tension,
+    rate,
+    reversal,
+    safety,
+)
+from facegear.strength.rating_tables import damage_table, rating_table, safety_table
+from facegear.strength.root_stress import RootStress, down_the_fillet
 
 CARD = material_card(CARDS / "case_carburised_din3990_11.yaml")
 BODY = {"card": "case_carburised_din3990_11", "root_roughness_um": 16}
@@ -27,9 +37,16 @@ DUTY = [{"torque_n_m": 400, "speed_rpm": 1000, "hours": 100}]
 SECTION = {"pinion": BODY, "face_gear": BODY, "duty": DUTY}
 
 
-def request(*duty, both_ways=False):
-    body = RatedBody(card=CARD, root_roughness=16e-6, cycles_per_turn=1, both_ways=both_ways)
-    return RatingRequest({"pinion": body, "face_gear": body}, duty, least_bending=1.4, least_pitting=1.0)
+def request(*duty, both_ways=False, card=CARD):
+    body = RatedBody(card=card, root_roughness=16e-6)
+    turns = {"pinion": 1.0, "face_gear": 23 / 143}
+    return RatingRequest(
+        {"pinion": body, "face_gear": body},
+        tuple(given_duty(gear, duty, often, both_ways) for gear, often in turns.items()),
+        time=sum(one.time for one in duty),
+        least_bending=1.4,
+        least_pitting=1.0,
+    )
 
 
 def root(largest):
@@ -43,7 +60,7 @@ def rated(duty, **options):
     design = pair_design()
     roots = {"pinion": root(300e6), "face_gear": root(400e6)}
     found = rate(design, section_contact_ratio(design), roots, request(*duty, **options))
-    return {(one.body, one.failure, one.method): one for one in found}, found
+    return {(one.duty.body, one.failure, one.method): one for one in found}, found
 
 
 @given(stress=st.floats(1e8, 1e9), exponent=st.floats(3.5, 9.0), allowed=st.floats(2e8, 2e9))
@@ -62,26 +79,35 @@ def test_damage_adds_up_over_the_bins_and_an_empty_bin_does_none():
     apart = [rated([load])[0][key].damage.sum() for load in (one, two)]
     assert both[key].damage.sum() == pytest.approx(sum(apart))
     assert both[key].damage[2] == 0.0
-    table = damage_table(found, (one, two, DutyBin(900.0, 20.0, 0.0)))
+    table, rows = (
+        damage_table(found, (one, two, DutyBin(900.0, 20.0, 0.0)), 500.0),
+        rating_table(found, 500.0),
+    )
     total = table.groupby(["body", "failure", "method"])["damage"].sum()
     np.testing.assert_allclose(
-        [total[row.body, row.failure, row.method] for row in rating_table(found).itertuples()],
-        rating_table(found)["damage"],
+        [total[row.body, row.failure, row.method] for row in rows.itertuples()], rows["damage"]
     )
+    assert table[table["bin"] == 1]["within_torques_solved"].all()
+    assert not table[table["bin"] == 2]["within_torques_solved"].any()
+    assert table[table["bin"] == 3]["within_torques_solved"].all()  # no cycles, so nothing is extrapolated
+    assert not rows["within_torques_solved"].any()
 
 
 def test_teeth_bent_both_ways_are_allowed_less():
     load = [DutyBin(500.0, 20.0, 3600.0)]
     key = ("pinion", "bending", "finite elements")
     one_way, both_ways = (rated(load, both_ways=flag)[0][key].allowed for flag in (False, True))
-    assert reversal(root(300e6)) == -1.0
+    flank = given_duty("pinion", load, 1.0, True)
+    assert reversal(root(300e6), flank) == -1.0
+    assert reversal(root(300e6), replace(flank, opposite=np.array([250.0]))) == -0.5
+    assert reversal(root(300e6), given_duty("pinion", load, 1.0, False)) == 0.0
     mean = 0.8 - 0.15 * 2.0  # M of the card with Y_S = 2
     assert both_ways / one_way == pytest.approx(1.0 / (1.0 + (1.0 - mean) / (1.0 + mean)))
 
 
 def test_gear_turns_slower_than_the_pinion_and_its_teeth_see_fewer_cycles():
     found, _ = rated([DutyBin(500.0, 20.0, 3600.0)])
-    cycles = {key[0]: float(one.cycles.sum()) for key, one in found.items()}
+    cycles = {key[0]: float(one.duty.cycles.sum()) for key, one in found.items()}
     assert cycles == pytest.approx({"pinion": 72000.0, "face_gear": 72000.0 * 23 / 143})
 
 
@@ -127,8 +153,42 @@ def test_a_duty_cycle_from_a_csv_is_that_of_the_config(tmp_path):
     path = tmp_path / "duty.csv"
     path.write_text("torque_n_m,speed_rpm,hours\n400,1000,100\n")
     from_csv = parse(Strength, {"pinion": BODY, "face_gear": BODY, "duty_csv": str(path)})
-    assert rating_request(from_csv) == rating_request(parse(Strength, SECTION))
+    assert duty_bins(from_csv) == duty_bins(parse(Strength, SECTION))
     assert parse(Strength, from_csv.model_dump(mode="json")) == from_csv
+
+
+@given(total=st.floats(1e-2, 3.0), shape=st.floats(0.5, 4.0))
+def test_reliability_is_99_percent_at_the_rated_life_and_falls_with_damage(total, shape):
+    assert reliability(1.0, shape) == pytest.approx(0.99)
+    assert reliability(1.1 * total, shape) < reliability(total, shape) <= 1.0
+    assert np.isnan(reliability(total, None)) and np.isnan(reliability(0.0, shape))
+
+
+def test_reliability_stands_in_the_tables_where_the_card_gives_the_spread_of_lives():
+    hard = DutyBin(900.0, 20.0, 3.6e6)
+    card = replace(CARD, bending=replace(CARD.bending, weibull_shape=1.5))
+    design = pair_design()
+    roots = {"pinion": root(300e6), "face_gear": root(600e6)}
+    found = rate(design, section_contact_ratio(design), roots, request(hard, card=card))
+    table = rating_table(found, 1000.0)
+    bending = table[(table["failure"] == "bending") & (table["damage"] > 0.0)]
+    np.testing.assert_allclose(bending["reliability"], 0.99 ** (bending["damage"] ** 1.5))
+    assert len(bending) and table[table["failure"] == "pitting"]["reliability"].isna().all()
+    safety_rows = safety_table(found, 1000.0).set_index("body")
+    gear = bending[bending["body"] == "face_gear"].iloc[0]
+    assert safety_rows.loc["face_gear", "reliability"] == pytest.approx(gear["reliability"])
+    assert safety_rows.loc["face_gear", "life_hours"] == pytest.approx(1000.0 / gear["damage"])
+    assert safety_rows.loc["face_gear", "bending_safety"] == pytest.approx(gear["safety"])
+
+
+@given(torque=st.floats(10.0, 2000.0))
+def test_the_largest_tension_between_torques_is_that_of_every_place_of_the_fillet(torque):
+    stress = np.random.default_rng(3).normal(size=(3, 4, 2, 5, 3))
+    full = RootStress(
+        np.array([100.0, 400.0, 1000.0]), np.arange(4.0), stress, np.arange(3.0), np.ones((2, 5, 3))
+    )
+    expected = down_the_fillet(full.at_torque(torque)).max()
+    assert largest_tension(full)(torque) == pytest.approx(expected, rel=1e-12)
 
 
 def test_a_rating_brings_root_stress_and_counts_the_meshes_of_a_turn():

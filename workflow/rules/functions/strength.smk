@@ -1,5 +1,5 @@
-def machine_loads(wildcards):
-    """Table of the machine's loads in the bins of a duty cycle, where the rating takes them from there."""
-    if not loads_from_machine(CASES[wildcards.case]):
-        return []
-    return [shared("duty_loads", "duty_loads")(wildcards)]
+def machine_loads(table):
+    """Function of the wildcards giving a table of the machine's loads, where the rating takes them from there."""
+    return lambda wildcards: (
+        [shared("duty_loads", table)(wildcards)] if loads_from_machine(CASES[wildcards.case]) else []
+    )

@@ -53,7 +53,8 @@ def report_tables(wildcards):
     if CASES[wildcards.case]["tolerances"]:
         tables += [rules.tolerances.output[name] for name in ("percentiles", "shares")]
     if CASES[wildcards.case]["strength"]:
-        tables += [rules.rating.output.rating, *machine_loads(wildcards)]
+        tables += [rules.rating.output.safety, rules.rating.output.rating]
+        tables += machine_loads("duty_loads")(wildcards)
     if rules.dynamic_root_stress in stages(wildcards.case):
         tables += [rules.dynamic_root_stress.output.dynamic_stress]
     tables += [rules.scorecard.output.csv] if REPRODUCTION else []

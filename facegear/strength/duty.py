@@ -1,0 +1,83 @@
+"""How often, and by how much, each flank of every gear is loaded in the bins of a duty cycle."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class DutyBin:
+    """Torque (N m) on the pinion in one mesh, speed of the pinion (turns a second) and time (s)."""
+
+    torque: float
+    speed: float
+    time: float
+
+
+@dataclass(frozen=True, eq=False)
+class FlankDuty:
+    """Loads of one flank of the teeth of one gear.
+
+    gear: `pinion` or `face_gear`, as which the body's teeth are rated. flank: `drive` (the pinion drives),
+    `back`, or `each` where both are loaded alike. bins (n,): bin of each load, from 0; torque (n,) N m on the
+    pinion with all load factors; cycles (n,). opposite (bins,): largest torque of the other flank in each
+    bin, 0 where it carries none.
+    """
+
+    body: str
+    gear: str
+    flank: str
+    bins: NDArray[np.int64]
+    torque: Array
+    cycles: Array
+    opposite: Array
+
+
+def given_duty(gear: str, duty: Sequence[DutyBin], turns: float, both_ways: bool) -> FlankDuty:
+    """Every load of the duty cycle on the teeth of one gear, `turns` times a turn of the pinion."""
+    torque = np.array([one.torque for one in duty])
+    return FlankDuty(
+        body=gear,
+        gear=gear,
+        flank="each" if both_ways else "drive",
+        bins=np.arange(len(duty)),
+        torque=torque,
+        cycles=np.array([turns * one.speed * one.time for one in duty]),
+        opposite=torque if both_ways else np.zeros_like(torque),
+    )
+
+
+def machine_duty(
+    spectrum: pd.DataFrame, duty: Sequence[DutyBin], ratio: float, arm: float
+) -> tuple[FlankDuty, ...]:
+    """The flanks that carry load in a machine, each with the loads of its own meshes.
+
+    spectrum: columns as DUTY_SPECTRUM_COLUMNS; ratio: turns of a face gear for one of a pinion; arm: torque
+    (N m) on the pinion of a mesh force of 1 N, with the application factor. A tooth meets every mesh of its
+    body once a turn.
+    """
+    turns = {"pinion": 1.0, "face_gear": ratio}
+    passes = np.array([one.speed * one.time for one in duty])
+    most = spectrum.groupby(["body", "flank", "bin"])["force_n"].max()
+    found = []
+    for (body, gear, flank), rows in spectrum.groupby(["body", "gear", "flank"], sort=False):
+        other = "back" if flank == "drive" else "drive"
+        bins = rows["bin"].to_numpy() - 1
+        opposite = [most.get((body, other, number + 1), 0.0) for number in range(len(duty))]
+        found.append(
+            FlankDuty(
+                body=str(body),
+                gear=str(gear),
+                flank=str(flank),
+                bins=bins,
+                torque=arm * rows["force_n"].to_numpy(),
+                cycles=turns[str(gear)] * passes[bins] * rows["share"].to_numpy(),
+                opposite=arm * np.array(opposite),
+            )
+        )
+    return tuple(sorted(found, key=lambda one: one.gear != "pinion"))
