@@ -54,6 +54,7 @@ LIMITS = {
     "profile_shift_modules": 0.0,
     "gear_addendum_modules": 1.0,
     "shaper_addendum_modules": 1.25,
+    "shaper_tip_rounding_modules": 0.0,
 }
 """Arguments of `limits` and their defaults, if any. A shaper of 0 teeth has three more than the pinion."""
 

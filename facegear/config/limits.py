@@ -5,6 +5,7 @@ from math import radians
 from facegear.errors import ConfigError
 from facegear.geometry.design import FaceGear, PairDesign, Pinion, Shaper
 from facegear.geometry.limits import face_range, radius_limits
+from facegear.geometry.validate import check_shaper
 
 
 def told_limits(
@@ -18,6 +19,7 @@ def told_limits(
     profile_shift_modules: float,
     gear_addendum_modules: float,
     shaper_addendum_modules: float,
+    shaper_tip_rounding_modules: float,
 ) -> str:
     """One line with both radii (mm) and what limits them; a shaper of 0 teeth has three more than the pinion.
 
@@ -30,14 +32,13 @@ def told_limits(
     if not 10.0 <= pressure_angle_deg <= 40.0:
         raise ConfigError("pressure_angle_deg", pressure_angle_deg, "from 10 to 40")
     shaper = shaper_teeth or pinion_teeth + 3
-    if not pinion_teeth <= shaper <= pinion_teeth + 3:
-        raise ConfigError("shaper_teeth", shaper, f"from {pinion_teeth} (line contact) to {pinion_teeth + 3}")
     for name, value, low, high in (
         ("pinion_addendum_modules", pinion_addendum_modules, 0.1, 2.0),
         ("pinion_dedendum_modules", pinion_dedendum_modules, 0.1, 2.5),
         ("profile_shift_modules", profile_shift_modules, -1.0, 1.0),
         ("gear_addendum_modules", gear_addendum_modules, 0.1, 2.0),
         ("shaper_addendum_modules", shaper_addendum_modules, 0.1, 2.5),
+        ("shaper_tip_rounding_modules", shaper_tip_rounding_modules, 0.0, 0.6),
     ):
         if not low <= value <= high:
             raise ConfigError(name, value, f"from {low:g} to {high:g}")
@@ -58,7 +59,8 @@ def told_limits(
         addendum=m * gear_addendum_modules,
         rim_thickness=m,
     )
-    tool = Shaper(shaper, m * shaper_addendum_modules)
+    tool = Shaper(shaper, m * shaper_addendum_modules, m * shaper_tip_rounding_modules)
     design = PairDesign(m, radians(pressure_angle_deg), pinion, gear, tool)
+    check_shaper(design)
     allowed = face_range(design, radius_limits(design))
     return f"face_gear radii in mm, with a shaper of {shaper} teeth: {allowed}"

@@ -74,6 +74,9 @@ class ShaperSection(Section):
 
     teeth: int = Field(ge=5, le=500, description="from the pinion's number (line contact) to three more")
     addendum_modules: float = Field(default=1.25, gt=0, le=2.5)
+    tip_rounding_modules: float = Field(
+        default=0.0, ge=0, le=0.6, description="radius between flank and tip land; 0: a sharp edge"
+    )
 
 
 class AssemblySection(Section):
@@ -148,7 +151,7 @@ def pair_design(section: ToothPair) -> PairDesign:
             addendum=m * gear.addendum_modules,
             rim_thickness=1e-3 * gear.rim_thickness_mm,
         ),
-        shaper=Shaper(shaper.teeth, m * shaper.addendum_modules),
+        shaper=Shaper(shaper.teeth, m * shaper.addendum_modules, m * shaper.tip_rounding_modules),
         assembly=Assembly(
             offset=1e-6 * section.assembly.offset_um,
             shaft_angle_error=section.assembly.shaft_angle_error_deg * pi / 180,

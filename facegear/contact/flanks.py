@@ -153,9 +153,9 @@ class GearSurface:
 
     @cached_property
     def _fillet_nodes(self) -> NDArray[np.float64]:
-        """chi over its value at the flank's end, at the fillet rows' nodes (the same on all planes)."""
-        end = face_gear.fillet_end(self.design, self.side.v[-1])[0]
-        return np.concatenate([[1.0], self.side.u[self.side.flank_rows :, 0] / end])
+        """Shares of the fillet at its rows' nodes (the same on all planes), 0 at the flank."""
+        first = self.side.v[-1, 0], self.side.u[self.side.flank_rows :, 0]
+        return np.concatenate([[0.0], face_gear.fillet_share(self.design, *first)])
 
     def coordinates(
         self, hits: GearHits, fillet: bool, edge: float | NDArray[np.float64]
@@ -168,8 +168,8 @@ class GearSurface:
         face, rows, known = self.design.face_gear, self.side.flank_rows, self._fillet_nodes
         row = hits.flank * (rows - 1)
         if fillet and known.size > 1:
-            on = hits.fillet >= known[-1]
-            row = np.where(on, rows - 1 + np.interp(-hits.fillet, -known, np.arange(known.size)), row)
+            on = hits.fillet <= known[-1]
+            row = np.where(on, rows - 1 + np.interp(hits.fillet, known, np.arange(known.size)), row)
         if fillet:
             row = np.where(hits.beyond <= edge, 0.0, row)
         along = (hits.radius - face.inner_radius) / (face.outer_radius - face.inner_radius)

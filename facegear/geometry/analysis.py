@@ -83,11 +83,15 @@ def _refined_gaps(design: PairDesign, drive: UnloadedContact) -> dict[tuple[str,
 def section_contact_ratio(design: PairDesign) -> float:
     """Unloaded contact ratio of the nominal assembly in the section of the pitch point path.
 
-    From the gear's tip (or where the pinion's involute begins) to the pinion's tip, over the base pitch; the
-    section at m N2 / 2 where the local pressure angle is the nominal one.
+    From the gear's tip (or where the pinion's involute begins) to the pinion's tip (or where the gear's flank
+    ends), over the base pitch; the section at m N2 / 2 where the local pressure angle is the nominal one.
     """
     angle, base = design.pressure_angle, design.pinion_base_radius
-    end = base * (design.pinion_tip_roll - tan(angle))
+    tip = min(
+        base * design.pinion_tip_roll,
+        design.shaper_base_radius * design.shaper_tip_roll - design.shaper_lift * sin(angle),
+    )
+    end = tip - base * tan(angle)
     rolling = design.gear_tip_plane + design.pinion_pitch_radius
     start = min(rolling / sin(angle), base * (tan(angle) - pinion.junction_roll(design)))
     return (start + end) / (2 * pi * base / design.pinion.teeth)

@@ -79,8 +79,8 @@ def gear_points(design: PairDesign) -> dict[str, Array]:
     radius = np.linspace(face.inner_radius, face.outer_radius, 27)[None, :]
     top, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
     roll = top + np.linspace(0, 1, 12)[1:, None] * (design.shaper_tip_roll - top)
-    chi = face_gear.fillet_end(design, radius) * np.linspace(1, 0, 12)[:, None]
-    beta, z = face_gear.fillet_section(design, radius, chi)
+    slopes = face_gear.fillet_slopes(design, radius, np.linspace(0, 1, 12)[:, None])
+    beta, z = face_gear.fillet_section(design, radius, slopes)
     half_pitch = pi / face.teeth
     land = np.linspace(half_pitch - face_gear.root_half_angle(design), half_pitch, 4)[:, None]
     points = {

@@ -20,26 +20,33 @@ def flank_frame(base, ratio, space, lift, roll, psi):  # type: ignore[no-untyped
     return x, y, z, x_roll, y_roll, z_roll, x_psi, y_psi, p
 
 
-def flank_normal(ratio, space, roll, psi):  # type: ignore[no-untyped-def]
-    """Outward unit normal x, y, z of the flank."""
-    turn = ratio * (psi - roll - space)
+def normal(turn, psi):  # type: ignore[no-untyped-def]
+    """Outward unit normal x, y, z of slope psi where the gear has turned by `turn` since it was generated."""
     return np.cos(psi) * np.cos(turn), np.cos(psi) * np.sin(turn), np.sin(psi)
 
 
-def fillet_frame(tip_radius, ratio, lift, edge_start, chi, radius):  # type: ignore[no-untyped-def]
-    """Point x, y, z of the fillet, and its derivatives with respect to chi and to the gear radius.
+def fillet_frame(centre, rounding, ratio, lift, edge_start, psi, q):  # type: ignore[no-untyped-def]
+    """Point x, y, z of the fillet, and its derivatives with respect to psi and to q.
 
-    The gear radius must exceed tip_radius sin chi.
+    centre: distance (m) of the centre of the shaper's tip rounding from its axis; edge_start: where that
+    centre stands from the vertical at phi_s = 0; q: where it generates the point, along the pinion's axis.
+    nan where no normal of slope psi through the centre meets the instant axis at q.
     """
-    edge = tip_radius * np.sin(chi)
-    along = np.sqrt(radius * radius - edge * edge)
-    beta = np.arctan2(edge, along) - ratio * (chi - edge_start)
-    c, s = np.cos(beta), np.sin(beta)
-    by_chi = radius * (tip_radius * np.cos(chi) / along - ratio)
-    by_radius = -edge / along
-    z = lift - tip_radius * np.cos(chi)
-    x_chi, y_chi, x_radius, y_radius = c * by_chi, -s * by_chi, s + c * by_radius, c - s * by_radius
-    return radius * s, radius * c, z, x_chi, y_chi, edge, x_radius, y_radius, 0.0 * edge
+    cp, sp = np.cos(psi), np.sin(psi)
+    k = ratio * q / centre
+    w = np.sqrt(1 - k * k * cp * cp)
+    both, rest = w + k * sp, 1 - k * k
+    s_chi, c_chi = -cp * rest / both, k * cp * cp + sp * w
+    chi_psi, chi_q = rest / (both * w), ratio * cp / (centre * w)
+    turn = ratio * (np.arctan2(s_chi, c_chi) - edge_start)
+    ct, st = np.cos(turn), np.sin(turn)
+    p, z = centre * s_chi - rounding * cp, lift - centre * c_chi - rounding * sp
+    p_psi, z_psi = centre * c_chi * chi_psi + rounding * sp, centre * s_chi * chi_psi - rounding * cp
+    p_q, z_q = centre * c_chi * chi_q, centre * s_chi * chi_q
+    x, y = p * ct - q * st, p * st + q * ct
+    x_psi, y_psi = p_psi * ct - ratio * chi_psi * y, p_psi * st + ratio * chi_psi * x
+    x_q, y_q = p_q * ct - st - ratio * chi_q * y, p_q * st + ct + ratio * chi_q * x
+    return x, y, z, x_psi, y_psi, z_psi, x_q, y_q, z_q
 
 
 def radius_at_roll(base, ratio, radius, roll, psi):  # type: ignore[no-untyped-def]

@@ -74,10 +74,14 @@ class FaceGear:
 
 @dataclass(frozen=True)
 class Shaper:
-    """The tool that generates the face gear; it carries the pinion's profile shift (lengths in m)."""
+    """The tool that generates the face gear; it carries the pinion's profile shift (lengths in m).
+
+    tip_rounding: radius between its flank and its tip land, 0 for a sharp edge.
+    """
 
     teeth: int
     addendum: float
+    tip_rounding: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -147,9 +151,19 @@ class PairDesign:
         return self.shaper_pitch_radius + self.shaper.addendum + self.pinion.profile_shift
 
     @cached_property
+    def shaper_rounding_centre(self) -> float:
+        """Distance (m) of the centre of the shaper's tip rounding from its axis; a sharp edge's own."""
+        return self.shaper_tip_radius - self.shaper.tip_rounding
+
+    @cached_property
+    def shaper_rounding_roll(self) -> float:
+        """Tangent of the pressure angle at that centre: its roll angle (rad) on an involute of its own."""
+        return sqrt(max((self.shaper_rounding_centre / self.shaper_base_radius) ** 2 - 1, 0.0))
+
+    @cached_property
     def shaper_tip_roll(self) -> float:
-        """Roll angle th* (rad) of the shaper's involute at its tip circle."""
-        return sqrt((self.shaper_tip_radius / self.shaper_base_radius) ** 2 - 1)
+        """Roll angle th* (rad) where the shaper's involute ends: at its tip circle or at the rounding."""
+        return self.shaper_rounding_roll + self.shaper.tip_rounding / self.shaper_base_radius
 
     @cached_property
     def shaper_half_space_angle(self) -> float:

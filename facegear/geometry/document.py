@@ -87,12 +87,12 @@ def flank_arrays(design: PairDesign, profile: int = 33, width: int = 41) -> dict
     radius = np.linspace(design.face_gear.inner_radius, design.face_gear.outer_radius, width)[None, :]
     top, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
     gear_roll = top + np.linspace(0, 1, profile)[:, None] * (design.shaper_tip_roll - top)
-    chi = face_gear.fillet_end(design, radius) * np.linspace(1, 0, profile)[:, None]
+    slopes = face_gear.fillet_slopes(design, radius, np.linspace(0, 1, profile)[:, None])
     return {
         "pinion_flank": pinion.cartesian(*pinion.involute_point(design, roll), y),
         "pinion_fillet": pinion.cartesian(*pinion.trochoid_point(design, gamma), y),
         "gear_flank": face_gear.flank_point(design, gear_roll, face_gear.psi_at(design, radius, gear_roll)),
-        "gear_fillet": face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, chi)),
+        "gear_fillet": face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, slopes)),
         "pinion_section": pinion_outline(design, 200).points,
     }
 

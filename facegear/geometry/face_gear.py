@@ -1,9 +1,11 @@
-"""The face gear's flank and fillet in closed form: envelope of the shaper, and locus of its tip edge.
+"""The face gear's flank and fillet in closed form: envelopes of the shaper's involute and of its tip.
 
 Everything is for the right flank of tooth 0 in the gear body frame (see `design`); the left flank its mirror
 image x -> -x. th is the roll angle of the shaper's involute, psi = phi_s + th + th_os the slope of the common
 normal. Source: shaper-generated face gears (Litvin and Fuentes, Gear Geometry and Applied Theory, ch. 18),
-with the contact condition solved for the axial coordinate: q = r_b / (m2s cos psi).
+with the contact condition solved for the axial coordinate: q = r_b / (m2s cos psi). A tip rounded about a
+centre at R_c, which stands chi from the vertical, generates with the same slope psi where
+q = R_c cos(chi - psi) / (m2s cos psi); a sharp tip edge is the rounding of radius zero.
 """
 
 from collections.abc import Callable
@@ -40,7 +42,8 @@ def flank_point(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
 def flank_normal(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
     """Outward unit normals (..., 3)."""
     _, ratio, space, _ = shaper_numbers(design)
-    return _stacked(*closed_forms.flank_normal(ratio, space, *_together(roll, psi)))
+    roll, psi = _together(roll, psi)
+    return _stacked(*closed_forms.normal(ratio * (psi - roll - space), psi))
 
 
 def flank_tangents(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, Array]:
@@ -128,41 +131,60 @@ def _newton(residual: Callable[[Array], tuple[Array, Array]], psi: Array, size: 
 
 
 def edge_start(design: PairDesign) -> float:
-    """chi_0 (rad): where the shaper's tip edge stands from the vertical at phi_s = 0."""
-    return design.shaper_half_space_angle + design.shaper_tip_roll - np.arctan(design.shaper_tip_roll)
+    """chi_0 (rad): where the centre of the shaper's tip rounding stands from the vertical at phi_s = 0."""
+    roll = design.shaper_rounding_roll
+    return float(design.shaper_half_space_angle + design.shaper_tip_roll - np.arctan(roll))
 
 
-def fillet_section(design: PairDesign, radius: ArrayLike, chi: ArrayLike) -> tuple[Array, Array]:
-    """Gear angle (rad) and z (m) of the fillet at a gear radius (m) and the edge's angle chi (rad).
+def fillet_section(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> tuple[Array, Array]:
+    """Gear angle (rad) and z (m) of the fillet at a gear radius (m) and slope psi (rad) of its normal.
 
-    chi is taken from the vertical, from `fillet_end` to 0, where the fillet touches the root plane.
+    psi runs from `fillet_start` to pi/2, where the fillet touches the root plane.
     """
-    x, y, z = _fillet_frame(design, chi, radius)[:3]
+    x, y, z = closed_forms.fillet_frame(*tip_numbers(design), psi, fillet_q(design, radius, psi))[:3]
     return np.arctan2(x, y), z
 
 
-def fillet_end(design: PairDesign, radius: ArrayLike) -> Array:
-    """chi (rad) where fillet and flank meet at a gear radius (m)."""
-    return psi_at(design, radius, design.shaper_tip_roll) - np.arctan(design.shaper_tip_roll)
+def fillet_q(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Array:
+    """Where (m) along its axis the shaper generates the fillet's point at a gear radius (m) and slope psi."""
+    radius, psi = _together(radius, psi)
+
+    def residual(q: Array) -> tuple[Array, Array]:
+        x, y, _, _, _, _, x_q, y_q, _ = closed_forms.fillet_frame(*tip_numbers(design), psi, q)
+        return x * x + y * y - radius * radius, 2 * (x * x_q + y * y_q)
+
+    return _newton(residual, radius, radius**2, "fillet at a gear radius")
 
 
-def fillet_frame(design: PairDesign, chi: ArrayLike, radius: ArrayLike) -> tuple[Array, Array, Array]:
-    """Point (..., 3) of the fillet and its exact derivatives with respect to chi and gear radius."""
-    frame = _fillet_frame(design, chi, radius)
-    return _stacked(*frame[:3]), _stacked(*frame[3:6]), _stacked(*frame[6:])
+def tip_numbers(design: PairDesign) -> tuple[float, float, float, float, float]:
+    """What `closed_forms.fillet_frame` takes of the shaper: centre, rounding, m2s, lift and chi_0."""
+    centre, rounding = design.shaper_rounding_centre, design.shaper.tip_rounding
+    return centre, rounding, design.shaper_ratio, design.shaper_lift, edge_start(design)
 
 
-def _fillet_frame(design: PairDesign, chi: ArrayLike, radius: ArrayLike) -> tuple[Array, ...]:
-    numbers = design.shaper_tip_radius, design.shaper_ratio, design.shaper_lift, edge_start(design)
-    return closed_forms.fillet_frame(*numbers, *_together(chi, radius))
+def fillet_start(design: PairDesign, radius: ArrayLike) -> Array:
+    """psi (rad) where flank and fillet meet at a gear radius (m)."""
+    return psi_at(design, radius, design.shaper_tip_roll)
 
 
-def fillet_normal(design: PairDesign, radius: ArrayLike, chi: ArrayLike) -> Array:
+def fillet_slopes(design: PairDesign, radius: ArrayLike, share: ArrayLike) -> Array:
+    """psi (rad) at a share of the fillet's turn at a gear radius (m): 0 at the flank, 1 at the root."""
+    start = fillet_start(design, radius)
+    return start + np.asarray(share, float) * (np.pi / 2 - start)
+
+
+def fillet_share(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Array:
+    """The inverse of `fillet_slopes`."""
+    start = fillet_start(design, radius)
+    return (np.asarray(psi, float) - start) / (np.pi / 2 - start)
+
+
+def fillet_normal(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Array:
     """Outward unit normal (..., 3) of the fillet."""
-    _, along_chi, along_radius = fillet_frame(design, chi, radius)
-    normal = np.cross(along_chi, along_radius)
-    normal *= np.sign(normal[..., 2:3])
-    return normal / np.linalg.norm(normal, axis=-1, keepdims=True)
+    centre, _, ratio, _, start = tip_numbers(design)
+    psi = np.asarray(psi, float)
+    chi = psi - np.arccos(ratio * fillet_q(design, radius, psi) * np.cos(psi) / centre)
+    return _stacked(*closed_forms.normal(ratio * (chi - start), psi))
 
 
 def root_half_angle(design: PairDesign) -> float:

@@ -4,22 +4,24 @@ import numpy as np
 
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign
+from facegear.geometry.limits import sharpest_fillet_radius
 
 SAMPLES = 401
 """Points of a section, evenly in its parameter."""
 
 
 def smallest_radius(design: PairDesign, body: str) -> float:
-    """Smallest radius of curvature (m) of a fillet's sections: the pinion's, or the gear's at both ends."""
+    """Smallest radius of curvature (m) of a fillet's sections: the pinion's, or the gear's over its face."""
     if body == "pinion":
         gamma = np.linspace(design.pressure_angle, np.pi / 2, SAMPLES)
         radius, angle = pinion.trochoid_point(design, gamma)
         return _sharpest(radius * np.sin(angle), radius * np.cos(angle))
+    ends = design.face_gear.inner_radius, design.face_gear.outer_radius
     found = []
-    for end in (design.face_gear.inner_radius, design.face_gear.outer_radius):
-        chi = float(face_gear.fillet_end(design, end)) * np.linspace(1.0, 0.0, SAMPLES)
-        angle, z = face_gear.fillet_section(design, end, chi)
-        found.append(_sharpest(end * angle, z))
+    for place in (*ends, float(np.clip(sharpest_fillet_radius(design), *ends))):
+        slopes = face_gear.fillet_slopes(design, place, np.linspace(0.0, 1.0, SAMPLES))
+        angle, z = face_gear.fillet_section(design, place, slopes)
+        found.append(_sharpest(place * angle, z))
     return min(found)
 
 

@@ -42,7 +42,8 @@ class RadiusLimits:
 def radius_limits(design: PairDesign) -> RadiusLimits:
     """Limits of the face width for any shaper, addendum and pressure angle.
 
-    Undercut: the singular line th = (tan psi / 2)(1 + sqrt(1 + 4 / (m2s cos psi)^2)) meets the shaper's tip.
+    Undercut: the singular line th = (tan psi / 2)(1 + sqrt(1 + 4 / (m2s cos psi)^2)) meets the end of the
+    shaper's involute.
     Pointing: the two flanks meet on the tip plane. Raises GeometryError if they do so at every radius.
     """
     return RadiusLimits(undercut_radius(design), *_pointing_radii(design))
@@ -57,11 +58,14 @@ def face_range(design: PairDesign, limits: RadiusLimits) -> FaceRange:
     inner, inner_reason = max((limits.inner, "undercut"), (tip_undercut * (1 + 1e-9), "tip undercut"))
     if limits.outer <= inner:
         raise _no_face(design, "the teeth are pointed where they are no longer undercut")
-    rolls_off = design.shaper_tip_radius / design.shaper_ratio
     candidates = [
         (_last(_land_left, design, inner, limits.outer), f"tips pointed at {1e3 * limits.outer:.3f}"),
-        (_last(_fillet_left, design, inner, rolls_off), "the shaper's tip leaves no fillet further out"),
     ]
+    sharpest = sharpest_fillet_radius(design)
+    if _fillet_left(design, sharpest) < 0:
+        last = _last(_fillet_left, design, inner, sharpest)
+        reason = "the shaper's tip leaves no fillet further out; a larger shaper.tip_rounding_modules does"
+        candidates.append((last, reason))
     outer, outer_reason = min(candidates)
     if outer - inner < 0.5 * design.module:
         raise _no_face(design, "less than half a module lies between undercut and the outer limit")
@@ -89,10 +93,19 @@ def _land_left(design: PairDesign, radius: float) -> float:
     return 2 * float(face_gear.flank_point(design, roll, psi)[..., 0]) - THINNEST_LAND * design.module
 
 
+def sharpest_fillet_radius(design: PairDesign) -> float:
+    """Gear radius (m) at which the centre of the shaper's tip rounding rolls on the gear's pitch surface.
+
+    The tip turns about that centre and leaves nothing but its own rounding; a sharp one leaves a corner.
+    """
+    return design.shaper_rounding_centre / design.shaper_ratio
+
+
 def _fillet_left(design: PairDesign, radius: float) -> float:
-    """Length (m) of the fillet's arc beyond the shortest."""
-    arc = -float(face_gear.fillet_end(design, radius)) * design.shaper_tip_radius
-    return arc - THINNEST_LAND * design.module
+    """Length (m) of the fillet beyond the shortest: the way of the rounding's centre, and its arc."""
+    psi = float(face_gear.fillet_start(design, radius))
+    way = abs(psi - atan(design.shaper_rounding_roll)) * design.shaper_rounding_centre
+    return way + (pi / 2 - psi) * design.shaper.tip_rounding - THINNEST_LAND * design.module
 
 
 def undercut_radius(design: PairDesign) -> float:

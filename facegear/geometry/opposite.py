@@ -21,8 +21,8 @@ class GearHits:
     """Where the normals of n pinion points meet a gear tooth at p placements, all (p, n), nan where not.
 
     gap (m); radius: gear radius (m). One of three says how far from the flank's tip edge: on the flank
-    `flank`, 0..1 of its roll angles there, on the fillet `fillet`, 1..0, chi over its value at the flank's
-    end, on the tip land `beyond` (m) the edge, around the gear.
+    `flank`, 0..1 of its roll angles there, on the fillet `fillet`, 0..1 of its normal's turn from flank to
+    root, on the tip land `beyond` (m) the edge, around the gear.
     """
 
     gap: Array
@@ -87,7 +87,7 @@ def located(design: PairDesign, seen: Separation) -> GearHits:
     flank[on] = (seen.u[on] - tip) / (design.shaper_tip_roll - tip)
     on = seen.part == FILLET
     radius[on] = seen.v[on]
-    fillet[on] = seen.u[on] / face_gear.fillet_end(design, seen.v[on])
+    fillet[on] = face_gear.fillet_share(design, seen.v[on], seen.u[on])
     on = seen.part == TIP_LAND
     radius[on] = seen.v[on]
     edge = face_gear.tip_edge(design, seen.v[on])

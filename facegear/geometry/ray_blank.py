@@ -23,7 +23,8 @@ class Blank(NamedTuple):
     ratio: float
     space: float
     lift: float
-    tip_radius: float
+    tip_centre: float
+    tip_rounding: float
     tip_roll: float
     edge_start: float
     inner: float
@@ -36,22 +37,27 @@ class Blank(NamedTuple):
     """Largest distance from the tooth's middle plane, abs(x) in m, of points looked at."""
     fillet_top: float
     """Height (m) that no point of the fillet exceeds."""
+    fillet_start: float
+    """Slope psi (rad) that no normal of the fillet falls below."""
 
 
 def blank(design: PairDesign) -> Blank:
     """Numbers of a design's face gear."""
     gear, pitch = design.face_gear, 2 * pi / design.face_gear.teeth
-    ends = face_gear.fillet_end(design, np.linspace(gear.inner_radius, gear.outer_radius, 65))
-    tops = design.shaper_lift - design.shaper_tip_radius * np.cos(ends)
+    radius = np.linspace(gear.inner_radius, gear.outer_radius, 65)
+    starts = face_gear.fillet_start(design, radius)
+    tops = face_gear.flank_point(design, design.shaper_tip_roll, starts)[:, 2]
     base, ratio, space, lift = face_gear.shaper_numbers(design)
+    centre, rounding, _, _, edge_start = face_gear.tip_numbers(design)
     return Blank(
         base=base,
         ratio=ratio,
         space=space,
         lift=lift,
-        tip_radius=design.shaper_tip_radius,
+        tip_centre=centre,
+        tip_rounding=rounding,
         tip_roll=design.shaper_tip_roll,
-        edge_start=float(face_gear.edge_start(design)),
+        edge_start=edge_start,
         inner=gear.inner_radius,
         outer=gear.outer_radius,
         tip_plane=design.gear_tip_plane,
@@ -60,6 +66,7 @@ def blank(design: PairDesign) -> Blank:
         pitch=pitch,
         aside=3 * design.module,
         fillet_top=float(tops.max()) + 0.01 * design.module,
+        fillet_start=float(starts.min()),
     )
 
 

@@ -5,7 +5,7 @@ all lengths in m, for the right side of tooth 0 in the gear's body frame. `blank
 point and n a unit direction.
 """
 
-from math import atan, atan2, hypot, inf, isfinite, isnan, nan, sin, sqrt
+from math import atan2, hypot, inf, isfinite, isnan, nan, pi, sqrt
 
 from facegear.geometry import closed_forms
 from facegear.machine_code import for_callers
@@ -13,11 +13,12 @@ from facegear.machine_code import for_callers
 NEWTON_STEPS = 40
 LARGEST_STEP = 0.2
 PSI_STEPS = 60
+BISECTIONS = 6
 
 inlined = for_callers()
 
 flank_frame = inlined(closed_forms.flank_frame)
-flank_normal = inlined(closed_forms.flank_normal)
+surface_normal = inlined(closed_forms.normal)
 fillet_frame = inlined(closed_forms.fillet_frame)
 radius_at_roll = inlined(closed_forms.radius_at_roll)
 radius_at_height = inlined(closed_forms.radius_at_height)
@@ -38,7 +39,7 @@ def cut_flank(blank, p, n, inside):  # type: ignore[no-untyped-def]
 @inlined
 def cut_flank_from(blank, p, n, roll, psi):  # type: ignore[no-untyped-def]
     roll, psi, distance, x, y, z, done = _newton(blank, False, p, n, roll, psi)
-    nx, ny, nz = flank_normal(blank.ratio, blank.space, roll, psi)
+    nx, ny, nz = surface_normal(blank.ratio * (psi - roll - blank.space), psi)
     facing = n[0] * nx + n[1] * ny + n[2] * nz
     straight = distance if done and facing < 0 else inf
     inside = blank.inner <= hypot(x, y) <= blank.outer and roll <= blank.tip_roll
@@ -48,16 +49,29 @@ def cut_flank_from(blank, p, n, roll, psi):  # type: ignore[no-untyped-def]
 
 @inlined
 def cut_fillet(blank, p, n, radius):  # type: ignore[no-untyped-def]
-    cosine = min(max((blank.lift - p[2]) / blank.tip_radius, 0.5), 1.0)
-    chi = -atan2(sqrt(max(1 - cosine * cosine, 0.0)), cosine)
-    chi, radius, distance, x, y, _, done = _newton(blank, True, p, n, chi, radius)
-    if not (done and chi <= 0 and blank.inner <= hypot(x, y) <= blank.outer):
-        return inf, chi, radius
-    inside = min(max(radius, blank.inner), blank.outer)
-    end = _psi_at(blank, inside, blank.tip_roll) - atan(blank.tip_roll)
-    if isnan(end):
-        return nan, chi, radius
-    return (distance if chi >= end else inf), chi, radius
+    """Distance, slope psi of the fillet's normal and gear radius where the ray meets it, inf beside it."""
+    psi = _psi_at_height(blank, radius, p[2])
+    psi, _, distance, x, y, _, done = _newton(blank, True, p, n, psi, radius)
+    radius = hypot(x, y)
+    if not (done and psi <= 0.5 * pi and blank.inner <= radius <= blank.outer):
+        return inf, psi, radius
+    start = _psi_at(blank, radius, blank.tip_roll)
+    if isnan(start):
+        return nan, psi, radius
+    return (distance if psi >= start else inf), psi, radius
+
+
+@inlined
+def _psi_at_height(blank, q, z):  # type: ignore[no-untyped-def]
+    """psi on the fillet's section near a height, by bisection to a few degrees."""
+    low, high = blank.fillet_start, 0.5 * pi
+    for _ in range(BISECTIONS):
+        psi = 0.5 * (low + high)
+        if _fillet_frame(blank, psi, q)[2] > z:
+            low = psi
+        else:
+            high = psi
+    return 0.5 * (low + high)
 
 
 @inlined
@@ -108,11 +122,11 @@ def _flank_frame(blank, roll, psi):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _fillet_frame(blank, chi, radius):  # type: ignore[no-untyped-def]
-    """Point and derivatives with respect to chi and gear radius; nan where the locus does not reach."""
-    if not radius > abs(blank.tip_radius * sin(chi)):
-        return nan, nan, nan, nan, nan, nan, nan, nan, nan
-    return fillet_frame(blank.tip_radius, blank.ratio, blank.lift, blank.edge_start, chi, radius)
+def _fillet_frame(blank, psi, q):  # type: ignore[no-untyped-def]
+    """Point and derivatives with respect to psi and q; nan where the shaper's tip generates nothing."""
+    return fillet_frame(
+        blank.tip_centre, blank.tip_rounding, blank.ratio, blank.lift, blank.edge_start, psi, q
+    )
 
 
 @inlined

@@ -43,7 +43,7 @@ class Separation:
 
     continued: distance (m) to the flank continued beyond its edges, inf if that is missed as well.
 
-    u, v: th and psi (rad) on the flank, chi (rad) and gear radius (m) on the fillet, gear angle from the
+    u, v: th and psi (rad) on the flank, psi (rad) and gear radius (m) on the fillet, gear angle from the
     tooth's centre (rad) and gear radius (m) on the lands; nan where there is no gear opposite.
     """
 

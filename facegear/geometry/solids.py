@@ -158,8 +158,8 @@ def _gear_half(design: PairDesign, profile: int, width: int) -> HalfTooth:
     top, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
     roll = top + share * (design.shaper_tip_roll - top)
     flank = face_gear.flank_point(design, roll, face_gear.psi_at(design, radius, roll))
-    chi = face_gear.fillet_end(design, radius) * (1.0 - share)
-    fillet = face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, chi))
+    slopes = face_gear.fillet_slopes(design, radius, share)
+    fillet = face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, slopes))
     fillet[0] = flank[-1]
     step = np.linspace(0.0, 1.0, few)[:, None]
     tip, last = (np.arctan2(line[:, 0], line[:, 1]) for line in (flank[0], fillet[-1]))

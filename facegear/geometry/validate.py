@@ -1,5 +1,6 @@
 """Refuses designs that cannot exist, naming the config key, its value and what is allowed."""
 
+from dataclasses import replace
 from functools import lru_cache
 from math import cos, inf, pi, sin, tan
 
@@ -9,6 +10,7 @@ from facegear.errors import GeometryError
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign, Relief
 from facegear.geometry.limits import THINNEST_LAND, RadiusLimits, face_range, radius_limits
+from facegear.geometry.roots import root
 
 MOST_RELIEF = 0.05
 """Largest relief or crowning, in modules: some three times what the heaviest load asks for."""
@@ -24,7 +26,7 @@ def check(design: PairDesign) -> RadiusLimits:
     """
     _check_pinion(design)
     _check_relief(design)
-    _check_shaper(design)
+    check_shaper(design)
     return _check_gear(design)
 
 
@@ -106,7 +108,8 @@ def _check_modification(name: str, relief: Relief, room: float, most: float) -> 
         )
 
 
-def _check_shaper(design: PairDesign) -> None:
+def check_shaper(design: PairDesign) -> None:
+    """Raises GeometryError for a tool that cannot be made, or not for this pinion."""
     teeth, least = design.shaper.teeth, design.pinion.teeth
     if not least <= teeth <= least + 3:
         _refuse("shaper.teeth", teeth, f"from {least} (line contact) to {least + 3}")
@@ -114,13 +117,25 @@ def _check_shaper(design: PairDesign) -> None:
     if design.shaper.addendum < design.pinion.addendum:
         least_addendum = f"at least {design.pinion.addendum / m:.4f}, the pinion's addendum"
         _refuse("shaper.addendum_modules", design.shaper.addendum / m, least_addendum)
-    land = 2 * face_gear.root_half_angle(design) * design.gear_pitch_radius
-    if land < THINNEST_LAND * m:
-        _refuse(
-            "shaper.addendum_modules",
-            design.shaper.addendum / m,
-            f"less: the shaper's tip land would be {1e3 * land:.3f} mm wide",
-        )
+    sharp = _land_left(design, 0.0)
+    if sharp < 0:
+        land = 1e3 * (sharp + THINNEST_LAND * m)
+        allowed = f"less: the shaper's tip land would be {land:.3f} mm wide"
+        _refuse("shaper.addendum_modules", design.shaper.addendum / m, allowed)
+    rounding = design.shaper.tip_rounding
+    deepest = design.shaper_tip_radius - design.shaper_base_radius
+    if rounding >= deepest or _land_left(design, rounding) < 0:
+        most = deepest
+        if _land_left(design, deepest) < 0:
+            most = root(lambda radius: _land_left(design, radius), 0.0, deepest, 1e-9)
+        allowed = f"at most {most / m:.4f}: the shaper's tip is round"
+        _refuse("shaper.tip_rounding_modules", rounding / m, allowed)
+
+
+def _land_left(design: PairDesign, rounding: float) -> float:
+    """Width (m) of the shaper's tip land beyond the thinnest with a tip rounded so."""
+    tool = replace(design, shaper=replace(design.shaper, tip_rounding=rounding))
+    return 2 * face_gear.root_half_angle(tool) * tool.gear_pitch_radius - THINNEST_LAND * tool.module
 
 
 def _check_gear(design: PairDesign) -> RadiusLimits:

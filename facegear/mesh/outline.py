@@ -62,13 +62,13 @@ class Outline:
         return roll, face_gear.psi_at(self.design, radius, roll)
 
     def fillet_parameters(self, fraction: Array) -> tuple[Array, Array]:
-        """Surface parameters (len(fraction), planes): pinion gamma and y, gear chi and gear radius."""
+        """Surface parameters (len(fraction), planes): pinion gamma and y, gear psi and gear radius."""
         if self.body == "pinion":
             start = self.design.pressure_angle
             gamma = start + self._even(fraction) * (pi / 2 - start)
             return _alike(gamma[:, None], self.planes[None, :])
-        chi = face_gear.fillet_end(self.design, self.planes)[None, :] * (1 - self._even(fraction)[:, None])
-        return _alike(chi, self.planes[None, :])
+        slopes = face_gear.fillet_slopes(self.design, self.planes[None, :], self._even(fraction)[:, None])
+        return _alike(slopes, self.planes[None, :])
 
     def _even(self, fraction: Array) -> Array:
         """Fractions of the fillet's parameter that are evenly spaced along it (in the middle plane)."""
@@ -79,8 +79,8 @@ class Outline:
             x, h = radius * angle, radius
         else:
             middle = self.planes[len(self.planes) // 2]
-            chi = face_gear.fillet_end(self.design, middle) * (1 - grid)
-            angle, h = face_gear.fillet_section(self.design, middle, chi)
+            slopes = face_gear.fillet_slopes(self.design, middle, grid)
+            angle, h = face_gear.fillet_section(self.design, middle, slopes)
             x = middle * angle
         length = np.concatenate([[0], np.cumsum(np.hypot(np.diff(x), np.diff(h)))])
         return np.interp(fraction, length / length[-1], grid)

@@ -21,8 +21,8 @@ class SurfaceGrid:
     """Nodes of a flank or fillet, (n_profile, n_width), tip to root and along the width, mid nodes included.
 
     u, v are the parameters of the right side's exact surface, the left being its mirror image: pinion flank:
-    roll angle (rad) and y (m); pinion fillet: gamma (rad) and y; gear flank: roll th and psi (rad); gear
-    fillet: chi (rad), gear radius (m). Every second node in each direction, from the first, is a corner.
+    roll angle (rad) and y (m); pinion fillet: gamma (rad) and y; gear flank: roll th and psi (rad);
+    gear fillet: psi (rad), gear radius (m). Every second node in each direction, from the first, is a corner.
     """
 
     nodes: Indices

@@ -4,6 +4,10 @@ PARDISO (MKL through pypardiso, matrix type 2, upper triangle) where it has a wh
 elsewhere.
 """
 
+import os
+from functools import cache
+from importlib.metadata import PackageNotFoundError, files
+
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
@@ -51,7 +55,7 @@ def solve_sparse(matrix: sp.csr_matrix, rhs: NDArray[np.float64]) -> NDArray[np.
         return splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}).solve(rhs)
     upper = sp.triu(matrix, format="csr")
     upper.sort_indices()
-    solver = PyPardisoSolver(mtype=POSITIVE_DEFINITE)
+    solver = _pardiso()
     try:
         return solver.solve(upper, rhs)
     except PyPardisoError as error:
@@ -60,10 +64,27 @@ def solve_sparse(matrix: sp.csr_matrix, rhs: NDArray[np.float64]) -> NDArray[np.
         solver.free_memory(everything=True)
 
 
+def _pardiso() -> "PyPardisoSolver":
+    """A solver, told where MKL is: left alone, each looks through the whole environment, for a second."""
+    library = _mkl()
+    if library:
+        os.environ.setdefault("PYPARDISO_MKL_RT", library)
+    return PyPardisoSolver(mtype=POSITIVE_DEFINITE)
+
+
+@cache
+def _mkl() -> str | None:
+    try:
+        found = [str(file.locate()) for file in files("mkl") or () if "mkl_rt" in file.name]
+    except PackageNotFoundError:
+        return None
+    return min((path for path in found if os.path.exists(path)), key=len, default=None)
+
+
 def _schur_pardiso(matrix: sp.csr_matrix, eliminated: int) -> NDArray[np.float64]:
     upper = sp.triu(matrix, format="csr")
     size = matrix.shape[0] - eliminated
-    solver = PyPardisoSolver(mtype=POSITIVE_DEFINITE)
+    solver = _pardiso()
     solver.set_iparm(1, 1)
     solver.set_iparm(2, 2)
     solver.set_iparm(36, 1)

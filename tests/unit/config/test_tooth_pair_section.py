@@ -48,7 +48,7 @@ def test_a_body_may_have_its_own_material(section):
             "face_gear",
             "outer_radius_mm",
             310.0,
-            "and 293.208 (the shaper's tip leaves no fillet further out)",
+            "and 293.208 (the shaper's tip leaves no fillet further out; a larger shaper.tip_rounding_",
         ),
         ("face_gear", "iner_radius_mm", 250.0, "did you mean 'inner_radius_mm'?"),
         ("pinion", "rack_tip_radius_modules", 0.5, "pinion.rack_tip_radius_modules = 0.5: at most"),

@@ -15,6 +15,7 @@ def paper_pair(
     shift: float = 0.0,
     thinning: float = 0.0,
     tip_relief: Relief | None = None,
+    tip_rounding: float = 0.0,
     **assembly: float,
 ) -> PairDesign:
     m = 3.75e-3
@@ -30,9 +31,8 @@ def paper_pair(
         tip_relief=tip_relief or Relief(),
     )
     gear = FaceGear(teeth=143, inner_radius=0.250, outer_radius=0.275, addendum=m, rim_thickness=0.012)
-    return PairDesign(
-        m, radians(25), pinion, gear, Shaper(shaper_teeth, shaper_addendum * m), Assembly(**assembly)
-    )
+    shaper = Shaper(shaper_teeth, shaper_addendum * m, tip_rounding * m)
+    return PairDesign(m, radians(25), pinion, gear, shaper, Assembly(**assembly))
 
 
 @pytest.fixture(scope="session")

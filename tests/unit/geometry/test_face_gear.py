@@ -78,28 +78,94 @@ def test_tooth_thickness_on_the_pitch_plane_at_the_pitch_radius(pair, shift):
     assert width == pytest.approx(np.pi * design.module / 2, abs=5e-3 * design.module)
 
 
-def test_flank_and_fillet_share_position_and_normal_where_they_meet(pair):
-    design = pair()
+ROUNDINGS = [0.0, 0.1, 0.19]
+
+
+@pytest.mark.parametrize("rounding", ROUNDINGS)
+def test_flank_and_fillet_share_position_and_normal_where_they_meet(pair, rounding):
+    design = pair(tip_rounding=rounding)
     radius = np.linspace(0.250, 0.275, 7)
-    psi = face_gear.psi_at(design, radius, design.shaper_tip_roll)
-    chi = face_gear.fillet_end(design, radius)
+    psi = face_gear.fillet_start(design, radius)
     on_flank = face_gear.flank_point(design, design.shaper_tip_roll, psi)
-    on_fillet = face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, chi))
+    on_fillet = face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, psi))
     np.testing.assert_allclose(on_fillet, on_flank, atol=1e-15)
     np.testing.assert_allclose(
-        face_gear.fillet_normal(design, radius, chi),
+        face_gear.fillet_normal(design, radius, psi),
         face_gear.flank_normal(design, design.shaper_tip_roll, psi),
         atol=1e-12,
     )
 
 
-def test_fillet_ends_tangent_to_the_root_plane(pair):
-    design = pair()
-    normal = face_gear.fillet_normal(design, 0.26, 0.0)
+@pytest.mark.parametrize("rounding", ROUNDINGS)
+def test_fillet_ends_tangent_to_the_root_plane(pair, rounding):
+    design = pair(tip_rounding=rounding)
+    normal = face_gear.fillet_normal(design, 0.26, np.pi / 2)
     np.testing.assert_allclose(normal, [0, 0, 1], atol=1e-15)
-    _, z = face_gear.fillet_section(design, 0.26, 0.0)
+    angle, z = face_gear.fillet_section(design, 0.26, np.pi / 2)
     assert z == pytest.approx(design.gear_root_plane, abs=1e-16)
+    assert np.pi / 143 - angle == pytest.approx(face_gear.root_half_angle(design), abs=1e-15)
     assert face_gear.root_half_angle(design) > 0
+
+
+@pytest.mark.parametrize("rounding", ROUNDINGS)
+def test_the_fillet_is_the_envelope_of_the_shapers_rounded_tip(pair, rounding):
+    """In the frame of generation every fillet point is on the tip's arc, and the tool slides along it there.
+
+    The sections are taken inside and outside the radius at which the tip's centre rolls without sliding.
+    """
+    design = pair(tip_rounding=rounding)
+    sharpest = design.shaper_rounding_centre / design.shaper_ratio
+    radius = np.array([0.92, 0.98, 0.995, 1.004, 1.01, 1.02])[:, None] * sharpest
+    psi = face_gear.fillet_slopes(design, radius, np.linspace(0.0, 1.0, 15))
+    point = face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, psi))
+    normal = face_gear.fillet_normal(design, radius, psi)
+    # the gear has turned by phi_s m2s when the normal has no part along the shaper's axis
+    turn = np.where(psi < np.pi / 2 - 1e-9, np.arctan2(normal[..., 1], normal[..., 0]), 0.0)
+    turn[:, -1] = -design.shaper_ratio * face_gear.edge_start(design)
+    cos, sin = np.cos(turn), np.sin(turn)
+
+    def to_fixed(v):
+        return np.stack([cos * v[..., 0] + sin * v[..., 1], cos * v[..., 1] - sin * v[..., 0], v[..., 2]], -1)
+
+    fixed, normal = to_fixed(point), to_fixed(normal)
+    lift, ratio = design.shaper_lift, design.shaper_ratio
+    velocity = np.cross([0, -1.0, 0], fixed - [0, 0, lift]) - ratio * np.cross([0, 0, -1.0], fixed)
+    assert np.max(np.abs(np.sum(normal * velocity, axis=-1))) < 1e-9 * design.gear_pitch_radius
+    chi = turn / ratio + face_gear.edge_start(design)
+    centre = design.shaper_rounding_centre * np.stack([np.sin(chi), -np.cos(chi)], -1)
+    arm = fixed[..., [0, 2]] - [0, lift] - centre
+    assert (
+        np.max(np.abs(np.hypot(*np.moveaxis(arm, -1, 0)) - design.shaper.tip_rounding)) < 1e-9 * design.module
+    )
+    if rounding:
+        assert np.max(np.sum(arm * normal[..., [0, 2]], axis=-1)) < 0
+
+
+@pytest.mark.parametrize("rounding", [0.0, 0.19])
+def test_normal_of_the_fillet_is_orthogonal_to_its_tangents(pair, rounding):
+    design = pair(tip_rounding=rounding)
+    radius, step = np.linspace(0.251, 0.274, 6)[:, None], 1e-6
+    psi = face_gear.fillet_slopes(design, radius, np.linspace(0.05, 0.95, 9))
+
+    def point(radius, psi):
+        return face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, psi))
+
+    normal = face_gear.fillet_normal(design, radius, psi)
+    for d_radius, d_psi in ((step * 0.26, 0.0), (0.0, step)):
+        tangent = point(radius + d_radius, psi + d_psi) - point(radius - d_radius, psi - d_psi)
+        along = np.linalg.norm(tangent, axis=-1)
+        assert np.max(np.abs(np.sum(normal * tangent, axis=-1)) / along) < 1e-7
+
+
+def test_a_rounding_of_nearly_nothing_gives_the_sharp_edges_fillet(pair):
+    radius = np.linspace(0.250, 0.275, 5)[:, None]
+    share = np.linspace(0.0, 1.0, 9)
+    points = []
+    for rounding in (0.0, 1e-6):
+        design = pair(tip_rounding=rounding)
+        psi = face_gear.fillet_slopes(design, radius, share)
+        points.append(face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, psi)))
+    assert np.max(np.abs(points[1] - points[0])) < 2e-6 * design.module
 
 
 def test_space_width_of_the_shaper_follows_from_its_tooth_thickness(pair):

@@ -256,7 +256,7 @@ def test_every_ray_ends_on_the_part_it_names(pair):
     end = start + found.gap[..., None] * along
     surfaces = {
         FLANK: lambda u, v: face_gear.flank_point(design, u, v),
-        FILLET: lambda u, v: face_gear.fillet_frame(design, u, v)[0],
+        FILLET: lambda u, v: face_gear.cylindrical(v, *face_gear.fillet_section(design, v, u)),
         TIP_LAND: lambda u, v: face_gear.cylindrical(v, u, np.full_like(u, design.gear_tip_plane)),
         ROOT_LAND: lambda u, v: face_gear.cylindrical(v, u, np.full_like(u, design.gear_root_plane)),
     }
