@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from facegear.results.root_stress import RootStressResult
     from facegear.results.search import SearchResult
     from facegear.results.stiffness import StiffnessResult
+    from facegear.results.stress_over_speed import StressOverSpeedResult
     from facegear.results.sweep import SweepResult
     from facegear.results.tolerances import TolerancesResult
     from facegear.scenarios.inverse import Loosest
@@ -157,11 +158,26 @@ class Gearbox:
 
         >>> import facegear
         >>> table = facegear.example().dynamic_stress(1000).table()
-        >>> bool((table["pinion_largest_mpa"] >= table["pinion_mean_mpa"]).all())
+        >>> bool((table["pinion_bound_mpa"] >= table["pinion_running_mpa"]).all())
         True
         """
         changes = {"contact.root_stress": True, **_given({"dynamics.speed_rpm": speed_rpm})}
         return self._changed("dynamic_stress", changes)._chain.dynamic_stress()
+
+    def stress_over_speed(self) -> "StressOverSpeedResult":
+        """Largest root stress and pressure over the speed range, of every motion known at a speed.
+
+        Motions are those of the sweep and, with section `branches`, all stable ones that were followed.
+        Raises what `root_stress` and `sweep` raise.
+
+        >>> import facegear
+        >>> gearbox = facegear.example().with_values({"dynamics.sweep.points": 4})
+        >>> table = gearbox.stress_over_speed().table()
+        >>> bool((table.loc[table["worst"], "dynamic_factor"] > 1).all())
+        True
+        """
+        changes = {"contact.root_stress": True}
+        return self._changed("stress_over_speed", changes)._chain.stress_over_speed()
 
     def stiffness(self) -> "StiffnessResult":
         """k(t) of one mesh at the config's load, or from given harmonics.

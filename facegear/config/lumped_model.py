@@ -20,7 +20,7 @@ from facegear.harmonics.series import Harmonics
 from facegear.transmission.imperfections import Imperfections, Runout
 from facegear.transmission.layout import Body, FaceGear, Layout, MeshKinematics, Pinion, Role, Side, Tilt
 from facegear.transmission.machine import Damping, Machine, OpenFlanks, balanced_torques, pinion_torques
-from facegear.transmission.phases import PhaseConvention
+from facegear.transmission.phases import PhaseConvention, mesh_phases
 
 TEETH = ("pinion_teeth", "face_gear_teeth", "module_mm", "pressure_angle_deg")
 """Keys of tooth_pair that the lumped model needs; its other data must not rerun modes or dynamics."""
@@ -108,6 +108,14 @@ def machine(
         error_lags=error_lags(section, shape),
         imperfections=imperfections(section, shape, unloaded),
     )
+
+
+def stiffness_phases(transmission: Mapping[str, Any], teeth: Mapping[str, Any]) -> NDArray[np.float64]:
+    """Lag of each mesh in mesh periods, (meshes,), from section `transmission` and the tooth numbers."""
+    section, numbers = lumped_sections(transmission, teeth)
+    shape = layout(section, numbers)
+    clocking = imperfections(section, shape).clocking
+    return mesh_phases(shape, PhaseConvention(section.phase_convention), clocking)
 
 
 def half_backlash(section: Transmission) -> float:

@@ -37,7 +37,8 @@ NEEDS: dict[str, Slice] = {
     "root_stress": {},
     "duty_loads": {**_MACHINE, **_ACCURACY, "strength": "strength"},
     "rating": {**_PAIR, "strength": "strength"},
-    "dynamic_root_stress": _PAIR,
+    "dynamic_root_stress": {**_PAIR, "transmission": "transmission"},
+    "stress_over_speed": {**_MACHINE, **_PAIR},
     "stiffness": {"mesh_stiffness": "mesh_stiffness"},
     "modal": {**_MACHINE, "mean_stiffness": "mesh_stiffness.mean_n_per_m"},
     "dynamics_response": {**_MACHINE, **_ACCURACY, "speed_rpm": "dynamics.speed_rpm"},
@@ -95,6 +96,7 @@ UPSTREAM = {
     "rating": ("root_stress",),
     "duty_loads": ("stiffness",),
     "dynamic_root_stress": ("root_stress", "dynamics_response"),
+    "stress_over_speed": ("root_stress", "dynamics_sweep"),
     "stiffness": ("contact",),
     "dynamics_response": ("stiffness",),
     "dynamics_sweep": ("stiffness",),
@@ -140,6 +142,8 @@ def stages_before(rule: str, values: Mapping[str, Any]) -> list[str]:
     before = UPSTREAM.get(rule, ())
     if rule == "rating" and loads_from_machine(values):
         before = (*before, "duty_loads")
+    if rule == "stress_over_speed" and values["branches"] is not None:
+        before = (*before, "branches")
     return [rule, *(other for near in before for other in stages_before(near, values))]
 
 

@@ -52,9 +52,14 @@ DUTY_LOADS = (
 )
 EVERY_LOAD = "Loads of every flank in every bin"
 DYNAMIC = (
-    "Largest root stress of every mesh at the nominal speed with its mean force, and with its largest force "
-    "all through the passage, which bounds the stress in this motion. Beyond the torques of the contact "
-    "analysis stress is taken in proportion"
+    "Largest root stress of every mesh at the nominal speed; mean: with its mean force; running: the largest "
+    "of the history, every tooth with its share of the force of that moment; bound: with the largest force "
+    "all through the passage. Beyond the torques of the contact analysis stress is taken in proportion"
+)
+OVER_SPEED = (
+    "Hardest loads over the speed range: at the nominal speed, and the worst of each motion found. Dynamic "
+    "factor: largest mesh force over the largest at rest; stress and pressure with that force all through "
+    "the passage; worst: the hardest of all motions known at that speed"
 )
 DRAWINGS = ("layout", "tooth_pair")
 """Figures that show the machine; the first that exists stands on the first screen."""
@@ -90,7 +95,7 @@ def case_report(
             for name in shown
             if name in pictures and name != drawing
         ]
-        own = _tables(title, tables)
+        own = _tables(title, tables, values["dynamics"]["speed_rpm"])
         seen = view if title == "Loaded contact" else None
         if found or own or seen:
             chapters.append(Chapter(title, text, found, own, seen))
@@ -121,7 +126,7 @@ def mode_rows(frequencies: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=["modes", "times", "frequency_hz", "what_moves", "class"])
 
 
-def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
+def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) -> list[Table]:
     if title == "Loaded contact" and "by_torque" in tables:
         return [Table(BY_TORQUE, tables["by_torque"], 4)]
     if title == "Root stress" and "root_stress" in tables:
@@ -131,6 +136,7 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     if title == "Strength" and "root_stress" in tables:
         rated = _rated(tables) if "rating" in tables else []
         moving = [Table(DYNAMIC, tables["dynamic_stress"], 4)] if "dynamic_stress" in tables else []
+        moving += _over_speed(tables, speed_rpm)
         return [*rated, *moving, Table(ROOT_STRESS, tables["root_stress"], 4)]
     if title == "Mesh stiffness" and "harmonics" in tables:
         return [Table("Harmonics kept", tables["harmonics"].iloc[:, :4], 5)]
@@ -167,6 +173,17 @@ def _rated(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
         hardest = loads.loc[loads.groupby("bin")["largest_force_n"].idxmax()]
         found += [Table(DUTY_LOADS, hardest, 4), Table(EVERY_LOAD, loads, 4, folded=True)]
     return found
+
+
+def _over_speed(tables: Mapping[str, pd.DataFrame], speed_rpm: float) -> list[Table]:
+    """Stress of every motion at the speed nearest to the nominal one, and where each is hardest."""
+    if "stress_over_speed" not in tables:
+        return []
+    table = tables["stress_over_speed"]
+    nearest = table["speed_rpm"].iloc[(table["speed_rpm"] - speed_rpm).abs().argmin()]
+    hardest = table.loc[table.groupby("motion", sort=False)["largest_force_n"].idxmax()]
+    shown = pd.concat([table[table["speed_rpm"] == nearest], hardest]).drop_duplicates()
+    return [Table(OVER_SPEED, shown, 4)]
 
 
 def _jumps(tables: Mapping[str, pd.DataFrame]) -> list[Table]:

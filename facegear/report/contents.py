@@ -12,6 +12,8 @@ CAPTIONS = {
     "life": "Every bin of the duty cycle beside the stress that may be repeated so often; of pinions and "
     "of face gears the flank nearest to its limit.",
     "damage": "Damage of every bin of the duty cycle to the same flanks; a sum of 1 is the end of life.",
+    "stress_over_speed": "Largest root stress, pressure and dynamic factor of all meshes over speed; dots: "
+    "stable motions that were followed; shaded: beyond the torques of the contact analysis.",
     "root_stress_passage": "Root stress of a tooth on its way through the mesh: largest tension below the "
     "loaded flank, largest compression below the other.",
     "root_stress_along_face": "Root stress along the face, the largest over a passage.",
@@ -86,7 +88,7 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "Normal stress down the fillets from surface strain gauges on the finite element model, under all "
         "contacts of the tooth and its neighbours. Passage: 0 to 1 while the tooth belongs to the pair in "
         "the middle of the mesh.",
-        ("root_stress_passage", "root_stress_along_face", "life", "damage"),
+        ("root_stress_passage", "root_stress_along_face", "life", "damage", "stress_over_speed"),
     ),
     (
         STUDIED_CONTACT,

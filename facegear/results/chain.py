@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from facegear.results.root_stress import RootStressResult
     from facegear.results.search import SearchResult
     from facegear.results.stiffness import StiffnessResult
+    from facegear.results.stress_over_speed import StressOverSpeedResult
     from facegear.results.sweep import SweepResult
     from facegear.results.tolerances import TolerancesResult
     from facegear.stages.outcome import Outcome
@@ -95,6 +96,24 @@ class Chain:
             return dynamic_root_stress(response, stress, **self._needs("dynamic_root_stress"))
 
         return self.store.result("dynamic_root_stress", self.values, DynamicStressResult, compute)
+
+    def stress_over_speed(self) -> "StressOverSpeedResult":
+        """Root stress and pressure over speed, from the sweep and, where asked for, the branches."""
+        from facegear.results.stress_over_speed import StressOverSpeedResult
+
+        def compute() -> "Outcome":
+            from facegear.stages.stress_over_speed import stress_over_speed
+
+            return stress_over_speed(
+                self.sweep().content["sweep"],
+                None if self.values["branches"] is None else self.branches().content["branches"],
+                self.root_stress().content["stress"],
+                self.contact().content["by_torque"],
+                self._harmonics(),
+                **self._needs("stress_over_speed"),
+            )
+
+        return self.store.result("stress_over_speed", self.values, StressOverSpeedResult, compute)
 
     def stiffness(self) -> "StiffnessResult":
         """k(t), from the contact or from given harmonics."""

@@ -9,7 +9,7 @@ from facegear.strength.columns import DYNAMIC_STRESS_FINITE
 
 
 class DynamicStressResult(Result):
-    """Largest root stress of every mesh with its mean and its largest force at the nominal speed."""
+    """Largest root stress of every mesh at the nominal speed: with its mean force, and running."""
 
     FILES: ClassVar = {"dynamic_stress": Kept("strength/dynamic_stress.csv", DYNAMIC_STRESS_FINITE)}
 

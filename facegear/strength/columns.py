@@ -103,10 +103,29 @@ DYNAMIC_STRESS_COLUMNS = (
     "largest_force_n",
     "dynamic_factor",
     "pinion_mean_mpa",
-    "pinion_largest_mpa",
+    "pinion_running_mpa",
+    "pinion_bound_mpa",
     "face_gear_mean_mpa",
-    "face_gear_largest_mpa",
+    "face_gear_running_mpa",
+    "face_gear_bound_mpa",
     "within_torques_solved",
 )
 DYNAMIC_STRESS_FINITE = tuple(name for name in DYNAMIC_STRESS_COLUMNS if name != "dynamic_factor")
 """Columns whose numbers are always finite: an open mesh has no dynamic factor."""
+
+STRESS_OVER_SPEED_COLUMNS = (
+    "motion",
+    "class",
+    "speed_rpm",
+    "mesh",
+    "largest_force_n",
+    "dynamic_factor",
+    "pinion_mpa",
+    "face_gear_mpa",
+    "pressure_mpa",
+    "within_torques_solved",
+    "worst",
+)
+"""Of the table of stress over speed, a row for each motion known at a speed."""
+STRESS_OVER_SPEED_FINITE = tuple(name for name in STRESS_OVER_SPEED_COLUMNS if name != "pressure_mpa")
+"""Columns whose numbers are always finite: pressure is known where the contact analysis states one."""

@@ -7,34 +7,68 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from facegear.strength.columns import DYNAMIC_STRESS_COLUMNS
-from facegear.strength.root_stress import RootStress, down_the_fillet
+from facegear.strength.root_stress import RootStress, down_the_fillet, largest_tension
+
+Array = NDArray[np.float64]
 
 
 def dynamic_stress_table(
-    forces: Mapping[str, NDArray[np.float64]], base_radius: float, roots: Mapping[str, RootStress]
+    forces: Mapping[str, Array],
+    places: Mapping[str, Array],
+    base_radius: float,
+    roots: Mapping[str, RootStress],
 ) -> pd.DataFrame:
     """One row a mesh, columns as DYNAMIC_STRESS_COLUMNS.
 
-    forces (n,) N along the line of action by mesh, negative on the back flank, evenly in time; base_radius
-    (m) of the pinion. The stress is the largest over the passage with the mesh's mean, and with its largest
-    force all the way: a tooth is quasi-static, so the second bounds what it sees in that history.
+    forces (n,) N along the line of action by mesh, negative on the back flank, evenly in time; places (n,) of
+    the loaded flank in the mesh cycle, in [0, 1); base_radius (m) of the pinion. `mean`: largest over the
+    passage with the mesh's mean force; `running`: largest of the history, every tooth with its share of the
+    force of that moment (a tooth is quasi-static); `bound`: with the largest force all through the passage.
     """
+    tension = {body: largest_tension(root) for body, root in roots.items()}
+    history = {body: TensionHistory(root) for body, root in roots.items()}
     rows = []
     for mesh, force in forces.items():
         mean, most = float(np.abs(force).mean()), float(np.abs(force).max())
-        torques = [base_radius * value for value in (mean, most)]
-        stresses = [_tension(root, torque) for root in roots.values() for torque in torques]
-        largest_solved = float(next(iter(roots.values())).torques[-1])
-        rows.append(
-            (
-                *(mesh, mean, most),
-                most / mean if mean > 0.0 else np.nan,
-                *(1e-6 * stress for stress in stresses),
-                torques[1] <= largest_solved,
-            )
-        )
+        torques = base_radius * np.abs(force)
+        stresses: list[float] = []
+        for body in roots:
+            running = float(history[body](torques, places[mesh]).max())
+            stresses += [tension[body](base_radius * mean), running, tension[body](base_radius * most)]
+        within = bool(torques.max() <= next(iter(roots.values())).torques[-1])
+        factor = most / mean if mean > 0.0 else np.nan
+        rows.append((mesh, mean, most, factor, *(1e-6 * stress for stress in stresses), within))
     return pd.DataFrame(rows, columns=list(DYNAMIC_STRESS_COLUMNS))
 
 
-def _tension(root: RootStress, torque: float) -> float:
-    return float(down_the_fillet(root.at_torque(torque)).max())
+class TensionHistory:
+    """Largest tension of all teeth of a body in mesh, over torque and place in the mesh cycle.
+
+    Between the torques and the places solved the largest values are interpolated linearly, as are those of
+    each gauge in `RootStress.at_torque`: the result is no less than the largest of the interpolated gauges.
+    """
+
+    def __init__(self, root: RootStress) -> None:
+        within, where = np.unique(np.round(np.mod(root.passage, 1.0), 9), return_inverse=True)
+        largest = np.array([down_the_fillet(one).max(axis=(1, 2, 3)) for one in root.stress])
+        by_place = np.array([largest[:, where == place].max(axis=1) for place in range(within.size)]).T
+        self._torques = np.concatenate([[0.0], root.torques])
+        self._places = np.append(within, within[0] + 1.0)
+        table = np.vstack([np.zeros(within.size), by_place])
+        self._table = np.hstack([table, table[:, :1]])
+
+    def __call__(self, torques: Array, places: Array) -> Array:
+        """Stress (n,) Pa at torques (n,) N m and places (n,) in [0, 1); proportional beyond those solved."""
+        over = np.maximum(torques / self._torques[-1], 1.0)
+        row, up = _cell(self._torques, torques / over)
+        column, on = _cell(self._places, places)
+        low, high = (
+            (1.0 - on) * self._table[at, column] + on * self._table[at, column + 1] for at in (row, row + 1)
+        )
+        return over * ((1.0 - up) * low + up * high)
+
+
+def _cell(edges: Array, values: Array) -> tuple[NDArray[np.int64], Array]:
+    """Cell (n,) between rising edges in which each value lies, and how far into it, 0 to 1."""
+    cell = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
+    return cell, np.clip((values - edges[cell]) / (edges[cell + 1] - edges[cell]), 0.0, 1.0)

@@ -1,8 +1,7 @@
 """Safety and life of both gears under a duty cycle: bending from root stress, pitting from line contact."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from itertools import pairwise
+from dataclasses import dataclass
 from math import pi, sqrt, tan
 
 import numpy as np
@@ -23,7 +22,7 @@ from facegear.strength.factors import (
 from facegear.strength.fatigue import damage, reliability
 from facegear.strength.materials import BendingLimits, Life, MaterialCard, PittingLimits
 from facegear.strength.root_form import RootForm, root_form
-from facegear.strength.root_stress import RootStress, down_the_fillet
+from facegear.strength.root_stress import RootStress, down_the_fillet, largest_tension
 from facegear.strength.spur import SpurGear
 
 Array = NDArray[np.float64]
@@ -151,29 +150,6 @@ def safety(stress: Array, cycles: Array, allowed: float, life: Life) -> float:
         else:
             low = middle
     return low
-
-
-def largest_tension(root: RootStress) -> Stress:
-    """Largest stress on either fillet over the passage and the face."""
-    places = np.stack([down_the_fillet(one).ravel() for one in root.stress])
-    kept = np.zeros(places.shape[1], dtype=bool)
-    kept[places.argmax(axis=1)] = True
-    for low, high in pairwise(places):
-        kept |= _may_be_largest(low, high)
-    worst = replace(root, stress=places[:, kept])
-    return lambda torque: float(worst.at_torque(torque).max())
-
-
-def _may_be_largest(low: Array, high: Array) -> NDArray[np.bool_]:
-    """Which of the lines from `low` to `high` (n,) are anywhere above those that are largest at an end.
-
-    Two lines bound the largest from below by a kinked line, so that it is enough to look at the kink.
-    """
-    first, last = int(np.argmax(low)), int(np.argmax(high))
-    lead, gain = low[first] - low[last], high[last] - high[first]
-    part = lead / (lead + gain) if lead + gain > 0.0 else 0.0
-    there = (1.0 - part) * low + part * high
-    return np.asarray(there > there[first])
 
 
 def reversal(root: RootStress, duty: FlankDuty) -> float:

@@ -1,7 +1,8 @@
 """Root stress of a tooth on its way through the mesh, from readings of gauges and the loads on all teeth."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -81,3 +82,26 @@ def down_the_fillet(values: Array) -> Array:
     rows = values.shape[-2]
     kind = scipy.interpolate.CubicSpline(np.arange(rows), values, axis=-2)
     return kind(np.linspace(0.0, rows - 1.0, FINER * rows))
+
+
+def largest_tension(root: RootStress) -> Callable[[float], float]:
+    """Largest stress (Pa) on either fillet over the passage and the face, at a torque (N m)."""
+    places = np.stack([down_the_fillet(one).ravel() for one in root.stress])
+    kept = np.zeros(places.shape[1], dtype=bool)
+    kept[places.argmax(axis=1)] = True
+    for low, high in pairwise(places):
+        kept |= _may_be_largest(low, high)
+    worst = replace(root, stress=places[:, kept])
+    return lambda torque: float(worst.at_torque(torque).max())
+
+
+def _may_be_largest(low: Array, high: Array) -> NDArray[np.bool_]:
+    """Which of the lines from `low` to `high` (n,) are anywhere above those that are largest at an end.
+
+    Two lines bound the largest from below by a kinked line, so that it is enough to look at the kink.
+    """
+    first, last = int(np.argmax(low)), int(np.argmax(high))
+    lead, gain = low[first] - low[last], high[last] - high[first]
+    part = lead / (lead + gain) if lead + gain > 0.0 else 0.0
+    there = (1.0 - part) * low + part * high
+    return np.asarray(there > there[first])

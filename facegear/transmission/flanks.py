@@ -73,6 +73,16 @@ def slow_errors(machine: Machine, cycles: Array) -> Array:
     return _flanks(tangential, separating)
 
 
+def flank_places(phases: Array, cycles: Array) -> Array:
+    """Place of every flank in the reference's mesh cycle, (K, 2 meshes) in [0, 1), drive flanks first.
+
+    phases (meshes,): lag of each mesh; `cycles` (K,) counts mesh cycles from the start. A back flank goes
+    through the reference's cycle the other way round.
+    """
+    drive = cycles[:, None] - phases
+    return np.mod(np.concatenate([drive, -drive], axis=1), 1.0)
+
+
 def teeth_in_mesh(layout: Layout, mesh: int, cycles: Array) -> tuple[Array, Array]:
     """Teeth of the pinion and of the face gear (K,) that a mesh has come to, counted on from turn to turn.
 

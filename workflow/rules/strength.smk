@@ -79,3 +79,31 @@ rule dynamic_root_stress:
         manifest="results/{case}/strength/dynamic_stress.provenance.json",
     script:
         "../scripts/dynamic_root_stress.py"
+
+
+rule stress_over_speed:
+    "Root stress and pressure over the speed range"
+    input:
+        sweep="results/{case}/dynamics/sweep.csv",
+        branches=stable_branches,
+        stress=shared("root_stress", "stress"),
+        by_torque=shared("contact", "by_torque"),
+        harmonics=shared("stiffness", "harmonics"),
+    output:
+        stress_over_speed="results/{case}/strength/stress_over_speed.csv",
+        manifest="results/{case}/strength/stress_over_speed.provenance.json",
+    script:
+        "../scripts/stress_over_speed.py"
+
+
+rule stress_over_speed_figure:
+    "Root stress, pressure and dynamic factor over speed"
+    input:
+        table=rules.stress_over_speed.output.stress_over_speed,
+    output:
+        **pictures("strength", "stress_over_speed"),
+        manifest="results/{case}/figures/stress_over_speed.provenance.json",
+    params:
+        **values_of(speed_rpm="dynamics.speed_rpm"),
+    script:
+        "../scripts/stress_over_speed_figure.py"

@@ -25,11 +25,12 @@ class Piece:
 
     motion (P,): class of motion, period (P,) its mesh periods where it is periodic, else 0. deflection_*
     (P, M): moments of the mesh deflections, m. mean_force, mean_force_magnitude (P, M) of the elastic mesh
-    forces, N. open_share, drive_share, back_share (P, M) of the time. translation_* (P, B, 3): moments of x,
-    y, z, m. residual, periods_run (P,); leading_multiplier, exponent_per_period, exponent_interval (P,): NaN
-    where there is none. spectrum (P, M, orders), m. modal (P, modes): RMS velocity scale omega * coordinate
-    of every natural mode without mean, sqrt(J). modal_order (P,): where in multiples of the mesh frequency
-    the strongest mode moves most. displacement, velocity (P, n).
+    forces, N; largest_force (P, M): largest magnitude of their samples. open_share, drive_share, back_share
+    (P, M) of the time. translation_* (P, B, 3): moments of x, y, z, m. residual, periods_run (P,);
+    leading_multiplier, exponent_per_period, exponent_interval (P,): NaN where there is none. spectrum (P, M,
+    orders), m. modal (P, modes): RMS velocity scale omega * coordinate of every natural mode without mean,
+    sqrt(J). modal_order (P,): where in multiples of the mesh frequency the strongest mode moves most.
+    displacement, velocity (P, n).
     """
 
     speeds: Array
@@ -44,6 +45,7 @@ class Piece:
     deflection_ac_rms_interval: Array
     mean_force: Array
     mean_force_magnitude: Array
+    largest_force: Array
     open_share: Array
     drive_share: Array
     back_share: Array
@@ -152,6 +154,7 @@ def _row(
         "period": response.period,
         **{f"deflection_{name}": getattr(meshes, name) for name in DEFLECTION},
         **dict(zip(("mean_force", "mean_force_magnitude"), response.mean_forces, strict=True)),
+        "largest_force": np.abs(response.forces).max(axis=0),
         **dict(zip(("open_share", "drive_share", "back_share"), response.shares, strict=True)),
         **dict(zip((f"translation_{name}" for name in TRANSLATION), moved, strict=True)),
         "residual": response.residual,

@@ -17,6 +17,7 @@ PER_MESH = {
     **{f"deflection_{name}_um": (UM, f"deflection_{name}") for name in DEFLECTION},
     "mean_force_n": (1.0, "mean_force"),
     "mean_force_magnitude_n": (1.0, "mean_force_magnitude"),
+    "largest_force_n": (1.0, "largest_force"),
     **{name: (1.0, name) for name in ("open_share", "drive_share", "back_share")},
 }
 """Quantity of the table: factor to its unit, and field of a Piece."""

@@ -23,13 +23,12 @@ from facegear.strength.rating import (
     RatedBody,
     RatingRequest,
     hertz_stress,
-    largest_tension,
     rate,
     reversal,
     safety,
 )
 from facegear.strength.rating_tables import damage_table, rating_table, safety_table
-from facegear.strength.root_stress import RootStress, down_the_fillet
+from facegear.strength.root_stress import RootStress, down_the_fillet, largest_tension
 
 CARD = material_card(CARDS / "case_carburised_din3990_11.yaml")
 BODY = {"card": "case_carburised_din3990_11", "root_roughness_um": 16}

@@ -4,24 +4,30 @@ from dataclasses import replace
 from math import cos
 
 import numpy as np
+import pandas as pd
 import pytest
 import scipy.sparse as sp
 from contact_bodies import STEEL, pair_design
 from hypothesis import given
 from hypothesis import strategies as st
 
+import facegear
+from facegear.config.machines import case_machine
 from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.bodies.surface import interpolation
 from facegear.contact.options import Refinement
 from facegear.contact.root_gauges import root_gauges
 from facegear.contact.teeth import elastic_tooth
 from facegear.geometry import pinion
+from facegear.harmonics.series import Harmonics
 from facegear.mesh.sizes import named_sizes
-from facegear.strength.dynamic_stress import dynamic_stress_table
+from facegear.strength.dynamic_stress import TensionHistory, dynamic_stress_table
 from facegear.strength.root_form import root_form
-from facegear.strength.root_stress import root_stress
+from facegear.strength.root_stress import down_the_fillet, root_stress
 from facegear.strength.root_tables import root_tables
 from facegear.strength.spur import SpurGear
+from facegear.strength.stress_over_speed import branch_forces, pressure_by_torque, stress_table, swept_forces
+from facegear.transmission.flanks import flank_places, stiffness_series
 from facegear.validation.contact.twin import slab_tooth
 
 TORQUES, POSITIONS = np.array([100.0, 300.0]), np.array([0.0, 0.5])
@@ -116,13 +122,83 @@ def test_running_machine_is_judged_by_the_magnitude_of_each_mesh_force():
         "back": np.array([-2000.0, -2000.0]),
         "open": np.zeros(2),
     }
-    table = dynamic_stress_table(forces, 0.1, {"pinion": found, "face_gear": found}).set_index("mesh")
+    places = dict.fromkeys([*forces, "high"], np.array([0.0, 0.5]))
+    roots = {"pinion": found, "face_gear": found}
+    table = dynamic_stress_table(forces, places, 0.1, roots).set_index("mesh")
     assert table["dynamic_factor"].iloc[:2].tolist() == pytest.approx([1.5, 1.0])
     assert np.isnan(table.loc["open", "dynamic_factor"])
-    assert table.loc["pulsing", "pinion_mean_mpa"] == pytest.approx(table.loc["back", "pinion_largest_mpa"])
+    assert table.loc["pulsing", "pinion_mean_mpa"] == pytest.approx(table.loc["back", "pinion_bound_mpa"])
     solved = root_tables({"pinion": found})["summary"]
     largest = solved[solved["torque_n_m"] == 300.0]["largest_mpa"].max()
-    assert table.loc["pulsing", "face_gear_largest_mpa"] == pytest.approx(largest)
+    assert table.loc["pulsing", "face_gear_bound_mpa"] == pytest.approx(largest)
     assert table["within_torques_solved"].all()
-    beyond = dynamic_stress_table({"high": np.array([4000.0])}, 0.1, {"pinion": found, "face_gear": found})
+    beyond = dynamic_stress_table({"high": np.array([4000.0, 0.0])}, places, 0.1, roots)
     assert not beyond["within_torques_solved"].any()
+
+
+def test_stress_in_motion_is_that_of_the_force_and_the_place_of_the_moment():
+    _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
+    history = TensionHistory(found)
+    for torque in (50.0, 100.0, 300.0, 700.0):
+        for place in POSITIONS:
+            here = found.at_torque(torque)[np.isclose(np.mod(found.passage, 1.0), place)]
+            expected = down_the_fillet(here).max()
+            assert history(np.array([torque]), np.array([place]))[0] == pytest.approx(expected)
+    torques, places = np.full(8, 200.0), np.arange(8) / 8
+    bound = max(down_the_fillet(found.at_torque(200.0)).max(), 0.0)
+    assert history(torques, places).max() <= max(bound, history(torques[:2], POSITIONS).max()) * (1 + 1e-12)
+    np.testing.assert_allclose(history(torques, places + 1e-12), history(torques, places), rtol=1e-9)
+
+
+def test_the_place_of_a_flank_is_where_its_stiffness_is_that_of_the_reference():
+    machine = case_machine(
+        facegear.example().values, Harmonics(np.array([0, 3e7, 1e7]), np.array([4e8, 2e7, -1e7]))
+    )
+    cycles = np.linspace(0.0, 2.0, 23)
+    places = flank_places(machine.phases, cycles)
+    for flank, series in enumerate(stiffness_series(machine)):
+        np.testing.assert_allclose(series(cycles), machine.stiffness(places[:, flank]), rtol=1e-9)
+
+
+SWEPT = pd.DataFrame(
+    [
+        ("up", 1000.0, "largest_force_n", "a/upper", 100.0, "period-1"),
+        ("up", 1000.0, "largest_force_n", "b/upper", 900.0, "period-1"),
+        ("up", 2000.0, "largest_force_n", "a/upper", 2000.0, "chaotic"),
+        ("up", 2000.0, "largest_force_n", "b/upper", 500.0, "chaotic"),
+        ("up", 1000.0, "mean_force_n", "a/upper", 1e9, "period-1"),
+    ],
+    columns=["direction", "speed_rpm", "quantity", "body_or_mesh", "value", "class"],
+)
+
+
+def test_stress_over_speed_takes_the_hardest_of_coexisting_motions():
+    _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
+    branches = pd.DataFrame(
+        {
+            "branch": 3,
+            "point": [0, 0, 1, 1, 2, 2],
+            "period": 2,
+            "speed_rpm": [900.0, 900.0, 1100.0, 1100.0, 2100.0, 2100.0],
+            "stable": [True, True, True, True, False, False],
+            "mesh": ["a/upper", "b/upper"] * 3,
+            "peak_force_n": [1000.0, 10.0, 2000.0, 10.0, 9000.0, 10.0],
+        }
+    )
+    forces = pd.concat([swept_forces(SWEPT), branch_forces(branches, np.array([1000.0, 2000.0]))])
+    pressure = pressure_by_torque(np.array([100.0, 300.0]), np.array([5e8, 9e8]))
+    table = stress_table(
+        forces.reset_index(drop=True), 750.0, 0.1, {"pinion": found, "face_gear": found}, pressure
+    )
+    at_1000 = table[table["speed_rpm"] == 1000.0].set_index("motion")
+    assert at_1000.loc["sweep up", "mesh"] == "b/upper"
+    assert at_1000.loc["branch 3", "largest_force_n"] == pytest.approx(1500.0)
+    assert at_1000.loc["branch 3", "class"] == "period-2"
+    assert at_1000["worst"].to_dict() == {"branch 3": True, "sweep up": False}
+    at_2000 = table[table["speed_rpm"] == 2000.0]
+    assert at_2000["motion"].tolist() == ["sweep up"]  # the branch is not stable there
+    assert at_2000["dynamic_factor"].iloc[0] == pytest.approx(2000.0 / 750.0)
+    expected = down_the_fillet(found.at_torque(200.0)).max()
+    assert at_2000["pinion_mpa"].iloc[0] == pytest.approx(1e-6 * expected)
+    assert at_2000["pressure_mpa"].iloc[0] == pytest.approx(1e-6 * np.sqrt(0.5 * (25e16 + 81e16)))
+    assert pressure(1200.0) == pytest.approx(2.0 * 9e8)

@@ -14,7 +14,7 @@ def stages(case):
     found += [rules.machine_code, rules.ratings, rules.modal, rules.modal_figure]
     found += [rules.dynamics_response, rules.dynamics_sweep, rules.dynamics_figures]
     if CASES[case]["contact"]["root_stress"]:
-        found += [rules.dynamic_root_stress]
+        found += [rules.dynamic_root_stress, rules.stress_over_speed, rules.stress_over_speed_figure]
     if CASES[case]["branches"]:
         found += [rules.branches, rules.branches_loci, rules.branches_figures]
     if SHARING_KINDS:
@@ -57,6 +57,7 @@ def report_tables(wildcards):
         tables += machine_loads("duty_loads")(wildcards)
     if rules.dynamic_root_stress in stages(wildcards.case):
         tables += [rules.dynamic_root_stress.output.dynamic_stress]
+        tables += [rules.stress_over_speed.output.stress_over_speed]
     tables += [rules.scorecard.output.csv] if REPRODUCTION else []
     return [path.format(case=wildcards.case) for path in tables]
 

@@ -1,0 +1,29 @@
+"""Root stress and pressure over the speed range."""
+
+from typing import TYPE_CHECKING, ClassVar
+
+import pandas as pd
+
+from facegear.results.base import Kept, Result
+from facegear.strength.columns import STRESS_OVER_SPEED_FINITE
+
+if TYPE_CHECKING:
+    from facegear.plots.style import Figure
+
+
+class StressOverSpeedResult(Result):
+    """Largest root stress and pressure of all meshes under every motion known at a speed."""
+
+    FILES: ClassVar = {
+        "stress_over_speed": Kept("strength/stress_over_speed.csv", STRESS_OVER_SPEED_FINITE),
+    }
+
+    def table(self) -> pd.DataFrame:
+        """A row a motion and speed; `worst` marks the hardest of all known at it (docs/strength.md)."""
+        return self.content["stress_over_speed"].copy()
+
+    def plot(self) -> "Figure":
+        """Root stress, pressure and dynamic factor over speed."""
+        from facegear.plots.stress_over_speed import stress_over_speed
+
+        return stress_over_speed(self.content["stress_over_speed"], self.values["dynamics"]["speed_rpm"])

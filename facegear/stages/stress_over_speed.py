@@ -1,0 +1,52 @@
+"""Root stress and pressure over the speed range, and the worst of all motions known at a speed."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from facegear.config.machines import wired_machine
+from facegear.config.tooth_pair import pair
+from facegear.stages.outcome import Outcome
+from facegear.strength.root_tables import root_from_arrays
+from facegear.strength.stress_over_speed import (
+    branch_forces,
+    pressure_by_torque,
+    stress_table,
+    swept_forces,
+)
+from facegear.transmission.statics import static_equilibrium
+
+
+def stress_over_speed(
+    sweep: pd.DataFrame,
+    branches: pd.DataFrame | None,
+    stress: Mapping[str, NDArray],
+    by_torque: pd.DataFrame,
+    harmonics: pd.DataFrame,
+    transmission: Mapping[str, Any],
+    teeth: Mapping[str, Any],
+    tooth_pair: Mapping[str, Any],
+) -> Outcome:
+    """`stress_over_speed` (table) from the sweep and, where there are any, the branches.
+
+    stress: arrays of stage root_stress; by_torque: table of stage contact. Raises NotConverged.
+    """
+    machine = wired_machine(transmission, teeth, harmonics)
+    at_rest = float(np.abs(static_equilibrium(machine).forces).max())
+    forces = swept_forces(sweep)
+    if branches is not None:
+        followed = branch_forces(branches, np.unique(forces["speed_rpm"]))
+        forces = pd.concat([forces, followed], ignore_index=True)
+    solved = by_torque[["torque_n_m", "pressure_mpa"]].dropna()
+    pressure = pressure_by_torque(solved["torque_n_m"].to_numpy(), 1e6 * solved["pressure_mpa"].to_numpy())
+    roots = {body: root_from_arrays(stress, body) for body in ("pinion", "face_gear")}
+    radius = pair(tooth_pair).design.pinion_base_radius
+    table = stress_table(forces, at_rest, radius, roots, pressure)
+    worst = table.loc[table["largest_force_n"].idxmax()]
+    where = f"{worst['speed_rpm']:.0f} rpm ({worst['motion']}, {worst['class']})"
+    stresses = f"face gear {worst['face_gear_mpa']:.0f} MPa, pinion {worst['pinion_mpa']:.0f} MPa"
+    told = f"largest dynamic factor {worst['dynamic_factor']:.2f} at {where}: {stresses}"
+    return Outcome({"stress_over_speed": table}, told)

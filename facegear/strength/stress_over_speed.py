@@ -1,0 +1,88 @@
+"""Root stress and pressure over speed under the largest mesh force of every motion known there."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from facegear.strength.columns import STRESS_OVER_SPEED_COLUMNS
+from facegear.strength.root_stress import RootStress, largest_tension
+
+Array = NDArray[np.float64]
+ALIKE = 1e-3
+"""Motions whose largest forces differ by less, relative, are equally hard: most often they are one."""
+FORCE_COLUMNS = ("motion", "class", "speed_rpm", "mesh", "largest_force_n")
+
+
+def swept_forces(sweep: pd.DataFrame) -> pd.DataFrame:
+    """The mesh with the largest force at each speed and direction of a sweep, columns FORCE_COLUMNS."""
+    rows = sweep[sweep["quantity"] == "largest_force_n"].reset_index(drop=True)
+    worst = rows.loc[rows.groupby(["direction", "speed_rpm"], sort=False)["value"].idxmax()]
+    worst = worst.assign(motion="sweep " + worst["direction"])
+    named = worst.rename(columns={"body_or_mesh": "mesh", "value": "largest_force_n"})
+    return named[list(FORCE_COLUMNS)]
+
+
+def branch_forces(branches: pd.DataFrame, speeds: Array) -> pd.DataFrame:
+    """The same of every stable stretch of a branch at `speeds` (n,) rpm, between its points linearly."""
+    found = []
+    for (number, period), rows in branches.groupby(["branch", "period"], sort=False):
+        worst = rows.loc[rows.groupby("point", sort=True)["peak_force_n"].idxmax()]
+        speed, force = worst["speed_rpm"].to_numpy(), worst["peak_force_n"].to_numpy()
+        stable, meshes = worst["stable"].to_numpy(bool), worst["mesh"].to_numpy()
+        for at in np.flatnonzero(stable[:-1] & stable[1:]):
+            low, high = sorted(speed[at : at + 2])
+            inside = speeds[(speeds >= low) & (speeds < high)]
+            part = (inside - speed[at]) / (speed[at + 1] - speed[at]) if inside.size else inside
+            there = (1.0 - part) * force[at] + part * force[at + 1]
+            mesh = meshes[at] if force[at] >= force[at + 1] else meshes[at + 1]
+            found += [
+                (f"branch {number}", f"period-{period}", float(one), mesh, float(value))
+                for one, value in zip(inside, there, strict=True)
+            ]
+    return pd.DataFrame(found, columns=list(FORCE_COLUMNS))
+
+
+def stress_table(
+    forces: pd.DataFrame,
+    static_force: float,
+    base_radius: float,
+    roots: Mapping[str, RootStress],
+    pressure: Callable[[float], float],
+) -> pd.DataFrame:
+    """Stress under each of `forces` (FORCE_COLUMNS), columns as STRESS_OVER_SPEED_COLUMNS.
+
+    The force is taken to act all through the passage. static_force (N): the largest of all meshes at rest;
+    base_radius (m) of the pinion; pressure (Pa) at a torque (N m). `worst`: the hardest of all motions
+    known at that speed, and those as hard.
+    """
+    torques = base_radius * forces["largest_force_n"].to_numpy()
+    tension = {body: largest_tension(root) for body, root in roots.items()}
+    solved = min(root.torques[-1] for root in roots.values())
+    most = forces.groupby("speed_rpm")["largest_force_n"].transform("max")
+    table = forces.assign(
+        dynamic_factor=forces["largest_force_n"] / static_force,
+        **{f"{body}_mpa": [1e-6 * at(torque) for torque in torques] for body, at in tension.items()},
+        pressure_mpa=[1e-6 * pressure(torque) for torque in torques],
+        within_torques_solved=torques <= solved,
+        worst=forces["largest_force_n"] >= (1.0 - ALIKE) * most,
+    )
+    return table.sort_values(["speed_rpm", "motion"], kind="stable", ignore_index=True)[
+        list(STRESS_OVER_SPEED_COLUMNS)
+    ]
+
+
+def pressure_by_torque(torques: Array, pressures: Array) -> Callable[[float], float]:
+    """Largest pressure (Pa) at a torque: of line contact, with the root of the torque beyond those solved.
+
+    torques (t,) N m and pressures (t,) Pa; between them the load on a line contact, p squared, is linear.
+    """
+    squares = np.concatenate([[0.0], pressures**2])
+    at = np.concatenate([[0.0], torques])
+
+    def found(torque: float) -> float:
+        within = float(np.interp(torque, at, squares))
+        return float(np.sqrt(within * max(torque / at[-1], 1.0)))
+
+    return found
