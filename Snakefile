@@ -42,6 +42,7 @@ rule benchmarks:
                 "dynamics_sweep",
                 "dynamics_convergence",
                 "dynamics_labels",
+                "load_sharing_costs",
                 "branches",
                 *(["scenarios"] if CASES[CASE]["tolerances"] else []),
             ],

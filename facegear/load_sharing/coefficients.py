@@ -12,11 +12,10 @@ def sharing_coefficient(forces: NDArray[np.float64]) -> NDArray[np.float64]:
     coefficient is undefined and NaN stands there. Equation (25) with two paths, (26) with three.
     """
     sizes = np.abs(_path_by_path(forces))
-    largest = sizes.max(axis=0)
-    loaded = largest > 0.0
-    sizes /= np.where(loaded, largest, 1.0)
-    mean = np.where(loaded, sizes.mean(axis=0), 1.0)
-    return np.where(loaded, np.clip(1.0 / mean, 1.0, len(sizes)), np.nan)
+    total = sizes.sum(axis=0)
+    loaded = total > 0.0
+    ratio = len(sizes) * sizes.max(axis=0) / np.where(loaded, total, 1.0)
+    return np.where(loaded, np.clip(ratio, 1.0, len(sizes)), np.nan)
 
 
 def lost_contact(forces: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -10,12 +10,14 @@ from facegear.dynamics.steady_state.simulate import Model, SteadyState, build_mo
 from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
 from facegear.load_sharing.groups import LoadGroup, load_groups
 from facegear.load_sharing.options import SharingOptions
-from facegear.load_sharing.statistics import Average, average
+from facegear.load_sharing.sampling import densely_sampled
+from facegear.load_sharing.statistics import Average, average, defined_mean
 from facegear.transmission.layout import DOF_PER_BODY
 from facegear.transmission.machine import Machine
 from facegear.transmission.matrices import mass_diagonal
 
-WATCHED = 2
+WATCHED, TORUS_WATCHED = 2, 8
+"""Times the cycles averaged for which a motion is watched, and again before it is called quasi-periodic."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,25 +55,39 @@ def load_sharing(
     the starts says how much that choice matters. Raises NotConverged if an integration fails.
     """
     model = build_model(machine) if isinstance(machine, Machine) else machine
-    settings = replace(watched(settings, options), window=options.cycles, samples=options.samples)
+    settings = replace(settings, window=options.cycles, samples=options.samples)
+    groups = load_groups(model.machine.layout)
     first = static_start(model)
-    responses = [simulate(model, speed_rpm, settings, start=first)]
+    response = watched_motion(model, speed_rpm, settings, options, first)
     random = np.random.default_rng(options.seed)
+    motions, means = [response.label], []
     for _ in range(options.starts - 1):
         disturbed = disturb(model, first, options.spread, random)
-        responses.append(simulate(model, speed_rpm, settings, start=disturbed))
-    groups = tuple(
-        _group(group, responses, options.confidence) for group in load_groups(model.machine.layout)
+        other = watched_motion(model, speed_rpm, settings, options, disturbed)
+        motions.append(other.label)
+        means.append(_means(other, groups))
+    shared = tuple(
+        _group(response, group, options, [mean[i] for mean in means]) for i, group in enumerate(groups)
     )
-    return Sharing(responses[0], groups, tuple(response.label for response in responses))
+    return Sharing(response, shared, tuple(motions))
 
 
-def watched(settings: Settings, options: SharingOptions) -> Settings:
-    """Settings for averages: a motion that has not closed after a few times the cycles averaged is measured.
+def watched_motion(
+    model: Model, speed_rpm: float, settings: Settings, options: SharingOptions, start: State | None
+) -> SteadyState:
+    """The motion from a start: what has not closed after a few times the cycles averaged is measured.
 
-    A class that must hold for good, as that of the response at the nominal speed, is watched for longer.
+    A body that is pushed through its backlash for long, or an orbit that is approached slowly, looks like a
+    torus for a while: what seems to be one is watched on. A class that must hold for good, as that of the
+    response at the nominal speed, is watched for longer.
     """
-    return replace(settings, settle=min(settings.settle, WATCHED * options.cycles))
+    most = settings.settle
+    found = simulate(model, speed_rpm, replace(settings, settle=min(most, WATCHED * options.cycles)), start)
+    if found.motion is not Motion.QUASI_PERIODIC:
+        return densely_sampled(found)
+    longer = replace(settings, settle=min(most, TORUS_WATCHED * options.cycles))
+    again = simulate(model, speed_rpm, longer, found.state)
+    return densely_sampled(replace(again, periods_run=found.periods_run + again.periods_run))
 
 
 def disturb(model: Model, start: State, spread: float, random: np.random.Generator) -> State:
@@ -102,9 +118,24 @@ def group_average(
     return coefficients, lost, average(coefficients, lost, confidence, periodic)
 
 
-def _group(group: LoadGroup, responses: list[SteadyState], confidence: float) -> GroupSharing:
-    coefficients, lost, first = group_average(responses[0], group, confidence)
-    others = [group_average(response, group, confidence)[2].mean for response in responses[1:]]
-    means = [first.mean, *others]
-    defined = [mean for mean in means if not np.isnan(mean)] or [float("nan")]
-    return GroupSharing(group, coefficients, lost, first, min(defined), max(defined))
+def _means(response: SteadyState, groups: tuple[LoadGroup, ...]) -> list[float]:
+    """Mean coefficient of each group, NaN where nothing is ever loaded."""
+    forces = cycle_forces(response)
+    return [defined_mean(sharing_coefficient(forces[..., group.meshes])) for group in groups]
+
+
+def _group(
+    response: SteadyState, group: LoadGroup, options: SharingOptions, others: list[float]
+) -> GroupSharing:
+    """`others`: the means from other starts."""
+    coefficients, lost, first = group_average(response, group, options.confidence)
+    every = max(coefficients.shape[1] // options.samples, 1)
+    defined = [mean for mean in (first.mean, *others) if not np.isnan(mean)] or [float("nan")]
+    return GroupSharing(
+        group=group,
+        coefficients=coefficients[:, ::every],
+        lost=lost[:, ::every],
+        average=first,
+        starts_low=min(defined),
+        starts_high=max(defined),
+    )

@@ -77,6 +77,14 @@ def average(
     )
 
 
+def defined_mean(coefficients: NDArray[np.float64]) -> float:
+    """Mean over all defined instants, NaN where there are none: that of `average` alone."""
+    undefined = np.isnan(coefficients)
+    if not undefined.any():
+        return float(coefficients.mean())
+    return float("nan") if undefined.all() else float(coefficients[~undefined].mean())
+
+
 def _half_width(sums: NDArray[np.float64], counts: NDArray[np.int64], confidence: float) -> float:
     """Half-width of the mean's confidence interval from batch means; sums and counts are (cycles,).
 

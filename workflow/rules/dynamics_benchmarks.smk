@@ -37,6 +37,20 @@ rule dynamics_costs:
         "../scripts/dynamics_costs.py"
 
 
+rule load_sharing_costs:
+    "Load sharing of random machines: time and error"
+    input:
+        harmonics=shared("stiffness", "harmonics"),
+    output:
+        table="results/{case}/benchmarks/load_sharing_costs.csv",
+        manifest="results/{case}/benchmarks/load_sharing_costs.provenance.json",
+    params:
+        **values_of(accuracy="dynamics.accuracy", options="load_sharing"),
+        machine=needs("machine"),
+    script:
+        "../scripts/load_sharing_costs.py"
+
+
 rule branches_benchmark:
     "Branches: error against tolerance, cost against settling"
     input:

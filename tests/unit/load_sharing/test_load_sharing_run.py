@@ -2,6 +2,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 
 from facegear.dynamics.motion import Settings
@@ -10,6 +12,7 @@ from facegear.load_sharing.coefficients import sharing_coefficient
 from facegear.load_sharing.options import SharingOptions, SpeedRange
 from facegear.load_sharing.reference import reference_table, slow_forces, speed_range_table
 from facegear.load_sharing.run import load_sharing
+from facegear.load_sharing.sampling import between
 from facegear.load_sharing.statics import static_forces
 from facegear.load_sharing.tables import CURVE_COLUMNS, SUMMARY_COLUMNS, curve_table, summary_table
 from facegear.transmission.imperfections import Runout, perfect
@@ -101,3 +104,43 @@ def test_speed_range_holds_every_speed_and_group(tight):
     table = speed_range_table(tight, SETTINGS, OPTIONS)
     assert sorted(set(table["speed_rpm"])) == [2000.0, 5500.0, 9000.0]
     assert (table["mean"] <= table["maximum"]).all()
+
+
+def test_a_slow_approach_to_an_orbit_is_not_called_a_torus(paper_machine):
+    """After 64 cycles this machine seems quasi-periodic; it comes to rest on a period-2 orbit."""
+    machine = replace(
+        paper_machine,
+        torques=0.3 * paper_machine.torques,
+        half_backlash=1.42 * paper_machine.half_backlash,
+    )
+    options = replace(OPTIONS, cycles=32, starts=1)
+    sharing = load_sharing(machine, 8200.0, Settings(tolerance=1e-5), options)
+    assert sharing.motions == ("period-2",)
+    assert sharing.response.periods_run > 3 * 32
+
+
+@pytest.mark.parametrize("speed", [5000.0, 10_000.0])
+def test_the_mean_of_a_periodic_motion_that_loses_contact_does_not_hang_on_its_samples(paper_machine, speed):
+    few, many = (
+        load_sharing(paper_machine, speed, SETTINGS, replace(OPTIONS, starts=1, samples=samples))
+        for samples in (64, 4096)
+    )
+    for one, other in zip(few.groups, many.groups, strict=True):
+        assert one.average.half_width == 0.0 < one.average.lost
+        assert one.average.mean == pytest.approx(other.average.mean, abs=1e-3)
+        assert one.coefficients.shape[1] == 64
+
+
+@given(
+    waves=st.lists(st.tuples(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)), min_size=1, max_size=7),
+    factor=st.integers(1, 8),
+)
+def test_instants_between_the_samples_of_a_band_limited_series_are_exact(waves, factor):
+    def series(count):
+        cycles = np.arange(count)[:, None] / count
+        return sum(
+            a * np.sin(2 * np.pi * j * cycles) + b * np.cos(2 * np.pi * j * cycles)
+            for j, (a, b) in enumerate(waves)
+        )
+
+    np.testing.assert_allclose(between(series(16), factor), series(16 * factor), atol=1e-13)
