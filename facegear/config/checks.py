@@ -3,6 +3,7 @@
 import os
 from collections.abc import Sequence
 from math import atan, degrees, pi
+from typing import Any
 
 import numpy as np
 
@@ -15,13 +16,22 @@ from facegear.config.studies import Study
 from facegear.config.tolerances import Tolerances
 from facegear.config.tooth_pair import ToothPair, pair_design
 from facegear.config.transmission import Transmission
-from facegear.config.variants import SPEED, movable
+from facegear.config.variants import (
+    MACHINE,
+    PAIR,
+    SPEED,
+    WITHOUT_MESHING,
+    movable,
+    moves_pair,
+    variable_part,
+)
 from facegear.errors import ConfigError, ConfigErrors, NotConverged
 
 MOST_POINTS = 200
 """Points of all studies of a config together: each is a case of its own with some five jobs."""
 JAM = 1e-8
 """Negative backlash (m) that is rounding."""
+CONTACT_ASKED = "where machines among many differ in their teeth, or are judged by them"
 TAKEN_NAMES = ("nominal", "nominal_summary", "summary", "reference", "speed_range")
 """Files that load sharing writes beside those of the studies."""
 
@@ -123,12 +133,17 @@ def check_studies(studies: Sequence[Study]) -> None:
         raise ConfigError("studies", f"{points} points", told)
 
 
-def check_tolerances(section: Tolerances, machine: Transmission) -> None:
-    """Every cause moves numbers that stand in this machine. Raises ConfigError."""
+def check_tolerances(section: Tolerances, pair: ToothPair, machine: Transmission, solved: bool) -> None:
+    """Every cause moves numbers that this machine has; those of its teeth where contact is `solved`.
+
+    Raises ConfigError.
+    """
     keys = [key for cause in section.causes for key in cause.moves]
-    start = movable(machine.model_dump(mode="json"), keys)
+    start = movable(_variable(pair, machine), keys, (MACHINE, SPEED, *WITHOUT_MESHING))
+    if not solved and (section.tooth_contact or moves_pair(keys)):
+        raise ConfigError("mesh_stiffness.source", "harmonics", f"fem or fem_scaled, {CONTACT_ASKED}")
     try:
-        parse(Transmission, start)
+        parse(Transmission, start["transmission"])
     except ConfigErrors as error:
         told = error.lines[0]
         raise ConfigError(
@@ -137,17 +152,22 @@ def check_tolerances(section: Tolerances, machine: Transmission) -> None:
 
 
 def check_search(
-    section: Search, tolerances: Tolerances | None, pair: ToothPair, machine: Transmission
+    section: Search, tolerances: Tolerances | None, pair: ToothPair, machine: Transmission, contact: str
 ) -> None:
-    """Variables are numbers of this machine, goals quantities that it has. Raises ConfigError."""
+    """Variables are numbers of this machine, goals quantities that it has. Raises ConfigError.
+
+    `contact`: what of it the config has, none, pressure or root stress too.
+    """
     # Imported here: only a search needs to know what machines are judged by.
     from facegear.load_sharing.quantity_names import columns_of, quantity_names
 
     keys = [key for variable in section.variables for key in variable.sets]
-    if SPEED in keys:
-        raise ConfigError("search.variables.sets", SPEED, "a number of transmission")
-    movable(machine.model_dump(mode="json"), keys, "search.variables.sets")
-    names = quantity_names(layout(machine, pair_teeth(pair)), section.model == "dynamic")
+    movable(_variable(pair, machine), keys, (MACHINE, PAIR), "search.variables.sets")
+    if contact == "none" and moves_pair(keys):
+        raise ConfigError("mesh_stiffness.source", "harmonics", f"fem or fem_scaled, {CONTACT_ASKED}")
+    found = layout(machine, pair_teeth(pair))
+    dynamic, gauges = section.model == "dynamic", contact == "root stress"
+    names = quantity_names(found, dynamic, contact != "none", gauges)
     for goal in (*section.objectives, *section.constraints):
         for start in goal.largest_of:
             if not columns_of(start, names):
@@ -155,6 +175,10 @@ def check_search(
                 raise ConfigError(f"search: {goal.name}.largest_of", start, allowed)
     if section.robust and tolerances is None:
         raise ConfigError("tolerances", None, "required by percentiles in search")
+
+
+def _variable(pair: ToothPair, machine: Transmission) -> dict[str, Any]:
+    return variable_part(machine.model_dump(mode="json"), pair.model_dump(mode="json"), 0.0)
 
 
 def _pinion_body(pair: ToothPair) -> tuple[float, float]:

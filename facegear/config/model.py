@@ -151,10 +151,12 @@ class Config(Section):
                 raise ConfigError(f"transmission.{key}", "from_contact", FROM_CONTACT)
         complete = with_backlash(pair, machine)
         require_buildable(complete, pair_teeth(pair))
+        solved = self.mesh_stiffness.source != "harmonics"
         if self.tolerances is not None:
-            check_tolerances(self.tolerances, complete)
+            check_tolerances(self.tolerances, pair, complete, solved)
         if self.search is not None:
-            check_search(self.search, self.tolerances, pair, complete)
+            stress = "root stress" if self._root_stress else "pressure"
+            check_search(self.search, self.tolerances, pair, complete, stress if solved else "none")
 
 
 def resolved(config: Config) -> dict[str, Any]:

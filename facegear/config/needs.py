@@ -8,7 +8,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from facegear.config.lumped_model import TEETH
+from facegear.config.variants import GAPS, moves_pair
 from facegear.errors import ConfigError
+from facegear.load_sharing.quantity_names import of_contact
 
 Slice = dict[str, str | tuple[str, ...]]
 
@@ -18,6 +20,7 @@ _COMPLIANCE: Slice = {**_MESH, "contact": "contact"}
 _MACHINE: Slice = {"transmission": "transmission", "teeth": tuple(f"tooth_pair.{key}" for key in TEETH)}
 _BRANCHES: Slice = {**_MACHINE, "branches": "branches", "speed_rpm": "dynamics.speed_rpm"}
 _ACCURACY: Slice = {"accuracy": "dynamics.accuracy"}
+_CONTACT: Slice = {"pair": ("tooth_pair", "mesh", "contact", "mesh_stiffness")}
 _SEARCH: Slice = {
     **_PAIR,
     **_ACCURACY,
@@ -26,6 +29,7 @@ _SEARCH: Slice = {
     "options": "load_sharing",
     "search": "search",
     "tolerances": "tolerances",
+    **_CONTACT,
 }
 
 NEEDS: dict[str, Slice] = {
@@ -68,6 +72,7 @@ NEEDS: dict[str, Slice] = {
         "tolerances": tuple(
             f"tolerances.{key}" for key in ("causes", "correlations", "model", "seed", "hunting_cycles")
         ),
+        **_CONTACT,
     },
     "tolerances": {"tolerances": "tolerances"},
     "search_island": _SEARCH,
@@ -83,12 +88,8 @@ NEEDS: dict[str, Slice] = {
     },
 }
 
-GAPS_ONLY = {
-    "compliance": {
-        "tooth_pair": ("assembly", "pinion.tip_relief", "pinion.root_relief", "pinion.lead_crowning")
-    }
-}
-"""Keys inside an argument that a stage does without: they move unloaded flanks, and no node of the bodies."""
+GAPS_ONLY = {"compliance": {"tooth_pair": GAPS}}
+"""Keys inside an argument that a stage does without."""
 
 UPSTREAM = {
     "contact": ("compliance",),
@@ -128,8 +129,30 @@ def stage_needs(rule: str, values: Mapping[str, Any]) -> dict[str, Any]:
     }
     for name, keys in GAPS_ONLY.get(rule, {}).items():
         for key in keys:
-            found[name] = _without(found[name], key.split("."))
+            found[name] = without(found[name], key)
+    if "pair" in found and not many_contacts(rule, values):
+        found["pair"] = None
     return found
+
+
+def many_contacts(rule: str, values: Mapping[str, Any]) -> bool:
+    """Whether the machines among many of a rule have a contact analysis of their own.
+
+    `values`: plain ones of a whole config. Samples of tolerances have where a cause moves the tooth pair or
+    `tooth_contact` is set; designs of a search where a variable, or a cause of a percentile, moves it, or an
+    objective asks for what contact alone tells.
+    """
+    tolerances, search = values["tolerances"], values["search"]
+    causes = [key for cause in (tolerances or {}).get("causes", ()) for key in cause["moves"]]
+    if rule == "tolerances_chunk":
+        return tolerances is not None and (tolerances["tooth_contact"] or moves_pair(causes))
+    if search is None:
+        return False
+    goals = [*search["objectives"], *search["constraints"]]
+    robust = any(goal["percentile"] is not None for goal in goals)
+    keys = [key for variable in search["variables"] for key in variable["sets"]]
+    asked = any(of_contact(text) for goal in goals for text in goal["largest_of"])
+    return asked or moves_pair(keys) or (robust and moves_pair(causes))
 
 
 def stages_before(rule: str, values: Mapping[str, Any]) -> list[str]:
@@ -158,9 +181,10 @@ def _value(values: Any, key: str) -> Any:
     return values
 
 
-def _without(values: Any, parts: list[str]) -> Any:
-    """A copy of nested mappings without one key, given by its parts."""
-    if not isinstance(values, Mapping) or parts[0] not in values:
+def without(values: Any, key: str) -> Any:
+    """A copy of nested mappings without one dotted key."""
+    first, _, rest = key.partition(".")
+    if not isinstance(values, Mapping) or first not in values:
         return values
-    rest = {key: value for key, value in values.items() if key != parts[0]}
-    return {**rest, parts[0]: _without(values[parts[0]], parts[1:])} if parts[1:] else rest
+    kept = {name: value for name, value in values.items() if name != first}
+    return {**kept, first: without(values[first], rest)} if rest else kept

@@ -13,7 +13,9 @@ class VariableSection(Section):
     """A number that is free, and the keys of the machine that take it."""
 
     name: str = Field(pattern=NAME)
-    sets: tuple[str, ...] = Field(min_length=1, description="dotted keys of numbers of `transmission`")
+    sets: tuple[str, ...] = Field(
+        min_length=1, description="dotted keys of numbers of `transmission`, `tooth_pair`"
+    )
     limits: tuple[float, float]
     steps: int | None = Field(
         None,

@@ -30,8 +30,8 @@ class CauseSection(Section):
     values: tuple[float, ...] = Field((), description="of shape choice, each as likely")
     moves: dict[str, float] = Field(
         min_length=1,
-        description="dotted key of a number of `transmission`, or dynamics.speed_rpm -> what one unit of the "
-        "cause adds to it",
+        description="dotted key of a number of `transmission`, dynamics.speed_rpm, or of the tooth pair's "
+        "assembly, reliefs, crowning and Young's moduli -> what one unit of the cause adds to it",
     )
     source: str = Field(min_length=1, max_length=200, description="ISO grade or drawing that it is from")
 
@@ -73,6 +73,11 @@ class Tolerances(Section):
     chunk_samples: int = Field(256, ge=1, le=100_000, description="samples of one job")
     seed: int = Field(0, ge=0, le=2**31)
     confidence: float = Field(0.95, gt=0.5, lt=1.0)
+    tooth_contact: bool = Field(
+        False,
+        description="pressure, root stress and transmission error of every machine as well; causes that move "
+        "the tooth pair bring them",
+    )
     hunting_cycles: int = Field(
         32, ge=1, le=100_000, description="mesh cycles taken from the hunting cycle, evenly spread"
     )

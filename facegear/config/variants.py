@@ -1,4 +1,4 @@
-"""One machine with some numbers of its config changed: where a key stands, and its nominal value."""
+"""One machine with some numbers of its config changed: which may, where one stands, its nominal value."""
 
 from collections.abc import Iterable, Mapping
 from copy import deepcopy
@@ -8,6 +8,13 @@ from facegear.errors import ConfigError
 
 SPEED = "dynamics.speed_rpm"
 MACHINE = "transmission."
+PAIR = "tooth_pair."
+GAPS = ("assembly", "pinion.tip_relief", "pinion.root_relief", "pinion.lead_crowning")
+"""Keys of the tooth pair that move unloaded flanks, and no node of the bodies."""
+MODULI = tuple(f"{body}material.young_modulus_gpa" for body in ("", "pinion.", "face_gear."))
+"""Keys of the tooth pair that a compliance is inversely proportional to."""
+WITHOUT_MESHING = tuple(f"{PAIR}{key}" for key in (*GAPS, *MODULI))
+"""What of the tooth pair may change without a body being meshed and factorised again."""
 SHARED = {"single_pinions": "pinion", "single_gears": "face_gear", "single_meshes": None}
 """Sections of single parts, and the section that holds what all parts of the kind have."""
 START = {"position_um": {"x": 0.0, "y": 0.0}, "runout": {"eccentricity_um": 0.0, "phase_deg": 0.0}}
@@ -15,60 +22,72 @@ START = {"position_um": {"x": 0.0, "y": 0.0}, "runout": {"eccentricity_um": 0.0,
 PLAIN = {"error_um": 0.0, "stiffness_factor": 1.0, "clocking_deg": 0.0}
 
 
-def movable(
-    transmission: Mapping[str, Any], keys: Iterable[str], told: str = "tolerances.causes.moves"
+def variable_part(
+    transmission: Mapping[str, Any], tooth_pair: Mapping[str, Any], speed_rpm: float
 ) -> dict[str, Any]:
-    """Section `transmission` with an entry for every part that one of the keys names.
+    """The plain values of a config that may change from machine to machine, under the keys that they have."""
+    return {
+        "transmission": transmission,
+        "tooth_pair": tooth_pair,
+        "dynamics": {"speed_rpm": speed_rpm},
+    }
+
+
+def moves_pair(keys: Iterable[str]) -> bool:
+    """Whether one of the dotted keys belongs to the tooth pair."""
+    return any(key.startswith(PAIR) for key in keys)
+
+
+def movable(
+    values: Mapping[str, Any],
+    keys: Iterable[str],
+    allowed: Iterable[str] = (MACHINE, SPEED, PAIR),
+    told: str = "tolerances.causes.moves",
+) -> dict[str, Any]:
+    """Values as of `variable_part` with an entry for every single part that one of the keys names.
 
     What such an entry leaves open is filled with what all parts have. Raises ConfigError for `told`, naming
-    the first key that is no number of the section.
+    the first key that begins with none of the texts `allowed`, or is no number.
     """
-    complete = deepcopy(dict(transmission))
+    complete = deepcopy(dict(values))
     for key in keys:
-        if key == SPEED:
-            continue
-        if not key.startswith(MACHINE):
-            raise ConfigError(told, key, f"a number of transmission, or {SPEED}")
-        parts = key.removeprefix(MACHINE).split(".")
-        if len(parts) > 2 and parts[0] in SHARED and isinstance(complete.get(parts[0]), dict):
-            _enter(complete, parts)
+        if not key.startswith(tuple(allowed)):
+            names = ", ".join(text.removesuffix(".") for text in allowed)
+            raise ConfigError(told, key, f"a number of {names}")
+        parts = key.split(".")
+        if len(parts) > 3 and parts[1] in SHARED and isinstance(complete[parts[0]].get(parts[1]), dict):
+            _enter(complete[parts[0]], parts[1:])
         inside, last = _holder(complete, parts)
         found = inside[last] if _has(inside, last) else None
         if isinstance(found, bool) or not isinstance(found, int | float):
-            allowed = "a key of transmission whose nominal value is a number"
-            raise ConfigError(told, key, allowed)
+            raise ConfigError(told, key, f"a key of {parts[0]} whose nominal value is a number")
     return complete
 
 
-def moved(
-    transmission: Mapping[str, Any], speed_rpm: float, changes: Mapping[str, float]
-) -> tuple[dict[str, Any], float]:
-    """A section made by `movable`, and the speed, with the changes added to their nominal values."""
-    changed = deepcopy(dict(transmission))
+def moved(values: Mapping[str, Any], changes: Mapping[str, float]) -> dict[str, Any]:
+    """Values made by `movable` with the changes added to their nominal values."""
+    changed = deepcopy(dict(values))
     for key, added in changes.items():
-        if key == SPEED:
-            speed_rpm += added
-            continue
-        inside, last = _holder(changed, key.removeprefix(MACHINE).split("."))
+        inside, last = _holder(changed, key.split("."))
         inside[last] = inside[last] + added
-    return changed, speed_rpm
+    return changed
 
 
-def nominal(transmission: Mapping[str, Any], keys: Iterable[str]) -> float:
-    """The number that all keys of a section made by `movable` have; nan where they differ."""
+def nominal(values: Mapping[str, Any], keys: Iterable[str]) -> float:
+    """The number that all keys of values made by `movable` have; nan where they differ."""
     found = set()
     for key in keys:
-        inside, last = _holder(transmission, key.removeprefix(MACHINE).split("."))
+        inside, last = _holder(values, key.split("."))
         found.add(float(inside[last]))
     return found.pop() if len(found) == 1 else float("nan")
 
 
-def placed(transmission: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, Any]:
-    """A section made by `movable` with numbers put in the place of nominal ones."""
-    changed = deepcopy(dict(transmission))
-    for key, value in values.items():
-        inside, last = _holder(changed, key.removeprefix(MACHINE).split("."))
-        inside[last] = value
+def placed(values: Mapping[str, Any], numbers: Mapping[str, float]) -> dict[str, Any]:
+    """Values made by `movable` with numbers in the place of nominal ones; those of teeth are rounded."""
+    changed = deepcopy(dict(values))
+    for key, number in numbers.items():
+        inside, last = _holder(changed, key.split("."))
+        inside[last] = round(number) if str(last).endswith("teeth") else number
     return changed
 
 

@@ -1,7 +1,7 @@
 """The loaded flank of one gear as the contact analysis takes it: its surface and its compliance."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,11 @@ class GearFlank:
     side: ContactSide
     compliance: FlankCompliance
     gauges: RootGauges | None = None
+
+    def softer(self, factor: float) -> "GearFlank":
+        """The flank with Young's modulus smaller by a factor; its gauges read the same stress."""
+        given = self.compliance
+        return replace(self, compliance=replace(given, own=factor * given.own, others=factor * given.others))
 
 
 STORED = {

@@ -3,7 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from facegear.dynamics.bearing_forces import bearing_history
 from facegear.dynamics.motion import Settings
+from facegear.dynamics.steady_state.simulate import build_model
+from facegear.load_sharing.bearings import bearing_mass
 from facegear.load_sharing.coefficients import sharing_coefficient
 from facegear.load_sharing.groups import load_groups
 from facegear.load_sharing.hunting import hunting_cycle, hunting_length
@@ -21,16 +24,19 @@ def quasi_static_quantities(machine: Machine, cycles: int) -> dict[str, float]:
     """Of `cycles` mesh cycles spread over the hunting cycle. Raises NotConverged."""
     run = hunting_cycle(machine, POSITIONS, max(hunting_length(machine) // cycles, 1))
     drive, back = np.split(run.found.flank_forces, 2, axis=1)
-    return _quantities(machine.layout, np.maximum(drive, back), _reversed(drive, back), dynamic=False)
+    loads, mass = np.maximum(drive, back), bearing_mass(run.bearings)
+    return _quantities(machine.layout, loads, _reversed(drive, back), mass, dynamic=False)
 
 
 def dynamic_quantities(
     machine: Machine, speed_rpm: float, settings: Settings, options: SharingOptions
 ) -> dict[str, float]:
     """Of the motion reached from static equilibrium. Raises NotConverged naming the speed."""
-    forces = load_sharing(machine, speed_rpm, settings, options).response.forces
+    model = build_model(machine)
+    response = load_sharing(model, speed_rpm, settings, options).response
+    forces, mass = response.forces, bearing_mass(bearing_history(model, response))
     drive, back = np.maximum(forces, 0.0), np.maximum(-forces, 0.0)
-    return _quantities(machine.layout, np.abs(forces), _reversed(drive, back), dynamic=True)
+    return _quantities(machine.layout, np.abs(forces), _reversed(drive, back), mass, dynamic=True)
 
 
 def _reversed(drive: NDArray[np.float64], back: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -40,9 +46,9 @@ def _reversed(drive: NDArray[np.float64], back: NDArray[np.float64]) -> NDArray[
 
 
 def _quantities(
-    layout: Layout, loads: NDArray[np.float64], reversed_: NDArray[np.bool_], dynamic: bool
+    layout: Layout, loads: NDArray[np.float64], reversed_: NDArray[np.bool_], mass: float, dynamic: bool
 ) -> dict[str, float]:
-    """From the loads of all meshes (K, meshes), N, and where one of them is reversed (K,)."""
+    """From the loads of all meshes (K, meshes), N, where one of them is reversed (K,), and the bearings'."""
     groups = load_groups(layout)
     shared = sorted({mesh for group in groups for mesh in group.meshes})
     factors, coefficients = [], []
@@ -54,5 +60,5 @@ def _quantities(
         defined = coefficient[~np.isnan(coefficient)]
         coefficients.append(defined.mean() if defined.size else np.nan)
     opened = (loads[:, shared] == 0.0).any(axis=1).mean() if shared else 0.0
-    found = (*factors, *coefficients, loads.max(), opened, reversed_.mean())
+    found = (*factors, *coefficients, loads.max(), opened, reversed_.mean(), mass)
     return dict(zip(quantity_names(layout, dynamic), map(float, found), strict=True))

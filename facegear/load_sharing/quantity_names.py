@@ -1,28 +1,48 @@
 """Names of what one machine among many is judged by."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-from facegear.load_sharing.groups import load_groups
-from facegear.transmission.layout import Layout
+if TYPE_CHECKING:
+    from facegear.transmission.layout import Layout
 
 PEAK, OPEN, REVERSED = "peak_mesh_force_n", "open_share", "reversed_share"
+BEARINGS = "bearing_mass"
+ERROR_RANGE, ERROR_HARMONIC, PRESSURE = "te_peak_to_peak_um", "te_first_harmonic_um", "pressure_mpa"
+ROOTS = {"pinion": "root_stress_pinion_mpa", "face_gear": "root_stress_face_gear_mpa"}
+CONTACT = (ERROR_RANGE, ERROR_HARMONIC, PRESSURE, *ROOTS.values())
+"""What a contact analysis alone tells."""
 
 
-def quantity_names(layout: Layout, dynamic: bool) -> tuple[str, ...]:
+def quantity_names(
+    layout: "Layout", dynamic: bool, contact: bool = False, gauges: bool = False
+) -> tuple[str, ...]:
     """Columns of a sample.
 
     `k_gamma <mesh>`: largest quasi-static load of a path over an even share of its group's mean;
     `k_gamma_k_v <mesh>`: the same of the motion, so the product of K_gamma and the dynamic factor;
     `coefficient <group>`: mean over time of the largest load over the mean (equations (25), (26));
     then the largest load of a mesh, the share of time in which some mesh that shares a load carries
-    nothing, and in which some mesh is loaded on the flank that it does not work on.
+    nothing, and in which some mesh is loaded on the flank that it does not work on; the mass of bearings for
+    the loads on them (`facegear.load_sharing.bearings`). With `contact`, the loaded transmission error of the
+    tooth pair and its pressure, with `gauges` the root stress of both bodies
+    (`facegear.strength.pair_answers`).
     """
+    from facegear.load_sharing.groups import load_groups
+
     groups = load_groups(layout)
     factor = "k_gamma_k_v" if dynamic else "k_gamma"
     paths = [f"{factor} {layout.mesh_names[mesh]}" for group in groups for mesh in group.meshes]
-    return (*paths, *(f"coefficient {group.name}" for group in groups), PEAK, OPEN, REVERSED)
+    names = [*paths, *(f"coefficient {group.name}" for group in groups), PEAK, OPEN, REVERSED, BEARINGS]
+    names += [ERROR_RANGE, ERROR_HARMONIC, PRESSURE] if contact else []
+    return (*names, *(ROOTS.values() if contact and gauges else ()))
 
 
 def columns_of(start: str, names: Sequence[str]) -> list[str]:
     """Those of the names that begin with a text."""
     return [name for name in names if name.startswith(start)]
+
+
+def of_contact(start: str) -> bool:
+    """Whether a text begins the name of something that a contact analysis alone tells."""
+    return bool(columns_of(start, CONTACT))

@@ -223,11 +223,12 @@ class Chain:
             from facegear.stages.search_island import search_island
 
             needs, harmonics = self._needs("search_island"), self._harmonics()
+            flanks = self._flanks(needs["pair"])
             islands = {
-                seed: search_island(seed, harmonics, **needs).content["designs"]
+                seed: search_island(seed, harmonics, **needs, flanks=flanks).content["designs"]
                 for seed in self.values["search"]["seeds"]
             }
-            return search(islands, harmonics, **self._needs("search"))
+            return search(islands, harmonics, **self._needs("search"), flanks=flanks)
 
         return self.store.result("search", self.values, SearchResult, compute)
 
@@ -250,6 +251,10 @@ class Chain:
             lambda path: from_arrays(arrays.read(path, STORED)),
             lambda: compliance(body, **self._needs("compliance")),
         )
+
+    def _flanks(self, pair: Mapping[str, Any] | None) -> "dict[str, GearFlank]":
+        """Compliance of both bodies, where machines among many are put into contact."""
+        return {} if pair is None else {body: self._compliance(body) for body in ("pinion", "face_gear")}
 
     def _duty_spectrum(self) -> Any:
         from facegear.io import tables
@@ -310,4 +315,6 @@ class Chain:
         if not count:
             return []
         needs = self._needs("tolerances_chunk")
-        return [tolerances_chunk(design, 0, count - 1, self._harmonics(), **needs).content["chunk"]]
+        flanks = self._flanks(needs["pair"])
+        found = tolerances_chunk(design, 0, count - 1, self._harmonics(), **needs, flanks=flanks)
+        return [found.content["chunk"]]

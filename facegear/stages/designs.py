@@ -9,23 +9,27 @@ import pandas as pd
 
 from facegear.config.base import parse
 from facegear.config.checks import check_places
-from facegear.config.lumped_model import TEETH, layout, tooth_numbers
+from facegear.config.lumped_model import wired_layout
 from facegear.config.search import ObjectiveSection, Search
 from facegear.config.tolerances import Tolerances, population
 from facegear.config.tooth_pair import ToothPair
 from facegear.config.transmission import Transmission
-from facegear.config.variants import movable, moved, placed
+from facegear.config.variants import movable, moved, placed, variable_part
 from facegear.load_sharing.quantity_names import columns_of, quantity_names
 from facegear.scenarios.evolution import Task, Variable
 from facegear.scenarios.sampling import changes, samples
-from facegear.stages.many_machines import builder, judge
+from facegear.stages.many_machines import Question, judge
+from facegear.stages.tooth_meshes import Flanks, tooth_meshes
 
 Found = dict[str, float]
 
 
 @dataclass(frozen=True, eq=False)
 class SearchedMachine:
-    """The machine whose numbers are free, as plain config values: the arguments of a stage of the search."""
+    """The machine whose numbers are free, as plain config values: the arguments of a stage of the search.
+
+    `pair`, the sections that contact needs, and `flanks` where designs are put into contact.
+    """
 
     harmonics: pd.DataFrame
     tooth_pair: Mapping[str, Any]
@@ -34,6 +38,13 @@ class SearchedMachine:
     speed_rpm: float
     options: Mapping[str, Any]
     tolerances: Mapping[str, Any] | None
+    pair: Mapping[str, Any] | None
+    flanks: Flanks
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """What may be free."""
+        return variable_part(self.transmission, self.tooth_pair, self.speed_rpm)
 
 
 def task(section: Search) -> Task:
@@ -59,23 +70,21 @@ def assessor(
     causes = population(tolerances) if tolerances else None
     keys = [key for variable in section.variables for key in variable.sets]
     moves = [key for cause in causes.causes for key, _ in cause.gains] if causes else []
-    start = movable(given.transmission, [*keys, *moves])
-    pair = parse(ToothPair, given.tooth_pair)
-    numbers = tooth_numbers(**{key: given.tooth_pair[key] for key in TEETH})
-    build = builder(given.harmonics, given.tooth_pair, "this design")
-    ask = judge(section.model, cycles, given.accuracy, given.options)
-    names = quantity_names(layout(parse(Transmission, start), numbers), section.model == "dynamic")
+    start = movable(given.values, [*keys, *moves])
+    question = Question(section.model, cycles, given.accuracy, given.options)
+    ask = judge(question, tooth_meshes(given.harmonics, given.pair, given.flanks), "this design")
+    gauges = given.pair is not None and given.pair["contact"]["root_stress"]
+    shape = wired_layout(start["transmission"], given.tooth_pair)
+    names = quantity_names(shape, question.dynamic, given.pair is not None, gauges)
     drawn = [changes(causes, row) for row in samples(causes, 0, count)] if causes else []
 
     def assess(design: Sequence[float] | None) -> tuple[Found, Found]:
-        values = zip(section.variables, design, strict=True) if design is not None else ()
-        chosen = placed(start, {key: float(value) for variable, value in values for key in variable.sets})
-        check_places(pair, parse(Transmission, chosen, "this design"))
-        nominal = ask(build(chosen), given.speed_rpm)
-        varied = []
-        for added in drawn:
-            changed, speed = moved(chosen, given.speed_rpm, added)
-            varied.append(ask(build(changed), speed))
+        numbers = zip(section.variables, design, strict=True) if design is not None else ()
+        chosen = placed(start, {key: float(number) for variable, number in numbers for key in variable.sets})
+        pair = parse(ToothPair, chosen["tooth_pair"], "this design")
+        check_places(pair, parse(Transmission, chosen["transmission"], "this design"))
+        nominal = ask(chosen)
+        varied = [ask(moved(chosen, added)) for added in drawn]
         goals = {}
         for goal in (*section.objectives, *section.constraints):
             goals[goal.name] = _goal(goal, names, nominal, varied)

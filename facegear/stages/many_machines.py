@@ -1,43 +1,61 @@
 """Machines put together and judged again and again: what samples and designs have in common."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
-
-import pandas as pd
 
 from facegear.config.base import parse
 from facegear.config.buildable import require_buildable
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.load_sharing import LoadSharing, sharing_options
-from facegear.config.lumped_model import TEETH, machine, tooth_numbers
+from facegear.config.lumped_model import machine
 from facegear.config.transmission import Transmission
 from facegear.load_sharing.quantities import dynamic_quantities, quasi_static_quantities
-from facegear.stiffness.tables import series_of, unloaded_error
+from facegear.load_sharing.quantity_names import PEAK
+from facegear.stages.tooth_meshes import Meshes
 
-Build = Callable[[Mapping[str, Any]], Any]
-"""Puts a machine together from its section, or raises the error that a config gets."""
-Judge = Callable[[Any, float], dict[str, float]]
-"""What a machine is judged by at a speed (rpm), by column name."""
+Judge = Callable[[Mapping[str, Any]], dict[str, float]]
+"""What a machine is judged by, by column name, given the values of `facegear.config.variants.variable_part`.
+
+Raises the error that a config gets for a machine that cannot be built, NotConverged."""
 
 
-def builder(harmonics: pd.DataFrame, teeth: Mapping[str, Any], told: str) -> Build:
+@dataclass(frozen=True)
+class Question:
+    """How machines are judged: by loads over `cycles` mesh cycles of the hunting cycle, or of the motion.
+
+    `model`: quasi_static or dynamic; `accuracy`, `options`: sections dynamics.accuracy and load_sharing.
+    """
+
+    model: str
+    cycles: int
+    accuracy: Mapping[str, Any]
+    options: Mapping[str, Any]
+
+    @property
+    def dynamic(self) -> bool:
+        """Whether the motion is asked for."""
+        return self.model == "dynamic"
+
+
+def judge(question: Question, meshes: Meshes, told: str) -> Judge:
     """`told` names the machine in errors."""
-    numbers = tooth_numbers(**{key: teeth[key] for key in TEETH})
-    stiffness, unloaded = series_of(harmonics), unloaded_error(harmonics)
+    ask = _ask(question)
 
-    def build(transmission: Mapping[str, Any]) -> Any:
-        section = parse(Transmission, transmission, told)
-        require_buildable(section, numbers)
-        return machine(section, numbers, stiffness, unloaded)
+    def judged(values: Mapping[str, Any]) -> dict[str, float]:
+        mesh = meshes(values["tooth_pair"])
+        section = parse(Transmission, mesh.in_machine(values["transmission"]), told)
+        require_buildable(section, mesh.numbers)
+        built = machine(section, mesh.numbers, mesh.stiffness, mesh.unloaded)
+        found = ask(built, values["dynamics"]["speed_rpm"])
+        return {**found, **mesh.quantities(found[PEAK])}
 
-    return build
+    return judged
 
 
-def judge(model: str, cycles: int, accuracy: Mapping[str, Any], options: Mapping[str, Any]) -> Judge:
-    """By loads over `cycles` mesh cycles of the hunting cycle, or where `model` is dynamic of the motion."""
-    if model == "quasi_static":
-        return lambda built, speed: quasi_static_quantities(built, cycles)
-    precise = settings(parse(Accuracy, accuracy))
-    one_start = replace(sharing_options(parse(LoadSharing, options)), starts=1)
+def _ask(question: Question) -> Callable[[Any, float], dict[str, float]]:
+    if not question.dynamic:
+        return lambda built, speed: quasi_static_quantities(built, question.cycles)
+    precise = settings(parse(Accuracy, question.accuracy))
+    one_start = replace(sharing_options(parse(LoadSharing, question.options)), starts=1)
     return lambda built, speed: dynamic_quantities(built, speed, precise, one_start)

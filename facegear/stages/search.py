@@ -12,6 +12,7 @@ from facegear.config.variants import movable, nominal
 from facegear.scenarios.evolution import Task, front, hypervolumes
 from facegear.stages.designs import SearchedMachine, assessor, task
 from facegear.stages.outcome import Outcome
+from facegear.stages.tooth_meshes import Flanks
 
 WHOLE = 2**31
 """More mesh cycles than any hunting cycle has: all of them."""
@@ -27,6 +28,8 @@ def search(
     options: Mapping[str, Any],
     search: Mapping[str, Any],
     tolerances: Mapping[str, Any] | None,
+    pair: Mapping[str, Any] | None = None,
+    flanks: Flanks | None = None,
 ) -> Outcome:
     """`designs`, `front`, `hypervolume`, `winners` (tables) from the designs of each island by its seed."""
     section = parse(Search, search)
@@ -34,7 +37,9 @@ def search(
     every = pd.concat([one.assign(seed=seed) for seed, one in islands.items()], ignore_index=True)
     best = front(every, asked)
     covered = hypervolumes(islands, asked)
-    given = SearchedMachine(harmonics, tooth_pair, transmission, accuracy, speed_rpm, options, tolerances)
+    given = SearchedMachine(
+        *(harmonics, tooth_pair, transmission, accuracy, speed_rpm, options, tolerances, pair, flanks or {})
+    )
     return Outcome(
         {
             "designs": every,
@@ -71,7 +76,7 @@ def _winners(best: pd.DataFrame, asked: Task, given: SearchedMachine, section: S
 
 def _nominal(given: SearchedMachine, section: Search) -> list[float]:
     """Values of the variables in the config; nan where the keys of one differ."""
-    start = movable(given.transmission, [key for variable in section.variables for key in variable.sets])
+    start = movable(given.values, [key for variable in section.variables for key in variable.sets])
     return [nominal(start, variable.sets) for variable in section.variables]
 
 

@@ -14,6 +14,7 @@ from facegear.scenarios.chunks import identity
 from facegear.scenarios.evolution import Effort, evolve
 from facegear.stages.designs import SearchedMachine, assessor, task
 from facegear.stages.outcome import Outcome
+from facegear.stages.tooth_meshes import Flanks
 
 
 def search_island(
@@ -26,6 +27,8 @@ def search_island(
     options: Mapping[str, Any],
     search: Mapping[str, Any],
     tolerances: Mapping[str, Any] | None,
+    pair: Mapping[str, Any] | None = None,
+    flanks: Flanks | None = None,
     partial: str | Path | None = None,
     code: str = "",
 ) -> Outcome:
@@ -35,13 +38,15 @@ def search_island(
     counts only for the same config and `code`.
     """
     section = parse(Search, search)
-    given = SearchedMachine(harmonics, tooth_pair, transmission, accuracy, speed_rpm, options, tolerances)
+    given = SearchedMachine(
+        *(harmonics, tooth_pair, transmission, accuracy, speed_rpm, options, tolerances, pair, flanks or {})
+    )
     assess = assessor(given, section, section.hunting_cycles, section.samples)
     effort = Effort(section.population, section.generations, seed)
     progress = Progress(f"search from seed {seed}", effort.population * effort.generations)
     same = identity(
         *(seed, harmonics.to_csv(), tooth_pair, transmission, accuracy, speed_rpm, options),
-        *(search, tolerances, code),
+        *(search, tolerances, pair, code),
     )
     with TemporaryDirectory() as folder:
         kept = Path(folder) / "partial" if partial is None else partial

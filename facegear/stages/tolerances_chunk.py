@@ -8,16 +8,16 @@ from typing import Any
 import pandas as pd
 
 from facegear.config.base import parse
-from facegear.config.lumped_model import TEETH, layout, tooth_numbers
+from facegear.config.lumped_model import wired_layout
 from facegear.config.tolerances import Design, Tolerances, population
-from facegear.config.transmission import Transmission
-from facegear.config.variants import movable, moved
+from facegear.config.variants import movable, moved, variable_part
 from facegear.load_sharing.quantity_names import quantity_names
 from facegear.progress import Progress
 from facegear.scenarios.chunks import Evaluate, identity, run_chunk
 from facegear.scenarios.sampling import changes, index_samples, samples
-from facegear.stages.many_machines import builder, judge
+from facegear.stages.many_machines import Question, judge
 from facegear.stages.outcome import Outcome
+from facegear.stages.tooth_meshes import Flanks, tooth_meshes
 
 
 def tolerances_chunk(
@@ -31,30 +31,38 @@ def tolerances_chunk(
     speed_rpm: float,
     options: Mapping[str, Any],
     tolerances: Mapping[str, Any],
+    pair: Mapping[str, Any] | None = None,
+    flanks: Flanks | None = None,
     partial: str | Path | None = None,
     code: str = "",
 ) -> Outcome:
     """`chunk` (table): samples `first` to `last`, the values of their causes, what was found, the error.
 
-    A sample that cannot be built or computed is a row with its error. `partial` is a file that keeps finished
-    samples, so that a killed chunk goes on after its last one; it counts only for the same config and `code`.
+    With `pair`, the sections that contact needs, and `flanks`, the compliance of its bodies, every tooth pair
+    that differs is put into contact; without, all have the stiffness of `harmonics`. A sample that cannot be
+    built or computed is a row with its error. `partial` is a file that keeps finished samples, so that a
+    killed chunk goes on after its last one; it counts only for the same config and `code`.
     """
     section = parse(Tolerances, tolerances)
     causes = population(section)
     draw = samples if design == "samples" else index_samples
     values = draw(causes, first, last - first + 1)
-    start = movable(transmission, [key for cause in causes.causes for key, _ in cause.gains])
-    shape = layout(parse(Transmission, start), tooth_numbers(**{key: teeth[key] for key in TEETH}))
-    names = quantity_names(shape, section.model == "dynamic")
-    ask = judge(section.model, section.hunting_cycles, accuracy, options)
-    build = builder(harmonics, teeth, "this sample")
+    start = movable(
+        variable_part(transmission, pair["tooth_pair"] if pair else teeth, speed_rpm),
+        [key for cause in causes.causes for key, _ in cause.gains],
+    )
+    question = Question(section.model, section.hunting_cycles, accuracy, options)
+    ask = judge(question, tooth_meshes(harmonics, pair, flanks or {}), "this sample")
+    gauges = pair is not None and pair["contact"]["root_stress"]
+    shape = wired_layout(start["transmission"], teeth)
+    names = quantity_names(shape, question.dynamic, pair is not None, gauges)
 
     def evaluate(number: int) -> dict[str, float]:
-        changed, speed = moved(start, speed_rpm, changes(causes, values[number - first]))
-        return ask(build(changed), speed)
+        return ask(moved(start, changes(causes, values[number - first])))
 
     same = identity(
-        design, transmission, teeth, accuracy, speed_rpm, options, tolerances, harmonics.to_csv(), code
+        *(design, transmission, teeth, accuracy, speed_rpm, options, tolerances, pair),
+        *(harmonics.to_csv(), code),
     )
     progress = Progress(f"{design} {first} to {last}", len(values))
     frame = _run(evaluate, range(first, last + 1), names, partial, same, progress)

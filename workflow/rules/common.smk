@@ -13,7 +13,7 @@ os.environ.update(PYTHONPATH=str(ROOT), MPLBACKEND="Agg")
 
 from facegear.config.cases import expand_cases, shared_sources
 from facegear.config.load import load_values
-from facegear.config.needs import NEEDS, loads_from_machine, stage_needs
+from facegear.config.needs import NEEDS, loads_from_machine, many_contacts, stage_needs
 from facegear.config.notes import notes, turns
 from facegear.errors import FacegearError
 from facegear.io.run_lock import hold

@@ -5,6 +5,7 @@ rule search_island:
     "Evolution of designs from one seed"
     input:
         harmonics=shared("stiffness", "harmonics"),
+        flanks=flanks("search_island"),
     output:
         designs="results/{case}/search/islands/{seed}.parquet",
         manifest="results/{case}/search/islands/{seed}.provenance.json",
@@ -20,6 +21,7 @@ rule search:
     "Front of all islands, and its winners at full accuracy"
     input:
         harmonics=shared("stiffness", "harmonics"),
+        flanks=flanks("search"),
         islands=search_islands,
     output:
         designs="results/{case}/search/designs.parquet",

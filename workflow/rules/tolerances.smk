@@ -5,6 +5,7 @@ rule tolerances_chunk:
     "Samples of the machine with its tolerances"
     input:
         harmonics=shared("stiffness", "harmonics"),
+        flanks=flanks("tolerances_chunk"),
     output:
         chunk="results/{case}/tolerances/chunks/{design}_{first}_{last}.parquet",
         manifest="results/{case}/tolerances/chunks/{design}_{first}_{last}.provenance.json",

@@ -6,11 +6,13 @@ from facegear.io import tables
 from facegear.io.files import write_all
 from facegear.provenance.stage import stage
 from facegear.stages.tolerances_chunk import tolerances_chunk
+from facegear.stages.tooth_meshes import read_flanks
 from facegear.stiffness.tables import HARMONICS_COLUMNS
 
 with stage(snakemake) as run:
     wildcards, params = snakemake.wildcards, snakemake.params
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
+    flanks = read_flanks(snakemake.input.flanks)
     partial = Path(snakemake.output.chunk).with_suffix(".partial")
     found = tolerances_chunk(
         wildcards.design,
@@ -18,6 +20,7 @@ with stage(snakemake) as run:
         int(wildcards.last),
         harmonics,
         **params.needs,
+        flanks=flanks,
         partial=partial,
         code=params.code,
     )

@@ -1,0 +1,26 @@
+"""What the bearings of a machine weigh for the loads that they carry."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+LIFE_EXPONENT = 10.0 / 3.0
+"""Of roller bearings, ISO 281: life falls as this power of the load."""
+
+MASS_EXPONENT = 3.0 / (7.0 / 9.0 + 29.0 / 27.0)
+"""Mass grows as this power of the dynamic rating: of similar roller bearings the first goes with the cube of
+their size, the second, ISO 281, with roller length^(7/9) times roller diameter^(29/27)."""
+
+REFERENCE = 1e4
+"""Load (N) of the bearing whose mass is the unit."""
+
+
+def bearing_mass(forces: NDArray[np.float64]) -> float:
+    """Mass of all bearings, in masses of one that carries REFERENCE for the same life.
+
+    `forces` (K, bodies, 3), N, of every body on its bearing at K evenly spaced times. Each bearing is of one
+    series, as large as its equivalent load P = (mean of F^(10/3))^(3/10) asks for at equal life, so that its
+    mass goes with P^1.62; F is the length of the force. Bodies turn at different speeds, which is left out.
+    """
+    size = np.linalg.norm(forces, axis=-1)
+    equivalent = np.mean(size**LIFE_EXPONENT, axis=0) ** (1.0 / LIFE_EXPONENT)
+    return float(np.sum((equivalent / REFERENCE) ** MASS_EXPONENT))

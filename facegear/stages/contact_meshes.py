@@ -1,0 +1,96 @@
+"""Tooth pairs put into contact again and again, with one compliance for all whose bodies are the same."""
+
+import json
+from collections.abc import Callable
+from functools import lru_cache
+
+from facegear.config.base import parse
+from facegear.config.checks import geometric_backlash
+from facegear.config.lumped_model import ToothNumbers
+from facegear.config.needs import without
+from facegear.config.tooth_pair import ToothPair, materials
+from facegear.config.variants import GAPS, MODULI
+from facegear.contact.gear_flank import GearFlank
+from facegear.contact.nodal_loads import BODIES
+from facegear.stages.compliance import compliance
+from facegear.stages.contact import contact
+from facegear.stages.root_stress import passing
+from facegear.stages.stiffness import stiffness
+from facegear.stages.tooth_meshes import Flanks, Meshes, ToothMesh, Values, numbers_of
+from facegear.stiffness.curve import load_table
+from facegear.stiffness.tables import series_of, unloaded_error
+from facegear.strength.pair_answers import PairAnswers, pair_answers
+
+KEPT = 16
+"""Pairs that are remembered: samples of one block of Saltelli's design share theirs."""
+KEPT_BODIES = 4
+"""Compliances of both bodies that are remembered, some 70 MB each at the default resolution."""
+
+
+def meshes_in_contact(pair: Values, flanks: Flanks) -> Meshes:
+    """`pair`: sections tooth_pair, mesh, contact, mesh_stiffness; `flanks`: the compliance of its bodies."""
+    backlash = geometric_backlash(parse(ToothPair, pair["tooth_pair"]))
+    bodies = _bodies(pair, flanks)
+
+    @lru_cache(maxsize=KEPT)
+    def meshed(text: str) -> ToothMesh:
+        values = json.loads(text)
+        section = parse(ToothPair, values, "this pair")
+        added = geometric_backlash(section) - backlash
+        both = bodies(values)
+        found = contact(*both, values, pair["contact"]).content
+        table = stiffness(pair["mesh_stiffness"], found["ltca"]).content["harmonics"]
+        numbers = numbers_of(values)
+        return ToothMesh(
+            numbers=numbers,
+            stiffness=series_of(table),
+            unloaded=unloaded_error(table),
+            backlash_added=added,
+            answers=_answers(pair, found, dict(zip(BODIES, both, strict=True)), numbers),
+        )
+
+    return lambda values: meshed(json.dumps(values, sort_keys=True))
+
+
+def _answers(pair: Values, found: Values, flanks: Flanks, numbers: ToothNumbers) -> PairAnswers:
+    torque, ltca = pair["mesh_stiffness"]["torque_n_m"], found["ltca"]
+    unloaded = ltca[ltca["torque_n_m"] == ltca["torque_n_m"].min()].sort_values("position")["unloaded_ste_um"]
+    approach = torque / numbers.pinion_base_radius / load_table(ltca).at(torque, "average")
+    error = 1e-6 * unloaded.to_numpy(float) + approach
+    roots = {body: passing(body, flank, found["loads"]) for body, flank in flanks.items() if flank.gauges}
+    return pair_answers(ltca, error, roots)
+
+
+def _bodies(pair: Values, flanks: Flanks) -> Callable[[Values], tuple[GearFlank, GearFlank]]:
+    """Compliance of both bodies of a pair.
+
+    Those given serve every pair of the same nodes: displacements by a force go with 1/E exactly.
+    """
+    start = pair["tooth_pair"]
+    known = {_nodes(start): (start, dict(flanks))}
+
+    def bodies(values: Values) -> tuple[GearFlank, GearFlank]:
+        key = _nodes(values)
+        if key not in known:
+            made = {body: compliance(body, values, pair["mesh"], pair["contact"]) for body in BODIES}
+            if len(known) > KEPT_BODIES:
+                known.pop(list(known)[1])
+            known[key] = values, made
+        of, made = known[key]
+        moduli = (
+            [one.young_modulus for one in materials(parse(ToothPair, section))] for section in (of, values)
+        )
+        first, second = (
+            made[body] if before == after else made[body].softer(before / after)
+            for body, before, after in zip(BODIES, *moduli, strict=True)
+        )
+        return first, second
+
+    return bodies
+
+
+def _nodes(tooth_pair: Values) -> str:
+    """What of a pair the nodes of its bodies, and how they give way but for Young's moduli, follow from."""
+    for key in (*GAPS, *MODULI):
+        tooth_pair = without(tooth_pair, key)
+    return json.dumps(tooth_pair, sort_keys=True)

@@ -1,0 +1,94 @@
+"""The tooth pair of machines among many: one for all, or in contact anew wherever it differs."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from facegear.config.lumped_model import TEETH, ToothNumbers, tooth_numbers
+from facegear.harmonics.series import Harmonics
+from facegear.load_sharing.quantity_names import ERROR_HARMONIC, ERROR_RANGE, PRESSURE, ROOTS
+from facegear.stiffness.tables import series_of, unloaded_error
+from facegear.strength.pair_answers import PairAnswers
+
+if TYPE_CHECKING:
+    from facegear.contact.gear_flank import GearFlank
+
+Values = Mapping[str, Any]
+Flanks = Mapping[str, "GearFlank"]
+"""Compliance of both bodies by name."""
+
+
+@dataclass(frozen=True, eq=False)
+class ToothMesh:
+    """What a tooth pair means for its machine: k and e over a pitch, and the teeth's numbers.
+
+    `backlash_added` (um): what the pair has more than the one of the config. `answers` where it was put into
+    contact.
+    """
+
+    numbers: ToothNumbers
+    stiffness: Harmonics
+    unloaded: Harmonics | None
+    backlash_added: float = 0.0
+    answers: PairAnswers | None = None
+
+    def in_machine(self, transmission: Values) -> dict[str, Any]:
+        """Section `transmission` with the backlash of all meshes as this pair has it."""
+        changed = dict(transmission)
+        if self.backlash_added == 0.0:
+            return changed
+        changed["backlash_um"] += self.backlash_added
+        changed["single_meshes"] = {
+            name: one
+            if one.get("backlash_um") is None
+            else {**one, "backlash_um": one["backlash_um"] + self.backlash_added}
+            for name, one in transmission["single_meshes"].items()
+        }
+        return changed
+
+    def quantities(self, force: float) -> dict[str, float]:
+        """Columns of a sample whose largest mesh force is `force` (N); none without contact."""
+        if self.answers is None:
+            return {}
+        told, torque = self.answers, force * self.numbers.pinion_base_radius
+        return {
+            ERROR_RANGE: 1e6 * told.error_range,
+            ERROR_HARMONIC: 1e6 * told.error_harmonic,
+            PRESSURE: 1e-6 * told.largest_pressure(torque),
+            **{ROOTS[body]: 1e-6 * told.largest_root_stress(body, torque) for body in told.roots},
+        }
+
+
+Meshes = Callable[[Values], ToothMesh]
+"""The mesh of a tooth pair, given the plain values of its section. Raises the errors that a config gets."""
+
+
+def tooth_meshes(harmonics: pd.DataFrame, pair: Values | None, flanks: Flanks) -> Meshes:
+    """One mesh for all, of `harmonics`; or by contact where `pair` holds the sections that it needs.
+
+    `pair`: tooth_pair, mesh, contact, mesh_stiffness; `flanks`: the compliance of its bodies by name.
+    """
+    if pair is not None:
+        from facegear.stages.contact_meshes import meshes_in_contact  # only contact needs finite elements
+
+        return meshes_in_contact(pair, flanks)
+    series, error = series_of(harmonics), unloaded_error(harmonics)
+    return lambda values: ToothMesh(numbers_of(values), series, error)
+
+
+def read_flanks(paths: Sequence[str]) -> Flanks:
+    """From the files of the pinion and of the face gear, or from none where there is no contact."""
+    if not paths:
+        return {}
+    from facegear.contact.gear_flank import STORED, from_arrays
+    from facegear.contact.nodal_loads import BODIES
+    from facegear.io import arrays
+
+    return {body: from_arrays(arrays.read(path, STORED)) for body, path in zip(BODIES, paths, strict=True)}
+
+
+def numbers_of(tooth_pair: Values) -> ToothNumbers:
+    """What the lumped model takes from the plain values of section `tooth_pair`."""
+    return tooth_numbers(**{key: tooth_pair[key] for key in TEETH})
