@@ -21,7 +21,7 @@ from facegear.geometry import pinion
 from facegear.geometry.design import Material
 from facegear.geometry.unloaded import PAIRS
 from facegear.validation.contact.brute_mesh import Chain, FlatGear, FlatMesh, flat_gear, refined
-from facegear.validation.contact.twin import involute_separation, turned
+from facegear.validation.contact.twin import involute_separation, standard_centre, turned
 
 PENALTIES = (1e14, 1e15, 1e16, 1e17, 1e18)
 """Pa per m, each the start of the next: by the last a pressure of 1 GPa gives way by 1 nm."""
@@ -150,7 +150,8 @@ def _separation(designs, facets, at, phi1, tooth):  # type: ignore[no-untyped-de
     points = pinion.cartesian(*pinion.involute_point(designs[0], roll), 0.0)
     nx, nz = pinion.involute_normal(designs[0], roll)
     normals = np.stack([nx, np.zeros_like(nx), nz], axis=1)
-    gap, hit = involute_separation(designs[0], designs[1], points, normals, phi1, tooth)
+    centre = standard_centre(*designs)
+    gap, hit = involute_separation(designs[0], designs[1], points, normals, phi1, tooth, centre)
     return normals, gap, hit
 
 

@@ -1,12 +1,12 @@
 """The plane-strain twin: two spur gears through the same bodies, influence matrix and contact solver.
 
 The pinion is as in `facegear.geometry.design`, its axis the y axis; the gear is a second pinion body turned
-by half a turn below it, so that both touch with their right sides. Involute flanks only, standard centre
-distance.
+by half a turn below it, so that both touch with their right sides. Involute flanks only; at any centre
+distance the gear is turned until its play is closed on that side.
 """
 
 from dataclasses import dataclass, replace
-from math import pi
+from math import acos, pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,7 @@ from facegear.contact.options import Ends, Refinement
 from facegear.contact.position import FIRST_GUESS, LoadedPosition, solve_position
 from facegear.contact.teeth import ContactSide, elastic_tooth
 from facegear.geometry import pinion
-from facegear.geometry.design import Material, PairDesign
+from facegear.geometry.design import Material, PairDesign, involute
 from facegear.geometry.placement import body_rotation
 from facegear.geometry.unloaded import PAIRS
 from facegear.mesh.sizes import MeshSizes
@@ -32,11 +32,12 @@ from facegear.mesh.tooth import ToothMesh, pinion_tooth
 class TwinModel:
     """Both gears (their own `pinion` counts), the pinion's surface and both compliances of one slab.
 
-    The blocks of the gear's compliance are ordered as the pinion's teeth are.
+    `centre` distance in m. The blocks of the gear's compliance are ordered as the pinion's teeth are.
     """
 
     pinion: PairDesign
     gear: PairDesign
+    centre: float
     surface: PinionSurface
     gear_side: ContactSide
     pinion_compliance: FlankCompliance
@@ -51,8 +52,12 @@ def twin_model(
     materials: tuple[Material, Material],
     teeth: int | None = None,
     ends: Ends = "ring",
+    centre: float | None = None,
 ) -> TwinModel:
-    """Slabs of both gears in plane strain, their whole rings or a sector of `teeth`."""
+    """Slabs of both gears in plane strain, their whole rings or a sector of `teeth`.
+
+    `centre` distance in m, None for that of standard gears.
+    """
     sides, compliances = [], []
     layer = replace(refinement, width=1)
     for design, size, material in zip((pinion_design, gear_design), sizes, materials, strict=True):
@@ -67,6 +72,7 @@ def twin_model(
     return TwinModel(
         pinion=pinion_design,
         gear=gear_design,
+        centre=centre or standard_centre(pinion_design, gear_design),
         surface=PinionSurface(pinion_design, sides[0], Lattice(sides[0].shape, layer)),
         gear_side=sides[1],
         pinion_compliance=compliances[0],
@@ -144,12 +150,12 @@ def involute_separation(
     normals: NDArray[np.float64],
     phi1: float,
     tooth: int,
+    centre: float,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Gap (n,) m along the normals of pinion points (n, 3), and the gear's roll there (nan: no flank)."""
     teeth, other = model_pinion.pinion.teeth, model_gear.pinion.teeth
-    centre = model_pinion.pinion_pitch_radius + model_gear.pinion_pitch_radius
     turn = phi1 + (tooth - 0.5) * 2 * pi / teeth
-    back = phi1 * teeth / other + tooth * 2 * pi / other
+    back = phi1 * teeth / other + tooth * 2 * pi / other - _play(model_pinion, model_gear, centre)
     start, along = turned(points[:, [0, 2]], turn), turned(normals[:, [0, 2]], turn)
     start, along = (turned(-vector, back) for vector in (start + np.array([0.0, centre]), along))
     low, high = pinion.junction_roll(model_gear), model_gear.pinion_tip_roll
@@ -173,6 +179,19 @@ def involute_separation(
     return np.where(on, distance, np.inf), np.where(on, roll, np.nan)
 
 
+def standard_centre(first: PairDesign, second: PairDesign) -> float:
+    """Centre distance (m) of gears without profile shift."""
+    return first.pinion_pitch_radius + second.pinion_pitch_radius
+
+
+def _play(first: PairDesign, second: PairDesign, centre: float) -> float:
+    """Turn (rad) of the second gear that closes the gap between the flanks of centred teeth and spaces."""
+    base, other = first.pinion_base_radius, second.pinion_base_radius
+    lost = involute(acos((base + other) / centre))
+    space = pi / first.pinion.teeth - first.pinion_half_base_angle + lost
+    return (base * space - other * (second.pinion_half_base_angle - lost)) / other
+
+
 def turned(vectors: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
     """x and z of vectors (n, 2) turned as the pinion turns."""
     return vectors @ body_rotation("pinion", angle)[np.ix_([0, 2], [0, 2])].T
@@ -187,7 +206,8 @@ def _candidates(model: TwinModel, phi1: float, limit: float) -> list[Candidates]
     found = []
     for tooth in PAIRS.tolist():
         gap, roll = involute_separation(
-            model.pinion, model.gear, surface.points.position, surface.points.normal, phi1, tooth
+            *(model.pinion, model.gear, surface.points.position, surface.points.normal),
+            *(phi1, tooth, model.centre),
         )
         fraction = (high**2 - roll**2) / (high**2 - low**2)
         row = fraction * (side.flank_rows - 1) * lattice.refinement.profile

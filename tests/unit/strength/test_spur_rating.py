@@ -6,38 +6,23 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from spur_gears import fzg_c
 
+from facegear.config.material_card import CARDS, material_card
 from facegear.strength.factors import (
+    STRESS_CORRECTION_REFERENCE,
     contact_ratio_factor,
     elasticity_factor,
     mean_stress_factor,
     relative_notch_sensitivity,
 )
-from facegear.strength.fatigue import damage, life_at_reliability
+from facegear.strength.fatigue import damage
 from facegear.strength.materials import Life
 from facegear.strength.root_form import root_form
 from facegear.strength.spur import SpurGear, SpurMesh
 
 STEEL = (206e9, 0.3)
 BENDING = Life((1e3, 3e6, 1e10), (2.5, 1.0, 0.85))
-
-
-def fzg_c() -> SpurMesh:
-    """FZG type C test gears: published with their form factors and stresses by a public tribology code."""
-    pinion, wheel = (
-        SpurGear(
-            teeth=teeth,
-            module=4.5e-3,
-            pressure_angle=radians(20.0),
-            profile_shift=shift,
-            tip_radius=tip,
-            width=14e-3,
-            rack_addendum=1.25,
-            rack_tip_radius=0.38,
-        )
-        for teeth, shift, tip in ((16, 0.1817, 41.318e-3), (24, 0.1715, 59.272e-3))
-    )
-    return SpurMesh(pinion, wheel, 91.5e-3)
 
 
 def test_form_and_stress_correction_of_fzg_c_gears_match_the_published_ones():
@@ -69,6 +54,68 @@ def test_stresses_of_fzg_c_gears_match_the_published_ones():
     assert hertz == pytest.approx(1347.3e6, rel=1e-3)
 
 
+def din_3990_11() -> SpurMesh:
+    """Spur gears rated after DIN 3990-11 by a public code that prints every factor (hanslhansl/din3990)."""
+    pinion, wheel = (
+        SpurGear(
+            teeth=teeth,
+            module=4e-3,
+            pressure_angle=radians(20.0),
+            profile_shift=shift,
+            tip_radius=tip,
+            width=48.64e-3,
+            rack_addendum=1.25,
+            rack_tip_radius=0.25,
+        )
+        for teeth, shift, tip in ((19, 0.5, 44e-3), (104, 0.15, 212.6e-3))
+    )
+    return SpurMesh(pinion, wheel, 248.506843355171e-3)
+
+
+def test_form_and_stress_correction_of_the_din_3990_11_example_for_a_load_at_the_tip():
+    """To 1e-4: that code stops the iteration for the 30 degree tangent earlier."""
+    mesh = din_3990_11()
+    found = [root_form(gear, gear.tip_radius) for gear in (mesh.pinion, mesh.wheel)]
+    printed = {
+        "chord": [8.748743e-3, 9.239505e-3],
+        "fillet_radius": [1.316148e-3, 1.325999e-3],
+        "lever_arm": [8.174658e-3, 7.834246e-3],
+        "form_factor": [2.246336, 2.161657],
+        "stress_correction": [1.914726, 2.008782],
+    }
+    for name, values in printed.items():
+        assert [getattr(form, name) for form in found] == pytest.approx(values, rel=1e-4), name
+    assert mesh.contact_ratio == pytest.approx(1.536323594583, rel=1e-9)
+
+
+def test_safety_of_the_din_3990_11_example_with_its_load_factors():
+    """Load factors, Z_B and Y_epsilon are the example's; its notch, surface and size factors are 1."""
+    mesh, card = din_3990_11(), material_card(CARDS / "case_carburised_din3990_11.yaml")
+    force = 55e3 / (2 * np.pi * 980 / 60) / (0.5 * mesh.pinion.module * mesh.pinion.teeth)
+    line = force / mesh.pinion.width
+    angle = mesh.working_angle
+    zone = sqrt(2.0 * np.cos(angle) / (np.cos(radians(20.0)) ** 2 * np.sin(angle)))
+    diameter = mesh.pinion.module * mesh.pinion.teeth
+    pitting = zone * elasticity_factor(STEEL, STEEL) * contact_ratio_factor(mesh.contact_ratio)
+    pitting *= sqrt(line / diameter * (mesh.ratio + 1.0) / mesh.ratio)
+    assert pitting == pytest.approx(875.3827378988e6, rel=1e-3)  # Z_E is rounded there, 189.8
+    loads = 1.75 * 1.0278576 * 1.1064273
+    (limit, life), bending = (card.pitting.limit, card.pitting.life), card.bending
+    endurance, static = float(life.factor(5e7)), float(life.factor(1.0))
+    found = limit / (pitting * 1.0055470 * sqrt(loads))
+    assert found * endurance == pytest.approx(1.20793605, rel=1e-3)
+    statically = 2.5 * 1.0278576 * 1.1064273
+    at_rest = static * limit / (pitting * 1.0055470 * sqrt(statically))
+    assert at_rest == pytest.approx(1.61701090, rel=1e-3)
+    form = root_form(mesh.pinion, mesh.pinion.tip_radius)
+    stress = line / mesh.pinion.module * form.form_factor * form.stress_correction * 0.7381784
+    assert stress == pytest.approx(230.1514e6, rel=1e-4)
+    bent = 1.75 * 1.0278576 * 1.0864854
+    assert bending.limit * STRESS_CORRECTION_REFERENCE / (stress * bent) == pytest.approx(
+        1.91200876, rel=1e-4
+    )
+
+
 @given(st.floats(1.0, 12.0))
 def test_life_factor_and_allowed_cycles_are_each_others_inverse(decades):
     cycles = 10.0**decades
@@ -87,8 +134,3 @@ def test_reference_gear_has_no_relative_notch_sensitivity_and_pulsation_no_mean_
     assert relative_notch_sensitivity(3e-6, 2.5) == pytest.approx(1.0)
     assert mean_stress_factor(0.0, 0.5) == 1.0
     assert mean_stress_factor(-1.2, 0.5) == pytest.approx(1.0 / (1.0 + 1.2 * 0.5 / 1.5))
-
-
-def test_half_the_gears_live_longer_than_ninety_nine_percent_do():
-    assert life_at_reliability(100.0, 0.99, 1.5) == pytest.approx(100.0)
-    assert life_at_reliability(100.0, 0.5, 1.5) > 1000.0
