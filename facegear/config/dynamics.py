@@ -50,7 +50,7 @@ class Sweep(Section):
     overlap_points: int = Field(8, ge=0, le=1000, description="speeds a chunk runs before its own first one")
     jump_resolution_rpm: float = Field(1.0, gt=0, le=1000)
     accuracy: Accuracy = Accuracy(
-        tolerance=1e-4,
+        tolerance=3e-5,
         dwell_periods=32,
         settle_periods=256,
         window_periods=160,

@@ -173,7 +173,7 @@ def _newton(springs: _Springs, tie: float, anchor: NDArray[np.float64]) -> NDArr
     place, ties = anchor, tie * np.eye(len(anchor))
     for _ in range(MAX_ITERATIONS):
         gradient = springs.balance(place) + tie * (place - anchor)
-        step = -np.linalg.solve(springs.curvature(place) + ties, gradient)
+        step = -np.asarray(np.linalg.solve(springs.curvature(place) + ties, gradient), np.float64)
         moved = place + step * springs.along(place, step, tie, anchor).minimum()
         if np.abs(moved - place).max() <= 1e-15 * max(np.abs(place).max(), springs.half_width):
             return moved

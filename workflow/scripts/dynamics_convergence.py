@@ -12,7 +12,12 @@ from facegear.io import arrays, tables
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
 from facegear.stiffness.tables import HARMONICS_COLUMNS
-from facegear.validation.dynamics.convergence import convergence_table, not_converged, rerun
+from facegear.validation.dynamics.convergence import (
+    convergence_table,
+    not_converged,
+    rerun,
+    watched_longer,
+)
 
 with stage(snakemake) as run:
     params = snakemake.params
@@ -25,7 +30,8 @@ with stage(snakemake) as run:
     for name in plan.directions:
         piece = joined([from_arrays(arrays.read(next(files), SHAPES))[1] for _ in range(plan.chunks)])
         again = rerun(model, piece, plan.settings, progress.step)
-        found.append(convergence_table(name, piece, again))
+        longer = watched_longer(model, piece, again, plan.settings)
+        found.append(convergence_table(name, piece, again, longer))
     table = pd.concat(found, ignore_index=True)
     tables.write(snakemake.output.table, table)
     run.summary(not_converged(table))

@@ -1,13 +1,13 @@
 """Is a sweep converged: each speed once more with everything finer that is discretised."""
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from facegear.dynamics.motion import Settings
+from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.averages import Averages
 from facegear.dynamics.steady_state.simulate import Model, SteadyState
 from facegear.dynamics.sweeps.sweep import Piece, collect, joined, run_speeds, tighter
@@ -15,6 +15,10 @@ from facegear.dynamics.sweeps.sweep import Piece, collect, joined, run_speeds, t
 Array = NDArray[np.float64]
 CONVERGED = 1e-3
 SAMPLES = 4096
+LONG = 8192
+"""Mesh periods for which a motion is watched whose class is not the same in both runs."""
+FEW = 16
+"""Periods on which such a motion is measured where it stays irregular: only its class is wanted."""
 
 
 def rerun(model: Model, piece: Piece, settings: Settings, step: Callable[[], None] = lambda: None) -> Piece:
@@ -68,23 +72,83 @@ def sampled(known: Averages, deflections: Array, forces: Array, per_period: int)
     )
 
 
-def convergence_table(direction: str, piece: Piece, finer: Piece) -> pd.DataFrame:
-    """One row for each speed: direction, speed_rpm, class, class_finer, multiplier, multiplier_finer,
-    rms_change, verdict.
+@dataclass(frozen=True, eq=False)
+class Watched:
+    """A speed watched for long at the sweep's tolerance and at 1e-10, each from where both runs left it.
+
+    labels (4,): in this order. period: that of all four, 0 if none is periodic, None if they differ. ac_rms
+    (M,): of the mesh deflections, m, at 1e-10 from the sweep's own state.
+    """
+
+    labels: tuple[str, ...]
+    period: int | None
+    ac_rms: Array
+
+
+def watched_longer(
+    model: Model, piece: Piece, finer: Piece, settings: Settings, step: Callable[[], None] = lambda: None
+) -> dict[int, Watched]:
+    """What becomes of the speeds that are periodic in one of two runs only, or with another period."""
+    long = replace(settings, settle=LONG, window=FEW)
+    return {
+        int(i): _watched(
+            model, piece.speeds[i : i + 1], long, [piece.state(int(i)), finer.state(int(i))], step
+        )
+        for i in np.flatnonzero(piece.period != finer.period)
+    }
+
+
+def _watched(
+    model: Model, speed: Array, settings: Settings, starts: list[State], step: Callable[[], None]
+) -> Watched:
+    runs = [run_speeds(model, speed, each, start) for each in (settings, exact(settings)) for start in starts]
+    found = [collect(model, (sampled_response(response) for response in run)) for run in runs]
+    step()
+    periods = {int(one.period[0]) for one in found}
+    return Watched(
+        labels=tuple(one.labels[0] for one in found),
+        period=periods.pop() if len(periods) == 1 else None,
+        ac_rms=found[len(starts)].deflection_ac_rms[0],
+    )
+
+
+def convergence_table(
+    direction: str, piece: Piece, finer: Piece, watched: Mapping[int, Watched] | None = None
+) -> pd.DataFrame:
+    """One row for each speed: direction, speed_rpm, class, class_finer, watched_longer, multiplier,
+    multiplier_finer, rms_change, verdict.
 
     rms_change: largest change of a mesh's AC RMS over the largest AC RMS at that speed; the multipliers are
-    the leading ones of refined orbits. Verdicts: `converged`; `moved` (same class, more than 1e-3);
-    `other class` (periodic in one of the two, or with another period); `irregular` (periodic in neither).
+    the leading ones of refined orbits. watched_longer: the four classes of `watched_longer`, where the two
+    runs do not agree. Verdicts:
+
+    - `converged`, `moved`: the same periodic motion in both runs, or in all four that were watched for long
+      where the finer one had not settled; within 1e-3 or not.
+    - `irregular`: periodic in neither run, or in none of the four.
+    - `not settled`: so named by the sweep, which claims nothing; one periodic motion in all four.
+    - `transient`: chaotic or quasi-periodic while the sweep watched it, one periodic motion in all four.
+    - `sensitive`: the four differ, so that the class hangs on the tolerance or on where in the motion the run
+      begins.
+    - `wrong`: named periodic, and something else in all four.
     """
-    first, second = piece.deflection_ac_rms, finer.deflection_ac_rms
-    change = np.abs(first - second).max(axis=1) / np.maximum(first.max(axis=1), 1e-300)
-    verdicts = [_verdict(a, b, c) for a, b, c in zip(piece.period, finer.period, change, strict=True)]
+    watched = watched or {}
+    exact_rms = finer.deflection_ac_rms.copy()
+    for i, found in watched.items():
+        exact_rms[i] = found.ac_rms
+    first = piece.deflection_ac_rms
+    change = np.abs(first - exact_rms).max(axis=1) / np.maximum(first.max(axis=1), 1e-300)
+    verdicts = [
+        _verdict(label, int(piece.period[i]), int(finer.period[i]), change[i], watched.get(i))
+        for i, label in enumerate(piece.labels)
+    ]
+    told = ["; ".join(watched[i].labels) if i in watched else "" for i in range(len(change))]
     return pd.DataFrame(
         {
             "direction": direction,
             "speed_rpm": piece.speeds,
             "class": piece.labels,
             "class_finer": finer.labels,
+            "watched_longer": told,
             "multiplier": piece.leading_multiplier,
             "multiplier_finer": finer.leading_multiplier,
             "rms_change": change,
@@ -93,23 +157,27 @@ def convergence_table(direction: str, piece: Piece, finer: Piece) -> pd.DataFram
     )
 
 
-def _verdict(period: int, finer: int, change: float) -> str:
-    """What a speed's periods (0: not periodic) in the two runs and the change of its RMS say."""
-    if not period and not finer:
-        return "irregular"
-    if period != finer:
-        return "other class"
-    return "converged" if change <= CONVERGED else "moved"
+def _verdict(label: str, period: int, finer: int, change: float, watched: Watched | None) -> str:
+    """What a speed's class, its periods (0: not periodic) in the two runs and the change of its RMS say."""
+    agreed = finer if watched is None else watched.period
+    if agreed is None:
+        return "sensitive"
+    if period == agreed:
+        close = "converged" if change <= CONVERGED else "moved"
+        return close if period else "irregular"
+    if period:
+        return "wrong"
+    return label if label == Motion.NOT_SETTLED.value else "transient"
 
 
 def not_converged(table: pd.DataFrame) -> str:
-    """Counts of the verdicts, and the speeds that moved or changed their class."""
+    """Counts of the verdicts, and the speeds where they are not what one hopes for."""
     found = table["verdict"].value_counts()
     counts = ", ".join(f"{count} speeds {verdict}" for verdict, count in found.items())
-    odd = table[table["verdict"].isin(["moved", "other class"])]
+    odd = table[~table["verdict"].isin(["converged", "irregular", Motion.NOT_SETTLED.value])]
     places = [
-        f"{row.direction} {row.speed_rpm:.0f} rpm ({row['class']}, finer {row.class_finer}, "
-        f"{100.0 * row.rms_change:.2g} %)"
+        f"{row.direction} {row.speed_rpm:.0f} rpm {row.verdict} ({row['class']}, finer "
+        f"{row.watched_longer or row.class_finer}, {100.0 * row.rms_change:.2g} %)"
         for _, row in odd.iterrows()
     ]
-    return "; ".join([counts, *places])
+    return "\n".join([counts, *places])

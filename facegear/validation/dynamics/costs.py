@@ -26,7 +26,7 @@ from facegear.validation.dynamics.problems import Compared, Problem
 
 Array = NDArray[np.float64]
 SPEEDS = 40
-TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-8)
+TOLERANCES = (1e-3, 1e-4, 3e-5, 1e-6, 1e-8)
 DWELLS = (32, 128)
 PLAIN_PERIODS = 20
 COST_PERIODS = 1000
@@ -115,7 +115,7 @@ def scaling_costs(machine: Machine, speed_rpm: float) -> pd.DataFrame:
 
 def _period_cost(model: Model, frequency: float) -> tuple[float, float]:
     """CPU seconds and steps of a mesh period at the sweep's tolerance, once the start is forgotten."""
-    settings = Settings(tolerance=1e-4)
+    settings = Settings(tolerance=3e-5)
     packed = pack(model.system, frequency)
     work = make_work(packed, settings.taylor_order)
     start = static_start(model)

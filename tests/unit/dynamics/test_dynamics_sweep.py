@@ -20,7 +20,7 @@ from facegear.dynamics.sweeps.whole_sweep import whole_sweep
 from facegear.io import arrays
 from facegear.plots.campbell import campbell
 from facegear.transmission.modes import natural_modes
-from facegear.validation.dynamics.convergence import convergence_table, not_converged
+from facegear.validation.dynamics.convergence import Watched, convergence_table, not_converged, watched_longer
 
 SETTINGS = Settings(tolerance=1e-5, settle=256, window=64, periodic_residual=1e-7, extensions=0)
 
@@ -171,18 +171,51 @@ def test_irregular_motion_has_a_positive_exponent_and_an_interval_on_its_rms(mod
 
 def test_convergence_names_the_speeds_that_moved_or_changed_class(whole):
     piece = whole["up"].piece
-    first, second = np.flatnonzero(piece.periodic)[:2]
+    first, second, third = np.flatnonzero(piece.periodic)[:3]
     ac_rms, period = piece.deflection_ac_rms.copy(), piece.period.copy()
     ac_rms[first] *= 1.02
-    period[second] = 7
-    table = convergence_table("up", piece, replace(piece, deflection_ac_rms=ac_rms, period=period))
+    period[second], period[third] = 7, 0
+    watched = {
+        second: Watched(("period-1",) * 4, 1, piece.deflection_ac_rms[second] * 1.0001),
+        third: Watched(("period-1", "period-1", "chaotic", "period-1"), None, ac_rms[third]),
+    }
+    finer = replace(piece, deflection_ac_rms=ac_rms, period=period)
+    table = convergence_table("up", piece, finer, watched)
     assert table["verdict"][first] == "moved"
     assert table["rms_change"][first] == pytest.approx(0.02)
-    assert table["verdict"][second] == "other class"
-    rest = table.drop([first, second])
+    assert (table["verdict"][second], table["verdict"][third]) == ("converged", "sensitive")
+    assert table["rms_change"][second] == pytest.approx(1e-4)
+    rest = table.drop([first, second, third])
     assert set(rest["verdict"]) <= {"converged", "irregular"}
     reported = not_converged(table)
-    assert (
-        f"up {piece.speeds[first]:.0f} rpm" in reported and f"up {piece.speeds[second]:.0f} rpm" in reported
-    )
+    assert f"up {piece.speeds[first]:.0f} rpm" in reported and f"up {piece.speeds[third]:.0f} rpm" in reported
     assert reported.count("rpm") == 2
+
+
+@pytest.mark.parametrize(
+    ("label", "period", "in_all_four", "verdict"),
+    [
+        ("chaotic", 0, 3, "transient"),
+        ("not settled", 0, 3, "not settled"),
+        ("period-2", 2, 1, "wrong"),
+        ("period-2", 2, 0, "wrong"),
+        ("chaotic", 0, 0, "irregular"),
+    ],
+)
+def test_a_class_that_changes_is_judged_by_what_four_long_runs_agree_on(
+    whole, label, period, in_all_four, verdict
+):
+    piece = whole["up"].piece.part(slice(0, 1))
+    named = "periodic" if period else label
+    piece = replace(piece, motion=np.array([named]), period=np.array([period]))
+    watched = Watched(("any",) * 4, in_all_four, piece.deflection_ac_rms[0])
+    finer = replace(piece, period=np.array([in_all_four or 5]))
+    assert convergence_table("up", piece, finer, {0: watched})["verdict"][0] == verdict
+
+
+def test_an_orbit_that_one_run_took_for_another_is_watched_longer_from_both_states(model, whole):
+    piece = whole["up"].piece.part(slice(0, 1))
+    other = replace(piece, period=np.array([2]))
+    watched = watched_longer(model, piece, other, SETTINGS)[0]
+    assert watched.labels == ("period-1",) * 4 and watched.period == 1
+    np.testing.assert_allclose(watched.ac_rms, piece.deflection_ac_rms[0], rtol=1e-3)
