@@ -143,3 +143,61 @@ def test_samples_with_contacts_of_their_own_do_not_depend_on_their_chunk(found):
     given = gearbox.stiffness().content["harmonics"], gearbox._chain._flanks(needs["pair"])
     last = tolerances_chunk("samples", 3, 3, given[0], **needs, flanks=given[1]).content["chunk"]
     pd.testing.assert_frame_equal(last, found.iloc[3:].reset_index(drop=True), check_exact=True)
+
+
+def searched(**section):
+    """The example with teeth that are free: crowning, and the width and place of the pinion's face."""
+    given = {
+        "variables": [
+            {"name": "crowning", "limits": [0.0, 12.0], "sets": [CROWNING], "steps": 3},
+            {
+                "name": "bearings",
+                "limits": [4e7, 2e8],
+                "scale": "log",
+                "sets": ["transmission.pinion.bearing_stiffness_n_per_m.x"],
+            },
+        ],
+        "objectives": [
+            {"name": "error", "largest_of": ["te_peak_to_peak"]},
+            {"name": "pressure", "largest_of": ["pressure"]},
+            {"name": "bearing", "largest_of": ["bearing_mass"]},
+        ],
+        "population": 4,
+        "generations": 2,
+        "hunting_cycles": 1,
+        "seeds": [1],
+        **section,
+    }
+    length = {"tooth_pair.pinion.lead_crowning.length_mm": 10.0}
+    return facegear.example().with_values({**length, "search": given})
+
+
+def test_a_search_over_teeth_weighs_error_against_pressure(monkeypatch):
+    monkeypatch.setattr(contact_meshes, "compliance", lambda *_: pytest.fail("compliance"))
+    found = searched().search()
+    designs = found.designs()
+    assert (designs["error"] != "").sum() == 0 and designs["crowning"].nunique() > 1
+    uncrowned = designs.loc[designs["crowning"].idxmin()]
+    crowned = designs.loc[designs["crowning"].idxmax()]
+    assert crowned["pressure"] > uncrowned["pressure"], "crowning takes the ends off the line of contact"
+    winners = found.winners().set_index("design")
+    assert winners.loc["least pressure", "pressure"] == winners["pressure"].min()
+
+
+@pytest.mark.parametrize("key", ["pinion_teeth", "pinion.bore_radius_mm"])
+def test_a_variable_that_changes_a_body_has_it_condensed_anew_and_once(monkeypatch, key):
+    variable = {"name": "body", "limits": [21, 23], "steps": 2, "sets": [f"tooth_pair.{key}"]}
+    asked, compliance = [], contact_meshes.compliance
+    nominal = facegear.example()._chain._flanks({})
+
+    def made(body, values, *_):
+        asked.append((body, values["pinion_teeth"], values["pinion"]["bore_radius_mm"]))
+        return nominal[body]
+
+    monkeypatch.setattr(contact_meshes, "compliance", made)
+    sizes = {"variables": [variable], "population": 4, "generations": 1}
+    objectives = [{"name": "pressure", "largest_of": ["pressure"]}]
+    designs = searched(objectives=objectives, **sizes).search().designs()
+    assert callable(compliance) and designs["body"].nunique() == 2
+    assert len(asked) == len(set(asked))
+    assert all(isinstance(teeth, int) for _, teeth, _ in asked)
