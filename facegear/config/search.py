@@ -6,6 +6,8 @@ from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
 
+TAKEN = ("design", "error", "generation", "seed")
+"""Columns beside those of variables, objectives and constraints."""
 NAME = r"^[a-z][a-z0-9_]{0,39}$"
 
 
@@ -81,6 +83,8 @@ class Search(Section):
         goals = [one.name for one in (*self.objectives, *self.constraints)]
         names = [*(one.name for one in self.variables), *goals]
         for number, name in enumerate(names):
+            if name in TAKEN:
+                refuse("name", name, f"another one: {', '.join(TAKEN)} are columns of their own")
             if name in names[:number]:
                 refuse("name", name, "one of its own for each variable, objective and constraint")
         keys = [key for variable in self.variables for key in variable.sets]

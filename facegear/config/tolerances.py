@@ -7,12 +7,15 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
+from facegear.load_sharing.quantity_names import QUANTITIES
 
 if TYPE_CHECKING:
     from facegear.scenarios.sampling import Population
 
 MOST_SAMPLES = 2**24
 MOST_CHUNKS = 500
+TAKEN = ("sample", "error")
+"""Columns of a table of samples beside causes and quantities."""
 
 
 class CauseSection(Section):
@@ -88,6 +91,10 @@ class Tolerances(Section):
         if not names:
             refuse("causes", [], "at least one")
         for number, name in enumerate(names):
+            if name in TAKEN or name in QUANTITIES:
+                refuse(
+                    f"causes[{number}].name", name, "another one: it is a column of its own in the samples"
+                )
             if name in names[:number]:
                 refuse(f"causes[{number}].name", name, "a name of its own for each cause")
         for number, pair in enumerate(self.correlations):

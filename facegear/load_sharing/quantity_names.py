@@ -12,6 +12,8 @@ ERROR_RANGE, ERROR_HARMONIC, PRESSURE = "te_peak_to_peak_um", "te_first_harmonic
 ROOTS = {"pinion": "root_stress_pinion_mpa", "face_gear": "root_stress_face_gear_mpa"}
 CONTACT = (ERROR_RANGE, ERROR_HARMONIC, PRESSURE, *ROOTS.values())
 """What a contact analysis alone tells."""
+QUANTITIES = (PEAK, OPEN, REVERSED, BEARINGS, *CONTACT)
+"""Those that do not name a mesh or a group."""
 
 
 def quantity_names(

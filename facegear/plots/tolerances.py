@@ -8,10 +8,19 @@ from matplotlib.figure import Figure
 
 from facegear.plots.style import NARROW, styled
 
-COLOURS = ("#0072B2", "#D55E00")
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
 PERCENTILE_LINES = {50.0: ":", 95.0: "--", 99.0: "-"}
-SHOWN = 5
-"""Quantities drawn, the worst paths and the largest mesh force."""
+SHOWN = 4
+"""Worst paths that are drawn, beside what comes once a machine."""
+ONCE = (
+    "peak_mesh_force_n",
+    "pressure_mpa",
+    "root_stress_pinion_mpa",
+    "root_stress_face_gear_mpa",
+    "te_peak_to_peak_um",
+)
+DECIDED = ("pressure_mpa", "root_stress_face_gear_mpa", "te_peak_to_peak_um")
+"""Of which is told what decides them, beside the worst path; where there are none, the largest mesh force."""
 BARS = 12
 WORDS = {
     "k_gamma": r"$K_\gamma$ of",
@@ -20,6 +29,12 @@ WORDS = {
     "peak_mesh_force_n": "Largest mesh force (N)",
     "open_share": "Share of time with an open mesh",
     "reversed_share": "Share of time on the other flank",
+    "bearing_mass": "Bearing mass (of one for 10 kN)",
+    "te_peak_to_peak_um": "Transmission error, peak to peak (µm)",
+    "te_first_harmonic_um": "Transmission error, mesh frequency (µm)",
+    "pressure_mpa": "Largest pressure (MPa)",
+    "root_stress_pinion_mpa": "Largest root stress, pinion (MPa)",
+    "root_stress_face_gear_mpa": "Largest root stress, face gear (MPa)",
 }
 
 
@@ -30,16 +45,15 @@ def in_words(quantity: str) -> str:
 
 
 def worst_first(percentiles: pd.DataFrame) -> list[str]:
-    """Path factors by their 99th percentile, the largest first, then the largest mesh force."""
+    """Path factors by their 99th percentile, the largest first, then what comes once a machine."""
     top = percentiles[percentiles["percentile"] == 99.0].set_index("quantity")["value"]
     factors = top[top.index.str.startswith("k_gamma")].sort_values(ascending=False, kind="stable")
-    return [*factors.index, *(name for name in ("peak_mesh_force_n",) if name in top.index)]
+    return [*factors.index[:SHOWN], *(name for name in ONCE if name in top.index)]
 
 
 def distribution_figure(samples: pd.DataFrame, percentiles: pd.DataFrame) -> Figure:
     """Share of the samples above each value, one panel a quantity, with its percentiles."""
-    *factors, force = worst_first(percentiles) or [""]
-    names = [name for name in (*factors[: SHOWN - 1], force) if name]
+    names = worst_first(percentiles)
     with styled():
         figure, axes = plt.subplots(
             max(len(names), 1), 1, figsize=(NARROW, 0.8 + 1.55 * max(len(names), 1)), squeeze=False
@@ -49,6 +63,7 @@ def distribution_figure(samples: pd.DataFrame, percentiles: pd.DataFrame) -> Fig
                 axis, samples[name].dropna().to_numpy(float), percentiles[percentiles["quantity"] == name]
             )
             axis.set_xlabel(in_words(name))
+            axis.locator_params(axis="x", nbins=6)
         figure.supylabel("Share of samples above (%)", fontsize=9)
         figure.suptitle("Distributions; lines: 50 %, 95 % and 99 % stay below", fontsize=9)
     return figure
@@ -58,18 +73,20 @@ def importance_figure(percentiles: pd.DataFrame, importance: pd.DataFrame, indic
     """Which cause decides: total Sobol indices where they were computed, else rank correlations."""
     table, value = _sizes(importance, indices)
     quantities = worst_first(percentiles)
-    names = list(dict.fromkeys((*quantities[:1], *quantities[-1:])))
+    force = [name for name in quantities if name == "peak_mesh_force_n" and not {*quantities} & {*DECIDED}]
+    names = [*quantities[:1], *force, *(name for name in quantities if name in DECIDED)]
     own = table[table["quantity"].isin(names)]
     causes = list(own.groupby("cause")["size"].max().sort_values(ascending=False).index[:BARS])[::-1]
     with styled():
-        figure, axis = plt.subplots(figsize=(NARROW, 1.4 + 0.34 * max(len(causes), 1)))
+        figure, axis = plt.subplots(figsize=(NARROW, 1.1 + 0.17 * len(names) * (1 + max(len(causes), 1))))
         for number, (name, colour) in enumerate(zip(names, COLOURS, strict=False)):
             rows = own[own["quantity"] == name].set_index("cause").reindex(causes)
             ends = None
             if value == "total":
                 ends = np.array([rows[value] - rows["total_low"], rows["total_high"] - rows[value]]).clip(0.0)
-            places = np.arange(len(causes)) + 0.19 * (1 - 2 * number)
-            axis.barh(places, rows[value], 0.36, xerr=ends, color=colour, label=in_words(name))
+            wide = 0.76 / len(names)
+            places = np.arange(len(causes)) + wide * (0.5 * (len(names) - 1) - number)
+            axis.barh(places, rows[value], 0.95 * wide, xerr=ends, color=colour, label=in_words(name))
         axis.set_yticks(np.arange(len(causes)), [cause.replace("_", " ") for cause in causes])
         axis.axvline(0.0, color="black", lw=0.6)
         axis.set_xlabel("Total Sobol index" if value == "total" else "Rank correlation")

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from facegear.load_sharing.quantity_names import columns_of, quantity_names
 from facegear.scenarios.evolution import Task, Variable
 from facegear.scenarios.sampling import changes, samples
 from facegear.stages.many_machines import Question, judge
-from facegear.stages.tooth_meshes import Flanks, tooth_meshes
+from facegear.stages.tooth_meshes import Flanks, Meshes, tooth_meshes
 
 Found = dict[str, float]
 
@@ -40,6 +41,11 @@ class SearchedMachine:
     tolerances: Mapping[str, Any] | None
     pair: Mapping[str, Any] | None
     flanks: Flanks
+
+    @cached_property
+    def meshes(self) -> Meshes:
+        """The mesh of each design's tooth pair."""
+        return tooth_meshes(self.harmonics, self.pair, self.flanks)
 
     @property
     def values(self) -> dict[str, Any]:
@@ -72,7 +78,7 @@ def assessor(
     moves = [key for cause in causes.causes for key, _ in cause.gains] if causes else []
     start = movable(given.values, [*keys, *moves])
     question = Question(section.model, cycles, given.accuracy, given.options)
-    ask = judge(question, tooth_meshes(given.harmonics, given.pair, given.flanks), "this design")
+    ask = judge(question, given.meshes, "this design")
     gauges = given.pair is not None and given.pair["contact"]["root_stress"]
     shape = wired_layout(start["transmission"], given.tooth_pair)
     names = quantity_names(shape, question.dynamic, given.pair is not None, gauges)

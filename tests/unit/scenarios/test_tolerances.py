@@ -62,6 +62,8 @@ def chunk(gearbox, first, last, design="samples", **others):
         ({"causes": [{**RIGHT, "moves": {"transmission.pinion.mas_kg": 1.0}}]}, "pinion.mas_kg"),
         ({"causes": [{**RIGHT, "moves": {"tooth_pair.module_mm": 1.0}}]}, "a number of transmission"),
         ({"causes": [{**RIGHT, "moves": {f"{MEAN}.nobody/lower.error_um": 1.0}}]}, "nobody/lower"),
+        ({"causes": [{**RIGHT, "name": "sample"}]}, "a column of its own"),
+        ({"causes": [{**RIGHT, "name": "peak_mesh_force_n"}]}, "a column of its own"),
         ({"samples": 100}, "a multiple of chunk_samples"),
         ({"index_blocks": 3}, "a power of two"),
         ({"samples": 1024, "chunk_samples": 1}, "at least 3"),

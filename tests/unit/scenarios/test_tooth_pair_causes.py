@@ -146,7 +146,7 @@ def test_samples_with_contacts_of_their_own_do_not_depend_on_their_chunk(found):
 
 
 def searched(**section):
-    """The example with teeth that are free: crowning, and the width and place of the pinion's face."""
+    """The example with a search over crowning and bearings."""
     given = {
         "variables": [
             {"name": "crowning", "limits": [0.0, 12.0], "sets": [CROWNING], "steps": 3},
@@ -158,7 +158,7 @@ def searched(**section):
             },
         ],
         "objectives": [
-            {"name": "error", "largest_of": ["te_peak_to_peak"]},
+            {"name": "te", "largest_of": ["te_peak_to_peak"]},
             {"name": "pressure", "largest_of": ["pressure"]},
             {"name": "bearing", "largest_of": ["bearing_mass"]},
         ],
@@ -180,24 +180,24 @@ def test_a_search_over_teeth_weighs_error_against_pressure(monkeypatch):
     uncrowned = designs.loc[designs["crowning"].idxmin()]
     crowned = designs.loc[designs["crowning"].idxmax()]
     assert crowned["pressure"] > uncrowned["pressure"], "crowning takes the ends off the line of contact"
-    winners = found.winners().set_index("design")
-    assert winners.loc["least pressure", "pressure"] == winners["pressure"].min()
+    assert {"te_searched", "root_stress_pinion_mpa"} <= set(found.winners().columns)
 
 
-@pytest.mark.parametrize("key", ["pinion_teeth", "pinion.bore_radius_mm"])
+@pytest.mark.parametrize("key", ["pinion_teeth", "pinion.width_mm"])
 def test_a_variable_that_changes_a_body_has_it_condensed_anew_and_once(monkeypatch, key):
-    variable = {"name": "body", "limits": [21, 23], "steps": 2, "sets": [f"tooth_pair.{key}"]}
-    asked, compliance = [], contact_meshes.compliance
+    limits = [23, 24] if key == "pinion_teeth" else [30, 31]
+    variable = {"name": "body", "limits": limits, "steps": 2, "sets": [f"tooth_pair.{key}"]}
+    asked = []
     nominal = facegear.example()._chain._flanks({})
 
     def made(body, values, *_):
-        asked.append((body, values["pinion_teeth"], values["pinion"]["bore_radius_mm"]))
+        asked.append((body, values["pinion_teeth"], values["pinion"]["width_mm"]))
         return nominal[body]
 
     monkeypatch.setattr(contact_meshes, "compliance", made)
     sizes = {"variables": [variable], "population": 4, "generations": 1}
     objectives = [{"name": "pressure", "largest_of": ["pressure"]}]
     designs = searched(objectives=objectives, **sizes).search().designs()
-    assert callable(compliance) and designs["body"].nunique() == 2
-    assert len(asked) == len(set(asked))
+    assert designs["body"].nunique() == 2 and (designs["error"] == "").all()
+    assert max(map(asked.count, asked)) <= 2, "once for the island, once for the winners"
     assert all(isinstance(teeth, int) for _, teeth, _ in asked)
