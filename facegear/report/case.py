@@ -40,7 +40,9 @@ SAFETY = (
     "Safety and life of every flank under the duty cycle; drive: the flank with which a pinion drives. "
     "Safety: factor on all stresses at which Miner's sum is 1. Bending by the finite elements' root stress, "
     "of pinions after ISO 6336-3 (standard) as well; there is no standard for face gears, which are judged "
-    "by the same limits; pitting after ISO 6336-2 with the gear's flank as a rack's. Life: the shortest; "
+    "by the same limits; pitting by the contact analysis' pressure away from edges, and after ISO 6336-2 "
+    "(standard) with the gear's flank as a rack's; edge: what tip edges carry under the largest torque, "
+    "where pressure has no limit. Life: the shortest; "
     "inf: no load does damage. Reliability: at the end of the duty cycle, where the card gives a Weibull "
     "shape and a load does damage. green: as safe as required, amber: lasts the duty cycle, red: does not"
 )

@@ -81,7 +81,8 @@ class Chain:
             from facegear.stages.rating import rating
 
             loads = [self._duty_spectrum()] if loads_from_machine(self.values) else []
-            return rating(self.root_stress().content["stress"], *loads, **self._needs("rating"))
+            stress, by_torque = self.root_stress().content["stress"], self.contact().content["by_torque"]
+            return rating(stress, by_torque, *loads, **self._needs("rating"))
 
         return self.store.result("rating", self.values, RatingResult, compute)
 

@@ -10,13 +10,9 @@ from numpy.typing import NDArray
 from facegear.config.machines import wired_machine
 from facegear.config.tooth_pair import pair
 from facegear.stages.outcome import Outcome
+from facegear.strength.contact_pressure import contact_pressure
 from facegear.strength.root_tables import root_from_arrays
-from facegear.strength.stress_over_speed import (
-    branch_forces,
-    pressure_by_torque,
-    stress_table,
-    swept_forces,
-)
+from facegear.strength.stress_over_speed import branch_forces, stress_table, swept_forces
 from facegear.transmission.statics import static_equilibrium
 
 
@@ -40,8 +36,7 @@ def stress_over_speed(
     if branches is not None:
         followed = branch_forces(branches, np.unique(forces["speed_rpm"]))
         forces = pd.concat([forces, followed], ignore_index=True)
-    solved = by_torque[["torque_n_m", "pressure_mpa"]].dropna()
-    pressure = pressure_by_torque(solved["torque_n_m"].to_numpy(), 1e6 * solved["pressure_mpa"].to_numpy())
+    pressure = contact_pressure(by_torque).at
     roots = {body: root_from_arrays(stress, body) for body in ("pinion", "face_gear")}
     radius = pair(tooth_pair).design.pinion_base_radius
     table = stress_table(forces, at_rest, radius, roots, pressure)

@@ -38,6 +38,9 @@ SAFETY_COLUMNS = (
     "bending_safety",
     "standard_bending_safety",
     "pitting_safety",
+    "standard_pitting_safety",
+    "edge_line_load_n_per_mm",
+    "edge_length_mm",
     "life_hours",
     "reliability",
     "nearest_limit",
@@ -49,6 +52,7 @@ RATED_FLANK = ("body", "gear", "flank", "failure", "method")
 RATING_COLUMNS = (
     *RATED_FLANK,
     "stress_mpa",
+    "stress_error_mpa",
     "allowed_mpa",
     "cycles",
     "safety",
@@ -89,13 +93,18 @@ DUTY_LOAD_COLUMNS = (
 DUTY_SPECTRUM_COLUMNS = ("bin", "body", "gear", "flank", "mesh", "share", "force_n")
 """Of the table of forces that the hardest loaded tooth of a body meets in its passages through a mesh."""
 
-RATING_FINITE = tuple(name for name in RATING_COLUMNS if name not in ("damage", "life_hours", "reliability"))
+RATING_FINITE = tuple(
+    name for name in RATING_COLUMNS if name not in ("stress_error_mpa", "damage", "life_hours", "reliability")
+)
 DAMAGE_FINITE = tuple(name for name in DAMAGE_COLUMNS if name != "damage")
 SAFETY_FINITE = tuple(
-    name for name in SAFETY_COLUMNS if name not in ("standard_bending_safety", "life_hours", "reliability")
+    name
+    for name in SAFETY_COLUMNS
+    if name not in ("standard_bending_safety", "pitting_safety", "life_hours", "reliability")
 )
 ROOT_STRESS_FINITE = tuple(name for name in ROOT_STRESS_COLUMNS if name != "at_30_deg_mpa")
-"""Columns whose numbers are always finite: life may last for ever, and 30 degrees lie beside the gauges."""
+"""Columns whose numbers are always finite: life may last for ever, 30 degrees lie beside the gauges, and
+edges may carry all load, where pressure has no limit."""
 
 DYNAMIC_STRESS_COLUMNS = (
     "mesh",

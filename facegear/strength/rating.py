@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from facegear.errors import FacegearError
 from facegear.geometry.design import PairDesign
+from facegear.strength.contact_pressure import ContactPressure
 from facegear.strength.duty import FlankDuty
 from facegear.strength.factors import (
     STRESS_CORRECTION_REFERENCE,
@@ -88,11 +89,16 @@ class Rated:
 
 
 def rate(
-    design: PairDesign, contact_ratio: float, roots: Mapping[str, RootStress], request: RatingRequest
+    design: PairDesign,
+    contact_ratio: float,
+    roots: Mapping[str, RootStress],
+    pressure: ContactPressure,
+    request: RatingRequest,
 ) -> list[Rated]:
-    """Bending and pitting of every loaded flank, a pinion's bending after the cylindrical standard as well.
+    """Bending and pitting of every loaded flank, by the contact analysis and by the cylindrical standard.
 
-    `contact_ratio` that of the section of the pitch point; `roots` the root stress of both bodies.
+    `contact_ratio` that of the section of the pitch point; `roots` the root stress of both bodies. The
+    standard alone judges pitting where no `pressure` away from edges is known.
     """
     found = []
     form = pinion_form(design, contact_ratio)
@@ -108,8 +114,10 @@ def rate(
             ways["ISO 6336-3"] = standard_bending(design, form)
         for method, stress in ways.items():
             found.append(_rated(request, duty, "bending", method, stress, allowed, bending_limits))
-        stress, allowed = pitting[duty.gear], pitting_limits.limit
-        found.append(_rated(request, duty, "pitting", "ISO 6336-2", stress, allowed, pitting_limits))
+        ways = {"contact analysis": pressure.at} if pressure.known else {}
+        allowed = pitting_limits.limit
+        for method, stress in (ways | {"ISO 6336-2": pitting[duty.gear]}).items():
+            found.append(_rated(request, duty, "pitting", method, stress, allowed, pitting_limits))
     return found
 
 

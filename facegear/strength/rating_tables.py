@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.strength.columns import CURVE_COLUMNS, DAMAGE_COLUMNS, RATING_COLUMNS, SAFETY_COLUMNS
+from facegear.strength.contact_pressure import ContactPressure
 from facegear.strength.duty import DutyBin
 from facegear.strength.rating import Rated
 
@@ -15,37 +16,49 @@ POINTS = 61
 HARDEST = {"red": 0, "amber": 1, "green": 2}
 
 
-def safety_table(found: Sequence[Rated], solved: float) -> pd.DataFrame:
+def safety_table(found: Sequence[Rated], pressure: ContactPressure) -> pd.DataFrame:
     """One row a flank, columns as SAFETY_COLUMNS: each way to fail beside the others, and the first to come.
 
-    Reliability is the product of those known. `solved` (N m): the largest torque of the contact analysis.
+    Reliability is the product of those of both failures, each by its worst method. `pressure` tells of the
+    tip edges under the largest load.
     """
     rows = []
     for (body, flank), group in groupby(found, key=lambda one: (one.duty.body, one.duty.flank)):
         ways = list(group)
         safety = {(one.failure, one.method): one.safety for one in ways}
         nearest = min(ways, key=lambda one: one.safety / one.required)
-        known = [one.reliability for one in ways if np.isfinite(one.reliability)]
+        known = [
+            np.nanmin(some)
+            for failure in ("bending", "pitting")
+            if np.isfinite(some := [one.reliability for one in ways if one.failure == failure]).any()
+        ]
+        edge_load, edge_length = pressure.edge_at(_largest_torque(ways[0]))
         rows.append(
             (
                 *(body, flank, safety["bending", "finite elements"]),
-                *(safety.get(("bending", "ISO 6336-3"), np.nan), safety["pitting", "ISO 6336-2"]),
+                safety.get(("bending", "ISO 6336-3"), np.nan),
+                *(safety.get(("pitting", "contact analysis"), np.nan), safety["pitting", "ISO 6336-2"]),
+                *(1e-3 * edge_load, 1e3 * edge_length),
                 min(one.life for one in ways) / 3600.0,
                 float(np.prod(known)) if known else np.nan,
                 f"{nearest.failure} ({nearest.method})",
                 min((one.verdict for one in ways), key=HARDEST.__getitem__),
-                _within(nearest, solved).all(),
+                _within(nearest, pressure.torques[-1]).all(),
             )
         )
     return pd.DataFrame(rows, columns=list(SAFETY_COLUMNS))
 
 
-def rating_table(found: Sequence[Rated], solved: float) -> pd.DataFrame:
-    """Safety and life, columns as RATING_COLUMNS; stress is that of the hardest load."""
+def rating_table(found: Sequence[Rated], pressure: ContactPressure) -> pd.DataFrame:
+    """Safety and life, columns as RATING_COLUMNS; stress is that of the hardest load.
+
+    The error is that of the contact analysis' `pressure`; other methods tell none.
+    """
     rows = [
         (
             *_subject(one),
             1e-6 * float(one.stress.max()),
+            1e-6 * pressure.error_at(_largest_torque(one)) if one.method == "contact analysis" else np.nan,
             1e-6 * one.allowed,
             float(one.duty.cycles.sum()),
             one.safety,
@@ -54,7 +67,7 @@ def rating_table(found: Sequence[Rated], solved: float) -> pd.DataFrame:
             float(one.damage.sum()),
             one.life / 3600.0,
             one.reliability,
-            _within(one, solved).all(),
+            _within(one, pressure.torques[-1]).all(),
         )
         for one in found
     ]
@@ -95,6 +108,10 @@ def damage_table(found: Sequence[Rated], duty: Sequence[DutyBin], solved: float)
 
 def _subject(one: Rated) -> tuple[str, ...]:
     return one.duty.body, one.duty.gear, one.duty.flank, one.failure, one.method
+
+
+def _largest_torque(one: Rated) -> float:
+    return float(one.duty.torque.max())
 
 
 def _within(one: Rated, solved: float) -> np.ndarray:

@@ -71,18 +71,3 @@ def stress_table(
     return table.sort_values(["speed_rpm", "motion"], kind="stable", ignore_index=True)[
         list(STRESS_OVER_SPEED_COLUMNS)
     ]
-
-
-def pressure_by_torque(torques: Array, pressures: Array) -> Callable[[float], float]:
-    """Largest pressure (Pa) at a torque: of line contact, with the root of the torque beyond those solved.
-
-    torques (t,) N m and pressures (t,) Pa; between them the load on a line contact, p squared, is linear.
-    """
-    squares = np.concatenate([[0.0], pressures**2])
-    at = np.concatenate([[0.0], torques])
-
-    def found(torque: float) -> float:
-        within = float(np.interp(torque, at, squares))
-        return float(np.sqrt(within * max(torque / at[-1], 1.0)))
-
-    return found

@@ -45,6 +45,7 @@ rule rating:
     "Safety and life of the tooth pair"
     input:
         stress=shared("root_stress", "stress"),
+        by_torque=shared("contact", "by_torque"),
         duty_spectrum=machine_loads("duty_spectrum"),
     output:
         safety="results/{case}/strength/safety.csv",

@@ -4,6 +4,7 @@ from dataclasses import replace
 from math import pi, sqrt, tan
 
 import numpy as np
+import pandas as pd
 import pytest
 from contact_bodies import pair_design
 from hypothesis import given
@@ -16,6 +17,7 @@ from facegear.config.strength import Strength, duty_bins
 from facegear.config.yaml_file import read_yaml
 from facegear.errors import ConfigErrors
 from facegear.geometry.analysis import section_contact_ratio
+from facegear.strength.contact_pressure import ContactPressure, contact_pressure
 from facegear.strength.duty import DutyBin, given_duty
 from facegear.strength.fatigue import reliability
 from facegear.strength.materials import Life
@@ -55,10 +57,19 @@ def root(largest):
     return RootStress(np.array([500.0]), np.arange(3.0), stress, np.array([0.25, 0.27]), np.ones((2, 4, 2)))
 
 
+PRESSURE = ContactPressure(
+    torques=np.array([500.0, 1000.0]),
+    pressure=np.array([800e6, 1200e6]),
+    error=np.array([8e6, 24e6]),
+    edge_load=np.array([1e5, 3e5]),
+    edge_length=np.array([2e-3, 4e-3]),
+)
+
+
 def rated(duty, **options):
     design = pair_design()
     roots = {"pinion": root(300e6), "face_gear": root(400e6)}
-    found = rate(design, section_contact_ratio(design), roots, request(*duty, **options))
+    found = rate(design, section_contact_ratio(design), roots, PRESSURE, request(*duty, **options))
     return {(one.duty.body, one.failure, one.method): one for one in found}, found
 
 
@@ -80,7 +91,7 @@ def test_damage_adds_up_over_the_bins_and_an_empty_bin_does_none():
     assert both[key].damage[2] == 0.0
     table, rows = (
         damage_table(found, (one, two, DutyBin(900.0, 20.0, 0.0)), 500.0),
-        rating_table(found, 500.0),
+        rating_table(found, replace(PRESSURE, torques=np.array([250.0, 500.0]))),
     )
     total = table.groupby(["body", "failure", "method"])["damage"].sum()
     np.testing.assert_allclose(
@@ -168,16 +179,60 @@ def test_reliability_stands_in_the_tables_where_the_card_gives_the_spread_of_liv
     card = replace(CARD, bending=replace(CARD.bending, weibull_shape=1.5))
     design = pair_design()
     roots = {"pinion": root(300e6), "face_gear": root(600e6)}
-    found = rate(design, section_contact_ratio(design), roots, request(hard, card=card))
-    table = rating_table(found, 1000.0)
+    found = rate(design, section_contact_ratio(design), roots, PRESSURE, request(hard, card=card))
+    table = rating_table(found, PRESSURE)
     bending = table[(table["failure"] == "bending") & (table["damage"] > 0.0)]
     np.testing.assert_allclose(bending["reliability"], 0.99 ** (bending["damage"] ** 1.5))
     assert len(bending) and table[table["failure"] == "pitting"]["reliability"].isna().all()
-    safety_rows = safety_table(found, 1000.0).set_index("body")
+    safety_rows = safety_table(found, PRESSURE).set_index("body")
     gear = bending[bending["body"] == "face_gear"].iloc[0]
     assert safety_rows.loc["face_gear", "reliability"] == pytest.approx(gear["reliability"])
     assert safety_rows.loc["face_gear", "life_hours"] == pytest.approx(1000.0 / gear["damage"])
     assert safety_rows.loc["face_gear", "bending_safety"] == pytest.approx(gear["safety"])
+
+
+def test_pitting_is_judged_by_the_pressure_of_the_contact_analysis_beside_the_standards():
+    found = rated([DutyBin(750.0, 20.0, 3.6e7)])[1]
+    table = rating_table(found, PRESSURE).set_index(["body", "failure", "method"])
+    row = table.loc[("face_gear", "pitting", "contact analysis")]
+    assert row["stress_mpa"] == pytest.approx(sqrt((800.0**2 + 1200.0**2) / 2))
+    assert row["stress_error_mpa"] == pytest.approx(0.015 * row["stress_mpa"])
+    assert np.isnan(table.loc[("face_gear", "pitting", "ISO 6336-2"), "stress_error_mpa"])
+    life = float(CARD.pitting.life.factor(row["cycles"]))
+    assert row["safety"] == pytest.approx(1e-6 * CARD.pitting.limit * life / row["stress_mpa"], rel=1e-9)
+    flank = safety_table(found, PRESSURE).set_index("body").loc["face_gear"]
+    assert flank["pitting_safety"] == row["safety"]
+    standard = table.loc[("face_gear", "pitting", "ISO 6336-2"), "safety"]
+    assert flank["standard_pitting_safety"] == standard
+    assert flank[["edge_line_load_n_per_mm", "edge_length_mm"]].tolist() == pytest.approx([200.0, 3.0])
+
+
+def test_a_contact_on_edges_alone_is_judged_by_the_standard():
+    bare = replace(PRESSURE, pressure=np.full(2, np.nan), error=np.full(2, np.nan))
+    design = pair_design()
+    roots = {"pinion": root(300e6), "face_gear": root(400e6)}
+    found = rate(design, section_contact_ratio(design), roots, bare, request(DutyBin(750.0, 20.0, 3.6e7)))
+    methods = {one.method for one in found if one.failure == "pitting"}
+    assert methods == {"ISO 6336-2"}
+    assert safety_table(found, bare)["pitting_safety"].isna().all()
+
+
+@given(factor=st.floats(1.0, 5.0))
+def test_beyond_the_torques_solved_pressure_rises_with_the_root_of_the_torque_and_edges_with_it(factor):
+    table = pd.DataFrame(
+        {
+            "torque_n_m": [500.0, 1000.0],
+            "pressure_mpa": [np.nan, 1200.0],
+            "pressure_error_mpa": [np.nan, 24.0],
+            "tip_line_load_n_per_mm": [100.0, 300.0],
+            "tip_length_mm": [2.0, 4.0],
+        }
+    )
+    found = contact_pressure(table)
+    assert found.at(1000.0 * factor) == pytest.approx(1200e6 * sqrt(factor))
+    assert found.error_at(1000.0 * factor) == pytest.approx(0.02 * found.at(1000.0 * factor))
+    assert found.edge_at(1000.0 * factor) == pytest.approx((300e3 * factor, 4e-3))
+    assert found.at(500.0) == pytest.approx(1200e6 * sqrt(0.5))
 
 
 @given(torque=st.floats(10.0, 2000.0))

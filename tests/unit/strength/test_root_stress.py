@@ -14,12 +14,13 @@ from spur_gears import fzg_c, root_tension, slab_design
 import facegear
 from facegear.config.machines import case_machine
 from facegear.harmonics.series import Harmonics
+from facegear.strength.contact_pressure import ContactPressure
 from facegear.strength.dynamic_stress import TensionHistory, dynamic_stress_table
 from facegear.strength.root_form import root_form
 from facegear.strength.root_stress import down_the_fillet, root_stress
 from facegear.strength.root_tables import root_tables
 from facegear.strength.spur import SpurGear
-from facegear.strength.stress_over_speed import branch_forces, pressure_by_torque, stress_table, swept_forces
+from facegear.strength.stress_over_speed import branch_forces, stress_table, swept_forces
 from facegear.transmission.flanks import flank_places, stiffness_series
 
 TORQUES, POSITIONS = np.array([100.0, 300.0]), np.array([0.0, 0.5])
@@ -184,7 +185,8 @@ def test_stress_over_speed_takes_the_hardest_of_coexisting_motions():
         }
     )
     forces = pd.concat([swept_forces(SWEPT), branch_forces(branches, np.array([1000.0, 2000.0]))])
-    pressure = pressure_by_torque(np.array([100.0, 300.0]), np.array([5e8, 9e8]))
+    torques, none = np.array([100.0, 300.0]), np.zeros(2)
+    pressure = ContactPressure(torques, np.array([5e8, 9e8]), none, none, none).at
     table = stress_table(
         forces.reset_index(drop=True), 750.0, 0.1, {"pinion": found, "face_gear": found}, pressure
     )
