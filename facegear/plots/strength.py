@@ -14,7 +14,8 @@ PART_SHOWN = 0.02
 """Of the largest stress: the passage is drawn where more is felt."""
 BODIES = {"pinion": "Pinion", "face_gear": "Face gear"}
 COLOURS = {"pinion": "tab:blue", "face_gear": "tab:orange"}
-MARKS = {"finite elements": "o", "ISO 6336-3": "x", "ISO 6336-2": "^"}
+LINES = {"finite elements": "-", "ISO 6336-3": "--", "contact analysis": "-", "ISO 6336-2": "--"}
+MARKS = {"finite elements": "o", "ISO 6336-3": "x", "contact analysis": "s", "ISO 6336-2": "^"}
 
 
 def passage(table: pd.DataFrame) -> Figure:
@@ -55,14 +56,13 @@ def life(rating: pd.DataFrame, damage: pd.DataFrame, curves: pd.DataFrame) -> Fi
 
     Of all pinions, and of all face gears, the flank nearest to its limit.
     """
-    lines = {"finite elements": "-", "ISO 6336-3": "--", "ISO 6336-2": "-"}
     with styled():
         figure, axes = plt.subplots(2, 1, figsize=(NARROW, 7.4))
         for axis, failure in zip(axes, ("bending", "pitting"), strict=True):
             for row in _nearest(rating[rating["failure"] == failure]).itertuples():
                 curve, bins = (_of(table, row) for table in (curves, damage[damage["cycles"] > 0]))
                 look = {"color": COLOURS[row.gear]}
-                axis.loglog(curve["cycles"], curve["allowed_mpa"], lines[row.method], lw=1.2, **look)
+                axis.loglog(curve["cycles"], curve["allowed_mpa"], LINES[row.method], lw=1.2, **look)
                 look |= {"ls": "none", "label": _subject(row)}
                 axis.loglog(bins["cycles"], bins["stress_mpa"], MARKS[row.method], **look)
             stress = "Root stress" if failure == "bending" else "Contact stress"

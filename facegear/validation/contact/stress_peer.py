@@ -7,6 +7,7 @@ averaged (two ways to a stress as well).
 
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +21,7 @@ from facegear.geometry.design import Material, PairDesign
 from facegear.io import abaqus
 from facegear.mesh.orderings import SERENDIPITY20
 from facegear.mesh.sector import SectorMesh, sector
-from facegear.mesh.sizes import MeshSizes
+from facegear.mesh.sizes import MeshSizes, named_sizes, thin_fillet
 from facegear.strength.root_stress import down_the_fillet
 from facegear.validation.contact.calculix import run_program
 from facegear.validation.contact.line_load import LoadedTooth, loaded_tooth
@@ -28,12 +29,38 @@ from facegear.validation.contact.line_load import LoadedTooth, loaded_tooth
 Array = NDArray[np.float64]
 
 LEVELS = ("coarse", "medium")
+"""Of the whole face."""
+END = 2.1
+"""Outer part of the face, in modules, where the gear's fillet is sharpest: small enough for finer meshes."""
+END_LEVELS = {"medium": (0.10, 0.40, 0.40), "fine": (0.05, 0.27, 0.32), "finer": (0.035, 0.27, 0.32)}
+"""Sizes of the outer part's meshes, as in `facegear.mesh.sizes.RESOLUTIONS`."""
 
 TEETH = 3
 """Of the sector, its cut faces free; the middle one is loaded."""
 
 ENDS = 0.1
 """Part of the face at each end that is left out: an edge's stress is no element's to give."""
+
+
+def stress_peer_tables(
+    design: PairDesign, materials: tuple[Material, Material], folder: Path, threads: int
+) -> pd.DataFrame:
+    """`stress_peer_study` of the whole face, then of its outer end on finer meshes."""
+    m = design.module
+    whole = {name: thin_fillet(named_sizes(name, m), name) for name in LEVELS}
+    end = {name: thin_fillet(MeshSizes(*(m * size for size in sizes))) for name, sizes in END_LEVELS.items()}
+    parts = (design, whole), (outer_end(design), end)
+    return pd.concat(
+        [stress_peer_study(part, levels, materials, folder, threads) for part, levels in parts],
+        ignore_index=True,
+    )
+
+
+def outer_end(design: PairDesign) -> PairDesign:
+    """The outer end of the pair's face alone."""
+    face = END * design.module
+    gear = replace(design.face_gear, inner_radius=design.face_gear.outer_radius - face)
+    return replace(design, face_gear=gear, pinion=replace(design.pinion, width=0.75 * face))
 
 
 def stress_peer_study(
@@ -59,6 +86,7 @@ def stress_peer_study(
             ours, read, nodal = along_the_face(tooth, deck.with_suffix(".frd"), material)
             rows.append(
                 {
+                    "face_mm": 1e3 * (design.face_gear.outer_radius - design.face_gear.inner_radius),
                     "level": level,
                     "body": body,
                     "dof": dof,

@@ -17,6 +17,7 @@ from facegear.config.strength import Strength, duty_bins
 from facegear.config.yaml_file import read_yaml
 from facegear.errors import ConfigErrors
 from facegear.geometry.analysis import section_contact_ratio
+from facegear.plots.strength import damage_by_bin, life
 from facegear.strength.contact_pressure import ContactPressure, contact_pressure
 from facegear.strength.duty import DutyBin, given_duty
 from facegear.strength.fatigue import reliability
@@ -29,7 +30,7 @@ from facegear.strength.rating import (
     reversal,
     safety,
 )
-from facegear.strength.rating_tables import damage_table, rating_table, safety_table
+from facegear.strength.rating_tables import curve_table, damage_table, rating_table, safety_table
 from facegear.strength.root_stress import RootStress, down_the_fillet, largest_tension
 
 CARD = material_card(CARDS / "case_carburised_din3990_11.yaml")
@@ -205,6 +206,16 @@ def test_pitting_is_judged_by_the_pressure_of_the_contact_analysis_beside_the_st
     standard = table.loc[("face_gear", "pitting", "ISO 6336-2"), "safety"]
     assert flank["standard_pitting_safety"] == standard
     assert flank[["edge_line_load_n_per_mm", "edge_length_mm"]].tolist() == pytest.approx([200.0, 3.0])
+
+
+def test_the_figures_of_life_and_damage_show_every_method():
+    bins = (DutyBin(750.0, 20.0, 3.6e7), DutyBin(900.0, 20.0, 3.6e7))
+    found = rated(bins)[1]
+    table, harm = rating_table(found, PRESSURE), damage_table(found, bins, 1000.0)
+    shown = life(table, harm, curve_table(found))
+    labels = {text.get_text() for axis in shown.axes for text in axis.get_legend().get_texts()}
+    assert {label.rsplit(", ", 1)[1] for label in labels} == {one.method for one in found}
+    assert len(damage_by_bin(table, harm).axes[0].get_legend().get_texts()) == len(found)
 
 
 def test_a_contact_on_edges_alone_is_judged_by_the_standard():

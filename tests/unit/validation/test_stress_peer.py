@@ -11,16 +11,17 @@ from facegear.errors import FacegearError
 from facegear.mesh.sizes import MeshSizes, named_sizes, thin_fillet
 from facegear.strength.root_stress import down_the_fillet
 from facegear.validation.contact.line_load import loaded_tooth
-from facegear.validation.contact.stress_peer import read_nodes, stress_peer_study
+from facegear.validation.contact.stress_peer import outer_end, read_nodes, stress_peer_study
 
 NOMINAL = pair_design()
 M = NOMINAL.module
+END = outer_end(NOMINAL)
 SHARP = replace(
-    NOMINAL,
-    face_gear=replace(NOMINAL.face_gear, inner_radius=0.267),
-    pinion=replace(NOMINAL.pinion, width=6e-3),
+    END,
+    face_gear=replace(END.face_gear, rim_thickness=4e-3),
+    pinion=replace(END.pinion, bore_radius=0.034),
 )
-"""The paper's pair with the outer end of its face alone, where the gear's fillet is sharpest."""
+"""The paper's pair with the outer end of its face alone, where the gear's fillet is sharp, on thin rims."""
 
 
 def largest(body, sizes):
