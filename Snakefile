@@ -86,6 +86,7 @@ localrules:
     contact_studies_figures,
     tolerances,
     tolerances_figures,
+    tolerances_map_figure,
     search_figures,
     identify_load_estimates,
     identify_verdicts,

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from facegear.results.stiffness import StiffnessResult
     from facegear.results.stress_over_speed import StressOverSpeedResult
     from facegear.results.sweep import SweepResult
-    from facegear.results.tolerances import TolerancesResult
+    from facegear.results.tolerances import LoadMapResult, TolerancesResult
     from facegear.scenarios.inverse import Loosest
 
 
@@ -303,6 +303,24 @@ class Gearbox:
             raise ConfigError("tolerances", None, "a section of the config: causes and what is asked of them")
         given = {f"tolerances.{key}": value for key, value in changes.items()}
         return self._changed("tolerances", given)._chain.tolerances()
+
+    def load_map(
+        self,
+        torque_factors: Sequence[float] | None = None,
+        speeds_rpm: Sequence[float] | None = None,
+        samples: int | None = None,
+    ) -> "LoadMapResult":
+        """Percentiles of the machine with its tolerances over torque and speed, the same machines everywhere.
+
+        Torques in parts of the machine's, speeds for a dynamic model only; all as in section
+        `tolerances.load_map`, or its defaults, unless given. Raises ConfigErrors without a section
+        `tolerances`.
+        """
+        if self.values["tolerances"] is None:
+            raise ConfigError("tolerances", None, "a section of the config: causes and what is asked of them")
+        given = {"torque_factors": torque_factors, "speeds_rpm": speeds_rpm, "samples": samples}
+        section = {**(self.values["tolerances"]["load_map"] or {}), **_given(given)}
+        return self._changed("load_map", {"tolerances.load_map": section})._chain.load_map()
 
     def loosest_tolerances(
         self,

@@ -168,7 +168,11 @@ def at_mesh_torque(transmission: Mapping[str, Any], torque: float) -> dict[str, 
     given = transmission["torque"]["per_input_n_m"]
     if given == 0.0:
         raise ConfigError("transmission.torque.per_input_n_m", given, "not 0, for the bins of a duty cycle")
-    part = torque * len(transmission["face_gears"]) / abs(given)
+    return with_torques(transmission, torque * len(transmission["face_gears"]) / abs(given))
+
+
+def with_torques(transmission: Mapping[str, Any], part: float) -> dict[str, Any]:
+    """Section `transmission` with all torques times `part`."""
 
     def scaled(section: Mapping[str, Any]) -> dict[str, Any]:
         own = section.get("torque_n_m")
@@ -176,7 +180,7 @@ def at_mesh_torque(transmission: Mapping[str, Any], torque: float) -> dict[str, 
 
     return {
         **transmission,
-        "torque": {**transmission["torque"], "per_input_n_m": part * given},
+        "torque": {**transmission["torque"], "per_input_n_m": part * transmission["torque"]["per_input_n_m"]},
         "pinions": [scaled(place) for place in transmission["pinions"]],
         "single_gears": {name: scaled(gear) for name, gear in transmission["single_gears"].items()},
     }

@@ -74,6 +74,20 @@ NEEDS: dict[str, Slice] = {
         ),
         **_CONTACT,
     },
+    "tolerances_map": {
+        **_MACHINE,
+        **_ACCURACY,
+        "speed_rpm": "dynamics.speed_rpm",
+        "options": "load_sharing",
+        "tolerances": tuple(
+            f"tolerances.{key}"
+            for key in (
+                *("causes", "correlations", "model", "seed", "hunting_cycles"),
+                *("confidence", "load_map"),
+            )
+        ),
+        **_CONTACT,
+    },
     "tolerances": {"tolerances": "tolerances"},
     "search_island": _SEARCH,
     "search": _SEARCH,
@@ -107,6 +121,7 @@ UPSTREAM = {
     "load_sharing": ("stiffness",),
     "hunting": ("stiffness",),
     "tolerances_chunk": ("stiffness",),
+    "tolerances_map": ("stiffness",),
     "tolerances": ("tolerances_chunk",),
     "search_island": ("stiffness",),
     "search": ("search_island",),
@@ -144,7 +159,7 @@ def many_contacts(rule: str, values: Mapping[str, Any]) -> bool:
     """
     tolerances, search = values["tolerances"], values["search"]
     causes = [key for cause in (tolerances or {}).get("causes", ()) for key in cause["moves"]]
-    if rule == "tolerances_chunk":
+    if rule in ("tolerances_chunk", "tolerances_map"):
         return tolerances is not None and (tolerances["tooth_contact"] or moves_pair(causes))
     if search is None:
         return False

@@ -1,6 +1,6 @@
 """Config section `tolerances`: what varies from machine to machine, how it is sampled, what is asked."""
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 MOST_SAMPLES = 2**24
 MOST_CHUNKS = 500
+MOST_MAPPED = 200_000
+"""Machines of a map of loads, which is one job."""
 TAKEN = ("sample", "error")
 """Columns of a table of samples beside causes and quantities."""
 
@@ -61,6 +63,35 @@ class RankCorrelation(Section):
     coefficient: float = Field(gt=-1, lt=1, description="correlation of their normal scores")
 
 
+class LoadMap(Section):
+    """Torques and speeds at which percentiles are asked for too, of the same samples everywhere."""
+
+    torque_factors: tuple[Annotated[float, Field(gt=0, le=10)], ...] = Field(
+        (0.25, 0.5, 1.0, 1.5), min_length=1, max_length=50, description="times all torques of `transmission`"
+    )
+    speeds_rpm: tuple[Annotated[float, Field(ge=1, le=1e5)], ...] = Field(
+        (), max_length=200, description="for model dynamic; none: dynamics.speed_rpm"
+    )
+    samples: int = Field(128, ge=2, le=100_000, description="at every torque and speed")
+
+    @model_validator(mode="after")
+    def _rising(self) -> "LoadMap":
+        for key in ("torque_factors", "speeds_rpm"):
+            given = getattr(self, key)
+            if list(given) != sorted(set(given)):
+                refuse(key, list(given), "rising, each once")
+        points = len(self.torque_factors) * max(len(self.speeds_rpm), 1)
+        if points * self.samples > MOST_MAPPED:
+            refuse("samples", self.samples, f"at most {MOST_MAPPED // points}: there are {points} loads")
+        return self
+
+    def loads(self, speed_rpm: float) -> list[tuple[float, float]]:
+        """Torque factor and speed (rpm) of every point; the speed given where the section names none."""
+        return [
+            (factor, speed) for factor in self.torque_factors for speed in self.speeds_rpm or (speed_rpm,)
+        ]
+
+
 class Tolerances(Section):
     """Samples of one machine with its tolerances, and what they say."""
 
@@ -80,6 +111,9 @@ class Tolerances(Section):
         False,
         description="pressure, root stress and transmission error of every machine as well; causes that move "
         "the tooth pair bring them",
+    )
+    load_map: LoadMap | None = Field(
+        None, description="percentiles over torque and speed; null: at the machine's own load alone"
     )
     hunting_cycles: int = Field(
         32, ge=1, le=100_000, description="mesh cycles taken from the hunting cycle, evenly spread"
@@ -105,6 +139,14 @@ class Tolerances(Section):
         if matrix is not None and np.linalg.eigvalsh(matrix)[0] <= 0.0:
             told = [[*pair.between, pair.coefficient] for pair in self.correlations]
             refuse("correlations", told, "numbers that can hold together: the matrix is not positive")
+        return self
+
+    @model_validator(mode="after")
+    def _mapped(self) -> "Tolerances":
+        if self.load_map is not None and self.load_map.speeds_rpm and self.model == "quasi_static":
+            refuse(
+                "load_map.speeds_rpm", list(self.load_map.speeds_rpm), "none: model quasi_static has no speed"
+            )
         return self
 
     @model_validator(mode="after")

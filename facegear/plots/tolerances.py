@@ -118,6 +118,37 @@ def scatter_figure(
     return figure
 
 
+def load_map_figure(table: pd.DataFrame) -> Figure:
+    """Median and 99th percentile of the worst path's factor over torque, or over speed for each torque.
+
+    `table`: as of `facegear.stages.tolerances_map`. The worst path is that of the largest 99th percentile.
+    """
+    factors = table[table["quantity"].str.startswith("k_gamma")]
+    top = factors[factors["percentile"] == 99.0]
+    name = top.loc[top["value"].idxmax(), "quantity"] if len(top) else ""
+    own = factors[factors["quantity"] == name]
+    over, lines = "torque_factor", "speed_rpm"
+    if own["speed_rpm"].nunique() > 1:
+        over, lines = lines, over
+    label = {"torque_factor": "{:g} x torque", "speed_rpm": "{:.0f} rpm"}[lines]
+    with styled():
+        figure, axis = plt.subplots(figsize=(NARROW, 3.4))
+        for (value, rows), colour in zip(
+            own.groupby(lines), plt.cm.viridis(np.linspace(0, 0.85, own[lines].nunique() or 1)), strict=True
+        ):
+            for level, style in ((50.0, ":"), (99.0, "-")):
+                at = rows[rows["percentile"] == level].sort_values(over)
+                told = label.format(value) if level == 99.0 else None
+                axis.plot(at[over], at["value"], style, marker=".", ms=4, color=colour, label=told)
+                axis.fill_between(at[over], at["low"], at["high"], color=colour, alpha=0.15, lw=0)
+        axis.set_xlabel({"torque_factor": "Torque (of the nominal)", "speed_rpm": "Pinion speed (rpm)"}[over])
+        axis.set_ylabel(in_words(name))
+        if name:
+            figure.legend(loc="outside lower center", ncols=3)
+        figure.suptitle("Solid: 99 % stay below; dotted: half; shaded: confidence interval", fontsize=9)
+    return figure
+
+
 def _sizes(importance: pd.DataFrame, indices: pd.DataFrame) -> tuple[pd.DataFrame, str]:
     """The table that tells what matters, with its size, and the column that holds it."""
     table, value = (indices, "total") if not indices.empty else (importance.dropna(), "rank_correlation")

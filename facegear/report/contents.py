@@ -33,6 +33,7 @@ CAPTIONS = {
     "tolerance_distributions": "Share of samples above each value, with percentiles and their intervals.",
     "tolerance_importance": "Which tolerance matters: total Sobol indices, or rank correlations.",
     "tolerance_scatter": "Every sample against the two tolerances that matter most.",
+    "tolerance_map": "99th percentile of K_gamma of the worst path over torque and, in motion, speed.",
     "search_front": "Designs tried, the front that none beats, and its winners beside the nominal design.",
     "search_hypervolume": "How much of the box between best and worst of the front each seed has covered.",
     "sensitivity": "Change of K_gamma per micrometre of each error, largest first.",
@@ -122,7 +123,7 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "Tolerances",
         "The machine as a series of machines: causes with their distributions, sampled by scrambled Sobol "
         "sequences. K_gamma is a path's largest load over an even share of the group's mean.",
-        ("tolerance_distributions", "tolerance_importance", "tolerance_scatter"),
+        ("tolerance_distributions", "tolerance_importance", "tolerance_scatter", "tolerance_map"),
     ),
     (
         "Design search",

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from facegear.results.stiffness import StiffnessResult
     from facegear.results.stress_over_speed import StressOverSpeedResult
     from facegear.results.sweep import SweepResult
-    from facegear.results.tolerances import TolerancesResult
+    from facegear.results.tolerances import LoadMapResult, TolerancesResult
     from facegear.stages.outcome import Outcome
 
 
@@ -214,6 +214,18 @@ class Chain:
             return tolerances(samples, indices, **self._needs("tolerances"))
 
         return self.store.result("tolerances", self.values, TolerancesResult, compute)
+
+    def load_map(self) -> "LoadMapResult":
+        """Percentiles over torque and speed."""
+        from facegear.results.tolerances import LoadMapResult
+
+        def compute() -> "Outcome":
+            from facegear.stages.tolerances_map import tolerances_map
+
+            needs = self._needs("tolerances_map")
+            return tolerances_map(self._harmonics(), **needs, flanks=self._flanks(needs["pair"]))
+
+        return self.store.result("tolerances_map", self.values, LoadMapResult, compute)
 
     def search(self) -> "SearchResult":
         """Front of designs, island after island, and its winners."""

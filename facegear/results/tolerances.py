@@ -13,6 +13,22 @@ if TYPE_CHECKING:
 KINDS = ("distributions", "importance", "scatter")
 
 
+class LoadMapResult(Result):
+    """Percentiles over torque and speed."""
+
+    FILES: ClassVar = {"load_map": Kept("tolerances/load_map.csv", ("torque_factor", "speed_rpm", "value"))}
+
+    def table(self) -> pd.DataFrame:
+        """One row a torque, speed, quantity and percentile: value, and the interval that holds it."""
+        return self.content["load_map"].copy()
+
+    def plot(self) -> "Figure":
+        """K_gamma of the worst path over torque and speed."""
+        from facegear.plots.tolerances import load_map_figure
+
+        return load_map_figure(self.content["load_map"])
+
+
 class TolerancesResult(Result):
     """Percentiles of K_gamma and mesh forces, shares of machines that open or reverse, what matters most."""
 

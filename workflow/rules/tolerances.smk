@@ -45,3 +45,28 @@ rule tolerances_figures:
         manifest="results/{case}/figures/tolerances_figures.provenance.json",
     script:
         "../scripts/tolerances_figures.py"
+
+
+rule tolerances_map:
+    "Percentiles over torque and speed"
+    input:
+        harmonics=shared("stiffness", "harmonics"),
+        flanks=flanks("tolerances_map"),
+    output:
+        load_map="results/{case}/tolerances/load_map.csv",
+        manifest="results/{case}/tolerances/load_map.provenance.json",
+    resources:
+        runtime=240,
+    script:
+        "../scripts/tolerances_map.py"
+
+
+rule tolerances_map_figure:
+    "K_gamma over torque and speed"
+    input:
+        load_map=rules.tolerances_map.output.load_map,
+    output:
+        **pictures("tolerances", "tolerance_map"),
+        manifest="results/{case}/figures/tolerances_map.provenance.json",
+    script:
+        "../scripts/tolerances_map_figure.py"

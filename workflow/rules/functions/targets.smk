@@ -25,6 +25,8 @@ def stages(case):
         found += [rules.following] if turns(CASES[case]["transmission"]) else []
     if CASES[case]["tolerances"]:
         found += [rules.tolerances, rules.tolerances_figures]
+        if CASES[case]["tolerances"]["load_map"]:
+            found += [rules.tolerances_map, rules.tolerances_map_figure]
     if CASES[case]["search"]:
         found += [rules.search, rules.search_figures]
     return found + ([rules.scorecard] if REPRODUCTION else [])
