@@ -87,9 +87,8 @@ class LoadMap(Section):
 
     def loads(self, speed_rpm: float) -> list[tuple[float, float]]:
         """Torque factor and speed (rpm) of every point; the speed given where the section names none."""
-        return [
-            (factor, speed) for factor in self.torque_factors for speed in self.speeds_rpm or (speed_rpm,)
-        ]
+        speeds = self.speeds_rpm or (speed_rpm,)
+        return [(factor, speed) for factor in self.torque_factors for speed in speeds]
 
 
 class Tolerances(Section):
@@ -144,9 +143,7 @@ class Tolerances(Section):
     @model_validator(mode="after")
     def _mapped(self) -> "Tolerances":
         if self.load_map is not None and self.load_map.speeds_rpm and self.model == "quasi_static":
-            refuse(
-                "load_map.speeds_rpm", list(self.load_map.speeds_rpm), "none: model quasi_static has no speed"
-            )
+            refuse("load_map.speeds_rpm", list(self.load_map.speeds_rpm), "none where model is quasi_static")
         return self
 
     @model_validator(mode="after")

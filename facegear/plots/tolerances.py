@@ -133,9 +133,8 @@ def load_map_figure(table: pd.DataFrame) -> Figure:
     label = {"torque_factor": "{:g} x torque", "speed_rpm": "{:.0f} rpm"}[lines]
     with styled():
         figure, axis = plt.subplots(figsize=(NARROW, 3.4))
-        for (value, rows), colour in zip(
-            own.groupby(lines), plt.cm.viridis(np.linspace(0, 0.85, own[lines].nunique() or 1)), strict=True
-        ):
+        colours = plt.cm.viridis(np.linspace(0.0, 0.85, max(own[lines].nunique(), 1)))
+        for (value, rows), colour in zip(own.groupby(lines), colours, strict=False):
             for level, style in ((50.0, ":"), (99.0, "-")):
                 at = rows[rows["percentile"] == level].sort_values(over)
                 told = label.format(value) if level == 99.0 else None
@@ -143,7 +142,7 @@ def load_map_figure(table: pd.DataFrame) -> Figure:
                 axis.fill_between(at[over], at["low"], at["high"], color=colour, alpha=0.15, lw=0)
         axis.set_xlabel({"torque_factor": "Torque (of the nominal)", "speed_rpm": "Pinion speed (rpm)"}[over])
         axis.set_ylabel(in_words(name))
-        if name:
+        if own[lines].nunique() > 1:
             figure.legend(loc="outside lower center", ncols=3)
         figure.suptitle("Solid: 99 % stay below; dotted: half; shaded: confidence interval", fontsize=9)
     return figure

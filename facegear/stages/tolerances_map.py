@@ -18,15 +18,8 @@ from facegear.stages.sampled_machine import run_samples, sampled_machine
 from facegear.stages.tooth_meshes import Flanks
 
 COLUMNS = (
-    "torque_factor",
-    "speed_rpm",
-    "quantity",
-    "percentile",
-    "value",
-    "low",
-    "high",
-    "samples",
-    "failed",
+    *("torque_factor", "speed_rpm", "quantity", "percentile"),
+    *("value", "low", "high", "samples", "failed"),
 )
 
 

@@ -64,6 +64,9 @@ def chunk(gearbox, first, last, design="samples", **others):
         ({"causes": [{**RIGHT, "moves": {f"{MEAN}.nobody/lower.error_um": 1.0}}]}, "nobody/lower"),
         ({"causes": [{**RIGHT, "name": "sample"}]}, "a column of its own"),
         ({"causes": [{**RIGHT, "name": "peak_mesh_force_n"}]}, "a column of its own"),
+        ({"load_map": {"torque_factors": [1, 0.5]}}, "rising, each once"),
+        ({"load_map": {"speeds_rpm": [1000]}}, "none where model is quasi_static"),
+        ({"load_map": {"samples": 90_000}}, "at most 50000: there are 4 loads"),
         ({"samples": 100}, "a multiple of chunk_samples"),
         ({"index_blocks": 3}, "a power of two"),
         ({"samples": 1024, "chunk_samples": 1}, "at least 3"),
@@ -156,6 +159,28 @@ def test_the_loosest_tolerances_of_a_linear_machine_are_those_of_the_closed_form
         gearbox.loosest_tolerances(name, 1.0, samples=1)
     with pytest.raises(FacegearError, match="quantity = 'k': one of"):
         gearbox.loosest_tolerances("k", limit, samples=1)
+
+
+def test_a_map_of_loads_holds_the_machine_of_each_torque_and_the_closed_form():
+    gearbox = machine([RIGHT], hunting_cycles=1)
+    table = gearbox.load_map([0.5, 1.0, 2.0], samples=16).table()
+    name = "k_gamma right input/upper"
+    own = table[table["quantity"] == name].set_index(["torque_factor", "percentile"])["value"]
+    torque = "transmission.torque.per_input_n_m"
+    doubled = gearbox.with_values({torque: 2.0 * gearbox.values["transmission"]["torque"]["per_input_n_m"]})
+    assert own[2.0, 99.0] == np.quantile(doubled.tolerances(16).samples()[name], 0.99)
+    # misfit and play of a linear machine are lengths: what they add to the share falls with one over torque
+    spread = [own[factor, 99.0] - own[factor, 50.0] for factor in (0.5, 1.0, 2.0)]
+    np.testing.assert_allclose(np.array(spread) * (0.5, 1.0, 2.0), spread[1], rtol=1e-6)
+
+
+def test_a_map_over_speed_moves_with_what_a_cause_adds_to_it():
+    faster = cause("speed", "dynamics.speed_rpm", shape="choice", spread=None, values=[50.0])
+    section = {"model": "dynamic", "load_map": {"torque_factors": [1.0], "speeds_rpm": [900.0], "samples": 2}}
+    found = machine([faster], **section).load_map().table().set_index(["quantity", "percentile"])["value"]
+    alone = machine([faster], model="dynamic").with_values({"dynamics.speed_rpm": 900.0}).tolerances(1)
+    name = "k_gamma_k_v right input/upper"
+    assert found[name, 50.0] == alone.samples()[name].iloc[0]
 
 
 def test_adding_samples_keeps_the_chunks_that_exist():
