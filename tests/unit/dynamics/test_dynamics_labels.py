@@ -69,6 +69,21 @@ def test_labels_of_random_oscillators_hold_for_20_000_further_periods():
     assert all(row["reached_closed_form"] or row["sensitive"] for row in rows)
 
 
+@pytest.mark.parametrize(
+    ("start", "label"), [((-0.8931, -0.3998), "period-3"), ((1.3661, 0.4104), "period-5")]
+)
+def test_the_chaos_of_one_oscillator_of_the_suite_is_a_transient_between_two_stable_orbits(start, label):
+    """Number 211, chaotic for 400 to 45 000 periods, in whatever steps, comes to one or the other."""
+    oscillator = list(random_oscillators(212))[211]
+    oscillator = replace(oscillator, displacement=start[0], velocity=start[1])
+    found = steady_state(oscillator.system, oscillator.speed, Settings(), oscillator.start)
+    alone = closed_form_run(oscillator, 1500)
+    assert found.label == end_of(alone).label == label
+    assert abs(found.multipliers[0]) < 0.95
+    distances = np.abs(alone[-5:] - [found.state.displacement[0], found.state.velocity[0]]).max(axis=1)
+    assert distances.min() < 1e-6
+
+
 def test_a_run_that_still_moves_is_no_period_to_the_suite():
     decaying = np.cumsum(np.full((4000, 2), 1e-4), axis=0)
     assert end_of(decaying).label == "irregular"
