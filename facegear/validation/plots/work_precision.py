@@ -47,9 +47,13 @@ def work_precision_diagram(table: pd.DataFrame) -> Figure:
             )
             axis.set_ylabel("time (s)")
             axis.invert_xaxis()
-        for axis in axes.flat[len(problems) :]:
-            axis.set_axis_off()
         lines = axes[0, 0].get_legend_handles_labels()
-        figure.legend(*lines, loc="outside lower center", ncols=5, fontsize=7)
+        spare = axes.flat[len(problems) :]
+        for axis in spare:
+            axis.set_axis_off()
+        if len(spare):
+            spare[0].legend(*lines, loc="center", fontsize=11)
+        else:
+            figure.legend(*lines, loc="outside lower center", ncols=5, fontsize=7)
         figure.suptitle("Work and precision, median CPU times")
     return figure
