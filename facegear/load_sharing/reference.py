@@ -13,6 +13,7 @@ from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
 from facegear.load_sharing.groups import load_groups
 from facegear.load_sharing.options import SharingOptions
 from facegear.load_sharing.run import cycle_forces, group_average, watched_motion
+from facegear.load_sharing.sampling import densely_sampled
 from facegear.load_sharing.statics import mean_equilibrium_forces, static_forces
 from facegear.load_sharing.statistics import average
 from facegear.progress import Progress
@@ -73,7 +74,7 @@ def speed_range_table(machine: Machine, settings: Settings, options: SharingOpti
     model, state, rows = build_model(machine), None, []
     for speed in speeds:
         response = watched_motion(model, float(speed), settings, options, state)
-        state = response.state
+        state, response = response.state, densely_sampled(response)
         for group in load_groups(machine.layout):
             one = group_average(response, group, options.confidence)[2]
             rows.append(

@@ -10,7 +10,7 @@ from facegear.dynamics.steady_state.simulate import Model, SteadyState, build_mo
 from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
 from facegear.load_sharing.groups import LoadGroup, load_groups
 from facegear.load_sharing.options import SharingOptions
-from facegear.load_sharing.sampling import densely_sampled
+from facegear.load_sharing.sampling import densely_sampled, same_orbit
 from facegear.load_sharing.statistics import Average, average, defined_mean
 from facegear.transmission.layout import DOF_PER_BODY
 from facegear.transmission.machine import Machine
@@ -18,6 +18,8 @@ from facegear.transmission.matrices import mass_diagonal
 
 WATCHED, TORUS_WATCHED = 2, 8
 """Times the cycles averaged for which a motion is watched, and again before it is called quasi-periodic."""
+SAMPLES = 64
+"""At most so many a cycle from other starts, whose means alone are wanted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,12 +62,15 @@ def load_sharing(
     first = static_start(model)
     response = watched_motion(model, speed_rpm, settings, options, first)
     random = np.random.default_rng(options.seed)
+    coarse = replace(settings, samples=min(SAMPLES, options.samples))
     motions, means = [response.label], []
     for _ in range(options.starts - 1):
         disturbed = disturb(model, first, options.spread, random)
-        other = watched_motion(model, speed_rpm, settings, options, disturbed)
+        other = watched_motion(model, speed_rpm, coarse, options, disturbed)
         motions.append(other.label)
-        means.append(_means(other, groups))
+        if not same_orbit(response, other):
+            means.append(_means(densely_sampled(other), groups))
+    response = densely_sampled(response)
     shared = tuple(
         _group(response, group, options, [mean[i] for mean in means]) for i, group in enumerate(groups)
     )
@@ -84,10 +89,10 @@ def watched_motion(
     most = settings.settle
     found = simulate(model, speed_rpm, replace(settings, settle=min(most, WATCHED * options.cycles)), start)
     if found.motion is not Motion.QUASI_PERIODIC:
-        return densely_sampled(found)
+        return found
     longer = replace(settings, settle=min(most, TORUS_WATCHED * options.cycles))
     again = simulate(model, speed_rpm, longer, found.state)
-    return densely_sampled(replace(again, periods_run=found.periods_run + again.periods_run))
+    return replace(again, periods_run=found.periods_run + again.periods_run)
 
 
 def disturb(model: Model, start: State, spread: float, random: np.random.Generator) -> State:

@@ -11,6 +11,8 @@ from facegear.dynamics.steady_state.simulate import SteadyState
 
 DENSE, MOST = 2048, 16_384
 """Samples of a mesh cycle, and of a period of many cycles."""
+SAME = 1e-5
+"""Distance over the length scale, in mesh deflections, within which two places are one."""
 
 
 def densely_sampled(response: SteadyState) -> SteadyState:
@@ -38,3 +40,14 @@ def between(samples: NDArray[np.float64], factor: int) -> NDArray[np.float64]:
     if count % 2 == 0:
         spectrum[-1] *= 0.5  # half of the highest wave belongs to its negative frequency
     return np.asarray(np.fft.irfft(spectrum, factor * count, axis=0) * factor)
+
+
+def same_orbit(first: SteadyState, other: SteadyState) -> bool:
+    """Whether two periodic motions are one, perhaps begun at another cycle of it: what holds for the first
+    holds for the other.
+    """
+    if not first.period or first.period != other.period:
+        return False
+    moved = first.coordinates[:: first.per_period] - other.coordinates[0]
+    far = np.abs(moved @ first.system.mesh_jacobian.T).max(axis=1)
+    return bool(far.min() <= SAME * first.system.scale)

@@ -12,7 +12,7 @@ from facegear.load_sharing.coefficients import sharing_coefficient
 from facegear.load_sharing.options import SharingOptions, SpeedRange
 from facegear.load_sharing.reference import reference_table, slow_forces, speed_range_table
 from facegear.load_sharing.run import load_sharing
-from facegear.load_sharing.sampling import between
+from facegear.load_sharing.sampling import between, same_orbit
 from facegear.load_sharing.statics import static_forces
 from facegear.load_sharing.tables import CURVE_COLUMNS, SUMMARY_COLUMNS, curve_table, summary_table
 from facegear.transmission.imperfections import Runout, perfect
@@ -116,7 +116,12 @@ def test_a_slow_approach_to_an_orbit_is_not_called_a_torus(paper_machine):
     options = replace(OPTIONS, cycles=32, starts=1)
     sharing = load_sharing(machine, 8200.0, Settings(tolerance=1e-5), options)
     assert sharing.motions == ("period-2",)
-    assert sharing.response.periods_run > 3 * 32
+    found = sharing.response
+    assert found.periods_run > 3 * 32
+    later = replace(found, coordinates=np.roll(found.coordinates, found.per_period, axis=0))
+    assert same_orbit(found, later), "begun a cycle later"
+    assert not same_orbit(found, replace(later, period=4))
+    assert not same_orbit(found, replace(later, coordinates=1.01 * later.coordinates))
 
 
 @pytest.mark.parametrize("speed", [5000.0, 10_000.0])
