@@ -77,3 +77,29 @@ def test_a_killed_study_on_two_nodes_runs_no_chunk_twice_at_once_and_keeps_nothi
     assert sorted(node for _, node, *_, state in every if state == "COMPLETED") == ["n0", "n1"]
     whole = facegear.load(own, results=None).tolerances(400).samples()
     pd.testing.assert_frame_equal(pd.read_parquet(found.folder / FILE), whole, check_exact=True)
+
+
+@pytest.mark.parametrize("nodes", [1, 2, 4])
+def test_nodes_share_the_chunks_evenly_and_give_the_same_table(tmp_path, nodes):
+    found, target = project(tmp_path / "run", 160, 40)
+    with cluster(tmp_path / "slurm", nodes):
+        found.run(*PROFILE, "--default-resources", "mem_mb=900", "runtime=10", *target)
+        chunks = [job for job in jobs() if job[0].startswith("rule_tolerances_chunk")]
+    places = [node for _, node, *_, state in chunks if state == "COMPLETED"]
+    assert sorted(places.count(node) for node in set(places)) == [4 // nodes] * nodes
+    whole = facegear.load(found.folder / "config" / "own.yaml", results=None).tolerances(160).samples()
+    pd.testing.assert_frame_equal(pd.read_parquet(found.folder / FILE), whole, check_exact=True)
+
+
+def test_a_job_that_fails_on_a_node_tells_its_own_line_in_the_terminal(tmp_path):
+    found, target = project(tmp_path / "run", 40, 40)
+    harmonics = "results/tolerances/stiffness/harmonics.csv"
+    found.run(*target[:-1], harmonics)
+    path = found.folder / harmonics
+    path.write_text(path.read_text().replace("410000000", "420000000"))
+    with cluster(tmp_path / "slurm", 1):
+        told = found.run(*PROFILE, *target, check=False)
+    assert told.returncode != 0
+    assert "error in tolerances_chunk of tolerances" in told.stderr
+    assert "differs from what its stage wrote" in told.stderr
+    assert "Traceback" not in told.stderr

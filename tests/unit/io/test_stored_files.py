@@ -12,7 +12,7 @@ from hypothesis.extra.numpy import array_shapes, arrays
 from facegear.config.load import load_values
 from facegear.errors import CorruptFile, FacegearError
 from facegear.io import arrays as array_files
-from facegear.io import documents, tables
+from facegear.io import columnar, documents, tables
 
 finite = st.floats(allow_nan=False, allow_infinity=False, width=64)
 
@@ -106,6 +106,7 @@ def test_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
         ("tvms.csv", lambda path: tables.write(path, pd.DataFrame({"k_n_per_m": np.ones(2000)}))),
         ("pinion.npz", lambda path: array_files.write(path, own=np.ones(20000))),
         ("pair.json", lambda path: documents.write(path, {"radius_mm": 1.0})),
+        ("samples.parquet", lambda path: columnar.write(path, pd.DataFrame({"k_gamma": np.ones(2000)}))),
     ],
 )
 def test_full_disk_ends_in_one_line_and_leaves_nothing(tmp_path, name, write):

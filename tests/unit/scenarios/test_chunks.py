@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 
 from facegear.errors import FacegearError
+from facegear.io import journal
 from facegear.scenarios.chunks import run_chunk
 
 COLUMNS = ("a", "b")
@@ -51,6 +52,39 @@ def test_record_that_was_half_written_is_made_again(tmp_path, cut):
     pd.testing.assert_frame_equal(run(Machine(), path), whole, check_exact=True)
 
 
+class FullAfter:
+    """A file on a disk that takes so many bytes more, the last record only in part."""
+
+    def __init__(self, path, room):
+        self.stream, self.room = open(path, "ab", buffering=0), room  # noqa: SIM115
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.stream.close()
+
+    def write(self, data):
+        taken = self.stream.write(data[: self.room])
+        self.room -= taken
+        return taken
+
+
+@pytest.mark.parametrize("room", [0, 30, 200])
+def test_a_disk_that_fills_up_ends_the_chunk_in_one_line_and_no_finished_sample_is_lost(
+    tmp_path, monkeypatch, room
+):
+    whole, path, first = run(Machine(), tmp_path / "whole"), tmp_path / "partial", Machine()
+    with monkeypatch.context() as patch:
+        patch.setattr(journal, "open", lambda at, *_, **__: FullAfter(at, room), raising=False)
+        with pytest.raises(FacegearError, match="partial: no space left on the disk") as caught:
+            run(first, path)
+    assert "\n" not in str(caught.value)
+    resumed = Machine()
+    pd.testing.assert_frame_equal(run(resumed, path), whole, check_exact=True)
+    assert set(first.seen[:-1]).isdisjoint(resumed.seen), "only the record that did not fit is made again"
+
+
 def test_partial_rows_of_another_config_are_not_taken(tmp_path):
     run(Machine(), tmp_path / "partial", identity="before")
     machine = Machine()
@@ -64,8 +98,9 @@ def test_failed_sample_is_a_row_with_its_error(tmp_path):
     assert np.isnan(row["a"])
 
 
-@pytest.mark.parametrize("size", [1, 3, 8])
+@pytest.mark.parametrize("size", [1, 7, 250])
 def test_rows_are_equal_to_the_bit_for_any_size_of_chunk(tmp_path, size):
-    whole = run(Machine(), tmp_path / "whole")
-    parts = [run(Machine(), tmp_path / str(at), range(at, min(at + size, 8))) for at in range(0, 8, size)]
+    whole, count = run(Machine(), tmp_path / "whole", range(260)), 260
+    starts = range(0, count, size)
+    parts = [run(Machine(), tmp_path / str(at), range(at, min(at + size, count))) for at in starts]
     pd.testing.assert_frame_equal(pd.concat(parts, ignore_index=True), whole, check_exact=True)
