@@ -18,10 +18,13 @@ HALVINGS = 10
 class Loosest:
     """`scale` that all deviations may be multiplied by, what the percentile is there, and all that was tried.
 
-    `trials`: scale, value, low, high (the interval of the percentile), failed (samples without result).
+    `interval`: the scales at which the upper and the lower end of the percentile's interval meet the limit,
+    interpolated between the trials; infinite where no trial bounds it. `trials`: scale, value, low, high (the
+    interval of the percentile), failed (samples without result).
     """
 
     scale: float
+    interval: tuple[float, float]
     percentile: Estimate
     trials: pd.DataFrame
 
@@ -54,4 +57,23 @@ def loosest(
         low, high = (middle, high) if holds(middle) else (low, middle)
     rows = [(scale, one.value, one.low, one.high, failed) for scale, (one, failed) in sorted(tried.items())]
     trials = pd.DataFrame(rows, columns=["scale", "value", "low", "high", "failed"])
-    return Loosest(low, tried[low][0], trials)
+    return Loosest(low, _interval(trials, at_most), tried[low][0], trials)
+
+
+def _interval(trials: pd.DataFrame, at_most: float) -> tuple[float, float]:
+    """Scales at which the ends of the percentile's interval, made to rise, pass the limit."""
+    scale = trials["scale"].to_numpy(float)
+    found = []
+    for end in ("high", "low"):
+        values = np.maximum.accumulate(trials[end].to_numpy(float))
+        above = np.flatnonzero(values > at_most)
+        first = int(above[0]) if above.size else len(scale)
+        if first in (0, len(scale)):
+            found.append(0.0 if first == 0 else np.inf)
+        elif not np.isfinite(values[[first - 1, first]]).all():
+            found.append(float(scale[first - 1]))
+        else:
+            found.append(
+                float(np.interp(at_most, values[first - 1 : first + 1], scale[first - 1 : first + 1]))
+            )
+    return found[0], found[1]

@@ -5,6 +5,7 @@ import pytest
 import scipy.stats
 
 from facegear.scenarios.distributions import Distribution, Shape
+from facegear.scenarios.inverse import HALVINGS, loosest
 from facegear.scenarios.sampling import Cause, Population, index_samples, samples
 from facegear.scenarios.statistics import percentile, share, sobol_indices
 from facegear.validation.scenarios.errors import statistics_errors
@@ -77,3 +78,14 @@ def test_errors_of_percentiles_and_indices_fall_as_docs_cluster_tells():
     few, many = statistics_errors([128, 8192]).itertuples()
     assert few.p95_error < 0.1 and many.p95_error < 0.01 and many.p99_error < 0.02
     assert few.total_index_error < 0.02 and many.total_index_error < 0.002
+
+
+def test_the_interval_of_the_loosest_scale_is_that_of_the_percentile_turned_round():
+    deviations = np.random.default_rng(5).standard_normal(400)
+    found = loosest(lambda scale: 1.0 + scale * deviations, 3.0, 0.9, 4.0)
+    at_one = percentile(deviations, 0.9)
+    assert found.scale == pytest.approx(2.0 / at_one.value, abs=4.0 / 2**HALVINGS)
+    assert found.interval == pytest.approx((2.0 / at_one.high, 2.0 / at_one.low), rel=1e-9)
+    few = loosest(lambda scale: 1.0 + scale * deviations[:20], 3.0, 0.99, 4.0)
+    assert few.interval[0] == 0.0, "twenty samples do not bound their 99th percentile from above"
+    assert loosest(lambda scale: 1.0 + scale * deviations, 99.0, 0.9, 4.0).interval == (np.inf, np.inf)
