@@ -11,10 +11,12 @@ from facegear.geometry.analysis import path_curvatures, section_contact_ratio
 from facegear.geometry.curvature import relative_curvatures
 from facegear.geometry.design import Relief
 from facegear.geometry.easeoff import ease_off
+from facegear.geometry.limits import sharpest_fillet_radius
 from facegear.geometry.pinion_surface import SurfacePoints, fillet_points, flank_points
 from facegear.geometry.placement import conjugate_angle, mirrored, to_left_flank
 from facegear.geometry.separation import FILLET, FLANK, ROOT_LAND, TIP_LAND, separation
 from facegear.geometry.unloaded import unloaded_contact
+from facegear.geometry.validate import check
 
 
 def pitch(design, count):
@@ -238,15 +240,25 @@ def test_no_gear_beyond_its_ends(pair):
     assert pinion.junction_roll(design) < 0.4
 
 
-def test_every_ray_ends_on_the_part_it_names(pair):
-    """The compiled rays against the closed forms of `face_gear`, the gap against another root find."""
-    design = pair(26, offset=1e-4, shaft_angle_error=2e-3, thinning=1e-4)
+@pytest.mark.parametrize(
+    ("rounding", "inner", "outer"), [(0.0, 0.250, 0.275), (0.14, 0.250, 0.275), (0.14, 0.275, 0.297)]
+)
+def test_every_ray_ends_on_the_part_it_names(pair, rounding, inner, outer):
+    """The compiled rays against the closed forms of `face_gear`, the gap against another root find.
+
+    The last face reaches beyond the radius at which the centre of the shaper's tip rolls without sliding.
+    """
+    design = pair(26, tip_rounding=rounding, offset=1e-4, shaft_angle_error=2e-3, thinning=1e-4)
+    face = replace(design.face_gear, inner_radius=inner, outer_radius=outer)
+    design = replace(design, face_gear=face)
+    assert inner < sharpest_fillet_radius(design) and check(design)
+    assert (sharpest_fillet_radius(design) < outer) == (outer > 0.28)
     rng = np.random.default_rng(3)
-    y = rng.uniform(0.249, 0.276, 200)
+    y = rng.uniform(inner - 1e-3, outer + 1e-3, 200)
     flank = flank_points(design, rng.uniform(pinion.junction_roll(design), design.pinion_tip_roll, 200), y)
     fillet = fillet_points(design, rng.uniform(design.pressure_angle, 1.5, 200), y)
     x = np.linspace(-2e-3, 2e-3, 41)
-    tip = np.stack([x, np.full(41, 0.26), np.full(41, -design.pinion_tip_radius)], axis=1)
+    tip = np.stack([x, np.full(41, inner + 0.01), np.full(41, -design.pinion_tip_radius)], axis=1)
     points = joined(flank, fillet, SurfacePoints(tip, np.tile([0.0, 0.0, -1.0], (41, 1))))
     phi1 = np.repeat([-0.1, 0.02, 0.12], 3)
     placement = phi1, conjugate_angle(design, phi1), np.tile([-1, 0, 1], 3)

@@ -60,10 +60,11 @@ def test_a_gear_outside_its_limits_is_told_both(pair):
         check(changed(pair(26), face_gear__inner_radius=0.24))
 
 
+@pytest.mark.parametrize("rounding", [0.0, 0.03, 0.1])
 @pytest.mark.parametrize("shaper_addendum", [1.05, 1.15, 1.25])
-def test_the_range_of_a_refusal_is_the_range_that_is_accepted(pair, shaper_addendum):
+def test_the_range_of_a_refusal_is_the_range_that_is_accepted(pair, shaper_addendum, rounding):
     """Two ranges that contradict each other were told: well below one radius, and up to a larger one."""
-    design = changed(pair(26), shaper__addendum=shaper_addendum * 3.75e-3)
+    design = changed(pair(26, tip_rounding=rounding), shaper__addendum=shaper_addendum * 3.75e-3)
     told = face_range(design, radius_limits(design))
     step = 1e-6
     fits = changed(
@@ -101,7 +102,9 @@ def designs(draw):
         thinning=m * number(0, 0.03),
     )
     gear = FaceGear(n2, inner, inner + width, m * number(0.8, 1.05), m * number(0.4, 4))
-    return PairDesign(m, angle, pinion, gear, Shaper(n1 + draw(st.integers(0, 3)), m * number(1.05, 1.3)))
+    rounding = m * draw(st.sampled_from([0.0, 0.05, 0.1, 0.15]))
+    shaper = Shaper(n1 + draw(st.integers(0, 3)), m * number(1.05, 1.3), rounding)
+    return PairDesign(m, angle, pinion, gear, shaper)
 
 
 @settings(max_examples=100, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
