@@ -1,5 +1,6 @@
 """Root stress of both gears."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
@@ -49,6 +50,16 @@ class RootStressResult(Result):
             },
             attrs={"units": "MPa"},
         )
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write three tables, `root_stress.npz` and, for ParaView, `root_stress.vtu`."""
+        from facegear.io.meshes import write_vtu
+        from facegear.strength.fillet_surface import stress_surface
+
+        vtu = Path(folder) / "strength" / "root_stress.vtu"
+        paths = super().save(folder)
+        write_vtu(vtu, *stress_surface(self.content["stress"]))
+        return [*paths, vtu]
 
     def plot(self, what: str = "passage") -> "Figure":
         """Root stress over a tooth's `passage` through the mesh, or along the `face`."""

@@ -12,6 +12,7 @@ rule root_stress:
         passage="results/{case}/strength/passage.csv",
         along_face="results/{case}/strength/along_face.csv",
         stress="results/{case}/strength/root_stress.npz",
+        vtu="results/{case}/strength/root_stress.vtu",
         manifest="results/{case}/strength/root_stress.provenance.json",
     script:
         "../scripts/root_stress.py"

@@ -16,9 +16,10 @@ from facegear.config.machines import case_machine
 from facegear.harmonics.series import Harmonics
 from facegear.strength.contact_pressure import ContactPressure
 from facegear.strength.dynamic_stress import TensionHistory, dynamic_stress_table
+from facegear.strength.fillet_surface import stress_surface
 from facegear.strength.root_form import root_form
 from facegear.strength.root_stress import down_the_fillet, root_stress
-from facegear.strength.root_tables import root_tables
+from facegear.strength.root_tables import root_arrays, root_tables
 from facegear.strength.spur import SpurGear
 from facegear.strength.stress_over_speed import branch_forces, stress_table, swept_forces
 from facegear.transmission.flanks import flank_places, stiffness_series
@@ -112,6 +113,21 @@ def test_spur_teeth_in_plane_strain_agree_with_the_standard(tooth):
     gear, roll, standard = tooth()
     ratio = root_tension(slab_design(gear), roll) / standard
     assert 0.90 < ratio < 1.05
+
+
+def test_surface_for_paraview_shows_the_largest_and_smallest_stress_of_every_gauge():
+    _, root = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
+    position = np.random.default_rng(2).normal(size=(*GRID, 3))
+    arrays = root_arrays({"pinion": root, "face_gear": root}, {"pinion": position, "face_gear": 2 * position})
+    points, cells, told = stress_surface(arrays)
+    assert len(points) == 2 * np.prod(GRID)
+    assert len(cells["quad"]) == 2 * 2 * (GRID[1] - 1) * (GRID[2] - 1)
+    np.testing.assert_array_equal(told["body"], np.repeat([0.0, 1.0], np.prod(GRID)))
+    for name, found in (("largest", root.stress.max(axis=1)), ("smallest", root.stress.min(axis=1))):
+        on_gear = told[f"{name}_pa_at_300_n_m"][told["body"] == 1].reshape(GRID)
+        np.testing.assert_array_equal(on_gear, found[1])
+    corners = points[cells["quad"][0]]
+    np.testing.assert_array_equal(corners, position[0][[0, 1, 1, 0], [0, 0, 1, 1]])
 
 
 def test_running_machine_is_judged_by_the_magnitude_of_each_mesh_force():

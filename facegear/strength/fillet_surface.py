@@ -1,0 +1,39 @@
+"""Root stress on the fillets as quadrilaterals between the gauges, for ParaView."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.strength.columns import FILLETS
+
+BODIES = ("pinion", "face_gear")
+
+
+def stress_surface(
+    arrays: Mapping[str, NDArray],
+) -> tuple[NDArray[np.float64], dict[str, NDArray[np.int64]], dict[str, NDArray[np.float64]]]:
+    """Points (n, 3) m in their body frames, cells, and fields (n,) from ROOT_STRESS_ARRAYS.
+
+    Largest and smallest stress (Pa) over the passage at each torque; `body` 0 pinion, 1 face gear; `fillet` 0
+    below the loaded flank, 1 below the other.
+    """
+    points, cells, start = [], [], 0
+    told: dict[str, list[NDArray[np.float64]]] = {}
+    for number, body in enumerate(BODIES):
+        position, stress = arrays[f"{body}_position_m"], arrays[f"{body}_stress_pa"]
+        down, along = position.shape[1:3]
+        nodes = start + np.arange(position[..., 0].size).reshape(len(FILLETS), down, along)
+        corners = nodes[:, :-1, :-1], nodes[:, 1:, :-1], nodes[:, 1:, 1:], nodes[:, :-1, 1:]
+        cells.append(np.stack([corner.ravel() for corner in corners], axis=-1))
+        points.append(position.reshape(-1, 3))
+        start += nodes.size
+        fields = {"body": np.full(nodes.size, float(number))}
+        fields["fillet"] = np.repeat(np.arange(float(len(FILLETS))), down * along)
+        for row, torque in enumerate(arrays["torque_n_m"]):
+            fields[f"largest_pa_at_{torque:g}_n_m"] = stress[row].max(axis=0).ravel()
+            fields[f"smallest_pa_at_{torque:g}_n_m"] = stress[row].min(axis=0).ravel()
+        for name, values in fields.items():
+            told.setdefault(name, []).append(values)
+    joined = {name: np.concatenate(parts) for name, parts in told.items()}
+    return np.concatenate(points), {"quad": np.concatenate(cells)}, joined
