@@ -12,7 +12,7 @@ NOTEBOOKS = sorted((Path(__file__).parents[2] / "examples").glob("*.ipynb"))
 
 
 def test_there_is_a_notebook_for_each_first_question():
-    names = {"tooth_contact", "own_gearbox", "speed_sweep", "load_sharing"}
+    names = {"tooth_contact", "own_gearbox", "speed_sweep", "load_sharing", "tolerances"}
     assert names <= {path.stem for path in NOTEBOOKS}
 
 
