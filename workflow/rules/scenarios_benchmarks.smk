@@ -2,6 +2,7 @@ rule scenarios_benchmark:
     "Samples: costs, and error of the statistics"
     input:
         harmonics=shared("stiffness", "harmonics"),
+        flanks=flanks("tolerances_chunk"),
     output:
         costs="results/{case}/benchmarks/scenarios.csv",
         errors="results/{case}/benchmarks/scenarios_errors.csv",

@@ -2,6 +2,7 @@
 
 from facegear.io import tables
 from facegear.provenance.stage import stage
+from facegear.stages.tooth_meshes import read_flanks
 from facegear.stiffness.tables import HARMONICS_COLUMNS
 from facegear.validation.scenarios.costs import costs
 from facegear.validation.scenarios.errors import statistics_errors
@@ -9,7 +10,7 @@ from facegear.validation.scenarios.errors import statistics_errors
 with stage(snakemake) as run:
     params = snakemake.params
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
-    found = costs(harmonics, params.chunk, params.samples)
+    found = costs(harmonics, params.chunk, params.samples, read_flanks(snakemake.input.flanks))
     tables.write(snakemake.output.costs, found)
     tables.write(snakemake.output.errors, statistics_errors([2**power for power in range(7, 14)]))
     told = ", ".join(f"{row.model} {row.ms_a_sample:.3g} ms" for row in found.itertuples())

@@ -11,23 +11,30 @@ import pandas as pd
 
 from facegear.io import columnar
 from facegear.stages.tolerances_chunk import tolerances_chunk
+from facegear.stages.tooth_meshes import Flanks
 
 MODELS = ("quasi_static", "dynamic")
 WANTED, CORES = 10_000, 2
+FEWER = 40
 
 
-def costs(harmonics: pd.DataFrame, needs: Mapping[str, Any], samples: int) -> pd.DataFrame:
-    """One row a model, from `samples` of them in this process, compiled before.
+def costs(
+    harmonics: pd.DataFrame, needs: Mapping[str, Any], samples: int, flanks: Flanks | None = None
+) -> pd.DataFrame:
+    """One row a model, from `samples` of them in this process, compiled before; a fortieth of them where each
+    has a contact analysis of its own.
 
-    `needs`: the arguments of a chunk. `minutes_extrapolated` is what WANTED samples would take on CORES idle
+    `needs`: the arguments of a chunk, `flanks` of its contact. `minutes_extrapolated` is what WANTED samples would take on CORES idle
     cores, start-up of the jobs left out.
     """
-    rows = []
+    rows, samples = [], samples if needs["pair"] is None else max(samples // FEWER, 1)
     for model in MODELS:
         given = {**needs, "tolerances": {**needs["tolerances"], "model": model}}
-        tolerances_chunk("samples", 0, 0, harmonics, **given)
+        tolerances_chunk("samples", samples, samples, harmonics, **given, flanks=flanks)
         start = time.process_time()
-        chunk = tolerances_chunk("samples", 0, samples - 1, harmonics, **given).content["chunk"]
+        chunk = tolerances_chunk("samples", 0, samples - 1, harmonics, **given, flanks=flanks).content[
+            "chunk"
+        ]
         seconds = (time.process_time() - start) / samples
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
         minutes = seconds * WANTED / CORES / 60.0
