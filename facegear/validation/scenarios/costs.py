@@ -24,17 +24,16 @@ def costs(
     """One row a model, from `samples` of them in this process, compiled before; a fortieth of them where each
     has a contact analysis of its own.
 
-    `needs`: the arguments of a chunk, `flanks` of its contact. `minutes_extrapolated` is what WANTED samples would take on CORES idle
-    cores, start-up of the jobs left out.
+    `needs`: the arguments of a chunk, `flanks` of its contact. `minutes_extrapolated` is what WANTED samples
+    would take on CORES idle cores, start-up of the jobs left out.
     """
     rows, samples = [], samples if needs["pair"] is None else max(samples // FEWER, 1)
     for model in MODELS:
         given = {**needs, "tolerances": {**needs["tolerances"], "model": model}}
-        tolerances_chunk("samples", samples, samples, harmonics, **given, flanks=flanks)
+        given["flanks"] = flanks
+        tolerances_chunk("samples", samples, samples, harmonics, **given)
         start = time.process_time()
-        chunk = tolerances_chunk("samples", 0, samples - 1, harmonics, **given, flanks=flanks).content[
-            "chunk"
-        ]
+        chunk = tolerances_chunk("samples", 0, samples - 1, harmonics, **given).content["chunk"]
         seconds = (time.process_time() - start) / samples
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
         minutes = seconds * WANTED / CORES / 60.0
