@@ -59,14 +59,12 @@ def root_stress(
     Teeth further apart than d do not feel each other. `along` (b,) and `angle` (2, a, b) of the gauges as in
     `RootStress`.
     """
-    shape = angle.shape
-    reach, teeth = len(readings) // 2, np.arange(min(loads) - 1, max(loads) + 2)
-    found = np.zeros((len(teeth), len(torques) * len(positions), readings.shape[1]))
-    for row, seen in enumerate(teeth):
-        for tooth, force in loads.items():
-            if abs(seen - tooth) <= reach:
-                found[row] -= force @ readings[seen - tooth + reach].T
-    found = found.reshape(len(teeth), len(torques), len(positions), *shape).transpose(1, 0, 2, 3, 4, 5)
+    shape, count = angle.shape, len(positions)
+    teeth = np.arange(min(loads) - 1, max(loads) + 2)
+    found = np.zeros((len(torques), len(teeth), count, readings.shape[1]))
+    for place in range(count):
+        here = {tooth: force[place::count] for tooth, force in loads.items()}
+        found[:, :, place] = _felt(readings, here, teeth)
     place = (teeth[:, None] + np.asarray(positions, dtype=float)).ravel()
     return RootStress(
         torques=np.asarray(torques, dtype=float),
@@ -75,6 +73,23 @@ def root_stress(
         along=along,
         angle=angle,
     )
+
+
+def _felt(readings: Array, loads: Mapping[int, "sp.csr_matrix"], teeth: NDArray[np.int64]) -> Array:
+    """What the gauges of `teeth` (n,) read at one position under the loads {tooth: (t, c)}, (t, n, g).
+
+    At one position the same nodes are loaded whatever the torque, so that one small dense product does.
+    """
+    reach, gauges = len(readings) // 2, readings.shape[1]
+    nodes = {tooth: np.unique(force.indices) for tooth, force in loads.items()}
+    forces = np.hstack([force[:, nodes[tooth]].toarray() for tooth, force in loads.items()])
+    seen = np.zeros((teeth.size, gauges, forces.shape[1]))
+    start = 0
+    for tooth, here in nodes.items():
+        for row in np.flatnonzero(np.abs(teeth - tooth) <= reach):
+            seen[row, :, start : start + here.size] = readings[teeth[row] - tooth + reach][:, here]
+        start += here.size
+    return -(forces @ seen.reshape(-1, start).T).reshape(len(forces), teeth.size, gauges)
 
 
 def down_the_fillet(values: Array) -> Array:
