@@ -10,6 +10,7 @@ include: "workflow/rules/dynamics.smk"
 include: "workflow/rules/dynamics_benchmarks.smk"
 include: "workflow/rules/branches.smk"
 include: "workflow/rules/contact_benchmarks.smk"
+include: "workflow/rules/strength_benchmarks.smk"
 include: "workflow/rules/load_sharing.smk"
 include: "workflow/rules/contact_studies.smk"
 include: "workflow/rules/tolerances.smk"
@@ -37,6 +38,7 @@ rule benchmarks:
                 "mesh",
                 "contact",
                 "contact_shortcuts",
+                "strength",
                 "twin",
                 "dynamics",
                 "dynamics_sweep",

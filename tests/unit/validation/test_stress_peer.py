@@ -11,6 +11,7 @@ from facegear.errors import FacegearError
 from facegear.mesh.sizes import MeshSizes, named_sizes, thin_fillet
 from facegear.strength.root_stress import down_the_fillet
 from facegear.validation.contact.line_load import loaded_tooth
+from facegear.validation.contact.stress_benchmark import stress_convergence
 from facegear.validation.contact.stress_peer import outer_end, read_nodes, stress_peer_study
 
 NOMINAL = pair_design()
@@ -55,3 +56,11 @@ def test_a_result_without_stress_is_refused(tmp_path):
     (tmp_path / "deck.frd").write_text(" -4  DISP        4    1\n -3\n")
     with pytest.raises(FacegearError, match="no STRESS"):
         read_nodes(tmp_path / "deck.frd", "STRESS", 6)
+
+
+def test_convergence_compares_the_same_places_of_both_meshes():
+    sizes = thin_fillet(MeshSizes(0.6 * M, 3e-3, 1.5 * M))
+    (row,) = stress_convergence(SHARP, "pinion", sizes, STEEL, ["width"])
+    assert row["fine_dof"] > 1.5 * row["dof"]
+    assert abs(row["error_percent"]) <= row["largest_error_percent"] < 5.0
+    assert row["stress_mpa"] == pytest.approx(1e-3 * largest("pinion", sizes), rel=0.2)
