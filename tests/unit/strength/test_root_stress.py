@@ -1,6 +1,8 @@
 """Root stress: superposition over teeth and loads, and the spur pinion against ISO 6336-3."""
 
+import base64
 from math import cos, sqrt
+from xml.etree import ElementTree
 
 import numpy as np
 import pandas as pd
@@ -14,6 +16,7 @@ from spur_gears import fzg_c, root_tension, slab_design
 import facegear
 from facegear.config.machines import case_machine
 from facegear.harmonics.series import Harmonics
+from facegear.io.meshes import write_vtu
 from facegear.strength.contact_pressure import ContactPressure
 from facegear.strength.dynamic_stress import TensionHistory, dynamic_stress_table
 from facegear.strength.fillet_surface import stress_surface
@@ -113,6 +116,38 @@ def test_spur_teeth_in_plane_strain_agree_with_the_standard(tooth):
     gear, roll, standard = tooth()
     ratio = root_tension(slab_design(gear), roll) / standard
     assert 0.90 < ratio < 1.05
+
+
+def vtu_arrays(path):
+    """Arrays of a .vtu by name, read as VTK's description of the format has it: base64, its length first."""
+    kinds = {
+        "Float64": np.float64,
+        "Int64": np.int64,
+        "UInt32": np.uint32,
+        "UInt8": np.uint8,
+        "Int32": np.int32,
+    }
+    found = {}
+    for array in ElementTree.parse(path).getroot().iter("DataArray"):
+        content = base64.b64decode(array.text.strip())
+        assert np.frombuffer(content[:4], np.uint32)[0] == len(content) - 4
+        found[array.get("Name")] = np.frombuffer(content[4:], kinds[array.get("type")])
+    return found
+
+
+def test_the_file_for_paraview_holds_points_quadrilaterals_and_stress(tmp_path):
+    _, root = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
+    position = np.random.default_rng(2).normal(size=(*GRID, 3))
+    both = {"pinion": root, "face_gear": root}
+    points, cells, told = stress_surface(root_arrays(both, dict.fromkeys(both, position)))
+    write_vtu(tmp_path / "stress.vtu", points, cells, told)
+    stored = vtu_arrays(tmp_path / "stress.vtu")
+    np.testing.assert_array_equal(stored["Points"].reshape(-1, 3), points)
+    np.testing.assert_array_equal(stored["connectivity"].reshape(-1, 4), cells["quad"])
+    np.testing.assert_array_equal(stored["offsets"], 4 * np.arange(1, len(cells["quad"]) + 1))
+    assert (stored["types"] == 9).all()  # VTK_QUAD
+    for name, values in told.items():
+        np.testing.assert_array_equal(stored[name], values)
 
 
 def test_surface_for_paraview_shows_the_largest_and_smallest_stress_of_every_gauge():
