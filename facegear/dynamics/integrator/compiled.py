@@ -6,12 +6,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.integrator.lanes import LANES
+from facegear.dynamics.integrator.lanes import LANES, aligned
 from facegear.dynamics.integrator.system import System
 
 Array = NDArray[np.float64]
 TAU = 2.0 * np.pi
 LEAST_CLEARANCE = 1e-12
+ROUNDING = 1e-15
+"""Entries of G below this share of the largest are zeros that rounding has left."""
 
 
 class Rings(NamedTuple):
@@ -26,10 +28,21 @@ class Rings(NamedTuple):
     lag: float
 
 
+class Sparse(NamedTuple):
+    """A matrix row by row: the entries of row i are those from starts[i] to starts[i + 1], which are left out
+    where they are zero but for rounding.
+    """
+
+    starts: NDArray[np.int64]
+    columns: NDArray[np.int64]
+    values: Array
+
+
 class Packed(NamedTuple):
     """Arrays padded to whole SIMD lanes; padded meshes and coordinates are zero and stay at rest.
 
-    n, m count the real ones. mesh_jacobian (n, m) and transposed (m, n). Derivatives are by s = w t:
+    n, m count the real ones. mesh_jacobian (n, m) and transposed (m, n); touched and touching are the same
+    without zeros and padding, by mesh and by coordinate. Derivatives are by s = w t:
     omega_squared, stiffness and load are over w^2, damping and mesh_damping over w. Fourier series are
     (harmonics + 1, 2, width), sine part first. pieces (pieces, degree + 1, m) add to the stiffness
     from one of `breaks` (rad) to the next; stiffness and error have one column for each of the kinds that
@@ -44,6 +57,8 @@ class Packed(NamedTuple):
     m: int
     mesh_jacobian: Array
     transposed: Array
+    touched: Sparse
+    touching: Sparse
     omega_squared: Array
     damping: Array
     mesh_damping: Array
@@ -72,11 +87,11 @@ def pack(system: System, frequency: float) -> Packed:
     one, square = _packed(system), frequency**2
     natural, harmonics = _fastest(system)
     return one._replace(
-        omega_squared=one.omega_squared / square,
-        damping=one.damping / frequency,
-        mesh_damping=one.mesh_damping / frequency,
-        stiffness=one.stiffness / square,
-        load=one.load / square,
+        omega_squared=_over(one.omega_squared, square),
+        damping=_over(one.damping, frequency),
+        mesh_damping=_over(one.mesh_damping, frequency),
+        stiffness=_over(one.stiffness, square),
+        load=_over(one.load, square),
         pieces=one.pieces / square,
         fastest=natural / frequency + harmonics,
         rings=_rings(system, frequency),
@@ -88,8 +103,10 @@ def _packed(system: System) -> Packed:
     """What pack() gives at 1 rad/s, without rings; its arrays are shared and only read."""
     m, n = system.mesh_jacobian.shape
     wide_n, wide_m = _whole(n), _whole(m)
-    transposed = np.zeros((wide_m, wide_n))
+    transposed = aligned(wide_m, wide_n)
     transposed[:m, :n] = system.mesh_jacobian
+    mesh_jacobian = aligned(wide_n, wide_m)
+    mesh_jacobian[:] = transposed.T
     breaks, pieces = _pieces(system, wide_m)
     # A clearance within rounding of the deflections is none: its edges could not be told apart.
     closed = system.upper - system.lower <= LEAST_CLEARANCE * system.scale
@@ -97,8 +114,10 @@ def _packed(system: System) -> Packed:
     return Packed(
         n=n,
         m=m,
-        mesh_jacobian=np.ascontiguousarray(transposed.T),
+        mesh_jacobian=mesh_jacobian,
         transposed=transposed,
+        touched=_sparse(system.mesh_jacobian),
+        touching=_sparse(system.mesh_jacobian.T),
         omega_squared=_padded(system.omega_squared, wide_n),
         damping=_padded(system.damping, wide_n),
         mesh_damping=_padded(system.mesh_damping, wide_m),
@@ -112,7 +131,7 @@ def _packed(system: System) -> Packed:
         load=_series(system.load),
         breaks=breaks,
         pieces=pieces,
-        weights=np.abs(transposed).max(axis=0),
+        weights=_padded(np.abs(transposed).max(axis=0), wide_n),
         leverage=(transposed**2).sum(axis=1),
         fastest=sum(_fastest(system)),
         damping_when_open=system.damping_when_open,
@@ -123,6 +142,12 @@ def _packed(system: System) -> Packed:
     )
 
 
+def _sparse(matrix: Array) -> Sparse:
+    kept = np.abs(matrix) > ROUNDING * np.abs(matrix).max(initial=0.0)
+    starts = np.append(0, np.cumsum(kept.sum(axis=1)))
+    return Sparse(starts, np.ascontiguousarray(np.nonzero(kept)[1]), matrix[kept])
+
+
 def _rings(system: System, frequency: float) -> Rings | None:
     count = system.ring_play.size
     if count == 0:
@@ -130,7 +155,7 @@ def _rings(system: System, frequency: float) -> Rings | None:
     return Rings(
         number=count,
         first=system.contacts,
-        stiffness=_padded(system.ring_stiffness, _whole(count)) / frequency**2,
+        stiffness=_over(_padded(system.ring_stiffness, _whole(count)), frequency**2),
         play=_padded(system.ring_play, _whole(count)),
         lag=system.ring_lag * frequency,
     )
@@ -164,14 +189,21 @@ def _whole(length: int) -> int:
 
 
 def _padded(values: Array, length: int) -> Array:
-    wide = np.zeros((length, *values.shape[1:]))
+    wide = aligned(length, *values.shape[1:])
     wide[: len(values)] = values
     return wide
 
 
+def _over(values: Array, divisor: float) -> Array:
+    return np.divide(values, divisor, out=aligned(*values.shape))
+
+
 def _series(rows: Array) -> Array:
     """Fourier rows (width, 2, harmonics + 1) in the order that the kernels read."""
-    return np.ascontiguousarray(_padded(rows, _whole(len(rows))).transpose(2, 1, 0))
+    width = _whole(len(rows))
+    series = aligned(*rows.shape[:0:-1], width)
+    series[..., : len(rows)] = rows.transpose(2, 1, 0)
+    return series
 
 
 def _pieces(system: System, width: int) -> tuple[Array, Array]:

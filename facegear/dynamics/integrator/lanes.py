@@ -6,13 +6,24 @@ Taylor recurrence costs a third. Vectors of four are plain LLVM and run on any p
 
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic, models, register_model
+from numpy.typing import NDArray
 
 LANES = 4
+_LINE = 64
 _VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+
+
+def aligned(*shape: int) -> NDArray[np.float64]:
+    """Zeros that start on a line of the processor's cache: a vector that lies across two is read twice."""
+    size, width = int(np.prod(shape)), _LINE // 8
+    room = np.zeros(size + width)
+    start = -room.ctypes.data % _LINE // 8
+    return room[start : start + size].reshape(shape)
 
 
 class LanesType(types.Type):
@@ -99,14 +110,14 @@ def spread(typing_context: Any, array: Any, index: Any) -> Any:
 
 @intrinsic
 def take(typing_context: Any, array: Any, index: Any) -> Any:
-    """One value of a C-contiguous float64 array at a flat index, which is not checked or wrapped."""
-    if not _is_plain(array):
+    """One value of a C-contiguous array of numbers at a flat index, which is not checked or wrapped."""
+    if not (isinstance(array, types.Array) and array.layout == "C"):
         return None
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return builder.load(_place(context, builder, array, *args))
 
-    return types.float64(array, types.intp), code
+    return array.dtype(array, types.intp), code
 
 
 @intrinsic

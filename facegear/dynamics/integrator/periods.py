@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 from facegear.dynamics.integrator.advance import advance, after, move
 from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.kernel import inlined, kernel
-from facegear.dynamics.integrator.rings import ring_slopes, ring_switches, ring_trace
+from facegear.dynamics.integrator.rings import ring_slopes, ring_trace
 from facegear.dynamics.integrator.sums import Sums, add_step, make_sums, start_sums
-from facegear.dynamics.integrator.taylor import deflect, evaluate, recurrence
+from facegear.dynamics.integrator.tangents import move_tangents, switch_tangents
+from facegear.dynamics.integrator.taylor import evaluate
 from facegear.dynamics.integrator.work import Work
 
 Array = NDArray[np.float64]
@@ -83,13 +84,13 @@ def run_periods(
             length = advance(packed, work, s, min(TAU, s + longest), displacement, velocity, tolerance)
             if tangents.shape[0] > 0:
                 if not first:
-                    _switch_tangents(packed, work, acting, tangents)
+                    switch_tangents(packed, work, acting, tangents)
                 for m in range(acting.size):
                     acting[m] = work.acting[m]
                 for m in range(packed.contacts, packed.m):
                     acting[m] = work.active[m]
                 ring_slopes(packed.rings, work.rings, work.order)
-                _move_tangents(packed, work, length, tangents)
+                move_tangents(packed, work, length, tangents)
                 of_rings = ring_trace(packed.rings, work.rings, packed, work, length)
                 log.divergence[0] -= length * _trace(packed, work) + of_rings
             if batches > 0:
@@ -157,37 +158,3 @@ def _trace(packed: Packed, work: Work) -> float:
     for m in range(packed.m):
         total += work.acting[m] * packed.leverage[m]
     return total
-
-
-@inlined
-def _switch_tangents(packed: Packed, work: Work, acting: Array, tangents: Array) -> None:
-    """Saltation: where the mesh damping starts or stops the velocity part shears by G^T (c- - c+) G.
-
-    Stiffness alone gives none, since the force is continuous at the edge.
-    """
-    ring_switches(packed.rings, packed, work, acting, tangents)
-    for m in range(packed.contacts):
-        jump = acting[m] - work.acting[m]
-        if jump == 0.0:
-            continue
-        for column in range(tangents.shape[0]):
-            along = 0.0
-            for k in range(packed.n):
-                along += packed.transposed[m, k] * tangents[column, 0, k]
-            for k in range(packed.n):
-                tangents[column, 1, k] += packed.transposed[m, k] * jump * along
-
-
-@inlined
-def _move_tangents(packed: Packed, work: Work, length: float, tangents: Array) -> None:
-    """Move tangent vectors over the step by the same recurrence without forcing."""
-    n = packed.omega_squared.size
-    for column in range(tangents.shape[0]):
-        for k in range(n):
-            work.tangent[0, k] = tangents[column, 0, k]
-            work.tangent[1, k] = tangents[column, 1, k]
-        for row in range(2):
-            deflect(packed, work.tangent, row, work.zero_error, work.tangent_deflection)
-        tangent = work.tangent_deflection
-        recurrence(packed, work, work.zero_error, work.zero_load, work.tangent, tangent, True)
-        evaluate(work.tangent, work.order, length, tangents[column, 0], tangents[column, 1])

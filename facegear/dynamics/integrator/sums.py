@@ -16,6 +16,7 @@ from facegear.dynamics.integrator.kernel import inlined
 from facegear.dynamics.integrator.lanes import (
     LANES,
     add,
+    aligned,
     load,
     magnitude,
     multiply,
@@ -57,13 +58,13 @@ def make_sums(packed: Packed, batches: int) -> Sums:
     """Allocate sums; with no batches they take nothing."""
     m, n = packed.transposed.shape
     return Sums(
-        origin=np.zeros(n),
-        level=np.zeros(m),
-        coordinates=np.zeros((batches, n)),
-        products=np.zeros((batches, n, n)),
-        deflections=np.zeros((batches, m)),
-        squares=np.zeros((batches, m)),
-        forces=np.zeros((2, m)),
+        origin=aligned(n),
+        level=aligned(m),
+        coordinates=aligned(batches, n),
+        products=aligned(batches, n, n),
+        deflections=aligned(batches, m),
+        squares=aligned(batches, m),
+        forces=aligned(2, m),
         lowest=np.full(m, np.inf),
         highest=np.full(m, -np.inf),
     )

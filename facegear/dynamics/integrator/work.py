@@ -7,10 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.compiled import Packed
-from facegear.dynamics.integrator.lanes import LANES
+from facegear.dynamics.integrator.lanes import LANES, aligned
 from facegear.dynamics.integrator.roots import MAX_DEPTH, bernstein_matrix
 
 Array = NDArray[np.float64]
+ABREAST = 3 * LANES
+"""Tangents moved side by side: as many vectors as the registers hold with what they are multiplied by."""
 
 
 class RingSeries(NamedTuple):
@@ -40,7 +42,8 @@ class Work(NamedTuple):
     edge, active, acting, state, at_edge describe the contact of each mesh during the step. powers (rows,
     harmonics) holds the Taylor coefficients of cos(j s) (even rows) and sin(j s) (odd rows) at 0; parts and
     kinds are used by Fourier series. bernstein holds the deflections' Bernstein coefficients over the step,
-    least and most their bounds. nodes: of the rule that integrates products of polynomials. rings: None
+    least and most their bounds. block, block_deflection (rows, coordinates or meshes times ABREAST) and
+    block_force: of tangents side by side. nodes: of the rule that integrates products of polynomials. rings: None
     without play. Tables that hang on sizes alone (powers, conversion, nodes) are shared and only read.
     """
 
@@ -67,6 +70,9 @@ class Work(NamedTuple):
     subdivision: Array
     tangent: Array
     tangent_deflection: Array
+    block: Array
+    block_deflection: Array
+    block_force: Array
     zero_error: Array
     zero_load: Array
     sample: Array
@@ -86,43 +92,46 @@ def make_work(packed: Packed, order: int) -> Work:
     widest = max(packed.stiffness.shape[2], packed.error.shape[2])
     return Work(
         order=order,
-        y=np.zeros((rows, n)),
-        deflection=np.zeros((rows, m)),
-        stiffness=np.zeros((rows, m)),
-        error=np.zeros((rows, m)),
-        load=np.zeros((rows, n)),
-        force=np.zeros(m),
-        edge=np.zeros(m),
-        active=np.zeros(m),
-        acting=np.zeros(m),
+        y=aligned(rows, n),
+        deflection=aligned(rows, m),
+        stiffness=aligned(rows, m),
+        error=aligned(rows, m),
+        load=aligned(rows, n),
+        force=aligned(m),
+        edge=aligned(m),
+        active=aligned(m),
+        acting=aligned(m),
         state=np.zeros(m, dtype=np.int64),
         at_edge=np.zeros(m, dtype=np.int64),
         powers=_powers(harmonics, rows),
-        parts=np.zeros((2, harmonics, LANES)),
-        kinds=np.zeros(rows * widest),
-        polynomial=np.zeros(rows),
-        scaled=np.zeros((rows, m)),
-        bernstein=np.zeros((rows, m)),
+        parts=aligned(2, harmonics, LANES),
+        kinds=aligned(rows * widest),
+        polynomial=aligned(rows),
+        scaled=aligned(rows, m),
+        bernstein=aligned(rows, m),
         conversion=bernstein_matrix(order),
         conversion_less=bernstein_matrix(order - 1),
-        subdivision=np.zeros((MAX_DEPTH + 2, rows)),
-        tangent=np.zeros((rows, n)),
-        tangent_deflection=np.zeros((rows, m)),
-        zero_error=np.zeros((rows, m)),
-        zero_load=np.zeros((rows, n)),
-        sample=np.zeros(n),
-        scratch=np.zeros(n),
-        was_acting=np.zeros(m),
-        least=np.zeros(m),
-        most=np.zeros(m),
+        subdivision=aligned(MAX_DEPTH + 2, rows),
+        tangent=aligned(rows, n),
+        tangent_deflection=aligned(rows, m),
+        block=aligned(rows, packed.n * ABREAST),
+        block_deflection=aligned(rows, packed.m * ABREAST),
+        block_force=aligned(packed.m * ABREAST),
+        zero_error=aligned(rows, m),
+        zero_load=aligned(rows, n),
+        sample=aligned(n),
+        scratch=aligned(n),
+        was_acting=aligned(m),
+        least=aligned(m),
+        most=aligned(m),
         nodes=_gauss(order // 4 + 1),
         rings=_ring_series(rows, packed.rings.play.size) if packed.rings else None,
     )
 
 
 def _ring_series(rows: int, wide: int) -> RingSeries:
-    tables = {name: np.zeros((rows, wide)) for name in RingSeries._fields}
-    return RingSeries(**{**tables, "reciprocal": np.zeros(wide)})
+    tables = {name: aligned(rows, wide) for name in RingSeries._fields}
+    return RingSeries(**{**tables, "reciprocal": aligned(wide)})
 
 
 @cache

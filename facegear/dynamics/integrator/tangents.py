@@ -1,0 +1,164 @@
+"""Disturbances of the motion: moved over a step by the same recurrence without forcing.
+
+A single tangent goes coordinate by coordinate, in the vectors that the motion itself uses. Many go in blocks
+of ABREAST, side by side in the innermost place: then every entry of G is read once for all of them, and those
+that are zero are left out.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.integrator.compiled import Packed, Sparse
+from facegear.dynamics.integrator.kernel import inlined
+from facegear.dynamics.integrator.lanes import LANES, load, multiply, multiply_add, splat, spread, store, take
+from facegear.dynamics.integrator.rings import ring_switches
+from facegear.dynamics.integrator.taylor import deflect, evaluate, recurrence
+from facegear.dynamics.integrator.work import ABREAST, Work
+
+Array = NDArray[np.float64]
+TWO = 2 * LANES
+
+
+@inlined
+def switch_tangents(packed: Packed, work: Work, acting: Array, tangents: Array) -> None:
+    """Saltation: where the mesh damping starts or stops the velocity part shears by G^T (c- - c+) G.
+
+    Stiffness alone gives none, since the force is continuous at the edge.
+    """
+    ring_switches(packed.rings, packed, work, acting, tangents)
+    for m in range(packed.contacts):
+        jump = acting[m] - work.acting[m]
+        if jump == 0.0:
+            continue
+        for column in range(tangents.shape[0]):
+            along = 0.0
+            for k in range(packed.n):
+                along += packed.transposed[m, k] * tangents[column, 0, k]
+            for k in range(packed.n):
+                tangents[column, 1, k] += packed.transposed[m, k] * jump * along
+
+
+@inlined
+def move_tangents(packed: Packed, work: Work, length: float, tangents: Array) -> None:
+    """Move tangents (columns, 2, n) over the step whose polynomials `work` holds."""
+    if packed.rings is None:
+        if tangents.shape[0] > 1:
+            for first in range(0, tangents.shape[0], ABREAST):
+                _move_block(packed, work, length, tangents, first)
+        else:
+            _move_one(packed, work, length, tangents[0])
+    else:
+        for column in range(tangents.shape[0]):
+            _move_one(packed, work, length, tangents[column])
+
+
+@inlined
+def _move_one(packed: Packed, work: Work, length: float, tangent: Array) -> None:
+    for k in range(packed.omega_squared.size):
+        work.tangent[0, k] = tangent[0, k]
+        work.tangent[1, k] = tangent[1, k]
+    for row in range(2):
+        deflect(packed, work.tangent, row, work.zero_error, work.tangent_deflection)
+    recurrence(packed, work, work.zero_error, work.zero_load, work.tangent, work.tangent_deflection, True)
+    evaluate(work.tangent, work.order, length, tangent[0], tangent[1])
+
+
+@inlined
+def _move_block(packed: Packed, work: Work, length: float, tangents: Array, first: int) -> None:
+    """Move up to ABREAST tangents from number `first` on; places without one stay zero."""
+    y, deflection = work.block, work.block_deflection
+    count = min(ABREAST, tangents.shape[0] - first)
+    for row in range(2):
+        for k in range(packed.n):
+            for j in range(ABREAST):
+                y[row, k * ABREAST + j] = tangents[first + j, row, k] if j < count else 0.0
+        _products(packed.touched, y, row, deflection, row)
+    for i in range(work.order - 1):
+        _push_block(packed, work, i)
+        _expand_block(packed, work, i)
+        _products(packed.touched, y, i + 2, deflection, i + 2)
+    _evaluate_block(packed, y, work.order, length)
+    for row in range(2):
+        for k in range(packed.n):
+            for j in range(count):
+                tangents[first + j, row, k] = y[row, k * ABREAST + j]
+
+
+@inlined
+def _products(matrix: Sparse, factors: Array, at: int, out: Array, to: int) -> None:
+    """Row `to` of out: the sparse matrix times row `at` of factors, for each tangent of a block."""
+    read, write = at * factors.shape[1], to * out.shape[1]
+    for row in range(matrix.starts.size - 1):
+        one, two, three = splat(0.0), splat(0.0), splat(0.0)
+        for entry in range(take(matrix.starts, row), take(matrix.starts, row + 1)):
+            value, place = spread(matrix.values, entry), read + ABREAST * take(matrix.columns, entry)
+            one = multiply_add(value, load(factors, place), one)
+            two = multiply_add(value, load(factors, place + LANES), two)
+            three = multiply_add(value, load(factors, place + TWO), three)
+        place = write + ABREAST * row
+        store(out, place, one)
+        store(out, place + LANES, two)
+        store(out, place + TWO, three)
+
+
+@inlined
+def _push_block(packed: Packed, work: Work, i: int) -> None:
+    """Coefficient i of every mesh's force on each tangent, with the factor of the coordinates' next one."""
+    deflection, force = work.block_deflection, work.block_force
+    wide, meshes = deflection.shape[1], work.stiffness.shape[1]
+    pushed = splat(-1.0 / ((i + 1) * (i + 2)))
+    for m in range(packed.m):
+        damping, place = splat(work.acting[m] * (i + 1)), m * ABREAST
+        at = (i + 1) * wide + place
+        one = multiply(damping, load(deflection, at))
+        two = multiply(damping, load(deflection, at + LANES))
+        three = multiply(damping, load(deflection, at + TWO))
+        if work.active[m] != 0.0:
+            for j in range(i, -1, -1):
+                value, at = spread(work.stiffness, j * meshes + m), (i - j) * wide + place
+                one = multiply_add(value, load(deflection, at), one)
+                two = multiply_add(value, load(deflection, at + LANES), two)
+                three = multiply_add(value, load(deflection, at + TWO), three)
+        store(force, place, multiply(pushed, one))
+        store(force, place + LANES, multiply(pushed, two))
+        store(force, place + TWO, multiply(pushed, three))
+
+
+@inlined
+def _expand_block(packed: Packed, work: Work, i: int) -> None:
+    """Coefficient i + 2 of every coordinate from those before it and the meshes' forces."""
+    y, force, matrix = work.block, work.block_force, packed.touching
+    wide, factor = y.shape[1], -1.0 / ((i + 1) * (i + 2))
+    for k in range(packed.n):
+        damping = splat(factor * (i + 1) * packed.damping[k])
+        stiffness = splat(factor * packed.omega_squared[k])
+        at = i * wide + k * ABREAST
+        one = multiply(stiffness, load(y, at))
+        two = multiply(stiffness, load(y, at + LANES))
+        three = multiply(stiffness, load(y, at + TWO))
+        at += wide
+        one = multiply_add(damping, load(y, at), one)
+        two = multiply_add(damping, load(y, at + LANES), two)
+        three = multiply_add(damping, load(y, at + TWO), three)
+        for entry in range(take(matrix.starts, k), take(matrix.starts, k + 1)):
+            value, place = spread(matrix.values, entry), ABREAST * take(matrix.columns, entry)
+            one = multiply_add(value, load(force, place), one)
+            two = multiply_add(value, load(force, place + LANES), two)
+            three = multiply_add(value, load(force, place + TWO), three)
+        at += wide
+        store(y, at, one)
+        store(y, at + LANES, two)
+        store(y, at + TWO, three)
+
+
+@inlined
+def _evaluate_block(packed: Packed, y: Array, order: int, ahead: float) -> None:
+    """Values and slopes at the end of the step into rows 0 and 1, by Horner's rule."""
+    wide, step = y.shape[1], splat(ahead)
+    for c in range(0, packed.n * ABREAST, LANES):
+        value, slope = load(y, order * wide + c), splat(0.0)
+        for i in range(order - 1, -1, -1):
+            slope = multiply_add(slope, step, value)
+            value = multiply_add(value, step, load(y, i * wide + c))
+        store(y, c, value)
+        store(y, wide + c, slope)
