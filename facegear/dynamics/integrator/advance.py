@@ -59,7 +59,7 @@ def advance(
         ring_row(packed.rings, work.rings, work, row)
     _find_state(packed, work)
     for _ in range(MOST_GUESSES):
-        recurrence(packed, work, work.error, work.load, work.y, work.deflection, False)
+        recurrence(packed, work, work.order, work.error, work.load, work.y, work.deflection, False)
         if not _correct_state(packed, work):
             break
     longest = stop - s

@@ -4,6 +4,7 @@ LLVM leaves loops as short as these (10 meshes, 17 coordinates) scalar; with exp
 Taylor recurrence costs a third. Vectors of four are plain LLVM and run on any processor.
 """
 
+import math
 from typing import Any
 
 import numpy as np
@@ -20,9 +21,9 @@ _VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 
 def aligned(*shape: int) -> NDArray[np.float64]:
     """Zeros that start on a line of the processor's cache: a vector that lies across two is read twice."""
-    size, width = int(np.prod(shape)), _LINE // 8
+    size, width = math.prod(shape), _LINE // 8
     room = np.zeros(size + width)
-    start = -room.ctypes.data % _LINE // 8
+    start = -room.__array_interface__["data"][0] % _LINE // 8
     return room[start : start + size].reshape(shape)
 
 

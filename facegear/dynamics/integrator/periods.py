@@ -11,7 +11,7 @@ from facegear.dynamics.integrator.kernel import inlined, kernel
 from facegear.dynamics.integrator.rings import ring_slopes, ring_trace
 from facegear.dynamics.integrator.sums import Sums, add_step, make_sums, start_sums
 from facegear.dynamics.integrator.tangents import move_tangents, switch_tangents
-from facegear.dynamics.integrator.taylor import evaluate
+from facegear.dynamics.integrator.taylor import values
 from facegear.dynamics.integrator.work import Work
 
 Array = NDArray[np.float64]
@@ -39,13 +39,21 @@ class Log(NamedTuple):
 
 
 def make_log(
-    packed: Packed, periods: int, per_period: int = 0, growth: bool = False, batches: int = 0
+    packed: Packed,
+    periods: int,
+    per_period: int = 0,
+    growth: bool = False,
+    batches: int = 0,
+    ends: Array | None = None,
 ) -> Log:
-    """Allocate a log; with `growth` one tangent must be run, of length one. `batches`: of the sums."""
+    """Allocate a log; with `growth` one tangent must be run, of length one. `batches`: of the sums.
+
+    ends (periods, 2, n): room for them where there is some already.
+    """
     n = packed.omega_squared.size
     return Log(
         samples=np.zeros((periods * per_period, n)),
-        ends=np.zeros((periods, 2, n)),
+        ends=np.zeros((periods, 2, n)) if ends is None else ends,
         shares=np.zeros((3, packed.lower.size)),
         divergence=np.zeros(1),
         growth=np.zeros(periods if growth else 0),
@@ -73,7 +81,7 @@ def run_periods(
     nothing about what its disturbances need, which is disturbance_step().
     """
     n = packed.omega_squared.size
-    sample, scratch, acting = work.sample, work.scratch, work.was_acting
+    sample, acting = work.sample, work.was_acting
     batches = log.sums.coordinates.shape[0]
     for period in range(periods):
         s = 0.0
@@ -90,7 +98,7 @@ def run_periods(
                 for m in range(packed.contacts, packed.m):
                     acting[m] = work.active[m]
                 ring_slopes(packed.rings, work.rings, work.order)
-                move_tangents(packed, work, length, tangents)
+                move_tangents(packed, work, length, tangents, tolerance)
                 of_rings = ring_trace(packed.rings, work.rings, packed, work, length)
                 log.divergence[0] -= length * _trace(packed, work) + of_rings
             if batches > 0:
@@ -103,7 +111,7 @@ def run_periods(
                     log.shares[work.state[m], m] += length
             while next_sample < per_period and TAU * next_sample / per_period < s + length:
                 ahead = TAU * next_sample / per_period - s
-                evaluate(work.y, work.order, ahead, sample, scratch)
+                values(work.y, work.order, ahead, sample)
                 for k in range(n):
                     log.samples[period * per_period + next_sample, k] = sample[k]
                 next_sample += 1

@@ -6,6 +6,7 @@ to the last); extremes are the polynomials' own turning points. So nothing depen
 is sampled.
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -25,7 +26,7 @@ from facegear.dynamics.integrator.lanes import (
     spread,
     store,
 )
-from facegear.dynamics.integrator.taylor import evaluate
+from facegear.dynamics.integrator.taylor import values
 from facegear.dynamics.integrator.work import Work
 
 Array = NDArray[np.float64]
@@ -37,7 +38,7 @@ TURNS = 4
 class Sums(NamedTuple):
     """Integrals over the mesh phase, in B batches of whole periods; B = 0 leaves them out.
 
-    coordinates (B, n) of y and products (B, n, n) of y y^T, both about `origin` (n,); deflections and squares
+    coordinates (B, n) of y and products (B, n, n) of y y^T (its upper half), both about `origin` (n,); deflections and squares
     (B, m) about `level` (m,); forces (2, m): elastic mesh force over w^2 and its magnitude. lowest, highest
     (m,): extremes of the deflections. Of meshes with two flanks the first `pairs` columns hold half the
     difference of the deflections of the two from their edges, and the difference of their forces.
@@ -55,8 +56,17 @@ class Sums(NamedTuple):
 
 
 def make_sums(packed: Packed, batches: int) -> Sums:
-    """Allocate sums; with no batches they take nothing."""
+    """Allocate sums; with no batches they take nothing and are shared."""
     m, n = packed.transposed.shape
+    return _sums(m, n, batches) if batches else _no_sums(m, n)
+
+
+@lru_cache(maxsize=16)
+def _no_sums(m: int, n: int) -> Sums:
+    return _sums(m, n, 0)
+
+
+def _sums(m: int, n: int, batches: int) -> Sums:
     return Sums(
         origin=aligned(n),
         level=aligned(m),
@@ -86,7 +96,7 @@ def add_step(packed: Packed, work: Work, length: float, sums: Sums, batch: int) 
     """Add a step to the batch; work.scaled is used up."""
     for node in range(work.nodes.shape[1]):
         ahead, weight = length * work.nodes[0, node], length * work.nodes[1, node]
-        evaluate(work.y, work.order, ahead, work.sample, work.scratch)
+        values(work.y, work.order, ahead, work.sample)
         _add_coordinates(packed, work.sample, weight, sums, batch)
         _add_meshes(packed, work, ahead, weight, sums, batch)
     if packed.pairs > 0:
@@ -141,7 +151,7 @@ def _add_coordinates(packed: Packed, y: Array, weight: float, sums: Sums, batch:
     for k in range(packed.n):
         factor = multiply(heavy, spread(y, k))
         row = (batch * n + k) * n
-        for c in range(0, n, LANES):
+        for c in range(k // LANES * LANES, n, LANES):
             store(sums.products, row + c, multiply_add(factor, load(y, c), load(sums.products, row + c)))
 
 

@@ -39,32 +39,49 @@ def switch_tangents(packed: Packed, work: Work, acting: Array, tangents: Array) 
 
 
 @inlined
-def move_tangents(packed: Packed, work: Work, length: float, tangents: Array) -> None:
+def move_tangents(packed: Packed, work: Work, length: float, tangents: Array, tolerance: float) -> None:
     """Move tangents (columns, 2, n) over the step whose polynomials `work` holds."""
+    order = _order_needed(packed, work.order, length, tolerance)
     if packed.rings is None:
         if tangents.shape[0] > 1:
             for first in range(0, tangents.shape[0], ABREAST):
-                _move_block(packed, work, length, tangents, first)
+                _move_block(packed, work, order, length, tangents, first)
         else:
-            _move_one(packed, work, length, tangents[0])
+            _move_one(packed, work, order, length, tangents[0])
     else:
         for column in range(tangents.shape[0]):
-            _move_one(packed, work, length, tangents[column])
+            _move_one(packed, work, work.order, length, tangents[column])
 
 
 @inlined
-def _move_one(packed: Packed, work: Work, length: float, tangent: Array) -> None:
+def _order_needed(packed: Packed, order: int, length: float, tolerance: float) -> int:
+    """Terms that disturbances need over a step: most steps end at a switch, below the longest.
+
+    The fastest disturbance's last term is then below a tenth of what disturbance_step() leaves it.
+    """
+    reach, goal = length * packed.fastest, min(10.0 * tolerance, 1e-3)
+    term = 0.5 * reach * reach
+    for i in range(2, order):
+        if term < goal:
+            return i
+        term *= reach / (i + 1)
+    return order
+
+
+@inlined
+def _move_one(packed: Packed, work: Work, order: int, length: float, tangent: Array) -> None:
     for k in range(packed.omega_squared.size):
         work.tangent[0, k] = tangent[0, k]
         work.tangent[1, k] = tangent[1, k]
     for row in range(2):
         deflect(packed, work.tangent, row, work.zero_error, work.tangent_deflection)
-    recurrence(packed, work, work.zero_error, work.zero_load, work.tangent, work.tangent_deflection, True)
-    evaluate(work.tangent, work.order, length, tangent[0], tangent[1])
+    error, forcing, deflection = work.zero_error, work.zero_load, work.tangent_deflection
+    recurrence(packed, work, order, error, forcing, work.tangent, deflection, True)
+    evaluate(work.tangent, order, length, tangent[0], tangent[1])
 
 
 @inlined
-def _move_block(packed: Packed, work: Work, length: float, tangents: Array, first: int) -> None:
+def _move_block(packed: Packed, work: Work, order: int, length: float, tangents: Array, first: int) -> None:
     """Move up to ABREAST tangents from number `first` on; places without one stay zero."""
     y, deflection = work.block, work.block_deflection
     count = min(ABREAST, tangents.shape[0] - first)
@@ -73,11 +90,11 @@ def _move_block(packed: Packed, work: Work, length: float, tangents: Array, firs
             for j in range(ABREAST):
                 y[row, k * ABREAST + j] = tangents[first + j, row, k] if j < count else 0.0
         _products(packed.touched, y, row, deflection, row)
-    for i in range(work.order - 1):
+    for i in range(order - 1):
         _push_block(packed, work, i)
         _expand_block(packed, work, i)
         _products(packed.touched, y, i + 2, deflection, i + 2)
-    _evaluate_block(packed, y, work.order, length)
+    _evaluate_block(packed, y, order, length)
     for row in range(2):
         for k in range(packed.n):
             for j in range(count):

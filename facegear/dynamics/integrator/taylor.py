@@ -72,9 +72,16 @@ def deflect(packed: Packed, y: Array, row: int, error: Array, deflection: Array)
 
 @inlined
 def recurrence(
-    packed: Packed, work: Work, error: Array, applied: Array, y: Array, deflection: Array, tangent: bool
+    packed: Packed,
+    work: Work,
+    order: int,
+    error: Array,
+    applied: Array,
+    y: Array,
+    deflection: Array,
+    tangent: bool,
 ) -> None:
-    """Fill rows 2.. of y and of deflection from rows 0 and 1 of both.
+    """Fill rows 2 .. order of y and of deflection from rows 0 and 1 of both.
 
     Row 0 of deflection has the edge of the contact subtracted. work.active (m,) masks meshes in contact,
     work.acting (m,) holds the mesh damping that acts. A `tangent` needs the slopes of the rings' forces.
@@ -84,7 +91,7 @@ def recurrence(
     minus = splat(-1.0)
     for i in range(2):
         _ring(packed, work, i, deflection, tangent)
-    for i in range(work.order - 1):
+    for i in range(order - 1):
         rate = splat(float(i + 1))
         # Forces push back; they carry the factor of the next coefficient already.
         pushed = splat(-1.0 / ((i + 1) * (i + 2)))
@@ -148,3 +155,15 @@ def evaluate(y: Array, order: int, ahead: float, displacement: Array, velocity: 
             value = multiply_add(value, step, load(y, i * n + c))
         store(displacement, c, value)
         store(velocity, c, slope)
+
+
+@inlined
+def values(y: Array, order: int, ahead: float, out: Array) -> None:
+    """Values (n,) alone of the Taylor polynomials."""
+    n = out.size
+    step = splat(ahead)
+    for c in range(0, n, LANES):
+        value = load(y, order * n + c)
+        for i in range(order - 1, -1, -1):
+            value = multiply_add(value, step, load(y, i * n + c))
+        store(out, c, value)

@@ -97,6 +97,8 @@ def averages(packed: Packed, sums: Sums, periods: int) -> Averages:
     batches = len(sums.coordinates)
     weight = np.bincount(np.arange(periods) * batches // periods, minlength=batches).astype(float)
     phase = TAU * weight[:, None]
+    upper = np.triu(sums.products[:, :n, :n])
+    products = upper + np.triu(upper, 1).transpose(0, 2, 1)
     return Averages(
         weight=weight,
         level=sums.level[:m],
@@ -107,7 +109,7 @@ def averages(packed: Packed, sums: Sums, periods: int) -> Averages:
         force=sums.forces[:, :m] / (TAU * periods),
         origin=sums.origin[:n],
         centre=sums.coordinates[:, :n] / phase,
-        products=sums.products[:, :n, :n] / phase[:, None],
+        products=products / phase[:, None],
     )
 
 

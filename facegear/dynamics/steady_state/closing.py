@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.orbits import changes
+from facegear.dynamics.steady_state.orbits import changes, largest
 
 Array = NDArray[np.float64]
 TREND = 7
@@ -52,9 +52,9 @@ class Closing:
 def closing(packed: Packed, ends: Array, settings: Settings) -> Closing:
     """The period with the smallest change at the end of a run; a shorter one wins if nearly as good."""
     best_period, best = 1, np.inf
-    for index, last in enumerate(changes(packed, ends, settings.longest_period)):
+    for index, last in enumerate(changes(packed, ends, settings.longest_period).tolist()):
         if last < 0.2 * best and not best <= settings.periodic_residual:
-            best_period, best = index + 1, float(last)
+            best_period, best = index + 1, last
     return Closing(best_period, best, trend(packed, ends, best_period))
 
 
@@ -63,7 +63,7 @@ def trend(packed: Packed, ends: Array, period: int) -> float:
     if len(ends) < 2 * TREND + period:
         return np.nan
     kept = ends[-2 * TREND - period :]
-    gaps = (packed.weights * np.abs(kept[period:] - kept[:-period])).max(axis=(1, 2))
+    gaps = largest(packed, kept[period:] - kept[:-period])
     early, late = gaps[:TREND].max(), gaps[TREND:].max()
     return float(late / early) if early > 0.0 else 0.0
 

@@ -20,7 +20,8 @@ from facegear.dynamics.integrator.work import Work
 from facegear.errors import NotConverged
 
 Array = NDArray[np.float64]
-NEWTON_STEPS = 12
+NEWTON_STEPS, MATRICES = 12, 3
+"""Steps that Newton's method may take, and matrices for them: what needs more is nowhere near an orbit."""
 NEUTRAL = 1e-9
 """Directions in which the change over a period moves less than this, relatively, are left alone by Newton."""
 AFLOAT = 1e-6
@@ -72,8 +73,9 @@ class Orbit:
         """
         off = state - np.array([self.displacement, self.velocity])
         afloat = ~self.moving
-        shifted = self.vectors[:, afloat] @ self.parts(packed, off)[afloat]
-        off[:, : packed.n] -= shifted.real.reshape(2, -1)
+        if afloat.any():
+            shifted = self.vectors[:, afloat] @ self.parts(packed, off)[afloat]
+            off[:, : packed.n] -= shifted.real.reshape(2, -1)
         off[1] /= rates
         return change(packed, off, 0.0 * off)
 
@@ -88,13 +90,19 @@ class Orbit:
 
 def change(packed: Packed, first: Array, second: Array) -> float:
     """Largest difference of two states (2, n) as mesh deflections and their rates, over the length scale."""
-    return float((packed.weights * np.abs(first - second)).max() / packed.scale)
+    return float(largest(packed, (first - second)[None])[0])
+
+
+def largest(packed: Packed, gaps: Array) -> Array:
+    """Largest component of each of some differences of states (K, 2, n), counted as in change()."""
+    np.abs(gaps, out=gaps)
+    gaps *= packed.weights / packed.scale
+    return np.asarray(gaps.reshape(len(gaps), gaps.shape[1] * gaps.shape[2]).max(axis=1))
 
 
 def changes(packed: Packed, ends: Array, longest: int) -> Array:
     """change() of the last of `ends` (periods, 2, n) from those 1 .. longest periods before it."""
-    earlier = ends[-2 : -2 - min(longest, len(ends) - 1) : -1]
-    return (packed.weights * np.abs(ends[-1] - earlier)).max(axis=(1, 2)) / packed.scale
+    return largest(packed, ends[-1] - ends[-2 : -2 - min(longest, len(ends) - 1) : -1])
 
 
 def monodromy(
@@ -179,11 +187,12 @@ def shoot(
     period: int,
     tolerance: float,
     goal: float,
+    matrices: int = MATRICES,
 ) -> Orbit | None:
     """Newton's method on the change over `period` mesh periods; None if it does not settle near the start.
 
     A matrix serves as long as each step with it gains a digit, and is the orbit's own if that lies within ten
-    steps' errors of where it was taken. An orbit is accepted when the change is so small that the
+    steps' errors of where it was taken; there may be `matrices` of them on the way. An orbit is accepted when the change is so small that the
     orbit is known to the goal.
     """
     n = packed.n
@@ -198,9 +207,11 @@ def shoot(
                 packed, work, displacement, velocity, none, period, tolerance
             )
             there = np.array([end_displacement, end_velocity])
-        else:
+        elif matrices > 0:
             there, tangent = _linearised(packed, work, here, period, tolerance)
-            log = tangent.log
+            log, matrices = tangent.log, matrices - 1
+        else:
+            return None
         residual = change(packed, here, there)
         if not residual < 4.0 * best:
             return None

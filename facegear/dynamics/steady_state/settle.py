@@ -10,7 +10,7 @@ from facegear.dynamics.integrator.periods import make_log, run_periods
 from facegear.dynamics.integrator.work import Work
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.closing import TREND, VERY_SMALL, Closing, closed, closing
-from facegear.dynamics.steady_state.orbits import AFLOAT, Orbit, changes, drawn_in, require, shoot
+from facegear.dynamics.steady_state.orbits import AFLOAT, MATRICES, Orbit, changes, drawn_in, require, shoot
 
 Array = NDArray[np.float64]
 NEWTON_COST = 20
@@ -58,6 +58,34 @@ def settle(
     return Run(packed, work, state, settings, ends).settled()
 
 
+class Passed:
+    """The last `kept` states (periods, 2, n) that a run passed through at the end of a period."""
+
+    def __init__(self, kept: int, shape: tuple[int, ...]) -> None:
+        self.kept, self.filled = kept, 0
+        self.room = np.empty((2 * kept, *shape))
+
+    @property
+    def states(self) -> Array:
+        """All that are kept, oldest first."""
+        return self.room[max(self.filled - self.kept, 0) : self.filled]
+
+    def room_for(self, periods: int) -> Array:
+        """Places (periods, 2, n) behind those kept, which now count as filled."""
+        if self.filled + periods > len(self.room):
+            held = self.states.copy()
+            if len(held) + periods > len(self.room):
+                self.room = np.empty((len(held) + periods, *self.room.shape[1:]))
+            self.room[: len(held)] = held
+            self.filled = len(held)
+        self.filled += periods
+        return self.room[self.filled - periods : self.filled]
+
+    def forget(self) -> None:
+        """Keep none."""
+        self.filled = 0
+
+
 class Run:
     """A run under way. `found` is the orbit that Newton's method last came to, `found_at` the period of it.
 
@@ -69,13 +97,20 @@ class Run:
     ) -> None:
         self.packed, self.work, self.settings = packed, work, settings
         self.state = state.copy()
-        self.ends = np.zeros((0, *state.shape)) if ends is None else ends
+        self.passed = Passed(4 * settings.longest_period + 2 * TREND + LONG_BLOCK, state.shape)
+        if ends is not None:
+            self.passed.room_for(len(ends))[:] = ends
         self.known = len(self.ends)
         self.periods_run = self.kicks = self.newton_cost = 0
         self.found: Orbit | None = None
         self.found_at = 0
         self.tried: dict[int, float] = {}
         self.block, self.dwell = _blocks(packed, settings)
+
+    @property
+    def ends(self) -> Array:
+        """The last states at the end of a period, oldest first."""
+        return self.passed.states
 
     def settled(self) -> Settled:
         """Go on, block by block, until the run has settled or patience ends."""
@@ -103,7 +138,7 @@ class Run:
             block = max(block, self.dwell - self.periods_run)
         if self.periods_run < settings.settle:
             block = min(block, settings.settle - self.periods_run)
-        log = make_log(self.packed, block)
+        log = make_log(self.packed, block, ends=self.passed.room_for(block))
         none = np.zeros((0, *self.state.shape))
         displacement, velocity = self.state
         status = run_periods(
@@ -111,8 +146,6 @@ class Run:
         )
         require(status)
         self.periods_run += block
-        kept = 4 * settings.longest_period + 2 * TREND + LONG_BLOCK
-        self.ends = np.concatenate([self.ends, log.ends])[-kept:]
 
     def _refined(self, near: Closing, last: bool) -> Settled | None:
         """The orbit that draws the run in, if there is one; looked for where it saves time."""
@@ -143,7 +176,7 @@ class Run:
         self.newton_cost += cost * worth
         return worth
 
-    def _shot(self, period: int) -> Orbit | None:
+    def _shot(self, period: int, matrices: int = MATRICES) -> Orbit | None:
         settings = self.settings
         displacement, velocity = self.state
         return shoot(
@@ -154,6 +187,7 @@ class Run:
             period,
             settings.tolerance,
             settings.periodic_residual,
+            matrices,
         )
 
     def _by_itself(self, near: Closing) -> Settled | None:
@@ -176,7 +210,7 @@ class Run:
         """The motion of the shortest period about which nothing but the choice of steps moves the run."""
         noise = NOISE * self.settings.tolerance
         close = np.flatnonzero(changes(self.packed, self.ends, self.settings.longest_period) < noise)
-        orbit = self._shot(int(close[0]) + 1) if close.size else None
+        orbit = self._shot(int(close[0]) + 1, matrices=1) if close.size else None
         if orbit is None or orbit.holding > DRAWN:
             return None
         # Tolerances are those of places: the fastest motion may err in its velocity by so much more.
@@ -209,7 +243,8 @@ class Run:
         self.kicks += 1
         off = self.state - np.array([orbit.displacement, orbit.velocity])
         self.state += KICK * orbit.leaving(self.packed, off)
-        self.ends, self.found, self.tried = self.ends[:0], None, {}
+        self.passed.forget()
+        self.found, self.tried = None, {}
         self.known = 0
 
     def _result(self, period: int, residual: float, orbit: Orbit | None) -> Settled:
