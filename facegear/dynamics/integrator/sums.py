@@ -38,10 +38,11 @@ TURNS = 4
 class Sums(NamedTuple):
     """Integrals over the mesh phase, in B batches of whole periods; B = 0 leaves them out.
 
-    coordinates (B, n) of y and products (B, n, n) of y y^T (its upper half), both about `origin` (n,); deflections and squares
-    (B, m) about `level` (m,); forces (2, m): elastic mesh force over w^2 and its magnitude. lowest, highest
-    (m,): extremes of the deflections. Of meshes with two flanks the first `pairs` columns hold half the
-    difference of the deflections of the two from their edges, and the difference of their forces.
+    coordinates (B, n) of y and products (B, n, n) of y y^T, of which the upper half is filled, both about
+    `origin` (n,); deflections and squares (B, m) about `level` (m,); forces (2, m): elastic mesh force over
+    w^2 and its magnitude. lowest, highest (m,): extremes of the deflections. Of meshes with two flanks the
+    first `pairs` columns hold half the difference of the deflections of the two from their edges, and the
+    difference of their forces.
     """
 
     origin: Array

@@ -43,8 +43,8 @@ class Work(NamedTuple):
     harmonics) holds the Taylor coefficients of cos(j s) (even rows) and sin(j s) (odd rows) at 0; parts and
     kinds are used by Fourier series. bernstein holds the deflections' Bernstein coefficients over the step,
     least and most their bounds. block, block_deflection (rows, coordinates or meshes times ABREAST) and
-    block_force: of tangents side by side. nodes: of the rule that integrates products of polynomials. rings: None
-    without play. Tables that hang on sizes alone (powers, conversion, nodes) are shared and only read.
+    block_force: of tangents side by side. nodes: of the rule that integrates products of polynomials. rings:
+    None without play. Tables that hang on sizes alone (powers, conversion, nodes) are shared and only read.
     """
 
     order: int

@@ -192,8 +192,8 @@ def shoot(
     """Newton's method on the change over `period` mesh periods; None if it does not settle near the start.
 
     A matrix serves as long as each step with it gains a digit, and is the orbit's own if that lies within ten
-    steps' errors of where it was taken; there may be `matrices` of them on the way. An orbit is accepted when the change is so small that the
-    orbit is known to the goal.
+    steps' errors of where it was taken; there may be `matrices` of them on the way. An orbit is accepted when
+    the change is so small that the orbit is known to the goal.
     """
     n = packed.n
     displacement, velocity = displacement.copy(), velocity.copy()
