@@ -136,5 +136,7 @@ STRESS_OVER_SPEED_COLUMNS = (
     "worst",
 )
 """Of the table of stress over speed, a row for each motion known at a speed."""
-STRESS_OVER_SPEED_FINITE = tuple(name for name in STRESS_OVER_SPEED_COLUMNS if name != "pressure_mpa")
-"""Columns whose numbers are always finite: pressure is known where the contact analysis states one."""
+STRESS_OVER_SPEED_FINITE = tuple(
+    name for name in STRESS_OVER_SPEED_COLUMNS if name not in ("pressure_mpa", "dynamic_factor")
+)
+"""Columns whose numbers are always finite: edges may carry all, and a machine run without load."""

@@ -31,8 +31,10 @@ class ContactPressure:
     def at(self, torque: float) -> float:
         """Pressure (Pa): of line contact, with the root of the torque beyond those solved.
 
-        Between them the load on a line contact, p squared, is linear.
+        Between them the load on a line contact, p squared, is linear. nan where none is known.
         """
+        if not self.known:
+            return np.nan
         on = np.isfinite(self.pressure)
         torques = np.concatenate([[0.0], self.torques[on]])
         squares = np.concatenate([[0.0], self.pressure[on] ** 2])

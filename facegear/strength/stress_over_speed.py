@@ -53,16 +53,16 @@ def stress_table(
 ) -> pd.DataFrame:
     """Stress under each of `forces` (FORCE_COLUMNS), columns as STRESS_OVER_SPEED_COLUMNS.
 
-    The force is taken to act all through the passage. static_force (N): the largest of all meshes at rest;
-    base_radius (m) of the pinion; pressure (Pa) at a torque (N m). `worst`: the hardest of all motions
-    known at that speed, and those as hard.
+    The force is taken to act all through the passage. static_force (N): the largest of all meshes at rest, 0
+    without load; base_radius (m) of the pinion; pressure (Pa) at a torque (N m). `worst`: the hardest of all
+    motions known at that speed, and those as hard.
     """
     torques = base_radius * forces["largest_force_n"].to_numpy()
     tension = {body: largest_tension(root) for body, root in roots.items()}
     solved = min(root.torques[-1] for root in roots.values())
     most = forces.groupby("speed_rpm")["largest_force_n"].transform("max")
     table = forces.assign(
-        dynamic_factor=forces["largest_force_n"] / static_force,
+        dynamic_factor=forces["largest_force_n"] / static_force if static_force > 0.0 else np.nan,
         **{f"{body}_mpa": [1e-6 * at(torque) for torque in torques] for body, at in tension.items()},
         pressure_mpa=[1e-6 * pressure(torque) for torque in torques],
         within_torques_solved=torques <= solved,

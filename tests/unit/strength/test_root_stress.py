@@ -253,3 +253,8 @@ def test_stress_over_speed_takes_the_hardest_of_coexisting_motions():
     assert at_2000["pinion_mpa"].iloc[0] == pytest.approx(1e-6 * expected)
     assert at_2000["pressure_mpa"].iloc[0] == pytest.approx(1e-6 * np.sqrt(0.5 * (25e16 + 81e16)))
     assert pressure(1200.0) == pytest.approx(2.0 * 9e8)
+    unknown = ContactPressure(torques, np.full(2, np.nan), none, none, none)
+    idle = stress_table(
+        forces.reset_index(drop=True), 0.0, 0.1, {"pinion": found, "face_gear": found}, unknown.at
+    )
+    assert idle["pressure_mpa"].isna().all() and idle["dynamic_factor"].isna().all()
