@@ -56,7 +56,8 @@ EVERY_LOAD = "Loads of every flank in every bin"
 DYNAMIC = (
     "Largest root stress of every mesh at the nominal speed; mean: with its mean force; running: the largest "
     "of the history, every tooth with its share of the force of that moment; bound: with the largest force "
-    "all through the passage. Beyond the torques of the contact analysis stress is taken in proportion"
+    "all through the passage; pressure away from edges likewise. Beyond the torques of the contact analysis "
+    "stress is taken in proportion"
 )
 OVER_SPEED = (
     "Hardest loads over the speed range: at the nominal speed, and the worst of each motion found. Dynamic "

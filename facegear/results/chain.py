@@ -94,7 +94,8 @@ class Chain:
             from facegear.stages.dynamic_root_stress import dynamic_root_stress
 
             response, stress = self.response().content["response"], self.root_stress().content["stress"]
-            return dynamic_root_stress(response, stress, **self._needs("dynamic_root_stress"))
+            by_torque = self.contact().content["by_torque"]
+            return dynamic_root_stress(response, stress, by_torque, **self._needs("dynamic_root_stress"))
 
         return self.store.result("dynamic_root_stress", self.values, DynamicStressResult, compute)
 

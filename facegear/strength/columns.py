@@ -117,10 +117,14 @@ DYNAMIC_STRESS_COLUMNS = (
     "face_gear_mean_mpa",
     "face_gear_running_mpa",
     "face_gear_bound_mpa",
+    "pressure_mean_mpa",
+    "pressure_bound_mpa",
     "within_torques_solved",
 )
-DYNAMIC_STRESS_FINITE = tuple(name for name in DYNAMIC_STRESS_COLUMNS if name != "dynamic_factor")
-"""Columns whose numbers are always finite: an open mesh has no dynamic factor."""
+DYNAMIC_STRESS_FINITE = tuple(
+    name for name in DYNAMIC_STRESS_COLUMNS if name != "dynamic_factor" and not name.startswith("pressure")
+)
+"""Columns whose numbers are always finite: an open mesh has no dynamic factor, and edges may carry all."""
 
 STRESS_OVER_SPEED_COLUMNS = (
     "motion",

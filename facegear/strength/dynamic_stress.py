@@ -1,6 +1,6 @@
 """Root stress under the mesh forces of a running machine."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import pandas as pd
@@ -17,11 +17,13 @@ def dynamic_stress_table(
     places: Mapping[str, Array],
     base_radius: float,
     roots: Mapping[str, RootStress],
+    pressure: Callable[[float], float],
 ) -> pd.DataFrame:
     """One row a mesh, columns as DYNAMIC_STRESS_COLUMNS.
 
     forces (n,) N along the line of action by mesh, negative on the back flank, evenly in time; places (n,) of
-    the loaded flank in the mesh cycle, in [0, 1); base_radius (m) of the pinion. `mean`: largest over the
+    the loaded flank in the mesh cycle, in [0, 1); base_radius (m) of the pinion; pressure (Pa): the largest
+    over the passage at a torque (N m). `mean`: largest over the
     passage with the mesh's mean force; `running`: largest of the history, every tooth with its share of the
     force of that moment (a tooth is quasi-static); `bound`: with the largest force all through the passage.
     """
@@ -35,6 +37,7 @@ def dynamic_stress_table(
         for body in roots:
             running = float(history[body](torques, places[mesh]).max())
             stresses += [tension[body](base_radius * mean), running, tension[body](base_radius * most)]
+        stresses += [pressure(base_radius * value) for value in (mean, most)]
         within = bool(torques.max() <= next(iter(roots.values())).torques[-1])
         factor = most / mean if mean > 0.0 else np.nan
         rows.append((mesh, mean, most, factor, *(1e-6 * stress for stress in stresses), within))

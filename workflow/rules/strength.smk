@@ -76,6 +76,7 @@ rule dynamic_root_stress:
     input:
         response="results/{case}/dynamics/response.csv",
         stress=shared("root_stress", "stress"),
+        by_torque=shared("contact", "by_torque"),
     output:
         dynamic_stress="results/{case}/strength/dynamic_stress.csv",
         manifest="results/{case}/strength/dynamic_stress.provenance.json",

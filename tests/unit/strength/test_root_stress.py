@@ -174,7 +174,7 @@ def test_running_machine_is_judged_by_the_magnitude_of_each_mesh_force():
     }
     places = dict.fromkeys([*forces, "high"], np.array([0.0, 0.5]))
     roots = {"pinion": found, "face_gear": found}
-    table = dynamic_stress_table(forces, places, 0.1, roots).set_index("mesh")
+    table = dynamic_stress_table(forces, places, 0.1, roots, np.sqrt).set_index("mesh")
     assert table["dynamic_factor"].iloc[:2].tolist() == pytest.approx([1.5, 1.0])
     assert np.isnan(table.loc["open", "dynamic_factor"])
     assert table.loc["pulsing", "pinion_mean_mpa"] == pytest.approx(table.loc["back", "pinion_bound_mpa"])
@@ -182,7 +182,9 @@ def test_running_machine_is_judged_by_the_magnitude_of_each_mesh_force():
     largest = solved[solved["torque_n_m"] == 300.0]["largest_mpa"].max()
     assert table.loc["pulsing", "face_gear_bound_mpa"] == pytest.approx(largest)
     assert table["within_torques_solved"].all()
-    beyond = dynamic_stress_table({"high": np.array([4000.0, 0.0])}, places, 0.1, roots)
+    assert table.loc["pulsing", "pressure_bound_mpa"] == pytest.approx(1e-6 * np.sqrt(300.0))
+    assert table.loc["pulsing", "pressure_mean_mpa"] == pytest.approx(1e-6 * np.sqrt(200.0))
+    beyond = dynamic_stress_table({"high": np.array([4000.0, 0.0])}, places, 0.1, roots, np.sqrt)
     assert not beyond["within_torques_solved"].any()
 
 
