@@ -2,9 +2,8 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
-import pandas as pd
 from pydantic import Field, field_validator, model_validator
 
 from facegear.config.base import Section, parse, refuse
@@ -15,6 +14,9 @@ from facegear.errors import ConfigErrors
 from facegear.geometry.design import PairDesign
 from facegear.strength.duty import DutyBin, given_duty, machine_duty
 from facegear.strength.rating import RatedBody, RatingRequest
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 BIN_COLUMNS = ("torque_n_m", "speed_rpm", "hours")
 
@@ -147,7 +149,7 @@ def duty_bins(section: Strength) -> tuple[DutyBin, ...]:
 
 
 def rating_request(
-    section: Strength, design: PairDesign, spectrum: pd.DataFrame | None = None
+    section: Strength, design: PairDesign, spectrum: "pd.DataFrame | None" = None
 ) -> RatingRequest:
     """What the rating needs, in SI units; `spectrum` what the machine's teeth meet, of stage duty_loads."""
     duty, ratio = duty_bins(section), design.pinion.teeth / design.face_gear.teeth

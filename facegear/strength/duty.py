@@ -2,10 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Array = NDArray[np.float64]
 
@@ -53,7 +56,7 @@ def given_duty(gear: str, duty: Sequence[DutyBin], turns: float, both_ways: bool
 
 
 def machine_duty(
-    spectrum: pd.DataFrame, duty: Sequence[DutyBin], ratio: float, arm: float
+    spectrum: "pd.DataFrame", duty: Sequence[DutyBin], ratio: float, arm: float
 ) -> tuple[FlankDuty, ...]:
     """The flanks that carry load in a machine, each with the loads of its own meshes.
 

@@ -1,0 +1,55 @@
+"""Figures of tolerances show what their tables hold."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+import pytest
+
+from facegear.plots.tolerances import in_words, load_map_figure, worst_first
+
+WORST, OTHER = "k_gamma right input/upper", "k_gamma left input/upper"
+
+
+def table(factors, speeds):
+    rows = []
+    for factor in factors:
+        for speed in speeds:
+            for quantity, share in ((WORST, 0.4), (OTHER, 0.3), ("peak_mesh_force_n", 2e4)):
+                for level in (50.0, 95.0, 99.0):
+                    value = 1.0 + share / factor + 1e-5 * speed + 1e-4 * level
+                    rows.append((factor, speed, quantity, level, value, value - 0.01, value + 0.01, 64, 0))
+    columns = [
+        "torque_factor",
+        "speed_rpm",
+        "quantity",
+        "percentile",
+        "value",
+        "low",
+        "high",
+        "samples",
+        "failed",
+    ]
+    return pd.DataFrame(rows, columns=columns)
+
+
+@pytest.mark.parametrize(
+    ("speeds", "lines", "along"), [((7500.0,), 1, "Torque"), ((1e3, 2e3, 3e3), 2, "speed")]
+)
+def test_a_map_draws_the_median_and_99th_percentile_of_the_worst_path(speeds, lines, along):
+    given = table((0.5, 1.0), speeds)
+    figure = load_map_figure(given)
+    (axis,) = figure.axes
+    own = given[given["quantity"] == WORST]
+    drawn = np.sort(np.concatenate([line.get_ydata() for line in axis.lines]))
+    np.testing.assert_array_equal(drawn, np.sort(own[own["percentile"] != 95.0]["value"]))
+    assert len(axis.lines) == 2 * lines and along in axis.get_xlabel()
+    assert axis.get_ylabel() == in_words(WORST)
+    assert len(figure.legends) == (lines > 1), "one line needs no legend"
+    plt.close(figure)
+
+
+def test_what_comes_once_a_machine_stands_after_the_worst_paths():
+    columns = ["te_peak_to_peak_um", "open_share", OTHER, "pressure_mpa", WORST, "peak_mesh_force_n"]
+    values = [5.0, 0.0, 1.3, 1500.0, 1.4, 2e4]
+    found = worst_first(pd.DataFrame({"quantity": columns, "percentile": 99.0, "value": values}))
+    assert found == [WORST, OTHER, "peak_mesh_force_n", "pressure_mpa", "te_peak_to_peak_um"]
