@@ -19,7 +19,8 @@ from facegear.stages.stiffness import stiffness
 from facegear.stages.tooth_meshes import Flanks, Meshes, ToothMesh, Values, numbers_of
 from facegear.stiffness.curve import load_table
 from facegear.stiffness.tables import series_of, unloaded_error
-from facegear.strength.pair_answers import PairAnswers, pair_answers
+from facegear.strength.contact_pressure import contact_pressure
+from facegear.strength.pair_answers import PairAnswers
 
 KEPT = 16
 """Pairs that are remembered: samples of one block of Saltelli's design share theirs."""
@@ -58,7 +59,7 @@ def _answers(pair: Values, found: Values, flanks: Flanks, numbers: ToothNumbers)
     approach = torque / numbers.pinion_base_radius / load_table(ltca).at(torque, "average")
     error = 1e-6 * unloaded.to_numpy(float) + approach
     roots = {body: passing(body, flank, found["loads"]) for body, flank in flanks.items() if flank.gauges}
-    return pair_answers(ltca, error, roots)
+    return PairAnswers(error, contact_pressure(found["by_torque"]), roots)
 
 
 def _bodies(pair: Values, flanks: Flanks) -> Callable[[Values], tuple[GearFlank, GearFlank]]:

@@ -1,10 +1,13 @@
 """Pressure inside the flanks and load on their tip edges at any torque, from the contact analysis."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Array = NDArray[np.float64]
 
@@ -60,7 +63,7 @@ class ContactPressure:
         return beyond * load, length
 
 
-def contact_pressure(by_torque: pd.DataFrame) -> ContactPressure:
+def contact_pressure(by_torque: "pd.DataFrame") -> ContactPressure:
     """From the table by torque of stage contact."""
     scales = {
         "torque_n_m": 1.0,
