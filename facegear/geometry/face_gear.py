@@ -115,19 +115,23 @@ def tip_roll(design: PairDesign) -> "scipy.interpolate.CubicSpline":
     )
 
 
-def _newton(residual: Callable[[Array], tuple[Array, Array]], psi: Array, size: Array, where: str) -> Array:
-    """The root near psi of a difference of numbers of a `size`, exact near a fold before psi is."""
+def _newton(residual: Callable[[Array], tuple[Array, Array]], near: Array, size: Array, where: str) -> Array:
+    """The root near `near` (rad or m) of a difference of numbers of a `size`, exact near a fold before it is.
+
+    Raises NotConverged.
+    """
+    at = near
     for _ in range(60):
-        value, slope = residual(psi)
+        value, slope = residual(at)
         step = np.clip(value / slope, -0.1, 0.1)
-        psi = psi - step
+        at = at - step
         if np.all(np.abs(step) < 1e-14):
-            return psi
-        if not np.all(np.isfinite(psi)):
+            return at
+        if not np.all(np.isfinite(at)):
             break
-    if np.all(np.isfinite(psi)) and np.all((np.abs(step) < 1e-12) | (np.abs(value) <= ROUNDING * size)):
-        return psi
-    raise NotConverged("geometry", where, "60 Newton steps on psi")
+    if np.all(np.isfinite(at)) and np.all((np.abs(step) < 1e-12) | (np.abs(value) <= ROUNDING * size)):
+        return at
+    raise NotConverged("geometry", where, "60 Newton steps")
 
 
 def edge_start(design: PairDesign) -> float:

@@ -76,17 +76,17 @@ def stress_peer_study(
     against both in percent, and against the gauge's in the plane across the face where they differ most.
     Raises FacegearError if ccx is not installed or fails.
     """
-    rows = []
+    rows, face = [], design.face_gear.outer_radius - design.face_gear.inner_radius
     for level, sizes in levels.items():
         for body, material in zip(("pinion", "face_gear"), materials, strict=True):
             tooth = loaded_tooth(design, body, sizes, material, TEETH, on_corners=True)
-            deck = folder / f"stress_{level}_{body}.inp"
+            deck = folder / f"stress_{1e3 * face:.3g}_mm_{level}_{body}.inp"
             dof = write_stress_deck(deck, tooth, material)
             run = run_program(deck, threads)
             ours, read, nodal = along_the_face(tooth, deck.with_suffix(".frd"), material)
             rows.append(
                 {
-                    "face_mm": 1e3 * (design.face_gear.outer_radius - design.face_gear.inner_radius),
+                    "face_mm": 1e3 * face,
                     "level": level,
                     "body": body,
                     "dof": dof,
