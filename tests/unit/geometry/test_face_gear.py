@@ -141,6 +141,26 @@ def test_the_fillet_is_the_envelope_of_the_shapers_rounded_tip(pair, rounding):
         assert np.max(np.sum(arm * normal[..., [0, 2]], axis=-1)) < 0
 
 
+@pytest.mark.parametrize("rounding", [0.05, 0.14])
+def test_the_shapers_rounded_tip_passes_every_point_of_the_fillet_and_cuts_none_off(pair, rounding):
+    """Followed through the whole motion, the tip's disc touches each point once and never covers it."""
+    design = pair(tip_rounding=rounding)
+    sharpest = design.shaper_rounding_centre / design.shaper_ratio
+    radius = np.array([0.92, 0.98, 1.0, 1.01, 1.03])[:, None] * sharpest
+    psi = face_gear.fillet_slopes(design, radius, np.linspace(0.0, 1.0, 9))
+    x, y, z = np.moveaxis(
+        face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, psi)), -1, 0
+    )
+    chi = np.linspace(-1.2, 1.2, 4001)[:, None, None]
+    turn = design.shaper_ratio * (chi - face_gear.edge_start(design))
+    across = np.cos(turn) * x + np.sin(turn) * y
+    centre = design.shaper_rounding_centre
+    apart = np.hypot(across - centre * np.sin(chi), z - design.shaper_lift + centre * np.cos(chi))
+    left = apart.min(axis=0) - design.shaper.tip_rounding
+    assert left.min() > -1e-12
+    assert left.max() < 1e-5 * design.module  # of the steps, 0.6 mrad
+
+
 @pytest.mark.parametrize("rounding", [0.0, 0.14])
 def test_normal_of_the_fillet_is_orthogonal_to_its_tangents(pair, rounding):
     design = pair(tip_rounding=rounding)
