@@ -17,14 +17,14 @@ Array = NDArray[np.float64]
 class SectionPlan:
     """Where the outline's segments begin and end in sigma, and the topology.
 
-    first_rows: depths t at which the first two rows end; thinner: what the first row keeps of its depth below
-    the fillet; ramp: columns over which it does so on the flank's side.
+    first_row: depth t at which the first row ends; thinner: what it keeps of that below the fillet; ramp:
+    columns over which it does so on the flank's side.
     """
 
     breaks: dict[str, tuple[float, float]]
     half: HalfSection
     floor_height: float
-    first_rows: tuple[float, float]
+    first_row: float
     thinner: float
     ramp: float
 
@@ -65,13 +65,13 @@ def plan_section(outline: Outline, sizes: MeshSizes) -> SectionPlan:
     block = max(1, round(below / (1.5 * sizes.thickness)))
     column_levels = [levels] * wall + [floor_levels] * floor_columns
     half = half_section(rows, column_levels, (wall, floor_columns), block)
-    first, second = rows[0].t1, rows[min(1, len(rows) - 1)].t1
-    thinner = (sizes.fillet_depth or np.inf) / (first * depth) if second > first else 1.0
+    first = rows[0].t1
+    thinner = (sizes.fillet_depth or np.inf) / (first * depth) if len(rows) > 1 else 1.0
     return SectionPlan(
         breaks=breaks,
         half=half,
         floor_height=floor,
-        first_rows=(first, second),
+        first_row=first,
         thinner=min(1.0, thinner),
         ramp=1.0 / fine,
     )
@@ -135,12 +135,10 @@ def _depth(plan: SectionPlan, sigma: Array) -> Array:
     t = np.minimum(plan.half.t, 1.0)
     if plan.thinner == 1.0:
         return t
-    first, second = plan.first_rows
     (start, _), (_, end) = plan.breaks["fillet_upper"], plan.breaks["fillet_lower"]
     below = np.interp(sigma, [start, start + plan.ramp, end, end + 1.0], [0.0, 1.0, 1.0, 0.0])
     kept = 1.0 - (1.0 - plan.thinner) * below
-    beyond = kept * first + (t - first) * (second - kept * first) / (second - first)
-    return np.where(t <= first, kept * t, np.where(t < second, beyond, t))
+    return np.where(t <= plan.first_row, kept * t, t)
 
 
 def _straighten(half: HalfSection, values: Array) -> None:

@@ -10,6 +10,9 @@ from facegear.config.load import load_config
 from facegear.config.tooth_pair import pair_design
 from facegear.errors import ConfigErrors
 from facegear.geometry.limits import sharpest_fillet_radius
+from facegear.mesh.quality import scaled_jacobians
+from facegear.mesh.sizes import named_sizes, thin_fillet
+from facegear.mesh.tooth import gear_tooth
 
 CONFIG = Path(__file__).parents[3] / "config" / "strength_only.yaml"
 SIZES = {"profile_mm": 2.6, "width_mm": 44, "thickness_mm": 10, "fillet_depth_mm": 0.8}
@@ -31,6 +34,13 @@ def test_a_sharp_shaper_is_refused_with_the_one_range_its_fillet_allows():
 def test_a_rounding_that_leaves_no_tip_land_is_refused():
     with pytest.raises(ConfigErrors, match=r"shaper.tip_rounding_modules = 0.3: at most 0.1573"):
         load_config(CONFIG, {"tooth_pair": {"shaper": {"tip_rounding_modules": 0.3}}})
+
+
+@pytest.mark.parametrize("level", ["coarse", "medium"])
+def test_no_element_below_the_small_outer_fillet_is_turned_inside_out(level):
+    design = pair_design(load_config(CONFIG).tooth_pair)
+    mesh = gear_tooth(design, thin_fillet(named_sizes(level, design.module), level))
+    assert scaled_jacobians(mesh.nodes, mesh.hexes).min() > 0.05
 
 
 def test_one_pair_runs_from_teeth_to_life():
