@@ -11,6 +11,7 @@ from facegear.contact.root_gauges import root_gauges
 from facegear.contact.teeth import elastic_tooth
 from facegear.errors import ConfigError
 from facegear.geometry.design import Material, PairDesign
+from facegear.mesh.quality import require_right_side_out
 from facegear.mesh.sizes import MeshSizes
 from facegear.mesh.tooth import ToothMesh, gear_tooth, pinion_tooth
 
@@ -28,10 +29,11 @@ def gear_flank(
 ) -> GearFlank:
     """Contact surface, flank compliance and, where asked for, gauges of the pinion or the face gear.
 
-    Raises ConfigError for a sector with more teeth than the gear, FacegearError if the mesh cannot be
-    factorised.
+    Raises ConfigError for a sector with more teeth than the gear and for a mesh with elements turned inside
+    out, FacegearError if the mesh cannot be factorised.
     """
     tooth = BUILDERS[body](design, sizes)
+    require_right_side_out(tooth)
     elastic, side = elastic_tooth(design, tooth, material)
     teeth, neighbours, ends = extent(tooth, body, plan)
     gauges, rows = root_gauges(tooth, material) if plan.root_stress else (None, None)

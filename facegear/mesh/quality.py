@@ -7,7 +7,9 @@ from numpy.typing import NDArray
 from skfem import ElementHex2, MeshHex2
 from skfem.quadrature import get_quadrature
 
+from facegear.errors import ConfigError
 from facegear.mesh.hexahedra import hex_mesh
+from facegear.mesh.tooth import ToothMesh
 
 Array = NDArray[np.float64]
 
@@ -28,6 +30,14 @@ def scaled_jacobians(nodes: Array, hexes: NDArray[np.int64]) -> Array:
         lengths = np.prod(np.linalg.norm(matrix, axis=0), axis=0)
         worst.append(np.min(np.linalg.det(matrix.transpose(2, 3, 0, 1)) / lengths, axis=1))
     return np.concatenate(worst)
+
+
+def require_right_side_out(tooth: ToothMesh) -> None:
+    """Raises ConfigError for a mesh with an element turned inside out, which no stiffness may come from."""
+    turned = np.count_nonzero(scaled_jacobians(tooth.nodes, tooth.hexes) <= 0.0)
+    if turned:
+        told = f"{turned} elements of the {tooth.body.replace('_', ' ')} turned inside out"
+        raise ConfigError("mesh.resolution", told, "another one, or another fillet_depth_mm")
 
 
 def volume(nodes: Array, hexes: NDArray[np.int64]) -> float:

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from skfem import ElementHex2
 
+from facegear.errors import ConfigError
 from facegear.geometry import face_gear, pinion
 from facegear.mesh.hexahedra import facet_basis, hex_mesh
-from facegear.mesh.quality import scaled_jacobians, volume
+from facegear.mesh.quality import require_right_side_out, scaled_jacobians, volume
 from facegear.mesh.sizes import RESOLUTIONS, named_sizes, thin_fillet
 from facegear.mesh.tooth import CORNERS, gear_tooth, pinion_tooth
 
@@ -32,6 +33,15 @@ def test_flank_and_fillet_nodes_lie_on_the_analytic_surface_at_every_level(desig
             exact = surface_points(design, mesh.body, name, grid) * [sign, 1, 1]
             assert np.max(np.abs(mesh.nodes[grid.nodes] - exact)) < 1e-12
     assert scaled_jacobians(mesh.nodes, mesh.hexes).min() > 0
+
+
+def test_a_mesh_with_an_element_turned_inside_out_is_refused(design):
+    mesh = pinion_tooth(design, named_sizes("coarse", design.module))
+    require_right_side_out(mesh)
+    nodes = mesh.nodes.copy()
+    nodes[mesh.hexes[0, 13]] = nodes[mesh.hexes[-1, 13]]
+    with pytest.raises(ConfigError, match=r"mesh\.resolution = '1 elements of the pinion turned inside out'"):
+        require_right_side_out(replace(mesh, nodes=nodes))
 
 
 @pytest.mark.parametrize("level", ["coarse", "medium"])
