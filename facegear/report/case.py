@@ -170,7 +170,8 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
 
 
 def _rated(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
-    found = [Table(SAFETY, tables["safety"], 4), Table(RATING, tables["rating"], 4, folded=True)]
+    shown = tables["safety"].dropna(axis="columns", how="all")
+    found = [Table(SAFETY, shown, 4), Table(RATING, tables["rating"], 4, folded=True)]
     if "duty_loads" in tables:
         loads = tables["duty_loads"]
         hardest = loads.loc[loads.groupby("bin")["largest_force_n"].idxmax()]

@@ -35,6 +35,7 @@ ROOT_STRESS_ARRAYS = {
 SAFETY_COLUMNS = (
     "body",
     "flank",
+    "verdict",
     "bending_safety",
     "standard_bending_safety",
     "pitting_safety",
@@ -44,7 +45,6 @@ SAFETY_COLUMNS = (
     "life_hours",
     "reliability",
     "nearest_limit",
-    "verdict",
     "within_torques_solved",
 )
 RATED_FLANK = ("body", "gear", "flank", "failure", "method")

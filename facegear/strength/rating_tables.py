@@ -35,14 +35,14 @@ def safety_table(found: Sequence[Rated], pressure: ContactPressure) -> pd.DataFr
         edge_load, edge_length = pressure.edge_at(_largest_torque(ways[0]))
         rows.append(
             (
-                *(body, flank, safety["bending", "finite elements"]),
+                *(body, flank, min((one.verdict for one in ways), key=HARDEST.__getitem__)),
+                safety["bending", "finite elements"],
                 safety.get(("bending", "ISO 6336-3"), np.nan),
                 *(safety.get(("pitting", "contact analysis"), np.nan), safety["pitting", "ISO 6336-2"]),
                 *(1e-3 * edge_load, 1e3 * edge_length),
                 min(one.life for one in ways) / 3600.0,
                 float(np.prod(known)) if known else np.nan,
                 f"{nearest.failure} ({nearest.method})",
-                min((one.verdict for one in ways), key=HARDEST.__getitem__),
                 _within(nearest, pressure.torques[-1]).all(),
             )
         )
