@@ -72,7 +72,12 @@ class LoadMap(Section):
     speeds_rpm: tuple[Annotated[float, Field(ge=1, le=1e5)], ...] = Field(
         (), max_length=200, description="for model dynamic; none: dynamics.speed_rpm"
     )
-    samples: int = Field(128, ge=2, le=100_000, description="at every torque and speed")
+    samples: int = Field(
+        384,
+        ge=2,
+        le=100_000,
+        description="at every torque and speed; from 368 on they bound the 99th percentile",
+    )
 
     @model_validator(mode="after")
     def _rising(self) -> "LoadMap":
