@@ -38,10 +38,13 @@ def order_spectrum(samples: Array, per_period: int, period: int) -> Array:
         return result
     length = SEGMENT * per_period
     count = len(samples) // length
-    segments = samples[: count * length].reshape(count, length, -1)
+    # Columns apart, so that each transform reads what lies side by side.
+    segments = samples[: count * length].reshape(count, length, -1).transpose(0, 2, 1).copy()
     window = np.hanning(length + 1)[:length]
-    centred = (segments - segments.mean(axis=1, keepdims=True)) * window[:, None]
-    lines = 2.0 * np.abs(np.fft.rfft(centred, axis=1)[:, : ORDERS.size]) / window.sum()
-    result[:] = np.sqrt((lines**2).sum(axis=0) / max(count, 1)).T
+    segments -= segments.mean(axis=2, keepdims=True)
+    segments *= window
+    found = np.fft.rfft(segments, axis=2)[:, :, : ORDERS.size]
+    power = (found.real**2 + found.imag**2).sum(axis=0) / max(count, 1)
+    result[:] = 2.0 * np.sqrt(power) / window.sum()
     result[:, 0] = np.abs(samples.mean(axis=0))
     return result
