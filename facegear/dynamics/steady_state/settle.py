@@ -26,6 +26,8 @@ KICK = 0.01
 MOST_KICKS = 2
 LONGER = 4
 """A run that comes nearer and nearer is watched for so many times as long."""
+CREEP = 0.01
+"""Where Newton's method finds no orbit the change over a period must fall to this share of the goal."""
 NOISE, DRAWN = 50.0, 0.95
 """Steps chosen anew in each period may move a run by NOISE times the tolerance; an orbit whose multipliers
 are below DRAWN holds it there. They also push a body afloat, whose multiplier is one, on and on."""
@@ -122,7 +124,7 @@ class Run:
             near = closing(self.packed, self.ends, self.settings)
             result = self._refined(near, last) if self.settings.refine else None
             if result is None and len(self.ends):
-                result = self._by_itself(near)
+                result = self._by_itself(near, last)
             if result is not None:
                 return result
             if not len(self.ends):  # after a kick the run begins anew
@@ -190,8 +192,11 @@ class Run:
             matrices,
         )
 
-    def _by_itself(self, near: Closing) -> Settled | None:
-        """The motion that the run has closed on without help, with its multipliers if they are wanted."""
+    def _by_itself(self, near: Closing, last: bool) -> Settled | None:
+        """The motion that the run has closed on without help, with its multipliers if they are wanted.
+
+        What only creeps by is told by Newton's method, which finds no orbit there: then the run goes on.
+        """
         period = closed(self.packed, self.ends, near, self.settings)
         if not period:
             return None
@@ -204,6 +209,9 @@ class Run:
             orbit = None
         if orbit is None and period > 1 and (within := self._in_noise(near)):
             return within
+        creeps = near.residual > CREEP * self.settings.periodic_residual
+        if self.settings.refine and orbit is None and creeps and not last:
+            return None
         return self._result(period if orbit is None else orbit.period, near.residual, orbit)
 
     def _in_noise(self, near: Closing) -> Settled | None:
