@@ -34,6 +34,7 @@ HALVED = {
 """Element sizes that are halved for the finer mesh."""
 OF_LEVEL = {"coarse": ("all",), "medium": ("profile and depth", "width", "thickness")}
 """Halvings that fit into memory; those of medium meshes one at a time."""
+REPEATS = 3
 POSITIONS, LOADS, NODES = 32, 1000, 80
 """Of the timed root stress; nodes of each of three pairs that carry load."""
 
@@ -69,11 +70,16 @@ def stress_convergence(
 def stress_costs(
     design: PairDesign, body: str, sizes: MeshSizes, material: Material, plan: ContactPlan
 ) -> dict[str, float | str]:
-    """CPU seconds of the compliance of one body without and with gauges, and of many loads' root stress."""
+    """CPU seconds of the compliance of one body without and with gauges, and of many loads' root stress.
+
+    Both in turn, the least of REPEATS each: what other programs do to memory counts in CPU seconds as well.
+    """
     plain, reading = (replace(plan, root_stress=asked) for asked in (False, True))
-    gear_flank(design, body, sizes, material, plain)  # libraries are loaded, memory is warm
-    without, _ = _cpu(lambda: gear_flank(design, body, sizes, material, plain))
-    with_gauges, flank = _cpu(lambda: gear_flank(design, body, sizes, material, reading))
+    without = with_gauges = np.inf
+    for _ in range(REPEATS):
+        without = min(without, _cpu(lambda: gear_flank(design, body, sizes, material, plain))[0])
+        seconds, flank = _cpu(lambda: gear_flank(design, body, sizes, material, reading))
+        with_gauges = min(with_gauges, seconds)
     product, teeth = _many_loads(flank, body)
     return {
         "body": body,
