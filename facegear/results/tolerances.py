@@ -14,13 +14,20 @@ KINDS = ("distributions", "importance", "scatter")
 
 
 class LoadMapResult(Result):
-    """Percentiles over torque and speed."""
+    """Percentiles, and shares of machines that open or reverse, over torque and speed."""
 
-    FILES: ClassVar = {"load_map": Kept("tolerances/load_map.csv", ("torque_factor", "speed_rpm", "value"))}
+    FILES: ClassVar = {
+        "load_map": Kept("tolerances/load_map.csv", ("torque_factor", "speed_rpm", "value")),
+        "load_shares": Kept("tolerances/load_shares.csv", ("torque_factor", "speed_rpm", "share")),
+    }
 
     def table(self) -> pd.DataFrame:
         """One row a torque, speed, quantity and percentile: value, and the interval that holds it."""
         return self.content["load_map"].copy()
+
+    def shares(self) -> pd.DataFrame:
+        """One row a torque, speed and mishap: share of the machines that it meets, with its interval."""
+        return self.content["load_shares"].copy()
 
     def plot(self) -> "Figure":
         """K_gamma of the worst path over torque and speed."""

@@ -54,6 +54,7 @@ rule tolerances_map:
         flanks=flanks("tolerances_map"),
     output:
         load_map="results/{case}/tolerances/load_map.csv",
+        load_shares="results/{case}/tolerances/load_shares.csv",
         manifest="results/{case}/tolerances/load_map.provenance.json",
     resources:
         runtime=240,

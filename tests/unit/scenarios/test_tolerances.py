@@ -163,7 +163,10 @@ def test_the_loosest_tolerances_of_a_linear_machine_are_those_of_the_closed_form
 
 def test_a_map_of_loads_holds_the_machine_of_each_torque_and_the_closed_form():
     gearbox = machine([RIGHT], hunting_cycles=1)
-    table = gearbox.load_map([0.5, 1.0, 2.0], samples=16).table()
+    found = gearbox.load_map([0.01, 0.5, 1.0, 2.0], samples=16)
+    opened = found.shares().query("what.str.contains('opens')").set_index("torque_factor")["share"]
+    assert opened[0.01] == 1.0 and opened[2.0] == 0.0, "hardly loaded, the play opens a mesh"
+    table = found.table()
     name = "k_gamma right input/upper"
     own = table[table["quantity"] == name].set_index(["torque_factor", "percentile"])["value"]
     torque = "transmission.torque.per_input_n_m"
