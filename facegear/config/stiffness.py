@@ -56,6 +56,9 @@ class MeshStiffness(Section):
         default="average", description="F / deflection, or its slope dF / d deflection at that load"
     )
     harmonics_kept: int = Field(default=8, ge=0, le=HIGHEST_ORDER)
+    variation: float = Field(
+        default=1.0, ge=0, le=100, description="factor on k(t) about its mean; 1: as computed or given"
+    )
     table: tuple[HarmonicSection, ...] = Field(
         default=(), max_length=HIGHEST_ORDER + 1, description="for source harmonics: orders rising"
     )
@@ -100,7 +103,7 @@ class MeshStiffness(Section):
             if following.order <= one.order:
                 refuse(f"table[{number + 1}].order", following.order, "orders rise, each once")
         _check_mean(self.mean_n_per_m, self.table[0])
-        lowest = given_series(self).kept(self.harmonics_kept).minimum
+        lowest = given_series(self).kept(self.harmonics_kept).varied(self.variation).minimum
         if lowest <= 0.0:
             told = "harmonics so small beside the mean that k(t) stays positive"
             refuse("table", f"k(t) falls to {lowest:.4g} N/m", told)
@@ -131,6 +134,7 @@ def stiffness_request(section: MeshStiffness) -> StiffnessRequest:
         torque=section.torque_n_m,
         definition=section.definition,
         kept=section.harmonics_kept,
+        variation=section.variation,
         given=given_series(section),
     )
 

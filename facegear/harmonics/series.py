@@ -75,6 +75,12 @@ class Harmonics:
         """The series times `factor`."""
         return Harmonics(self.a * factor, self.b * factor)
 
+    def varied(self, factor: float) -> "Harmonics":
+        """The series with the same mean and `factor` times its variation about it."""
+        b = self.b * factor
+        b[0] = self.b[0]
+        return Harmonics(self.a * factor, b)
+
 
 def stacked(series: Sequence[Harmonics]) -> NDArray[np.float64]:
     """Fourier series as rows (series, 2, harmonics + 1), sine part first, padded to the longest."""

@@ -34,7 +34,7 @@ def inputs_in_words(values: Mapping[str, Any]) -> list[str]:
         else f"e(t): {error['amplitude_um']:g} um read as its {error['meaning']}, cosine, "
         f"phase {error['phase_deg']:g} deg, {phasing}" + (f", {more}" if more else ""),
         f"phases of the lower meshes {transmission['phase_convention']}",
-        f"mesh stiffness source {stiffness['source']}" + mean,
+        f"mesh stiffness source {stiffness['source']}" + mean + _variation(stiffness["variation"]),
         _kinematics(transmission),
         *teeth,
     ]
@@ -45,6 +45,10 @@ def _phasing(phasing: str | Mapping[str, float]) -> str:
         return {"in_step": "in step at all meshes", "mesh": "shifted like the mesh stiffness"}[phasing]
     lags = ", ".join(f"{mesh} {lag:g}" for mesh, lag in phasing.items())
     return f"in step but for lags in mesh periods: {lags}"
+
+
+def _variation(factor: float) -> str:
+    return "" if factor == 1.0 else f", {factor:.3g} times its variation"
 
 
 def _kinematics(transmission: Mapping[str, Any]) -> str:

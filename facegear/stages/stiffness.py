@@ -14,7 +14,7 @@ from facegear.stiffness.source import stiffness_from_contact, stiffness_given
 def stiffness(mesh_stiffness: Mapping[str, Any], ltca: pd.DataFrame | None = None) -> Outcome:
     """`tvms`, `harmonics` and `spectrum` (tables), from the contact table or from the config's harmonics.
 
-    Raises ConfigError for a load outside those solved.
+    Raises ConfigError for a load outside those solved and for a k(t) that is not positive throughout.
     """
     request = stiffness_request(parse(MeshStiffness, mesh_stiffness))
     found = stiffness_given(request) if ltca is None else stiffness_from_contact(ltca, request)

@@ -10,7 +10,8 @@ Definition = Literal["average", "local"]
 
 @dataclass(frozen=True, eq=False)
 class StiffnessRequest:
-    """Source of k(t); `mean` N/m where it is given, `torque` N m on the pinion per mesh, orders `kept`.
+    """Source of k(t); `mean` N/m where it is given, `torque` N m on the pinion per mesh, orders `kept`,
+    factor `variation` on k(t) about its mean.
 
     `given` is the series of the config; zero for the other sources.
     """
@@ -20,4 +21,5 @@ class StiffnessRequest:
     torque: float | None
     definition: Definition
     kept: int
+    variation: float
     given: Harmonics

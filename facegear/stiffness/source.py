@@ -4,8 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
+from facegear.errors import ConfigError
 from facegear.harmonics.fit import LEVELS, fit_harmonics
+from facegear.harmonics.series import Harmonics
 from facegear.stiffness.curve import load_table
 from facegear.stiffness.request import StiffnessRequest
 from facegear.stiffness.tables import curve_table, harmonics_table, with_unloaded_error
@@ -29,7 +32,7 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
     """Curve at the requested load and its series.
 
     Source fem_scaled multiplies the curve so that its mean is the requested one. Raises ConfigError for a
-    load outside those solved.
+    load outside those solved and for a variation with which k(t) is not positive throughout.
     """
     assert request.torque is not None
     table = load_table(ltca)
@@ -39,8 +42,11 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
     if request.source == "fem_scaled":
         assert request.mean is not None
         scale = request.mean / fit.series.mean
-    whole = fit.series.scaled(scale)
+    whole = fit.series.scaled(scale).varied(request.variation)
     series = whole.kept(request.kept)
+    if series.minimum <= 0.0:
+        allowed = f"at most {_largest_variation(fit.series.kept(request.kept)):.4g}, so that k(t) stays positive"
+        raise ConfigError("mesh_stiffness.variation", request.variation, allowed)
     reach = ", ".join(f"{100 * level:g} %: {fit.orders_within(level)}" for level in LEVELS)
     error, cut = unloaded_series(ltca, series.order)
     between = table.interpolation_error(request.torque, request.definition)
@@ -51,16 +57,16 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
         f"{loads}unloaded transmission error {1e6 * peak_to_peak(error):.3g} um peak to peak"
     )
     return Stiffness(
-        curve_table(table.positions, scale * samples, series),
-        with_unloaded_error(harmonics_table(series, fit, scale), error, cut),
-        harmonics_table(whole, fit, scale),
+        curve_table(table.positions, _varied(scale * samples, request.variation), series),
+        with_unloaded_error(harmonics_table(series, fit, scale * request.variation), error, cut),
+        harmonics_table(whole, fit, scale * request.variation),
         summary,
     )
 
 
 def stiffness_given(request: StiffnessRequest) -> Stiffness:
     """Curve of the series that the config gives."""
-    whole = request.given
+    whole = request.given.varied(request.variation)
     series = whole.kept(request.kept)
     positions = np.arange(DRAWN) / DRAWN
     return Stiffness(
@@ -69,3 +75,12 @@ def stiffness_given(request: StiffnessRequest) -> Stiffness:
         harmonics_table(whole, None),
         f"given harmonics, {series.order} kept, mean {series.mean:.4g} N/m",
     )
+
+
+def _varied(samples: NDArray[np.float64], factor: float) -> NDArray[np.float64]:
+    return samples + (factor - 1.0) * (samples - samples.mean())
+
+
+def _largest_variation(series: Harmonics) -> float:
+    """Factor on the variation at which the smallest value is zero."""
+    return series.mean / (series.mean - series.minimum)

@@ -18,13 +18,11 @@ from facegear.scenarios.chunks import identity
 with stage(snakemake) as run:
     wildcards, params = snakemake.wildcards, snakemake.params
     ltca = tables.read(snakemake.input.ltca, LTCA_COLUMNS)
-    loads = ltca["torque_n_m"].min(), ltca["torque_n_m"].max()
     random = wildcards.design == "random"
     claims = [claim for claim in read_claims(snakemake.input.claims).claims if claim.dynamic]
     claims = [claim for claim in claims if random or not reads_sweep(claim.criterion)]
     judge = ClaimJudge(params.case, ltca, claims, QUICK)
-    section = parse(Identify, params.identify).random
-    drawn = plausible_inputs(section, wildcards.design, loads, len(params.case["transmission"]["face_gears"]))
+    drawn = plausible_inputs(parse(Identify, params.identify), wildcards.design, params.case, ltca)
     numbers = range(int(wildcards.first), int(wildcards.last) + 1)
     rows = drawn.rows(numbers) if random else drawn.rows_by_pattern(numbers)
     partial = Path(snakemake.output.samples).with_suffix(".partial")

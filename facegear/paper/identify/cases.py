@@ -3,10 +3,11 @@
 import hashlib
 import json
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 from facegear.config.base import parse
-from facegear.config.cases import expand_cases, set_key
+from facegear.config.cases import expand_cases, folder_name, set_key
 from facegear.config.model import Config
 
 DECISIVE = (
@@ -17,16 +18,26 @@ DECISIVE = (
 
 Cases = tuple[dict[str, Any], dict[tuple[str, str], dict[str, Any]]]
 """Plain config values of the machine, and of each (study, point)."""
+PointChanges = Mapping[tuple[str, str], Mapping[str, Any]]
+"""Dotted keys and values of some (study, point)."""
 
 
-def changed_cases(values: Mapping[str, Any], changes: Mapping[str, Any]) -> Cases:
-    """Cases of a config with dotted keys set to new values; a study's own keys come after them.
+def changed_cases(
+    values: Mapping[str, Any],
+    changes: Mapping[str, Any],
+    points: PointChanges = MappingProxyType({}),
+) -> Cases:
+    """Cases of a config with dotted keys set to new values; a study's own keys come after them, and `points`
+    puts other values in their place.
 
     Raises ConfigErrors for a value that the config refuses.
     """
     changed = json.loads(json.dumps({**values, "reproduction": None}))
     for key, value in changes.items():
         set_key(changed, key, value)
+    for study in changed["studies"]:
+        for point in (point for axis in study["axes"] for point in axis["points"]):
+            point["set"].update(points.get((study["name"], folder_name(point["label"])), {}))
     cases = expand_cases(changed)
     base = cases.pop(changed["case"])
     return base, {_study_and_point(case): found for case, found in cases.items()}

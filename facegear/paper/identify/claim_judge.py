@@ -47,6 +47,9 @@ QUICK: Mapping[str, Any] = MappingProxyType(
 """Config keys of a quick run, four CPU seconds instead of fifty."""
 
 
+VALUE, SPREAD = "value", "spread"
+
+
 @dataclass(frozen=True, eq=False)
 class ClaimJudge:
     """Judges dynamic claims with other inputs of a config; `ltca` is its contact table, `settings` are config
@@ -73,7 +76,18 @@ class ClaimJudge:
         swept = any(reads_sweep(claim.criterion) for claim in self.claims)
         return outcome_table(self.claims, set_tables(perturbed(base, run), moved, self.ltca, swept))
 
-    def held(self, row: Mapping[str, Any]) -> dict[str, float]:
-        """1 for each claim that holds with the inputs of the row, 0 for each that does not."""
-        found = self.outcomes(row)
-        return dict(zip(found["id"], found["holds"].astype(float), strict=True))
+    @property
+    def columns(self) -> list[str]:
+        """Columns of `found`."""
+        numbers = [claim.id for claim in self.claims if claim.paper is not None]
+        return [*self.names, *(f"{name} {what}" for name in numbers for what in (VALUE, SPREAD))]
+
+    def found(self, row: Mapping[str, Any]) -> dict[str, float]:
+        """For the inputs of a row: 1 for each claim that holds and 0 for each that does not, by its id; of a
+        number also its value, and half its range over windows of the motion.
+        """
+        outcomes = self.outcomes(row).set_index("id")
+        found = dict(outcomes["holds"].astype(float))
+        for what in (VALUE, SPREAD):
+            found |= {f"{name} {what}": float(value) for name, value in outcomes[what].items()}
+        return found

@@ -1,18 +1,14 @@
-"""The inputs that the paper leaves out, as points of a search space."""
+"""The inputs that the paper leaves out, as points of the unit cube."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.machine import Machine, balanced_torques, pinion_torques
+from facegear.paper.identify.patterns import Phasing
 from facegear.transmission.phases import PhaseConvention
-
-StiffnessAt = Callable[[float], Harmonics]
-"""Mesh stiffness series of the reference mesh from the torque on a pinion for one mesh, N m."""
 
 
 class Meaning(StrEnum):
@@ -30,56 +26,77 @@ class Waveform(StrEnum):
     ARCS = "arcs"
 
 
-class StiffnessLoad(StrEnum):
-    """Load on a mesh at which k(t) has its shape: the operating one (an equal share of an input pinion's
-    torque), or the one at which the mean is the paper's.
-    """
+class OpenFlanks(StrEnum):
+    """Whether the mesh damping acts on flanks that are apart."""
 
-    OPERATING = "operating"
-    MEAN = "mean"
+    ALWAYS = "always"
+    CONTACT_ONLY = "contact_only"
 
 
-@dataclass(frozen=True)
-class Branch:
-    """The choices that are not numbers."""
-
-    meaning: Meaning
-    in_step: bool
-    convention: PhaseConvention
-    waveform: Waveform
-    load: StiffnessLoad
-
-    @property
-    def name(self) -> str:
-        """Readable and usable as a file name."""
-        phasing = "in_step" if self.in_step else "mesh"
-        parts = (self.meaning, phasing, self.convention, self.waveform, self.load)
-        return "-".join(str(part) for part in parts)
-
-
-@dataclass(frozen=True)
-class Inputs:
-    """One point: torque per input pinion (N m), share leaving at the tail, phase of e(t) in mesh periods."""
-
-    branch: Branch
-    torque: float
-    tail_share: float
-    error_phase: float
+NUMBERS = ("per_input_n_m", "tail_share", "error_phase_deg", "stiffness_variation")
+BEARINGS = ("mid_bearing_n_per_m", "stiff_bearing_n_per_m")
+CHOICES: Mapping[str, type[StrEnum]] = {
+    "meaning": Meaning,
+    "phase_convention": PhaseConvention,
+    "waveform": Waveform,
+    "open_flanks": OpenFlanks,
+}
+COORDINATES = (*NUMBERS, *BEARINGS, *CHOICES)
+"""What each coordinate of the unit cube decides."""
+INPUT_COLUMNS = ("pattern", *COORDINATES)
+"""Columns of a table of inputs; with the pattern's phasing and the load of k(t) they are a row of inputs."""
 
 
 @dataclass(frozen=True)
 class Space:
-    """Ranges of the three numbers; the torque is searched on a logarithmic scale."""
+    """What plausible inputs are: ranges of the numbers (N m, share of the power, factor, N/m).
+
+    `loads`: torques on a mesh (N m) between which k(t) is known; beyond them it keeps the shape at the end.
+    `gears`: over how many meshes the torque of an input is shared.
+    """
 
     torque: tuple[float, float]
     tail_share: tuple[float, float]
+    variation: tuple[float, float]
+    bearings: tuple[float, float]
+    loads: tuple[float, float]
+    gears: int
 
-    def inputs(self, branch: Branch, unit: NDArray[np.float64]) -> Inputs:
-        """The point at `unit`, shape (3,), each in [0, 1]; the last one is cyclic."""
-        low, high = np.log(self.torque)
-        torque = float(np.exp(low + unit[0] * (high - low)))
-        tail = self.tail_share[0] + float(unit[1]) * (self.tail_share[1] - self.tail_share[0])
-        return Inputs(branch, torque, tail, float(unit[2] % 1.0))
+    def row(self, unit: Sequence[float], pattern: str, phasing: Phasing) -> dict[str, Any]:
+        """Inputs at a point of the unit cube, one coordinate for each of COORDINATES.
+
+        Torque and bearings are spread on a logarithmic scale, the phase of e(t) over its whole period and
+        each choice with equal chances. Of the two bearings the softer is called mid.
+        """
+        at = dict(zip(COORDINATES, map(float, unit), strict=True))
+        torque = _logarithmic(at["per_input_n_m"], self.torque)
+        bearings = sorted(_logarithmic(at[name], self.bearings) for name in BEARINGS)
+        return {
+            "pattern": pattern,
+            "phasing": phasing,
+            "per_input_n_m": torque,
+            "tail_share": _linear(at["tail_share"], self.tail_share),
+            "error_phase_deg": _linear(at["error_phase_deg"] % 1.0, (0.0, 360.0)),
+            "stiffness_variation": _linear(at["stiffness_variation"], self.variation),
+            **dict(zip(BEARINGS, bearings, strict=True)),
+            **{name: picked(list(kind), at[name]) for name, kind in CHOICES.items()},
+            "stiffness_torque_n_m": float(np.clip(torque / self.gears, *self.loads)),
+        }
+
+
+def picked(choices: Sequence[str], unit: float) -> str:
+    """The choice in whose part of [0, 1] the number lies; all parts are equal."""
+    return str(choices[min(int(unit * len(choices)), len(choices) - 1)])
+
+
+def _linear(unit: float, limits: tuple[float, float]) -> float:
+    low, high = limits
+    return low + unit * (high - low)
+
+
+def _logarithmic(unit: float, limits: tuple[float, float]) -> float:
+    low, high = np.log(limits)
+    return float(np.exp(low + unit * (high - low)))
 
 
 def _unit_range(*weights: tuple[int, float]) -> tuple[tuple[int, float], ...]:
@@ -95,36 +112,3 @@ WAVEFORM_TERMS: Mapping[Waveform, tuple[tuple[int, float], ...]] = {
     Waveform.ARCS: _unit_range(*((j, -((-1.0) ** j) * j**-2.0) for j in (1, 2, 3, 4, 5, 6))),
 }
 """Cosine series (order, weight) of half range one; triangle and arcs are cut below 3 % of the first term."""
-
-
-def error_series(size: float, branch: Branch, phase: float) -> Harmonics:
-    """e(t) of the reference mesh; `size` (m) is the paper's number, `phase` the lead in mesh periods."""
-    half_range = size if branch.meaning is Meaning.AMPLITUDE else 0.5 * size
-    terms = WAVEFORM_TERMS[branch.waveform]
-    a, b = np.zeros(terms[-1][0] + 1), np.zeros(terms[-1][0] + 1)
-    for order, weight in terms:
-        b[order] = half_range * weight
-    return Harmonics(a, b).shifted(-phase)
-
-
-def stiffness_torque(base: Machine, inputs: Inputs, load_for_mean: float) -> float:
-    """Torque on the pinion of one mesh at which k(t) is taken, N m."""
-    if inputs.branch.load is StiffnessLoad.MEAN:
-        return load_for_mean
-    return inputs.torque / len(base.layout.gears)
-
-
-def machine_with(
-    base: Machine, inputs: Inputs, error_size: float, stiffness: StiffnessAt, load_for_mean: float
-) -> Machine:
-    """The base machine with the undisclosed inputs put in."""
-    layout = base.layout
-    on_pinions = pinion_torques(layout, inputs.torque, inputs.tail_share)
-    return replace(
-        base,
-        torques=balanced_torques(layout, on_pinions),
-        stiffness=stiffness(stiffness_torque(base, inputs, load_for_mean)),
-        error=error_series(error_size, inputs.branch, inputs.error_phase),
-        phase_convention=inputs.branch.convention,
-        error_lags=np.zeros(len(layout.meshes)) if inputs.branch.in_step else None,
-    )

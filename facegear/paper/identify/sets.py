@@ -8,8 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from facegear.paper.identify.cases import Cases, changed_cases
+from facegear.paper.identify.cases import Cases, PointChanges, changed_cases
 from facegear.paper.identify.inputs import WAVEFORM_TERMS, Waveform
+
+BEARING_STUDY, BEARING_KEY = "pinion_bearings", "transmission.pinion.bearing_stiffness_n_per_m"
+"""The study whose two stiffer points the paper does not disclose, and the key that it sets."""
 
 
 def config_changes(row: Mapping[str, Any], error_um: float) -> dict[str, Any]:
@@ -36,8 +39,16 @@ def config_changes(row: Mapping[str, Any], error_um: float) -> dict[str, Any]:
             "phasing": row["phasing"],
             "more_harmonics": more,
         },
+        "transmission.damping.open_flanks": str(row["open_flanks"]),
         "mesh_stiffness.torque_n_m": float(row["stiffness_torque_n_m"]),
+        "mesh_stiffness.variation": float(row["stiffness_variation"]),
     }
+
+
+def point_changes(row: Mapping[str, Any]) -> PointChanges:
+    """Keys that the points of studies set with the inputs of a row: the two stiffer pinion bearings."""
+    stiffness = {point: float(row[f"{point}_bearing_n_per_m"]) for point in ("mid", "stiff")}
+    return {(BEARING_STUDY, point): {BEARING_KEY: {"x": k, "y": k, "z": 0.0}} for point, k in stiffness.items()}
 
 
 def set_cases(
@@ -47,7 +58,9 @@ def set_cases(
 ) -> Cases:
     """Cases of a config with the inputs of a row of a sets file (its own for None) and other keys set."""
     size = values["transmission"]["transmission_error"]["amplitude_um"]
-    return changed_cases(values, {**settings, **({} if row is None else config_changes(row, size))})
+    if row is None:
+        return changed_cases(values, settings)
+    return changed_cases(values, {**settings, **config_changes(row, size)}, point_changes(row))
 
 
 def stored_sets(path: str | Path) -> dict[str, dict[str, str]]:

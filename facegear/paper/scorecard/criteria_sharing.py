@@ -135,12 +135,12 @@ def _study(tables: Tables, study: str) -> pd.DataFrame:
 
 def _value(tables: Tables, kind: str, column: str, study: str, point: Point) -> float:
     frame = tables["sharing"]
-    rows = frame[(frame["study"] == study) & (frame["kind"] == kind)]
-    if point:
-        rows = rows[rows["point"] == _name(point)]
-    if rows.empty:
+    wanted = {"study": study, "kind": kind, **({"point": _name(point)} if point else {})}
+    rows = np.logical_and.reduce([frame[key].to_numpy(object) == value for key, value in wanted.items()])
+    if not rows.any():
         raise KeyError(f"no load-sharing result for study {study!r}, point {point!r}, kind {kind!r}")
-    return float(rows[column].mean())
+    values = frame[column].to_numpy(float)[rows]
+    return float(np.nanmean(values)) if np.isfinite(values).any() else float("nan")
 
 
 def _curve(tables: Tables, study: str, point: Point, kind: str) -> np.ndarray:

@@ -14,7 +14,7 @@ from facegear.paper.scorecard.outcome import Outcome, Tables, describe
 OWN = "config"
 """Name of the config's own inputs among the sets."""
 RUN_COLUMNS = ("set", "id", "runs", "held", "low", "high")
-OUTCOME_COLUMNS = ("id", "value", "shown", "holds", "chance", "windows")
+OUTCOME_COLUMNS = ("id", "value", "shown", "holds", "chance", "windows", "spread")
 
 
 class Verdict(StrEnum):
@@ -27,11 +27,11 @@ class Verdict(StrEnum):
 
 
 def outcome_table(claims: Iterable[Claim], tables: Tables) -> pd.DataFrame:
-    """What the criteria find: columns id, value, shown, holds, chance and windows.
+    """What the criteria find, columns OUTCOME_COLUMNS.
 
     The chance is the probability with which a number picked at random would hold, where the criterion takes
     the nearest of several. `windows` is the range of a number over single cycles and other starts where its
-    ends do not hold alike, and empty otherwise.
+    ends do not hold alike, and empty otherwise; `spread` is half its width.
 
     Raises FacegearError for an unknown criterion or one that finds no result.
     """
@@ -40,7 +40,8 @@ def outcome_table(claims: Iterable[Claim], tables: Tables) -> pd.DataFrame:
         outcome = _evaluate(claim, tables)
         chance = None if claim.tolerance is None else outcome.chance(claim.tolerance)
         found = (outcome.value, outcome.shown, _holds(claim, outcome.value, outcome.holds), chance)
-        rows.append((claim.id, *found, _split(claim, outcome)))
+        low, high = outcome.windows or (0.0, 0.0)
+        rows.append((claim.id, *found, _split(claim, outcome), 0.5 * (high - low)))
     return pd.DataFrame(rows, columns=list(OUTCOME_COLUMNS))
 
 

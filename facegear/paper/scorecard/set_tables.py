@@ -6,9 +6,13 @@ from typing import Any
 
 import pandas as pd
 
+from facegear.config.base import parse
+from facegear.config.dynamics import Accuracy, settings
+from facegear.config.machines import wired_machine
 from facegear.config.needs import stage_needs
+from facegear.dynamics.response_tables import response_table, spectrum_table
+from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.load_sharing.collect import NOMINAL, collected
-from facegear.stages.dynamics_response import dynamics_response
 from facegear.stages.dynamics_sweep import dynamics_sweep
 from facegear.stages.dynamics_sweep_chunk import dynamics_sweep_chunk
 from facegear.stages.load_sharing import load_sharing
@@ -27,14 +31,28 @@ def set_tables(
     two tables are not there.
     """
     harmonics = stiffness(**stage_needs("stiffness", base), ltca=ltca).content["harmonics"]
-    response = dynamics_response(harmonics, **stage_needs("dynamics_response", base))
+    response = _response(harmonics, **stage_needs("dynamics_response", base))
     sharing = _sharing({(NOMINAL, NOMINAL): base, **points}, harmonics)
     return {
-        **response.content,
+        **response,
         **(_sweep(base, harmonics) if swept else {}),
         "sharing": collected({key: one.content["summary"] for key, one in sharing.items()}),
         "curves": collected({key: one.content["curve"] for key, one in sharing.items()}),
     }
+
+
+def _response(
+    harmonics: pd.DataFrame,
+    transmission: Values,
+    teeth: Values,
+    accuracy: Values,
+    speed_rpm: float,
+) -> dict[str, pd.DataFrame]:
+    """The two tables of the response that criteria read; the stage makes more, which take as long again."""
+    model = build_model(wired_machine(transmission, teeth, harmonics))
+    found = simulate(model, speed_rpm, settings(parse(Accuracy, accuracy)))
+    layout = model.machine.layout
+    return {"response": response_table(layout, found), "spectrum": spectrum_table(layout, found)}
 
 
 def _sharing(cases: Mapping[tuple[str, str], Values], harmonics: pd.DataFrame) -> dict[Any, Outcome]:

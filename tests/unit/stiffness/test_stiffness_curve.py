@@ -55,6 +55,19 @@ def test_scaled_source_has_the_mean_asked_for_and_the_shape_computed():
     )
 
 
+@pytest.mark.parametrize("source", ["fem", "fem_scaled"])
+def test_variation_stretches_the_curve_about_its_mean_and_must_leave_it_positive(source):
+    plain, more = (
+        stiffness_from_contact(contact_table(), request(source=source, variation=factor)).curve
+        for factor in (1.0, 2.5)
+    )
+    for column in ("k_n_per_m", "k_series_n_per_m"):
+        assert more[column].mean() == pytest.approx(plain[column].mean(), rel=1e-12)
+        assert np.ptp(more[column]) == pytest.approx(2.5 * np.ptp(plain[column]), rel=1e-12)
+    with pytest.raises(ConfigError, match=r"mesh_stiffness.variation.*at most 10"):
+        stiffness_from_contact(contact_table(), request(source=source, variation=11.0))
+
+
 def test_written_harmonics_are_those_kept():
     result = stiffness_from_contact(contact_table(), request(harmonics_kept=2))
     assert list(result.harmonics["order"]) == [0, 1, 2]
