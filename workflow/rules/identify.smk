@@ -1,45 +1,6 @@
 include: "functions/identify.smk"
 
 
-rule identify_branch:
-    "Search for undisclosed inputs, one branch"
-    input:
-        ltca=shared("contact", "ltca"),
-    output:
-        evaluations="results/{case}/identify/branches/{branch}.csv",
-        manifest="results/{case}/identify/branches/{branch}.provenance.json",
-    wildcard_constraints:
-        branch="[a-z_-]+",
-    resources:
-        runtime=120,
-    params:
-        values=sections("tooth_pair", "transmission", "mesh_stiffness", "dynamics"),
-        identify=IDENTIFY_VALUES,
-    script:
-        "../scripts/identify_branch.py"
-
-
-rule identify_sets:
-    "Separate optima of the search for undisclosed inputs"
-    input:
-        ltca=shared("contact", "ltca"),
-        branches=expand(rules.identify_branch.output.evaluations, branch=BRANCHES, allow_missing=True),
-    output:
-        sets="results/{case}/identify/sets.csv",
-        coefficients="results/{case}/identify/coefficients.csv",
-        sensitivity="results/{case}/identify/sensitivity.csv",
-        svg="results/{case}/figures/identify_landscape.svg",
-        png="results/{case}/figures/identify_landscape.png",
-        manifest="results/{case}/identify/identify.provenance.json",
-    resources:
-        runtime=30,
-    params:
-        values=sections("tooth_pair", "transmission", "mesh_stiffness", "dynamics"),
-        identify=IDENTIFY_VALUES,
-    script:
-        "../scripts/identify_sets.py"
-
-
 rule identify_load_estimates:
     "Load of the paper's mean stiffness for several gear designs"
     input:
