@@ -60,7 +60,7 @@ rule identify:
     input:
         expand(
             f"results/{CASE}/identify/{{name}}.csv",
-            name=["sets", "load_estimates", "random"] if IDENTIFY else [],
+            name=["load_estimates", "random", "region", "runs"] if IDENTIFY else [],
         ),
 
 
@@ -91,5 +91,7 @@ localrules:
     tolerances_map_figure,
     search_figures,
     identify_load_estimates,
-    identify_verdicts,
+    identify_samples,
+    identify_region,
+    identify_all_runs,
     report,

@@ -45,7 +45,9 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
     whole = fit.series.scaled(scale).varied(request.variation)
     series = whole.kept(request.kept)
     if series.minimum <= 0.0:
-        allowed = f"at most {_largest_variation(fit.series.kept(request.kept)):.4g}, so that k(t) stays positive"
+        allowed = (
+            f"at most {_largest_variation(fit.series.kept(request.kept)):.4g}, so that k(t) stays positive"
+        )
         raise ConfigError("mesh_stiffness.variation", request.variation, allowed)
     reach = ", ".join(f"{100 * level:g} %: {fit.orders_within(level)}" for level in LEVELS)
     error, cut = unloaded_series(ltca, series.order)

@@ -25,7 +25,7 @@ rule identify_random_chunk:
         samples="results/{case}/identify/chunks/{design}_{first}_{last}.csv",
         manifest="results/{case}/identify/chunks/{design}_{first}_{last}.provenance.json",
     wildcard_constraints:
-        design="random|structures",
+        design="random|structures|geometric",
         first=r"\d+",
         last=r"\d+",
     resources:
@@ -35,6 +35,91 @@ rule identify_random_chunk:
         identify=IDENTIFY_VALUES,
     script:
         "../scripts/identify_random_chunk.py"
+
+
+rule identify_search:
+    "Search for the most likely inputs under one pattern of e(t)"
+    input:
+        ltca=shared("contact", "ltca"),
+        claims=CLAIMS,
+        random=random_chunks("random"),
+    output:
+        evaluations="results/{case}/identify/search/{pattern}.csv",
+        manifest="results/{case}/identify/search/{pattern}.provenance.json",
+    wildcard_constraints:
+        pattern="[a-z+-]+",
+    resources:
+        runtime=120,
+    params:
+        case=whole_case,
+        identify=IDENTIFY_VALUES,
+    script:
+        "../scripts/identify_search.py"
+
+
+rule identify_likely_part:
+    "Likely inputs judged with a speed sweep"
+    input:
+        ltca=shared("contact", "ltca"),
+        claims=CLAIMS,
+        random=random_chunks("random"),
+        searched=SEARCHES,
+    output:
+        judged="results/{case}/identify/likely/{part}.csv",
+        manifest="results/{case}/identify/likely/{part}.provenance.json",
+    wildcard_constraints:
+        part=r"\d+",
+    resources:
+        runtime=60,
+    params:
+        case=whole_case,
+        identify=IDENTIFY_VALUES,
+    script:
+        "../scripts/identify_likely_part.py"
+
+
+rule identify_samples:
+    "Base rates, patterns of e(t), null and kinematics from random inputs"
+    input:
+        claims=CLAIMS,
+        random=random_chunks("random"),
+        structures=random_chunks("structures"),
+        geometric=random_chunks("geometric"),
+    output:
+        random="results/{case}/identify/random.csv",
+        structures="results/{case}/identify/structures.csv",
+        choices="results/{case}/identify/choices.csv",
+        null="results/{case}/identify/null.csv",
+        kinematics="results/{case}/identify/kinematics.csv",
+        manifest="results/{case}/identify/samples.provenance.json",
+    params:
+        identify=IDENTIFY_VALUES,
+    script:
+        "../scripts/identify_samples.py"
+
+
+rule identify_region:
+    "Region of likely inputs"
+    input:
+        claims=CLAIMS,
+        random=random_chunks("random"),
+        structures=random_chunks("structures"),
+        searched=SEARCHES,
+        judged=LIKELY,
+    output:
+        region="results/{case}/identify/region.csv",
+        shares="results/{case}/identify/claim_shares.csv",
+        counts="results/{case}/identify/held_counts.csv",
+        never_together="results/{case}/identify/never_together.csv",
+        correlations="results/{case}/identify/correlations.csv",
+        svg="results/{case}/figures/identify_region.svg",
+        png="results/{case}/figures/identify_region.png",
+        manifest="results/{case}/identify/region.provenance.json",
+    params:
+        identify=IDENTIFY_VALUES,
+        case=whole_case,
+    script:
+        "../scripts/identify_region.py"
 
 
 rule identify_runs:
@@ -57,17 +142,12 @@ rule identify_runs:
         "../scripts/identify_runs.py"
 
 
-rule identify_verdicts:
-    "Base rates, patterns of e(t) and repeated runs"
+rule identify_all_runs:
+    "Runs of all sets"
     input:
-        claims=CLAIMS,
-        random=random_chunks("random"),
-        structures=random_chunks("structures"),
         runs=expand(rules.identify_runs.output.runs, set=judged_sets(), allow_missing=True),
     output:
-        random="results/{case}/identify/random.csv",
-        structures="results/{case}/identify/structures.csv",
         runs="results/{case}/identify/runs.csv",
-        manifest="results/{case}/identify/verdicts.provenance.json",
+        manifest="results/{case}/identify/runs.provenance.json",
     script:
-        "../scripts/identify_verdicts.py"
+        "../scripts/identify_all_runs.py"

@@ -7,10 +7,8 @@ from facegear.contact.columns import LTCA_COLUMNS
 from facegear.io import tables
 from facegear.paper.config.search import plausible_inputs
 from facegear.paper.config.sections import Identify
-from facegear.paper.identify.claim_judge import QUICK, ClaimJudge
-from facegear.paper.identify.random_verdicts import judged_samples
-from facegear.paper.scorecard.claims import read_claims
-from facegear.paper.scorecard.criteria import reads_sweep
+from facegear.paper.identify.claim_judge import GEOMETRIC
+from facegear.paper.identify.random_verdicts import judged_samples, quick_judge
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
 from facegear.scenarios.chunks import identity
@@ -18,13 +16,12 @@ from facegear.scenarios.chunks import identity
 with stage(snakemake) as run:
     wildcards, params = snakemake.wildcards, snakemake.params
     ltca = tables.read(snakemake.input.ltca, LTCA_COLUMNS)
-    random = wildcards.design == "random"
-    claims = [claim for claim in read_claims(snakemake.input.claims).claims if claim.dynamic]
-    claims = [claim for claim in claims if random or not reads_sweep(claim.criterion)]
-    judge = ClaimJudge(params.case, ltca, claims, QUICK)
+    by_pattern = wildcards.design == "structures"
+    settings = GEOMETRIC if wildcards.design == "geometric" else {}
+    judge = quick_judge(params.case, ltca, snakemake.input.claims, not by_pattern, settings)
     drawn = plausible_inputs(parse(Identify, params.identify), wildcards.design, params.case, ltca)
     numbers = range(int(wildcards.first), int(wildcards.last) + 1)
-    rows = drawn.rows(numbers) if random else drawn.rows_by_pattern(numbers)
+    rows = drawn.rows_by_pattern(numbers) if by_pattern else drawn.rows(numbers)
     partial = Path(snakemake.output.samples).with_suffix(".partial")
     same = identity(params.case, params.identify, ltca.to_csv(), params.code)
     progress = Progress(f"{wildcards.design} inputs {wildcards.first} to {wildcards.last}", len(numbers))

@@ -9,8 +9,10 @@ from facegear.config.studies import Point
 from facegear.config.tolerances import chunk_ranges
 from facegear.paper.identify.patterns import half_turn_patterns
 
-Design = Literal["random", "structures"]
-"""Random inputs with every reading of e(t), or the same random inputs with each pattern of half turns."""
+Design = Literal["random", "structures", "geometric"]
+"""Random inputs with every reading of e(t), the same random inputs with each pattern of half turns, or the
+first with the kinematics that gears have instead of the printed ones.
+"""
 
 
 class Ranges(Section):
@@ -18,7 +20,9 @@ class Ranges(Section):
 
     per_input_n_m: tuple[float, float] = (80.0, 2000.0)
     tail_share: tuple[float, float] = (0.0, 0.45)
-    stiffness_variation: tuple[float, float] = Field((0.5, 2.5), description="factor on that of k(t) computed")
+    stiffness_variation: tuple[float, float] = Field(
+        (0.5, 2.5), description="factor on that of k(t) computed"
+    )
     stiffer_bearings_n_per_m: tuple[float, float] = (1e8, 1e10)
 
     @model_validator(mode="after")
@@ -35,6 +39,7 @@ class RandomInputs(Section):
 
     samples: int = Field(64, ge=1, le=100_000)
     structure_samples: int = Field(4, ge=1, le=10_000, description="with which each pattern is tried")
+    geometric_samples: int = Field(32, ge=1, le=100_000, description="judged with geometric kinematics too")
     chunk_samples: int = Field(16, ge=1, le=10_000, description="judged by one job")
     seed: int = Field(1, ge=0, le=2**31)
 
@@ -45,6 +50,9 @@ class SearchBudget(Section):
     patterns: tuple[str, ...] = Field((), description="meshes half a turn later, joined by +; or none")
     population: int = Field(16, ge=5, le=1000)
     generations: int = Field(12, ge=0, le=10_000)
+    judged: int = Field(200, ge=1, le=100_000, description="most inputs of the region judged with a sweep")
+    parts: int = Field(4, ge=1, le=1000, description="jobs over which these are spread")
+    papers: int = Field(100, ge=1, le=100_000, description="other runs and invented papers of the null")
     seed: int = Field(1, ge=0, le=2**31)
 
     @model_validator(mode="after")
@@ -78,7 +86,9 @@ class Identify(Section):
 
 def design_size(section: RandomInputs, design: Design) -> int:
     """Samples of a design."""
-    return section.samples if design == "random" else section.structure_samples * len(half_turn_patterns())
+    if design == "structures":
+        return section.structure_samples * len(half_turn_patterns())
+    return section.samples if design == "random" else section.geometric_samples
 
 
 def design_chunks(section: RandomInputs, design: Design) -> list[tuple[int, int]]:

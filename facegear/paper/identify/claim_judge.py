@@ -45,6 +45,10 @@ QUICK: Mapping[str, Any] = MappingProxyType(
     }
 )
 """Config keys of a quick run, four CPU seconds instead of fifty."""
+GEOMETRIC: Mapping[str, Any] = MappingProxyType(
+    {"transmission.mesh_kinematics": "geometric", "transmission.face_gear.mesh_radius_mm": None}
+)
+"""Config keys of the kinematics that gears have, for a config that has the printed ones."""
 
 
 VALUE, SPREAD = "value", "spread"

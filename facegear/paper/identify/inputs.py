@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from facegear.paper.identify.patterns import Phasing
 from facegear.transmission.phases import PhaseConvention
 
 
@@ -43,8 +42,8 @@ CHOICES: Mapping[str, type[StrEnum]] = {
 }
 COORDINATES = (*NUMBERS, *BEARINGS, *CHOICES)
 """What each coordinate of the unit cube decides."""
-INPUT_COLUMNS = ("pattern", *COORDINATES)
-"""Columns of a table of inputs; with the pattern's phasing and the load of k(t) they are a row of inputs."""
+INPUT_COLUMNS = ("pattern", *COORDINATES, "stiffness_torque_n_m")
+"""Columns of a table of inputs; the last is the load on a mesh at which k(t) has its shape."""
 
 
 @dataclass(frozen=True)
@@ -62,8 +61,8 @@ class Space:
     loads: tuple[float, float]
     gears: int
 
-    def row(self, unit: Sequence[float], pattern: str, phasing: Phasing) -> dict[str, Any]:
-        """Inputs at a point of the unit cube, one coordinate for each of COORDINATES.
+    def row(self, unit: Sequence[float], pattern: str) -> dict[str, Any]:
+        """Inputs at a point of the unit cube, one coordinate for each of COORDINATES: INPUT_COLUMNS.
 
         Torque and bearings are spread on a logarithmic scale, the phase of e(t) over its whole period and
         each choice with equal chances. Of the two bearings the softer is called mid.
@@ -73,7 +72,6 @@ class Space:
         bearings = sorted(_logarithmic(at[name], self.bearings) for name in BEARINGS)
         return {
             "pattern": pattern,
-            "phasing": phasing,
             "per_input_n_m": torque,
             "tail_share": _linear(at["tail_share"], self.tail_share),
             "error_phase_deg": _linear(at["error_phase_deg"] % 1.0, (0.0, 360.0)),

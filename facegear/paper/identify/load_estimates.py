@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 
 import pandas as pd
+import scipy.optimize
 
-from facegear.paper.identify.stiffness import load_for_mean
 from facegear.stiffness.curve import LoadTable
 from facegear.stiffness.request import Definition
 
@@ -31,3 +31,18 @@ def estimate_table(
             }
         )
     return pd.DataFrame(rows)
+
+
+def load_for_mean(table: LoadTable, mean: float, definition: Definition) -> float | None:
+    """Torque on a pinion for one mesh (N m) at which the mean stiffness is `mean` (N/m).
+
+    None if no load of the table gives it.
+    """
+
+    def excess(torque: float) -> float:
+        return float(table.at(torque, definition).mean()) - mean
+
+    low, high = float(table.torques[0]), float(table.torques[-1])
+    if excess(low) * excess(high) > 0.0:
+        return None
+    return float(scipy.optimize.brentq(excess, low, high, rtol=1e-10))

@@ -23,6 +23,11 @@ later where a pinion drives with its back flank.
 """
 
 
+def phasing_of(pattern: str) -> Phasing:
+    """Value of the config's key for a pattern or a reading by its name. Raises KeyError."""
+    return {**READINGS, **half_turn_patterns()}[pattern]
+
+
 def half_turn_patterns() -> dict[str, Phasing]:
     """The 32 left-right symmetric patterns of half turns over the meshes that differ, by name.
 

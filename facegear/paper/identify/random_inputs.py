@@ -1,11 +1,10 @@
 """Random plausible inputs: the same number gives the same inputs in any chunk."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from facegear.paper.identify.inputs import COORDINATES, Space, picked
-from facegear.paper.identify.patterns import Phasing
 from facegear.scenarios.distributions import Distribution, Shape
 from facegear.scenarios.sampling import Cause, Population, samples
 
@@ -14,27 +13,32 @@ PATTERN = "pattern"
 
 @dataclass(frozen=True)
 class Plausible:
-    """Random points of a space, with a pattern of e(t) picked from `phasings` with equal chances."""
+    """Random points of a space, with one of the `patterns` of e(t) picked with equal chances."""
 
     space: Space
-    phasings: Mapping[str, Phasing]
+    patterns: tuple[str, ...]
     seed: int
 
     def rows(self, numbers: Sequence[int]) -> list[dict[str, Any]]:
-        """Inputs by sample number; `pattern` names the phasing."""
-        return [self._row(number, self.phasings) for number in numbers]
+        """Inputs by sample number."""
+        return [self._row(number, self.patterns) for number in numbers]
 
     def rows_by_pattern(self, numbers: Sequence[int]) -> list[dict[str, Any]]:
         """As `rows`, every pattern in turn with the same other inputs before the next ones are drawn."""
-        patterns = list(self.phasings.items())
-        return [
-            self._row(number // len(patterns), dict([patterns[number % len(patterns)]])) for number in numbers
-        ]
+        count = len(self.patterns)
+        return [self._row(number // count, [self.patterns[number % count]]) for number in numbers]
 
-    def _row(self, number: int, phasings: Mapping[str, Phasing]) -> dict[str, Any]:
-        *unit, last = samples(_population(self.seed), number, 1)[0].tolist()
-        pattern = picked(list(phasings), last)
-        return self.space.row(unit, pattern, phasings[pattern])
+    def unit(self, number: int) -> list[float]:
+        """Point of the unit cube of a sample, one coordinate for each of COORDINATES."""
+        return self._drawn(number)[:-1]
+
+    def _drawn(self, number: int) -> list[float]:
+        drawn: list[float] = samples(_population(self.seed), number, 1)[0].tolist()
+        return drawn
+
+    def _row(self, number: int, patterns: Sequence[str]) -> dict[str, Any]:
+        *unit, last = self._drawn(number)
+        return self.space.row(unit, picked(patterns, last))
 
 
 def _population(seed: int) -> Population:

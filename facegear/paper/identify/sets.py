@@ -10,6 +10,7 @@ import numpy as np
 
 from facegear.paper.identify.cases import Cases, PointChanges, changed_cases
 from facegear.paper.identify.inputs import WAVEFORM_TERMS, Waveform
+from facegear.paper.identify.patterns import phasing_of
 
 BEARING_STUDY, BEARING_KEY = "pinion_bearings", "transmission.pinion.bearing_stiffness_n_per_m"
 """The study whose two stiffer points the paper does not disclose, and the key that it sets."""
@@ -36,7 +37,7 @@ def config_changes(row: Mapping[str, Any], error_um: float) -> dict[str, Any]:
             "amplitude_um": error_um * first[1],
             "meaning": str(row["meaning"]),
             "phase_deg": _wrapped(phase),
-            "phasing": row["phasing"],
+            "phasing": phasing_of(row["pattern"]),
             "more_harmonics": more,
         },
         "transmission.damping.open_flanks": str(row["open_flanks"]),
@@ -48,7 +49,9 @@ def config_changes(row: Mapping[str, Any], error_um: float) -> dict[str, Any]:
 def point_changes(row: Mapping[str, Any]) -> PointChanges:
     """Keys that the points of studies set with the inputs of a row: the two stiffer pinion bearings."""
     stiffness = {point: float(row[f"{point}_bearing_n_per_m"]) for point in ("mid", "stiff")}
-    return {(BEARING_STUDY, point): {BEARING_KEY: {"x": k, "y": k, "z": 0.0}} for point, k in stiffness.items()}
+    return {
+        (BEARING_STUDY, point): {BEARING_KEY: {"x": k, "y": k, "z": 0.0}} for point, k in stiffness.items()
+    }
 
 
 def set_cases(

@@ -1,6 +1,6 @@
 """How often random plausible inputs hold each claim: the level that a verdict has to be seen against."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,12 @@ from facegear.scenarios.statistics import share
 
 CONFIDENCE = 0.95
 TAILS = (0.05, 0.95)
+RESAMPLES = 499
+INPUT_RATE_COLUMNS = (
+    *("input", "value", "samples"),
+    *("claims", "mean", "mean_error", "upper", "upper_error", "most"),
+    *("all_claims", "all_mean"),
+)
 RATE_COLUMNS = ("id", "samples", "held", "share", "low", "high")
 
 
@@ -43,7 +49,7 @@ def base_rates(samples: pd.DataFrame, claims: Iterable[Claim]) -> pd.DataFrame:
 
     `samples` has a column a claim, 1 where it holds; samples that have no result are left out.
     """
-    rows, judged = [], _sound(samples)
+    rows, judged = [], sound(samples)
     for claim in claims:
         held = judged[claim.id].to_numpy(bool)
         found = share(held, CONFIDENCE)
@@ -54,19 +60,44 @@ def base_rates(samples: pd.DataFrame, claims: Iterable[Claim]) -> pd.DataFrame:
 def totals(samples: pd.DataFrame, claims: Sequence[Claim]) -> Totals:
     """Claims held by each sample; repeated numbers count once, and only claims that were judged count."""
     ids = [claim.id for claim in claims if claim.counts and claim.id in samples.columns]
-    return Totals(len(ids), _sound(samples)[ids].sum(axis=1).to_numpy(float))
+    return Totals(len(ids), sound(samples)[ids].sum(axis=1).to_numpy(float))
 
 
-def by_pattern(samples: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:
-    """Distinct claims held under each pattern: samples, mean, upper 5 % and most; the best pattern first."""
+def by_input(samples: pd.DataFrame, claims: Sequence[Claim], name: str) -> pd.DataFrame:
+    """Distinct claims held under each value of an input, fitted ones and all; the best value first.
+
+    Columns input, value, samples; of the fitted claims their number, and mean, upper 5 % and most of those
+    held, mean and upper with their standard errors; of all claims their number and the mean.
+    """
     rows = []
-    for pattern, group in samples.groupby("pattern", sort=False):
-        found = totals(group, claims)
-        row = (pattern, found.held.size, found.claims, found.mean, found.spread[1], found.held.max())
-        rows.append(row)
-    frame = pd.DataFrame(rows, columns=["pattern", "samples", "claims", "mean", "upper", "most"])
+    for value, group in samples.groupby(name, sort=False):
+        fitted, every = totals(group, [claim for claim in claims if claim.fitted]), totals(group, claims)
+        upper, held = fitted.spread[1], fitted.held
+        errors = held.std(ddof=1) / np.sqrt(held.size), upper_error(held)
+        told = (fitted.claims, fitted.mean, errors[0], upper, errors[1], int(held.max()))
+        rows.append((name, value, held.size, *told, every.claims, every.mean))
+    frame = pd.DataFrame(rows, columns=list(INPUT_RATE_COLUMNS))
     return frame.sort_values(["mean", "upper"], ascending=False, kind="stable").reset_index(drop=True)
 
 
-def _sound(samples: pd.DataFrame) -> pd.DataFrame:
+def upper_error(held: NDArray[np.float64]) -> float:
+    """Standard error of the upper 5 %, by resampling."""
+    drawn = np.random.default_rng(0).choice(held, (RESAMPLES, held.size))
+    return float(np.quantile(drawn, TAILS[1], axis=1).std(ddof=1))
+
+
+def shares_of(designs: Mapping[str, pd.DataFrame], claims: Iterable[Claim]) -> pd.DataFrame:
+    """Share of the samples of each design that hold each distinct claim, with its interval; and the claim's
+    id and whether the fit uses it.
+    """
+    judged = [claim for claim in claims if claim.counts and all(claim.id in one for one in designs.values())]
+    told = pd.DataFrame([(claim.id, claim.fitted) for claim in judged], columns=["id", "fitted"])
+    for name, samples in designs.items():
+        rates = base_rates(samples, judged)
+        told = told.assign(**{f"{name}_{what}": rates[what] for what in ("share", "low", "high")})
+    return told
+
+
+def sound(samples: pd.DataFrame) -> pd.DataFrame:
+    """The samples that have a result."""
     return samples[samples["error"].isna() | (samples["error"] == "")]

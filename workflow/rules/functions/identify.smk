@@ -5,6 +5,14 @@ IDENTIFY = REPRODUCTION.identify if REPRODUCTION else None
 IDENTIFY_VALUES = IDENTIFY.model_dump(mode="json") if IDENTIFY else None
 DESIGNS = list(design_points(IDENTIFY))
 CLAIMS = REPRODUCTION.claims if REPRODUCTION else []
+SEARCHES, LIKELY = (
+    (
+        [f"results/{{case}}/identify/search/{name.replace('/', '-')}.csv" for name in IDENTIFY.search.patterns],
+        [f"results/{{case}}/identify/likely/{part}.csv" for part in range(IDENTIFY.search.parts)],
+    )
+    if IDENTIFY
+    else ([], [])
+)
 STORED_SETS = REPRODUCTION.sets if REPRODUCTION and REPRODUCTION.sets else []
 
 

@@ -13,7 +13,7 @@ from facegear.config.load import load_values
 from facegear.config.machines import case_machine
 from facegear.harmonics.series import Harmonics
 from facegear.paper.identify.claim_judge import QUICK, ClaimJudge
-from facegear.paper.identify.inputs import Space
+from facegear.paper.identify.inputs import CHOICES, Space
 from facegear.paper.identify.patterns import READINGS, half_turn_patterns
 from facegear.paper.identify.random_inputs import Plausible
 from facegear.paper.identify.random_verdicts import judged_samples
@@ -23,8 +23,9 @@ from facegear.paper.scorecard.criteria import reads_sweep
 CONFIG = Path(__file__).parents[4] / "config"
 VALUES = load_values([CONFIG / "paper.yaml"], {})
 STIFFNESS = Harmonics(np.zeros(2), np.array([4.1e8, 2e7]))
-DRAWN = Plausible(Space((80.0, 2000.0), (0.0, 0.45)), READINGS, (100.0, 900.0), gears=2, seed=1)
-PATTERNS = Plausible(DRAWN.space, half_turn_patterns(), DRAWN.loads, gears=2, seed=1)
+SPACE = Space((80.0, 2000.0), (0.0, 0.45), (0.5, 2.5), (1e8, 1e10), (100.0, 900.0), gears=2)
+DRAWN = Plausible(SPACE, tuple(READINGS), seed=1)
+PATTERNS = Plausible(SPACE, tuple(half_turn_patterns()), seed=1)
 
 
 @pytest.mark.parametrize("split", [1, 5, 15])
@@ -38,7 +39,7 @@ def test_inputs_fill_their_ranges_and_every_choice_is_drawn():
     torques = [row["per_input_n_m"] for row in rows]
     assert 80.0 <= min(torques) < 100.0 and 1600.0 < max(torques) <= 2000.0
     assert sum(torque < 400.0 for torque in torques) == pytest.approx(32, abs=2)  # logarithmic
-    for name, count in (("pattern", 3), ("meaning", 2), ("phase_convention", 2), ("waveform", 3)):
+    for name, count in (("pattern", 3), *((name, len(kind)) for name, kind in CHOICES.items())):
         drawn = Counter(row[name] for row in rows)
         assert len(drawn) == count and min(drawn.values()) > 64 / count / 2
     assert all(100.0 <= row["stiffness_torque_n_m"] <= 900.0 for row in rows)
@@ -48,7 +49,7 @@ def test_every_pattern_meets_the_same_other_inputs():
     rows = PATTERNS.rows_by_pattern(range(64))
     assert [row["pattern"] for row in rows[:32]] == [row["pattern"] for row in rows[32:]]
     assert len({row["pattern"] for row in rows}) == 32
-    others = [{key: value for key, value in row.items() if key[0] != "p"} for row in rows]
+    others = [{key: value for key, value in row.items() if key != "pattern"} for row in rows]
     assert others[0] == others[31] != others[32] == others[63]
 
 
@@ -88,6 +89,10 @@ def test_random_inputs_are_judged_and_a_chunk_that_was_killed_goes_on(tmp_path):
     first = judged_samples(judge, DRAWN.rows([3]), [3], tmp_path / "partial", "same")
     assert first["error"].tolist() == [""]
     assert set(first[judge.names].to_numpy().ravel()) == {0.0, 1.0}
+    numbers = [claim for claim in claims if claim.paper is not None]
+    for claim in numbers:
+        value = first[f"{claim.id} value"][0]
+        assert bool(first[claim.id][0]) == (abs(value - claim.paper) <= claim.tolerance * (1.0 + 1e-9))
     kept = ClaimJudge({}, pd.DataFrame(), claims)  # cannot judge anything anew
     again = judged_samples(kept, DRAWN.rows([3]), [3], tmp_path / "partial", "same")
     pd.testing.assert_frame_equal(again, first)

@@ -1,0 +1,78 @@
+"""The region of likely inputs: what holds in it, how well each input is known, what never holds together."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from facegear.paper.identify.claim_judge import ClaimJudge
+from facegear.paper.identify.inputs import BEARINGS, INPUT_COLUMNS, NUMBERS
+from facegear.paper.identify.likelihood import Likelihood
+from facegear.paper.identify.random_verdicts import judged_samples
+from facegear.paper.identify.search import LOG_LIKELIHOOD
+from facegear.paper.scorecard.base_rates import sound
+from facegear.paper.scorecard.claims import Claim
+
+LOG_UNITS = 3.0
+"""Inputs within this log-likelihood of the best belong to the region."""
+EXPECTED = 5.0
+"""Pairs of claims are looked at that so many samples would hold together if they were independent."""
+
+
+def candidates(searched: pd.DataFrame, likelihood: Likelihood, most: int) -> pd.DataFrame:
+    """Of inputs judged without a sweep those that may belong to the region: within LOG_UNITS and what claims
+    on sweeps could still add of the best; the most likely, and each input once.
+    """
+    distinct = searched.drop_duplicates(list(INPUT_COLUMNS))
+    return most_likely(distinct, LOG_UNITS + likelihood.most_without(distinct)).head(most)
+
+
+def judged_again(
+    judge: ClaimJudge,
+    likelihood: Likelihood,
+    chosen: pd.DataFrame,
+    partial: str | Path,
+    identity: str,
+    told: Callable[[], None] = lambda: None,
+) -> pd.DataFrame:
+    """Inputs of a table judged anew, by all claims of the judge: as of `judged_samples`, and log_likelihood."""
+    rows = chosen[list(INPUT_COLUMNS)].to_dict("records")
+    found = judged_samples(judge, rows, range(len(rows)), partial, identity, told)
+    return found.assign(**{LOG_LIKELIHOOD: likelihood(found)})
+
+
+def most_likely(found: pd.DataFrame, within: float) -> pd.DataFrame:
+    """Rows whose log-likelihood is at most `within` below the largest, the most likely first."""
+    kept = found[found[LOG_LIKELIHOOD] >= found[LOG_LIKELIHOOD].max() - within]
+    return kept.sort_values(LOG_LIKELIHOOD, ascending=False, kind="stable").reset_index(drop=True)
+
+
+def held_counts(found: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:
+    """Distinct claims that each row holds: columns fitted and held_out, those it was judged by."""
+    columns = {
+        name: found[[one.id for one in claims if one.counts and one.fitted is is_fit and one.id in found]]
+        for name, is_fit in (("fitted", True), ("held_out", False))
+    }
+    return pd.DataFrame({name: held.sum(axis=1).astype(int) for name, held in columns.items()})
+
+
+def never_together(found: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:
+    """Pairs of claims that no row holds together, though EXPECTED rows would if they were independent.
+
+    Columns first, second, rows that hold each, and those expected to hold both; the most expected first.
+    """
+    kept = sound(found)
+    ids = [claim.id for claim in claims if claim.counts and claim.id in kept.columns]
+    held = kept[ids].to_numpy(float)
+    count, together = held.sum(axis=0), held.T @ held
+    expected = np.outer(count, count) / len(kept)
+    pairs = np.argwhere(np.triu((together == 0.0) & (expected >= EXPECTED), k=1))
+    rows = [(ids[i], ids[j], int(count[i]), int(count[j]), expected[i, j]) for i, j in pairs]
+    frame = pd.DataFrame(rows, columns=["first", "second", "first_held", "second_held", "expected"])
+    return frame.sort_values("expected", ascending=False, kind="stable").reset_index(drop=True)
+
+
+def correlations(region: pd.DataFrame) -> pd.DataFrame:
+    """Spearman's correlation of the numbers over the region, (numbers, numbers)."""
+    return region[[*NUMBERS, *BEARINGS]].corr(method="spearman")

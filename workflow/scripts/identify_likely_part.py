@@ -1,0 +1,41 @@
+"""The most likely inputs of all searches judged with a speed sweep, a part of them."""
+
+from pathlib import Path
+
+import pandas as pd
+
+from facegear.config.base import parse
+from facegear.contact.columns import LTCA_COLUMNS
+from facegear.io import tables
+from facegear.paper.config.sections import Identify
+from facegear.paper.identify.likelihood import Likelihood
+from facegear.paper.identify.random_verdicts import quick_judge
+from facegear.paper.identify.region import candidates, judged_again
+from facegear.paper.scorecard.claims import read_claims
+from facegear.progress import Progress
+from facegear.provenance.stage import stage
+from facegear.scenarios.chunks import identity
+
+with stage(snakemake) as run:
+    files, params = snakemake.input, snakemake.params
+    section = parse(Identify, params.identify).search
+    ltca = tables.read(files.ltca, LTCA_COLUMNS)
+    random, searched = (
+        pd.concat([tables.read(path) for path in files[name]], ignore_index=True)
+        for name in ("random", "searched")
+    )
+    likelihood = Likelihood.of(read_claims(files.claims).claims, random)
+    chosen = candidates(searched, likelihood, section.judged).iloc[
+        int(snakemake.wildcards.part) :: section.parts
+    ]
+    judge = quick_judge(params.case, ltca, files.claims, swept=True)
+    partial = Path(snakemake.output.judged).with_suffix(".partial")
+    same = identity(params.case, chosen.to_csv(), ltca.to_csv(), params.code)
+    progress = Progress(f"likely inputs, part {snakemake.wildcards.part}", len(chosen))
+    found = judged_again(judge, likelihood, chosen, partial, same, progress.step)
+    tables.write(snakemake.output.judged, found)
+    partial.unlink()
+    held = found[judge.names].sum(axis=1)
+    run.summary(
+        f"{len(found)} inputs hold {held.mean():.1f} of {len(judge.names)} claims, at most {held.max():.0f}"
+    )

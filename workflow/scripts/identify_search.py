@@ -1,0 +1,39 @@
+"""Search for the most likely inputs under one pattern of e(t)."""
+
+from pathlib import Path
+
+import pandas as pd
+
+from facegear.config.base import parse
+from facegear.contact.columns import LTCA_COLUMNS
+from facegear.io import tables
+from facegear.paper.config.search import plausible_inputs
+from facegear.paper.config.sections import Identify
+from facegear.paper.identify.likelihood import Likelihood
+from facegear.paper.identify.random_verdicts import quick_judge
+from facegear.paper.identify.search import LOG_LIKELIHOOD, Budget, search_pattern
+from facegear.paper.scorecard.claims import read_claims
+from facegear.progress import Progress
+from facegear.provenance.stage import stage
+from facegear.scenarios.chunks import identity
+
+with stage(snakemake) as run:
+    files, params, pattern = snakemake.input, snakemake.params, snakemake.wildcards.pattern.replace("-", "/")
+    section = parse(Identify, params.identify)
+    ltca = tables.read(files.ltca, LTCA_COLUMNS)
+    random = pd.concat([tables.read(path) for path in files.random], ignore_index=True)
+    likelihood = Likelihood.of(read_claims(files.claims).claims, random)
+    judge = quick_judge(params.case, ltca, files.claims, swept=False)
+    drawn = plausible_inputs(section, "structures", params.case, ltca)
+    budget = Budget(section.search.population, section.search.generations, section.search.seed)
+    partial = Path(snakemake.output.evaluations).with_suffix(".partial")
+    same = identity(params.case, params.identify, ltca.to_csv(), likelihood.surprise.tolist(), params.code)
+    progress = Progress(f"search {pattern}", budget.population * (budget.generations + 1))
+    found = search_pattern(judge, likelihood, drawn, pattern, budget, partial, same, progress.step)
+    tables.write(snakemake.output.evaluations, found)
+    partial.unlink()
+    best = found.loc[found[LOG_LIKELIHOOD].idxmax()]
+    run.summary(
+        f"{len(found)} evaluations, log-likelihood {best[LOG_LIKELIHOOD]:.1f} at {best['per_input_n_m']:.0f} N m, "
+        f"tail {best['tail_share']:.2f}, e(t) {best['error_phase_deg']:.0f} deg"
+    )
