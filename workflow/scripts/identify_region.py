@@ -41,7 +41,6 @@ with stage(snakemake) as run:
     save(region_figure(region, correlated, section.ranges), output.svg, output.png)
     best = told.iloc[0]
     run.summary(
-        f"{len(region)} inputs within {LOG_UNITS:g} log units of {best[LOG_LIKELIHOOD]:.1f}; the most likely has "
-        f"{best['pattern']}, {best['per_input_n_m']:.0f} N m, and holds {best['fitted']} fitted and "
-        f"{best['held_out']} held-out claims"
+        f"{len(region)} inputs within {LOG_UNITS:g} log units; the most likely ({best['pattern']}, "
+        f"{best['per_input_n_m']:.0f} N m) holds {best['fitted']} fitted, {best['held_out']} held-out claims"
     )

@@ -30,8 +30,7 @@ with stage(snakemake) as run:
     tables.write(output.kinematics, shares_of({"printed": same, "geometric": geometric}, claims))
     found = totals(random, claims)
     run.summary(
-        f"random inputs hold {found.mean:.1f} of {found.claims} claims on average, {found.spread[0]:.0f} to "
-        f"{found.spread[1]:.0f} in 90 % of {found.held.size}; best pattern {patterns['value'][0]}: fitted "
-        f"{patterns['mean'][0]:.1f} of {patterns['claims'][0]}; the most likely random inputs hold "
-        f"{null.loc[THIS, 'fitted_mean']:.0f} fitted and {null.loc[THIS, 'held_out_mean']:.0f} held-out claims"
+        f"random inputs hold {found.mean:.1f} of {found.claims} claims on average; best pattern "
+        f"{patterns['value'][0]}: {patterns['mean'][0]:.1f} of {patterns['claims'][0]} fitted ones; the most "
+        f"likely {null.loc[THIS, 'fitted_mean']:.0f}, and {null.loc[THIS, 'held_out_mean']:.0f} of the others"
     )

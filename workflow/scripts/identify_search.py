@@ -34,6 +34,6 @@ with stage(snakemake) as run:
     partial.unlink()
     best = found.loc[found[LOG_LIKELIHOOD].idxmax()]
     run.summary(
-        f"{len(found)} evaluations, log-likelihood {best[LOG_LIKELIHOOD]:.1f} at {best['per_input_n_m']:.0f} N m, "
-        f"tail {best['tail_share']:.2f}, e(t) {best['error_phase_deg']:.0f} deg"
+        f"{len(found)} evaluations, log-likelihood {best[LOG_LIKELIHOOD]:.1f} at "
+        f"{best['per_input_n_m']:.0f} N m, tail {best['tail_share']:.2f}, {best['error_phase_deg']:.0f} deg"
     )

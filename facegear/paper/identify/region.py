@@ -36,7 +36,9 @@ def judged_again(
     identity: str,
     told: Callable[[], None] = lambda: None,
 ) -> pd.DataFrame:
-    """Inputs of a table judged anew, by all claims of the judge: as of `judged_samples`, and log_likelihood."""
+    """Inputs of a table judged anew by all claims of the judge: columns of `judged_samples`, and
+    log_likelihood.
+    """
     rows = chosen[list(INPUT_COLUMNS)].to_dict("records")
     found = judged_samples(judge, rows, range(len(rows)), partial, identity, told)
     return found.assign(**{LOG_LIKELIHOOD: likelihood(found)})

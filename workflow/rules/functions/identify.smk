@@ -7,7 +7,10 @@ DESIGNS = list(design_points(IDENTIFY))
 CLAIMS = REPRODUCTION.claims if REPRODUCTION else []
 SEARCHES, LIKELY = (
     (
-        [f"results/{{case}}/identify/search/{name.replace('/', '-')}.csv" for name in IDENTIFY.search.patterns],
+        [
+            f"results/{{case}}/identify/search/{name.replace('/', '-')}.csv"
+            for name in IDENTIFY.search.patterns
+        ],
         [f"results/{{case}}/identify/likely/{part}.csv" for part in range(IDENTIFY.search.parts)],
     )
     if IDENTIFY
