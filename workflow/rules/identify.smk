@@ -122,6 +122,26 @@ rule identify_region:
         "../scripts/identify_region.py"
 
 
+rule identify_sets:
+    "Likely inputs at full accuracy"
+    input:
+        ltca=shared("contact", "ltca"),
+        claims=CLAIMS,
+        random=random_chunks("random"),
+        region=rules.identify_region.output.region,
+    output:
+        confirmed="results/{case}/identify/confirmed.csv",
+        sets="results/{case}/identify/sets.csv",
+        manifest="results/{case}/identify/sets.provenance.json",
+    resources:
+        runtime=60,
+    params:
+        case=whole_case,
+        identify=IDENTIFY_VALUES,
+    script:
+        "../scripts/identify_sets.py"
+
+
 rule identify_runs:
     "Runs of a set that differ by rounding"
     input:

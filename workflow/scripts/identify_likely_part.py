@@ -8,8 +8,9 @@ from facegear.config.base import parse
 from facegear.contact.columns import LTCA_COLUMNS
 from facegear.io import tables
 from facegear.paper.config.sections import Identify
+from facegear.paper.identify.claim_judge import QUICK
 from facegear.paper.identify.likelihood import Likelihood
-from facegear.paper.identify.random_verdicts import quick_judge
+from facegear.paper.identify.random_verdicts import dynamic_judge
 from facegear.paper.identify.region import candidates, judged_again
 from facegear.paper.scorecard.claims import read_claims
 from facegear.progress import Progress
@@ -28,7 +29,7 @@ with stage(snakemake) as run:
     chosen = candidates(searched, likelihood, section.judged).iloc[
         int(snakemake.wildcards.part) :: section.parts
     ]
-    judge = quick_judge(params.case, ltca, files.claims, swept=True)
+    judge = dynamic_judge(params.case, ltca, files.claims, True, QUICK)
     partial = Path(snakemake.output.judged).with_suffix(".partial")
     same = identity(params.case, chosen.to_csv(), ltca.to_csv(), params.code)
     progress = Progress(f"likely inputs, part {snakemake.wildcards.part}", len(chosen))

@@ -7,8 +7,8 @@ from facegear.contact.columns import LTCA_COLUMNS
 from facegear.io import tables
 from facegear.paper.config.search import plausible_inputs
 from facegear.paper.config.sections import Identify
-from facegear.paper.identify.claim_judge import GEOMETRIC
-from facegear.paper.identify.random_verdicts import judged_samples, quick_judge
+from facegear.paper.identify.claim_judge import GEOMETRIC, QUICK
+from facegear.paper.identify.random_verdicts import dynamic_judge, judged_samples
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
 from facegear.scenarios.chunks import identity
@@ -17,8 +17,8 @@ with stage(snakemake) as run:
     wildcards, params = snakemake.wildcards, snakemake.params
     ltca = tables.read(snakemake.input.ltca, LTCA_COLUMNS)
     by_pattern = wildcards.design == "structures"
-    settings = GEOMETRIC if wildcards.design == "geometric" else {}
-    judge = quick_judge(params.case, ltca, snakemake.input.claims, not by_pattern, settings)
+    settings = {**QUICK, **(GEOMETRIC if wildcards.design == "geometric" else {})}
+    judge = dynamic_judge(params.case, ltca, snakemake.input.claims, not by_pattern, settings)
     drawn = plausible_inputs(parse(Identify, params.identify), wildcards.design, params.case, ltca)
     numbers = range(int(wildcards.first), int(wildcards.last) + 1)
     rows = drawn.rows_by_pattern(numbers) if by_pattern else drawn.rows(numbers)

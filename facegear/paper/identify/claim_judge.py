@@ -86,11 +86,11 @@ class ClaimJudge:
         numbers = [claim.id for claim in self.claims if claim.paper is not None]
         return [*self.names, *(f"{name} {what}" for name in numbers for what in (VALUE, SPREAD))]
 
-    def found(self, row: Mapping[str, Any]) -> dict[str, float]:
+    def found(self, row: Mapping[str, Any], run: int = 0) -> dict[str, float]:
         """For the inputs of a row: 1 for each claim that holds and 0 for each that does not, by its id; of a
         number also its value, and half its range over windows of the motion.
         """
-        outcomes = self.outcomes(row).set_index("id")
+        outcomes = self.outcomes(row, run).set_index("id")
         found = dict(outcomes["holds"].astype(float))
         for what in (VALUE, SPREAD):
             found |= {f"{name} {what}": float(value) for name, value in outcomes[what].items()}

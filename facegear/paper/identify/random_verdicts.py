@@ -7,24 +7,24 @@ from typing import Any
 
 import pandas as pd
 
-from facegear.paper.identify.claim_judge import QUICK, ClaimJudge
+from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.inputs import INPUT_COLUMNS
 from facegear.paper.scorecard.claims import read_claims
 from facegear.paper.scorecard.criteria import reads_sweep
 from facegear.scenarios.chunks import SAMPLE, run_chunk
 
 
-def quick_judge(
+def dynamic_judge(
     values: Mapping[str, Any],
     ltca: pd.DataFrame,
     claims: str | Path,
     swept: bool,
     settings: Mapping[str, Any] = MappingProxyType({}),
 ) -> ClaimJudge:
-    """Quick runs of a config judged by the dynamic claims of a file, with or without those on sweeps."""
+    """Judge of a config by the dynamic claims of a file, with or without those on sweeps."""
     dynamic = [claim for claim in read_claims(claims).claims if claim.dynamic]
     kept = [claim for claim in dynamic if swept or not reads_sweep(claim.criterion)]
-    return ClaimJudge(values, ltca, kept, {**QUICK, **settings})
+    return ClaimJudge(values, ltca, kept, settings)
 
 
 def judged_samples(
