@@ -29,7 +29,7 @@ with stage(snakemake) as run:
     chosen = candidates(searched, likelihood, section.judged).iloc[
         int(snakemake.wildcards.part) :: section.parts
     ]
-    judge = dynamic_judge(params.case, ltca, files.claims, True, QUICK)
+    judge = dynamic_judge(params.case, ltca, files.claims, settings=QUICK)
     partial = Path(snakemake.output.judged).with_suffix(".partial")
     same = identity(params.case, chosen.to_csv(), ltca.to_csv(), params.code)
     progress = Progress(f"likely inputs, part {snakemake.wildcards.part}", len(chosen))

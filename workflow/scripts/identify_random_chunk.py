@@ -8,7 +8,7 @@ from facegear.io import tables
 from facegear.paper.config.search import plausible_inputs
 from facegear.paper.config.sections import Identify
 from facegear.paper.identify.claim_judge import GEOMETRIC, QUICK
-from facegear.paper.identify.random_verdicts import dynamic_judge, judged_samples
+from facegear.paper.identify.random_verdicts import dynamic_judge, judged_samples, unswept
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
 from facegear.scenarios.chunks import identity
@@ -18,7 +18,8 @@ with stage(snakemake) as run:
     ltca = tables.read(snakemake.input.ltca, LTCA_COLUMNS)
     by_pattern = wildcards.design == "structures"
     settings = {**QUICK, **(GEOMETRIC if wildcards.design == "geometric" else {})}
-    judge = dynamic_judge(params.case, ltca, snakemake.input.claims, not by_pattern, settings)
+    kept = unswept if by_pattern else lambda claim: True
+    judge = dynamic_judge(params.case, ltca, snakemake.input.claims, kept, settings)
     drawn = plausible_inputs(parse(Identify, params.identify), wildcards.design, params.case, ltca)
     numbers = range(int(wildcards.first), int(wildcards.last) + 1)
     rows = drawn.rows_by_pattern(numbers) if by_pattern else drawn.rows(numbers)

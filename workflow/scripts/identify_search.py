@@ -11,7 +11,7 @@ from facegear.paper.config.search import plausible_inputs
 from facegear.paper.config.sections import Identify
 from facegear.paper.identify.claim_judge import QUICK
 from facegear.paper.identify.likelihood import Likelihood
-from facegear.paper.identify.random_verdicts import dynamic_judge
+from facegear.paper.identify.random_verdicts import dynamic_judge, unswept
 from facegear.paper.identify.search import LOG_LIKELIHOOD, Budget, search_pattern
 from facegear.paper.scorecard.claims import read_claims
 from facegear.progress import Progress
@@ -24,7 +24,9 @@ with stage(snakemake) as run:
     ltca = tables.read(files.ltca, LTCA_COLUMNS)
     random = pd.concat([tables.read(path) for path in files.random], ignore_index=True)
     likelihood = Likelihood.of(read_claims(files.claims).claims, random)
-    judge = dynamic_judge(params.case, ltca, files.claims, False, QUICK)
+    judge = dynamic_judge(
+        params.case, ltca, files.claims, lambda claim: claim.fitted and unswept(claim), QUICK
+    )
     drawn = plausible_inputs(section, "structures", params.case, ltca)
     budget = Budget(section.search.population, section.search.generations, section.search.seed)
     partial = Path(snakemake.output.evaluations).with_suffix(".partial")

@@ -10,7 +10,7 @@ from facegear.io import tables
 from facegear.paper.config.sections import Identify
 from facegear.paper.identify.confirmed import confirmed_inputs, kept_sets
 from facegear.paper.identify.likelihood import Likelihood
-from facegear.paper.identify.random_verdicts import dynamic_judge
+from facegear.paper.identify.random_verdicts import dynamic_judge, unswept
 from facegear.paper.scorecard.claims import read_claims
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
@@ -22,7 +22,7 @@ with stage(snakemake) as run:
     ltca = tables.read(files.ltca, LTCA_COLUMNS)
     random = pd.concat([tables.read(path) for path in files.random], ignore_index=True)
     likelihood = Likelihood.of(read_claims(files.claims).claims, random)
-    judge = dynamic_judge(params.case, ltca, files.claims, swept=False)
+    judge = dynamic_judge(params.case, ltca, files.claims, unswept)
     region = tables.read(files.region).head(section.confirmed)
     partial = Path(output.sets).with_suffix(".partial")
     same = identity(params.case, region.to_csv(), ltca.to_csv(), params.code)

@@ -75,10 +75,16 @@ class ClaimJudge:
 
         Runs above 0 are perturbed by rounding. Raises FacegearError where the inputs have no result.
         """
-        base, points = set_cases(self.values, row, self.settings)
+        base, points = set_cases(self._needed, row, self.settings)
         moved = {key: perturbed(point, run) for key, point in points.items()}
         swept = any(reads_sweep(claim.criterion) for claim in self.claims)
         return outcome_table(self.claims, set_tables(perturbed(base, run), moved, self.ltca, swept))
+
+    @property
+    def _needed(self) -> dict[str, Any]:
+        """The config's values with the studies that the claims are about."""
+        named = {claim.args.get("study") for claim in self.claims}
+        return {**self.values, "studies": [one for one in self.values["studies"] if one["name"] in named]}
 
     @property
     def columns(self) -> list[str]:

@@ -9,7 +9,7 @@ import pandas as pd
 
 from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.inputs import INPUT_COLUMNS
-from facegear.paper.scorecard.claims import read_claims
+from facegear.paper.scorecard.claims import Claim, read_claims
 from facegear.paper.scorecard.criteria import reads_sweep
 from facegear.scenarios.chunks import SAMPLE, run_chunk
 
@@ -18,13 +18,17 @@ def dynamic_judge(
     values: Mapping[str, Any],
     ltca: pd.DataFrame,
     claims: str | Path,
-    swept: bool,
+    kept: Callable[[Claim], bool] = lambda claim: True,
     settings: Mapping[str, Any] = MappingProxyType({}),
 ) -> ClaimJudge:
-    """Judge of a config by the dynamic claims of a file, with or without those on sweeps."""
-    dynamic = [claim for claim in read_claims(claims).claims if claim.dynamic]
-    kept = [claim for claim in dynamic if swept or not reads_sweep(claim.criterion)]
-    return ClaimJudge(values, ltca, kept, settings)
+    """Judge of a config by the dynamic claims of a file, or some of them."""
+    chosen = [claim for claim in read_claims(claims).claims if claim.dynamic and kept(claim)]
+    return ClaimJudge(values, ltca, chosen, settings)
+
+
+def unswept(claim: Claim) -> bool:
+    """Whether a claim needs no speed sweep, which takes ten times as long as all the rest."""
+    return not reads_sweep(claim.criterion)
 
 
 def judged_samples(

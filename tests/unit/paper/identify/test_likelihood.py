@@ -1,0 +1,129 @@
+"""Likelihood of inputs over claims, the search by it, and the null of its counts."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from facegear.paper.identify.claim_judge import ClaimJudge
+from facegear.paper.identify.inputs import COORDINATES, Space
+from facegear.paper.identify.likelihood import Likelihood
+from facegear.paper.identify.null import ANOTHER, INVENTED, THIS, null_counts
+from facegear.paper.identify.patterns import half_turn_patterns
+from facegear.paper.identify.random_inputs import Plausible
+from facegear.paper.identify.region import candidates, most_likely, never_together
+from facegear.paper.identify.search import LOG_LIKELIHOOD, Budget, search_pattern
+from facegear.paper.scorecard.claims import Claim
+
+STATEMENT = Claim(id="leans", where="a", claim="", criterion="lowest_at", fitted=True)
+NUMBER = Claim(id="mean", where="b", claim="", criterion="sharing", paper=1.7, tolerance=0.2, fitted=True)
+NEAREST = Claim(id="jump", where="c", claim="", criterion="jump_speed", paper=5e3, tolerance=9.0, fitted=True)
+HELD_OUT = Claim(id="other", where="c", claim="", criterion="lowest_at")
+CLAIMS = [STATEMENT, NUMBER, NEAREST, HELD_OUT]
+SPACE = Space((100.0, 1000.0), (0.0, 0.4), (0.5, 2.5), (1e8, 1e10), (120.0, 450.0), gears=2)
+
+
+def judged(leans, mean, jump=0.0, other=0.0, spread=0.0, sample=0):
+    return {
+        "sample": sample,
+        "pattern": "none",
+        "error": "",
+        "leans": leans,
+        "jump": jump,
+        "other": other,
+        "mean": float(abs(mean - 1.7) <= 0.2),
+        "mean value": mean,
+        "mean spread": spread,
+    }
+
+
+def table(*rows):
+    return pd.DataFrame([judged(*row) for row in rows])
+
+
+RANDOM = table(*[(float(i == 0), 1.0, float(i < 5)) for i in range(10)])
+LIKELIHOOD = Likelihood.of(CLAIMS, RANDOM)
+
+
+def test_a_rare_statement_counts_more_and_one_never_held_by_chance_is_bounded():
+    gains = LIKELIHOOD(table((1.0, 1.7), (0.0, 1.7))), LIKELIHOOD(table((0.0, 1.7, 1.0), (0.0, 1.7)))
+    assert gains[0][0] - gains[0][1] == pytest.approx(np.log(12 / 2))
+    assert gains[1][0] - gains[1][1] == pytest.approx(np.log(12 / 6))
+    never = Likelihood.of(CLAIMS, RANDOM.assign(leans=0.0))
+    assert never.surprise[0] == pytest.approx(np.log(12))
+
+
+def test_a_number_is_likelier_the_nearer_it_lies_and_one_that_wavers_is_less_sure():
+    found = LIKELIHOOD(table((0.0, 1.7), (0.0, 1.75), (0.0, 2.3), (0.0, float("nan"))))
+    assert (np.diff(found) < 0.0).all()
+    steady, wavering = LIKELIHOOD(
+        pd.DataFrame([judged(0.0, at, spread=s) for at in (1.7, 2.3) for s in (0.0, 0.3)])
+    ).reshape(2, 2)
+    assert steady[0] > steady[1] and wavering[0] < wavering[1]
+
+
+def test_inputs_without_a_result_cannot_be_likely_and_held_out_claims_do_not_count():
+    failed = table((1.0, 1.7)).assign(error="NotConverged")
+    assert LIKELIHOOD(failed)[0] == -np.inf
+    with_it, without = LIKELIHOOD(table((1.0, 1.7, 1.0, 1.0), (1.0, 1.7, 1.0, 0.0)))
+    assert with_it == without
+
+
+def test_candidates_are_those_that_claims_on_sweeps_can_still_bring_into_the_region():
+    found = pd.DataFrame([SPACE.row([value] * len(COORDINATES), "none") for value in (0.2, 0.4, 0.4, 0.6)])
+    found[LOG_LIKELIHOOD] = [0.0, -3.1, -3.1, -4.0]
+    unswept = found.assign(**dict.fromkeys(("leans", "mean"), 0.0))
+    kept = candidates(unswept, LIKELIHOOD, most=10)
+    assert kept[LOG_LIKELIHOOD].tolist() == [0.0, -3.1]  # a jump may add 0.69
+    assert most_likely(found, 3.0)[LOG_LIKELIHOOD].tolist() == [0.0]
+
+
+class Known(ClaimJudge):
+    """A judge whose one number is known without a run: how far inputs are from 400 N m."""
+
+    def found(self, row, run=0):
+        value = 1.7 + abs(np.log(row["per_input_n_m"] / 400.0))
+        return judged(0.0, value)
+
+
+def search(path, budget, judge_type=Known):
+    plausible = Plausible(SPACE, tuple(half_turn_patterns()), seed=1)
+    judge = judge_type({}, pd.DataFrame(), [STATEMENT, NUMBER])
+    return search_pattern(judge, LIKELIHOOD, plausible, "input/lower", budget, path, "same")
+
+
+def test_search_finds_the_likeliest_inputs_and_goes_on_where_it_was_killed(tmp_path):
+    budget = Budget(population=8, generations=15, seed=3)
+    found = search(tmp_path / "partial", budget)
+    assert len(found) == 8 * 16 and set(found["pattern"]) == {"input/lower"}
+    best = found.loc[found[LOG_LIKELIHOOD].idxmax()]
+    first = found.head(8).loc[found.head(8)[LOG_LIKELIHOOD].idxmax()]
+    assert abs(best["mean value"] - 1.7) < 0.3 * abs(first["mean value"] - 1.7)
+    (tmp_path / "half").write_bytes(b"\n".join((tmp_path / "partial").read_bytes().split(b"\n")[:50]) + b"\n")
+    again = search(tmp_path / "half", budget)
+    pd.testing.assert_frame_equal(again, found)
+
+    class Killed(Known):
+        def found(self, row, run=0):
+            raise AssertionError("evaluated again")
+
+    pd.testing.assert_frame_equal(search(tmp_path / "partial", budget, Killed), found)
+
+
+def test_claims_that_exclude_each_other_are_found_and_rare_ones_are_not_blamed():
+    held = pd.DataFrame({"leans": [1.0, 0.0] * 20, "other": [0.0, 1.0] * 20, "jump": [1.0] + 39 * [0.0]})
+    pairs = never_together(held.assign(error=""), CLAIMS)
+    assert pairs[["first", "second"]].to_numpy().tolist() == [["leans", "other"]]
+    assert pairs["expected"][0] == pytest.approx(10.0)
+
+
+def test_another_run_that_plays_the_paper_is_met_where_held_out_claims_follow_from_fitted_ones():
+    """Of 40 inputs the number decides the held-out claim; in invented papers it decides nothing."""
+    rows = []
+    for sample in range(40):
+        value = 1.0 + 0.05 * sample
+        rows.append(judged(float(sample % 2), value, 0.0, float(sample >= 20), sample=sample))
+    counts = null_counts(pd.DataFrame(rows), [STATEMENT, NUMBER, HELD_OUT], papers=30, seed=1)
+    assert counts["paper"].tolist() == [THIS] + 30 * [ANOTHER] + 30 * [INVENTED]
+    held_out = counts.groupby("paper")["held_out"].mean()
+    assert held_out[ANOTHER] > held_out[INVENTED] + 0.15
+    assert counts.groupby("paper")["fitted"].min()[ANOTHER] >= 1
