@@ -42,7 +42,7 @@ rule identify_search:
     input:
         ltca=shared("contact", "ltca"),
         claims=CLAIMS,
-        random=random_chunks("random"),
+        structures=random_chunks("structures"),
     output:
         evaluations="results/{case}/identify/search/{pattern}.csv",
         manifest="results/{case}/identify/search/{pattern}.provenance.json",
@@ -63,6 +63,7 @@ rule identify_likely_part:
         ltca=shared("contact", "ltca"),
         claims=CLAIMS,
         random=random_chunks("random"),
+        structures=random_chunks("structures"),
         searched=SEARCHES,
     output:
         judged="results/{case}/identify/likely/{part}.csv",
@@ -128,6 +129,7 @@ rule identify_sets:
         ltca=shared("contact", "ltca"),
         claims=CLAIMS,
         random=random_chunks("random"),
+        structures=random_chunks("structures"),
         region=rules.identify_region.output.region,
     output:
         confirmed="results/{case}/identify/confirmed.csv",

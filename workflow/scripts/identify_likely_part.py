@@ -22,8 +22,8 @@ with stage(snakemake) as run:
     section = parse(Identify, params.identify).search
     ltca = tables.read(files.ltca, LTCA_COLUMNS)
     random, searched = (
-        pd.concat([tables.read(path) for path in files[name]], ignore_index=True)
-        for name in ("random", "searched")
+        pd.concat([tables.read(path) for path in paths], ignore_index=True)
+        for paths in ([*files.structures, *files.random], files.searched)
     )
     likelihood = Likelihood.of(read_claims(files.claims).claims, random)
     chosen = candidates(searched, likelihood, section.judged).iloc[

@@ -22,7 +22,7 @@ with stage(snakemake) as run:
     files, params, pattern = snakemake.input, snakemake.params, snakemake.wildcards.pattern.replace("-", "/")
     section = parse(Identify, params.identify)
     ltca = tables.read(files.ltca, LTCA_COLUMNS)
-    random = pd.concat([tables.read(path) for path in files.random], ignore_index=True)
+    random = pd.concat([tables.read(path) for path in files.structures], ignore_index=True)
     likelihood = Likelihood.of(read_claims(files.claims).claims, random)
     judge = dynamic_judge(
         params.case, ltca, files.claims, lambda claim: claim.fitted and unswept(claim), QUICK

@@ -20,7 +20,7 @@ with stage(snakemake) as run:
     files, output, params = snakemake.input, snakemake.output, snakemake.params
     section = parse(Identify, params.identify).search
     ltca = tables.read(files.ltca, LTCA_COLUMNS)
-    random = pd.concat([tables.read(path) for path in files.random], ignore_index=True)
+    random = pd.concat([tables.read(path) for path in [*files.structures, *files.random]], ignore_index=True)
     likelihood = Likelihood.of(read_claims(files.claims).claims, random)
     judge = dynamic_judge(params.case, ltca, files.claims, unswept)
     region = tables.read(files.region).head(section.confirmed)

@@ -35,13 +35,15 @@ class Likelihood:
 
     @classmethod
     def of(cls, claims: Sequence[Claim], random: pd.DataFrame) -> "Likelihood":
-        """Over the fitted ones of the claims, with base rates from random inputs that judged all of them.
+        """Over the fitted ones of the claims that random inputs were judged by, with their base rates.
 
-        A rate is that of Laplace, (held + 1) / (samples + 2), so that none is zero.
+        A rate is that of Laplace, (held + 1) / (samples + 2), so that none is zero; samples that were not
+        judged by a claim hold NaN.
         """
-        kept = tuple(claim for claim in claims if claim.fitted and claim.counts)
+        kept = tuple(one for one in claims if one.fitted and one.counts and one.id in random.columns)
         held = sound(random)[[claim.id for claim in kept]].to_numpy(float)
-        return cls(kept, -np.log((held.sum(axis=0) + 1.0) / (len(held) + 2.0)))
+        rates = (np.nansum(held, axis=0) + 1.0) / (np.isfinite(held).sum(axis=0) + 2.0)
+        return cls(kept, -np.log(rates))
 
     def __call__(self, found: pd.DataFrame) -> Array:
         """Log-likelihood of each row of judged inputs, shape (rows,); minus infinity without a result.
