@@ -99,5 +99,5 @@ class ClaimJudge:
         outcomes = self.outcomes(row, run).set_index("id")
         found = dict(outcomes["holds"].astype(float))
         for what in (VALUE, SPREAD):
-            found |= {f"{name} {what}": float(value) for name, value in outcomes[what].items()}
+            found |= {f"{name} {what}": value for name, value in outcomes[what].astype(float).items()}
         return found
