@@ -22,9 +22,9 @@ def null_counts(samples: pd.DataFrame, claims: Sequence[Claim], papers: int, see
     """Fitted and held-out claims met by the most likely of the samples, one row a paper, NULL_COLUMNS.
 
     The first paper is the one whose claims they are. Then random samples play the paper: their numbers and
-    what holds for them are the claims, and the samples that share their other inputs may not answer. Then
-    invented papers, for which each group of claims (`where`) comes from another random sample, so that every
-    single figure is possible and no machine has all of them.
+    what holds for them are the claims. Then invented papers, for which each group of claims (`where`) comes
+    from another random sample, so that every single figure is possible and no machine has all of them. The
+    samples that played, and those that share their other inputs, may not answer.
     """
     kept = sound(samples).reset_index(drop=True)
     judged = [claim for claim in claims if claim.counts and claim.id in kept.columns]
@@ -43,7 +43,8 @@ def null_counts(samples: pd.DataFrame, claims: Sequence[Claim], papers: int, see
             for column in (claim.id, f"{claim.id} {VALUE}")
             if column in kept.columns
         }
-        rows.append((INVENTED, *best_counts(*played(kept, judged, row))))
+        others = kept[~inputs.isin(inputs[list(source.values())])]
+        rows.append((INVENTED, *best_counts(*played(others, judged, row))))
     return pd.DataFrame(rows, columns=list(NULL_COLUMNS))
 
 

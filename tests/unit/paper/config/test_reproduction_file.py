@@ -38,7 +38,8 @@ def test_each_design_is_a_case_with_its_own_teeth_and_no_studies(stored):
     ("text", "line"),
     [
         ("claim: a.yaml\n", "did you mean 'claims'?"),
-        ("claims: a.yaml\nidentify: {targets: {backlash: []}}\n", "identify.targets.backlash"),
+        ("claims: a.yaml\nidentify: {ranges: {tail_share: [0.4, 0.1]}}\n", "identify.ranges.tail_share"),
+        ("claims: a.yaml\nidentify: {search: {patterns: [input/left]}}\n", "identify.search.patterns"),
     ],
 )
 def test_mistake_in_the_file_names_file_key_and_what_is_allowed(tmp_path, text, line):

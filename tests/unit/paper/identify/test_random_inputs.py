@@ -17,7 +17,7 @@ from facegear.paper.identify.inputs import CHOICES, Space
 from facegear.paper.identify.patterns import READINGS, half_turn_patterns
 from facegear.paper.identify.random_inputs import Plausible
 from facegear.paper.identify.random_verdicts import judged_samples
-from facegear.paper.scorecard.claims import read_claims
+from facegear.paper.scorecard.claims import Claim, read_claims
 from facegear.paper.scorecard.criteria import reads_sweep
 
 CONFIG = Path(__file__).parents[4] / "config"
@@ -80,6 +80,21 @@ def contact_table():
     }
     columns |= {"k_average_n_per_m": curve, "k_local_n_per_m": curve}
     return pd.DataFrame({name: values.ravel() for name, values in columns.items()})
+
+
+class Undefined(ClaimJudge):
+    """A judge of a coefficient that has a value for some inputs only."""
+
+    def outcomes(self, row, run=0):
+        return pd.DataFrame({"id": ["mean"], "holds": [False], "value": [row["value"]], "spread": [0.0]})
+
+
+def test_a_number_that_is_undefined_is_kept_as_not_a_number():
+    claim = Claim(id="mean", where="", claim="", criterion="sharing", paper=1.7, tolerance=0.2)
+    judge = Undefined({}, pd.DataFrame(), [claim])
+    assert judge.found({"value": 1.5}) == {"mean": 0.0, "mean value": 1.5, "mean spread": 0.0}
+    assert np.isnan(judge.found({"value": None})["mean value"])
+    assert judge.columns == ["mean", "mean value", "mean spread"]
 
 
 def test_random_inputs_are_judged_and_a_chunk_that_was_killed_goes_on(tmp_path):
