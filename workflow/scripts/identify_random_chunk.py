@@ -6,7 +6,7 @@ from facegear.config.base import parse
 from facegear.contact.columns import LTCA_COLUMNS
 from facegear.io import tables
 from facegear.paper.config.search import plausible_inputs
-from facegear.paper.config.sections import Identify
+from facegear.paper.config.sections import Identify, sample_numbers
 from facegear.paper.identify.claim_judge import GEOMETRIC, QUICK
 from facegear.paper.identify.random_verdicts import dynamic_judge, judged_samples, unswept
 from facegear.progress import Progress
@@ -16,12 +16,12 @@ from facegear.scenarios.chunks import identity
 with stage(snakemake) as run:
     wildcards, params = snakemake.wildcards, snakemake.params
     ltca = tables.read(snakemake.input.ltca, LTCA_COLUMNS)
-    by_pattern = wildcards.design == "structures"
+    by_pattern = wildcards.design != "random"
     settings = {**QUICK, **(GEOMETRIC if wildcards.design == "geometric" else {})}
     kept = unswept if by_pattern else lambda claim: True
     judge = dynamic_judge(params.case, ltca, snakemake.input.claims, kept, settings)
     drawn = plausible_inputs(parse(Identify, params.identify), wildcards.design, params.case, ltca)
-    numbers = range(int(wildcards.first), int(wildcards.last) + 1)
+    numbers = sample_numbers(wildcards.design, int(wildcards.first), int(wildcards.last))
     rows = drawn.rows_by_pattern(numbers) if by_pattern else drawn.rows(numbers)
     partial = Path(snakemake.output.samples).with_suffix(".partial")
     same = identity(params.case, params.identify, ltca.to_csv(), params.code)

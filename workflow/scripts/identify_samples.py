@@ -26,7 +26,7 @@ with stage(snakemake) as run:
     tables.write(output.structures, patterns)
     tables.write(output.choices, choices)
     tables.write(output.null, null.reset_index())
-    same = random[random["sample"].isin(geometric["sample"])]
+    same = structures[structures["sample"].isin(geometric["sample"])]
     tables.write(output.kinematics, shares_of({"printed": same, "geometric": geometric}, claims))
     found = totals(random, claims)
     run.summary(

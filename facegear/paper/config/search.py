@@ -15,7 +15,7 @@ def plausible_inputs(
     section: Identify, design: Design, values: Mapping[str, Any], ltca: pd.DataFrame
 ) -> Plausible:
     """What the random inputs of a design are drawn from; `values` are those of a whole config."""
-    patterns = tuple(half_turn_patterns() if design == "structures" else READINGS)
+    patterns = tuple(READINGS if design == "random" else half_turn_patterns())
     return Plausible(search_space(section.ranges, values, ltca), patterns, section.random.seed)
 
 

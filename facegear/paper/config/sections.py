@@ -10,9 +10,11 @@ from facegear.config.tolerances import chunk_ranges
 from facegear.paper.identify.patterns import half_turn_patterns
 
 Design = Literal["random", "structures", "geometric"]
-"""Random inputs with every reading of e(t), the same random inputs with each pattern of half turns, or the
-first with the kinematics that gears have instead of the printed ones.
+"""Random inputs with every reading of e(t), the same random inputs with each pattern of half turns, or every
+fifth of the latter with the kinematics that gears have instead of the printed ones.
 """
+KINEMATICS_STEP = 5
+"""With 32 patterns this step meets all of them."""
 
 
 class Ranges(Section):
@@ -39,7 +41,6 @@ class RandomInputs(Section):
 
     samples: int = Field(64, ge=1, le=100_000)
     structure_samples: int = Field(4, ge=1, le=10_000, description="with which each pattern is tried")
-    geometric_samples: int = Field(32, ge=1, le=100_000, description="judged with geometric kinematics too")
     chunk_samples: int = Field(16, ge=1, le=10_000, description="judged by one job")
     seed: int = Field(1, ge=0, le=2**31)
 
@@ -89,11 +90,18 @@ class Identify(Section):
 
 def design_size(section: RandomInputs, design: Design) -> int:
     """Samples of a design."""
-    if design == "structures":
-        return section.structure_samples * len(half_turn_patterns())
-    return section.samples if design == "random" else section.geometric_samples
+    if design == "random":
+        return section.samples
+    size = section.structure_samples * len(half_turn_patterns())
+    return size if design == "structures" else -(-size // KINEMATICS_STEP)
+
+
+def sample_numbers(design: Design, first: int, last: int) -> list[int]:
+    """Numbers of the samples of a design from the first to the last place."""
+    step = KINEMATICS_STEP if design == "geometric" else 1
+    return [step * place for place in range(first, last + 1)]
 
 
 def design_chunks(section: RandomInputs, design: Design) -> list[tuple[int, int]]:
-    """Numbers of the first and the last sample of each chunk."""
+    """Places of the first and the last sample of each chunk."""
     return chunk_ranges(design_size(section, design), section.chunk_samples)
