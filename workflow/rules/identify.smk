@@ -109,6 +109,7 @@ rule identify_region:
         judged=LIKELY,
     output:
         region="results/{case}/identify/region.csv",
+        searches="results/{case}/identify/searches.csv",
         shares="results/{case}/identify/claim_shares.csv",
         counts="results/{case}/identify/held_counts.csv",
         never_together="results/{case}/identify/never_together.csv",

@@ -6,7 +6,14 @@ from facegear.config.base import parse
 from facegear.io import tables
 from facegear.paper.config.sections import Identify
 from facegear.paper.identify.inputs import INPUT_COLUMNS
-from facegear.paper.identify.region import LOG_UNITS, correlations, held_counts, most_likely, never_together
+from facegear.paper.identify.region import (
+    LOG_UNITS,
+    correlations,
+    held_counts,
+    most_likely,
+    never_together,
+    searches,
+)
 from facegear.paper.identify.search import LOG_LIKELIHOOD
 from facegear.paper.plots.region import region_figure
 from facegear.paper.scorecard.base_rates import by_input, shares_of, sound
@@ -27,6 +34,7 @@ with stage(snakemake) as run:
         [region[[*INPUT_COLUMNS, LOG_LIKELIHOOD]], held_counts(region, claims), region[held]], axis=1
     )
     tables.write(output.region, told)
+    tables.write(output.searches, searches(searched, claims))
     tables.write(output.shares, shares_of({"region": region, "random": random}, claims))
     looked_at = {"random": random, "patterns": structures, "searched": searched, "likely": judged}
     kinds = pd.concat([one.assign(kind=name) for name, one in looked_at.items()], ignore_index=True)

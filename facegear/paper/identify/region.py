@@ -59,6 +59,22 @@ def held_counts(found: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:
     return pd.DataFrame({name: held.sum(axis=1).astype(int) for name, held in columns.items()})
 
 
+def searches(searched: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:
+    """One row a pattern, the most likely first: evaluations, fitted claims that its search judged, those that
+    the most likely evaluation holds and that any holds, and the largest log-likelihood.
+    """
+    rows = []
+    held = held_counts(searched, claims)["fitted"]
+    judged = sum(claim.counts and claim.fitted and claim.id in searched for claim in claims)
+    for pattern, group in searched.groupby("pattern", sort=False):
+        best = group[LOG_LIKELIHOOD].idxmax()
+        told = (judged, int(held[best]), int(held[group.index].max()), float(group[LOG_LIKELIHOOD][best]))
+        rows.append((pattern, len(group), *told))
+    columns = ["pattern", "evaluations", "claims", "held", "most", LOG_LIKELIHOOD]
+    frame = pd.DataFrame(rows, columns=columns)
+    return frame.sort_values(LOG_LIKELIHOOD, ascending=False, kind="stable").reset_index(drop=True)
+
+
 def never_together(found: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:
     """Pairs of claims that no row holds together, though EXPECTED rows would if they were independent.
 
