@@ -43,6 +43,7 @@ rule identify_search:
         ltca=shared("contact", "ltca"),
         claims=CLAIMS,
         structures=random_chunks("structures"),
+        before=[],
     output:
         evaluations="results/{case}/identify/search/{pattern}.csv",
         manifest="results/{case}/identify/search/{pattern}.provenance.json",
@@ -55,6 +56,17 @@ rule identify_search:
         identify=IDENTIFY_VALUES,
     script:
         "../scripts/identify_search.py"
+
+
+use rule identify_search as identify_search_again with:
+    input:
+        ltca=shared("contact", "ltca"),
+        claims=CLAIMS,
+        structures=random_chunks("structures"),
+        before=rules.identify_search.output.evaluations,
+    output:
+        evaluations="results/{case}/identify/search/again/{pattern}.csv",
+        manifest="results/{case}/identify/search/again/{pattern}.provenance.json",
 
 
 rule identify_likely_part:

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 from facegear.config.base import parse
@@ -12,7 +13,7 @@ from facegear.paper.config.sections import Identify
 from facegear.paper.identify.claim_judge import QUICK
 from facegear.paper.identify.likelihood import Likelihood
 from facegear.paper.identify.random_verdicts import dynamic_judge, unswept
-from facegear.paper.identify.search import LOG_LIKELIHOOD, Budget, search_pattern
+from facegear.paper.identify.search import LOG_LIKELIHOOD, Budget, best_points, search_pattern
 from facegear.paper.scorecard.claims import read_claims
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
@@ -28,11 +29,21 @@ with stage(snakemake) as run:
         params.case, ltca, files.claims, lambda claim: claim.fitted and unswept(claim), QUICK
     )
     drawn = plausible_inputs(section, "structures", params.case, ltca)
-    budget = Budget(section.search.population, section.search.generations, section.search.seed)
+    size, budget = section.search.population, Budget(section.search.generations, section.search.seed)
+    before = [random.assign(**{LOG_LIKELIHOOD: likelihood(random)}), *map(tables.read, files.before)]
+    first = (
+        best_points(pd.concat(before, ignore_index=True), drawn.space, pattern, size)
+        if files.before
+        else np.array([drawn.unit(number) for number in range(size)])
+    )
     partial = Path(snakemake.output.evaluations).with_suffix(".partial")
-    same = identity(params.case, params.identify, ltca.to_csv(), likelihood.surprise.tolist(), params.code)
-    progress = Progress(f"search {pattern}", budget.population * (budget.generations + 1))
-    found = search_pattern(judge, likelihood, drawn, pattern, budget, partial, same, progress.step)
+    same = identity(
+        params.case, params.identify, ltca.to_csv(), likelihood.surprise.tolist(), first.tolist(), params.code
+    )
+    progress = Progress(f"search {pattern}", size * (budget.generations + 1))
+    found = search_pattern(
+        judge, likelihood, drawn.space, pattern, first, budget, partial, same, progress.step
+    )
     tables.write(snakemake.output.evaluations, found)
     partial.unlink()
     best = found.loc[found[LOG_LIKELIHOOD].idxmax()]

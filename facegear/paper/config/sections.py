@@ -49,6 +49,7 @@ class SearchBudget(Section):
     """The search for the most likely inputs, by differential evolution in each pattern of e(t) by itself."""
 
     patterns: tuple[str, ...] = Field((), description="meshes half a turn later, joined by +; or none")
+    again: tuple[str, ...] = Field((), description="patterns searched once more, from the best of all before")
     population: int = Field(16, ge=5, le=1000)
     generations: int = Field(12, ge=0, le=10_000)
     judged: int = Field(200, ge=1, le=100_000, description="most inputs of the region judged with a sweep")
@@ -61,11 +62,13 @@ class SearchBudget(Section):
 
     @model_validator(mode="after")
     def _known(self) -> "SearchBudget":
-        for pattern in self.patterns:
-            if pattern not in half_turn_patterns():
-                refuse("patterns", pattern, f"some of {', '.join(half_turn_patterns())}")
-        if len(set(self.patterns)) < len(self.patterns):
-            refuse("patterns", list(self.patterns), "each once")
+        for key, known in (("patterns", tuple(half_turn_patterns())), ("again", self.patterns)):
+            given = getattr(self, key)
+            for pattern in given:
+                if pattern not in known:
+                    refuse(key, pattern, f"some of {', '.join(known)}")
+            if len(set(given)) < len(given):
+                refuse(key, list(given), "each once")
         return self
 
 

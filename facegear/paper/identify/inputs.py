@@ -42,6 +42,8 @@ CHOICES: Mapping[str, type[StrEnum]] = {
 }
 COORDINATES = (*NUMBERS, *BEARINGS, *CHOICES)
 """What each coordinate of the unit cube decides."""
+LOGARITHMIC = ("per_input_n_m", *BEARINGS)
+"""Numbers that are spread on a logarithmic scale."""
 INPUT_COLUMNS = ("pattern", *COORDINATES, "stiffness_torque_n_m")
 """Columns of a table of inputs; the last is the load on a mesh at which k(t) has its shape."""
 
@@ -68,18 +70,27 @@ class Space:
         each choice with equal chances. Of the two bearings the softer is called mid.
         """
         at = dict(zip(COORDINATES, map(float, unit), strict=True))
-        torque = _logarithmic(at["per_input_n_m"], self.torque)
-        bearings = sorted(_logarithmic(at[name], self.bearings) for name in BEARINGS)
+        at["error_phase_deg"] %= 1.0
+        numbers = {name: _placed(at[name], limits, name) for name, limits in self._limits.items()}
         return {
             "pattern": pattern,
-            "per_input_n_m": torque,
-            "tail_share": _linear(at["tail_share"], self.tail_share),
-            "error_phase_deg": _linear(at["error_phase_deg"] % 1.0, (0.0, 360.0)),
-            "stiffness_variation": _linear(at["stiffness_variation"], self.variation),
-            **dict(zip(BEARINGS, bearings, strict=True)),
+            **numbers,
+            **dict(zip(BEARINGS, sorted(numbers[name] for name in BEARINGS), strict=True)),
             **{name: picked(list(kind), at[name]) for name, kind in CHOICES.items()},
-            "stiffness_torque_n_m": float(np.clip(torque / self.gears, *self.loads)),
+            "stiffness_torque_n_m": float(np.clip(numbers["per_input_n_m"] / self.gears, *self.loads)),
         }
+
+    def unit(self, row: Mapping[str, Any]) -> list[float]:
+        """A point of the unit cube that has the inputs of a row; a choice lies in the middle of its part."""
+        numbers = [_place(float(row[name]), limits, name) for name, limits in self._limits.items()]
+        choices = [(list(kind).index(kind(row[name])) + 0.5) / len(kind) for name, kind in CHOICES.items()]
+        return [*numbers, *choices]
+
+    @property
+    def _limits(self) -> dict[str, tuple[float, float]]:
+        """Ranges of the numbers, in the order of COORDINATES."""
+        numbers = (self.torque, self.tail_share, (0.0, 360.0), self.variation)
+        return {**dict(zip(NUMBERS, numbers, strict=True)), **dict.fromkeys(BEARINGS, self.bearings)}
 
 
 def picked(choices: Sequence[str], unit: float) -> str:
@@ -87,14 +98,17 @@ def picked(choices: Sequence[str], unit: float) -> str:
     return str(choices[min(int(unit * len(choices)), len(choices) - 1)])
 
 
-def _linear(unit: float, limits: tuple[float, float]) -> float:
-    low, high = limits
-    return low + unit * (high - low)
+def _placed(unit: float, limits: tuple[float, float], name: str) -> float:
+    """The number at a coordinate of the unit cube."""
+    low, high = np.log(limits) if name in LOGARITHMIC else limits
+    value = low + unit * (high - low)
+    return float(np.exp(value) if name in LOGARITHMIC else value)
 
 
-def _logarithmic(unit: float, limits: tuple[float, float]) -> float:
-    low, high = np.log(limits)
-    return float(np.exp(low + unit * (high - low)))
+def _place(value: float, limits: tuple[float, float], name: str) -> float:
+    """The coordinate, within [0, 1], at which the number lies."""
+    (low, high), at = (np.log(limits), np.log(value)) if name in LOGARITHMIC else (limits, value)
+    return float(np.clip((at - low) / (high - low), 0.0, 1.0))
 
 
 def _unit_range(*weights: tuple[int, float]) -> tuple[tuple[int, float], ...]:

@@ -10,9 +10,8 @@ import scipy.optimize
 from numpy.typing import NDArray
 
 from facegear.paper.identify.claim_judge import ClaimJudge
-from facegear.paper.identify.inputs import COORDINATES
+from facegear.paper.identify.inputs import COORDINATES, INPUT_COLUMNS, Space
 from facegear.paper.identify.likelihood import Likelihood
-from facegear.paper.identify.random_inputs import Plausible
 from facegear.paper.identify.random_verdicts import judged_samples
 
 LOG_LIKELIHOOD = "log_likelihood"
@@ -22,24 +21,31 @@ WORST = 1e3
 
 @dataclass(frozen=True)
 class Budget:
-    """Points of a generation, generations after the first, and the seed of their changes."""
+    """Generations after the first, and the seed of their changes."""
 
-    population: int
     generations: int
     seed: int
+
+
+def best_points(found: pd.DataFrame, space: Space, pattern: str, count: int) -> NDArray[np.float64]:
+    """Points (count, coordinates) of the most likely inputs of a pattern in a table of evaluations."""
+    own = found[found["pattern"] == pattern].drop_duplicates(list(INPUT_COLUMNS))
+    best = own.sort_values(LOG_LIKELIHOOD, ascending=False, kind="stable").head(count)
+    return np.array([space.unit(row) for row in best.to_dict("records")])
 
 
 def search_pattern(
     judge: ClaimJudge,
     likelihood: Likelihood,
-    plausible: Plausible,
+    space: Space,
     pattern: str,
+    first: NDArray[np.float64],
     budget: Budget,
     partial: str | Path,
     identity: str,
     told: Callable[[], None] = lambda: None,
 ) -> pd.DataFrame:
-    """Differential evolution from the first random points of the space; every evaluation is a row.
+    """Differential evolution from the points `first` (points, coordinates); every evaluation is a row.
 
     Columns as of `judged_samples`, and log_likelihood. `partial` keeps finished evaluations of the same
     `identity`: a search that was killed goes on where it was, since the same seed asks for the same points.
@@ -48,9 +54,9 @@ def search_pattern(
 
     def evaluate(units: NDArray[np.float64]) -> NDArray[np.float64]:
         """Minus the log-likelihood of points (coordinates, points)."""
-        first = sum(map(len, generations))
-        rows = [plausible.space.row(unit, pattern) for unit in units.T]
-        numbers = range(first, first + len(rows))
+        done = sum(map(len, generations))
+        rows = [space.row(unit, pattern) for unit in units.T]
+        numbers = range(done, done + len(rows))
         found = judged_samples(judge, rows, numbers, partial, identity, told)
         found[LOG_LIKELIHOOD] = likelihood(found)
         generations.append(found)
@@ -59,7 +65,7 @@ def search_pattern(
     scipy.optimize.differential_evolution(
         evaluate,
         [(0.0, 1.0)] * len(COORDINATES),
-        init=np.array([plausible.unit(number) for number in range(budget.population)]),
+        init=first,
         maxiter=budget.generations,
         mutation=(0.4, 0.9),
         polish=False,

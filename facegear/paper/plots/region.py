@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
 from facegear.paper.config.sections import Ranges
+from facegear.paper.identify.inputs import BEARINGS, LOGARITHMIC
 from facegear.plots.style import NARROW, styled
 
 BINS = 12
@@ -20,7 +21,6 @@ LABELS = {
     "stiff_bearing_n_per_m": "Stiff pinion bearing (N/m)",
 }
 SHORT = ("torque", "tail", "phase", "variation", "mid bearing", "stiff bearing")
-LOGARITHMIC = ("per_input_n_m", "mid_bearing_n_per_m", "stiff_bearing_n_per_m")
 
 
 def region_figure(region: pd.DataFrame, correlations: pd.DataFrame, ranges: Ranges) -> Figure:
@@ -30,7 +30,7 @@ def region_figure(region: pd.DataFrame, correlations: pd.DataFrame, ranges: Rang
         "tail_share": ranges.tail_share,
         "error_phase_deg": (0.0, 360.0),
         "stiffness_variation": ranges.stiffness_variation,
-        **dict.fromkeys(LOGARITHMIC[1:], ranges.stiffer_bearings_n_per_m),
+        **dict.fromkeys(BEARINGS, ranges.stiffer_bearings_n_per_m),
     }
     with styled():
         figure = plt.figure(figsize=(NARROW, 7.6))

@@ -5,17 +5,17 @@ IDENTIFY = REPRODUCTION.identify if REPRODUCTION else None
 IDENTIFY_VALUES = IDENTIFY.model_dump(mode="json") if IDENTIFY else None
 DESIGNS = list(design_points(IDENTIFY))
 CLAIMS = REPRODUCTION.claims if REPRODUCTION else []
-SEARCHES, LIKELY = (
-    (
-        [
-            f"results/{{case}}/identify/search/{name.replace('/', '-')}.csv"
-            for name in IDENTIFY.search.patterns
-        ],
-        [f"results/{{case}}/identify/likely/{part}.csv" for part in range(IDENTIFY.search.parts)],
-    )
-    if IDENTIFY
-    else ([], [])
+SEARCH = IDENTIFY.search if IDENTIFY else None
+SEARCHES = (
+    [
+        f"results/{{case}}/identify/search/{folder}{name.replace('/', '-')}.csv"
+        for folder, names in (("", SEARCH.patterns), ("again/", SEARCH.again))
+        for name in names
+    ]
+    if SEARCH
+    else []
 )
+LIKELY = [f"results/{{case}}/identify/likely/{part}.csv" for part in range(SEARCH.parts)] if SEARCH else []
 STORED_SETS = REPRODUCTION.sets if REPRODUCTION and REPRODUCTION.sets else []
 
 

@@ -12,7 +12,15 @@ from facegear.config.cases import set_key
 from facegear.config.load import load_config
 from facegear.config.machines import case_machine
 from facegear.harmonics.series import Harmonics
-from facegear.paper.identify.inputs import BEARINGS, CHOICES, COORDINATES, INPUT_COLUMNS, Space, Waveform
+from facegear.paper.identify.inputs import (
+    BEARINGS,
+    CHOICES,
+    COORDINATES,
+    INPUT_COLUMNS,
+    NUMBERS,
+    Space,
+    Waveform,
+)
 from facegear.paper.identify.load_estimates import estimate_table, load_for_mean
 from facegear.paper.identify.sets import config_changes, set_cases
 from facegear.stiffness.curve import LoadTable
@@ -35,6 +43,9 @@ def test_every_point_of_the_unit_cube_is_a_row_of_inputs_within_their_ranges(uni
     assert 0.999e8 <= row[BEARINGS[0]] <= row[BEARINGS[1]] <= 1.001e10
     assert all(row[name] in list(kind) for name, kind in CHOICES.items())
     assert 120.0 <= row["stiffness_torque_n_m"] <= 450.0
+    again = SPACE.row(SPACE.unit(row), "none")
+    assert {key: again[key] for key in CHOICES} == {key: row[key] for key in CHOICES}
+    assert all(again[key] == pytest.approx(row[key]) for key in (*NUMBERS, *BEARINGS))
 
 
 @pytest.mark.parametrize("waveform", list(Waveform))

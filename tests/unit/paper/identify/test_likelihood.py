@@ -8,8 +8,6 @@ from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.inputs import COORDINATES, Space
 from facegear.paper.identify.likelihood import Likelihood
 from facegear.paper.identify.null import ANOTHER, INVENTED, THIS, null_counts
-from facegear.paper.identify.patterns import half_turn_patterns
-from facegear.paper.identify.random_inputs import Plausible
 from facegear.paper.identify.region import candidates, most_likely, never_together
 from facegear.paper.identify.search import LOG_LIKELIHOOD, Budget, search_pattern
 from facegear.paper.scorecard.claims import Claim
@@ -86,13 +84,13 @@ class Known(ClaimJudge):
 
 
 def search(path, budget, judge_type=Known):
-    plausible = Plausible(SPACE, tuple(half_turn_patterns()), seed=1)
+    first = np.random.default_rng(1).random((8, len(COORDINATES)))
     judge = judge_type({}, pd.DataFrame(), [STATEMENT, NUMBER])
-    return search_pattern(judge, LIKELIHOOD, plausible, "input/lower", budget, path, "same")
+    return search_pattern(judge, LIKELIHOOD, SPACE, "input/lower", first, budget, path, "same")
 
 
 def test_search_finds_the_likeliest_inputs_and_goes_on_where_it_was_killed(tmp_path):
-    budget = Budget(population=8, generations=15, seed=3)
+    budget = Budget(generations=15, seed=3)
     found = search(tmp_path / "partial", budget)
     assert len(found) == 8 * 16 and set(found["pattern"]) == {"input/lower"}
     best = found.loc[found[LOG_LIKELIHOOD].idxmax()]
