@@ -16,7 +16,7 @@ RESAMPLES = 499
 INPUT_RATE_COLUMNS = (
     *("input", "value", "samples"),
     *("claims", "mean", "mean_error", "upper", "upper_error", "most"),
-    *("all_claims", "all_mean"),
+    *("all_claims", "all_mean", "all_most"),
 )
 RATE_COLUMNS = ("id", "samples", "held", "share", "low", "high")
 
@@ -67,7 +67,7 @@ def by_input(samples: pd.DataFrame, claims: Sequence[Claim], name: str) -> pd.Da
     """Distinct claims held under each value of an input, fitted ones and all; the best value first.
 
     Columns input, value, samples; of the fitted claims their number, and mean, upper 5 % and most of those
-    held, mean and upper with their standard errors; of all claims their number and the mean.
+    held, mean and upper with their standard errors; of all claims their number, mean and most.
     """
     rows = []
     for value, group in samples.groupby(name, sort=False):
@@ -75,7 +75,7 @@ def by_input(samples: pd.DataFrame, claims: Sequence[Claim], name: str) -> pd.Da
         upper, held = fitted.spread[1], fitted.held
         errors = held.std(ddof=1) / np.sqrt(held.size), upper_error(held)
         told = (fitted.claims, fitted.mean, errors[0], upper, errors[1], int(held.max()))
-        rows.append((name, value, held.size, *told, every.claims, every.mean))
+        rows.append((name, value, held.size, *told, every.claims, every.mean, int(every.held.max())))
     frame = pd.DataFrame(rows, columns=list(INPUT_RATE_COLUMNS))
     return frame.sort_values(["mean", "upper"], ascending=False, kind="stable").reset_index(drop=True)
 
