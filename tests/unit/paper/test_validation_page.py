@@ -120,7 +120,7 @@ def moved_by_kinematics():
         frame["geometric_low"] > frame["printed_high"]
     )
     change = (frame["geometric_share"] - frame["printed_share"]).abs()
-    return change[apart].sort_values(ascending=False, kind="stable").index.tolist()
+    return change[fewer | more].sort_values(ascending=False, kind="stable").index.tolist()
 
 
 def test_what_chance_holds_is_told_as_stored():
