@@ -116,9 +116,8 @@ def kinematics_rows(ids):
 def moved_by_kinematics():
     """Claims whose shares of random inputs differ beyond both intervals, the most moved first."""
     frame = table("kinematics").set_index("id")
-    apart = (frame["printed_low"] > frame["geometric_high"]) | (
-        frame["geometric_low"] > frame["printed_high"]
-    )
+    fewer = frame["geometric_high"] < frame["printed_low"]
+    more = frame["geometric_low"] > frame["printed_high"]
     change = (frame["geometric_share"] - frame["printed_share"]).abs()
     return change[fewer | more].sort_values(ascending=False, kind="stable").index.tolist()
 
