@@ -63,7 +63,7 @@ use rule identify_search as identify_search_again with:
         ltca=shared("contact", "ltca"),
         claims=CLAIMS,
         structures=random_chunks("structures"),
-        before=rules.identify_search.output.evaluations,
+        before=[rules.identify_search.output.evaluations],
     output:
         evaluations="results/{case}/identify/search/again/{pattern}.csv",
         manifest="results/{case}/identify/search/again/{pattern}.provenance.json",

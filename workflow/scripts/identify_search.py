@@ -30,7 +30,7 @@ with stage(snakemake) as run:
     )
     drawn = plausible_inputs(section, "structures", params.case, ltca)
     size, budget = section.search.population, Budget(section.search.generations, section.search.seed)
-    before = [random.assign(**{LOG_LIKELIHOOD: likelihood(random)}), *map(tables.read, files.before)]
+    before = [random.copy().assign(**{LOG_LIKELIHOOD: likelihood(random)}), *map(tables.read, files.before)]
     first = (
         best_points(pd.concat(before, ignore_index=True), drawn.space, pattern, size)
         if files.before
