@@ -8,7 +8,7 @@ from facegear.config.base import parse
 from facegear.contact.columns import LTCA_COLUMNS
 from facegear.io import tables
 from facegear.paper.config.sections import Identify
-from facegear.paper.identify.confirmed import confirmed_inputs, kept_sets
+from facegear.paper.identify.confirmed import confirmed_inputs, kept_sets, worth_confirming
 from facegear.paper.identify.likelihood import Likelihood
 from facegear.paper.identify.random_verdicts import dynamic_judge, unswept
 from facegear.paper.scorecard.claims import read_claims
@@ -23,7 +23,7 @@ with stage(snakemake) as run:
     random = pd.concat([tables.read(path) for path in [*files.structures, *files.random]], ignore_index=True)
     likelihood = Likelihood.of(read_claims(files.claims).claims, random)
     judge = dynamic_judge(params.case, ltca, files.claims, unswept)
-    region = tables.read(files.region).head(section.confirmed)
+    region = worth_confirming(tables.read(files.region), section.confirmed)
     partial = Path(output.sets).with_suffix(".partial")
     same = identity(params.case, region.to_csv(), ltca.to_csv(), params.code)
     progress = Progress("confirming at full accuracy", len(region) * section.runs)

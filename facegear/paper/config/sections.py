@@ -79,6 +79,7 @@ class Identify(Section):
     random: RandomInputs = RandomInputs()
     search: SearchBudget = SearchBudget()
     runs: int = Field(2, ge=1, le=1000, description="of each set; all but the first moved by 1e-12")
+    swept_runs: int = Field(2, ge=1, le=1000, description="of these, those with a speed sweep")
     designs: tuple[Point, ...] = Field(
         (), description="other plausible gear data for the first estimate of the load"
     )

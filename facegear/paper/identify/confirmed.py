@@ -7,12 +7,15 @@ from pathlib import Path
 import pandas as pd
 
 from facegear.paper.identify.claim_judge import ClaimJudge
-from facegear.paper.identify.inputs import INPUT_COLUMNS
+from facegear.paper.identify.inputs import BEARINGS, INPUT_COLUMNS, NUMBERS
 from facegear.paper.identify.likelihood import Likelihood
 from facegear.paper.identify.search import LOG_LIKELIHOOD
 from facegear.scenarios.chunks import run_chunk
 
 QUICK_LIKELIHOOD = "quick_log_likelihood"
+DIGITS = 4
+"""Digits of the numbers of a set: more than the region knows."""
+ROUNDED = (*NUMBERS, *BEARINGS, "stiffness_torque_n_m")
 
 
 def confirmed_inputs(
@@ -26,10 +29,12 @@ def confirmed_inputs(
 ) -> pd.DataFrame:
     """Rows of a region with the least log-likelihood of `runs` runs of the judge, the most likely first.
 
-    Quick runs may reach another motion than accurate ones, so that the order changes; of equals the one with
-    the smaller share at the tail comes first. The region's own log-likelihood is kept as that of quick runs.
+    Their numbers are rounded before. Quick runs may reach another motion than accurate ones, so that the
+    order changes; of equals the one with the smaller share at the tail comes first. The region's own
+    log-likelihood is kept as that of quick runs.
     """
-    rows = region[list(INPUT_COLUMNS)].to_dict("records")
+    tidy = region.assign(**{name: region[name].map(rounded) for name in ROUNDED})
+    rows = tidy[list(INPUT_COLUMNS)].to_dict("records")
     found = run_chunk(
         lambda number: judge.found(rows[number // runs], number % runs),
         range(len(rows) * runs),
@@ -39,9 +44,22 @@ def confirmed_inputs(
         told,
     )
     least = likelihood(found).reshape(len(rows), runs).min(axis=1)
-    kept = region.rename(columns={LOG_LIKELIHOOD: QUICK_LIKELIHOOD}).assign(**{LOG_LIKELIHOOD: least})
+    kept = tidy.rename(columns={LOG_LIKELIHOOD: QUICK_LIKELIHOOD}).assign(**{LOG_LIKELIHOOD: least})
     order = [LOG_LIKELIHOOD, "tail_share"]
     return kept.sort_values(order, ascending=[False, True], kind="stable").reset_index(drop=True)
+
+
+def worth_confirming(region: pd.DataFrame, most: int) -> pd.DataFrame:
+    """The most likely rows of a region, at most so many, the best of each pattern among them."""
+    kept = (
+        pd.concat([region.drop_duplicates("pattern"), region]).drop_duplicates(list(INPUT_COLUMNS)).head(most)
+    )
+    return kept.sort_values(LOG_LIKELIHOOD, ascending=False, kind="stable").reset_index(drop=True)
+
+
+def rounded(value: float) -> float:
+    """The number to DIGITS digits."""
+    return float(f"{value:.{DIGITS}g}")
 
 
 def kept_sets(confirmed: pd.DataFrame, most: int) -> pd.DataFrame:

@@ -1,6 +1,7 @@
 """Runs of a set of inputs that differ by rounding: how many of them hold each claim."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import pandas as pd
@@ -8,6 +9,7 @@ import pandas as pd
 from facegear.paper.identify.cases import settings_key
 from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.sets import set_cases
+from facegear.paper.scorecard.criteria import reads_sweep
 from facegear.paper.scorecard.rows import OWN, RUN_COLUMNS
 
 HOLDS, VALUE = "holds", "value"
@@ -19,27 +21,35 @@ def run_columns(ids: Sequence[str]) -> list[str]:
     return [f"{name} {what}" for name in ids for what in (HOLDS, VALUE)]
 
 
-def one_run(judge: ClaimJudge, row: Mapping[str, Any] | None) -> Callable[[int], dict[str, float]]:
-    """Function of the number of a run giving its columns."""
+def one_run(
+    judge: ClaimJudge, row: Mapping[str, Any] | None, swept: int
+) -> Callable[[int], dict[str, float]]:
+    """Function of the number of a run giving its columns; runs from number `swept` on make no sweep, and have
+    NaN for the claims that need one.
+    """
+    shorter = replace(judge, claims=[one for one in judge.claims if not reads_sweep(one.criterion)])
 
     def evaluate(run: int) -> dict[str, float]:
-        found = judge.outcomes(row, run).set_index("id")
-        values = found["value"].astype(float)
+        found = (judge if run < swept else shorter).outcomes(row, run).set_index("id")
+        told = {HOLDS: found["holds"].astype(float), VALUE: found["value"].astype(float)}
         return {
-            **{f"{name} {HOLDS}": float(holds) for name, holds in found["holds"].items()},
-            **{f"{name} {VALUE}": float(value) for name, value in values.items()},
+            f"{name} {what}": values.get(name, float("nan"))
+            for name in judge.names
+            for what, values in told.items()
         }
 
     return evaluate
 
 
 def run_table(name: str, runs: pd.DataFrame, ids: Sequence[str], settings: str) -> pd.DataFrame:
-    """One row a claim of a set: runs, runs that hold it, range of its number; `settings` is their key."""
+    """One row a claim of a set: runs that judged it, those that hold it, range of its number; `settings` is
+    their key.
+    """
     rows = []
     for claim in ids:
         values = runs[f"{claim} {VALUE}"]
-        held = int(runs[f"{claim} {HOLDS}"].sum())
-        rows.append((name, claim, len(runs), held, values.min(), values.max(), settings))
+        holds = runs[f"{claim} {HOLDS}"].dropna()
+        rows.append((name, claim, len(holds), int(holds.sum()), values.min(), values.max(), settings))
     return pd.DataFrame(rows, columns=list(STORED_COLUMNS))
 
 
@@ -48,9 +58,11 @@ def runs_of_config(
 ) -> pd.DataFrame:
     """Those of the stored runs that were made with this config's settings, RUN_COLUMNS.
 
-    `values` are the config's plain values, `sets` the rows of the other sets by name.
+    `values` are the config's plain values, `sets` the rows of the sets by name. Runs of a set that is the
+    config's own are the config's.
     """
-    rows = {OWN: None, **sets}
-    keys = {name: settings_key(*set_cases(values, row)) for name, row in rows.items()}
-    same = stored["settings"] == stored["set"].map(keys)
-    return stored.loc[same, list(RUN_COLUMNS)]
+    own = settings_key(*set_cases(values, None))
+    keys = {OWN: own, **{name: settings_key(*set_cases(values, row)) for name, row in sets.items()}}
+    same = stored[stored["settings"] == stored["set"].map(keys)]
+    named = same.assign(set=same["set"].where(same["settings"] != own, OWN))
+    return named.drop_duplicates(["set", "id"])[list(RUN_COLUMNS)]

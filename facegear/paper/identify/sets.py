@@ -12,15 +12,17 @@ from facegear.paper.identify.cases import Cases, PointChanges, changed_cases
 from facegear.paper.identify.inputs import WAVEFORM_TERMS, Waveform
 from facegear.paper.identify.patterns import phasing_of
 
+ERROR_UM = 50.0
+"""The paper's size of e(t)."""
 BEARING_STUDY, BEARING_KEY = "pinion_bearings", "transmission.pinion.bearing_stiffness_n_per_m"
 """The study whose two stiffer points the paper does not disclose, and the key that it sets."""
 
 
-def config_changes(row: Mapping[str, Any], error_um: float) -> dict[str, Any]:
-    """Dotted config keys and values of one row of a sets file; `error_um` is the paper's size of e(t)."""
+def config_changes(row: Mapping[str, Any]) -> dict[str, Any]:
+    """Dotted config keys and values of one row of a sets file."""
     first, *others = WAVEFORM_TERMS[Waveform(row["waveform"])]
     phase = float(row["error_phase_deg"])
-    half_range = error_um * (1.0 if row["meaning"] == "amplitude" else 0.5)
+    half_range = ERROR_UM * (1.0 if row["meaning"] == "amplitude" else 0.5)
     more = [
         {
             "order": order,
@@ -34,7 +36,7 @@ def config_changes(row: Mapping[str, Any], error_um: float) -> dict[str, Any]:
         "transmission.torque.tail_share": float(row["tail_share"]),
         "transmission.phase_convention": str(row["phase_convention"]),
         "transmission.transmission_error": {
-            "amplitude_um": error_um * first[1],
+            "amplitude_um": ERROR_UM * first[1],
             "meaning": str(row["meaning"]),
             "phase_deg": _wrapped(phase),
             "phasing": phasing_of(row["pattern"]),
@@ -60,16 +62,15 @@ def set_cases(
     settings: Mapping[str, Any] = MappingProxyType({}),
 ) -> Cases:
     """Cases of a config with the inputs of a row of a sets file (its own for None) and other keys set."""
-    size = values["transmission"]["transmission_error"]["amplitude_um"]
     if row is None:
         return changed_cases(values, settings)
-    return changed_cases(values, {**settings, **config_changes(row, size)}, point_changes(row))
+    return changed_cases(values, {**settings, **config_changes(row)}, point_changes(row))
 
 
 def stored_sets(path: str | Path) -> dict[str, dict[str, str]]:
-    """Name -> the row of each stored set but the recommended one, which is the config's own."""
+    """Name -> the row of each stored set."""
     with Path(path).open(encoding="utf-8", newline="") as file:
-        return {row["set"]: row for row in csv.DictReader(file) if row["recommended"] == "False"}
+        return {row["set"]: row for row in csv.DictReader(file)}
 
 
 def _wrapped(degrees: float) -> float:

@@ -53,7 +53,7 @@ def test_every_point_of_the_unit_cube_is_a_row_of_inputs_within_their_ranges(uni
 def test_error_in_the_config_of_a_row_has_the_stated_range_for_every_form(waveform, meaning, wanted):
     row = {**SPACE.row(MIDDLE, "none"), "waveform": str(waveform), "meaning": meaning}
     values = copy.deepcopy(VALUES)
-    for key, value in config_changes(row, 50.0).items():
+    for key, value in config_changes(row).items():
         set_key(values, key, value)
     machine = case_machine(values, Harmonics(np.zeros(2), np.array([4.1e8, 2e7])))
     assert np.ptp(machine.error(np.linspace(0, 1, 3601))) == pytest.approx(wanted, rel=1e-6)

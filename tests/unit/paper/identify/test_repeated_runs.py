@@ -1,6 +1,7 @@
 """Runs that differ by rounding, and the stored ones of the committed config."""
 
 import copy
+import math
 from pathlib import Path
 
 import pandas as pd
@@ -9,10 +10,11 @@ import pytest
 from facegear.config.load import load_values
 from facegear.paper.config.reproduction import read_reproduction
 from facegear.paper.identify.cases import settings_key
+from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.perturbed import SIZE, perturbed
-from facegear.paper.identify.repeated import run_columns, run_table, runs_of_config
+from facegear.paper.identify.repeated import one_run, run_columns, run_table, runs_of_config
 from facegear.paper.identify.sets import set_cases, stored_sets
-from facegear.paper.scorecard.claims import read_claims
+from facegear.paper.scorecard.claims import Claim, read_claims
 
 ROOT = Path(__file__).parents[4]
 VALUES = load_values([ROOT / "config" / "paper.yaml"], {})
@@ -50,12 +52,28 @@ def test_a_perturbed_run_moves_every_number_of_the_machine_by_rounding_and_nothi
     assert by != changes(VALUES, perturbed(VALUES, 2))
 
 
-def test_run_table_counts_the_runs_that_hold_a_claim():
-    runs = pd.DataFrame([[1.0, 1.7, 0.0, 2.0], [0.0, 1.9, 0.0, 2.1]], columns=run_columns(["one", "two"]))
+def test_run_table_counts_the_runs_that_judged_a_claim_and_those_that_hold_it():
+    nan = float("nan")
+    runs = pd.DataFrame([[1.0, 1.7, 0.0, 2.0], [0.0, 1.9, nan, nan]], columns=run_columns(["one", "two"]))
     table = run_table("a", runs, ["one", "two"], "key").set_index("id")
     assert table["held"].tolist() == [1, 0]
-    assert table["runs"].tolist() == [2, 2]
+    assert table["runs"].tolist() == [2, 1]
     assert (table.loc["one", "low"], table.loc["one", "high"]) == (1.7, 1.9)
+
+
+class Counted(ClaimJudge):
+    """A judge that tells which run it made, and for which claims."""
+
+    def outcomes(self, row, run=0):
+        return pd.DataFrame({"id": self.names, "holds": True, "value": [float(run)] * len(self.names)})
+
+
+def test_runs_without_a_sweep_judge_the_other_claims_alone():
+    claims = [Claim(id=name, where="", claim="", criterion=name) for name in ("jump_leans", "lowest_at")]
+    evaluate = one_run(Counted({}, pd.DataFrame(), claims), None, swept=1)
+    assert evaluate(0)["jump_leans value"] == evaluate(0)["lowest_at value"] == 0.0
+    assert evaluate(1)["lowest_at value"] == 1.0 and evaluate(1)["lowest_at holds"] == 1.0
+    assert math.isnan(evaluate(1)["jump_leans value"]) and math.isnan(evaluate(1)["jump_leans holds"])
 
 
 @pytest.mark.parametrize(
