@@ -40,9 +40,7 @@ with stage(snakemake) as run:
     kinds = pd.concat([one.assign(kind=name) for name, one in looked_at.items()], ignore_index=True)
     counts = [by_input(one.assign(kind=name), claims, "kind") for name, one in looked_at.items()]
     tables.write(output.counts, pd.concat(counts, ignore_index=True))
-    swept = pd.concat([random, judged], ignore_index=True)
-    pairs = pd.concat([never_together(kinds, claims), never_together(swept, claims)])
-    tables.write(output.never_together, pairs.drop_duplicates(["first", "second"]))
+    tables.write(output.never_together, never_together(kinds, claims))
     correlated = correlations(region)
     tables.write(output.correlations, correlated.reset_index(names="input"))
     section = parse(Identify, snakemake.params.identify)

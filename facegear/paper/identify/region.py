@@ -78,16 +78,22 @@ def searches(searched: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:
 def never_together(found: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:
     """Pairs of claims that no row holds together, though EXPECTED rows would if they were independent.
 
-    Columns first, second, rows that hold each, and those expected to hold both; the most expected first.
+    Rows that were not judged by a claim hold NaN; a pair is seen in the rows judged by both. Columns first,
+    second, rows judged, rows that hold each, and those expected to hold both; the most expected first.
     """
     kept = sound(found)
     ids = [claim.id for claim in claims if claim.counts and claim.id in kept.columns]
-    held = kept[ids].to_numpy(float)
-    count, together = held.sum(axis=0), held.T @ held
-    expected = np.outer(count, count) / len(kept)
+    values = kept[ids].to_numpy(float)
+    judged, held = np.isfinite(values).astype(float), np.nan_to_num(values)
+    both, count, together = judged.T @ judged, held.T @ judged, held.T @ held
+    expected = count * count.T / np.maximum(both, 1.0)
     pairs = np.argwhere(np.triu((together == 0.0) & (expected >= EXPECTED), k=1))
-    rows = [(ids[i], ids[j], int(count[i]), int(count[j]), expected[i, j]) for i, j in pairs]
-    frame = pd.DataFrame(rows, columns=["first", "second", "first_held", "second_held", "expected"])
+    rows = [
+        (ids[i], ids[j], int(both[i, j]), int(count[i, j]), int(count[j, i]), expected[i, j])
+        for i, j in pairs
+    ]
+    names = ["first", "second", "judged", "first_held", "second_held", "expected"]
+    frame = pd.DataFrame(rows, columns=names)
     return frame.sort_values("expected", ascending=False, kind="stable").reset_index(drop=True)
 
 

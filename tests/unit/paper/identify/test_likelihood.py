@@ -112,6 +112,9 @@ def test_claims_that_exclude_each_other_are_found_and_rare_ones_are_not_blamed()
     pairs = never_together(held.assign(error=""), CLAIMS)
     assert pairs[["first", "second"]].to_numpy().tolist() == [["leans", "other"]]
     assert pairs["expected"][0] == pytest.approx(10.0)
+    unjudged = pd.concat([held, pd.DataFrame({"leans": 100 * [1.0]})], ignore_index=True)
+    again = never_together(unjudged.assign(error=""), CLAIMS)
+    assert again["judged"].tolist() == [40] and again["expected"].tolist() == pairs["expected"].tolist()
 
 
 def test_another_run_that_plays_the_paper_is_met_where_held_out_claims_follow_from_fitted_ones():
