@@ -14,7 +14,9 @@ from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.perturbed import SIZE, perturbed
 from facegear.paper.identify.repeated import one_run, run_columns, run_table, runs_of_config
 from facegear.paper.identify.sets import set_cases, stored_sets
+from facegear.paper.scorecard.base_rates import RATE_COLUMNS
 from facegear.paper.scorecard.claims import Claim, read_claims
+from facegear.paper.scorecard.rows import OUTCOME_COLUMNS, RUN_COLUMNS, scorecard
 
 ROOT = Path(__file__).parents[4]
 VALUES = load_values([ROOT / "config" / "paper.yaml"], {})
@@ -101,3 +103,44 @@ def test_stored_runs_are_those_of_the_committed_config_and_of_every_set():
     for _, rows in kept.groupby("set"):
         assert set(rows["id"]) == dynamic
     assert dynamic <= set(pd.read_csv(STORED.random).columns)
+
+
+def test_the_likely_config_is_the_recommended_set_and_has_its_runs():
+    likely = load_values([ROOT / "config" / "paper_likely.yaml"], {})
+    sets = pd.read_csv(STORED.sets).set_index("set")
+    (recommended,) = sets.index[sets["recommended"]]
+    kept = runs_of_config(pd.read_csv(STORED.runs), likely, stored_sets(STORED.sets))
+    assert set(kept["set"]) == {"config", *sets.index} - {recommended}
+    stored = pd.read_csv(STORED.runs).query("set == @recommended")
+    own = kept[kept["set"] == "config"]
+    assert own["held"].tolist() == stored["held"].tolist()
+
+
+def test_runs_that_differ_by_rounding_agree_or_the_row_is_undecided():
+    """Whichever stored run is the config's own, the verdicts are the same: rows on which they differ have one."""
+    claims = [claim for claim in read_claims(STORED.claims).claims if claim.dynamic]
+    stored = pd.read_csv(STORED.runs)
+    own = stored[stored["set"] == "config"].set_index("id")
+    assert (own["runs"] >= 3).all()
+    rates = pd.DataFrame(columns=list(RATE_COLUMNS))
+    verdicts = []
+    for holds in (own["held"] > 0, own["held"] == own["runs"]):  # the runs that say yes most, and least often
+        found = [
+            (
+                one.id,
+                None if one.paper is None else float(own["low"][one.id]),
+                "",
+                bool(holds[one.id]),
+                None,
+                "",
+                0.0,
+            )
+            for one in claims
+        ]
+        outcomes = pd.DataFrame(found, columns=list(OUTCOME_COLUMNS))
+        frame = scorecard(claims, outcomes, stored[list(RUN_COLUMNS)], rates)
+        verdicts.append(frame["verdict"].tolist())
+    assert verdicts[0] == verdicts[1]
+    split = (own["held"] > 0) & (own["held"] < own["runs"])
+    undecided = {one.id for one, verdict in zip(claims, verdicts[0], strict=True) if verdict == "undecided"}
+    assert undecided == set(own.index[split])
