@@ -117,7 +117,7 @@ def test_the_likely_config_is_the_recommended_set_and_has_its_runs():
 
 
 def test_runs_that_differ_by_rounding_agree_or_the_row_is_undecided():
-    """Whichever stored run is the config's own, the verdicts are the same: rows on which they differ have one."""
+    """Whichever stored run is the own one, the verdicts are the same: where runs differ it is undecided."""
     claims = [claim for claim in read_claims(STORED.claims).claims if claim.dynamic]
     stored = pd.read_csv(STORED.runs)
     own = stored[stored["set"] == "config"].set_index("id")
