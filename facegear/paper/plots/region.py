@@ -5,7 +5,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullLocator
+from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
 from facegear.paper.config.sections import Ranges
 from facegear.paper.identify.inputs import BEARINGS, LOGARITHMIC
@@ -14,7 +14,7 @@ from facegear.plots.style import NARROW, styled
 BINS = 12
 LABELS = {
     "per_input_n_m": "Torque per engine (N m)",
-    "tail_share": "Share of the power at the tail",
+    "tail_share": "Power at the tail, share",
     "error_phase_deg": "Phase of e(t) (deg)",
     "stiffness_variation": "Variation of k(t), factor",
     "mid_bearing_n_per_m": "Mid pinion bearing (N/m)",
@@ -56,6 +56,7 @@ def _histogram(axis: Axes, values: np.ndarray, limits: tuple[float, float], loga
     if limits[1] < 1e4:
         axis.xaxis.set_major_formatter("{x:g}")
     axis.set_xlim(*limits)
+    axis.yaxis.set_major_locator(MaxNLocator(nbins=4, integer=True))
 
 
 def _matrix(axis: Axes, values: np.ndarray) -> None:
@@ -66,5 +67,5 @@ def _matrix(axis: Axes, values: np.ndarray) -> None:
     for row, column in np.ndindex(values.shape):
         value = values[row, column]
         color = "white" if abs(value) > 0.6 else "black"
-        axis.text(column, row, f"{value:.1f}", ha="center", va="center", color=color)
+        axis.text(column, row, f"{round(value, 1) + 0.0:.1f}", ha="center", va="center", color=color)
     axis.set_title("rank correlation over the region")
