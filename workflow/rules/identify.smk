@@ -43,11 +43,12 @@ rule identify_search:
         ltca=shared("contact", "ltca"),
         claims=CLAIMS,
         structures=random_chunks("structures"),
-        before=[],
+        before=searched_before,
     output:
-        evaluations="results/{case}/identify/search/{pattern}.csv",
-        manifest="results/{case}/identify/search/{pattern}.provenance.json",
+        evaluations="results/{case}/identify/search/{again}{pattern}.csv",
+        manifest="results/{case}/identify/search/{again}{pattern}.provenance.json",
     wildcard_constraints:
+        again="(again/)?",
         pattern="[a-z+-]+",
     resources:
         runtime=120,
@@ -56,17 +57,6 @@ rule identify_search:
         identify=IDENTIFY_VALUES,
     script:
         "../scripts/identify_search.py"
-
-
-use rule identify_search as identify_search_again with:
-    input:
-        ltca=shared("contact", "ltca"),
-        claims=CLAIMS,
-        structures=random_chunks("structures"),
-        before=[rules.identify_search.output.evaluations],
-    output:
-        evaluations="results/{case}/identify/search/again/{pattern}.csv",
-        manifest="results/{case}/identify/search/again/{pattern}.provenance.json",
 
 
 rule identify_likely_part:

@@ -19,6 +19,11 @@ LIKELY = [f"results/{{case}}/identify/likely/{part}.csv" for part in range(SEARC
 STORED_SETS = REPRODUCTION.sets if REPRODUCTION and REPRODUCTION.sets else []
 
 
+def searched_before(wildcards):
+    """The search that one which is made again starts from."""
+    return [f"results/{wildcards.case}/identify/search/{wildcards.pattern}.csv"] if wildcards.again else []
+
+
 def judged_sets():
     """The config's own inputs, and the sets that fit about as well."""
     if not STORED_SETS:
