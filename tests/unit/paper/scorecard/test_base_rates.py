@@ -4,11 +4,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from facegear.paper.scorecard.base_rates import base_rates, by_pattern, totals
+from facegear.paper.scorecard.base_rates import base_rates, by_input, shares_of, totals, upper_error
 from facegear.paper.scorecard.claims import Claim
 
 CLAIMS = [
-    Claim(id=name, where="text", claim=name, criterion="lost_contact", same_as=same)
+    Claim(id=name, where="text", claim=name, criterion="lost_contact", same_as=same, fitted=name == "half")
     for name, same in (("always", None), ("never", None), ("half", None), ("again", "half"))
 ]
 
@@ -42,6 +42,21 @@ def test_samples_without_a_result_are_left_out(samples):
 
 
 def test_patterns_are_ranked_by_what_random_inputs_hold_under_them(samples):
-    found = by_pattern(samples.iloc[::-1], CLAIMS)
-    assert found["pattern"].tolist() == ["a", "b"]
-    assert found["mean"].tolist() == [2.0, 1.0]
+    """By the fitted claims; all of them stand beside."""
+    found = by_input(samples.iloc[::-1], CLAIMS, "pattern")
+    assert found["value"].tolist() == ["a", "b"]
+    assert found["mean"].tolist() == [1.0, 0.0] and found["all_mean"].tolist() == [2.0, 1.0]
+    assert found["claims"].tolist() == [1, 1] and found["all_most"].tolist() == [2, 1]
+
+
+def test_the_upper_quantile_of_more_samples_is_known_better():
+    held = np.random.default_rng(2).binomial(23, 0.5, 400).astype(float)
+    few, many = upper_error(held[:16]), upper_error(held)
+    assert 0.0 < many < 0.6 * few
+    assert upper_error(np.full(16, 9.0)) == 0.0
+
+
+def test_shares_of_two_designs_stand_beside_each_other(samples):
+    told = shares_of({"first": samples, "second": samples.assign(half=1.0)}, CLAIMS).set_index("id")
+    assert told.loc["half", ["first_share", "second_share"]].tolist() == [0.5, 1.0]
+    assert told.index.tolist() == ["always", "never", "half"] and bool(told.loc["half", "fitted"])
