@@ -50,7 +50,7 @@ def test_patterns_are_ranked_by_what_random_inputs_hold_under_them(samples):
 
 
 def test_the_upper_quantile_of_more_samples_is_known_better():
-    held = np.random.default_rng(2).binomial(23, 0.5, 400).astype(float)
+    held = np.random.default_rng(2).normal(12.0, 2.0, 400)
     few, many = upper_error(held[:16]), upper_error(held)
     assert 0.0 < many < 0.6 * few
     assert upper_error(np.full(16, 9.0)) == 0.0
