@@ -16,7 +16,9 @@ YLABEL = {
     "idlers": "Load sharing coefficient of\n idler pinions and tail rotor idler",
     "drivers": "Load sharing coefficient of\n the input pinions",
 }
-CAPTION_WIDTH = 62
+CAPTION_WIDTH, CAPTION_LINES = 62, 6
+LINE_HEIGHT = 0.16
+"""Height in inches of each line of the caption beyond CAPTION_LINES, by which the figure grows."""
 ENVELOPE = 0.02
 """An envelope narrower than this is a line, and not drawn."""
 
@@ -34,8 +36,10 @@ def sharing_figure(
     rows = rows[rows["group"] == group]
     means = summary[(summary["group"] == group) & (summary["study"] == rows["study"].iloc[0])]
     means = means.set_index("point")
+    lines = textwrap.wrap(caption, CAPTION_WIDTH)
     with styled():
-        figure, axis = plt.subplots(figsize=(NARROW, 5.0))
+        height = 5.0 + LINE_HEIGHT * max(0, len(lines) - CAPTION_LINES)
+        figure, axis = plt.subplots(figsize=(NARROW, height))
         for number, (point, curve) in enumerate(rows.groupby("point", sort=False)):
             _draw(axis, curve, means.loc[point], number)
         axis.set_xlim(0.0, 1e4 * rows["time_s"].max() * len(curve) / (len(curve) - 1))
@@ -45,9 +49,7 @@ def sharing_figure(
         axis.set_ylabel(YLABEL[kind])
         axis.set_title(f"{title}: {group}", fontsize=9)
         axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=1)
-        figure.supxlabel(
-            "\n".join(textwrap.wrap(caption, CAPTION_WIDTH)), fontsize=9, color="0.35", ha="center"
-        )
+        figure.supxlabel("\n".join(lines), fontsize=9, color="0.35", ha="center")
     return figure
 
 
