@@ -67,5 +67,7 @@ def _matrix(axis: Axes, values: np.ndarray) -> None:
     for row, column in np.ndindex(values.shape):
         value = values[row, column]
         color = "white" if abs(value) > 0.6 else "black"
-        axis.text(column, row, f"{round(value, 1) + 0.0:.1f}", ha="center", va="center", color=color)
+        axis.text(
+            column, row, f"{float(np.round(value, 1)) + 0.0:.1f}", ha="center", va="center", color=color
+        )
     axis.set_title("rank correlation over the region")
