@@ -121,7 +121,6 @@ rule identify_region:
         manifest="results/{case}/identify/region.provenance.json",
     params:
         identify=IDENTIFY_VALUES,
-        case=whole_case,
     script:
         "../scripts/identify_region.py"
 

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 
 from facegear.config.base import parse
@@ -12,8 +11,8 @@ from facegear.paper.config.search import plausible_inputs
 from facegear.paper.config.sections import Identify
 from facegear.paper.identify.claim_judge import QUICK
 from facegear.paper.identify.likelihood import Likelihood
-from facegear.paper.identify.random_verdicts import dynamic_judge, unswept
-from facegear.paper.identify.search import LOG_LIKELIHOOD, Budget, best_points, search_pattern
+from facegear.paper.identify.random_verdicts import dynamic_judge, fitted_at_speed
+from facegear.paper.identify.search import LOG_LIKELIHOOD, Budget, first_points, search_pattern
 from facegear.paper.scorecard.claims import read_claims
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
@@ -25,29 +24,18 @@ with stage(snakemake) as run:
     ltca = tables.read(files.ltca, LTCA_COLUMNS)
     random = pd.concat([tables.read(path) for path in files.structures], ignore_index=True)
     likelihood = Likelihood.of(read_claims(files.claims).claims, random)
-    judge = dynamic_judge(
-        params.case, ltca, files.claims, lambda claim: claim.fitted and unswept(claim), QUICK
-    )
+    judge = dynamic_judge(params.case, ltca, files.claims, fitted_at_speed, QUICK)
     drawn = plausible_inputs(section, "structures", params.case, ltca)
     size, budget = section.search.population, Budget(section.search.generations, section.search.seed)
-    before = [random.copy().assign(**{LOG_LIKELIHOOD: likelihood(random)}), *map(tables.read, files.before)]
-    first = (
-        best_points(pd.concat(before, ignore_index=True), drawn.space, pattern, size)
-        if files.before
-        else np.array([drawn.unit(number) for number in range(size)])
-    )
+    judged = random.copy().assign(**{LOG_LIKELIHOOD: likelihood(random)})
+    before = [judged, *map(tables.read, files.before)] if files.before else []
+    first = first_points(drawn, before, pattern, size)
     partial = Path(snakemake.output.evaluations).with_suffix(".partial")
-    same = identity(
-        params.case, params.identify, ltca.to_csv(), likelihood.surprise.tolist(), first.tolist(), params.code
-    )
-    progress = Progress(f"search {pattern}", size * (budget.generations + 1))
-    found = search_pattern(
-        judge, likelihood, drawn.space, pattern, first, budget, partial, same, progress.step
-    )
+    same = identity(params.case, params.identify, ltca.to_csv(), first.tolist(), params.code)
+    told = Progress(f"search {pattern}", size * (budget.generations + 1)).step
+    found = search_pattern(judge, likelihood, drawn.space, pattern, first, budget, partial, same, told)
     tables.write(snakemake.output.evaluations, found)
     partial.unlink()
     best = found.loc[found[LOG_LIKELIHOOD].idxmax()]
-    run.summary(
-        f"{len(found)} evaluations, log-likelihood {best[LOG_LIKELIHOOD]:.1f} at "
-        f"{best['per_input_n_m']:.0f} N m, tail {best['tail_share']:.2f}, {best['error_phase_deg']:.0f} deg"
-    )
+    torque = best["per_input_n_m"]
+    run.summary(f"{len(found)} evaluations, log-likelihood {best[LOG_LIKELIHOOD]:.1f} at {torque:.0f} N m")

@@ -28,6 +28,11 @@ def phasing_of(pattern: str) -> Phasing:
     return {**READINGS, **half_turn_patterns()}[pattern]
 
 
+def file_name(pattern: str) -> str:
+    """A pattern's name as that of a file."""
+    return pattern.replace("/", "-")
+
+
 def half_turn_patterns() -> dict[str, Phasing]:
     """The 32 left-right symmetric patterns of half turns over the meshes that differ, by name.
 

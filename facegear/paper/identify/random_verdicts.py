@@ -26,6 +26,11 @@ def dynamic_judge(
     return ClaimJudge(values, ltca, chosen, settings)
 
 
+def fitted_at_speed(claim: Claim) -> bool:
+    """Whether the fit uses a claim that needs no sweep."""
+    return claim.fitted and unswept(claim)
+
+
 def unswept(claim: Claim) -> bool:
     """Whether a claim needs no speed sweep, which takes ten times as long as all the rest."""
     return not reads_sweep(claim.criterion)

@@ -11,7 +11,7 @@ from facegear.paper.identify.inputs import BEARINGS, INPUT_COLUMNS, NUMBERS
 from facegear.paper.identify.likelihood import Likelihood
 from facegear.paper.identify.random_verdicts import judged_samples
 from facegear.paper.identify.search import LOG_LIKELIHOOD
-from facegear.paper.scorecard.base_rates import sound
+from facegear.paper.scorecard.base_rates import by_input, shares_of, sound
 from facegear.paper.scorecard.claims import Claim
 
 LOG_UNITS = 3.0
@@ -48,6 +48,30 @@ def most_likely(found: pd.DataFrame, within: float) -> pd.DataFrame:
     """Rows whose log-likelihood is at most `within` below the largest, the most likely first."""
     kept = found[found[LOG_LIKELIHOOD] >= found[LOG_LIKELIHOOD].max() - within]
     return kept.sort_values(LOG_LIKELIHOOD, ascending=False, kind="stable").reset_index(drop=True)
+
+
+def region_tables(
+    random: pd.DataFrame,
+    structures: pd.DataFrame,
+    searched: pd.DataFrame,
+    judged: pd.DataFrame,
+    claims: Sequence[Claim],
+) -> dict[str, pd.DataFrame]:
+    """Tables by name from all inputs that were looked at: `region` with the claims that its inputs hold,
+    `searches`, `shares` of claims, `counts` of claims held, `never_together` and `correlations`.
+    """
+    region = most_likely(judged, LOG_UNITS)
+    told = region[[*INPUT_COLUMNS, LOG_LIKELIHOOD, *[claim.id for claim in claims]]]
+    looked_at = {"random": random, "patterns": structures, "searched": searched, "likely": judged}
+    kinds = [one.assign(kind=name) for name, one in looked_at.items()]
+    return {
+        "region": told.assign(**held_counts(region, claims)),
+        "searches": searches(searched, claims),
+        "shares": shares_of({"region": region, "random": random}, claims),
+        "counts": pd.concat([by_input(one, claims, "kind") for one in kinds], ignore_index=True),
+        "never_together": never_together(pd.concat(kinds, ignore_index=True), claims),
+        "correlations": correlations(region).reset_index(names="input"),
+    }
 
 
 def held_counts(found: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:

@@ -1,6 +1,6 @@
 """Search for the most likely inputs under one pattern of e(t)."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.inputs import COORDINATES, INPUT_COLUMNS, Space
 from facegear.paper.identify.likelihood import Likelihood
+from facegear.paper.identify.random_inputs import Plausible
 from facegear.paper.identify.random_verdicts import judged_samples
 
 LOG_LIKELIHOOD = "log_likelihood"
@@ -27,11 +28,18 @@ class Budget:
     seed: int
 
 
-def best_points(found: pd.DataFrame, space: Space, pattern: str, count: int) -> NDArray[np.float64]:
-    """Points (count, coordinates) of the most likely inputs of a pattern in a table of evaluations."""
+def first_points(
+    plausible: Plausible, before: Sequence[pd.DataFrame], pattern: str, count: int
+) -> NDArray[np.float64]:
+    """Points (count, coordinates) that a search starts from: the first random ones, or the most likely of the
+    pattern in tables of evaluations before it.
+    """
+    if not before:
+        return np.array([plausible.unit(number) for number in range(count)])
+    found = pd.concat(before, ignore_index=True)
     own = found[found["pattern"] == pattern].drop_duplicates(list(INPUT_COLUMNS))
     best = own.sort_values(LOG_LIKELIHOOD, ascending=False, kind="stable").head(count)
-    return np.array([space.unit(row) for row in best.to_dict("records")])
+    return np.array([plausible.space.unit(row) for row in best.to_dict("records")])
 
 
 def search_pattern(

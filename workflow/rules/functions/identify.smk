@@ -1,5 +1,6 @@
 from facegear.paper.config.reproduction import design_points
 from facegear.paper.config.sections import design_chunks
+from facegear.paper.identify.patterns import file_name
 
 IDENTIFY = REPRODUCTION.identify if REPRODUCTION else None
 IDENTIFY_VALUES = IDENTIFY.model_dump(mode="json") if IDENTIFY else None
@@ -8,7 +9,7 @@ CLAIMS = REPRODUCTION.claims if REPRODUCTION else []
 SEARCH = IDENTIFY.search if IDENTIFY else None
 SEARCHES = (
     [
-        f"results/{{case}}/identify/search/{folder}{name.replace('/', '-')}.csv"
+        f"results/{{case}}/identify/search/{folder}{file_name(name)}.csv"
         for folder, names in (("", SEARCH.patterns), ("again/", SEARCH.again))
         for name in names
     ]
