@@ -167,12 +167,13 @@ def check_search(
         raise ConfigError("mesh_stiffness.source", "harmonics", f"fem or fem_scaled, {CONTACT_ASKED}")
     found = layout(machine, pair_teeth(pair))
     dynamic, gauges = section.model == "dynamic", contact == "root stress"
-    names = quantity_names(found, dynamic, contact != "none", gauges)
+    names = quantity_names(found, dynamic, contact != "none", gauges, jumps=True)
     for goal in (*section.objectives, *section.constraints):
-        for start in goal.largest_of:
+        for start in goal.quantities:
             if not columns_of(start, names):
                 allowed = f"the beginning of one of: {', '.join(names)}"
-                raise ConfigError(f"search: {goal.name}.largest_of", start, allowed)
+                key = "smallest_of" if goal.large else "largest_of"
+                raise ConfigError(f"search: {goal.name}.{key}", start, allowed)
     if section.robust and tolerances is None:
         raise ConfigError("tolerances", None, "required by percentiles in search")
 

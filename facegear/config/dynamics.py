@@ -37,6 +37,19 @@ class Accuracy(Section):
     )
 
 
+SWEPT = Accuracy(
+    tolerance=3e-5,
+    dwell_periods=32,
+    settle_periods=256,
+    window_periods=160,
+    longest_period=64,
+    periodic_residual=1e-5,
+    extensions=1,
+    samples_per_period=32,
+)
+"""What many speeds in a row are run with."""
+
+
 class Sweep(Section):
     """Speeds run up and down with the state carried over."""
 
@@ -49,16 +62,7 @@ class Sweep(Section):
     )
     overlap_points: int = Field(8, ge=0, le=1000, description="speeds a chunk runs before its own first one")
     jump_resolution_rpm: float = Field(1.0, gt=0, le=1000)
-    accuracy: Accuracy = Accuracy(
-        tolerance=3e-5,
-        dwell_periods=32,
-        settle_periods=256,
-        window_periods=160,
-        longest_period=64,
-        periodic_residual=1e-5,
-        extensions=1,
-        samples_per_period=32,
-    )
+    accuracy: Accuracy = SWEPT
 
     @model_validator(mode="after")
     def _rising(self) -> "Sweep":

@@ -166,7 +166,7 @@ def many_contacts(rule: str, values: Mapping[str, Any]) -> bool:
     goals = [*search["objectives"], *search["constraints"]]
     robust = any(goal["percentile"] is not None for goal in goals)
     keys = [key for variable in search["variables"] for key in variable["sets"]]
-    asked = any(of_contact(text) for goal in goals for text in goal["largest_of"])
+    asked = any(of_contact(text) for goal in goals for text in (*goal["largest_of"], *goal["smallest_of"]))
     return asked or moves_pair(keys) or (robust and moves_pair(causes))
 
 

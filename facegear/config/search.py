@@ -5,6 +5,9 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
+from facegear.config.dynamics import SWEPT, Accuracy, settings
+from facegear.dynamics.sweeps.plan import JumpRange
+from facegear.load_sharing.quantity_names import of_jumps
 
 TAKEN = ("design", "error", "generation", "seed")
 """Columns beside those of variables, objectives and constraints."""
@@ -37,22 +40,78 @@ class VariableSection(Section):
 
 
 class ObjectiveSection(Section):
-    """Something that is to be small."""
+    """Something that is to be small, or large."""
 
     name: str = Field(pattern=NAME)
     largest_of: tuple[str, ...] = Field(
-        min_length=1,
-        description="quantities of tolerances/samples.parquet, or what several begin with",
+        (),
+        description="to be small: quantities of tolerances/samples.parquet, or what several begin with",
     )
+    smallest_of: tuple[str, ...] = Field((), description="instead, to be large: the same, or jump_margin_rpm")
     percentile: float | None = Field(
         None, gt=0, lt=100, description="over the causes of `tolerances`; null: of the machine as designed"
     )
 
+    @property
+    def large(self) -> bool:
+        """Whether it is to be large."""
+        return bool(self.smallest_of)
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """What it is the largest, or smallest, of."""
+        return self.smallest_of or self.largest_of
+
+    @model_validator(mode="after")
+    def _one_way(self) -> "ObjectiveSection":
+        if bool(self.largest_of) == bool(self.smallest_of):
+            refuse("largest_of", list(self.largest_of), "either this or smallest_of")
+        for text in self.largest_of:
+            if of_jumps(text):
+                refuse("largest_of", text, "in smallest_of, as a margin is to be large")
+        return self
+
 
 class ConstraintSection(ObjectiveSection):
-    """Something that may not be larger than a limit."""
+    """Something that may not be larger, or smaller, than a limit."""
 
-    at_most: float
+    at_most: float | None = Field(None, description="required with largest_of")
+    at_least: float | None = Field(None, description="required with smallest_of")
+
+    @property
+    def limit(self) -> float:
+        """The one that is given."""
+        found = self.at_least if self.large else self.at_most
+        assert found is not None
+        return found
+
+    @model_validator(mode="after")
+    def _limited(self) -> "ConstraintSection":
+        key, other = ("at_least", "at_most") if self.large else ("at_most", "at_least")
+        for name, wanted in ((key, True), (other, False)):
+            if (getattr(self, name) is not None) != wanted:
+                given = "smallest_of" if self.large else "largest_of"
+                refuse(name, getattr(self, name), f"{'required' if wanted else 'not'} with {given}")
+        return self
+
+
+class Jumps(Section):
+    """Sweeps up and down around the operating speed, where the margin to the nearest jump is asked for."""
+
+    range_rpm: float = Field(
+        500, gt=0, le=100_000, description="on both sides of the speed; the margin where nothing jumps in it"
+    )
+    step_rpm: float = Field(50, gt=0, le=10_000, description="at most, from speed to speed")
+    resolution_rpm: float = Field(1.0, gt=0, le=1000, description="to which a jump is bracketed")
+    accuracy: Accuracy = SWEPT
+
+    @model_validator(mode="after")
+    def _inside(self) -> "Jumps":
+        if self.step_rpm > self.range_rpm:
+            refuse("step_rpm", self.step_rpm, f"at most range_rpm = {self.range_rpm:g}")
+        if self.range_rpm > 1000 * self.step_rpm:
+            refuse("step_rpm", self.step_rpm, f"a thousandth of range_rpm = {self.range_rpm:g} or more")
+        return self
 
 
 class Search(Section):
@@ -61,7 +120,10 @@ class Search(Section):
     variables: tuple[VariableSection, ...] = Field(min_length=1, max_length=50)
     objectives: tuple[ObjectiveSection, ...] = Field(min_length=1, max_length=4)
     constraints: tuple[ConstraintSection, ...] = Field((), max_length=20)
-    model: Literal["quasi_static", "dynamic"] = "quasi_static"
+    model: Literal["quasi_static", "dynamic"] = Field(
+        "quasi_static", description="of the loads; jumps are looked for in the motion with both"
+    )
+    jumps: Jumps = Jumps()
     hunting_cycles: int = Field(
         8, ge=1, le=100_000, description="mesh cycles taken from the hunting cycle; winners take all of them"
     )
@@ -93,3 +155,13 @@ class Search(Section):
         if len(set(self.seeds)) < len(self.seeds) or min(self.seeds) < 0:
             refuse("seeds", list(self.seeds), "different numbers from 0 on")
         return self
+
+
+def jump_range(section: Jumps) -> JumpRange:
+    """Where jumps are looked for, and how."""
+    return JumpRange(
+        range_rpm=section.range_rpm,
+        step_rpm=section.step_rpm,
+        resolution_rpm=section.resolution_rpm,
+        settings=settings(section.accuracy),
+    )

@@ -12,12 +12,14 @@ ERROR_RANGE, ERROR_HARMONIC, PRESSURE = "te_peak_to_peak_um", "te_first_harmonic
 ROOTS = {"pinion": "root_stress_pinion_mpa", "face_gear": "root_stress_face_gear_mpa"}
 CONTACT = (ERROR_RANGE, ERROR_HARMONIC, PRESSURE, *ROOTS.values())
 """What a contact analysis alone tells."""
+JUMP_MARGIN = "jump_margin_rpm"
+"""What sweeps around the operating speed alone tell."""
 QUANTITIES = (PEAK, OPEN, REVERSED, BEARINGS, *CONTACT)
 """Those that do not name a mesh or a group."""
 
 
 def quantity_names(
-    layout: "Layout", dynamic: bool, contact: bool = False, gauges: bool = False
+    layout: "Layout", dynamic: bool, contact: bool = False, gauges: bool = False, jumps: bool = False
 ) -> tuple[str, ...]:
     """Columns of a sample.
 
@@ -28,7 +30,8 @@ def quantity_names(
     nothing, and in which some mesh is loaded on the flank that it does not work on; the mass of bearings for
     the loads on them (`facegear.load_sharing.bearings`). With `contact`, the loaded transmission error of the
     tooth pair and its pressure, with `gauges` the root stress of both bodies
-    (`facegear.strength.pair_answers`).
+    (`facegear.strength.pair_answers`); with `jumps` the distance from the operating speed to the nearest jump
+    (`facegear.dynamics.sweeps.jump_margin`).
     """
     from facegear.load_sharing.groups import load_groups
 
@@ -37,7 +40,8 @@ def quantity_names(
     paths = [f"{factor} {layout.mesh_names[mesh]}" for group in groups for mesh in group.meshes]
     names = [*paths, *(f"coefficient {group.name}" for group in groups), PEAK, OPEN, REVERSED, BEARINGS]
     names += [ERROR_RANGE, ERROR_HARMONIC, PRESSURE] if contact else []
-    return (*names, *(ROOTS.values() if contact and gauges else ()))
+    names += ROOTS.values() if contact and gauges else []
+    return (*names, *([JUMP_MARGIN] if jumps else []))
 
 
 def columns_of(start: str, names: Sequence[str]) -> list[str]:
@@ -48,3 +52,8 @@ def columns_of(start: str, names: Sequence[str]) -> list[str]:
 def of_contact(start: str) -> bool:
     """Whether a text begins the name of something that a contact analysis alone tells."""
     return bool(columns_of(start, CONTACT))
+
+
+def of_jumps(start: str) -> bool:
+    """Whether a text begins the name of the margin to the nearest jump."""
+    return bool(columns_of(start, (JUMP_MARGIN,)))

@@ -41,16 +41,29 @@ class Variable:
 
 @dataclass(frozen=True)
 class Task:
-    """Variables, names of what is to be small, and of what may not exceed a limit."""
+    """Variables, names of the objectives, limits of what has one, and which of them all are to be `large`.
+
+    The others are to be small. A limit is the least for what is to be large, else the most.
+    """
 
     variables: tuple[Variable, ...]
     objectives: tuple[str, ...]
     limits: tuple[tuple[str, float], ...] = ()
+    large: frozenset[str] = frozenset()
 
     @property
     def goals(self) -> tuple[str, ...]:
         """All that is asked of a design."""
         return (*self.objectives, *(name for name, _ in self.limits))
+
+    def sign(self, name: str) -> float:
+        """Takes a goal's value to something that is to be small."""
+        return -1.0 if name in self.large else 1.0
+
+    def costs(self, designs: pd.DataFrame) -> Array:
+        """(designs, objectives): objectives of designs, all to be small."""
+        signs = [self.sign(name) for name in self.objectives]
+        return designs[list(self.objectives)].to_numpy(float) * signs
 
 
 @dataclass(frozen=True)
@@ -73,7 +86,8 @@ def evolve(
     """Every design tried, in order. Columns: generation, the variables, the goals, error.
 
     `partial` keeps every design as soon as it is known; under the same `identity` a killed evolution is
-    replayed from it and goes on. A design without results is a row with its error and breaks all limits.
+    replayed from it and goes on. A design without results is a row with its error and breaks all limits. It
+    ends before its last generation where it finds no design that is new.
     """
     known = {tuple(row["design"]): row for row in journal.read(partial, identity)}
     rows: list[tuple[Any, ...]] = []
@@ -81,6 +95,8 @@ def evolve(
     with journal.appending(partial, identity) as append:
         while algorithm.has_next():
             asked = algorithm.ask()
+            if asked is None:
+                break  # of designs on few steps, no new one is left
             found = []
             for parts in asked.get("X"):
                 design = tuple(one.value(part) for one, part in zip(task.variables, parts, strict=True))
@@ -99,8 +115,8 @@ def evolve(
 def feasible(designs: pd.DataFrame, task: Task) -> NDArray[np.bool_]:
     """Which designs have results and hold every limit."""
     held = np.array(designs[ERROR] == "")
-    for name, most in task.limits:
-        held &= designs[name].to_numpy() <= most
+    for name, limit in task.limits:
+        held &= task.sign(name) * (designs[name].to_numpy() - limit) <= 0.0
     return held
 
 
@@ -112,7 +128,7 @@ def front(designs: pd.DataFrame, task: Task) -> pd.DataFrame:
     held = designs[feasible(designs, task)].drop_duplicates(names)
     if held.empty:
         return held
-    best = NonDominatedSorting().do(held[list(task.objectives)].to_numpy(), only_non_dominated_front=True)
+    best = NonDominatedSorting().do(task.costs(held), only_non_dominated_front=True)
     return held.iloc[np.sort(best)].sort_values(list(task.objectives), kind="stable").reset_index(drop=True)
 
 
@@ -126,15 +142,15 @@ def hypervolumes(islands: Mapping[int, pd.DataFrame], task: Task) -> pd.DataFram
 
     whole = front(pd.concat(islands.values(), ignore_index=True), task)
     rows = []
-    goals = list(task.objectives)
-    ideal, worst = (whole[goals].min().to_numpy(), whole[goals].max().to_numpy()) if len(whole) else (0, 1)
+    size, costs = len(task.objectives), task.costs(whole)
+    ideal, worst = (costs.min(axis=0), costs.max(axis=0)) if len(whole) else (0, 1)
     span = np.where(worst > ideal, np.subtract(worst, ideal), 1.0)
-    box = HV(ref_point=np.full(len(goals), 1.1))
+    box = HV(ref_point=np.full(size, 1.1))
     for seed, designs in islands.items() if len(whole) else ():
         for generation in sorted(designs[GENERATION].unique()):
             held = front(designs[designs[GENERATION] <= generation], task)
-            parts = (held[goals].to_numpy() - ideal) / span
-            rows.append((seed, generation, float(box(parts)) / 1.1 ** len(goals) if len(held) else 0.0))
+            parts = (task.costs(held) - ideal) / span
+            rows.append((seed, generation, float(box(parts)) / 1.1**size if len(held) else 0.0))
     return pd.DataFrame(rows, columns=["seed", GENERATION, "hypervolume"])
 
 
@@ -174,12 +190,13 @@ def _tell(algorithm: Any, asked: Any, found: list[dict[str, Any]], task: Task) -
     from pymoo.problems.static import StaticProblem
 
     size = len(task.objectives)
-    most = [limit for _, limit in task.limits]
-    nothing = ([1e9] * size, [1e9] * (len(most) + 1))
+    signs = np.array([task.sign(name) for name in task.goals])
+    limits = np.array([limit for _, limit in task.limits])
+    nothing = ([1e9] * size, [1e9] * (len(limits) + 1))
     told = [
         (
-            row["values"][:size],
-            [value - limit for value, limit in zip(row["values"][size:], most, strict=True)] + [0.0],
+            signs[:size] * row["values"][:size],
+            np.append(signs[size:] * (np.array(row["values"][size:]) - limits), 0.0),
         )
         if row["values"]
         else nothing

@@ -1,7 +1,7 @@
 """What a search asks of a design, as designed or with its tolerances."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -11,12 +11,13 @@ import pandas as pd
 from facegear.config.base import parse
 from facegear.config.checks import check_places
 from facegear.config.lumped_model import wired_layout
-from facegear.config.search import ObjectiveSection, Search
+from facegear.config.search import ObjectiveSection, Search, jump_range
 from facegear.config.tolerances import Tolerances, population
 from facegear.config.tooth_pair import ToothPair
 from facegear.config.transmission import Transmission
 from facegear.config.variants import movable, moved, placed, variable_part
-from facegear.load_sharing.quantity_names import columns_of, quantity_names
+from facegear.dynamics.sweeps.plan import JumpRange
+from facegear.load_sharing.quantity_names import columns_of, of_jumps, quantity_names
 from facegear.scenarios.evolution import Task, Variable
 from facegear.scenarios.sampling import changes, samples
 from facegear.stages.many_machines import Question, judge
@@ -54,13 +55,14 @@ class SearchedMachine:
 
 
 def task(section: Search) -> Task:
-    """What is free, what is to be small and what is to hold."""
+    """What is free, what is to be small or large and what is to hold."""
     return Task(
         variables=tuple(
             Variable(one.name, *one.limits, one.steps, one.scale == "log") for one in section.variables
         ),
         objectives=tuple(one.name for one in section.objectives),
-        limits=tuple((one.name, one.at_most) for one in section.constraints),
+        limits=tuple((one.name, one.limit) for one in section.constraints),
+        large=frozenset(one.name for one in (*section.objectives, *section.constraints) if one.large),
     )
 
 
@@ -78,10 +80,12 @@ def assessor(
     moves = [key for cause in causes.causes for key, _ in cause.gains] if causes else []
     start = movable(given.values, [*keys, *moves])
     question = Question(section.model, cycles, given.accuracy, given.options)
-    ask = judge(question, given.meshes, "this design")
+    ask, ask_varied = (
+        judge(replace(question, jumps=within), given.meshes, "this design") for within in _jumps(section)
+    )
     gauges = given.pair is not None and given.pair["contact"]["root_stress"]
     shape = wired_layout(start["transmission"], given.tooth_pair)
-    names = quantity_names(shape, question.dynamic, given.pair is not None, gauges)
+    names = quantity_names(shape, question.dynamic, given.pair is not None, gauges, jumps=True)
     drawn = [changes(causes, row) for row in samples(causes, 0, count)] if causes else []
 
     def assess(design: Sequence[float] | None) -> tuple[Found, Found]:
@@ -90,7 +94,7 @@ def assessor(
         pair = parse(ToothPair, chosen["tooth_pair"], "this design")
         check_places(pair, parse(Transmission, chosen["transmission"], "this design"))
         nominal = ask(chosen)
-        varied = [ask(moved(chosen, added)) for added in drawn]
+        varied = [ask_varied(moved(chosen, added)) for added in drawn]
         goals = {}
         for goal in (*section.objectives, *section.constraints):
             goals[goal.name] = _goal(goal, names, nominal, varied)
@@ -100,7 +104,16 @@ def assessor(
 
 
 def _goal(goal: ObjectiveSection, names: Sequence[str], nominal: Found, varied: Sequence[Found]) -> float:
-    columns = [name for start in goal.largest_of for name in columns_of(start, names)]
+    columns = [name for start in goal.quantities for name in columns_of(start, names)]
+    worst = min if goal.large else max
     if goal.percentile is None:
-        return max(nominal[name] for name in columns)
-    return float(np.percentile([max(found[name] for name in columns) for found in varied], goal.percentile))
+        return worst(nominal[name] for name in columns)
+    return float(np.percentile([worst(found[name] for name in columns) for found in varied], goal.percentile))
+
+
+def _jumps(section: Search) -> tuple[JumpRange | None, JumpRange | None]:
+    """Where jumps are looked for as designed, and in the samples; None where no goal asks."""
+    goals = (*section.objectives, *section.constraints)
+    asking = {goal.percentile is not None for goal in goals if any(map(of_jumps, goal.quantities))}
+    within = jump_range(section.jumps)
+    return (within if False in asking else None, within if True in asking else None)

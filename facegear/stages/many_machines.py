@@ -10,8 +10,11 @@ from facegear.config.dynamics import Accuracy, settings
 from facegear.config.load_sharing import LoadSharing, sharing_options
 from facegear.config.lumped_model import machine
 from facegear.config.transmission import Transmission
+from facegear.dynamics.steady_state.simulate import build_model
+from facegear.dynamics.sweeps.jump_margin import jump_margin
+from facegear.dynamics.sweeps.plan import JumpRange
 from facegear.load_sharing.quantities import dynamic_quantities, quasi_static_quantities
-from facegear.load_sharing.quantity_names import PEAK
+from facegear.load_sharing.quantity_names import JUMP_MARGIN, PEAK
 from facegear.stages.tooth_meshes import Meshes
 
 Judge = Callable[[Mapping[str, Any]], dict[str, float]]
@@ -24,13 +27,15 @@ Raises the error that a config gets for a machine that cannot be built, NotConve
 class Question:
     """How machines are judged: by loads over `cycles` mesh cycles of the hunting cycle, or of the motion.
 
-    `model`: quasi_static or dynamic; `accuracy`, `options`: sections dynamics.accuracy and load_sharing.
+    `model`: quasi_static or dynamic; `accuracy`, `options`: sections dynamics.accuracy and load_sharing;
+    `jumps`: where the nearest jump is looked for, None if it is not asked for.
     """
 
     model: str
     cycles: int
     accuracy: Mapping[str, Any]
     options: Mapping[str, Any]
+    jumps: JumpRange | None = None
 
     @property
     def dynamic(self) -> bool:
@@ -47,8 +52,12 @@ def judge(question: Question, meshes: Meshes, told: str) -> Judge:
         section = parse(Transmission, mesh.in_machine(values["transmission"]), told)
         require_buildable(section, mesh.numbers)
         built = machine(section, mesh.numbers, mesh.stiffness, mesh.unloaded)
-        found = ask(built, values["dynamics"]["speed_rpm"])
-        return {**found, **mesh.quantities(found[PEAK])}
+        speed = values["dynamics"]["speed_rpm"]
+        found = ask(built, speed)
+        found |= mesh.quantities(found[PEAK])
+        if question.jumps is not None:
+            found[JUMP_MARGIN] = jump_margin(build_model(built), speed, question.jumps)
+        return found
 
     return judged
 

@@ -69,7 +69,8 @@ def _winners(best: pd.DataFrame, asked: Task, given: SearchedMachine, section: S
         searched, (goals, quantities) = coarse(design)[0], full(design)
         values = dict(zip(names, design if design is not None else _nominal(given, section), strict=True))
         compared = {f"{goal}_searched": searched[goal] for goal in asked.goals}
-        rows.append({"design": told, **values, **goals, **compared, **quantities})
+        others = {name: value for name, value in quantities.items() if name not in goals}
+        rows.append({"design": told, **values, **goals, **compared, **others})
     columns = ["design", *names, *(key for key in rows[0] if key not in ("design", *names))]
     return pd.DataFrame(rows, columns=columns)
 
@@ -84,8 +85,9 @@ def chosen(best: pd.DataFrame, asked: Task) -> dict[str, tuple[float, ...]]:
     """Designs of a front: the best in each objective, and of several objectives the nearest to all bests."""
     if best.empty:
         return {}
-    goals = best[list(asked.objectives)].to_numpy()
-    places = {f"least {name}": int(goals[:, i].argmin()) for i, name in enumerate(asked.objectives)}
+    goals = asked.costs(best)
+    most = {name: "most" if name in asked.large else "least" for name in asked.objectives}
+    places = {f"{most[name]} {name}": int(goals[:, i].argmin()) for i, name in enumerate(asked.objectives)}
     span = np.ptp(goals, axis=0)
     if len(asked.objectives) > 1:
         parts = (goals - goals.min(axis=0)) / np.where(span > 0.0, span, 1.0)

@@ -1,11 +1,15 @@
 """Which speeds a sweep runs, and in which chunks."""
 
 from dataclasses import dataclass
+from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.motion import Settings
+
+SLOWEST_RPM = 1.0
+"""Slower speeds are not run."""
 
 
 @dataclass(frozen=True)
@@ -35,3 +39,30 @@ class SweepPlan:
         bounds = np.linspace(0, self.points, self.chunks + 1).round().astype(int)
         start, stop = bounds[number], bounds[number + 1]
         return speeds[max(0, start - self.overlap) : start], speeds[start:stop]
+
+
+@dataclass(frozen=True)
+class JumpRange:
+    """Where jumps are looked for: up to `range_rpm` on both sides, at most `step_rpm` from speed to speed.
+
+    A jump is bracketed to `resolution_rpm`; `settings` are those of the sweeps.
+    """
+
+    range_rpm: float
+    step_rpm: float
+    resolution_rpm: float
+    settings: Settings
+
+    def plan(self, speed_rpm: float) -> SweepPlan:
+        """Up and down through the range around a speed, each in one piece."""
+        first, last = max(speed_rpm - self.range_rpm, SLOWEST_RPM), speed_rpm + self.range_rpm
+        return SweepPlan(
+            first_rpm=first,
+            last_rpm=last,
+            points=1 + max(ceil((last - first) / self.step_rpm), 2),
+            directions=("up", "down"),
+            chunks=1,
+            overlap=0,
+            jump_resolution_rpm=self.resolution_rpm,
+            settings=self.settings,
+        )

@@ -12,7 +12,8 @@ from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate, simulate_many
 from facegear.dynamics.sweeps.assemble import SeamKind, assemble
 from facegear.dynamics.sweeps.campbell import maxima, resonance
-from facegear.dynamics.sweeps.plan import SweepPlan
+from facegear.dynamics.sweeps.jump_margin import jump_margin
+from facegear.dynamics.sweeps.plan import JumpRange, SweepPlan
 from facegear.dynamics.sweeps.stored import SHAPES, from_arrays, to_arrays
 from facegear.dynamics.sweeps.sweep import Piece, collect, run_chunk, run_speeds, tighter
 from facegear.dynamics.sweeps.sweep_tables import jump_table, resonance_table, sweep_table
@@ -52,6 +53,30 @@ def test_the_resonance_of_mode_17_hardens_with_a_jump_up_beyond_the_jump_down(mo
     found = resonance(whole["up"].piece, up.largest, modes, 23)
     assert (found.mode, found.order) == (17, 1.0)
     assert found.share > 0.8
+
+
+@pytest.mark.parametrize(("speed", "direction"), [(4950.0, "down"), (5200.0, "up")])
+def test_the_margin_of_a_speed_is_its_distance_from_the_nearest_jump_of_the_sweep(
+    model, whole, speed, direction
+):
+    (jump,) = whole[direction].jumps
+    between = 0.5 * (jump.before.speed + jump.after.speed)
+    found = jump_margin(model, speed, JumpRange(400.0, 50.0, 1.0, SETTINGS))
+    assert found == pytest.approx(abs(between - speed), abs=1.0)
+
+
+def test_the_margin_is_0_at_a_jump_and_the_range_where_none_lies_in_it(model, whole):
+    up = whole["up"].jumps[0]
+    inside = 0.5 * (up.before.speed + up.after.speed)
+    assert jump_margin(model, inside, JumpRange(400.0, 50.0, 1.0, SETTINGS)) < 1.0
+    assert jump_margin(model, 4500.0, JumpRange(300.0, 50.0, 1.0, SETTINGS)) == 300.0
+
+
+@given(st.floats(1.0, 1e5), st.floats(1.0, 1e4), st.floats(0.1, 1e3))
+def test_jumps_are_looked_for_on_both_sides_in_steps_that_are_not_too_long(speed, reach, step):
+    plan = JumpRange(reach, step, 1.0, SETTINGS).plan(speed)
+    assert plan.first_rpm == max(speed - reach, 1.0) and plan.last_rpm == speed + reach
+    assert plan.points >= 3 and np.diff(plan.speeds).max() <= step * (1.0 + 1e-9)
 
 
 @pytest.mark.parametrize("chunks", [2, 5])

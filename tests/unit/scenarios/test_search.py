@@ -1,5 +1,7 @@
 """A search of designs: a known optimum, the spread over seeds, resumption, bad input, winners."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -39,6 +41,48 @@ SEARCH = {"variables": VARIABLES, "objectives": [SHARING], "population": 16, "ge
 def machine(tolerances=None, **section):
     start = facegear.load("config/harmonics_only.yaml", results=None)
     return start.with_values({**LINEAR, "search": {**SEARCH, **section}, "tolerances": tolerances})
+
+
+MARGIN = {"name": "margin", "smallest_of": ["jump_margin_rpm"]}
+MASS = {"name": "mass", "limits": [1.1, 1.4], "steps": 3, "sets": ["transmission.pinion.mass_kg"]}
+
+
+def near_a_jump(**section):
+    """The machine with its errors, above the jump of a resonance: 5930 rpm, 5690 with pinions of 1.4 kg."""
+    sizes = {"population": 4, "generations": 2, "seeds": [1]}
+    asked = {
+        "variables": [MASS],
+        "objectives": [MARGIN],
+        "jumps": {"range_rpm": 350, "step_rpm": 70},
+        **sizes,
+    }
+    start = facegear.load("config/harmonics_only.yaml", results=None)
+    return start.with_values({"dynamics.speed_rpm": 6000, "search": {**asked, **section}})
+
+
+def test_a_search_moves_the_operating_speed_away_from_the_jump():
+    winners = near_a_jump().search().winners().set_index("design")
+    best, nominal = winners.loc["most margin"], winners.loc["nominal"]
+    assert best["mass"] == pytest.approx(1.4)
+    assert nominal["margin"] == pytest.approx(6000.0 - 5929.3, abs=5.0)
+    assert best["margin"] == pytest.approx(6000.0 - 5690.2, abs=5.0)
+    assert best["margin"] == best["jump_margin_rpm"] == best["margin_searched"]
+
+
+def test_jumps_are_looked_for_only_where_a_goal_asks_for_them(monkeypatch):
+    asked = []
+    monkeypatch.setattr(
+        "facegear.stages.many_machines.jump_margin", lambda *given: asked.append(given) or 7.0
+    )
+    sizes = {"generations": 1, "samples": 2, "winner_samples": 2}
+    table = near_a_jump(objectives=[SHARING], **sizes).search().winners()
+    assert not asked and "jump_margin_rpm" not in table
+    least = {**MARGIN, "at_least": 7.0}
+    found = near_a_jump(objectives=[SHARING], constraints=[least], **sizes).search()
+    tried = found.designs()["mass"].nunique() + 2 * len(found.winners())
+    assert len(asked) == tried and (found.winners()["margin"] == 7.0).all()
+    above = {**least, "at_least": 7.1}
+    assert near_a_jump(objectives=[SHARING], constraints=[above], **sizes).search().table().empty
 
 
 def difference(inputs, idlers, clocking):
@@ -87,6 +131,31 @@ def test_the_front_of_two_spheres_is_the_line_between_and_seeds_differ_by_little
     assert np.ptp(last) / last.mean() < 0.02
     exact = 1.0 - 1.0 / 6.0 / 1.1**2  # the area below sqrt(f) + sqrt(g) = 1 is a sixth
     assert last.mean() == pytest.approx(exact, abs=0.02)
+
+
+def test_what_is_to_be_large_mirrors_what_is_to_be_small(tmp_path):
+    plain = replace(SPHERES, limits=(("h", 0.5),))
+    mirrored = replace(SPHERES, limits=(("h", -0.5),), large=frozenset("gh"))
+
+    def run(task, sign):
+        def ask(design):
+            found = spheres(design)
+            return {"f": found["f"], "g": sign * found["g"], "h": sign * found["g"]}
+
+        return evolve(task, ask, Effort(16, 6, 1), tmp_path / f"{sign}", "same")
+
+    one, other = run(plain, 1.0), run(mirrored, -1.0)
+    pd.testing.assert_frame_equal(other.assign(g=-other["g"], h=-other["h"]), one)
+    best = [front(found, task)[["x", "y"]] for found, task in ((one, plain), (other, mirrored))]
+    pd.testing.assert_frame_equal(*best)
+    shares = [hypervolumes({1: found}, task) for found, task in ((one, plain), (other, mirrored))]
+    pd.testing.assert_frame_equal(*shares)
+
+
+def test_a_search_of_few_designs_ends_when_all_are_tried(tmp_path):
+    few = replace(SPHERES, variables=tuple(replace(one, steps=2) for one in SPHERES.variables))
+    designs = evolve(few, spheres, Effort(4, 50, 1), tmp_path / "few", "same")
+    assert len(designs.drop_duplicates(["x", "y"])) == 4 and designs["generation"].max() < 50
 
 
 def test_a_killed_evolution_goes_on_from_what_it_had_and_ends_the_same(tmp_path):
@@ -147,6 +216,16 @@ def test_a_robust_search_asks_for_percentiles_over_the_tolerances():
         ({"objectives": [{**SHARING, "name": "error"}]}, "columns of their own"),
         ({"objectives": [{**SHARING, "largest_of": ["pressure_mpa"]}]}, "the beginning of one of: k_gamma"),
         ({"seeds": [1, 1]}, "different numbers"),
+        ({"objectives": [{"name": "none"}]}, "either this or smallest_of"),
+        ({"objectives": [{**SHARING, **MARGIN}]}, "either this or smallest_of"),
+        ({"objectives": [{"name": "m", "largest_of": ["jump_margin_rpm"]}]}, "a margin is to be large"),
+        ({"objectives": [{"name": "m", "smallest_of": ["jump_margins"]}]}, "m.smallest_of = .jump_margins"),
+        ({"constraints": [{**MARGIN, "at_most": 1.0}]}, "at_least = null: required with smallest_of"),
+        ({"constraints": [{**SHARING, "name": "k"}]}, "at_most = null: required with largest_of"),
+        ({"jumps": {"range": 100.0}}, "search.jumps.range"),
+        ({"jumps": {"range_rpm": 0.0}}, "search.jumps.range_rpm"),
+        ({"jumps": {"range_rpm": 20.0}}, "at most range_rpm = 20"),
+        ({"jumps": {"range_rpm": 1e5}}, "a thousandth of range_rpm"),
     ],
 )
 def test_a_mistake_in_the_section_is_one_clear_line(section, line):
