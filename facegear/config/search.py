@@ -5,7 +5,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
-from facegear.config.dynamics import SWEPT, Accuracy, settings
+from facegear.config.dynamics import SWEPT, SWEPT_TOLD, Accuracy, settings
 from facegear.dynamics.sweeps.plan import JumpRange
 from facegear.load_sharing.quantity_names import of_jumps
 
@@ -103,7 +103,7 @@ class Jumps(Section):
     )
     step_rpm: float = Field(50, gt=0, le=10_000, description="at most, from speed to speed")
     resolution_rpm: float = Field(1.0, gt=0, le=1000, description="to which a jump is bracketed")
-    accuracy: Accuracy = SWEPT
+    accuracy: Accuracy = Field(SWEPT, description=SWEPT_TOLD)
 
     @model_validator(mode="after")
     def _inside(self) -> "Jumps":

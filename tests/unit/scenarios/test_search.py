@@ -43,11 +43,17 @@ def machine(tolerances=None, **section):
     return start.with_values({**LINEAR, "search": {**SEARCH, **section}, "tolerances": tolerances})
 
 
+TEETH = {
+    "name": "teeth",
+    "spread": 8.0,
+    "moves": {"transmission.single_meshes.right input/lower.error_um": 1.0},
+    "source": "drawing",
+}
 MARGIN = {"name": "margin", "smallest_of": ["jump_margin_rpm"]}
 MASS = {"name": "mass", "limits": [1.1, 1.4], "steps": 3, "sets": ["transmission.pinion.mass_kg"]}
 
 
-def near_a_jump(**section):
+def near_a_jump(tolerances=None, **section):
     """The machine with its errors, above the jump of a resonance: 5930 rpm, 5690 with pinions of 1.4 kg."""
     sizes = {"population": 4, "generations": 2, "seeds": [1]}
     asked = {
@@ -57,7 +63,8 @@ def near_a_jump(**section):
         **sizes,
     }
     start = facegear.load("config/harmonics_only.yaml", results=None)
-    return start.with_values({"dynamics.speed_rpm": 6000, "search": {**asked, **section}})
+    values = {"dynamics.speed_rpm": 6000, "search": {**asked, **section}, "tolerances": tolerances}
+    return start.with_values(values)
 
 
 def test_a_search_moves_the_operating_speed_away_from_the_jump():
@@ -83,6 +90,12 @@ def test_jumps_are_looked_for_only_where_a_goal_asks_for_them(monkeypatch):
     assert len(asked) == tried and (found.winners()["margin"] == 7.0).all()
     above = {**least, "at_least": 7.1}
     assert near_a_jump(objectives=[SHARING], constraints=[above], **sizes).search().table().empty
+    asked.clear()
+    cause = {**TEETH, "spread": 1.0, "moves": {"transmission.backlash_um": 1.0}}
+    tolerances = {"causes": [cause], "samples": 8, "chunk_samples": 8}
+    found = near_a_jump(tolerances, objectives=[{**MARGIN, "percentile": 5.0}], **sizes).search()
+    tried = found.designs()["mass"].nunique() + 2 * len(found.winners())
+    assert len(asked) == 2 * tried  # the two samples of each, and not as designed
 
 
 def difference(inputs, idlers, clocking):
@@ -187,15 +200,9 @@ def test_a_design_that_cannot_be_built_is_a_row_and_never_in_the_front(tmp_path)
 
 
 def test_a_robust_search_asks_for_percentiles_over_the_tolerances():
-    cause = {
-        "name": "teeth",
-        "spread": 8.0,
-        "moves": {"transmission.single_meshes.right input/lower.error_um": 1.0},
-        "source": "drawing",
-    }
     robust = {**SHARING, "percentile": 95.0}
     sizes = {"population": 4, "generations": 1, "samples": 8, "winner_samples": 8}
-    tolerances = {"causes": [cause], "samples": 8, "chunk_samples": 8}
+    tolerances = {"causes": [TEETH], "samples": 8, "chunk_samples": 8}
     found = machine(tolerances, objectives=[robust], variables=VARIABLES[:1], **sizes).search()
     table = found.winners()
     assert (
