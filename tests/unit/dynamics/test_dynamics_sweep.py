@@ -68,8 +68,8 @@ def test_the_margin_of_a_speed_is_its_distance_from_the_nearest_jump_of_the_swee
 def test_the_margin_is_0_at_a_jump_and_the_range_where_none_lies_in_it(model, whole):
     up = whole["up"].jumps[0]
     inside = 0.5 * (up.before.speed + up.after.speed)
-    assert jump_margin(model, inside, JumpRange(400.0, 50.0, 1.0, SETTINGS)) < 1.0
-    assert jump_margin(model, 4500.0, JumpRange(300.0, 50.0, 1.0, SETTINGS)) == 300.0
+    assert jump_margin(model, inside, JumpRange(400.0, 100.0, 1.0, SETTINGS)) < 1.0
+    assert jump_margin(model, 4500.0, JumpRange(300.0, 100.0, 1.0, SETTINGS)) == 300.0
 
 
 @given(st.floats(1.0, 1e5), st.floats(1.0, 1e4), st.floats(0.1, 1e3))
