@@ -119,7 +119,8 @@ class Line:
         """
         moving = self.rates != 0.0
         edges = np.array([[self.half_width], [-self.half_width]])
-        at = ((edges - self.deflections[moving]) / self.rates[moving]).ravel()
+        with np.errstate(over="ignore"):  # an edge that is met at infinity is not ahead
+            at = ((edges - self.deflections[moving]) / self.rates[moving]).ravel()
         inside = np.sort(at[(at > 0.0) & (at < FARTHEST)])
         return np.concatenate([[0.0], inside, [FARTHEST]])
 

@@ -28,7 +28,11 @@ def why_not():
     return missing()
 
 
-pytestmark = [pytest.mark.workflow, pytest.mark.skipif(bool(why_not()), reason=why_not())]
+pytestmark = [
+    pytest.mark.workflow,
+    pytest.mark.xdist_group("slurm"),  # a machine has one Slurm at a time
+    pytest.mark.skipif(bool(why_not()), reason=why_not()),
+]
 
 
 def jobs():

@@ -1,4 +1,4 @@
-from facegear.validation.contact.stress_benchmark import OF_LEVEL
+from facegear.validation.contact.stress_levels import OF_LEVEL
 
 
 rule strength_level:

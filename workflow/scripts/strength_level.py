@@ -6,7 +6,8 @@ from facegear.config.tooth_pair import pair
 from facegear.io import tables
 from facegear.mesh.sizes import named_sizes, thin_fillet
 from facegear.provenance.stage import stage
-from facegear.validation.contact.stress_benchmark import OF_LEVEL, stress_convergence
+from facegear.validation.contact.stress_benchmark import stress_convergence
+from facegear.validation.contact.stress_levels import OF_LEVEL
 
 with stage(snakemake) as run:
     teeth, level = pair(snakemake.params.tooth_pair), snakemake.wildcards.level

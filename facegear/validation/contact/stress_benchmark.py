@@ -17,6 +17,7 @@ from facegear.geometry.design import Material, PairDesign
 from facegear.mesh.sizes import MeshSizes
 from facegear.strength.root_stress import down_the_fillet, root_stress
 from facegear.validation.contact.line_load import LoadedTooth, loaded_tooth
+from facegear.validation.contact.stress_levels import HALVED
 
 Array = NDArray[np.float64]
 Result = TypeVar("Result")
@@ -25,15 +26,6 @@ TEETH = 3
 """Of the sector, its cut faces free; the middle one is loaded."""
 ENDS = 0.1
 """Part of the face at each end that is left out: an edge's stress is no element's to give."""
-HALVED = {
-    "all": ("profile", "fillet_depth", "width", "thickness"),
-    "profile and depth": ("profile", "fillet_depth"),
-    "width": ("width",),
-    "thickness": ("thickness",),
-}
-"""Element sizes that are halved for the finer mesh."""
-OF_LEVEL = {"coarse": ("all",), "medium": ("profile and depth", "width", "thickness")}
-"""Halvings that fit into memory; those of medium meshes one at a time."""
 REPEATS = 3
 POSITIONS, LOADS, NODES = 32, 1000, 80
 """Of the timed root stress; nodes of each of three pairs that carry load."""

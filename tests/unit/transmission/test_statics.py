@@ -109,3 +109,9 @@ def test_the_line_search_of_the_statics_stops_where_the_slope_comes_to_zero(
     else:
         assert before <= after
         assert abs(at) <= 1e-12 * (largest + rise * best)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_mesh_that_next_to_never_moves_leaves_the_line_search_to_the_others():
+    line = Line(-1.0, 1.0, np.zeros(1), np.array([1e-320]), np.ones(1), half_width=1e-4)
+    assert line.minimum() == pytest.approx(1.0)

@@ -1,0 +1,11 @@
+"""Meshes of the benchmark of root stress, and which of their sizes are halved beside each."""
+
+HALVED = {
+    "all": ("profile", "fillet_depth", "width", "thickness"),
+    "profile and depth": ("profile", "fillet_depth"),
+    "width": ("width",),
+    "thickness": ("thickness",),
+}
+"""Element sizes that are halved for the finer mesh."""
+OF_LEVEL = {"coarse": ("all",), "medium": ("profile and depth", "width", "thickness")}
+"""Halvings that fit into memory; those of medium meshes one at a time."""
