@@ -14,6 +14,8 @@ Array = NDArray[np.float64]
 
 TOLERANCE = 1e-11
 """Largest gap (m) left where the flanks touch."""
+MOST_TURNS = 100
+"""Turns of the gear; where an edge touches each may leave half of the gap."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +56,7 @@ def unloaded_contact(design: PairDesign, phi1: ArrayLike) -> UnloadedContact:
     phi2 = conjugate + moved / design.gear_base_radius
     found = closest(design, phi1, phi2)
     unseen = np.zeros(len(phi1))
-    for _ in range(12):
+    for _ in range(MOST_TURNS):
         smallest = found.gap.min(axis=1)
         if not np.all(np.isfinite(smallest)):
             where = f"phi1 = {phi1[~np.isfinite(smallest)][0]:.6f} rad"
@@ -79,4 +81,6 @@ def unloaded_contact(design: PairDesign, phi1: ArrayLike) -> UnloadedContact:
         turned = replace(found, gap=found.gap - smallest[:, None])
         found, unseen = closest(design, phi1, phi2, turned, margin=5e-6), unseen + smallest
     residual = np.max(np.abs(found.gap.min(axis=1)))
-    raise NotConverged("unloaded contact", f"residual gap {residual:.1e} m", "12 turns of the gear")
+    raise NotConverged(
+        "unloaded contact", f"residual gap {residual:.1e} m", f"{MOST_TURNS} turns of the gear"
+    )

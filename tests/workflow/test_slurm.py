@@ -17,7 +17,7 @@ from test_tolerance_jobs import FILE, project
 import facegear
 
 PROFILE = ("--workflow-profile", str(ROOT / "workflow" / "profiles" / "slurm"))
-CHUNKS = ("samples_0_199", "samples_200_399")
+CHUNKS = ("samples_0_1999", "samples_2000_3999")
 
 
 def why_not():
@@ -55,7 +55,7 @@ def started(folder):
 
 
 def test_a_killed_study_on_two_nodes_runs_no_chunk_twice_at_once_and_keeps_nothing_stale(tmp_path):
-    found, target = project(tmp_path / "run", 400, 200)
+    found, target = project(tmp_path / "run", 4000, 2000)  # still at work when the second run looks for it
     with cluster(tmp_path / "slurm"):
         running = subprocess.Popen(
             found.command(*PROFILE, *target),
@@ -74,12 +74,12 @@ def test_a_killed_study_on_two_nodes_runs_no_chunk_twice_at_once_and_keeps_nothi
         told = found.run(*PROFILE, *target).stderr
         every = jobs()
     assert "ending jobs that a killed run has left working" in told
-    assert "tolerances_chunk tolerances samples 200 399: 200 samples, 0 of them" in told
+    assert "tolerances_chunk tolerances samples 2000 3999: 2000 samples, 0 of them" in told
     for name in {job[0] for job in every}:
         times = sorted(job[2:4] for job in every if job[0] == name)
         assert all(one[1] <= other[0] for one, other in pairwise(times)), name
     assert sorted(node for _, node, *_, state in every if state == "COMPLETED") == ["n0", "n1"]
-    whole = facegear.load(own, results=None).tolerances(400).samples()
+    whole = facegear.load(own, results=None).tolerances(4000).samples()
     pd.testing.assert_frame_equal(pd.read_parquet(found.folder / FILE), whole, check_exact=True)
 
 

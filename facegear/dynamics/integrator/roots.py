@@ -48,9 +48,10 @@ def first_root(coefficients: Array, degree: int, conversion: Array, work: Array)
         work[0, i] = total
     depth = 0
     left, width = 0.0, 1.0
+    before = 0.0  # where the interval before ends in a zero: a value of its sign
     while True:
         changes = 0
-        last = 0.0
+        last = before
         for i in range(degree + 1):
             value = work[depth, i]
             if value != 0.0:
@@ -58,13 +59,14 @@ def first_root(coefficients: Array, degree: int, conversion: Array, work: Array)
                     changes += 1
                 last = value
         if changes == 1:
-            return refine_root(coefficients, degree, left, left + width, work[depth, 0], work[depth, degree])
+            return refine_root(coefficients, degree, left, left + width, work[depth, 0], last)
         if changes > 1 and depth < MAX_DEPTH:
             _halve(work, depth, degree)
             depth += 1
             width *= 0.5
             continue
         # Nothing in this interval: go on with the next one to the right.
+        before = last if work[depth, degree] == 0.0 else 0.0
         left += width
         if depth == 0:
             return 2.0

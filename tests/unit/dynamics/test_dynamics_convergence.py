@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_machine
 
@@ -59,6 +59,9 @@ def test_error_falls_with_the_order_of_the_steps_even_across_switches(order, bac
 
 @settings(max_examples=200, deadline=None)
 @given(st.lists(st.floats(-1, 1), min_size=3, max_size=12), st.floats(0.01, 0.99))
+@example([-0.5, 1.0, 1.0], 0.5)  # a later root where an interval is halved
+@example([0.63, -1.6, 1.0], 0.5)  # the first root there
+@example([1.5, -3.5, 1.0], 0.5)
 def test_first_root_is_the_first_sign_change(coefficients, root):
     polynomial = np.polynomial.Polynomial(coefficients) * np.polynomial.Polynomial([-root, 1.0])
     values = np.zeros(20)
