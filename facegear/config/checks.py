@@ -86,7 +86,10 @@ def check_torques(pair: ToothPair, section: Transmission) -> None:
         allowed = "not 0 where no pinion has a torque of its own: nothing would be loaded"
         if not any(place.role == "input" for place in section.pinions):
             raise ConfigError("transmission.pinions", "no input", "at least one input, or a torque_n_m")
-        raise ConfigError("transmission.torque.per_input_n_m", section.torque.per_input_n_m, allowed)
+        if section.torque.per_input_n_m == 0.0:
+            raise ConfigError("transmission.torque.per_input_n_m", 0.0, allowed)
+        told = "not 0 at every input: nothing would be loaded"
+        raise ConfigError("transmission.pinions", "torque_n_m: 0", told)
 
 
 def geometric_backlash(pair: ToothPair) -> float:

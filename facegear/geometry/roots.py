@@ -22,6 +22,7 @@ def root(function: Callable[[float], float], low: float, high: float, tolerance:
         return low if at_low == 0.0 else high
     if (at_low > 0) == (at_high > 0):
         raise ValueError(f"no change of sign between {low} and {high}")
+    positive = at_high > 0  # kept, since a value halved again and again may come to zero
     tolerance = max(tolerance, ROUNDING * max(abs(low), abs(high)))
     kept, widths = 0, [abs(high - low)] * 2
     for _ in range(STEPS):
@@ -32,7 +33,7 @@ def root(function: Callable[[float], float], low: float, high: float, tolerance:
         value = function(middle)
         if value == 0.0 or abs(high - low) <= tolerance:
             return middle
-        if (value > 0) == (at_high > 0):
+        if (value > 0) == positive:
             high, at_high = middle, value
             at_low *= 0.5 if kept == 1 else 1.0
             kept = 1

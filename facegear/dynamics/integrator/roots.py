@@ -9,6 +9,8 @@ from facegear.dynamics.integrator.kernel import inlined, kernel
 
 Array = NDArray[np.float64]
 MAX_DEPTH = 48
+BESIDE = 1e-12
+"""Part of an interval beside its end in which a zero may be that of the next one."""
 CLOSE = 1e-10
 """Newton's last step, over the interval: the error after it is of the order of its square."""
 
@@ -130,6 +132,8 @@ def refine_root(
         return high
     rising = at_high > at_low
     t = low + (high - low) * at_low / (at_low - at_high)
+    if high - t <= BESIDE * (high - low):
+        t = 0.5 * (low + high)  # another zero may lie at the end, to rounding
     for _ in range(100):
         value = coefficients[degree]
         slope = 0.0

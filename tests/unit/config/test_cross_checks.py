@@ -63,6 +63,7 @@ STUDY = {
         ({"transmission__pinions__1__angle_pitches": 143.0}, "0 deg apart, at least"),
         ({"transmission__pinions__1__angle_pitches": 3.0}, "their bodies would overlap"),
         ({"transmission__torque__per_input_n_m": 0.0}, "nothing would be loaded"),
+        ({f"transmission__pinions__{i}__torque_n_m": 0.0 for i in (0, 2, 3)}, "not 0 at every input"),
         ({"studies": [STUDY, STUDY]}, 'studies[1].name = "one": a name of its own for each study'),
         ({"studies": [{**STUDY, "name": "summary"}]}, 'studies[0].name = "summary"'),
         (

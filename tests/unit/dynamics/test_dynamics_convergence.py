@@ -62,6 +62,7 @@ def test_error_falls_with_the_order_of_the_steps_even_across_switches(order, bac
 @example([-0.5, 1.0, 1.0], 0.5)  # a later root where an interval is halved
 @example([0.63, -1.6, 1.0], 0.5)  # the first root there
 @example([1.5, -3.5, 1.0], 0.5)
+@example([-0.5, 1.0, 0.3319332765330668], 0.5)  # zero there but for rounding
 def test_first_root_is_the_first_sign_change(coefficients, root):
     polynomial = np.polynomial.Polynomial(coefficients) * np.polynomial.Polynomial([-root, 1.0])
     values = np.zeros(20)
