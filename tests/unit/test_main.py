@@ -1,0 +1,37 @@
+"""The command line: limits before radii are chosen, checks, and mistakes in one line."""
+
+from pathlib import Path
+
+import pytest
+
+from facegear.__main__ import main
+
+ROOT = Path(__file__).parents[2]
+TEETH = ("limits", "--pinion-teeth", "25", "--face-gear-teeth", "160", "--module-mm", "6.35")
+
+
+def test_limits_of_a_gear_are_told_from_tooth_numbers_alone(capsys):
+    assert main(TEETH) == 0
+    assert "with a shaper of 28 teeth: between 465.173 (undercut) and 552.153 (" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        ((*TEETH, "--shaper-teeth", "40"), "shaper.teeth = 40: from 25 (line contact) to 28"),
+        ((*TEETH, "--gear-addendum-modules", "-3"), "gear_addendum_modules = -3.0: from 0.1 to 2"),
+        (("check", "none.yaml"), "none.yaml: no such config file"),
+        (("run", "none.yaml"), "none.yaml: no such config file"),
+        (("run", str(ROOT)), f"{ROOT}: is a directory, not a config file"),
+    ],
+)
+def test_a_mistake_on_the_command_line_ends_in_one_line(capsys, arguments, line):
+    assert main(arguments) == 1
+    told = capsys.readouterr().err
+    assert told.startswith(line) and told.count("\n") == 1
+
+
+@pytest.mark.parametrize("name", ["misaligned", "unequal_inputs", "eight_pinions"])
+def test_the_example_machines_are_configs_without_mistakes(capsys, name):
+    assert main(("check", str(ROOT / "examples" / "machines" / f"{name}.yaml"))) == 0
+    assert f"no mistakes; {4 if name == 'misaligned' else 1} case" in capsys.readouterr().out
