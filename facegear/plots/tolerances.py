@@ -74,17 +74,18 @@ def importance_figure(percentiles: pd.DataFrame, importance: pd.DataFrame, indic
     table, value = _sizes(importance, indices)
     quantities = worst_first(percentiles)
     force = [name for name in quantities if name == "peak_mesh_force_n" and not {*quantities} & {*DECIDED}]
-    names = [*quantities[:1], *force, *(name for name in quantities if name in DECIDED)]
+    decided = (name for name in quantities if name in DECIDED)
+    names = list(dict.fromkeys((*quantities[:1], *force, *decided)))
     own = table[table["quantity"].isin(names)]
     causes = list(own.groupby("cause")["size"].max().sort_values(ascending=False).index[:BARS])[::-1]
     with styled():
         figure, axis = plt.subplots(figsize=(NARROW, 1.1 + 0.17 * len(names) * (1 + max(len(causes), 1))))
+        wide = 0.76 / max(len(names), 1)
         for number, (name, colour) in enumerate(zip(names, COLOURS, strict=False)):
             rows = own[own["quantity"] == name].set_index("cause").reindex(causes)
             ends = None
             if value == "total":
                 ends = np.array([rows[value] - rows["total_low"], rows["total_high"] - rows[value]]).clip(0.0)
-            wide = 0.76 / len(names)
             places = np.arange(len(causes)) + wide * (0.5 * (len(names) - 1) - number)
             axis.barh(places, rows[value], 0.95 * wide, xerr=ends, color=colour, label=in_words(name))
         axis.set_yticks(np.arange(len(causes)), [cause.replace("_", " ") for cause in causes])

@@ -5,7 +5,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from facegear.plots.tolerances import in_words, load_map_figure, worst_first
+from facegear.plots.tolerances import importance_figure, in_words, load_map_figure, worst_first
 
 WORST, OTHER = "k_gamma right input/upper", "k_gamma left input/upper"
 
@@ -53,3 +53,13 @@ def test_what_comes_once_a_machine_stands_after_the_worst_paths():
     values = [5.0, 0.0, 1.3, 1500.0, 1.4, 2e4]
     found = worst_first(pd.DataFrame({"quantity": columns, "percentile": 99.0, "value": values}))
     assert found == [WORST, OTHER, "peak_mesh_force_n", "pressure_mpa", "te_peak_to_peak_um"]
+
+
+def test_a_machine_of_one_mesh_has_what_decides_its_force_drawn_once():
+    force = "peak_mesh_force_n"
+    percentiles = pd.DataFrame({"quantity": [force], "percentile": 99.0, "value": 2e4})
+    ranks = pd.DataFrame({"quantity": force, "cause": ["clocking", "error"], "rank_correlation": [0.9, -0.2]})
+    figure = importance_figure(percentiles, ranks, pd.DataFrame())
+    (axis,) = figure.axes
+    assert [bars.get_label() for bars in axis.containers] == [in_words(force)]
+    plt.close(figure)
