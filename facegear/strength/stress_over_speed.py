@@ -12,6 +12,8 @@ from facegear.strength.root_stress import RootStress, largest_tension
 Array = NDArray[np.float64]
 ALIKE = 1e-3
 """Motions whose largest forces differ by less, relative, are equally hard: most often they are one."""
+ROUNDING = 1e-12
+"""Of speeds, relative: of a path that ends at a limit."""
 FORCE_COLUMNS = ("motion", "class", "speed_rpm", "mesh", "largest_force_n")
 
 
@@ -25,16 +27,22 @@ def swept_forces(sweep: pd.DataFrame) -> pd.DataFrame:
 
 
 def branch_forces(branches: pd.DataFrame, speeds: Array) -> pd.DataFrame:
-    """The same of every stable stretch of a branch at `speeds` (n,) rpm, between its points linearly."""
+    """The same of every stable stretch of a branch at `speeds` (n,) rpm, between its points linearly.
+
+    A stretch has both its ends. Speeds of points that differ from one of `speeds` by rounding are that one.
+    """
     found = []
     for (number, period), rows in branches.groupby(["branch", "period"], sort=False):
         worst = rows.loc[rows.groupby("point", sort=True)["peak_force_n"].idxmax()]
-        speed, force = worst["speed_rpm"].to_numpy(), worst["peak_force_n"].to_numpy()
+        speed = _without_rounding(worst["speed_rpm"].to_numpy(), speeds)
+        force = worst["peak_force_n"].to_numpy()
         stable, meshes = worst["stable"].to_numpy(bool), worst["mesh"].to_numpy()
+        goes_on = np.append(stable[2:], False)
         for at in np.flatnonzero(stable[:-1] & stable[1:]):
-            low, high = sorted(speed[at : at + 2])
-            inside = speeds[(speeds >= low) & (speeds < high)]
-            part = (inside - speed[at]) / (speed[at + 1] - speed[at]) if inside.size else inside
+            first, last = speed[at : at + 2]
+            inside = speeds[(speeds >= min(first, last)) & (speeds <= max(first, last))]
+            inside = inside[inside != last] if goes_on[at] else inside
+            part = (inside - first) / (last - first or 1.0)
             there = (1.0 - part) * force[at] + part * force[at + 1]
             mesh = meshes[at] if force[at] >= force[at + 1] else meshes[at + 1]
             found += [
@@ -42,6 +50,12 @@ def branch_forces(branches: pd.DataFrame, speeds: Array) -> pd.DataFrame:
                 for one, value in zip(inside, there, strict=True)
             ]
     return pd.DataFrame(found, columns=list(FORCE_COLUMNS))
+
+
+def _without_rounding(values: Array, exact: Array) -> Array:
+    """Values (m,) with the nearest of `exact` (n,) in the place of those that differ from it by rounding."""
+    nearest = exact[np.abs(values[:, None] - exact).argmin(axis=1)]
+    return np.where(np.abs(values - nearest) <= ROUNDING * nearest, nearest, values)
 
 
 def stress_table(

@@ -224,6 +224,21 @@ SWEPT = pd.DataFrame(
 )
 
 
+@pytest.mark.parametrize("way", [1, -1])
+def test_a_stable_stretch_counts_at_both_its_ends_and_once_where_its_pieces_meet(way):
+    """A path that is followed to its limit comes there but for rounding."""
+    speed = np.array([1000.0, 1400.0, 1999.9999999999998])[::way]
+    one = {"branch": 0, "period": 1, "stable": True, "mesh": "a/upper"}
+    path = pd.DataFrame({**one, "point": range(3), "speed_rpm": speed, "peak_force_n": 2.0 * speed})
+    found = branch_forces(path, np.array([1000.0, 1200.0, 1400.0, 1700.0, 2000.0]))
+    assert sorted(found["speed_rpm"]) == [1000.0, 1200.0, 1400.0, 1700.0, 2000.0]
+    np.testing.assert_allclose(found["largest_force_n"], 2.0 * found["speed_rpm"])
+    torn = path.assign(stable=[True, True, False])
+    assert sorted(branch_forces(torn, np.array([1000.0, 1400.0, 2000.0]))["speed_rpm"]) == (
+        [1000.0, 1400.0] if way == 1 else [1400.0, 2000.0]
+    )
+
+
 def test_stress_over_speed_takes_the_hardest_of_coexisting_motions():
     _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
     branches = pd.DataFrame(
