@@ -13,14 +13,14 @@ from facegear.strength.rating import Rated
 
 POINTS = 61
 """Of a curve of allowed stress."""
-HARDEST = {"red": 0, "amber": 1, "green": 2}
+WORST_FIRST = ("red", "amber", "green")
 
 
 def safety_table(found: Sequence[Rated], pressure: ContactPressure) -> pd.DataFrame:
     """One row a flank, columns as SAFETY_COLUMNS: each way to fail beside the others, and the first to come.
 
     Reliability is the product of those of both failures, each by its worst method. `pressure` tells of the
-    tip edges under the largest load.
+    tip edges under the largest torque of any cycle.
     """
     rows = []
     for (body, flank), group in groupby(found, key=lambda one: (one.duty.body, one.duty.flank)):
@@ -35,7 +35,7 @@ def safety_table(found: Sequence[Rated], pressure: ContactPressure) -> pd.DataFr
         edge_load, edge_length = pressure.edge_at(_largest_torque(ways[0]))
         rows.append(
             (
-                *(body, flank, min((one.verdict for one in ways), key=HARDEST.__getitem__)),
+                *(body, flank, min((one.verdict for one in ways), key=WORST_FIRST.index)),
                 safety["bending", "finite elements"],
                 safety.get(("bending", "ISO 6336-3"), np.nan),
                 *(safety.get(("pitting", "contact analysis"), np.nan), safety["pitting", "ISO 6336-2"]),
@@ -50,14 +50,14 @@ def safety_table(found: Sequence[Rated], pressure: ContactPressure) -> pd.DataFr
 
 
 def rating_table(found: Sequence[Rated], pressure: ContactPressure) -> pd.DataFrame:
-    """Safety and life, columns as RATING_COLUMNS; stress is that of the hardest load.
+    """Safety and life, columns as RATING_COLUMNS; stress is that of the hardest load of any cycle.
 
     The error is that of the contact analysis' `pressure`; other methods tell none.
     """
     rows = [
         (
             *_subject(one),
-            1e-6 * float(one.stress.max()),
+            1e-6 * float(one.stress.max(where=one.duty.cycles > 0.0, initial=0.0)),
             1e-6 * pressure.error_at(_largest_torque(one)) if one.method == "contact analysis" else np.nan,
             1e-6 * one.allowed,
             float(one.duty.cycles.sum()),
@@ -111,7 +111,8 @@ def _subject(one: Rated) -> tuple[str, ...]:
 
 
 def _largest_torque(one: Rated) -> float:
-    return float(one.duty.torque.max())
+    """Of the loads that occur: a bin of the duty cycle may last no time."""
+    return float(one.duty.torque.max(where=one.duty.cycles > 0.0, initial=0.0))
 
 
 def _within(one: Rated, solved: float) -> np.ndarray:

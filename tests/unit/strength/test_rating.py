@@ -22,14 +22,7 @@ from facegear.strength.contact_pressure import ContactPressure, contact_pressure
 from facegear.strength.duty import DutyBin, given_duty
 from facegear.strength.fatigue import reliability
 from facegear.strength.materials import Life
-from facegear.strength.rating import (
-    RatedBody,
-    RatingRequest,
-    hertz_stress,
-    rate,
-    reversal,
-    safety,
-)
+from facegear.strength.rating import RatedBody, RatingRequest, hertz_stress, rate, reversal, safety
 from facegear.strength.rating_tables import curve_table, damage_table, rating_table, safety_table
 from facegear.strength.root_stress import RootStress, down_the_fillet, largest_tension
 
@@ -90,10 +83,8 @@ def test_damage_adds_up_over_the_bins_and_an_empty_bin_does_none():
     apart = [rated([load])[0][key].damage.sum() for load in (one, two)]
     assert both[key].damage.sum() == pytest.approx(sum(apart))
     assert both[key].damage[2] == 0.0
-    table, rows = (
-        damage_table(found, (one, two, DutyBin(900.0, 20.0, 0.0)), 500.0),
-        rating_table(found, replace(PRESSURE, torques=np.array([250.0, 500.0]))),
-    )
+    table = damage_table(found, (one, two, DutyBin(900.0, 20.0, 0.0)), 500.0)
+    rows = rating_table(found, replace(PRESSURE, torques=np.array([250.0, 500.0])))
     total = table.groupby(["body", "failure", "method"])["damage"].sum()
     np.testing.assert_allclose(
         [total[row.body, row.failure, row.method] for row in rows.itertuples()], rows["damage"]
@@ -102,6 +93,15 @@ def test_damage_adds_up_over_the_bins_and_an_empty_bin_does_none():
     assert not table[table["bin"] == 2]["within_torques_solved"].any()
     assert table[table["bin"] == 3]["within_torques_solved"].all()  # no cycles, so nothing is extrapolated
     assert not rows["within_torques_solved"].any()
+
+
+def test_a_bin_that_lasts_no_time_changes_no_row_of_the_rating():
+    used, empty = DutyBin(750.0, 20.0, 3.6e7), DutyBin(900.0, 20.0, 0.0)
+    alone, beside = (rated(duty)[1] for duty in ([used], [used, empty]))
+    for told in (rating_table, safety_table):
+        pd.testing.assert_frame_equal(told(beside, PRESSURE), told(alone, PRESSURE), check_exact=True)
+    never = rating_table(rated([empty])[1], PRESSURE)  # a flank that only such a bin loads
+    assert (never["stress_mpa"] == 0.0).all() and (never["verdict"] == "green").all()
 
 
 def test_teeth_bent_both_ways_are_allowed_less():
