@@ -56,7 +56,7 @@ class ToothMesh:
         return {
             ERROR_RANGE: 1e6 * told.error_range,
             ERROR_HARMONIC: 1e6 * told.error_harmonic,
-            PRESSURE: 1e-6 * told.largest_pressure(torque),
+            PRESSURE: 1e-6 * told.pressure.at(torque),
             **{ROOTS[body]: 1e-6 * told.largest_root_stress(body, torque) for body in told.roots},
         }
 

@@ -23,9 +23,9 @@ def dynamic_stress_table(
 
     forces (n,) N along the line of action by mesh, negative on the back flank, evenly in time; places (n,) of
     the loaded flank in the mesh cycle, in [0, 1); base_radius (m) of the pinion; pressure (Pa): the largest
-    over the passage at a torque (N m). `mean`: largest over the
-    passage with the mesh's mean force; `running`: largest of the history, every tooth with its share of the
-    force of that moment (a tooth is quasi-static); `bound`: with the largest force all through the passage.
+    over the passage at a torque (N m). `mean`: largest over the passage with the mesh's mean force;
+    `running`: largest of the history, every tooth with its share of the force of that moment (a tooth is
+    quasi-static); `bound`: with the largest force all through the passage.
     """
     tension = {body: largest_tension(root) for body, root in roots.items()}
     history = {body: TensionHistory(root) for body, root in roots.items()}

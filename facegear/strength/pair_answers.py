@@ -34,10 +34,6 @@ class PairAnswers:
         """Amplitude of the transmission error at mesh frequency, m."""
         return float(2.0 * np.abs(np.fft.rfft(self.error)[1]) / self.error.size)
 
-    def largest_pressure(self, torque: float) -> float:
-        """Pa at a torque (N m), as `ContactPressure.at` has it; nan where edges carry all."""
-        return self.pressure.at(torque) if self.pressure.known else np.nan
-
     def largest_root_stress(self, body: str, torque: float) -> float:
         """Pa in the fillets of a body at a torque (N m), as `RootStress.at_torque` has it."""
         return float(down_the_fillet(self.roots[body].at_torque(torque)).max())

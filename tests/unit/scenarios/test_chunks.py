@@ -100,7 +100,8 @@ def test_failed_sample_is_a_row_with_its_error(tmp_path):
 
 @pytest.mark.parametrize("size", [1, 7, 250])
 def test_rows_are_equal_to_the_bit_for_any_size_of_chunk(tmp_path, size):
-    whole, count = run(Machine(), tmp_path / "whole", range(260)), 260
+    count = 260
+    whole = run(Machine(), tmp_path / "whole", range(count))
     starts = range(0, count, size)
     parts = [run(Machine(), tmp_path / str(at), range(at, min(at + size, count))) for at in starts]
     pd.testing.assert_frame_equal(pd.concat(parts, ignore_index=True), whole, check_exact=True)
