@@ -201,7 +201,7 @@ class Run:
         if not period:
             return None
         orbit = self._shot(period) if self.settings.refine else None
-        if orbit is not None and abs(orbit.multipliers[0]) > 1.0 + AFLOAT and self.kicks < MOST_KICKS:
+        if orbit is not None and abs(orbit.multipliers[0]) > 1.0 + AFLOAT:
             self.found, self.found_at = orbit, self.periods_run
             self._kick(near)
             return None

@@ -12,7 +12,7 @@ from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.exponent import smooth_mean
 from facegear.dynamics.steady_state.orbits import shoot
-from facegear.dynamics.steady_state.settle import Run
+from facegear.dynamics.steady_state.settle import MOST_KICKS, Run
 from facegear.dynamics.steady_state.simulate import steady_state
 
 FOLD_UP = 0.82846394
@@ -54,6 +54,19 @@ def test_a_run_that_rests_on_an_unstable_orbit_it_knows_is_moved_off_it():
     settled = run.settled()
     assert run.kicks == 1
     assert settled.orbit is not None and abs(settled.orbit.multipliers[0]) < 1.0
+
+
+def test_a_run_that_comes_back_to_an_unstable_orbit_is_not_called_periodic():
+    """At 18 164 rpm down a run was named by a period-26 orbit of multiplier 1.14 that it kept coming to."""
+    system, orbit = unstable_orbit()
+    packed = pack(system, SPEED)
+    state = np.array([orbit.displacement, orbit.velocity])
+    patient = Settings(tolerance=1e-12, periodic_residual=1e-5, dwell=16, settle=24)
+    run = Run(packed, make_work(packed, 16), state, patient, None)
+    run.kicks = MOST_KICKS
+    settled = run.settled()
+    assert run.found is not None and abs(run.found.multipliers[0]) > 1.0
+    assert settled.residual < 1e-5 and settled.period == 0
 
 
 def test_what_newtons_method_does_not_confirm_must_close_a_hundred_times_nearer(monkeypatch):
