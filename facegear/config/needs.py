@@ -1,7 +1,8 @@
 """What each stage needs of a config: the exact slices that its results depend on.
 
 The names are those of the rules (and `machine`, for those that measure it); the keys of a slice are the
-arguments of the stage's function in `facegear.stages`.
+arguments of the stage's function in `facegear.stages`, or the fields of the record of the machine that it
+takes.
 """
 
 from collections.abc import Mapping
@@ -20,6 +21,13 @@ _COMPLIANCE: Slice = {**_MESH, "contact": "contact"}
 _MACHINE: Slice = {"transmission": "transmission", "teeth": tuple(f"tooth_pair.{key}" for key in TEETH)}
 _BRANCHES: Slice = {**_MACHINE, "branches": "branches", "speed_rpm": "dynamics.speed_rpm"}
 _ACCURACY: Slice = {"accuracy": "dynamics.accuracy"}
+_SHARING: Slice = {
+    **_MACHINE,
+    **_ACCURACY,
+    "speed_rpm": "dynamics.speed_rpm",
+    "options": "load_sharing",
+}
+_CAUSES = tuple(f"tolerances.{key}" for key in ("causes", "correlations", "model", "seed", "hunting_cycles"))
 _CONTACT: Slice = {"pair": ("tooth_pair", "mesh", "contact", "mesh_stiffness")}
 _SEARCH: Slice = {
     **_PAIR,
@@ -51,12 +59,7 @@ NEEDS: dict[str, Slice] = {
     "branches_starts": _BRANCHES,
     "branches": {**_BRANCHES, "sweep": "dynamics.sweep"},
     "branches_loci": _BRANCHES,
-    "load_sharing": {
-        **_MACHINE,
-        **_ACCURACY,
-        "speed_rpm": "dynamics.speed_rpm",
-        "options": "load_sharing",
-    },
+    "load_sharing": _SHARING,
     "following": {
         **_MACHINE,
         **_ACCURACY,
@@ -64,28 +67,10 @@ NEEDS: dict[str, Slice] = {
         "positions": "load_sharing.hunting_positions",
         "cycles": "load_sharing.followed_cycles",
     },
-    "tolerances_chunk": {
-        **_MACHINE,
-        **_ACCURACY,
-        "speed_rpm": "dynamics.speed_rpm",
-        "options": "load_sharing",
-        "tolerances": tuple(
-            f"tolerances.{key}" for key in ("causes", "correlations", "model", "seed", "hunting_cycles")
-        ),
-        **_CONTACT,
-    },
+    "tolerances_chunk": {**_SHARING, "tolerances": _CAUSES, **_CONTACT},
     "tolerances_map": {
-        **_MACHINE,
-        **_ACCURACY,
-        "speed_rpm": "dynamics.speed_rpm",
-        "options": "load_sharing",
-        "tolerances": tuple(
-            f"tolerances.{key}"
-            for key in (
-                *("causes", "correlations", "model", "seed", "hunting_cycles"),
-                *("confidence", "load_map"),
-            )
-        ),
+        **_SHARING,
+        "tolerances": (*_CAUSES, "tolerances.confidence", "tolerances.load_map"),
         **_CONTACT,
     },
     "tolerances": {"tolerances": "tolerances"},

@@ -221,10 +221,10 @@ class Chain:
         from facegear.results.tolerances import LoadMapResult
 
         def compute() -> "Outcome":
+            from facegear.stages.sampled_machine import SampledMachine
             from facegear.stages.tolerances_map import tolerances_map
 
-            needs = self._needs("tolerances_map")
-            return tolerances_map(self._harmonics(), **needs, flanks=self._flanks(needs["pair"]))
+            return tolerances_map(SampledMachine(**self._varied("tolerances_map")))
 
         return self.store.result("tolerances_map", self.values, LoadMapResult, compute)
 
@@ -233,16 +233,16 @@ class Chain:
         from facegear.results.search import SearchResult
 
         def compute() -> "Outcome":
+            from facegear.stages.designs import SearchedMachine
             from facegear.stages.search import search
             from facegear.stages.search_island import search_island
 
-            needs, harmonics = self._needs("search_island"), self._harmonics()
-            flanks = self._flanks(needs["pair"])
+            given = self._varied("search")
             islands = {
-                seed: search_island(seed, harmonics, **needs, flanks=flanks).content["designs"]
+                seed: search_island(seed, SearchedMachine(**given)).content["designs"]
                 for seed in self.values["search"]["seeds"]
             }
-            return search(islands, harmonics, **self._needs("search"), flanks=flanks)
+            return search(islands, SearchedMachine(**given))
 
         return self.store.result("search", self.values, SearchResult, compute)
 
@@ -265,6 +265,11 @@ class Chain:
             lambda path: from_arrays(arrays.read(path, STORED)),
             lambda: compliance(body, **self._needs("compliance")),
         )
+
+    def _varied(self, rule: str) -> dict[str, Any]:
+        """All that a stage needs of the machine that many are made from."""
+        needs = self._needs(rule)
+        return {**needs, "harmonics": self._harmonics(), "flanks": self._flanks(needs["pair"])}
 
     def _flanks(self, pair: Mapping[str, Any] | None) -> "dict[str, GearFlank]":
         """Compliance of both bodies, where machines among many are put into contact."""
@@ -323,12 +328,11 @@ class Chain:
         """The table of all samples of a design (samples or indices); none where the config asks for none."""
         from facegear.config.base import parse
         from facegear.config.tolerances import Tolerances, sizes
+        from facegear.stages.sampled_machine import SampledMachine
         from facegear.stages.tolerances_chunk import tolerances_chunk
 
         count = sizes(parse(Tolerances, self.values["tolerances"]), design)
         if not count:
             return []
-        needs = self._needs("tolerances_chunk")
-        flanks = self._flanks(needs["pair"])
-        found = tolerances_chunk(design, 0, count - 1, self._harmonics(), **needs, flanks=flanks)
-        return [found.content["chunk"]]
+        machine = SampledMachine(**self._varied("tolerances_chunk"))
+        return [tolerances_chunk(design, 0, count - 1, machine).content["chunk"]]

@@ -1,12 +1,11 @@
 """What a search asks of a design, as designed or with its tolerances."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from facegear.config.base import parse
 from facegear.config.checks import check_places
@@ -17,36 +16,26 @@ from facegear.config.tooth_pair import ToothPair
 from facegear.config.transmission import Transmission
 from facegear.config.variants import movable, moved, placed, variable_part
 from facegear.dynamics.sweeps.plan import JumpRange
-from facegear.load_sharing.quantity_names import columns_of, of_jumps, quantity_names
+from facegear.load_sharing.quantity_names import columns_of, of_jumps
 from facegear.scenarios.evolution import Task, Variable
 from facegear.scenarios.sampling import changes, samples
-from facegear.stages.many_machines import Question, judge
-from facegear.stages.tooth_meshes import Flanks, Meshes, tooth_meshes
+from facegear.stages.many_machines import Question, VariedMachine, judge
+from facegear.stages.tooth_meshes import Values
 
 Found = dict[str, float]
 
 
-@dataclass(frozen=True, eq=False)
-class SearchedMachine:
-    """The machine whose numbers are free, as plain config values: the arguments of a stage of the search.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SearchedMachine(VariedMachine):
+    """The machine whose numbers are free, as plain config values: what the stages of the search are given."""
 
-    `pair`, the sections that contact needs, and `flanks` where designs are put into contact.
-    """
-
-    harmonics: pd.DataFrame
-    tooth_pair: Mapping[str, Any]
-    transmission: Mapping[str, Any]
-    accuracy: Mapping[str, Any]
-    speed_rpm: float
-    options: Mapping[str, Any]
-    tolerances: Mapping[str, Any] | None
-    pair: Mapping[str, Any] | None
-    flanks: Flanks
+    tooth_pair: Values
+    search: Values
 
     @cached_property
-    def meshes(self) -> Meshes:
-        """The mesh of each design's tooth pair."""
-        return tooth_meshes(self.harmonics, self.pair, self.flanks)
+    def section(self) -> Search:
+        """What is searched, validated."""
+        return parse(Search, self.search)
 
     @property
     def values(self) -> dict[str, Any]:
@@ -67,13 +56,14 @@ def task(section: Search) -> Task:
 
 
 def assessor(
-    given: SearchedMachine, section: Search, cycles: int, count: int
+    given: SearchedMachine, cycles: int, count: int
 ) -> Callable[[Sequence[float] | None], tuple[Found, Found]]:
     """Function of a design's values, None for the nominal ones: its goals, and all quantities as designed.
 
     Over `cycles` mesh cycles and, where percentiles are asked for, `count` samples. The function raises
     FacegearError for a design that cannot be built, or of which a sample cannot.
     """
+    section = given.section
     tolerances = parse(Tolerances, given.tolerances) if section.robust and given.tolerances else None
     causes = population(tolerances) if tolerances else None
     keys = [key for variable in section.variables for key in variable.sets]
@@ -83,9 +73,7 @@ def assessor(
     ask, ask_varied = (
         judge(replace(question, jumps=within), given.meshes, "this design") for within in _jumps(section)
     )
-    gauges = given.pair is not None and given.pair["contact"]["root_stress"]
-    shape = wired_layout(start["transmission"], given.tooth_pair)
-    names = quantity_names(shape, question.dynamic, given.pair is not None, gauges, jumps=True)
+    names = given.columns(wired_layout(start["transmission"], given.tooth_pair), question, jumps=True)
     drawn = [changes(causes, row) for row in samples(causes, 0, count)] if causes else []
 
     def assess(design: Sequence[float] | None) -> tuple[Found, Found]:

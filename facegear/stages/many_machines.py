@@ -1,8 +1,11 @@
 """Machines put together and judged again and again: what samples and designs have in common."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
 from typing import Any
+
+import pandas as pd
 
 from facegear.config.base import parse
 from facegear.config.buildable import require_buildable
@@ -14,8 +17,10 @@ from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.sweeps.jump_margin import jump_margin
 from facegear.dynamics.sweeps.plan import JumpRange
 from facegear.load_sharing.quantities import dynamic_quantities, quasi_static_quantities
-from facegear.load_sharing.quantity_names import JUMP_MARGIN, PEAK
-from facegear.stages.tooth_meshes import Meshes
+from facegear.load_sharing.quantity_names import JUMP_MARGIN, PEAK, quantity_names
+from facegear.scenarios.chunks import identity
+from facegear.stages.tooth_meshes import Flanks, Meshes, Values, tooth_meshes
+from facegear.transmission.layout import Layout
 
 Judge = Callable[[Mapping[str, Any]], dict[str, float]]
 """What a machine is judged by, by column name, given the values of `facegear.config.variants.variable_part`.
@@ -41,6 +46,39 @@ class Question:
     def dynamic(self) -> bool:
         """Whether the motion is asked for."""
         return self.model == "dynamic"
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class VariedMachine:
+    """The machine that many are made from, as plain config values: what samples and designs share.
+
+    With `pair`, the sections that contact needs, and `flanks`, the compliance of its bodies, every tooth pair
+    that differs is put into contact; without, all have the stiffness of `harmonics`.
+    """
+
+    harmonics: pd.DataFrame
+    transmission: Values
+    accuracy: Values
+    speed_rpm: float
+    options: Values
+    tolerances: Values | None
+    pair: Values | None = None
+    flanks: Flanks = field(default_factory=dict)
+
+    @cached_property
+    def meshes(self) -> Meshes:
+        """The mesh of each one's tooth pair."""
+        return tooth_meshes(self.harmonics, self.pair, self.flanks)
+
+    def columns(self, layout: Layout, question: Question, jumps: bool = False) -> tuple[str, ...]:
+        """Names of what a machine is judged by."""
+        gauges = self.pair is not None and self.pair["contact"]["root_stress"]
+        return quantity_names(layout, question.dynamic, self.pair is not None, gauges, jumps)
+
+    def identity(self, *parts: object) -> str:
+        """Text that differs whenever one of the parts or a value of the machine does."""
+        plain = {one.name: getattr(self, one.name) for one in fields(self) if one.name != "flanks"}
+        return identity(*parts, {**plain, "harmonics": self.harmonics.to_csv()})
 
 
 def judge(question: Question, meshes: Meshes, told: str) -> Judge:

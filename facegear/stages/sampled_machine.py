@@ -1,78 +1,72 @@
 """One machine with its tolerances: its samples by number, and what each is judged by."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 import pandas as pd
 
+from facegear.config.base import parse
 from facegear.config.lumped_model import wired_layout
 from facegear.config.tolerances import Tolerances, population
 from facegear.config.variants import movable, moved, variable_part
-from facegear.load_sharing.quantity_names import quantity_names
 from facegear.progress import Progress
 from facegear.scenarios.chunks import Evaluate, run_chunk
 from facegear.scenarios.sampling import Population, changes
-from facegear.stages.many_machines import Judge, Question, judge
-from facegear.stages.tooth_meshes import Flanks, tooth_meshes
+from facegear.stages.many_machines import Judge, Question, VariedMachine, judge
+from facegear.stages.tooth_meshes import Values
 
 
-@dataclass(frozen=True, eq=False)
-class SampledMachine:
-    """Causes, the nominal values that they move, what a machine is judged by, and the names of that."""
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SampledMachine(VariedMachine):
+    """The machine with its tolerances, as plain config values: what the stages of its samples are given."""
 
-    causes: Population
-    start: Mapping[str, Any]
-    judge: Judge
-    names: tuple[str, ...]
+    tolerances: Values
+    teeth: Values
+
+    @cached_property
+    def section(self) -> Tolerances:
+        """Its tolerances, validated."""
+        return parse(Tolerances, self.tolerances)
+
+    @cached_property
+    def causes(self) -> Population:
+        """What moves its values."""
+        return population(self.section)
+
+    @cached_property
+    def start(self) -> dict[str, Any]:
+        """The nominal values that the causes move."""
+        teeth = self.pair["tooth_pair"] if self.pair else self.teeth
+        keys = [key for cause in self.causes.causes for key, _ in cause.gains]
+        return movable(variable_part(self.transmission, teeth, self.speed_rpm), keys)
+
+    @property
+    def question(self) -> Question:
+        """How a sample is judged."""
+        return Question(self.section.model, self.section.hunting_cycles, self.accuracy, self.options)
+
+    @cached_property
+    def judge(self) -> Judge:
+        """What a sample is judged by, given its values."""
+        return judge(self.question, self.meshes, "this sample")
 
     def sample(self, values: Sequence[float]) -> dict[str, Any]:
         """The variable part of the config of a sample with these values of its causes."""
         return moved(self.start, changes(self.causes, values))
 
+    def run(
+        self, evaluate: Evaluate, numbers: range, told: str, partial: str | Path | None, *same: object
+    ) -> pd.DataFrame:
+        """Rows of `run_chunk`, kept in `partial` for this machine and what else must be the `same`.
 
-def sampled_machine(
-    section: Tolerances,
-    harmonics: pd.DataFrame,
-    transmission: Mapping[str, Any],
-    teeth: Mapping[str, Any],
-    accuracy: Mapping[str, Any],
-    speed_rpm: float,
-    options: Mapping[str, Any],
-    pair: Mapping[str, Any] | None,
-    flanks: Flanks | None,
-) -> SampledMachine:
-    """With `pair`, the sections that contact needs, and `flanks`, the compliance of its bodies, every tooth
-    pair that differs is put into contact; without, all have the stiffness of `harmonics`.
-    """
-    causes = population(section)
-    start = movable(
-        variable_part(transmission, pair["tooth_pair"] if pair else teeth, speed_rpm),
-        [key for cause in causes.causes for key, _ in cause.gains],
-    )
-    question = Question(section.model, section.hunting_cycles, accuracy, options)
-    gauges = pair is not None and pair["contact"]["root_stress"]
-    shape = wired_layout(start["transmission"], teeth)
-    return SampledMachine(
-        causes=causes,
-        start=start,
-        judge=judge(question, tooth_meshes(harmonics, pair, flanks or {}), "this sample"),
-        names=quantity_names(shape, question.dynamic, pair is not None, gauges),
-    )
-
-
-def run_samples(
-    evaluate: Evaluate,
-    numbers: range,
-    names: tuple[str, ...],
-    partial: str | Path | None,
-    same: str,
-    progress: Progress,
-) -> pd.DataFrame:
-    """`run_chunk` with a record that is thrown away where `partial` is None."""
-    if partial is not None:
-        return run_chunk(evaluate, numbers, names, partial, same, progress.step)
-    with TemporaryDirectory() as folder:
-        return run_chunk(evaluate, numbers, names, Path(folder) / "partial", same, progress.step)
+        `told` names them to who waits; where `partial` is None nothing is kept.
+        """
+        names = self.columns(wired_layout(self.start["transmission"], self.teeth), self.question)
+        known, progress = self.identity(*same), Progress(told, len(numbers))
+        with TemporaryDirectory() as folder:
+            kept = Path(folder) / "partial" if partial is None else partial
+            return run_chunk(evaluate, numbers, names, kept, known, progress.step)

@@ -1,51 +1,31 @@
 """The front of all islands of a search, how far it may be trusted, and its winners at full accuracy."""
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from facegear.config.base import parse
-from facegear.config.search import Search
 from facegear.config.variants import movable, nominal
 from facegear.scenarios.evolution import Task, front, hypervolumes
 from facegear.stages.designs import SearchedMachine, assessor, task
 from facegear.stages.outcome import Outcome
-from facegear.stages.tooth_meshes import Flanks
 
 WHOLE = 2**31
 """More mesh cycles than any hunting cycle has: all of them."""
 
 
-def search(
-    islands: Mapping[int, pd.DataFrame],
-    harmonics: pd.DataFrame,
-    tooth_pair: Mapping[str, Any],
-    transmission: Mapping[str, Any],
-    accuracy: Mapping[str, Any],
-    speed_rpm: float,
-    options: Mapping[str, Any],
-    search: Mapping[str, Any],
-    tolerances: Mapping[str, Any] | None,
-    pair: Mapping[str, Any] | None = None,
-    flanks: Flanks | None = None,
-) -> Outcome:
+def search(islands: Mapping[int, pd.DataFrame], given: SearchedMachine) -> Outcome:
     """`designs`, `front`, `hypervolume`, `winners` (tables) from the designs of each island by its seed."""
-    section = parse(Search, search)
-    asked = task(section)
+    asked = task(given.section)
     every = pd.concat([one.assign(seed=seed) for seed, one in islands.items()], ignore_index=True)
     best = front(every, asked)
     covered = hypervolumes(islands, asked)
-    given = SearchedMachine(
-        *(harmonics, tooth_pair, transmission, accuracy, speed_rpm, options, tolerances, pair, flanks or {})
-    )
     return Outcome(
         {
             "designs": every,
             "front": best,
             "hypervolume": covered,
-            "winners": _winners(best, asked, given, section),
+            "winners": _winners(best, asked, given),
         },
         f"front of {len(best)} designs out of {len(every)}; {_spread(covered)}",
     )
@@ -59,15 +39,15 @@ def _spread(covered: pd.DataFrame) -> str:
     return f"hypervolume of {len(last)} seeds within {percent:.2g} %"
 
 
-def _winners(best: pd.DataFrame, asked: Task, given: SearchedMachine, section: Search) -> pd.DataFrame:
+def _winners(best: pd.DataFrame, asked: Task, given: SearchedMachine) -> pd.DataFrame:
     """The nominal design and those of the front that win: goals as searched, and all at full accuracy."""
-    coarse = assessor(given, section, section.hunting_cycles, section.samples)
-    full = assessor(given, section, WHOLE, section.winner_samples)
+    coarse = assessor(given, given.section.hunting_cycles, given.section.samples)
+    full = assessor(given, WHOLE, given.section.winner_samples)
     names = [one.name for one in asked.variables]
     rows = []
     for told, design in {"nominal": None, **chosen(best, asked)}.items():
         searched, (goals, quantities) = coarse(design)[0], full(design)
-        values = dict(zip(names, design if design is not None else _nominal(given, section), strict=True))
+        values = dict(zip(names, design if design is not None else _nominal(given), strict=True))
         compared = {f"{goal}_searched": searched[goal] for goal in asked.goals}
         others = {name: value for name, value in quantities.items() if name not in goals}
         rows.append({"design": told, **values, **goals, **compared, **others})
@@ -75,10 +55,11 @@ def _winners(best: pd.DataFrame, asked: Task, given: SearchedMachine, section: S
     return pd.DataFrame(rows, columns=columns)
 
 
-def _nominal(given: SearchedMachine, section: Search) -> list[float]:
+def _nominal(given: SearchedMachine) -> list[float]:
     """Values of the variables in the config; nan where the keys of one differ."""
-    start = movable(given.values, [key for variable in section.variables for key in variable.sets])
-    return [nominal(start, variable.sets) for variable in section.variables]
+    free = [variable.sets for variable in given.section.variables]
+    start = movable(given.values, [key for keys in free for key in keys])
+    return [nominal(start, keys) for keys in free]
 
 
 def chosen(best: pd.DataFrame, asked: Task) -> dict[str, tuple[float, ...]]:

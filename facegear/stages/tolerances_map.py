@@ -1,22 +1,17 @@
 """Percentiles of a machine with its tolerances over torque and speed."""
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 
-from facegear.config.base import parse
 from facegear.config.lumped_model import with_torques
-from facegear.config.tolerances import LoadMap, Tolerances
-from facegear.progress import Progress
-from facegear.scenarios.chunks import ERROR, identity
+from facegear.config.tolerances import LoadMap
+from facegear.scenarios.chunks import ERROR
 from facegear.scenarios.sampling import samples
 from facegear.scenarios.summary import percentile_table, share_table
 from facegear.stages.outcome import Outcome
-from facegear.stages.sampled_machine import run_samples, sampled_machine
+from facegear.stages.sampled_machine import SampledMachine
 from facegear.stages.tolerances import SHARES
-from facegear.stages.tooth_meshes import Flanks
 
 COLUMNS = (
     *("torque_factor", "speed_rpm", "quantity", "percentile"),
@@ -24,39 +19,24 @@ COLUMNS = (
 )
 
 
-def tolerances_map(
-    harmonics: pd.DataFrame,
-    transmission: Mapping[str, Any],
-    teeth: Mapping[str, Any],
-    accuracy: Mapping[str, Any],
-    speed_rpm: float,
-    options: Mapping[str, Any],
-    tolerances: Mapping[str, Any],
-    pair: Mapping[str, Any] | None = None,
-    flanks: Flanks | None = None,
-    partial: str | Path | None = None,
-    code: str = "",
-) -> Outcome:
+def tolerances_map(machine: SampledMachine, partial: str | Path | None = None, code: str = "") -> Outcome:
     """`load_map` (table): percentiles of every quantity at every torque and speed, COLUMNS; `load_shares`
     (table): share of the machines that fail, open or change their flank there.
 
     The same machines at every load, so that differences between loads are no accident of the samples. The
-    mesh stiffness stays that of mesh_stiffness.torque_n_m. `pair`, `flanks`, `partial` and `code` as of
-    `tolerances_chunk`.
+    mesh stiffness stays that of mesh_stiffness.torque_n_m. `partial` and `code` as of `tolerances_chunk`.
     """
-    section = parse(Tolerances, tolerances)
+    section, judge = machine.section, machine.judge
     asked = section.load_map or LoadMap()
-    given = transmission, teeth, accuracy, speed_rpm, options, pair
-    machine = sampled_machine(section, harmonics, *given, flanks)
-    values, loads = samples(machine.causes, 0, asked.samples), asked.loads(speed_rpm)
+    values, loads = samples(machine.causes, 0, asked.samples), asked.loads(machine.speed_rpm)
     count = asked.samples * len(loads)
 
     def evaluate(number: int) -> dict[str, float]:
         load, row = divmod(number, asked.samples)
         factor, speed = loads[load]
         changed = machine.sample(values[row])
-        off = changed["dynamics"]["speed_rpm"] - speed_rpm  # what a cause adds to it
-        return machine.judge(
+        off = changed["dynamics"]["speed_rpm"] - machine.speed_rpm  # what a cause adds to it
+        return judge(
             {
                 **changed,
                 "transmission": with_torques(changed["transmission"], factor),
@@ -64,9 +44,7 @@ def tolerances_map(
             }
         )
 
-    same = identity(*given, tolerances, harmonics.to_csv(), code)
-    progress = Progress("tolerances over torque and speed", count)
-    frame = run_samples(evaluate, range(count), machine.names, partial, same, progress)
+    frame = machine.run(evaluate, range(count), "tolerances over torque and speed", partial, code)
     tables, shares = [], []
     for place, (factor, speed) in enumerate(loads):
         own = frame.iloc[place * asked.samples : (place + 1) * asked.samples]

@@ -5,6 +5,7 @@ from pathlib import Path
 from facegear.io import tables
 from facegear.io.files import write_all
 from facegear.provenance.stage import stage
+from facegear.stages.sampled_machine import SampledMachine
 from facegear.stages.tolerances_chunk import tolerances_chunk
 from facegear.stages.tooth_meshes import read_flanks
 from facegear.stiffness.tables import HARMONICS_COLUMNS
@@ -13,17 +14,10 @@ with stage(snakemake) as run:
     wildcards, params = snakemake.wildcards, snakemake.params
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
     flanks = read_flanks(snakemake.input.flanks)
+    machine = SampledMachine(harmonics=harmonics, flanks=flanks, **params.needs)
     partial = Path(snakemake.output.chunk).with_suffix(".partial")
-    found = tolerances_chunk(
-        wildcards.design,
-        int(wildcards.first),
-        int(wildcards.last),
-        harmonics,
-        **params.needs,
-        flanks=flanks,
-        partial=partial,
-        code=params.code,
-    )
+    numbers = int(wildcards.first), int(wildcards.last)
+    found = tolerances_chunk(wildcards.design, *numbers, machine, partial, params.code)
     write_all(found.content, snakemake.output)
     partial.unlink()
     run.summary(found.summary)

@@ -2,38 +2,34 @@
 
 import resource
 import time
-from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
 import pandas as pd
 
 from facegear.io import columnar
+from facegear.stages.sampled_machine import SampledMachine
 from facegear.stages.tolerances_chunk import tolerances_chunk
-from facegear.stages.tooth_meshes import Flanks
 
 MODELS = ("quasi_static", "dynamic")
 WANTED, CORES = 10_000, 2
 FEWER = 40
 
 
-def costs(
-    harmonics: pd.DataFrame, needs: Mapping[str, Any], samples: int, flanks: Flanks | None = None
-) -> pd.DataFrame:
+def costs(machine: SampledMachine, samples: int) -> pd.DataFrame:
     """One row a model, from `samples` of them in this process, compiled before; a fortieth of them where each
     has a contact analysis of its own.
 
-    `needs`: the arguments of a chunk, `flanks` of its contact. `minutes_extrapolated` is what WANTED samples
-    would take on CORES idle cores, start-up of the jobs left out.
+    `minutes_extrapolated` is what WANTED samples would take on CORES idle cores, start-up of the jobs left
+    out.
     """
-    rows, samples = [], samples if needs["pair"] is None else max(samples // FEWER, 1)
+    rows, samples = [], samples if machine.pair is None else max(samples // FEWER, 1)
     for model in MODELS:
-        given = {**needs, "tolerances": {**needs["tolerances"], "model": model}}
-        given["flanks"] = flanks
-        tolerances_chunk("samples", samples, samples, harmonics, **given)
+        given = replace(machine, tolerances={**machine.tolerances, "model": model})
+        tolerances_chunk("samples", samples, samples, given)
         start = time.process_time()
-        chunk = tolerances_chunk("samples", 0, samples - 1, harmonics, **given).content["chunk"]
+        chunk = tolerances_chunk("samples", 0, samples - 1, replace(given)).content["chunk"]
         seconds = (time.process_time() - start) / samples
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
         minutes = seconds * WANTED / CORES / 60.0

@@ -11,6 +11,7 @@ import facegear
 from facegear.config.needs import stage_needs
 from facegear.config.tolerances import Tolerances, chunks
 from facegear.errors import ConfigErrors, FacegearError
+from facegear.stages.sampled_machine import SampledMachine
 from facegear.stages.tolerances import tolerances
 from facegear.stages.tolerances_chunk import tolerances_chunk
 
@@ -45,9 +46,8 @@ def gearbox():
 
 
 def chunk(gearbox, first, last, design="samples", **others):
-    harmonics = gearbox.stiffness().content["harmonics"]
-    needs = stage_needs("tolerances_chunk", gearbox.values)
-    return tolerances_chunk(design, first, last, harmonics, **needs, **others).content["chunk"]
+    sampled = SampledMachine(**gearbox._chain._varied("tolerances_chunk"))
+    return tolerances_chunk(design, first, last, sampled, **others).content["chunk"]
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ from facegear.contact.pair import gear_flank
 from facegear.errors import ConfigErrors
 from facegear.mesh.sizes import MeshSizes
 from facegear.stages import contact_meshes
+from facegear.stages.sampled_machine import SampledMachine
 from facegear.stages.tolerances_chunk import tolerances_chunk
 
 pytestmark = pytest.mark.xdist_group("notebooks")  # the example's compliance is computed once a process
@@ -138,10 +139,8 @@ def test_given_harmonics_have_no_contact_to_vary():
 
 
 def test_samples_with_contacts_of_their_own_do_not_depend_on_their_chunk(found):
-    gearbox = machine(*BOTH)
-    needs = stage_needs("tolerances_chunk", gearbox.values)
-    given = gearbox.stiffness().content["harmonics"], gearbox._chain._flanks(needs["pair"])
-    last = tolerances_chunk("samples", 3, 3, given[0], **needs, flanks=given[1]).content["chunk"]
+    sampled = SampledMachine(**machine(*BOTH)._chain._varied("tolerances_chunk"))
+    last = tolerances_chunk("samples", 3, 3, sampled).content["chunk"]
     pd.testing.assert_frame_equal(last, found.iloc[3:].reset_index(drop=True), check_exact=True)
 
 
