@@ -20,7 +20,7 @@ ONCE = (
     "te_peak_to_peak_um",
 )
 DECIDED = ("pressure_mpa", "root_stress_face_gear_mpa", "te_peak_to_peak_um")
-"""Of which is told what decides them, beside the worst path; where there are none, the largest mesh force."""
+"""Shown with the causes that decide them, beside the worst path; without them the largest mesh force is."""
 BARS = 12
 WORDS = {
     "k_gamma": r"$K_\gamma$ of",
@@ -122,12 +122,11 @@ def scatter_figure(
 def load_map_figure(table: pd.DataFrame) -> Figure:
     """Median and 99th percentile of the worst path's factor over torque, or over speed for each torque.
 
-    `table`: as of `facegear.stages.tolerances_map`. The worst path is that of the largest 99th percentile.
+    `table`: as of `facegear.stages.tolerances_map`. The worst path is that of the largest 99th percentile;
+    where no meshes share a load, the largest mesh force stands in its place.
     """
-    factors = table[table["quantity"].str.startswith("k_gamma")]
-    top = factors[factors["percentile"] == 99.0]
-    name = top.loc[top["value"].idxmax(), "quantity"] if len(top) else ""
-    own = factors[factors["quantity"] == name]
+    name = (worst_first(table) or [""])[0]
+    own = table[table["quantity"] == name]
     over, lines = "torque_factor", "speed_rpm"
     if own["speed_rpm"].nunique() > 1:
         over, lines = lines, over

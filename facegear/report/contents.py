@@ -33,7 +33,7 @@ CAPTIONS = {
     "tolerance_distributions": "Share of samples above each value, with percentiles and their intervals.",
     "tolerance_importance": "Which tolerance matters: total Sobol indices, or rank correlations.",
     "tolerance_scatter": "Every sample against the two tolerances that matter most.",
-    "tolerance_map": "99th percentile of K_gamma of the worst path over torque and, in motion, speed.",
+    "tolerance_map": "Median and 99th percentile of the worst path over torque and, in motion, speed.",
     "search_front": "Designs tried, the front that none beats, and its winners beside the nominal design.",
     "search_hypervolume": "How much of the box between best and worst of the front each seed has covered.",
     "sensitivity": "Change of K_gamma per micrometre of each error, largest first.",

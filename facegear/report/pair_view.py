@@ -51,11 +51,11 @@ def pair_view(
     ltca: pd.DataFrame,
     stress: Mapping[str, NDArray] | None = None,
 ) -> View:
-    """The pair at every solved position and torque; `loads` as PRESSURE_ARRAYS, `ltca` as LTCA_COLUMNS,
-    `stress` as ROOT_STRESS_ARRAYS.
+    """The pair at every solved position and torque.
 
-    Lengths in mm. Colours show the pressure or the load of the line of contact at every loaded node's column
-    of the flank, or the root stress, the largest of each torque at the end of the scale.
+    `loads` as PRESSURE_ARRAYS, `ltca` as LTCA_COLUMNS, `stress` as ROOT_STRESS_ARRAYS. Lengths in mm. Colours
+    show the pressure or the load of the line of contact at every loaded node's column of the flank, or the
+    root stress, the largest of each torque at the end of the scale.
     """
     torques = np.unique(loads["torque_n_m"])
     positions = np.unique(loads["position"])

@@ -5,6 +5,7 @@ import pytest
 
 from facegear.geometry import face_gear
 from facegear.geometry.design import involute
+from facegear.geometry.limits import sharpest_fillet_radius
 
 
 def flank_grid(design):
@@ -114,7 +115,7 @@ def test_the_fillet_is_the_envelope_of_the_shapers_rounded_tip(pair, rounding):
     The sections are taken inside and outside the radius at which the tip's centre rolls without sliding.
     """
     design = pair(tip_rounding=rounding)
-    sharpest = design.shaper_rounding_centre / design.shaper_ratio
+    sharpest = sharpest_fillet_radius(design)
     radius = np.array([0.92, 0.98, 0.995, 1.004, 1.01, 1.02])[:, None] * sharpest
     psi = face_gear.fillet_slopes(design, radius, np.linspace(0.0, 1.0, 15))
     point = face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, psi))
@@ -145,7 +146,7 @@ def test_the_fillet_is_the_envelope_of_the_shapers_rounded_tip(pair, rounding):
 def test_the_shapers_rounded_tip_passes_every_point_of_the_fillet_and_cuts_none_off(pair, rounding):
     """Followed through the whole motion, the tip's disc touches each point once and never covers it."""
     design = pair(tip_rounding=rounding)
-    sharpest = design.shaper_rounding_centre / design.shaper_ratio
+    sharpest = sharpest_fillet_radius(design)
     radius = np.array([0.92, 0.98, 1.0, 1.01, 1.03])[:, None] * sharpest
     psi = face_gear.fillet_slopes(design, radius, np.linspace(0.0, 1.0, 9))
     x, y, z = np.moveaxis(

@@ -48,6 +48,17 @@ def test_a_map_draws_the_median_and_99th_percentile_of_the_worst_path(speeds, li
     plt.close(figure)
 
 
+def test_a_map_of_a_machine_of_one_mesh_shows_its_force():
+    given = table((0.5, 1.0), (7500.0,))
+    force = given[given["quantity"] == "peak_mesh_force_n"]
+    figure = load_map_figure(force)
+    (axis,) = figure.axes
+    assert axis.get_ylabel() == in_words("peak_mesh_force_n")
+    drawn = np.sort(np.concatenate([line.get_ydata() for line in axis.lines]))
+    np.testing.assert_array_equal(drawn, np.sort(force[force["percentile"] != 95.0]["value"]))
+    plt.close(figure)
+
+
 def test_what_comes_once_a_machine_stands_after_the_worst_paths():
     columns = ["te_peak_to_peak_um", "open_share", OTHER, "pressure_mpa", WORST, "peak_mesh_force_n"]
     values = [5.0, 0.0, 1.3, 1500.0, 1.4, 2e4]
