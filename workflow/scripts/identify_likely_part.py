@@ -31,7 +31,7 @@ with stage(snakemake) as run:
     ]
     judge = dynamic_judge(params.case, ltca, files.claims, settings=QUICK)
     partial = Path(snakemake.output.judged).with_suffix(".partial")
-    same = identity(params.case, chosen.to_csv(), ltca.to_csv(), params.code)
+    same = identity(judge.deciding, chosen.to_csv(), params.code)
     progress = Progress(f"likely inputs, part {snakemake.wildcards.part}", len(chosen))
     found = judged_again(judge, likelihood, chosen, partial, same, progress.step)
     tables.write(snakemake.output.judged, found)

@@ -24,7 +24,7 @@ with stage(snakemake) as run:
     numbers = sample_numbers(wildcards.design, int(wildcards.first), int(wildcards.last))
     rows = drawn.rows_by_pattern(numbers) if by_pattern else drawn.rows(numbers)
     partial = Path(snakemake.output.samples).with_suffix(".partial")
-    same = identity(params.case, params.identify, ltca.to_csv(), params.code)
+    same = identity(judge.deciding, params.identify, params.code)
     progress = Progress(f"{wildcards.design} inputs {wildcards.first} to {wildcards.last}", len(numbers))
     found = judged_samples(judge, rows, numbers, partial, same, progress.step)
     tables.write(snakemake.output.samples, found)

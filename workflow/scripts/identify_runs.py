@@ -24,7 +24,7 @@ with stage(snakemake) as run:
     judge = ClaimJudge(params.case, ltca, claims)
     section = parse(Identify, params.identify)
     partial = Path(snakemake.output.runs).with_suffix(".partial")
-    same = identity(params.case, row, section.swept_runs, ltca.to_csv(), params.code)
+    same = identity(judge.deciding, row, section.swept_runs, params.code)
     progress = Progress(f"runs of set {name}", section.runs)
     columns = run_columns(judge.names)
     evaluate = one_run(judge, row, section.swept_runs)

@@ -31,7 +31,7 @@ with stage(snakemake) as run:
     before = [judged, *map(tables.read, files.before)] if files.before else []
     first = first_points(drawn, before, pattern, size)
     partial = Path(snakemake.output.evaluations).with_suffix(".partial")
-    same = identity(params.case, params.identify, ltca.to_csv(), first.tolist(), params.code)
+    same = identity(judge.deciding, params.identify, first.tolist(), params.code)
     told = Progress(f"search {pattern}", size * (budget.generations + 1)).step
     found = search_pattern(judge, likelihood, drawn.space, pattern, first, budget, partial, same, told)
     tables.write(snakemake.output.evaluations, found)

@@ -25,7 +25,7 @@ with stage(snakemake) as run:
     judge = dynamic_judge(params.case, ltca, files.claims, unswept)
     region = worth_confirming(tables.read(files.region), section.confirmed)
     partial = Path(output.sets).with_suffix(".partial")
-    same = identity(params.case, region.to_csv(), ltca.to_csv(), params.code)
+    same = identity(judge.deciding, region.to_csv(), section.runs, params.code)
     progress = Progress("confirming at full accuracy", len(region) * section.runs)
     found = confirmed_inputs(judge, likelihood, region, section.runs, partial, same, progress.step)
     sets = kept_sets(found, section.sets)

@@ -40,7 +40,9 @@ class RandomInputs(Section):
     """Random plausible inputs: how often they hold each claim, and what patterns of e(t) do."""
 
     samples: int = Field(64, ge=1, le=100_000)
-    structure_samples: int = Field(4, ge=1, le=10_000, description="with which each pattern is tried")
+    structure_samples: int = Field(
+        16, ge=8, le=10_000, description="with which each pattern is tried; the null needs more than figures"
+    )
     chunk_samples: int = Field(16, ge=1, le=10_000, description="judged by one job")
     seed: int = Field(1, ge=0, le=2**31)
 

@@ -87,6 +87,12 @@ class ClaimJudge:
         return {**self.values, "studies": [one for one in self.values["studies"] if one["name"] in named]}
 
     @property
+    def deciding(self) -> list[Any]:
+        """Plain values of all that decides what it finds; a change of one makes old findings worthless."""
+        claims = [claim.model_dump(mode="json") for claim in self.claims]
+        return [dict(self.values), dict(self.settings), claims, self.ltca.to_csv()]
+
+    @property
     def columns(self) -> list[str]:
         """Columns of `found`."""
         numbers = [claim.id for claim in self.claims if claim.paper is not None]

@@ -21,17 +21,18 @@ TAILS = (0.05, 0.95)
 def null_counts(samples: pd.DataFrame, claims: Sequence[Claim], papers: int, seed: int) -> pd.DataFrame:
     """Fitted and held-out claims met by the most likely of the samples, one row a paper, NULL_COLUMNS.
 
-    The first paper is the one whose claims they are. Then random samples play the paper: their numbers and
-    what holds for them are the claims. Then invented papers, for which each group of claims (`where`) comes
-    from another random sample, so that every single figure is possible and no machine has all of them. The
-    samples that played, and those that share their other inputs, may not answer.
+    The first paper is the one whose claims they are. Then random samples play the paper, each at most once:
+    their numbers and what holds for them are the claims. Then invented papers, for which each group of claims
+    (`where`) comes from another random sample, so that every single figure is possible and no machine has all
+    of them. The samples that played, and those that share their other inputs, may not answer; so there must
+    be more distinct inputs than groups.
     """
     kept = sound(samples).reset_index(drop=True)
     judged = [claim for claim in claims if claim.counts and claim.id in kept.columns]
     inputs = kept[SAMPLE] // kept[PATTERN].nunique()
     random = np.random.default_rng(seed)
     rows: list[tuple[str, int, int]] = [(THIS, *best_counts(kept, judged))]
-    for number in random.choice(len(kept), papers, replace=False):
+    for number in random.choice(len(kept), min(papers, len(kept)), replace=False):
         others = kept[inputs != inputs[number]]
         rows.append((ANOTHER, *best_counts(*played(others, judged, kept.loc[number]))))
     places = list(dict.fromkeys(claim.where for claim in judged))

@@ -128,3 +128,9 @@ def test_another_run_that_plays_the_paper_is_met_where_held_out_claims_follow_fr
     held_out = counts.groupby("paper")["held_out"].mean()
     assert held_out[ANOTHER] > held_out[INVENTED] + 0.15
     assert counts.groupby("paper")["fitted"].min()[ANOTHER] >= 1
+
+
+def test_fewer_random_inputs_than_papers_play_the_paper_once_each():
+    rows = [judged(float(sample % 2), 1.0 + 0.1 * sample, sample=sample) for sample in range(8)]
+    counts = null_counts(pd.DataFrame(rows), [STATEMENT, NUMBER, HELD_OUT], papers=30, seed=1)
+    assert counts["paper"].tolist() == [THIS] + 8 * [ANOTHER] + 30 * [INVENTED]

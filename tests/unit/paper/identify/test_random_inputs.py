@@ -2,6 +2,7 @@
 
 import copy
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,7 @@ from facegear.paper.identify.random_inputs import Plausible
 from facegear.paper.identify.random_verdicts import judged_samples
 from facegear.paper.scorecard.claims import Claim, read_claims
 from facegear.paper.scorecard.criteria import reads_sweep
+from facegear.scenarios.chunks import identity
 
 CONFIG = Path(__file__).parents[4] / "config"
 VALUES = load_values([CONFIG / "paper.yaml"], {})
@@ -80,6 +82,21 @@ def contact_table():
     }
     columns |= {"k_average_n_per_m": curve, "k_local_n_per_m": curve}
     return pd.DataFrame({name: values.ravel() for name, values in columns.items()})
+
+
+def test_what_was_found_before_a_claim_a_setting_or_an_input_changed_counts_no_more():
+    """The text of a claim was no part of it: after an edit a killed chunk went on with old verdicts."""
+    claim = Claim(id="mean", where="", claim="", criterion="sharing", paper=1.7, tolerance=0.2)
+    judge = ClaimJudge(VALUES, contact_table(), [claim], QUICK)
+    others = (
+        replace(judge, claims=[claim.model_copy(update={"tolerance": 0.1})]),
+        replace(judge, settings={}),
+        replace(judge, values={**VALUES, "studies": []}),
+        replace(judge, ltca=contact_table().assign(ste_um=1.0)),
+    )
+    same = identity(judge.deciding)
+    assert same == identity(replace(judge).deciding)
+    assert same not in [identity(other.deciding) for other in others]
 
 
 class Undefined(ClaimJudge):
