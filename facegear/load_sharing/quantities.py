@@ -13,6 +13,7 @@ from facegear.load_sharing.hunting import hunting_cycle, hunting_length
 from facegear.load_sharing.options import SharingOptions
 from facegear.load_sharing.quantity_names import quantity_names
 from facegear.load_sharing.run import load_sharing
+from facegear.load_sharing.statistics import defined_mean
 from facegear.transmission.layout import Layout
 from facegear.transmission.machine import Machine
 
@@ -56,9 +57,7 @@ def _quantities(
         own = loads[:, list(group.meshes)]
         even = own.mean()
         factors += list(own.max(axis=0) / even if even > 0.0 else np.full(own.shape[1], np.nan))
-        coefficient = sharing_coefficient(own)
-        defined = coefficient[~np.isnan(coefficient)]
-        coefficients.append(defined.mean() if defined.size else np.nan)
+        coefficients.append(defined_mean(sharing_coefficient(own)))
     opened = (loads[:, shared] == 0.0).any(axis=1).mean() if shared else 0.0
     found = (*factors, *coefficients, loads.max(), opened, reversed_.mean(), mass)
     return dict(zip(quantity_names(layout, dynamic), map(float, found), strict=True))

@@ -15,7 +15,7 @@ CONTACT = (ERROR_RANGE, ERROR_HARMONIC, PRESSURE, *ROOTS.values())
 JUMP_MARGIN = "jump_margin_rpm"
 """What sweeps around the operating speed alone tell."""
 QUANTITIES = (PEAK, OPEN, REVERSED, BEARINGS, *CONTACT)
-"""Those that do not name a mesh or a group."""
+"""Columns of a sample that do not name a mesh or a group."""
 
 
 def quantity_names(
@@ -33,6 +33,7 @@ def quantity_names(
     (`facegear.strength.pair_answers`); with `jumps` the distance from the operating speed to the nearest jump
     (`facegear.dynamics.sweeps.jump_margin`).
     """
+    # Those who only check names, as a config does, need not load what a machine is made of.
     from facegear.load_sharing.groups import load_groups
 
     groups = load_groups(layout)

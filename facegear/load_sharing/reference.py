@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from facegear.dynamics.motion import Motion, Settings
+from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.harmonics.series import Harmonics
 from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
@@ -88,7 +88,6 @@ def speed_range_table(machine: Machine, settings: Settings, options: SharingOpti
                     "lost_share": one.lost,
                     "undefined_share": one.undefined,
                     "motion": response.label,
-                    "periodic": response.motion is Motion.PERIODIC,
                 }
             )
         progress.step()

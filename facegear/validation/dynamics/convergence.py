@@ -85,25 +85,18 @@ class Watched:
     ac_rms: Array
 
 
-def watched_longer(
-    model: Model, piece: Piece, finer: Piece, settings: Settings, step: Callable[[], None] = lambda: None
-) -> dict[int, Watched]:
+def watched_longer(model: Model, piece: Piece, finer: Piece, settings: Settings) -> dict[int, Watched]:
     """What becomes of the speeds that are periodic in one of two runs only, or with another period."""
     long = replace(settings, settle=LONG, window=FEW)
     return {
-        int(i): _watched(
-            model, piece.speeds[i : i + 1], long, [piece.state(int(i)), finer.state(int(i))], step
-        )
+        int(i): _watched(model, piece.speeds[i : i + 1], long, [piece.state(int(i)), finer.state(int(i))])
         for i in np.flatnonzero(piece.period != finer.period)
     }
 
 
-def _watched(
-    model: Model, speed: Array, settings: Settings, starts: list[State], step: Callable[[], None]
-) -> Watched:
+def _watched(model: Model, speed: Array, settings: Settings, starts: list[State]) -> Watched:
     runs = [run_speeds(model, speed, each, start) for each in (settings, exact(settings)) for start in starts]
     found = [collect(model, (sampled_response(response) for response in run)) for run in runs]
-    step()
     periods = {int(one.period[0]) for one in found}
     return Watched(
         labels=tuple(one.labels[0] for one in found),
@@ -113,7 +106,7 @@ def _watched(
 
 
 def convergence_table(
-    direction: str, piece: Piece, finer: Piece, watched: Mapping[int, Watched] | None = None
+    direction: str, piece: Piece, finer: Piece, watched: Mapping[int, Watched]
 ) -> pd.DataFrame:
     """One row for each speed: direction, speed_rpm, class, class_finer, watched_longer, multiplier,
     multiplier_finer, rms_change, verdict.
@@ -131,7 +124,6 @@ def convergence_table(
       begins.
     - `wrong`: named periodic, and something else in all four.
     """
-    watched = watched or {}
     exact_rms = finer.deflection_ac_rms.copy()
     for i, found in watched.items():
         exact_rms[i] = found.ac_rms

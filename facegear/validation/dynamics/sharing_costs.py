@@ -14,10 +14,10 @@ from facegear.load_sharing.options import SharingOptions
 from facegear.load_sharing.run import Sharing, group_average, load_sharing
 from facegear.load_sharing.statistics import Average
 from facegear.transmission.machine import Machine
+from facegear.validation.dynamics.convergence import exact
 
 COUNT = 20
 REPEATS = 3
-EXACT, SAMPLES = 1e-10, 4096
 MORE_CYCLES = 10
 """Times the cycles over which the averages of irregular motion are taken again."""
 
@@ -39,12 +39,11 @@ def random_machines(machine: Machine, count: int, seed: int = 1) -> Iterator[Ran
     for _ in range(count):
         torque = float(np.exp(random.uniform(np.log(0.25), np.log(2.0))))
         error, backlash = random.uniform(0.2, 1.2), random.uniform(0.5, 1.5)
-        wave = replace(machine.error, a=error * machine.error.a, b=error * machine.error.b)
         changed = replace(
             machine,
             torques=torque * machine.torques,
             half_backlash=backlash * machine.half_backlash,
-            error=wave,
+            error=machine.error.scaled(error),
         )
         yield RandomMachine(changed, random.uniform(1e3, 15e3), torque, backlash, error)
 
@@ -71,7 +70,7 @@ def sharing_costs(
             begin = time.process_time()
             found = load_sharing(case.machine, case.speed_rpm, settings, options)
             times.append(time.process_time() - begin)
-        exact = _again(case, found, settings, options)
+        finer = _again(case, found, settings, options)
         rows.append(
             {
                 "torque_factor": case.torque_factor,
@@ -82,8 +81,8 @@ def sharing_costs(
                 "motions_from_starts": "; ".join(dict.fromkeys(found.motions)),
                 "periods_run": found.response.periods_run,
                 "seconds": statistics.median(times),
-                **_error(found, exact, options),
-                "motion_exact": exact.label,
+                **_error(found, finer, options),
+                "motion_exact": finer.label,
             }
         )
         step()
@@ -94,8 +93,7 @@ def _again(case: RandomMachine, found: Sharing, settings: Settings, options: Sha
     """The motion once more from where it was left, far finer."""
     model, state = build_model(case.machine), found.response.state
     if found.response.motion is Motion.PERIODIC:
-        finer = replace(settings, tolerance=EXACT, order=None, periodic_residual=1e-9, samples=SAMPLES)
-        return simulate(model, case.speed_rpm, finer, state)
+        return simulate(model, case.speed_rpm, exact(settings), state)
     longer = replace(
         settings,
         tolerance=0.01 * settings.tolerance,
@@ -106,10 +104,10 @@ def _again(case: RandomMachine, found: Sharing, settings: Settings, options: Sha
     return simulate(model, case.speed_rpm, longer, state)
 
 
-def _error(found: Sharing, exact: SteadyState, options: SharingOptions) -> dict[str, float]:
+def _error(found: Sharing, finer: SteadyState, options: SharingOptions) -> dict[str, float]:
     """Of the group whose mean coefficient changes most."""
     pairs: list[tuple[Average, Average]] = [
-        (one.average, group_average(exact, one.group, options.confidence)[2]) for one in found.groups
+        (one.average, group_average(finer, one.group, options.confidence)[2]) for one in found.groups
     ]
     first, second = max(pairs, key=lambda pair: abs(pair[0].mean - pair[1].mean))
     return {
