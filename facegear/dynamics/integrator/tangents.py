@@ -16,7 +16,6 @@ from facegear.dynamics.integrator.taylor import deflect, evaluate, recurrence
 from facegear.dynamics.integrator.work import ABREAST, Work
 
 Array = NDArray[np.float64]
-TWO = 2 * LANES
 
 
 @inlined
@@ -94,7 +93,7 @@ def _move_block(packed: Packed, work: Work, order: int, length: float, tangents:
         _push_block(packed, work, i)
         _expand_block(packed, work, i)
         _products(packed.touched, y, i + 2, deflection, i + 2)
-    _evaluate_block(packed, y, order, length)
+    evaluate(y, order, length, y[0], y[1])
     for row in range(2):
         for k in range(packed.n):
             for j in range(count):
@@ -111,11 +110,11 @@ def _products(matrix: Sparse, factors: Array, at: int, out: Array, to: int) -> N
             value, place = spread(matrix.values, entry), read + ABREAST * take(matrix.columns, entry)
             one = multiply_add(value, load(factors, place), one)
             two = multiply_add(value, load(factors, place + LANES), two)
-            three = multiply_add(value, load(factors, place + TWO), three)
+            three = multiply_add(value, load(factors, place + 2 * LANES), three)
         place = write + ABREAST * row
         store(out, place, one)
         store(out, place + LANES, two)
-        store(out, place + TWO, three)
+        store(out, place + 2 * LANES, three)
 
 
 @inlined
@@ -129,16 +128,16 @@ def _push_block(packed: Packed, work: Work, i: int) -> None:
         at = (i + 1) * wide + place
         one = multiply(damping, load(deflection, at))
         two = multiply(damping, load(deflection, at + LANES))
-        three = multiply(damping, load(deflection, at + TWO))
+        three = multiply(damping, load(deflection, at + 2 * LANES))
         if work.active[m] != 0.0:
             for j in range(i, -1, -1):
                 value, at = spread(work.stiffness, j * meshes + m), (i - j) * wide + place
                 one = multiply_add(value, load(deflection, at), one)
                 two = multiply_add(value, load(deflection, at + LANES), two)
-                three = multiply_add(value, load(deflection, at + TWO), three)
+                three = multiply_add(value, load(deflection, at + 2 * LANES), three)
         store(force, place, multiply(pushed, one))
         store(force, place + LANES, multiply(pushed, two))
-        store(force, place + TWO, multiply(pushed, three))
+        store(force, place + 2 * LANES, multiply(pushed, three))
 
 
 @inlined
@@ -152,30 +151,17 @@ def _expand_block(packed: Packed, work: Work, i: int) -> None:
         at = i * wide + k * ABREAST
         one = multiply(stiffness, load(y, at))
         two = multiply(stiffness, load(y, at + LANES))
-        three = multiply(stiffness, load(y, at + TWO))
+        three = multiply(stiffness, load(y, at + 2 * LANES))
         at += wide
         one = multiply_add(damping, load(y, at), one)
         two = multiply_add(damping, load(y, at + LANES), two)
-        three = multiply_add(damping, load(y, at + TWO), three)
+        three = multiply_add(damping, load(y, at + 2 * LANES), three)
         for entry in range(take(matrix.starts, k), take(matrix.starts, k + 1)):
             value, place = spread(matrix.values, entry), ABREAST * take(matrix.columns, entry)
             one = multiply_add(value, load(force, place), one)
             two = multiply_add(value, load(force, place + LANES), two)
-            three = multiply_add(value, load(force, place + TWO), three)
+            three = multiply_add(value, load(force, place + 2 * LANES), three)
         at += wide
         store(y, at, one)
         store(y, at + LANES, two)
-        store(y, at + TWO, three)
-
-
-@inlined
-def _evaluate_block(packed: Packed, y: Array, order: int, ahead: float) -> None:
-    """Values and slopes at the end of the step into rows 0 and 1, by Horner's rule."""
-    wide, step = y.shape[1], splat(ahead)
-    for c in range(0, packed.n * ABREAST, LANES):
-        value, slope = load(y, order * wide + c), splat(0.0)
-        for i in range(order - 1, -1, -1):
-            slope = multiply_add(slope, step, value)
-            value = multiply_add(value, step, load(y, i * wide + c))
-        store(y, c, value)
-        store(y, wide + c, slope)
+        store(y, at + 2 * LANES, three)

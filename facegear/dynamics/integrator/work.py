@@ -76,7 +76,6 @@ class Work(NamedTuple):
     zero_error: Array
     zero_load: Array
     sample: Array
-    scratch: Array
     was_acting: Array
     least: Array
     most: Array
@@ -120,7 +119,6 @@ def make_work(packed: Packed, order: int) -> Work:
         zero_error=aligned(rows, m),
         zero_load=aligned(rows, n),
         sample=aligned(n),
-        scratch=aligned(n),
         was_acting=aligned(m),
         least=aligned(m),
         most=aligned(m),
