@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 from facegear.config.base import Section, refuse
 from facegear.config.dynamics import SWEPT, SWEPT_TOLD, Accuracy, settings
 from facegear.dynamics.sweeps.plan import JumpRange
-from facegear.load_sharing.quantity_names import of_jumps
+from facegear.load_sharing.quantity_names import JUMP_MARGIN, QUANTITIES, of_jumps
 
 TAKEN = ("design", "error", "generation", "seed")
 """Columns beside those of variables, objectives and constraints."""
@@ -31,7 +31,9 @@ class VariableSection(Section):
     scale: Literal["linear", "log"] = Field("linear", description="log: evenly spaced in orders of magnitude")
 
     @model_validator(mode="after")
-    def _ordered(self) -> "VariableSection":
+    def _consistent(self) -> "VariableSection":
+        if self.name in (*QUANTITIES, JUMP_MARGIN):
+            refuse("name", self.name, "another one: the winners have a column of that name")
         if self.limits[1] <= self.limits[0]:
             refuse("limits", list(self.limits), "the lower one first")
         if self.scale == "log" and self.limits[0] <= 0.0:

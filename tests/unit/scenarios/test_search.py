@@ -220,6 +220,7 @@ def test_a_robust_search_asks_for_percentiles_over_the_tolerances():
         ({"variables": [{**VARIABLES[2], "scale": "log"}]}, "above 0 where scale is log"),
         ({"variables": [{**VARIABLES[0], "sets": ["transmission.pinion.mas_kg"]}]}, "pinion.mas_kg"),
         ({"variables": [{**VARIABLES[0], "sets": ["dynamics.speed_rpm"]}]}, "a number of transmission"),
+        ({"variables": [{**VARIABLES[0], "name": "bearing_mass"}]}, "the winners have a column of that name"),
         ({"objectives": [{**SHARING, "name": "error"}]}, "columns of their own"),
         ({"objectives": [{**SHARING, "largest_of": ["pressure_mpa"]}]}, "the beginning of one of: k_gamma"),
         ({"seeds": [1, 1]}, "different numbers"),
