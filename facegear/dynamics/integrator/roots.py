@@ -50,7 +50,7 @@ def first_root(coefficients: Array, degree: int, conversion: Array, work: Array)
         work[0, i] = total
     depth = 0
     left, width = 0.0, 1.0
-    before = 0.0  # where the interval before ends in a zero: a value of its sign
+    before = 0.0  # a value of the sign that the interval before ends with
     while True:
         changes = 0
         last = before
@@ -61,6 +61,8 @@ def first_root(coefficients: Array, degree: int, conversion: Array, work: Array)
                     changes += 1
                 last = value
         if changes == 1:
+            if work[depth, 0] != 0.0 and (work[depth, 0] > 0.0) == (last > 0.0):
+                return left  # to rounding: the two intervals give their common end different signs
             return refine_root(coefficients, degree, left, left + width, work[depth, 0], last)
         if changes > 1 and depth < MAX_DEPTH:
             _halve(work, depth, degree)
@@ -68,7 +70,7 @@ def first_root(coefficients: Array, degree: int, conversion: Array, work: Array)
             width *= 0.5
             continue
         # Nothing in this interval: go on with the next one to the right.
-        before = last if work[depth, degree] == 0.0 else 0.0
+        before = last
         left += width
         if depth == 0:
             return 2.0

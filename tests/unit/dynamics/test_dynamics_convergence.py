@@ -78,3 +78,14 @@ def test_first_root_is_the_first_sign_change(coefficients, root):
         assert abs(polynomial(found)) <= 1e-12 * size
     if flips.size and np.abs(polynomial(grid[: flips[0] + 1])).min() > 1e-9 * size:
         assert found == pytest.approx(grid[flips[0]], abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("coefficients", "root"), [([-0.2, 0.7, -1.0], 0.25), ([-0.4, 0.5, -1.0], 0.5), ([-0.6, 0.4, 0.6], 0.5)]
+)
+def test_a_zero_where_an_interval_is_halved_is_found_whatever_sign_rounding_gives_it_on_each_side(
+    coefficients, root
+):
+    polynomial = np.polynomial.Polynomial(coefficients) * np.polynomial.Polynomial([-root, 1.0])
+    found = first_root(polynomial.coef, 3, bernstein_matrix(3), np.zeros((MAX_DEPTH + 2, 4)))
+    assert found == pytest.approx(root, abs=1e-12)
