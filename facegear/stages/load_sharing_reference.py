@@ -30,19 +30,6 @@ def load_sharing_reference(
     return Outcome({"reference": reference, "speeds": speeds}, _summary(speeds))
 
 
-def slow_reference(
-    harmonics: pd.DataFrame,
-    transmission: Mapping[str, Any],
-    teeth: Mapping[str, Any],
-    accuracy: Mapping[str, Any],
-    options: Mapping[str, Any],
-) -> pd.DataFrame:
-    """The table `reference` alone: at rest and running slowly, without the range of speeds."""
-    machine = wired_machine(transmission, teeth, harmonics)
-    wanted = sharing_options(parse(LoadSharing, options))
-    return reference_table(machine, settings(parse(Accuracy, accuracy)), wanted)
-
-
 def _summary(speeds: pd.DataFrame) -> str:
     if not speeds["mean"].notna().any():
         return "no meshes share a load"

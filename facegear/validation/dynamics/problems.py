@@ -12,6 +12,7 @@ from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
 from facegear.transmission.machine import Machine, mesh_frequency
+from facegear.validation.dynamics.oscillators import Oscillator
 
 Array = NDArray[np.float64]
 SAMPLES = 16
@@ -77,24 +78,5 @@ def tangent_problems(problems: Sequence[Problem]) -> list[Problem]:
 
 def oscillator_problem() -> Problem:
     """Oracle (a) at W = 0.75 from a point off its upper orbit."""
-    speed = 0.75
-    load = np.zeros((1, 2, 2))
-    load[0, 1] = 0.1, 0.05 * speed**2
-    system = System(
-        mesh_jacobian=np.ones((1, 1)),
-        omega_squared=np.zeros(1),
-        damping=np.array([0.1]),
-        mesh_damping=np.zeros(1),
-        lower=np.array([-1.0]),
-        upper=np.array([1.0]),
-        stiffness=np.array([[[0.0], [1.0]]]),
-        stiffness_kind=np.zeros(1, dtype=np.int64),
-        error=np.zeros((1, 2, 1)),
-        error_kind=np.zeros(1, dtype=np.int64),
-        load=load,
-        damping_when_open=True,
-        scale=1.0,
-    )
-    return Problem(
-        "oracle (a)", system, speed, State(np.array([0.8]), np.array([0.2])), 20, Compared.DEFLECTIONS
-    )
+    one = Oscillator(0.05, 0.1, 0.05, speed=0.75, displacement=0.8, velocity=0.2)
+    return Problem("oracle (a)", one.system, one.speed, one.start, 20, Compared.DEFLECTIONS)
