@@ -32,7 +32,7 @@ rule identify_random_chunk:
         runtime=60,
     params:
         case=whole_case,
-        identify=IDENTIFY_VALUES,
+        identify=identify_values(**DRAWN),
     script:
         "../scripts/identify_random_chunk.py"
 
@@ -54,7 +54,7 @@ rule identify_search:
         runtime=120,
     params:
         case=whole_case,
-        identify=IDENTIFY_VALUES,
+        identify=identify_values(**DRAWN, search={"population", "generations", "seed"}),
     script:
         "../scripts/identify_search.py"
 
@@ -76,7 +76,7 @@ rule identify_likely_part:
         runtime=60,
     params:
         case=whole_case,
-        identify=IDENTIFY_VALUES,
+        identify=identify_values(search={"judged", "parts"}),
     script:
         "../scripts/identify_likely_part.py"
 
@@ -96,7 +96,7 @@ rule identify_samples:
         kinematics="results/{case}/identify/kinematics.csv",
         manifest="results/{case}/identify/samples.provenance.json",
     params:
-        identify=IDENTIFY_VALUES,
+        identify=identify_values(search={"papers", "seed"}),
     script:
         "../scripts/identify_samples.py"
 
@@ -120,7 +120,7 @@ rule identify_region:
         png="results/{case}/figures/identify_region.png",
         manifest="results/{case}/identify/region.provenance.json",
     params:
-        identify=IDENTIFY_VALUES,
+        identify=identify_values(ranges=True),
     script:
         "../scripts/identify_region.py"
 
@@ -141,7 +141,7 @@ rule identify_sets:
         runtime=60,
     params:
         case=whole_case,
-        identify=IDENTIFY_VALUES,
+        identify=identify_values(search={"confirmed", "runs", "sets"}),
     script:
         "../scripts/identify_sets.py"
 
@@ -161,7 +161,7 @@ rule identify_runs:
         runtime=60,
     params:
         case=whole_case,
-        identify=IDENTIFY_VALUES,
+        identify=identify_values(runs=True, swept_runs=True),
     script:
         "../scripts/identify_runs.py"
 

@@ -3,7 +3,6 @@ from facegear.paper.config.sections import design_chunks
 from facegear.paper.identify.patterns import file_name
 
 IDENTIFY = REPRODUCTION.identify if REPRODUCTION else None
-IDENTIFY_VALUES = IDENTIFY.model_dump(mode="json") if IDENTIFY else None
 DESIGNS = list(design_points(IDENTIFY))
 CLAIMS = REPRODUCTION.claims if REPRODUCTION else []
 SEARCH = IDENTIFY.search if IDENTIFY else None
@@ -18,6 +17,14 @@ SEARCHES = (
 )
 LIKELY = [f"results/{{case}}/identify/likely/{part}.csv" for part in range(SEARCH.parts)] if SEARCH else []
 STORED_SETS = REPRODUCTION.sets if REPRODUCTION and REPRODUCTION.sets else []
+
+DRAWN = {"ranges": True, "random": {"seed"}}
+"""On what random inputs depend, of section `identify`."""
+
+
+def identify_values(**kept):
+    """Values of section `identify` on which a rule depends: whole parts (True), or some of a part's keys."""
+    return IDENTIFY.model_dump(mode="json", include=kept) if IDENTIFY else None
 
 
 def searched_before(wildcards):
