@@ -50,7 +50,6 @@ GEOMETRIC: Mapping[str, Any] = MappingProxyType(
 )
 """Config keys of the kinematics that gears have, for a config that has the printed ones."""
 
-
 VALUE, SPREAD = "value", "spread"
 
 

@@ -63,7 +63,7 @@ def region_tables(
     region = most_likely(judged, LOG_UNITS)
     told = region[[*INPUT_COLUMNS, LOG_LIKELIHOOD, *[claim.id for claim in claims]]]
     looked_at = {"random": random, "patterns": structures, "searched": searched, "likely": judged}
-    kinds = [one.assign(kind=name) for name, one in looked_at.items()]
+    kinds = [one.copy().assign(kind=name) for name, one in looked_at.items()]
     return {
         "region": told.assign(**held_counts(region, claims)),
         "searches": searches(searched, claims),
