@@ -23,7 +23,7 @@ DRAWN = {"ranges": True, "random": {"seed"}}
 
 
 def identify_values(**kept):
-    """Values of section `identify` on which a rule depends: whole parts (True), or some of a part's keys."""
+    """Values of section `identify` that a job depends on, whole parts (True) or some keys of a part."""
     return IDENTIFY.model_dump(mode="json", include=kept) if IDENTIFY else None
 
 
