@@ -36,7 +36,8 @@ def dynamic_stress_table(
         stresses: list[float] = []
         for body in roots:
             running = float(history[body](torques, places[mesh]).max())
-            stresses += [tension[body](base_radius * mean), running, tension[body](base_radius * most)]
+            bound = history[body].over_passage(base_radius * most)
+            stresses += [tension[body](base_radius * mean), running, bound]
         stresses += [pressure(base_radius * value) for value in (mean, most)]
         within = bool(torques.max() <= next(iter(roots.values())).torques[-1])
         factor = most / mean if mean > 0.0 else np.nan
@@ -69,6 +70,11 @@ class TensionHistory:
             (1.0 - on) * self._table[at, column] + on * self._table[at, column + 1] for at in (row, row + 1)
         )
         return over * ((1.0 - up) * low + up * high)
+
+    def over_passage(self, torque: float) -> float:
+        """Largest stress (Pa) while a torque (N m) stays as it is all through the passage."""
+        places = self._places[:-1]
+        return float(self(np.full(places.size, torque), places).max())
 
 
 def _cell(edges: Array, values: Array) -> tuple[NDArray[np.int64], Array]:

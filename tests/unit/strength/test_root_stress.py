@@ -1,6 +1,7 @@
 """Root stress: superposition over teeth and loads, and the spur pinion against ISO 6336-3."""
 
 import base64
+from dataclasses import replace
 from math import cos, sqrt
 from xml.etree import ElementTree
 
@@ -200,6 +201,16 @@ def test_stress_in_motion_is_that_of_the_force_and_the_place_of_the_moment():
     bound = max(down_the_fillet(found.at_torque(200.0)).max(), 0.0)
     assert history(torques, places).max() <= max(bound, history(torques[:2], POSITIONS).max()) * (1 + 1e-12)
     np.testing.assert_allclose(history(torques, places + 1e-12), history(torques, places), rtol=1e-9)
+
+
+def test_stress_in_motion_stays_below_its_bound_where_another_gauge_leads_at_each_torque():
+    _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
+    rough = replace(found, stress=np.random.default_rng(0).normal(size=found.stress.shape))
+    roots = {"pinion": rough, "face_gear": rough}
+    forces = {str(force): np.full(16, force) for force in (500.0, 1500.0, 1700.0, 2500.0, 5000.0)}
+    places = dict.fromkeys(forces, np.arange(16) / 16)
+    table = dynamic_stress_table(forces, places, 0.1, roots, np.sqrt)
+    assert (table["pinion_bound_mpa"] >= table["pinion_running_mpa"]).all()
 
 
 def test_the_place_of_a_flank_is_where_its_stiffness_is_that_of_the_reference():
