@@ -5,11 +5,16 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from facegear.validation.dynamics.work_precision import seconds_at
+
 ROOT = Path(__file__).parents[3]
 PAGE = (ROOT / "docs" / "dynamics.md").read_text()
 README = (ROOT / "README.md").read_text()
 SWEEP = pd.read_csv(ROOT / "docs" / "measured" / "dynamics_convergence.csv")
 SLOW_RPM = 1100.0
+TIMES = pd.read_csv(ROOT / "docs" / "measured" / "dynamics.csv")
+PROBLEMS = ("contact kept", "contact lost", "oracle (a)")
+ERRORS = (1e-3, 1e-6, 1e-9)
 
 
 def number(value):
@@ -55,3 +60,33 @@ def test_how_near_the_leading_multipliers_are_is_as_stored():
     off = (periodic()["multiplier"] - periodic()["multiplier_finer"]).abs().dropna()
     median, most = number(off.median()), number(off.quantile(0.95))
     assert f"in the median by {median}, {most} for 95 %, at most {off.max():.2f}" in PAGE
+
+
+def milliseconds(seconds):
+    if pd.isna(seconds):
+        return "-"
+    value = 1e3 * seconds
+    return (
+        f"{value:.3g}"
+        if 10.0 <= value < 100.0
+        else f"{value:.{3 if value < 0.1 else 2 if value < 10 else 0}f}"
+    )
+
+
+def integrator_rows():
+    """Time of every method at three errors: trajectories, then all tangents."""
+    rows = []
+    for kind in ("", ", tangents"):
+        found = TIMES[TIMES["problem"] == PROBLEMS[0] + kind]
+        for method in found["method"].unique():
+            cells = (
+                " / ".join(milliseconds(seconds_at(TIMES, name + kind, method, error)) for error in ERRORS)
+                for name in PROBLEMS
+            )
+            rows.append(f"| {method} | {' | '.join(cells)} |")
+    return rows
+
+
+@pytest.mark.parametrize("row", integrator_rows())
+def test_the_tables_of_integrators_are_the_stored_measurement(row):
+    assert row in PAGE
