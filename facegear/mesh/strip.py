@@ -37,9 +37,12 @@ class HalfSection:
 def depth_rows(profile: float, thickness: float, depth: float, levels: int) -> list[Row]:
     """Rows from the surface to the centre line for a reference depth; all lengths in one unit.
 
-    A plain row and a coarsening row per level, then plain coarse rows over what is left.
+    A plain row and a coarsening row per level, or one plain row where nothing coarsens, then plain coarse
+    rows over what is left. So a smaller `thickness` never makes the first row deeper.
     """
     heights: list[tuple[float, int, bool]] = []
+    if levels == 0 and profile < thickness and profile <= 0.75 * depth:
+        heights = [(profile, 0, False)]
     for level in range(levels, 0, -1):
         size = profile * 3.0 ** (levels - level)
         heights += [((1.0 if level == levels else 0.8) * size, level, False), (1.5 * size, level, True)]
