@@ -89,12 +89,14 @@ def count_rows():
     return [row.format(one) for one in table("held_counts").itertuples()]
 
 
+def shares(name, ids, first, second):
+    """Rows with two shares of a claim, from the stored table `name`."""
+    frame = table(name).set_index("id").loc[list(ids)]
+    return [f"| `{one}` | {percent(frame[first][one])} | {percent(frame[second][one])} |" for one in ids]
+
+
 def share_rows(ids):
-    frame = table("claim_shares").set_index("id")
-    return [
-        f"| `{name}` | {percent(frame.region_share[name])} | {percent(frame.random_share[name])} |"
-        for name in ids
-    ]
+    return shares("claim_shares", ids, "region_share", "random_share")
 
 
 def pair_rows():
@@ -103,11 +105,7 @@ def pair_rows():
 
 
 def kinematics_rows(ids):
-    frame = table("kinematics").set_index("id")
-    return [
-        f"| `{name}` | {percent(frame.printed_share[name])} | {percent(frame.geometric_share[name])} |"
-        for name in ids
-    ]
+    return shares("kinematics", ids, "printed_share", "geometric_share")
 
 
 def moved_by_kinematics():
