@@ -1,3 +1,5 @@
+"""Criteria of the scorecard: what each accepts, and what passed by accident once."""
+
 import numpy as np
 import pandas as pd
 import pytest
