@@ -60,7 +60,7 @@ rule identify:
     input:
         expand(
             f"results/{CASE}/identify/{{name}}.csv",
-            name=["load_estimates", "random", "sets"] if IDENTIFY else [],
+            name=["load_estimates", "random", "accurate", "sets"] if IDENTIFY else [],
         ),
 
 

@@ -1,6 +1,6 @@
 """Read and write csv tables; units stand in the column names."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -39,3 +39,9 @@ def read(
     if bad:
         raise CorruptFile(path, f"column {bad[0]!r} holds a value that is not finite")
     return frame
+
+
+def read_joined(paths: Iterable[str | Path]) -> pd.DataFrame:
+    """Rows of several tables, one after another; some of the tables may be empty."""
+    read_all = [read(path, allow_empty=True) for path in paths]
+    return pd.concat([one for one in read_all if not one.empty] or read_all, ignore_index=True)

@@ -38,23 +38,24 @@ rule identify_random_chunk:
 
 
 rule identify_search:
-    "Search for the most likely inputs under one pattern of e(t)"
+    "Search for the most likely inputs under one pattern of e(t), if one goes on at this place"
     input:
         ltca=shared("contact", "ltca"),
         claims=CLAIMS,
+        random=random_chunks("random"),
         structures=random_chunks("structures"),
         before=searched_before,
     output:
-        evaluations="results/{case}/identify/search/{again}{pattern}.csv",
-        manifest="results/{case}/identify/search/{again}{pattern}.provenance.json",
+        evaluations="results/{case}/identify/search/{round}/{place}.csv",
+        manifest="results/{case}/identify/search/{round}/{place}.provenance.json",
     wildcard_constraints:
-        again="(again/)?",
-        pattern="[a-z+-]+",
+        round="first|again",
+        place=r"\d+",
     resources:
         runtime=120,
     params:
         case=whole_case,
-        identify=identify_values(**DRAWN, search={"population", "generations", "seed"}),
+        identify=identify_values(**DRAWN, search=SEARCHED),
     script:
         "../scripts/identify_search.py"
 
@@ -125,8 +126,27 @@ rule identify_region:
         "../scripts/identify_region.py"
 
 
+rule identify_accurate:
+    "Region at full accuracy, without a speed sweep"
+    input:
+        ltca=shared("contact", "ltca"),
+        claims=CLAIMS,
+        random=random_chunks("random"),
+        structures=random_chunks("structures"),
+        region=rules.identify_region.output.region,
+    output:
+        judged="results/{case}/identify/accurate.csv",
+        manifest="results/{case}/identify/accurate.provenance.json",
+    resources:
+        runtime=60,
+    params:
+        case=whole_case,
+    script:
+        "../scripts/identify_accurate.py"
+
+
 rule identify_sets:
-    "Likely inputs at full accuracy"
+    "The most likely inputs at full accuracy, several times, and those that are kept"
     input:
         ltca=shared("contact", "ltca"),
         claims=CLAIMS,

@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-import pandas as pd
-
 from facegear.config.base import parse
 from facegear.contact.columns import LTCA_COLUMNS
 from facegear.io import tables
@@ -22,8 +20,7 @@ with stage(snakemake) as run:
     section = parse(Identify, params.identify).search
     ltca = tables.read(files.ltca, LTCA_COLUMNS)
     random, searched = (
-        pd.concat([tables.read(path) for path in paths], ignore_index=True)
-        for paths in ([*files.structures, *files.random], files.searched)
+        tables.read_joined(paths) for paths in ([*files.structures, *files.random], files.searched)
     )
     likelihood = Likelihood.of(read_claims(files.claims).claims, random)
     chosen = candidates(searched, likelihood, section.judged).iloc[

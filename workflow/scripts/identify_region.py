@@ -1,7 +1,5 @@
 """The region of likely inputs: what holds in it, how well inputs are known, what never holds together."""
 
-import pandas as pd
-
 from facegear.config.base import parse
 from facegear.io import tables
 from facegear.paper.config.sections import Identify
@@ -16,7 +14,7 @@ with stage(snakemake) as run:
     files, output = snakemake.input, snakemake.output
     claims = [claim for claim in read_claims(files.claims).claims if claim.dynamic]
     looked_at = [
-        sound(pd.concat([tables.read(path) for path in paths], ignore_index=True))
+        sound(tables.read_joined(paths))
         for paths in (files.random, files.structures, files.searched, files.judged)
     ]
     found = region_tables(*looked_at, claims)

@@ -16,8 +16,7 @@ with stage(snakemake) as run:
     claims = read_claims(files.claims).claims
     section = parse(Identify, snakemake.params.identify).search
     random, structures, geometric = (
-        pd.concat([tables.read(path) for path in files[name]], ignore_index=True)
-        for name in ("random", "structures", "geometric")
+        tables.read_joined(files[name]) for name in ("random", "structures", "geometric")
     )
     patterns = by_input(structures, claims, "pattern")
     choices = pd.concat([by_input(structures, claims, name) for name in CHOICES], ignore_index=True)

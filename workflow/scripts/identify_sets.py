@@ -2,13 +2,11 @@
 
 from pathlib import Path
 
-import pandas as pd
-
 from facegear.config.base import parse
 from facegear.contact.columns import LTCA_COLUMNS
 from facegear.io import tables
 from facegear.paper.config.sections import Identify
-from facegear.paper.identify.confirmed import confirmed_inputs, kept_sets, worth_confirming
+from facegear.paper.identify.confirmed import confirmed_inputs, kept_sets
 from facegear.paper.identify.likelihood import Likelihood
 from facegear.paper.identify.random_verdicts import dynamic_judge, unswept
 from facegear.paper.scorecard.claims import read_claims
@@ -20,10 +18,10 @@ with stage(snakemake) as run:
     files, output, params = snakemake.input, snakemake.output, snakemake.params
     section = parse(Identify, params.identify).search
     ltca = tables.read(files.ltca, LTCA_COLUMNS)
-    random = pd.concat([tables.read(path) for path in [*files.structures, *files.random]], ignore_index=True)
+    random = tables.read_joined([*files.structures, *files.random])
     likelihood = Likelihood.of(read_claims(files.claims).claims, random)
     judge = dynamic_judge(params.case, ltca, files.claims, unswept)
-    region = worth_confirming(tables.read(files.region), section.confirmed)
+    region = tables.read(files.region).head(section.confirmed)  # the most likely come first
     partial = Path(output.sets).with_suffix(".partial")
     same = identity(judge.deciding, region.to_csv(), section.runs, params.code)
     progress = Progress("confirming at full accuracy", len(region) * section.runs)

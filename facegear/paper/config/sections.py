@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 from facegear.config.base import Section, refuse
 from facegear.config.studies import Point
 from facegear.config.tolerances import chunk_ranges
-from facegear.paper.identify.patterns import half_turn_patterns
+from facegear.paper.identify.patterns import READING_PATTERNS, half_turn_patterns
 
 Design = Literal["random", "structures", "geometric"]
 """Random inputs with every reading of e(t), the same random inputs with each pattern of half turns, or every
@@ -50,8 +50,13 @@ class RandomInputs(Section):
 class SearchBudget(Section):
     """The search for the most likely inputs, by differential evolution in each pattern of e(t) by itself."""
 
-    patterns: tuple[str, ...] = Field((), description="meshes half a turn later, joined by +; or none")
-    again: tuple[str, ...] = Field((), description="patterns searched once more, from the best of all before")
+    by_mean: int = Field(
+        4, ge=1, le=32, description="patterns that go on, by the mean of the fitted claims of random inputs"
+    )
+    by_upper: int = Field(2, ge=1, le=32, description="patterns that go on, by the upper 5 % of these claims")
+    again_within: float = Field(
+        2.0, ge=0, description="log units from the best of all within which a pattern is searched once more"
+    )
     population: int = Field(16, ge=5, le=1000)
     generations: int = Field(12, ge=0, le=10_000)
     judged: int = Field(200, ge=1, le=100_000, description="most inputs of the region judged with a sweep")
@@ -62,16 +67,10 @@ class SearchBudget(Section):
     papers: int = Field(100, ge=1, le=100_000, description="other runs and invented papers of the null")
     seed: int = Field(1, ge=0, le=2**31)
 
-    @model_validator(mode="after")
-    def _known(self) -> "SearchBudget":
-        for key, known in (("patterns", tuple(half_turn_patterns())), ("again", self.patterns)):
-            given = getattr(self, key)
-            for pattern in given:
-                if pattern not in known:
-                    refuse(key, pattern, f"some of {', '.join(known)}")
-            if len(set(given)) < len(given):
-                refuse(key, list(given), "each once")
-        return self
+    @property
+    def places(self) -> int:
+        """Patterns that go on at most, the readings of the paper among them."""
+        return min(self.by_mean + self.by_upper + len(READING_PATTERNS), len(half_turn_patterns()))
 
 
 class Identify(Section):

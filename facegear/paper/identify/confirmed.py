@@ -9,6 +9,7 @@ import pandas as pd
 from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.inputs import BEARINGS, INPUT_COLUMNS, NUMBERS
 from facegear.paper.identify.likelihood import Likelihood
+from facegear.paper.identify.region import held_counts, judged_again
 from facegear.paper.identify.search import LOG_LIKELIHOOD
 from facegear.scenarios.chunks import run_chunk
 
@@ -49,12 +50,21 @@ def confirmed_inputs(
     return kept.sort_values(order, ascending=[False, True], kind="stable").reset_index(drop=True)
 
 
-def worth_confirming(region: pd.DataFrame, most: int) -> pd.DataFrame:
-    """The most likely rows of a region, at most so many, the best of each pattern among them."""
-    kept = (
-        pd.concat([region.drop_duplicates("pattern"), region]).drop_duplicates(list(INPUT_COLUMNS)).head(most)
-    )
-    return kept.sort_values(LOG_LIKELIHOOD, ascending=False, kind="stable").reset_index(drop=True)
+def accurate_region(
+    judge: ClaimJudge,
+    likelihood: Likelihood,
+    region: pd.DataFrame,
+    partial: str | Path,
+    identity: str,
+    told: Callable[[], None] = lambda: None,
+) -> pd.DataFrame:
+    """Every row of a region in one run of the judge: inputs, whether each claim holds, how many fitted and
+    held-out ones do, the log-likelihood and that which the region has by quick runs.
+    """
+    found = judged_again(judge, likelihood, region, partial, identity, told)
+    kept = found[[*INPUT_COLUMNS, LOG_LIKELIHOOD, *judge.names]]
+    quick = region[LOG_LIKELIHOOD].to_numpy(float)
+    return kept.assign(**{QUICK_LIKELIHOOD: quick}, **held_counts(found, judge.claims))
 
 
 def rounded(value: float) -> float:

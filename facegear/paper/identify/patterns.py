@@ -4,6 +4,8 @@ import itertools
 from collections.abc import Mapping
 from types import MappingProxyType
 
+import pandas as pd
+
 Phasing = str | Mapping[str, float]
 """Value of the config key transmission.transmission_error.phasing."""
 
@@ -21,16 +23,20 @@ READINGS: Mapping[str, Phasing] = MappingProxyType(
 """What a reader of the paper may take e(t) to do: the same everywhere, shifted like k(t), or half a turn
 later where a pinion drives with its back flank.
 """
+READING_PATTERNS = (
+    "none",
+    "tail/lower+idler/upper+input/upper",
+    "tail/lower+idler/lower+input/lower+idler/upper+input/upper",
+    "tail/lower+idler/lower",
+)
+"""The readings as patterns of half turns: in step, shifted like k(t) by equation (11) as gears have it and as
+printed, and reversed at the back flanks.
+"""
 
 
 def phasing_of(pattern: str) -> Phasing:
     """Value of the config's key for a pattern or a reading by its name. Raises KeyError."""
     return {**READINGS, **half_turn_patterns()}[pattern]
-
-
-def file_name(pattern: str) -> str:
-    """A pattern's name as that of a file."""
-    return pattern.replace("/", "-")
 
 
 def half_turn_patterns() -> dict[str, Phasing]:
@@ -41,3 +47,16 @@ def half_turn_patterns() -> dict[str, Phasing]:
     choices = itertools.product((False, True), repeat=len(CLASSES))
     turned = [[name for name, turn in zip(CLASSES, choice, strict=True) if turn] for choice in choices]
     return {"+".join(names) or "none": dict.fromkeys(names, HALF_TURN) for names in turned}
+
+
+def going_on(rates: pd.DataFrame, by_mean: int, by_upper: int, places: int) -> list[str]:
+    """Patterns to search: the readings of the paper, the best by the mean and the best by the upper 5 %.
+
+    `rates`: a row a pattern, as of `by_input`. Patterns that tie for the last place all go on, as long as
+    there are places.
+    """
+    best = [
+        rates.nlargest(count, column, keep="all")["value"]
+        for column, count in (("mean", by_mean), ("upper", by_upper))
+    ]
+    return list(dict.fromkeys([*READING_PATTERNS, *itertools.chain(*best)]))[:places]

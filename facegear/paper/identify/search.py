@@ -28,6 +28,12 @@ class Budget:
     seed: int
 
 
+def searched_again(found: pd.DataFrame, within: float) -> list[str]:
+    """Patterns whose most likely evaluation lies within so many log units of that of all, the best first."""
+    best = found.groupby("pattern", sort=False)[LOG_LIKELIHOOD].max()
+    return best[best >= best.max() - within].sort_values(ascending=False, kind="stable").index.tolist()
+
+
 def first_points(
     plausible: Plausible, before: Sequence[pd.DataFrame], pattern: str, count: int
 ) -> NDArray[np.float64]:

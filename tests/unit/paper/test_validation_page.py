@@ -6,7 +6,8 @@ import pandas as pd
 import pytest
 
 from facegear.paper.config.reproduction import read_reproduction
-from facegear.paper.identify.patterns import HALF_TURN, READINGS
+from facegear.paper.identify.patterns import going_on
+from facegear.paper.identify.search import searched_again
 from facegear.paper.scorecard.base_rates import totals
 from facegear.paper.scorecard.claims import read_claims
 
@@ -15,7 +16,6 @@ STORED = read_reproduction(ROOT / "config" / "reproduction" / "paper.yaml")
 PAGE = (ROOT / "docs" / "validation.md").read_text()
 CLAIMS = read_claims(STORED.claims).claims
 SHOWN = 4
-BY_MEAN, BY_UPPER = 4, 2
 ANNOUNCED = ("gear_peak_5772", "jump_5772_hardening", "dominates_5772_gears")
 OPTIMUM = ("gear_bearings_best_inputs", "gear_bearings_best_idlers")
 ORDER = ("pinion_bearings_worse", "pinion_bearings_lost", "pinion_bearings_lowest_inputs")
@@ -159,10 +159,11 @@ def test_every_claim_that_the_kinematics_move_is_told():
 
 
 def test_patterns_were_searched_that_the_protocol_names():
-    """The best by the mean and by the upper 5 %, and the readings of the paper."""
-    frame = table("structures")
-    upper = frame.sort_values("upper", ascending=False, kind="stable")
-    searched = set(STORED.identify.search.patterns)
-    assert {*frame["value"].head(BY_MEAN), *upper["value"].head(BY_UPPER), "none"} <= searched
-    assert READINGS["back_flank"] == dict.fromkeys(("tail/lower", "idler/lower"), HALF_TURN)
-    assert "tail/lower+idler/lower" in searched
+    """By mean, by upper 5 % and as readings; twice those whose best lay near the best of all."""
+    budget, found = STORED.identify.search, table("searches").set_index("pattern")
+    names = going_on(table("structures"), budget.by_mean, budget.by_upper, budget.places)
+    assert set(found.index) == set(names)
+    once = budget.population * (budget.generations + 1)
+    assert set(found["evaluations"]) == {once, 2 * once}
+    again = set(found.index[found["evaluations"] > once])
+    assert set(searched_again(table("searches"), budget.again_within)) <= again

@@ -1,25 +1,26 @@
 from facegear.paper.config.reproduction import design_points
 from facegear.paper.config.sections import design_chunks
-from facegear.paper.identify.patterns import file_name
 
 IDENTIFY = REPRODUCTION.identify if REPRODUCTION else None
 DESIGNS = list(design_points(IDENTIFY))
 CLAIMS = REPRODUCTION.claims if REPRODUCTION else []
 SEARCH = IDENTIFY.search if IDENTIFY else None
-SEARCHES = (
-    [
-        f"results/{{case}}/identify/search/{folder}{file_name(name)}.csv"
-        for folder, names in (("", SEARCH.patterns), ("again/", SEARCH.again))
-        for name in names
-    ]
-    if SEARCH
-    else []
+FIRST, AGAIN = (
+    (
+        [f"results/{{case}}/identify/search/{name}/{place}.csv" for place in range(SEARCH.places)]
+        if SEARCH
+        else []
+    )
+    for name in ("first", "again")
 )
+SEARCHES = [*FIRST, *AGAIN]
 LIKELY = [f"results/{{case}}/identify/likely/{part}.csv" for part in range(SEARCH.parts)] if SEARCH else []
 STORED_SETS = REPRODUCTION.sets if REPRODUCTION and REPRODUCTION.sets else []
 
 DRAWN = {"ranges": True, "random": {"seed"}}
 """On what random inputs depend, of section `identify`."""
+SEARCHED = {"by_mean", "by_upper", "again_within", "population", "generations", "seed"}
+"""On what a search depends, of its own section."""
 
 
 def identify_values(**kept):
@@ -28,8 +29,8 @@ def identify_values(**kept):
 
 
 def searched_before(wildcards):
-    """The search that one which is made again starts from."""
-    return [f"results/{wildcards.case}/identify/search/{wildcards.pattern}.csv"] if wildcards.again else []
+    """The first searches, from which those that are made again start."""
+    return expand(FIRST, case=wildcards.case) if wildcards.round == "again" else []
 
 
 def judged_sets():

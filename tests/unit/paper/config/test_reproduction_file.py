@@ -39,7 +39,7 @@ def test_each_design_is_a_case_with_its_own_teeth_and_no_studies(stored):
     [
         ("claim: a.yaml\n", "did you mean 'claims'?"),
         ("claims: a.yaml\nidentify: {ranges: {tail_share: [0.4, 0.1]}}\n", "identify.ranges.tail_share"),
-        ("claims: a.yaml\nidentify: {search: {patterns: [input/left]}}\n", "identify.search.patterns"),
+        ("claims: a.yaml\nidentify: {search: {by_upper: 40}}\n", "identify.search.by_upper"),
     ],
 )
 def test_mistake_in_the_file_names_file_key_and_what_is_allowed(tmp_path, text, line):

@@ -1,10 +1,10 @@
-"""Likely inputs at full accuracy: which are looked at, their order, and those that are kept."""
+"""Likely inputs at full accuracy: all of the region, the order of the best, and those that are kept."""
 
 import numpy as np
 import pandas as pd
 
 from facegear.paper.identify.claim_judge import ClaimJudge
-from facegear.paper.identify.confirmed import confirmed_inputs, kept_sets, worth_confirming
+from facegear.paper.identify.confirmed import accurate_region, confirmed_inputs, kept_sets
 from facegear.paper.identify.inputs import COORDINATES, Space
 from facegear.paper.identify.likelihood import Likelihood
 from facegear.paper.identify.search import LOG_LIKELIHOOD
@@ -31,10 +31,12 @@ class Wavering(ClaimJudge):
         return {"leans": float(not (run == 1 and row["per_input_n_m"] > 300.0))}
 
 
-def test_the_best_of_each_pattern_is_confirmed_before_more_of_the_same():
-    kept = worth_confirming(region(), 2)
-    assert kept["pattern"].tolist() == ["input/lower", "none"]
-    assert kept[LOG_LIKELIHOOD].tolist() == [-1.0, -3.0]
+def test_the_whole_region_is_judged_once_at_full_accuracy_beside_what_quick_runs_said(tmp_path):
+    judge = Wavering({}, pd.DataFrame(), [CLAIM])
+    found = accurate_region(judge, LIKELIHOOD, region(), tmp_path / "partial", "same")
+    assert found["quick_log_likelihood"].tolist() == [-1.0, -2.0, -3.0]
+    assert found[LOG_LIKELIHOOD].tolist() == [2.0, 2.0, 2.0]
+    assert found["fitted"].tolist() == [1, 1, 1] and found["held_out"].tolist() == [0, 0, 0]
 
 
 def test_the_worst_run_decides_and_the_best_of_each_pattern_is_kept(tmp_path):

@@ -9,7 +9,7 @@ from facegear.paper.identify.inputs import COORDINATES, Space
 from facegear.paper.identify.likelihood import Likelihood
 from facegear.paper.identify.null import ANOTHER, INVENTED, THIS, null_counts
 from facegear.paper.identify.region import candidates, most_likely, never_together
-from facegear.paper.identify.search import LOG_LIKELIHOOD, Budget, search_pattern
+from facegear.paper.identify.search import LOG_LIKELIHOOD, Budget, search_pattern, searched_again
 from facegear.paper.scorecard.claims import Claim
 
 STATEMENT = Claim(id="leans", where="a", claim="", criterion="lowest_at", fitted=True)
@@ -73,6 +73,16 @@ def test_candidates_are_those_that_claims_on_sweeps_can_still_bring_into_the_reg
     kept = candidates(unswept, LIKELIHOOD, most=10)
     assert kept[LOG_LIKELIHOOD].tolist() == [0.0, -3.1]  # a jump may add 0.69
     assert most_likely(found, 3.0)[LOG_LIKELIHOOD].tolist() == [0.0]
+
+
+def test_patterns_near_the_best_are_searched_again_the_best_first():
+    best = {"none": (-5.0, -3.9), "input/lower": (-9.0, -2.0), "input/upper": (-4.1, -30.0)}
+    found = pd.DataFrame(
+        [(name, at) for name, two in best.items() for at in two], columns=["pattern", LOG_LIKELIHOOD]
+    )
+    assert searched_again(found, 2.0) == ["input/lower", "none"]
+    assert searched_again(found, 2.1) == ["input/lower", "none", "input/upper"]
+    assert searched_again(found, 0.0) == ["input/lower"]
 
 
 class Known(ClaimJudge):

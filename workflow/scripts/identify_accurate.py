@@ -1,0 +1,30 @@
+"""The region of likely inputs at full accuracy, one run of each, without a speed sweep."""
+
+from pathlib import Path
+
+from facegear.contact.columns import LTCA_COLUMNS
+from facegear.io import tables
+from facegear.paper.identify.confirmed import accurate_region
+from facegear.paper.identify.likelihood import Likelihood
+from facegear.paper.identify.random_verdicts import dynamic_judge, unswept
+from facegear.paper.identify.region import LOG_UNITS, most_likely
+from facegear.paper.scorecard.claims import read_claims
+from facegear.progress import Progress
+from facegear.provenance.stage import stage
+from facegear.scenarios.chunks import identity
+
+with stage(snakemake) as run:
+    files, params = snakemake.input, snakemake.params
+    ltca = tables.read(files.ltca, LTCA_COLUMNS)
+    random = tables.read_joined([*files.structures, *files.random])
+    likelihood = Likelihood.of(read_claims(files.claims).claims, random)
+    judge = dynamic_judge(params.case, ltca, files.claims, unswept)
+    region = tables.read(files.region)
+    partial = Path(snakemake.output.judged).with_suffix(".partial")
+    same = identity(judge.deciding, region.to_csv(), params.code)
+    progress = Progress("region at full accuracy", len(region))
+    found = accurate_region(judge, likelihood, region, partial, same, progress.step)
+    tables.write(snakemake.output.judged, found)
+    partial.unlink()
+    kept = most_likely(found, LOG_UNITS)
+    run.summary(f"{len(kept)} of {len(found)} inputs within {LOG_UNITS:g} log units of the best of them")
