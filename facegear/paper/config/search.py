@@ -5,10 +5,11 @@ from typing import Any
 
 import pandas as pd
 
-from facegear.paper.config.sections import Design, Identify, Ranges
+from facegear.paper.config.sections import Design, Identify, Ranges, SearchBudget
 from facegear.paper.identify.inputs import Space
 from facegear.paper.identify.patterns import READINGS, half_turn_patterns
 from facegear.paper.identify.random_inputs import Plausible
+from facegear.paper.identify.search import Budget
 
 
 def plausible_inputs(
@@ -28,4 +29,17 @@ def search_space(section: Ranges, values: Mapping[str, Any], ltca: pd.DataFrame)
         bearings=section.stiffer_bearings_n_per_m,
         loads=(float(ltca["torque_n_m"].min()), float(ltca["torque_n_m"].max())),
         gears=len(values["transmission"]["face_gears"]),
+    )
+
+
+def search_budget(section: SearchBudget) -> Budget:
+    """What a search may cost, and which patterns go on."""
+    return Budget(
+        population=section.population,
+        generations=section.generations,
+        seed=section.seed,
+        by_mean=section.by_mean,
+        by_upper=section.by_upper,
+        places=section.places,
+        again_within=section.again_within,
     )

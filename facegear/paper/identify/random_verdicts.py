@@ -53,5 +53,5 @@ def judged_samples(
     found = run_chunk(
         lambda number: judge.found(by_number[number]), numbers, judge.columns, partial, identity, told
     )
-    inputs = pd.DataFrame([{name: row[name] for name in INPUT_COLUMNS} for row in rows])
+    inputs = pd.DataFrame([*rows], columns=list(INPUT_COLUMNS))
     return pd.concat([found[[SAMPLE]], inputs, found.drop(columns=SAMPLE)], axis=1)

@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.inputs import COORDINATES, INPUT_COLUMNS, Space
 from facegear.paper.identify.likelihood import Likelihood
+from facegear.paper.identify.patterns import going_on
 from facegear.paper.identify.random_inputs import Plausible
 from facegear.paper.identify.random_verdicts import judged_samples
+from facegear.paper.scorecard.base_rates import by_input
 
 LOG_LIKELIHOOD = "log_likelihood"
 WORST = 1e3
@@ -22,10 +24,46 @@ WORST = 1e3
 
 @dataclass(frozen=True)
 class Budget:
-    """Generations after the first, and the seed of their changes."""
+    """Points of a generation, generations after the first, the seed of their changes.
 
+    Then which patterns go on: so many by the mean and by the upper 5 % of the claims that random inputs hold,
+    at so many places; and once more those within so many log units of the best.
+    """
+
+    population: int
     generations: int
     seed: int
+    by_mean: int = 1
+    by_upper: int = 1
+    places: int = 1
+    again_within: float = 0.0
+
+
+def start_at(
+    place: int,
+    plausible: Plausible,
+    likelihood: Likelihood,
+    structures: pd.DataFrame,
+    first_round: pd.DataFrame | None,
+    budget: Budget,
+) -> tuple[str, NDArray[np.float64]]:
+    """Pattern that goes on at a place, and points (points, coordinates) from which it is searched.
+
+    No name and no points at a place where none does.
+
+    `structures`: random inputs judged under every pattern; `first_round`: evaluations of the first round, for
+    the second.
+    """
+    if first_round is None:
+        rates = by_input(structures, likelihood.claims, "pattern")
+        patterns = going_on(rates, budget.by_mean, budget.by_upper, budget.places)
+        before = []
+    else:
+        patterns = searched_again(first_round, budget.again_within)
+        before = [structures.copy().assign(**{LOG_LIKELIHOOD: likelihood(structures)}), first_round]
+    if place >= len(patterns):
+        return "", np.empty((0, len(COORDINATES)))
+    return patterns[place], first_points(plausible, before, patterns[place], budget.population)
 
 
 def searched_again(found: pd.DataFrame, within: float) -> list[str]:
@@ -59,7 +97,8 @@ def search_pattern(
     identity: str,
     told: Callable[[], None] = lambda: None,
 ) -> pd.DataFrame:
-    """Differential evolution from the points `first` (points, coordinates); every evaluation is a row.
+    """Differential evolution from the points `first` (points, coordinates); every evaluation is a row, and
+    without points there is none.
 
     Columns as of `judged_samples`, and log_likelihood. `partial` keeps finished evaluations of the same
     `identity`: a search that was killed goes on where it was, since the same seed asks for the same points.
@@ -76,6 +115,8 @@ def search_pattern(
         generations.append(found)
         return np.minimum(-found[LOG_LIKELIHOOD].to_numpy(float), WORST)
 
+    if not len(first):
+        return judged_samples(judge, [], [], partial, identity).assign(**{LOG_LIKELIHOOD: []})
     scipy.optimize.differential_evolution(
         evaluate,
         [(0.0, 1.0)] * len(COORDINATES),

@@ -8,8 +8,10 @@ from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.inputs import COORDINATES, Space
 from facegear.paper.identify.likelihood import Likelihood
 from facegear.paper.identify.null import ANOTHER, INVENTED, THIS, null_counts
+from facegear.paper.identify.patterns import READING_PATTERNS, half_turn_patterns
+from facegear.paper.identify.random_inputs import Plausible
 from facegear.paper.identify.region import candidates, most_likely, never_together
-from facegear.paper.identify.search import LOG_LIKELIHOOD, Budget, search_pattern, searched_again
+from facegear.paper.identify.search import LOG_LIKELIHOOD, Budget, search_pattern, searched_again, start_at
 from facegear.paper.scorecard.claims import Claim
 
 STATEMENT = Claim(id="leans", where="a", claim="", criterion="lowest_at", fitted=True)
@@ -85,6 +87,44 @@ def test_patterns_near_the_best_are_searched_again_the_best_first():
     assert searched_again(found, 0.0) == ["input/lower"]
 
 
+PLAUSIBLE = Plausible(SPACE, tuple(half_turn_patterns()), seed=1)
+
+
+def every_pattern():
+    """Two random inputs under each pattern; the statement holds under the two last ones."""
+    rows = PLAUSIBLE.rows_by_pattern(range(64))
+    last = list(half_turn_patterns())[-2:]
+    return pd.DataFrame([judged(float(row["pattern"] in last), 1.0) | row for row in rows])
+
+
+def test_places_of_the_first_round_start_at_random_and_those_left_over_at_nothing():
+    budget = Budget(8, generations=1, seed=1, by_mean=2, by_upper=2, places=8)
+    starts = [start_at(place, PLAUSIBLE, LIKELIHOOD, every_pattern(), None, budget) for place in range(8)]
+    patterns = [name for name, first in starts if len(first)]
+    assert set(patterns) == {*READING_PATTERNS, *list(half_turn_patterns())[-2:]}
+    assert all((first == starts[0][1]).all() for _, first in starts[: len(patterns)])
+    assert {name for name, first in starts[len(patterns) :]} == {""} and len(patterns) < 8
+
+
+def test_the_second_round_starts_from_the_best_points_of_everything_before():
+    budget = Budget(2, generations=1, seed=1, again_within=1.0)
+    first_round = every_pattern().head(40).assign(**{LOG_LIKELIHOOD: -np.arange(40.0)})
+    near, far = (
+        start_at(place, PLAUSIBLE, LIKELIHOOD, every_pattern(), first_round, budget) for place in (1, 2)
+    )
+    assert near[0] == first_round["pattern"][1] and far[0] == ""
+    assert near[1].shape == (2, len(COORDINATES))
+    rows = first_round[first_round["pattern"] == near[0]]
+    assert near[1][0] == pytest.approx(SPACE.unit(rows.iloc[0]))
+
+
+def test_a_search_without_points_finds_nothing(tmp_path):
+    judge = Known({}, pd.DataFrame(), [STATEMENT, NUMBER])
+    none = np.empty((0, len(COORDINATES)))
+    found = search_pattern(judge, LIKELIHOOD, SPACE, "", none, Budget(8, 15, 3), tmp_path / "partial", "same")
+    assert found.empty and LOG_LIKELIHOOD in found and (tmp_path / "partial").exists()
+
+
 class Known(ClaimJudge):
     """A judge whose one number is known without a run: how far inputs are from 400 N m."""
 
@@ -100,7 +140,7 @@ def search(path, budget, judge_type=Known):
 
 
 def test_search_finds_the_likeliest_inputs_and_goes_on_where_it_was_killed(tmp_path):
-    budget = Budget(generations=15, seed=3)
+    budget = Budget(8, generations=15, seed=3)
     found = search(tmp_path / "partial", budget)
     assert len(found) == 8 * 16 and set(found["pattern"]) == {"input/lower"}
     best = found.loc[found[LOG_LIKELIHOOD].idxmax()]
