@@ -7,6 +7,7 @@ import pytest
 
 from facegear.paper.config.reproduction import read_reproduction
 from facegear.paper.identify.patterns import going_on
+from facegear.paper.identify.region import LOG_UNITS
 from facegear.paper.identify.search import searched_again
 from facegear.paper.scorecard.base_rates import totals
 from facegear.paper.scorecard.claims import read_claims
@@ -96,7 +97,25 @@ def shares(name, ids, first, second):
 
 
 def share_rows(ids):
-    return shares("claim_shares", ids, "region_share", "random_share")
+    """Shares of a claim in the region by quick runs and at full accuracy, and of random inputs."""
+    frame, accurate = table("claim_shares").set_index("id"), table("accurate")
+    return [
+        f"| `{one}` | {percent(frame['region_share'][one])} | "
+        f"{percent(accurate[one].mean()) if one in accurate else 'not judged'} | "
+        f"{percent(frame['random_share'][one])} |"
+        for one in ids
+    ]
+
+
+def accurate_told():
+    """How many inputs of the region are likely at full accuracy, too."""
+    accurate = table("accurate")
+    found = accurate["log_likelihood"]
+    kept, best = accurate[found >= found.max() - LOG_UNITS], accurate.loc[found.idxmax()]
+    return (
+        f"{len(kept)} of the {len(accurate)} stay within {LOG_UNITS:g} log units of the best of them "
+        f"({best['log_likelihood']:.1f}, {best['per_input_n_m']:.0f} N m), the median lies at {found.median():.1f}"
+    )
 
 
 def pair_rows():
@@ -115,6 +134,10 @@ def moved_by_kinematics():
     more = frame["geometric_low"] > frame["printed_high"]
     change = (frame["geometric_share"] - frame["printed_share"]).abs()
     return change[fewer | more].sort_values(ascending=False, kind="stable").index.tolist()
+
+
+def test_what_the_region_does_at_full_accuracy_is_told_as_stored():
+    assert accurate_told() in PAGE
 
 
 def test_whether_the_set_is_found_is_told_by_the_stored_null():
