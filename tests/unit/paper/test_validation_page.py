@@ -114,7 +114,8 @@ def accurate_told():
     kept, best = accurate[found >= found.max() - LOG_UNITS], accurate.loc[found.idxmax()]
     return (
         f"{len(kept)} of the {len(accurate)} stay within {LOG_UNITS:g} log units of the best of them "
-        f"({best['log_likelihood']:.1f}, {best['per_input_n_m']:.0f} N m), the median lies at {found.median():.1f}"
+        f"({best['log_likelihood']:.1f}, {best['per_input_n_m']:.0f} N m), the median lies at "
+        f"{found.median():.1f}"
     )
 
 
