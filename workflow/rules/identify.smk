@@ -46,9 +46,10 @@ rule identify_search:
         structures=random_chunks("structures"),
         before=searched_before,
     output:
-        evaluations="results/{case}/identify/search/{round}/{place}.csv",
-        manifest="results/{case}/identify/search/{round}/{place}.provenance.json",
+        evaluations="results/{case}/identify/search/{repeat}/{round}/{place}.csv",
+        manifest="results/{case}/identify/search/{repeat}/{round}/{place}.provenance.json",
     wildcard_constraints:
+        repeat=r"\d+",
         round="first|again",
         place=r"\d+",
     resources:

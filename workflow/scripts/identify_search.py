@@ -17,7 +17,8 @@ from facegear.provenance.stage import stage
 from facegear.scenarios.chunks import identity
 
 with stage(snakemake) as run:
-    files, params, place = snakemake.input, snakemake.params, int(snakemake.wildcards.place)
+    files, params = snakemake.input, snakemake.params
+    place, repeat = int(snakemake.wildcards.place), int(snakemake.wildcards.repeat)
     section = parse(Identify, params.identify)
     budget = search_budget(section.search)
     ltca = tables.read(files.ltca, LTCA_COLUMNS)
@@ -28,13 +29,15 @@ with stage(snakemake) as run:
     judge = dynamic_judge(params.case, ltca, files.claims, fitted_at_speed, QUICK)
     drawn = plausible_inputs(section, "structures", params.case, ltca)
     before = tables.read_joined(files.before) if files.before else None
-    pattern, first = start_at(place, drawn, likelihood, structures, before, budget)
+    pattern, first = start_at(place, repeat, drawn, likelihood, structures, before, budget)
     partial = Path(snakemake.output.evaluations).with_suffix(".partial")
     deciding = likelihood.surprise.tolist(), first.tolist(), pattern
     same = identity(judge.deciding, params.identify, deciding, params.code)
-    told = Progress(f"search {pattern}", len(first) * (budget.generations + 1)).step
-    found = search_pattern(judge, likelihood, drawn.space, pattern, first, budget, partial, same, told)
+    progress = Progress(f"search {pattern}", len(first) * (budget.generations + 1))
+    found = search_pattern(
+        judge, likelihood, drawn.space, pattern, first, budget, repeat, partial, same, progress.step
+    )
     tables.write(snakemake.output.evaluations, found)
     partial.unlink()
-    best = found.nlargest(1, LOG_LIKELIHOOD)[["pattern", "per_input_n_m", LOG_LIKELIHOOD]]
-    run.summary(f"{len(found)} evaluations, the most likely {best.to_dict('records') or 'no pattern'}")
+    best = f"{len(found)} evaluations, log-likelihood at most {found[LOG_LIKELIHOOD].max():.1f}"
+    run.summary(f"{pattern}: {best}" if pattern else "no pattern goes on at this place")

@@ -57,6 +57,7 @@ class SearchBudget(Section):
     again_within: float = Field(
         2.0, ge=0, description="log units from the best of all within which a pattern is searched once more"
     )
+    repeats: int = Field(1, ge=1, le=100, description="whole searches, each from other random inputs")
     population: int = Field(16, ge=5, le=1000)
     generations: int = Field(12, ge=0, le=10_000)
     judged: int = Field(200, ge=1, le=100_000, description="most inputs of the region judged with a sweep")

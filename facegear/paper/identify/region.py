@@ -10,7 +10,7 @@ from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.inputs import BEARINGS, INPUT_COLUMNS, NUMBERS
 from facegear.paper.identify.likelihood import Likelihood
 from facegear.paper.identify.random_verdicts import judged_samples
-from facegear.paper.identify.search import LOG_LIKELIHOOD
+from facegear.paper.identify.search import LOG_LIKELIHOOD, REPEAT
 from facegear.paper.scorecard.base_rates import by_input, shares_of, sound
 from facegear.paper.scorecard.claims import Claim
 
@@ -85,16 +85,18 @@ def held_counts(found: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:
 
 def searches(searched: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:
     """One row a pattern, the most likely first: evaluations, fitted claims that its search judged, those that
-    the most likely evaluation holds and that any holds, and the largest log-likelihood.
+    the most likely evaluation holds and that any holds, the largest log-likelihood, and that of each repeat.
     """
-    rows = []
+    rows, repeats = [], sorted(searched[REPEAT].unique())
     held = held_counts(searched, claims)["fitted"]
     judged = sum(claim.counts and claim.fitted and claim.id in searched for claim in claims)
     for pattern, group in searched.groupby("pattern", sort=False):
         best = group[LOG_LIKELIHOOD].idxmax()
         told = (judged, int(held[best]), int(held[group.index].max()), float(group[LOG_LIKELIHOOD][best]))
-        rows.append((pattern, len(group), *told))
+        repeated = [group.loc[group[REPEAT] == repeat, LOG_LIKELIHOOD].max() for repeat in repeats]
+        rows.append((pattern, len(group), *told, *repeated))
     columns = ["pattern", "evaluations", "claims", "held", "most", LOG_LIKELIHOOD]
+    columns += [f"{LOG_LIKELIHOOD}_{repeat}" for repeat in repeats]
     frame = pd.DataFrame(rows, columns=columns)
     return frame.sort_values(LOG_LIKELIHOOD, ascending=False, kind="stable").reset_index(drop=True)
 

@@ -17,7 +17,7 @@ from facegear.paper.identify.random_inputs import Plausible
 from facegear.paper.identify.random_verdicts import judged_samples
 from facegear.paper.scorecard.base_rates import by_input
 
-LOG_LIKELIHOOD = "log_likelihood"
+LOG_LIKELIHOOD, REPEAT = "log_likelihood", "repeat"
 WORST = 1e3
 """Minus the log-likelihood of inputs without a result, below that of any others."""
 
@@ -41,6 +41,7 @@ class Budget:
 
 def start_at(
     place: int,
+    repeat: int,
     plausible: Plausible,
     likelihood: Likelihood,
     structures: pd.DataFrame,
@@ -49,8 +50,7 @@ def start_at(
 ) -> tuple[str, NDArray[np.float64]]:
     """Pattern that goes on at a place, and points (points, coordinates) from which it is searched.
 
-    No name and no points at a place where none does.
-
+    No name and no points at a place where none does. A search that is repeated begins at other random points.
     `structures`: random inputs judged under every pattern; `first_round`: evaluations of the first round, for
     the second.
     """
@@ -63,7 +63,7 @@ def start_at(
         before = [structures.copy().assign(**{LOG_LIKELIHOOD: likelihood(structures)}), first_round]
     if place >= len(patterns):
         return "", np.empty((0, len(COORDINATES)))
-    return patterns[place], first_points(plausible, before, patterns[place], budget.population)
+    return patterns[place], first_points(plausible, before, patterns[place], budget.population, repeat)
 
 
 def searched_again(found: pd.DataFrame, within: float) -> list[str]:
@@ -73,13 +73,13 @@ def searched_again(found: pd.DataFrame, within: float) -> list[str]:
 
 
 def first_points(
-    plausible: Plausible, before: Sequence[pd.DataFrame], pattern: str, count: int
+    plausible: Plausible, before: Sequence[pd.DataFrame], pattern: str, count: int, repeat: int
 ) -> NDArray[np.float64]:
-    """Points (count, coordinates) that a search starts from: the first random ones, or the most likely of the
-    pattern in tables of evaluations before it.
+    """Points (count, coordinates) that a search starts from: random ones, others in every repeat, or the most
+    likely of the pattern in tables of evaluations before it.
     """
     if not before:
-        return np.array([plausible.unit(number) for number in range(count)])
+        return np.array([plausible.unit(count * repeat + number) for number in range(count)])
     found = pd.concat(before, ignore_index=True)
     own = found[found["pattern"] == pattern].drop_duplicates(list(INPUT_COLUMNS))
     best = own.sort_values(LOG_LIKELIHOOD, ascending=False, kind="stable").head(count)
@@ -93,6 +93,7 @@ def search_pattern(
     pattern: str,
     first: NDArray[np.float64],
     budget: Budget,
+    repeat: int,
     partial: str | Path,
     identity: str,
     told: Callable[[], None] = lambda: None,
@@ -100,8 +101,8 @@ def search_pattern(
     """Differential evolution from the points `first` (points, coordinates); every evaluation is a row, and
     without points there is none.
 
-    Columns as of `judged_samples`, and log_likelihood. `partial` keeps finished evaluations of the same
-    `identity`: a search that was killed goes on where it was, since the same seed asks for the same points.
+    Columns as of `judged_samples`, log_likelihood and repeat. `partial` keeps finished evaluations of the
+    same `identity`: a search that was killed goes on where it was, since it asks for the same points again.
     """
     generations: list[pd.DataFrame] = []
 
@@ -116,7 +117,7 @@ def search_pattern(
         return np.minimum(-found[LOG_LIKELIHOOD].to_numpy(float), WORST)
 
     if not len(first):
-        return judged_samples(judge, [], [], partial, identity).assign(**{LOG_LIKELIHOOD: []})
+        return judged_samples(judge, [], [], partial, identity).assign(**{LOG_LIKELIHOOD: [], REPEAT: []})
     scipy.optimize.differential_evolution(
         evaluate,
         [(0.0, 1.0)] * len(COORDINATES),
@@ -125,8 +126,8 @@ def search_pattern(
         mutation=(0.4, 0.9),
         polish=False,
         tol=0.0,
-        rng=np.random.default_rng(budget.seed),
+        rng=np.random.default_rng(budget.seed + repeat),
         vectorized=True,
         updating="deferred",
     )
-    return pd.concat(generations, ignore_index=True)
+    return pd.concat(generations, ignore_index=True).assign(**{REPEAT: repeat})

@@ -5,15 +5,19 @@ IDENTIFY = REPRODUCTION.identify if REPRODUCTION else None
 DESIGNS = list(design_points(IDENTIFY))
 CLAIMS = REPRODUCTION.claims if REPRODUCTION else []
 SEARCH = IDENTIFY.search if IDENTIFY else None
-FIRST, AGAIN = (
-    (
-        [f"results/{{case}}/identify/search/{name}/{place}.csv" for place in range(SEARCH.places)]
-        if SEARCH
-        else []
-    )
+
+
+def searches(repeat, name):
+    """Evaluations of one round of searches."""
+    return [f"results/{{case}}/identify/search/{repeat}/{name}/{place}.csv" for place in range(SEARCH.places)]
+
+
+SEARCHES = [
+    one
+    for repeat in range(SEARCH.repeats if SEARCH else 0)
     for name in ("first", "again")
-)
-SEARCHES = [*FIRST, *AGAIN]
+    for one in searches(repeat, name)
+]
 LIKELY = [f"results/{{case}}/identify/likely/{part}.csv" for part in range(SEARCH.parts)] if SEARCH else []
 STORED_SETS = REPRODUCTION.sets if REPRODUCTION and REPRODUCTION.sets else []
 
@@ -29,8 +33,10 @@ def identify_values(**kept):
 
 
 def searched_before(wildcards):
-    """The first searches, from which those that are made again start."""
-    return expand(FIRST, case=wildcards.case) if wildcards.round == "again" else []
+    """The first searches of a repeat, from which those that are made again start."""
+    return (
+        expand(searches(wildcards.repeat, "first"), case=wildcards.case) if wildcards.round == "again" else []
+    )
 
 
 def judged_sets():

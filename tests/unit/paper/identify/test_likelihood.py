@@ -99,10 +99,12 @@ def every_pattern():
 
 def test_places_of_the_first_round_start_at_random_and_those_left_over_at_nothing():
     budget = Budget(8, generations=1, seed=1, by_mean=2, by_upper=2, places=8)
-    starts = [start_at(place, PLAUSIBLE, LIKELIHOOD, every_pattern(), None, budget) for place in range(8)]
+    starts = [start_at(place, 0, PLAUSIBLE, LIKELIHOOD, every_pattern(), None, budget) for place in range(8)]
     patterns = [name for name, first in starts if len(first)]
     assert set(patterns) == {*READING_PATTERNS, *list(half_turn_patterns())[-2:]}
     assert all((first == starts[0][1]).all() for _, first in starts[: len(patterns)])
+    other = start_at(0, 1, PLAUSIBLE, LIKELIHOOD, every_pattern(), None, budget)
+    assert other[0] == starts[0][0] and not np.isin(other[1], starts[0][1]).any()
     assert {name for name, first in starts[len(patterns) :]} == {""} and len(patterns) < 8
 
 
@@ -110,7 +112,7 @@ def test_the_second_round_starts_from_the_best_points_of_everything_before():
     budget = Budget(2, generations=1, seed=1, again_within=1.0)
     first_round = every_pattern().head(40).assign(**{LOG_LIKELIHOOD: -np.arange(40.0)})
     near, far = (
-        start_at(place, PLAUSIBLE, LIKELIHOOD, every_pattern(), first_round, budget) for place in (1, 2)
+        start_at(place, 0, PLAUSIBLE, LIKELIHOOD, every_pattern(), first_round, budget) for place in (1, 2)
     )
     assert near[0] == first_round["pattern"][1] and far[0] == ""
     assert near[1].shape == (2, len(COORDINATES))
@@ -121,7 +123,9 @@ def test_the_second_round_starts_from_the_best_points_of_everything_before():
 def test_a_search_without_points_finds_nothing(tmp_path):
     judge = Known({}, pd.DataFrame(), [STATEMENT, NUMBER])
     none = np.empty((0, len(COORDINATES)))
-    found = search_pattern(judge, LIKELIHOOD, SPACE, "", none, Budget(8, 15, 3), tmp_path / "partial", "same")
+    found = search_pattern(
+        judge, LIKELIHOOD, SPACE, "", none, Budget(8, 15, 3), 0, tmp_path / "partial", "same"
+    )
     assert found.empty and LOG_LIKELIHOOD in found and (tmp_path / "partial").exists()
 
 
@@ -133,10 +137,10 @@ class Known(ClaimJudge):
         return judged(0.0, value)
 
 
-def search(path, budget, judge_type=Known):
+def search(path, budget, judge_type=Known, repeat=0):
     first = np.random.default_rng(1).random((8, len(COORDINATES)))
     judge = judge_type({}, pd.DataFrame(), [STATEMENT, NUMBER])
-    return search_pattern(judge, LIKELIHOOD, SPACE, "input/lower", first, budget, path, "same")
+    return search_pattern(judge, LIKELIHOOD, SPACE, "input/lower", first, budget, repeat, path, "same")
 
 
 def test_search_finds_the_likeliest_inputs_and_goes_on_where_it_was_killed(tmp_path):
@@ -146,6 +150,9 @@ def test_search_finds_the_likeliest_inputs_and_goes_on_where_it_was_killed(tmp_p
     best = found.loc[found[LOG_LIKELIHOOD].idxmax()]
     first = found.head(8).loc[found.head(8)[LOG_LIKELIHOOD].idxmax()]
     assert abs(best["mean value"] - 1.7) < 0.3 * abs(first["mean value"] - 1.7)
+    other = search(tmp_path / "other", budget, repeat=1)
+    assert set(other["repeat"]) == {1} and set(found["repeat"]) == {0}
+    assert other["per_input_n_m"].tolist() != found["per_input_n_m"].tolist()
     (tmp_path / "half").write_bytes(b"\n".join((tmp_path / "partial").read_bytes().split(b"\n")[:50]) + b"\n")
     again = search(tmp_path / "half", budget)
     pd.testing.assert_frame_equal(again, found)
