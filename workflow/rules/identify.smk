@@ -112,6 +112,7 @@ rule identify_region:
         searched=SEARCHES,
         judged=LIKELY,
     output:
+        likely="results/{case}/identify/likely.csv",
         region="results/{case}/identify/region.csv",
         searches="results/{case}/identify/searches.csv",
         shares="results/{case}/identify/claim_shares.csv",

@@ -9,7 +9,7 @@ import pandas as pd
 from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.inputs import BEARINGS, INPUT_COLUMNS, NUMBERS
 from facegear.paper.identify.likelihood import Likelihood
-from facegear.paper.identify.region import held_counts, judged_again
+from facegear.paper.identify.region import judged_again, with_claims
 from facegear.paper.identify.search import LOG_LIKELIHOOD
 from facegear.scenarios.chunks import run_chunk
 
@@ -62,9 +62,8 @@ def accurate_region(
     held-out ones do, the log-likelihood and that which the region has by quick runs.
     """
     found = judged_again(judge, likelihood, region, partial, identity, told)
-    kept = found[[*INPUT_COLUMNS, LOG_LIKELIHOOD, *judge.names]]
     quick = region[LOG_LIKELIHOOD].to_numpy(float)
-    return kept.assign(**{QUICK_LIKELIHOOD: quick}, **held_counts(found, judge.claims))
+    return with_claims(found, judge.claims).assign(**{QUICK_LIKELIHOOD: quick})
 
 
 def rounded(value: float) -> float:

@@ -57,15 +57,16 @@ def region_tables(
     judged: pd.DataFrame,
     claims: Sequence[Claim],
 ) -> dict[str, pd.DataFrame]:
-    """Tables by name from all inputs that were looked at: `region` with the claims that its inputs hold,
-    `searches`, `shares` of claims, `counts` of claims held, `never_together` and `correlations`.
+    """Tables by name from all inputs that were looked at: `likely`, the inputs `judged` with the claims that
+    they hold, and `region`, those of them that belong to it; `searches`, `shares` of claims, `counts` of
+    claims held, `never_together` and `correlations`.
     """
     region = most_likely(judged, LOG_UNITS)
-    told = region[[*INPUT_COLUMNS, LOG_LIKELIHOOD, *[claim.id for claim in claims]]]
     looked_at = {"random": random, "patterns": structures, "searched": searched, "likely": judged}
     kinds = [one.copy().assign(kind=name) for name, one in looked_at.items()]
     return {
-        "region": told.assign(**held_counts(region, claims)),
+        "likely": with_claims(most_likely(judged, np.inf), claims),
+        "region": with_claims(region, claims),
         "searches": searches(searched, claims),
         "shares": shares_of({"region": region, "random": random}, claims),
         "counts": pd.concat([by_input(one, claims, "kind") for one in kinds], ignore_index=True),
@@ -126,3 +127,9 @@ def never_together(found: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame
 def correlations(region: pd.DataFrame) -> pd.DataFrame:
     """Spearman's correlation of the numbers over the region, (numbers, numbers)."""
     return region[[*NUMBERS, *BEARINGS]].corr(method="spearman")
+
+
+def with_claims(found: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:
+    """Inputs, log-likelihood, whether each claim holds, and how many fitted and held-out ones do."""
+    kept = found[[*INPUT_COLUMNS, LOG_LIKELIHOOD, *[claim.id for claim in claims]]]
+    return kept.assign(**held_counts(found, claims))
