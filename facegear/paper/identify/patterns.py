@@ -4,8 +4,6 @@ import itertools
 from collections.abc import Mapping
 from types import MappingProxyType
 
-import pandas as pd
-
 Phasing = str | Mapping[str, float]
 """Value of the config key transmission.transmission_error.phasing."""
 
@@ -47,16 +45,3 @@ def half_turn_patterns() -> dict[str, Phasing]:
     choices = itertools.product((False, True), repeat=len(CLASSES))
     turned = [[name for name, turn in zip(CLASSES, choice, strict=True) if turn] for choice in choices]
     return {"+".join(names) or "none": dict.fromkeys(names, HALF_TURN) for names in turned}
-
-
-def going_on(rates: pd.DataFrame, by_mean: int, by_upper: int, places: int) -> list[str]:
-    """Patterns to search: the readings of the paper, the best by the mean and the best by the upper 5 %.
-
-    `rates`: a row a pattern, as of `by_input`. Patterns that tie for the last place all go on, as long as
-    there are places.
-    """
-    best = [
-        rates.nlargest(count, column, keep="all")["value"]
-        for column, count in (("mean", by_mean), ("upper", by_upper))
-    ]
-    return list(dict.fromkeys([*READING_PATTERNS, *itertools.chain(*best)]))[:places]

@@ -1,5 +1,6 @@
 """Search for the most likely inputs under one pattern of e(t)."""
 
+import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.inputs import COORDINATES, INPUT_COLUMNS, Space
 from facegear.paper.identify.likelihood import Likelihood
-from facegear.paper.identify.patterns import going_on
+from facegear.paper.identify.patterns import READING_PATTERNS
 from facegear.paper.identify.random_inputs import Plausible
 from facegear.paper.identify.random_verdicts import judged_samples
 from facegear.paper.scorecard.base_rates import by_input
@@ -64,6 +65,19 @@ def start_at(
     if place >= len(patterns):
         return "", np.empty((0, len(COORDINATES)))
     return patterns[place], first_points(plausible, before, patterns[place], budget.population, repeat)
+
+
+def going_on(rates: pd.DataFrame, by_mean: int, by_upper: int, places: int) -> list[str]:
+    """Patterns to search: the readings of the paper, the best by the mean and the best by the upper 5 %.
+
+    `rates`: a row a pattern, as of `by_input`. Patterns that tie for the last place all go on, as long as
+    there are places.
+    """
+    best = [
+        rates.nlargest(count, column, keep="all")["value"]
+        for column, count in (("mean", by_mean), ("upper", by_upper))
+    ]
+    return list(dict.fromkeys([*READING_PATTERNS, *itertools.chain(*best)]))[:places]
 
 
 def searched_again(found: pd.DataFrame, within: float) -> list[str]:

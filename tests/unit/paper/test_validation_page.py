@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 
 from facegear.paper.config.reproduction import read_reproduction
-from facegear.paper.identify.patterns import going_on
 from facegear.paper.identify.region import LOG_UNITS
+from facegear.paper.identify.search import going_on
 from facegear.paper.scorecard.base_rates import totals
 from facegear.paper.scorecard.claims import read_claims
 

@@ -17,9 +17,10 @@ from facegear.config.machines import case_machine
 from facegear.harmonics.series import Harmonics
 from facegear.paper.identify.claim_judge import QUICK, ClaimJudge
 from facegear.paper.identify.inputs import CHOICES, Space
-from facegear.paper.identify.patterns import READING_PATTERNS, READINGS, going_on, half_turn_patterns
+from facegear.paper.identify.patterns import READING_PATTERNS, READINGS, half_turn_patterns
 from facegear.paper.identify.random_inputs import Plausible
 from facegear.paper.identify.random_verdicts import judged_samples
+from facegear.paper.identify.search import going_on
 from facegear.paper.scorecard.claims import Claim, read_claims
 from facegear.paper.scorecard.criteria import reads_sweep
 from facegear.scenarios.chunks import identity
