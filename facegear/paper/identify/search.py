@@ -1,4 +1,4 @@
-"""Search for the most likely inputs under one pattern of e(t)."""
+"""Search for the most likely inputs: which patterns of e(t) go on, and the search under one of them."""
 
 import itertools
 from collections.abc import Callable, Sequence
