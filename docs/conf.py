@@ -29,3 +29,5 @@ autodoc_typehints = "description"
 autodoc_member_order = "bysource"
 html_theme = "alabaster"
 html_theme_options = {"page_width": "1100px", "sidebar_width": "240px"}
+html_static_path = ["static"]
+html_css_files = ["tables.css"]
