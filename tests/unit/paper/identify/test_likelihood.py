@@ -3,6 +3,8 @@
 import numpy as np
 import pandas as pd
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.inputs import COORDINATES, Space
@@ -11,7 +13,14 @@ from facegear.paper.identify.null import ANOTHER, INVENTED, THIS, null_counts
 from facegear.paper.identify.patterns import READING_PATTERNS, half_turn_patterns
 from facegear.paper.identify.random_inputs import Plausible
 from facegear.paper.identify.region import candidates, most_likely, never_together
-from facegear.paper.identify.search import LOG_LIKELIHOOD, Budget, search_pattern, searched_again, start_at
+from facegear.paper.identify.search import (
+    LOG_LIKELIHOOD,
+    Budget,
+    going_on,
+    search_pattern,
+    searched_again,
+    start_at,
+)
 from facegear.paper.scorecard.claims import Claim
 
 STATEMENT = Claim(id="leans", where="a", claim="", criterion="lowest_at", fitted=True)
@@ -75,6 +84,25 @@ def test_candidates_are_those_that_claims_on_sweeps_can_still_bring_into_the_reg
     kept = candidates(unswept, LIKELIHOOD, most=10)
     assert kept[LOG_LIKELIHOOD].tolist() == [0.0, -3.1]  # a jump may add 0.69
     assert most_likely(found, 3.0)[LOG_LIKELIHOOD].tolist() == [0.0]
+
+
+@given(st.permutations(range(32)), st.permutations(range(32)), st.integers(1, 32), st.integers(1, 32))
+def test_patterns_go_on_by_mean_by_upper_and_as_readings_whatever_the_others_hold(
+    means, uppers, by_mean, by_upper
+):
+    names = list(half_turn_patterns())
+    rates = pd.DataFrame({"value": names, "mean": means, "upper": uppers}, dtype=object).infer_objects()
+    found = going_on(rates, by_mean, by_upper, 32)
+    wanted = {names[i] for i in range(32) if means[i] >= 32 - by_mean or uppers[i] >= 32 - by_upper}
+    assert len(set(found)) == len(found) and set(found) == wanted | set(READING_PATTERNS)
+
+
+def test_patterns_that_tie_for_the_last_place_all_go_on_while_there_are_places():
+    names = [name for name in half_turn_patterns() if name not in READING_PATTERNS]
+    rates = pd.DataFrame({"value": names, "mean": [3.0, 2.0, 2.0, 1.0] + [0.0] * 24, "upper": 0.0})
+    rates.loc[5, "upper"] = 1.0
+    assert going_on(rates, 2, 1, 32) == [*READING_PATTERNS, *names[:3], names[5]]
+    assert going_on(rates, 2, 1, 7) == [*READING_PATTERNS, *names[:3]]
 
 
 def test_patterns_near_the_best_are_searched_again_the_best_first():

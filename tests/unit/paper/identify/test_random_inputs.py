@@ -8,8 +8,6 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from facegear.config.cases import set_key
 from facegear.config.load import load_values
@@ -20,7 +18,6 @@ from facegear.paper.identify.inputs import CHOICES, Space
 from facegear.paper.identify.patterns import READING_PATTERNS, READINGS, half_turn_patterns
 from facegear.paper.identify.random_inputs import Plausible
 from facegear.paper.identify.random_verdicts import judged_samples
-from facegear.paper.identify.search import going_on
 from facegear.paper.scorecard.claims import Claim, read_claims
 from facegear.paper.scorecard.criteria import reads_sweep
 from facegear.scenarios.chunks import identity
@@ -72,25 +69,6 @@ def test_patterns_differ_and_every_reading_of_the_paper_is_one_of_them():
     readings = {lags(one, by) for one in READINGS.values() for by in ("geometric", "printed")}
     assert readings == {lags(half_turn_patterns()[name], "geometric") for name in READING_PATTERNS}
     assert readings <= found
-
-
-@given(st.permutations(range(32)), st.permutations(range(32)), st.integers(1, 32), st.integers(1, 32))
-def test_patterns_go_on_by_mean_by_upper_and_as_readings_whatever_the_others_hold(
-    means, uppers, by_mean, by_upper
-):
-    names = list(half_turn_patterns())
-    rates = pd.DataFrame({"value": names, "mean": means, "upper": uppers}, dtype=object).infer_objects()
-    found = going_on(rates, by_mean, by_upper, 32)
-    wanted = {names[i] for i in range(32) if means[i] >= 32 - by_mean or uppers[i] >= 32 - by_upper}
-    assert len(set(found)) == len(found) and set(found) == wanted | set(READING_PATTERNS)
-
-
-def test_patterns_that_tie_for_the_last_place_all_go_on_while_there_are_places():
-    names = [name for name in half_turn_patterns() if name not in READING_PATTERNS]
-    rates = pd.DataFrame({"value": names, "mean": [3.0, 2.0, 2.0, 1.0] + [0.0] * 24, "upper": 0.0})
-    rates.loc[5, "upper"] = 1.0
-    assert going_on(rates, 2, 1, 32) == [*READING_PATTERNS, *names[:3], names[5]]
-    assert going_on(rates, 2, 1, 7) == [*READING_PATTERNS, *names[:3]]
 
 
 def contact_table():
