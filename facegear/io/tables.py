@@ -41,7 +41,7 @@ def read(
     return frame
 
 
-def read_joined(paths: Iterable[str | Path]) -> pd.DataFrame:
-    """Rows of several tables, one after another; some of the tables may be empty."""
-    read_all = [read(path, allow_empty=True) for path in paths]
+def read_joined(paths: Iterable[str | Path], allow_empty: bool = False) -> pd.DataFrame:
+    """Rows of several tables, one after another. Raises CorruptFile as `read` does."""
+    read_all = [read(path, allow_empty=allow_empty) for path in paths]
     return pd.concat([one for one in read_all if not one.empty] or read_all, ignore_index=True)

@@ -56,7 +56,7 @@ rule identify_search:
         runtime=120,
     params:
         case=whole_case,
-        identify=identify_values(**DRAWN, search=SEARCHED),
+        identify=identify_values(**DRAWN, search=SEARCH_KEYS),
     script:
         "../scripts/identify_search.py"
 

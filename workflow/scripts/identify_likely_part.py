@@ -19,9 +19,8 @@ with stage(snakemake) as run:
     files, params = snakemake.input, snakemake.params
     section = parse(Identify, params.identify).search
     ltca = tables.read(files.ltca, LTCA_COLUMNS)
-    random, searched = (
-        tables.read_joined(paths) for paths in ([*files.structures, *files.random], files.searched)
-    )
+    random = tables.read_joined([*files.structures, *files.random])
+    searched = tables.read_joined(files.searched, allow_empty=True)
     likelihood = Likelihood.of(read_claims(files.claims).claims, random)
     chosen = candidates(searched, likelihood, section.judged).iloc[
         int(snakemake.wildcards.part) :: section.parts

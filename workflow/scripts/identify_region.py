@@ -13,11 +13,9 @@ from facegear.provenance.stage import stage
 with stage(snakemake) as run:
     files, output = snakemake.input, snakemake.output
     claims = [claim for claim in read_claims(files.claims).claims if claim.dynamic]
-    looked_at = [
-        sound(tables.read_joined(paths))
-        for paths in (files.random, files.structures, files.searched, files.judged)
-    ]
-    found = region_tables(*looked_at, claims)
+    drawn = [tables.read_joined(paths) for paths in (files.random, files.structures)]
+    searched = [tables.read_joined(paths, allow_empty=True) for paths in (files.searched, files.judged)]
+    found = region_tables(*map(sound, (*drawn, *searched)), claims)
     for name, frame in found.items():
         tables.write(output[name], frame)
     ranges = parse(Identify, snakemake.params.identify).ranges

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import pandas as pd
+
 from facegear.config.base import parse
 from facegear.contact.columns import LTCA_COLUMNS
 from facegear.io import tables
@@ -23,12 +25,11 @@ with stage(snakemake) as run:
     budget = search_budget(section.search)
     ltca = tables.read(files.ltca, LTCA_COLUMNS)
     structures = tables.read_joined(files.structures)
-    likelihood = Likelihood.of(
-        read_claims(files.claims).claims, tables.read_joined([*files.structures, *files.random])
-    )
+    random = pd.concat([structures, tables.read_joined(files.random)], ignore_index=True)
+    likelihood = Likelihood.of(read_claims(files.claims).claims, random)
     judge = dynamic_judge(params.case, ltca, files.claims, fitted_at_speed, QUICK)
     drawn = plausible_inputs(section, "structures", params.case, ltca)
-    before = tables.read_joined(files.before) if files.before else None
+    before = tables.read_joined(files.before, allow_empty=True) if files.before else None
     pattern, first = start_at(place, repeat, drawn, likelihood, structures, before, budget)
     partial = Path(snakemake.output.evaluations).with_suffix(".partial")
     deciding = likelihood.surprise.tolist(), first.tolist(), pattern

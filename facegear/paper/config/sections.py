@@ -55,7 +55,7 @@ class SearchBudget(Section):
     )
     by_upper: int = Field(2, ge=1, le=32, description="patterns that go on, by the upper 5 % of these claims")
     again_within: float = Field(
-        2.0, ge=0, description="log units from the best of all within which a pattern is searched once more"
+        2.0, ge=0, description="log units from the best within which a pattern is searched once more"
     )
     repeats: int = Field(1, ge=1, le=100, description="whole searches, each from other random inputs")
     population: int = Field(16, ge=5, le=1000)

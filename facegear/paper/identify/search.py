@@ -34,10 +34,10 @@ class Budget:
     population: int
     generations: int
     seed: int
-    by_mean: int = 1
-    by_upper: int = 1
-    places: int = 1
-    again_within: float = 0.0
+    by_mean: int
+    by_upper: int
+    places: int
+    again_within: float
 
 
 def start_at(

@@ -97,12 +97,6 @@ def count_rows():
     return [row.format(one) for one in table("held_counts").itertuples()]
 
 
-def shares(name, ids, first, second):
-    """Rows with two shares of a claim, from the stored table `name`."""
-    frame = table(name).set_index("id").loc[list(ids)]
-    return [f"| `{one}` | {percent(frame[first][one])} | {percent(frame[second][one])} |" for one in ids]
-
-
 def share_rows(ids):
     """Shares of a claim in the region by quick runs and at full accuracy, and of random inputs."""
     frame, accurate = table("claim_shares").set_index("id"), table("accurate")
@@ -184,7 +178,11 @@ def pair_rows():
 
 
 def kinematics_rows(ids):
-    return shares("kinematics", ids, "printed_share", "geometric_share")
+    frame = table("kinematics").set_index("id")
+    return [
+        f"| `{one}` | {percent(frame['printed_share'][one])} | {percent(frame['geometric_share'][one])} |"
+        for one in ids
+    ]
 
 
 def moved_by_kinematics():

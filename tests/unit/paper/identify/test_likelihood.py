@@ -1,5 +1,7 @@
 """Likelihood of inputs over claims, the search by it, and the null of its counts."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -91,7 +93,7 @@ def test_patterns_go_on_by_mean_by_upper_and_as_readings_whatever_the_others_hol
     means, uppers, by_mean, by_upper
 ):
     names = list(half_turn_patterns())
-    rates = pd.DataFrame({"value": names, "mean": means, "upper": uppers}, dtype=object).infer_objects()
+    rates = pd.DataFrame({"value": names, "mean": means, "upper": uppers})
     found = going_on(rates, by_mean, by_upper, 32)
     wanted = {names[i] for i in range(32) if means[i] >= 32 - by_mean or uppers[i] >= 32 - by_upper}
     assert len(set(found)) == len(found) and set(found) == wanted | set(READING_PATTERNS)
@@ -115,6 +117,7 @@ def test_patterns_near_the_best_are_searched_again_the_best_first():
     assert searched_again(found, 0.0) == ["input/lower"]
 
 
+BUDGET = Budget(8, generations=15, seed=3, by_mean=2, by_upper=2, places=8, again_within=1.0)
 PLAUSIBLE = Plausible(SPACE, tuple(half_turn_patterns()), seed=1)
 
 
@@ -126,18 +129,17 @@ def every_pattern():
 
 
 def test_places_of_the_first_round_start_at_random_and_those_left_over_at_nothing():
-    budget = Budget(8, generations=1, seed=1, by_mean=2, by_upper=2, places=8)
-    starts = [start_at(place, 0, PLAUSIBLE, LIKELIHOOD, every_pattern(), None, budget) for place in range(8)]
+    starts = [start_at(place, 0, PLAUSIBLE, LIKELIHOOD, every_pattern(), None, BUDGET) for place in range(8)]
     patterns = [name for name, first in starts if len(first)]
     assert set(patterns) == {*READING_PATTERNS, *list(half_turn_patterns())[-2:]}
     assert all((first == starts[0][1]).all() for _, first in starts[: len(patterns)])
-    other = start_at(0, 1, PLAUSIBLE, LIKELIHOOD, every_pattern(), None, budget)
+    other = start_at(0, 1, PLAUSIBLE, LIKELIHOOD, every_pattern(), None, BUDGET)
     assert other[0] == starts[0][0] and not np.isin(other[1], starts[0][1]).any()
     assert {name for name, first in starts[len(patterns) :]} == {""} and len(patterns) < 8
 
 
 def test_the_second_round_starts_from_the_best_points_of_everything_before():
-    budget = Budget(2, generations=1, seed=1, again_within=1.0)
+    budget = replace(BUDGET, population=2)
     first_round = every_pattern().head(40).assign(**{LOG_LIKELIHOOD: -np.arange(40.0)})
     near, far = (
         start_at(place, 0, PLAUSIBLE, LIKELIHOOD, every_pattern(), first_round, budget) for place in (1, 2)
@@ -151,9 +153,7 @@ def test_the_second_round_starts_from_the_best_points_of_everything_before():
 def test_a_search_without_points_finds_nothing(tmp_path):
     judge = Known({}, pd.DataFrame(), [STATEMENT, NUMBER])
     none = np.empty((0, len(COORDINATES)))
-    found = search_pattern(
-        judge, LIKELIHOOD, SPACE, "", none, Budget(8, 15, 3), 0, tmp_path / "partial", "same"
-    )
+    found = search_pattern(judge, LIKELIHOOD, SPACE, "", none, BUDGET, 0, tmp_path / "partial", "same")
     assert found.empty and LOG_LIKELIHOOD in found and (tmp_path / "partial").exists()
 
 
@@ -165,31 +165,30 @@ class Known(ClaimJudge):
         return judged(0.0, value)
 
 
-def search(path, budget, judge_type=Known, repeat=0):
+def search(path, judge_type=Known, repeat=0):
     first = np.random.default_rng(1).random((8, len(COORDINATES)))
     judge = judge_type({}, pd.DataFrame(), [STATEMENT, NUMBER])
-    return search_pattern(judge, LIKELIHOOD, SPACE, "input/lower", first, budget, repeat, path, "same")
+    return search_pattern(judge, LIKELIHOOD, SPACE, "input/lower", first, BUDGET, repeat, path, "same")
 
 
 def test_search_finds_the_likeliest_inputs_and_goes_on_where_it_was_killed(tmp_path):
-    budget = Budget(8, generations=15, seed=3)
-    found = search(tmp_path / "partial", budget)
+    found = search(tmp_path / "partial")
     assert len(found) == 8 * 16 and set(found["pattern"]) == {"input/lower"}
     best = found.loc[found[LOG_LIKELIHOOD].idxmax()]
     first = found.head(8).loc[found.head(8)[LOG_LIKELIHOOD].idxmax()]
     assert abs(best["mean value"] - 1.7) < 0.3 * abs(first["mean value"] - 1.7)
-    other = search(tmp_path / "other", budget, repeat=1)
+    other = search(tmp_path / "other", repeat=1)
     assert set(other["repeat"]) == {1} and set(found["repeat"]) == {0}
     assert other["per_input_n_m"].tolist() != found["per_input_n_m"].tolist()
     (tmp_path / "half").write_bytes(b"\n".join((tmp_path / "partial").read_bytes().split(b"\n")[:50]) + b"\n")
-    again = search(tmp_path / "half", budget)
+    again = search(tmp_path / "half")
     pd.testing.assert_frame_equal(again, found)
 
     class Killed(Known):
         def found(self, row, run=0):
             raise AssertionError("evaluated again")
 
-    pd.testing.assert_frame_equal(search(tmp_path / "partial", budget, Killed), found)
+    pd.testing.assert_frame_equal(search(tmp_path / "partial", Killed), found)
 
 
 def test_claims_that_exclude_each_other_are_found_and_rare_ones_are_not_blamed():
