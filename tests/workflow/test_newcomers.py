@@ -65,26 +65,49 @@ def test_misalignments_of_a_machine_without_load_sharing_are_studied(tmp_path):
     assert "contact_studies" in planned
 
 
+def interrupted(command, begun):
+    """What a run prints that gets Ctrl-C as soon as the file `begun` is there."""
+    process = subprocess.Popen(
+        command, env=environment(), stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+    while not begun.exists() and process.poll() is None:
+        time.sleep(0.02)
+    assert process.poll() is None, process.communicate()[1]
+    process.send_signal(signal.SIGINT)
+    told = process.communicate(timeout=60)[1]
+    assert process.returncode == 130, told
+    return told.splitlines()
+
+
 def test_an_interrupted_run_ends_in_one_line_within_three_seconds(tmp_path):
     """It ended in some 500 lines of tracebacks, the jobs' own among them."""
     config = str(ROOT / "config" / "harmonics_only.yaml")
     target = "results/harmonics_only/dynamics/sweep.csv"
-    process = subprocess.Popen(
-        Project(tmp_path).command("--configfile", config, "--", target),
-        env=environment(),
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
     log = tmp_path / "results" / "harmonics_only" / "logs" / "stiffness.log"
-    while not log.exists() and process.poll() is None:
-        time.sleep(0.02)
-    process.send_signal(signal.SIGINT)
-    told = process.communicate(timeout=60)[1].splitlines()
-    assert process.returncode == 130
+    told = interrupted(Project(tmp_path).command("--configfile", config, "--", target), log)
     assert told[-1] == "stopped; the same command goes on from here"
     assert len(told) <= 5, told
     assert not list((tmp_path / "results").rglob(".[0-9]*"))
+
+
+SLOW_TO_STOP = f"""
+include: "{ROOT}/workflow/rules/functions/terminal.smk"
+psutil.wait_procs = lambda jobs, timeout: threading.Event().wait(1)
+quieten()
+stop_at_once()
+
+rule all:
+    output: "done"
+    shell: "touch running; sleep 60; touch done"
+"""
+
+
+def test_an_interrupted_run_says_so_where_its_jobs_are_slow_to_end(tmp_path):
+    """Where Snakemake saw its job killed before all was tidied up, the run ended as one that had failed."""
+    (tmp_path / "Snakefile").write_text(SLOW_TO_STOP)
+    told = interrupted(Project(tmp_path, tmp_path).command(), tmp_path / "running")
+    assert told[-1] == "stopped; the same command goes on from here"
+    assert not (tmp_path / "done").exists()
 
 
 def test_a_moved_checkout_has_nothing_to_do(tmp_path):

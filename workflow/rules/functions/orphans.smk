@@ -1,5 +1,6 @@
 import subprocess
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import psutil
@@ -18,7 +19,8 @@ def end_orphans():
     """
     processes = [process for process in psutil.process_iter() if _is_orphan(process)]
     for process in processes:
-        process.kill()
+        with suppress(psutil.NoSuchProcess):
+            process.kill()
     jobs = _slurm_jobs()
     if processes or jobs:
         print("ending jobs that a killed run has left working", file=sys.stderr)

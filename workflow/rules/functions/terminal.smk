@@ -1,8 +1,10 @@
+import atexit
 import logging
 import os
 import signal
 import sys
 import threading
+from contextlib import suppress
 from pathlib import Path
 
 import psutil
@@ -37,10 +39,12 @@ def stop_at_once():
     """End all jobs and this run with one line as soon as Ctrl-C is pressed.
 
     The jobs inherit that the signal is blocked, so that none of them prints a traceback of its own. It reaches this
-    process by the thread that waits for it, or by one that was there before and does not block it.
+    process by the thread that waits for it, or by one that was there before and does not block it. Snakemake, which
+    finds its jobs killed, would end the run as a failed one: it is held until the thread has ended all.
     """
     if not hasattr(signal, "pthread_sigmask"):
         return
+    atexit.register(_hold_where_stopping)
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     told, tells = os.pipe()
     os.set_blocking(tells, False)
@@ -48,6 +52,11 @@ def stop_at_once():
     signal.signal(signal.SIGINT, lambda number, frame: None)
     threading.Thread(target=_end_after, args=(signal.sigwait, {signal.SIGINT}), daemon=True).start()
     threading.Thread(target=_end_after, args=(_read_interrupt, told), daemon=True).start()
+
+
+def _hold_where_stopping():
+    if QUIET.stopping:
+        threading.Event().wait()
 
 
 def _read_interrupt(told):
@@ -58,12 +67,22 @@ def _read_interrupt(told):
 def _end_after(wait, *arguments):
     wait(*arguments)
     QUIET.stopping = True
-    jobs = psutil.Process().children(recursive=True)
-    for job in jobs:
-        job.kill()
-    psutil.wait_procs(jobs, timeout=2)
-    for job in jobs:
-        for half_written in Path("results").rglob(f".{job.pid}.*"):
-            half_written.unlink(missing_ok=True)
-    print("stopped; the same command goes on from here", file=sys.stderr, flush=True)
-    os._exit(130)
+    try:
+        _end_jobs()
+    finally:
+        print("stopped; the same command goes on from here", file=sys.stderr, flush=True)
+        os._exit(130)
+
+
+def _end_jobs():
+    for _ in range(3):  # a job may have begun while others were ended
+        jobs = psutil.Process().children(recursive=True)
+        for job in jobs:
+            with suppress(psutil.NoSuchProcess):
+                job.kill()
+        psutil.wait_procs(jobs, timeout=2)
+        begun = tuple(f".{job.pid}." for job in jobs)
+        for folder, _, names in os.walk("results"):  # Snakemake removes folders at the same time
+            for name in names:
+                if name.startswith(begun):
+                    Path(folder, name).unlink(missing_ok=True)
