@@ -90,24 +90,38 @@ def test_an_interrupted_run_ends_in_one_line_within_three_seconds(tmp_path):
     assert not list((tmp_path / "results").rglob(".[0-9]*"))
 
 
-SLOW_TO_STOP = f"""
+HINDRANCES = {
+    "slow": "psutil.wait_procs = lambda jobs, timeout: threading.Event().wait(1)",
+    "a job that has just ended": """
+kill = psutil.Process.kill
+def killed(job):
+    kill(job)
+    raise psutil.NoSuchProcess(job.pid)
+psutil.Process.kill = killed
+""",
+    "a folder that has just gone": """
+scandir = os.scandir
+os.scandir = lambda folder: scandir("gone" if str(folder).endswith("going") else folder)
+""",
+}
+ONE_JOB = f"""
 include: "{ROOT}/workflow/rules/functions/terminal.smk"
-psutil.wait_procs = lambda jobs, timeout: threading.Event().wait(1)
-quieten()
-stop_at_once()
-
 rule all:
     output: "done"
-    shell: "touch running; sleep 60; touch done"
+    shell: "mkdir -p results/going; touch results/.$$.csv running; sleep 60; touch done"
+quieten()
+stop_at_once()
 """
 
 
-def test_an_interrupted_run_says_so_where_its_jobs_are_slow_to_end(tmp_path):
+@pytest.mark.parametrize("hindrance", HINDRANCES.values(), ids=HINDRANCES)
+def test_an_interrupted_run_is_never_told_as_failed(tmp_path, hindrance):
     """Where Snakemake saw its job killed before all was tidied up, the run ended as one that had failed."""
-    (tmp_path / "Snakefile").write_text(SLOW_TO_STOP)
+    (tmp_path / "Snakefile").write_text(ONE_JOB + hindrance)
     told = interrupted(Project(tmp_path, tmp_path).command(), tmp_path / "running")
     assert told[-1] == "stopped; the same command goes on from here"
     assert not (tmp_path / "done").exists()
+    assert not list((tmp_path / "results").glob(".[0-9]*"))
 
 
 def test_a_moved_checkout_has_nothing_to_do(tmp_path):

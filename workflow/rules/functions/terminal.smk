@@ -10,6 +10,9 @@ from pathlib import Path
 import psutil
 from snakemake.logging import logger
 
+RESULTS = Path("results").absolute()
+"""Snakemake leaves the folder of a run, and this process's working directory with it, when a job has failed."""
+
 
 class Quiet(logging.Filter):
     """Of Snakemake's own lines a run shows warnings and errors; each stage tells what it found itself."""
@@ -82,7 +85,7 @@ def _end_jobs():
                 job.kill()
         psutil.wait_procs(jobs, timeout=2)
         begun = tuple(f".{job.pid}." for job in jobs)
-        for folder, _, names in os.walk("results"):  # Snakemake removes folders at the same time
+        for folder, _, names in os.walk(RESULTS):  # Snakemake removes folders at the same time
             for name in names:
                 if name.startswith(begun):
                     Path(folder, name).unlink(missing_ok=True)
