@@ -49,24 +49,23 @@ class Sharing:
 
 
 def load_sharing(
-    machine: Machine | Model, speed_rpm: float, settings: Settings, options: SharingOptions
+    machine: Machine | Model, speed_rpm: float, settings: Settings, options: SharingOptions, start: int = 0
 ) -> Sharing:
-    """Coefficients from static equilibrium, and how far the means move from other, disturbed starts.
+    """Coefficients from one of the starting states, and how far the means move from the others.
 
-    The averages belong to the first start; with several stable motions, or an irregular one, the range over
-    the starts says how much that choice matters. Raises NotConverged if an integration fails.
+    The averages belong to number `start`, static equilibrium by default; with several stable motions, or an
+    irregular one, the range over the starts says how much that choice matters. Raises NotConverged if an
+    integration fails.
     """
     model = build_model(machine) if isinstance(machine, Machine) else machine
     settings = replace(settings, window=options.cycles, samples=options.samples)
     groups = load_groups(model.machine.layout)
-    first = static_start(model)
-    response = watched_motion(model, speed_rpm, settings, options, first)
-    random = np.random.default_rng(options.seed)
+    states = starting_states(model, options, max(options.starts, start + 1))
+    response = watched_motion(model, speed_rpm, settings, options, states[start])
     coarse = replace(settings, samples=min(SAMPLES, options.samples))
     motions, means = [response.label], []
-    for _ in range(options.starts - 1):
-        disturbed = disturb(model, first, options.spread, random)
-        other = watched_motion(model, speed_rpm, coarse, options, disturbed)
+    for state in [state for number, state in enumerate(states[: options.starts]) if number != start]:
+        other = watched_motion(model, speed_rpm, coarse, options, state)
         motions.append(other.label)
         if not same_orbit(response, other):
             means.append(_means(densely_sampled(other), groups))
@@ -75,6 +74,12 @@ def load_sharing(
         _group(response, group, options, [mean[i] for mean in means]) for i, group in enumerate(groups)
     )
     return Sharing(response, shared, tuple(motions))
+
+
+def starting_states(model: Model, options: SharingOptions, count: int) -> list[State]:
+    """The first `count` starting states: static equilibrium, then the same disturbed at random."""
+    rest, random = static_start(model), np.random.default_rng(options.seed)
+    return [rest, *(disturb(model, rest, options.spread, random) for _ in range(count - 1))]
 
 
 def watched_motion(

@@ -78,7 +78,7 @@ rule identify_likely_part:
         runtime=60,
     params:
         case=whole_case,
-        identify=identify_values(search={"judged", "parts"}),
+        identify=identify_values(search={"starts", "judged", "parts"}),
     script:
         "../scripts/identify_likely_part.py"
 
@@ -143,12 +143,13 @@ rule identify_accurate:
         runtime=60,
     params:
         case=whole_case,
+        identify=identify_values(search={"starts"}),
     script:
         "../scripts/identify_accurate.py"
 
 
 rule identify_sets:
-    "The most likely inputs at full accuracy, several times, and those that are kept"
+    "The most likely inputs at full accuracy, from several starts, and those that are kept"
     input:
         ltca=shared("contact", "ltca"),
         claims=CLAIMS,
@@ -169,7 +170,7 @@ rule identify_sets:
 
 
 rule identify_runs:
-    "Runs of a set that differ by rounding"
+    "Runs of a set that differ by rounding and start"
     input:
         ltca=shared("contact", "ltca"),
         claims=CLAIMS,

@@ -8,8 +8,9 @@ from facegear.io import tables
 from facegear.paper.config.sections import Identify
 from facegear.paper.identify.claim_judge import QUICK
 from facegear.paper.identify.likelihood import Likelihood
+from facegear.paper.identify.motions import judged_motions
 from facegear.paper.identify.random_verdicts import dynamic_judge
-from facegear.paper.identify.region import candidates, judged_again
+from facegear.paper.identify.region import candidates
 from facegear.paper.scorecard.claims import read_claims
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
@@ -27,12 +28,13 @@ with stage(snakemake) as run:
     ]
     judge = dynamic_judge(params.case, ltca, files.claims, settings=QUICK)
     partial = Path(snakemake.output.judged).with_suffix(".partial")
-    same = identity(judge.deciding, chosen.to_csv(), params.code)
-    progress = Progress(f"likely inputs, part {snakemake.wildcards.part}", len(chosen))
-    found = judged_again(judge, likelihood, chosen, partial, same, progress.step)
+    same = identity(judge.deciding, chosen.to_csv(), section.starts, params.code)
+    progress = Progress(f"likely inputs, part {snakemake.wildcards.part}", len(chosen) * section.starts)
+    rows = chosen.to_dict("records")
+    found = judged_motions(judge, likelihood, rows, section.starts, partial, same, progress.step)
     tables.write(snakemake.output.judged, found)
     partial.unlink()
     held = found[judge.names].sum(axis=1)
     run.summary(
-        f"{len(found)} inputs hold {held.mean():.1f} of {len(judge.names)} claims, at most {held.max():.0f}"
+        f"{len(found)} motions hold {held.mean():.1f} of {len(judge.names)} claims, at most {held.max():.0f}"
     )

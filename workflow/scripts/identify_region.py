@@ -3,6 +3,7 @@
 from facegear.config.base import parse
 from facegear.io import tables
 from facegear.paper.config.sections import Identify
+from facegear.paper.identify.motions import distinct_inputs
 from facegear.paper.identify.region import LOG_UNITS, region_tables
 from facegear.paper.plots.region import region_figure
 from facegear.paper.scorecard.base_rates import sound
@@ -20,9 +21,10 @@ with stage(snakemake) as run:
         tables.write(output[name], frame)
     ranges = parse(Identify, snakemake.params.identify).ranges
     correlated = found["correlations"].set_index("input")
-    save(region_figure(found["region"], correlated, ranges), output.svg, output.png)
-    best = found["region"].iloc[0]
+    save(region_figure(distinct_inputs(found["region"]), correlated, ranges), output.svg, output.png)
+    inputs = distinct_inputs(found["region"])
+    best = inputs.iloc[0]
     run.summary(
-        f"{len(found['region'])} inputs within {LOG_UNITS:g} log units; the most likely ({best['pattern']}, "
+        f"{len(inputs)} inputs within {LOG_UNITS:g} log units; the most likely ({best['pattern']}, "
         f"{best['per_input_n_m']:.0f} N m) holds {best['fitted']} fitted, {best['held_out']} held-out claims"
     )

@@ -1,4 +1,4 @@
-"""Which claims a set of inputs holds in runs that differ by rounding."""
+"""Which claims a set of inputs holds in runs that differ by rounding and start."""
 
 from pathlib import Path
 
@@ -24,10 +24,11 @@ with stage(snakemake) as run:
     judge = ClaimJudge(params.case, ltca, claims)
     section = parse(Identify, params.identify)
     partial = Path(snakemake.output.runs).with_suffix(".partial")
+    starts = params.case["load_sharing"]["starts"]
     same = identity(judge.deciding, row, section.swept_runs, params.code)
     progress = Progress(f"runs of set {name}", section.runs)
     columns = run_columns(judge.names)
-    evaluate = one_run(judge, row, section.swept_runs)
+    evaluate = one_run(judge, row, section.swept_runs, starts)
     found = run_chunk(evaluate, range(section.runs), columns, partial, same, progress.step)
     table = run_table(name, found, judge.names, settings_key(*set_cases(params.case, row)))
     tables.write(snakemake.output.runs, table)

@@ -11,8 +11,9 @@ from facegear.paper.config.search import plausible_inputs, search_budget
 from facegear.paper.config.sections import Identify
 from facegear.paper.identify.claim_judge import QUICK
 from facegear.paper.identify.likelihood import Likelihood
+from facegear.paper.identify.motions import LOG_LIKELIHOOD
 from facegear.paper.identify.random_verdicts import dynamic_judge, fitted_at_speed
-from facegear.paper.identify.search import LOG_LIKELIHOOD, search_pattern, start_at
+from facegear.paper.identify.search import search_pattern, start_at
 from facegear.paper.scorecard.claims import read_claims
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
@@ -34,11 +35,11 @@ with stage(snakemake) as run:
     partial = Path(snakemake.output.evaluations).with_suffix(".partial")
     deciding = likelihood.surprise.tolist(), first.tolist(), pattern
     same = identity(judge.deciding, params.identify, deciding, params.code)
-    progress = Progress(f"search {pattern}", len(first) * (budget.generations + 1))
+    progress = Progress(f"search {pattern}", len(first) * (budget.generations + 1) * budget.starts)
     found = search_pattern(
         judge, likelihood, drawn.space, pattern, first, budget, repeat, partial, same, progress.step
     )
     tables.write(snakemake.output.evaluations, found)
     partial.unlink()
-    best = f"{len(found)} evaluations, log-likelihood at most {found[LOG_LIKELIHOOD].max():.1f}"
+    best = f"{len(found)} motions, log-likelihood of inputs at most {found[LOG_LIKELIHOOD].max():.1f}"
     run.summary(f"{pattern}: {best}" if pattern else "no pattern goes on at this place")

@@ -6,8 +6,10 @@ from facegear.config.base import parse
 from facegear.contact.columns import LTCA_COLUMNS
 from facegear.io import tables
 from facegear.paper.config.sections import Identify
+from facegear.paper.identify.claim_judge import ONE_MOTION
 from facegear.paper.identify.confirmed import confirmed_inputs, kept_sets
 from facegear.paper.identify.likelihood import Likelihood
+from facegear.paper.identify.motions import distinct_inputs
 from facegear.paper.identify.random_verdicts import dynamic_judge, unswept
 from facegear.paper.scorecard.claims import read_claims
 from facegear.progress import Progress
@@ -20,8 +22,8 @@ with stage(snakemake) as run:
     ltca = tables.read(files.ltca, LTCA_COLUMNS)
     random = tables.read_joined([*files.structures, *files.random])
     likelihood = Likelihood.of(read_claims(files.claims).claims, random)
-    judge = dynamic_judge(params.case, ltca, files.claims, unswept)
-    region = tables.read(files.region).head(section.confirmed)  # the most likely come first
+    judge = dynamic_judge(params.case, ltca, files.claims, unswept, ONE_MOTION)
+    region = distinct_inputs(tables.read(files.region)).head(section.confirmed)  # the most likely come first
     partial = Path(output.sets).with_suffix(".partial")
     same = identity(judge.deciding, region.to_csv(), section.runs, params.code)
     progress = Progress("confirming at full accuracy", len(region) * section.runs)

@@ -38,6 +38,7 @@ def search_budget(section: SearchBudget) -> Budget:
         population=section.population,
         generations=section.generations,
         seed=section.seed,
+        starts=section.starts,
         by_mean=section.by_mean,
         by_upper=section.by_upper,
         places=section.places,

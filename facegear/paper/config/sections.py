@@ -60,10 +60,13 @@ class SearchBudget(Section):
     repeats: int = Field(1, ge=1, le=100, description="whole searches, each from other random inputs")
     population: int = Field(16, ge=5, le=1000)
     generations: int = Field(12, ge=0, le=10_000)
-    judged: int = Field(200, ge=1, le=100_000, description="most inputs of the region judged with a sweep")
+    starts: int = Field(3, ge=1, le=100, description="starts from which inputs are judged, the first at rest")
+    judged: int = Field(200, ge=1, le=100_000, description="most likely inputs judged with a sweep")
     parts: int = Field(4, ge=1, le=1000, description="jobs over which these are spread")
     confirmed: int = Field(10, ge=1, le=1000, description="most likely inputs judged at full accuracy")
-    runs: int = Field(5, ge=1, le=1000, description="of each of these; all but the first moved by 1e-12")
+    runs: int = Field(
+        5, ge=1, le=1000, description="of each of these, from other starts; all but the first moved by 1e-12"
+    )
     sets: int = Field(4, ge=1, le=26, description="stored inputs, of different patterns")
     papers: int = Field(100, ge=1, le=100_000, description="other runs and invented papers of the null")
     seed: int = Field(1, ge=0, le=2**31)

@@ -1,7 +1,7 @@
 """Which dynamic claims hold with other inputs than the config's."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
@@ -14,6 +14,8 @@ from facegear.paper.scorecard.criteria import reads_sweep
 from facegear.paper.scorecard.rows import outcome_table
 from facegear.paper.scorecard.set_tables import set_tables
 
+ONE_MOTION: Mapping[str, Any] = MappingProxyType({"load_sharing.starts": 1})
+"""Config keys of a run that is judged by its own motion alone, beside runs from other starts."""
 QUICK: Mapping[str, Any] = MappingProxyType(
     {
         "dynamics.accuracy": {
@@ -40,8 +42,8 @@ QUICK: Mapping[str, Any] = MappingProxyType(
             "samples_per_period": 32,
         },
         "load_sharing.cycles": 64,
-        "load_sharing.starts": 1,
         "load_sharing.samples_per_cycle": 128,
+        **ONE_MOTION,
     }
 )
 """Config keys of a quick run, four CPU seconds instead of fifty."""
@@ -69,15 +71,17 @@ class ClaimJudge:
         """Ids of the claims."""
         return [claim.id for claim in self.claims]
 
-    def outcomes(self, row: Mapping[str, Any] | None, run: int = 0) -> pd.DataFrame:
+    def outcomes(self, row: Mapping[str, Any] | None, run: int = 0, start: int = 0) -> pd.DataFrame:
         """What the criteria find with the inputs of a row of a sets file, or with the config's own for None.
 
-        Runs above 0 are perturbed by rounding. Raises FacegearError where the inputs have no result.
+        Runs above 0 are perturbed by rounding, starts above 0 from rest at random. Raises FacegearError where
+        the inputs have no result.
         """
         base, points = set_cases(self._needed, row, self.settings)
         moved = {key: perturbed(point, run) for key, point in points.items()}
         swept = any(reads_sweep(claim.criterion) for claim in self.claims)
-        return outcome_table(self.claims, set_tables(perturbed(base, run), moved, self.ltca, swept))
+        tables = set_tables(perturbed(base, run), moved, self.ltca, swept, start)
+        return outcome_table(self.claims, tables)
 
     @property
     def _needed(self) -> dict[str, Any]:
@@ -97,12 +101,20 @@ class ClaimJudge:
         numbers = [claim.id for claim in self.claims if claim.paper is not None]
         return [*self.names, *(f"{name} {what}" for name in numbers for what in (VALUE, SPREAD))]
 
-    def found(self, row: Mapping[str, Any], run: int = 0) -> dict[str, float]:
+    @property
+    def without_sweep(self) -> "ClaimJudge":
+        """The same for the claims that need no speed sweep."""
+        return replace(self, claims=[one for one in self.claims if not reads_sweep(one.criterion)])
+
+    def found(self, row: Mapping[str, Any], run: int = 0, start: int = 0) -> dict[str, float]:
         """For the inputs of a row: 1 for each claim that holds and 0 for each that does not, by its id; of a
         number also its value, and half its range over windows of the motion.
+
+        A speed sweep begins at rest: what is read from it is NaN for other starts.
         """
-        outcomes = self.outcomes(row, run).set_index("id")
+        judge = self if start == 0 else self.without_sweep
+        outcomes = judge.outcomes(row, run, start).set_index("id")
         found = dict(outcomes["holds"].astype(float))
         for what in (VALUE, SPREAD):
             found |= {f"{name} {what}": value for name, value in outcomes[what].astype(float).items()}
-        return found
+        return {name: found.get(name, float("nan")) for name in self.columns}

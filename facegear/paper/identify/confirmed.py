@@ -1,16 +1,17 @@
-"""The most likely inputs at full accuracy, in runs that differ by rounding, and which of them are kept."""
+"""The most likely inputs at full accuracy, from several starts, and which of them are kept."""
 
 import string
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.inputs import BEARINGS, INPUT_COLUMNS, NUMBERS
 from facegear.paper.identify.likelihood import Likelihood
-from facegear.paper.identify.region import judged_again, with_claims
-from facegear.paper.identify.search import LOG_LIKELIHOOD
+from facegear.paper.identify.motions import LOG_LIKELIHOOD, distinct_inputs, judged_motions
+from facegear.paper.identify.region import with_claims
 from facegear.scenarios.chunks import run_chunk
 
 QUICK_LIKELIHOOD = "quick_log_likelihood"
@@ -30,14 +31,15 @@ def confirmed_inputs(
 ) -> pd.DataFrame:
     """Rows of a region with the least log-likelihood of `runs` runs of the judge, the most likely first.
 
-    Their numbers are rounded before. Quick runs may reach another motion than accurate ones, so that the
-    order changes; of equals the one with the smaller share at the tail comes first. The region's own
-    log-likelihood is kept as that of quick runs.
+    Each run has another start, and all but the first are moved by rounding. Numbers of the rows are rounded
+    before. Quick runs may reach another motion than accurate ones, so that the order changes; of equals the
+    one with the smaller share at the tail comes first. The region's own log-likelihood is kept as that of
+    quick runs.
     """
     tidy = region.assign(**{name: region[name].map(rounded) for name in ROUNDED})
     rows = tidy[list(INPUT_COLUMNS)].to_dict("records")
     found = run_chunk(
-        lambda number: judge.found(rows[number // runs], number % runs),
+        lambda number: judge.found(rows[number // runs], run=number % runs, start=number % runs),
         range(len(rows) * runs),
         judge.columns,
         partial,
@@ -54,15 +56,18 @@ def accurate_region(
     judge: ClaimJudge,
     likelihood: Likelihood,
     region: pd.DataFrame,
+    starts: int,
     partial: str | Path,
     identity: str,
     told: Callable[[], None] = lambda: None,
 ) -> pd.DataFrame:
-    """Every row of a region in one run of the judge: inputs, whether each claim holds, how many fitted and
-    held-out ones do, the log-likelihood and that which the region has by quick runs.
+    """The inputs of a region from each of the starts: columns of `with_claims`, and the log-likelihood which
+    the region has by quick runs.
     """
-    found = judged_again(judge, likelihood, region, partial, identity, told)
-    quick = region[LOG_LIKELIHOOD].to_numpy(float)
+    inputs = distinct_inputs(region)
+    rows = inputs[list(INPUT_COLUMNS)].to_dict("records")
+    found = judged_motions(judge, likelihood, rows, starts, partial, identity, told)
+    quick = np.repeat(inputs[LOG_LIKELIHOOD].to_numpy(float), starts)
     return with_claims(found, judge.claims).assign(**{QUICK_LIKELIHOOD: quick})
 
 

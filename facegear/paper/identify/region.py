@@ -1,16 +1,14 @@
 """The region of likely inputs: what holds in it, how well each input is known, what never holds together."""
 
-from collections.abc import Callable, Sequence
-from pathlib import Path
+from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
 
-from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.inputs import BEARINGS, INPUT_COLUMNS, NUMBERS
 from facegear.paper.identify.likelihood import Likelihood
-from facegear.paper.identify.random_verdicts import judged_samples
-from facegear.paper.identify.search import LOG_LIKELIHOOD, REPEAT
+from facegear.paper.identify.motions import LOG_LIKELIHOOD, OF_MOTION, START, distinct_inputs
+from facegear.paper.identify.search import REPEAT
 from facegear.paper.scorecard.base_rates import by_input, shares_of, sound
 from facegear.paper.scorecard.claims import Claim
 
@@ -24,24 +22,8 @@ def candidates(searched: pd.DataFrame, likelihood: Likelihood, most: int) -> pd.
     """Of inputs judged without a sweep those that may belong to the region: within LOG_UNITS and what claims
     on sweeps could still add of the best; the most likely, and each input once.
     """
-    distinct = searched.drop_duplicates(list(INPUT_COLUMNS))
+    distinct = distinct_inputs(searched)
     return most_likely(distinct, LOG_UNITS + likelihood.most_without(distinct)).head(most)
-
-
-def judged_again(
-    judge: ClaimJudge,
-    likelihood: Likelihood,
-    chosen: pd.DataFrame,
-    partial: str | Path,
-    identity: str,
-    told: Callable[[], None] = lambda: None,
-) -> pd.DataFrame:
-    """Inputs of a table judged anew by all claims of the judge: columns of `judged_samples`, and
-    log_likelihood.
-    """
-    rows = chosen[list(INPUT_COLUMNS)].to_dict("records")
-    found = judged_samples(judge, rows, range(len(rows)), partial, identity, told)
-    return found.assign(**{LOG_LIKELIHOOD: likelihood(found)})
 
 
 def most_likely(found: pd.DataFrame, within: float) -> pd.DataFrame:
@@ -57,9 +39,9 @@ def region_tables(
     judged: pd.DataFrame,
     claims: Sequence[Claim],
 ) -> dict[str, pd.DataFrame]:
-    """Tables by name from all inputs that were looked at: `likely`, the inputs `judged` with the claims that
-    they hold, and `region`, those of them that belong to it; `searches`, `shares` of claims, `counts` of
-    claims held, `never_together` and `correlations`.
+    """Tables by name from all that was looked at: `likely`, the motions `judged` with the claims that they
+    hold, and `region`, those of inputs that belong to it; `searches`, `shares` of claims, `counts` of claims
+    held, `never_together` and `correlations`.
     """
     region = most_likely(judged, LOG_UNITS)
     looked_at = {"random": random, "patterns": structures, "searched": searched, "likely": judged}
@@ -71,7 +53,7 @@ def region_tables(
         "shares": shares_of({"region": region, "random": random}, claims),
         "counts": pd.concat([by_input(one, claims, "kind") for one in kinds], ignore_index=True),
         "never_together": never_together(pd.concat(kinds, ignore_index=True), claims),
-        "correlations": correlations(region).reset_index(names="input"),
+        "correlations": correlations(distinct_inputs(region)).reset_index(names="input"),
     }
 
 
@@ -85,17 +67,18 @@ def held_counts(found: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:
 
 
 def searches(searched: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:
-    """One row a pattern, the most likely first: evaluations, fitted claims that its search judged, those that
-    the most likely evaluation holds and that any holds, the largest log-likelihood, and that of each repeat.
+    """One row a pattern, the most likely first: inputs evaluated, fitted claims that its search judged, those
+    that the most likely motion of the most likely inputs holds and that any motion holds, the largest
+    log-likelihood, and that of each repeat.
     """
     rows, repeats = [], sorted(searched[REPEAT].unique())
     held = held_counts(searched, claims)["fitted"]
     judged = sum(claim.counts and claim.fitted and claim.id in searched for claim in claims)
     for pattern, group in searched.groupby("pattern", sort=False):
-        best = group[LOG_LIKELIHOOD].idxmax()
+        best = group.sort_values([LOG_LIKELIHOOD, OF_MOTION], ascending=False, kind="stable").index[0]
         told = (judged, int(held[best]), int(held[group.index].max()), float(group[LOG_LIKELIHOOD][best]))
         repeated = [group.loc[group[REPEAT] == repeat, LOG_LIKELIHOOD].max() for repeat in repeats]
-        rows.append((pattern, len(group), *told, *repeated))
+        rows.append((pattern, int((group[START] == 0).sum()), *told, *repeated))
     columns = ["pattern", "evaluations", "claims", "held", "most", LOG_LIKELIHOOD]
     columns += [f"{LOG_LIKELIHOOD}_{repeat}" for repeat in repeats]
     frame = pd.DataFrame(rows, columns=columns)
@@ -130,6 +113,6 @@ def correlations(region: pd.DataFrame) -> pd.DataFrame:
 
 
 def with_claims(found: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:
-    """Inputs, log-likelihood, whether each claim holds, and how many fitted and held-out ones do."""
-    kept = found[[*INPUT_COLUMNS, LOG_LIKELIHOOD, *[claim.id for claim in claims]]]
+    """Inputs, start, log-likelihoods, whether each claim holds, how many fitted and held-out ones do."""
+    kept = found[[*INPUT_COLUMNS, START, OF_MOTION, LOG_LIKELIHOOD, *[claim.id for claim in claims]]]
     return kept.assign(**held_counts(found, claims))

@@ -1,7 +1,6 @@
-"""Runs of a set of inputs that differ by rounding: how many of them hold each claim."""
+"""Runs of a set of inputs that differ by rounding and start: how many of them hold each claim."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import pandas as pd
@@ -9,7 +8,6 @@ import pandas as pd
 from facegear.paper.identify.cases import settings_key
 from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.sets import set_cases
-from facegear.paper.scorecard.criteria import reads_sweep
 from facegear.paper.scorecard.rows import OWN, RUN_COLUMNS
 
 HOLDS, VALUE = "holds", "value"
@@ -22,15 +20,15 @@ def run_columns(ids: Sequence[str]) -> list[str]:
 
 
 def one_run(
-    judge: ClaimJudge, row: Mapping[str, Any] | None, swept: int
+    judge: ClaimJudge, row: Mapping[str, Any] | None, swept: int, starts: int
 ) -> Callable[[int], dict[str, float]]:
     """Function of the number of a run giving its columns; runs from number `swept` on make no sweep, and have
-    NaN for the claims that need one.
+    NaN for the claims that need one. Runs differ by rounding, and take the `starts` in turn.
     """
-    shorter = replace(judge, claims=[one for one in judge.claims if not reads_sweep(one.criterion)])
 
     def evaluate(run: int) -> dict[str, float]:
-        found = (judge if run < swept else shorter).outcomes(row, run).set_index("id")
+        asked = judge if run < swept else judge.without_sweep
+        found = asked.outcomes(row, run, run % starts).set_index("id")
         told = {HOLDS: found["holds"].astype(float), VALUE: found["value"].astype(float)}
         return {
             f"{name} {what}": values.get(name, float("nan"))

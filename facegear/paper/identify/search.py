@@ -11,21 +11,21 @@ import scipy.optimize
 from numpy.typing import NDArray
 
 from facegear.paper.identify.claim_judge import ClaimJudge
-from facegear.paper.identify.inputs import COORDINATES, INPUT_COLUMNS, Space
+from facegear.paper.identify.inputs import COORDINATES, Space
 from facegear.paper.identify.likelihood import Likelihood
+from facegear.paper.identify.motions import LOG_LIKELIHOOD, START, distinct_inputs, judged_motions
 from facegear.paper.identify.patterns import READING_PATTERNS
 from facegear.paper.identify.random_inputs import Plausible
-from facegear.paper.identify.random_verdicts import judged_samples
 from facegear.paper.scorecard.base_rates import by_input
 
-LOG_LIKELIHOOD, REPEAT = "log_likelihood", "repeat"
+REPEAT = "repeat"
 WORST = 1e3
 """Minus the log-likelihood of inputs without a result, below that of any others."""
 
 
 @dataclass(frozen=True)
 class Budget:
-    """Points of a generation, generations after the first, the seed of their changes.
+    """Points of a generation, generations after the first, the seed of their changes, starts of each.
 
     Then which patterns go on: so many by the mean and by the upper 5 % of the claims that random inputs hold,
     at so many places; and once more those within so many log units of the best.
@@ -34,6 +34,7 @@ class Budget:
     population: int
     generations: int
     seed: int
+    starts: int
     by_mean: int
     by_upper: int
     places: int
@@ -95,7 +96,7 @@ def first_points(
     if not before:
         return np.array([plausible.unit(count * repeat + number) for number in range(count)])
     found = pd.concat(before, ignore_index=True)
-    own = found[found["pattern"] == pattern].drop_duplicates(list(INPUT_COLUMNS))
+    own = distinct_inputs(found[found["pattern"] == pattern])
     best = own.sort_values(LOG_LIKELIHOOD, ascending=False, kind="stable").head(count)
     return np.array([plausible.space.unit(row) for row in best.to_dict("records")])
 
@@ -112,26 +113,26 @@ def search_pattern(
     identity: str,
     told: Callable[[], None] = lambda: None,
 ) -> pd.DataFrame:
-    """Differential evolution from the points `first` (points, coordinates); every evaluation is a row, and
-    without points there is none.
+    """Differential evolution from the points `first` (points, coordinates); every motion of the inputs that
+    it evaluates is a row, and without points there is none.
 
-    Columns as of `judged_samples`, log_likelihood and repeat. `partial` keeps finished evaluations of the
-    same `identity`: a search that was killed goes on where it was, since it asks for the same points again.
+    Columns as of `judged_motions`, and repeat. `partial` keeps finished motions of the same `identity`: a
+    search that was killed goes on where it was, since it asks for the same points again.
     """
     generations: list[pd.DataFrame] = []
 
     def evaluate(units: NDArray[np.float64]) -> NDArray[np.float64]:
         """Minus the log-likelihood of points (coordinates, points)."""
-        done = sum(map(len, generations))
+        done = sum(map(len, generations)) // budget.starts
         rows = [space.row(unit, pattern) for unit in units.T]
-        numbers = range(done, done + len(rows))
-        found = judged_samples(judge, rows, numbers, partial, identity, told)
-        found[LOG_LIKELIHOOD] = likelihood(found)
+        found = judged_motions(judge, likelihood, rows, budget.starts, partial, identity, told, done)
         generations.append(found)
-        return np.minimum(-found[LOG_LIKELIHOOD].to_numpy(float), WORST)
+        of_inputs = found.loc[found[START] == 0, LOG_LIKELIHOOD].to_numpy(float)
+        return np.minimum(-of_inputs, WORST)
 
     if not len(first):
-        return judged_samples(judge, [], [], partial, identity).assign(**{LOG_LIKELIHOOD: [], REPEAT: []})
+        none = judged_motions(judge, likelihood, [], budget.starts, partial, identity)
+        return none.assign(**{REPEAT: pd.Series(dtype=int)})
     scipy.optimize.differential_evolution(
         evaluate,
         [(0.0, 1.0)] * len(COORDINATES),

@@ -74,6 +74,15 @@ def test_static_start_and_disturbed_starts_meet_where_only_one_motion_exists(tig
         assert group.starts_high - group.starts_low < 1e-4
 
 
+def test_averages_belong_to_the_start_that_is_asked_for_and_the_range_to_all(paper_machine):
+    """At 9500 rpm the second start ends on another motion than the first."""
+    groups = [load_sharing(paper_machine, 9500.0, SETTINGS, OPTIONS, start).groups[0] for start in (0, 1)]
+    means = sorted(group.average.mean for group in groups)
+    assert means[1] - means[0] > 0.05
+    for group in groups:
+        assert [group.starts_low, group.starts_high] == pytest.approx(means, rel=1e-3)
+
+
 def test_lost_contact_shows_where_a_coefficient_reaches_its_bound(paper_machine):
     sharing = load_sharing(paper_machine, 7500.0, SETTINGS, OPTIONS)
     inputs = sharing.groups[0]

@@ -23,7 +23,7 @@ STORED_SETS = REPRODUCTION.sets if REPRODUCTION and REPRODUCTION.sets else []
 
 DRAWN = {"ranges": True, "random": {"seed"}}
 """On what random inputs depend, of section `identify`."""
-SEARCH_KEYS = {"by_mean", "by_upper", "again_within", "population", "generations", "seed"}
+SEARCH_KEYS = {"by_mean", "by_upper", "again_within", "population", "generations", "starts", "seed"}
 """On what a search depends, of its own section."""
 
 

@@ -7,7 +7,7 @@ from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.confirmed import accurate_region, confirmed_inputs, kept_sets
 from facegear.paper.identify.inputs import COORDINATES, Space
 from facegear.paper.identify.likelihood import Likelihood
-from facegear.paper.identify.search import LOG_LIKELIHOOD
+from facegear.paper.identify.motions import LOG_LIKELIHOOD, OF_MOTION, START
 from facegear.paper.scorecard.claims import Claim
 
 SPACE = Space((100.0, 1000.0), (0.0, 0.4), (0.5, 2.5), (1e8, 1e10), (120.0, 450.0), gears=2)
@@ -25,21 +25,23 @@ def region():
 
 
 class Wavering(ClaimJudge):
-    """A judge whose claim fails in the second run of the inputs with the largest torque."""
+    """A judge whose claim fails from the second start of the inputs with the largest torque."""
 
-    def found(self, row, run=0):
-        return {"leans": float(not (run == 1 and row["per_input_n_m"] > 300.0))}
+    def found(self, row, run=0, start=0):
+        return {"leans": float(not (start == 1 and row["per_input_n_m"] > 300.0))}
 
 
-def test_the_whole_region_is_judged_once_at_full_accuracy_beside_what_quick_runs_said(tmp_path):
+def test_the_whole_region_is_judged_from_every_start_beside_what_quick_runs_said(tmp_path):
     judge = Wavering({}, pd.DataFrame(), [CLAIM])
-    found = accurate_region(judge, LIKELIHOOD, region(), tmp_path / "partial", "same")
-    assert found["quick_log_likelihood"].tolist() == [-1.0, -2.0, -3.0]
-    assert found[LOG_LIKELIHOOD].tolist() == [2.0, 2.0, 2.0]
-    assert found["fitted"].tolist() == [1, 1, 1] and found["held_out"].tolist() == [0, 0, 0]
+    motions = pd.concat([region(), region()])  # as stored: a row a motion
+    found = accurate_region(judge, LIKELIHOOD, motions, 2, tmp_path / "partial", "same")
+    assert found[START].tolist() == [0, 1, 0, 1, 0, 1]
+    assert found["quick_log_likelihood"].tolist() == [-1.0, -1.0, -2.0, -2.0, -3.0, -3.0]
+    assert found[OF_MOTION].tolist() == [2.0, 0.0, 2.0, 2.0, 2.0, 2.0]
+    assert found["fitted"].tolist() == [1, 0, 1, 1, 1, 1] and not found["held_out"].any()
 
 
-def test_the_worst_run_decides_and_the_best_of_each_pattern_is_kept(tmp_path):
+def test_the_worst_start_decides_and_the_best_of_each_pattern_is_kept(tmp_path):
     judge = Wavering({}, pd.DataFrame(), [CLAIM])
     found = confirmed_inputs(judge, LIKELIHOOD, region(), 3, tmp_path / "partial", "same")
     assert found[LOG_LIKELIHOOD].tolist() == [2.0, 2.0, 0.0]

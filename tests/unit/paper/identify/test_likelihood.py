@@ -11,18 +11,12 @@ from hypothesis import strategies as st
 from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.inputs import COORDINATES, Space
 from facegear.paper.identify.likelihood import Likelihood
+from facegear.paper.identify.motions import LOG_LIKELIHOOD, START
 from facegear.paper.identify.null import ANOTHER, INVENTED, THIS, null_counts
 from facegear.paper.identify.patterns import READING_PATTERNS, half_turn_patterns
 from facegear.paper.identify.random_inputs import Plausible
 from facegear.paper.identify.region import candidates, most_likely, never_together
-from facegear.paper.identify.search import (
-    LOG_LIKELIHOOD,
-    Budget,
-    going_on,
-    search_pattern,
-    searched_again,
-    start_at,
-)
+from facegear.paper.identify.search import Budget, going_on, search_pattern, searched_again, start_at
 from facegear.paper.scorecard.claims import Claim
 
 STATEMENT = Claim(id="leans", where="a", claim="", criterion="lowest_at", fitted=True)
@@ -117,7 +111,7 @@ def test_patterns_near_the_best_are_searched_again_the_best_first():
     assert searched_again(found, 0.0) == ["input/lower"]
 
 
-BUDGET = Budget(8, generations=15, seed=3, by_mean=2, by_upper=2, places=8, again_within=1.0)
+BUDGET = Budget(8, generations=15, seed=3, starts=2, by_mean=2, by_upper=2, places=8, again_within=1.0)
 PLAUSIBLE = Plausible(SPACE, tuple(half_turn_patterns()), seed=1)
 
 
@@ -154,14 +148,16 @@ def test_a_search_without_points_finds_nothing(tmp_path):
     judge = Known({}, pd.DataFrame(), [STATEMENT, NUMBER])
     none = np.empty((0, len(COORDINATES)))
     found = search_pattern(judge, LIKELIHOOD, SPACE, "", none, BUDGET, 0, tmp_path / "partial", "same")
-    assert found.empty and LOG_LIKELIHOOD in found and (tmp_path / "partial").exists()
+    assert found.empty and {LOG_LIKELIHOOD, START, "repeat"} <= {*found} and (tmp_path / "partial").exists()
 
 
 class Known(ClaimJudge):
-    """A judge whose one number is known without a run: how far inputs are from 400 N m."""
+    """A judge whose one number is known without a run: how far inputs are from 400 N m, and 0.1 more from
+    the second start.
+    """
 
-    def found(self, row, run=0):
-        value = 1.7 + abs(np.log(row["per_input_n_m"] / 400.0))
+    def found(self, row, run=0, start=0):
+        value = 1.7 + 0.1 * start + abs(np.log(row["per_input_n_m"] / 400.0))
         return judged(0.0, value)
 
 
@@ -173,9 +169,9 @@ def search(path, judge_type=Known, repeat=0):
 
 def test_search_finds_the_likeliest_inputs_and_goes_on_where_it_was_killed(tmp_path):
     found = search(tmp_path / "partial")
-    assert len(found) == 8 * 16 and set(found["pattern"]) == {"input/lower"}
+    assert len(found) == 8 * 16 * 2 and set(found["pattern"]) == {"input/lower"}
     best = found.loc[found[LOG_LIKELIHOOD].idxmax()]
-    first = found.head(8).loc[found.head(8)[LOG_LIKELIHOOD].idxmax()]
+    first = found.head(16).loc[found.head(16)[LOG_LIKELIHOOD].idxmax()]
     assert abs(best["mean value"] - 1.7) < 0.3 * abs(first["mean value"] - 1.7)
     other = search(tmp_path / "other", repeat=1)
     assert set(other["repeat"]) == {1} and set(found["repeat"]) == {0}
@@ -185,7 +181,7 @@ def test_search_finds_the_likeliest_inputs_and_goes_on_where_it_was_killed(tmp_p
     pd.testing.assert_frame_equal(again, found)
 
     class Killed(Known):
-        def found(self, row, run=0):
+        def found(self, row, run=0, start=0):
             raise AssertionError("evaluated again")
 
     pd.testing.assert_frame_equal(search(tmp_path / "partial", Killed), found)

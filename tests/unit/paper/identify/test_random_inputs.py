@@ -103,7 +103,7 @@ def test_what_was_found_before_a_claim_a_setting_or_an_input_changed_counts_no_m
 class Undefined(ClaimJudge):
     """A judge of a coefficient that has a value for some inputs only."""
 
-    def outcomes(self, row, run=0):
+    def outcomes(self, row, run=0, start=0):
         return pd.DataFrame({"id": ["mean"], "holds": [False], "value": [row["value"]], "spread": [0.0]})
 
 

@@ -1,4 +1,4 @@
-"""Runs that differ by rounding, and the stored ones of the committed config."""
+"""Runs that differ by rounding and start, and the stored ones of the committed config."""
 
 import copy
 import math
@@ -64,18 +64,25 @@ def test_run_table_counts_the_runs_that_judged_a_claim_and_those_that_hold_it():
 
 
 class Counted(ClaimJudge):
-    """A judge that tells which run it made, and for which claims."""
+    """A judge that tells which run it made, from which start, and for which claims."""
 
-    def outcomes(self, row, run=0):
-        return pd.DataFrame({"id": self.names, "holds": True, "value": [float(run)] * len(self.names)})
+    def outcomes(self, row, run=0, start=0):
+        value = run + 0.1 * start
+        return pd.DataFrame({"id": self.names, "holds": True, "value": [value] * len(self.names)})
 
 
 def test_runs_without_a_sweep_judge_the_other_claims_alone():
     claims = [Claim(id=name, where="", claim="", criterion=name) for name in ("jump_leans", "lowest_at")]
-    evaluate = one_run(Counted({}, pd.DataFrame(), claims), None, swept=1)
+    evaluate = one_run(Counted({}, pd.DataFrame(), claims), None, swept=1, starts=1)
     assert evaluate(0)["jump_leans value"] == evaluate(0)["lowest_at value"] == 0.0
     assert evaluate(1)["lowest_at value"] == 1.0 and evaluate(1)["lowest_at holds"] == 1.0
     assert math.isnan(evaluate(1)["jump_leans value"]) and math.isnan(evaluate(1)["jump_leans holds"])
+
+
+def test_runs_take_the_starts_in_turn():
+    claims = [Claim(id="lowest_at", where="", claim="", criterion="lowest_at")]
+    evaluate = one_run(Counted({}, pd.DataFrame(), claims), None, swept=9, starts=3)
+    assert [evaluate(run)["lowest_at value"] for run in range(5)] == [0.0, 1.1, 2.2, 3.0, 4.1]
 
 
 @pytest.mark.parametrize(
