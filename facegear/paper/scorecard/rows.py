@@ -52,7 +52,7 @@ def scorecard(
 
     `runs` (columns RUN_COLUMNS) says how other runs of the config and of other sets that fit as well came
     out, `rates` (RATE_COLUMNS) how random inputs do; both may be empty. A row is undecided where runs of the
-    config that differ by rounding disagree, or its number does not hold in all windows of the motion. One
+    config that differ by rounding or start disagree, or its number does not hold in all windows of the motion. One
     that fails with the config's inputs but holds in every run of another set depends on an undisclosed input.
 
     Raises FacegearError for a row that differs or depends without a reason.
@@ -147,5 +147,5 @@ def _disagreement(holds: bool, windows: str, again: "pd.Series | None") -> str:
         return ""
     return (
         f"Holds {'' if holds else 'not '}here, and in {int(again['held'])} of {int(again['runs'])} runs that "
-        "differ by 1e-12 in the inputs: the motion, or which one is reached, hangs on rounding."
+        "differ by 1e-12 in the inputs and by their start: the motion, or which one is reached, hangs on these."
     )
