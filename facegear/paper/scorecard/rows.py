@@ -52,9 +52,9 @@ def scorecard(
 
     `runs` (columns RUN_COLUMNS) says how other runs of the config and of other sets that fit as well came
     out, `rates` (RATE_COLUMNS) how random inputs do; both may be empty. A row is undecided where runs of the
-    config that differ by rounding or start disagree, or its number does not hold in all windows of the motion.
-    One that fails with the config's inputs but holds in every run of another set depends on an undisclosed
-    input.
+    config that differ by rounding or start disagree, or its number does not hold in all windows of the
+    motion. One that fails with the config's inputs but holds in every run of another set depends on an
+    undisclosed input.
 
     Raises FacegearError for a row that differs or depends without a reason.
     """
@@ -148,5 +148,5 @@ def _disagreement(holds: bool, windows: str, again: "pd.Series | None") -> str:
         return ""
     return (
         f"Holds {'' if holds else 'not '}here, and in {int(again['held'])} of {int(again['runs'])} runs that "
-        "differ by 1e-12 in the inputs and by their start: the motion, or which one is reached, hangs on these."
+        "differ by 1e-12 in the inputs and in their start: the motion, or which one is reached, hangs on it."
     )
