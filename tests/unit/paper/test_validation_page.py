@@ -100,7 +100,7 @@ def count_rows():
 
 
 def share_rows(ids):
-    """Shares of a claim among the region's motions by quick runs and at full accuracy, and of random inputs."""
+    """Shares of a claim among the region's motions, quick and at full accuracy, and of random inputs."""
     frame, accurate = table("claim_shares").set_index("id"), table("accurate")
     return [
         f"| `{one}` | {percent(frame['region_share'][one])} | "
@@ -116,10 +116,11 @@ def accurate_told():
     found = inputs[LOG_LIKELIHOOD]
     kept, best = inputs[found >= found.max() - LOG_UNITS], inputs.loc[found.idxmax()]
     worst = table("accurate").groupby(list(INPUT_COLUMNS))[OF_MOTION].min()
+    always = int((worst >= found.max() - LOG_UNITS).sum())
     return (
         f"{len(kept)} of the {len(inputs)} stay within {LOG_UNITS:g} log units of the best of them "
         f"({best[LOG_LIKELIHOOD]:.1f}, {best['per_input_n_m']:.0f} N m), the median lies at "
-        f"{found.median():.1f}; {int((worst >= found.max() - LOG_UNITS).sum())} do so from each of their starts"
+        f"{found.median():.1f}; {always} do so from each of their starts"
     )
 
 
