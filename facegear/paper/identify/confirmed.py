@@ -10,11 +10,11 @@ import pandas as pd
 from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.inputs import BEARINGS, INPUT_COLUMNS, NUMBERS
 from facegear.paper.identify.likelihood import Likelihood
-from facegear.paper.identify.motions import LOG_LIKELIHOOD, distinct_inputs, judged_motions
+from facegear.paper.identify.motions import LOG_LIKELIHOOD, distinct_inputs, judged_motions, over_motions
 from facegear.paper.identify.region import with_claims
 from facegear.scenarios.chunks import run_chunk
 
-QUICK_LIKELIHOOD = "quick_log_likelihood"
+QUICK_LIKELIHOOD, LEAST = "quick_log_likelihood", "least_log_likelihood"
 DIGITS = 4
 """Digits of the numbers of a set: more than the region knows."""
 ROUNDED = (*NUMBERS, *BEARINGS, "stiffness_torque_n_m")
@@ -29,10 +29,11 @@ def confirmed_inputs(
     identity: str,
     told: Callable[[], None] = lambda: None,
 ) -> pd.DataFrame:
-    """Rows of a region with the least log-likelihood of `runs` runs of the judge, the most likely first.
+    """Rows of a region with their log-likelihood over `runs` runs of the judge and the least of one of them,
+    the most likely first.
 
     Each run has another start, and all but the first are moved by rounding. Numbers of the rows are rounded
-    before. Quick runs may reach another motion than accurate ones, so that the order changes; of equals the
+    before. Quick runs may reach other motions than accurate ones, so that the order changes; of equals the
     one with the smaller share at the tail comes first. The region's own log-likelihood is kept as that of
     quick runs.
     """
@@ -46,8 +47,10 @@ def confirmed_inputs(
         identity,
         told,
     )
-    least = likelihood(found).reshape(len(rows), runs).min(axis=1)
-    kept = tidy.rename(columns={LOG_LIKELIHOOD: QUICK_LIKELIHOOD}).assign(**{LOG_LIKELIHOOD: least})
+    of_runs = likelihood(found).reshape(len(rows), runs)
+    kept = tidy.rename(columns={LOG_LIKELIHOOD: QUICK_LIKELIHOOD}).assign(
+        **{LOG_LIKELIHOOD: over_motions(of_runs), LEAST: of_runs.min(axis=1)}
+    )
     order = [LOG_LIKELIHOOD, "tail_share"]
     return kept.sort_values(order, ascending=[False, True], kind="stable").reset_index(drop=True)
 
@@ -80,5 +83,5 @@ def kept_sets(confirmed: pd.DataFrame, most: int) -> pd.DataFrame:
     """The best inputs of each pattern, at most so many, named a, b, c ...; the first is `recommended`."""
     best = confirmed.drop_duplicates("pattern").head(most).reset_index(drop=True)
     names = list(string.ascii_lowercase[: len(best)])
-    columns = [*INPUT_COLUMNS, LOG_LIKELIHOOD, QUICK_LIKELIHOOD]
+    columns = [*INPUT_COLUMNS, LOG_LIKELIHOOD, LEAST, QUICK_LIKELIHOOD]
     return best[columns].assign(set=names, recommended=best.index == 0)[["set", "recommended", *columns]]

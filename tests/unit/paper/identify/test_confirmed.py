@@ -2,6 +2,7 @@
 
 import numpy as np
 import pandas as pd
+import pytest
 
 from facegear.paper.identify.claim_judge import ClaimJudge
 from facegear.paper.identify.confirmed import accurate_region, confirmed_inputs, kept_sets
@@ -41,10 +42,12 @@ def test_the_whole_region_is_judged_from_every_start_beside_what_quick_runs_said
     assert found["fitted"].tolist() == [1, 0, 1, 1, 1, 1] and not found["held_out"].any()
 
 
-def test_the_worst_start_decides_and_the_best_of_each_pattern_is_kept(tmp_path):
+def test_all_starts_decide_and_the_best_of_each_pattern_is_kept(tmp_path):
     judge = Wavering({}, pd.DataFrame(), [CLAIM])
     found = confirmed_inputs(judge, LIKELIHOOD, region(), 3, tmp_path / "partial", "same")
-    assert found[LOG_LIKELIHOOD].tolist() == [2.0, 2.0, 0.0]
+    wavering = np.log((2.0 * np.exp(2.0) + np.exp(0.0)) / 3.0)
+    assert found[LOG_LIKELIHOOD].tolist() == pytest.approx([2.0, 2.0, wavering])
+    assert found["least_log_likelihood"].tolist() == [2.0, 2.0, 0.0]
     assert found["tail_share"].is_monotonic_increasing  # of equals the one with the smaller share at the tail
     assert found["quick_log_likelihood"].tolist() == [-3.0, -2.0, -1.0]
     assert all(float(f"{value:.4g}") == value for value in found["per_input_n_m"])
