@@ -15,7 +15,8 @@ from facegear.paper.scorecard.claims import Claim
 LOG_UNITS = 3.0
 """Inputs within this log-likelihood of the best belong to the region."""
 EXPECTED = 5.0
-"""Pairs of claims are looked at that so many samples would hold together if they were independent."""
+"""Pairs of claims are looked at that so many inputs would hold together if they were independent."""
+WEIGHT = "weight"
 
 
 def candidates(searched: pd.DataFrame, likelihood: Likelihood, most: int) -> pd.DataFrame:
@@ -45,7 +46,7 @@ def region_tables(
     """
     region = most_likely(judged, LOG_UNITS)
     looked_at = {"random": random, "patterns": structures, "searched": searched, "likely": judged}
-    kinds = [one.copy().assign(kind=name) for name, one in looked_at.items()]
+    kinds = [one.copy().assign(**{"kind": name, WEIGHT: _weight(one)}) for name, one in looked_at.items()]
     return {
         "likely": with_claims(most_likely(judged, np.inf), claims),
         "region": with_claims(region, claims),
@@ -55,6 +56,11 @@ def region_tables(
         "never_together": never_together(pd.concat(kinds, ignore_index=True), claims),
         "correlations": correlations(distinct_inputs(region)).reset_index(names="input"),
     }
+
+
+def _weight(found: pd.DataFrame) -> float:
+    """What a motion counts, so that inputs count once however many starts they were judged from."""
+    return 1.0 / found[START].nunique() if START in found and len(found) else 1.0
 
 
 def held_counts(found: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:
@@ -86,22 +92,21 @@ def searches(searched: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:
 
 
 def never_together(found: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:
-    """Pairs of claims that no row holds together, though EXPECTED rows would if they were independent.
+    """Pairs of claims that no motion holds together, though EXPECTED inputs would if they were independent.
 
-    Rows that were not judged by a claim hold NaN; a pair is seen in the rows judged by both. Columns first,
-    second, rows judged, rows that hold each, and those expected to hold both; the most expected first.
+    Rows that were not judged by a claim hold NaN; a pair is seen in the rows judged by both. A row counts its
+    WEIGHT of its inputs. Columns first, second, inputs judged, inputs that hold each, and those expected to
+    hold both; the most expected first.
     """
     kept = sound(found)
     ids = [claim.id for claim in claims if claim.counts and claim.id in kept.columns]
     values = kept[ids].to_numpy(float)
     judged, held = np.isfinite(values).astype(float), np.nan_to_num(values)
-    both, count, together = judged.T @ judged, held.T @ judged, held.T @ held
+    weighted = judged * kept[WEIGHT].to_numpy(float)[:, None]
+    both, count, together = judged.T @ weighted, held.T @ weighted, held.T @ held
     expected = count * count.T / np.maximum(both, 1.0)
     pairs = np.argwhere(np.triu((together == 0.0) & (expected >= EXPECTED), k=1))
-    rows = [
-        (ids[i], ids[j], int(both[i, j]), int(count[i, j]), int(count[j, i]), expected[i, j])
-        for i, j in pairs
-    ]
+    rows = [(ids[i], ids[j], both[i, j], count[i, j], count[j, i], expected[i, j]) for i, j in pairs]
     names = ["first", "second", "judged", "first_held", "second_held", "expected"]
     frame = pd.DataFrame(rows, columns=names)
     return frame.sort_values("expected", ascending=False, kind="stable").reset_index(drop=True)

@@ -182,7 +182,10 @@ def near_5772_told():
 
 
 def pair_rows():
-    row = "| `{0.first}`, {0.first_held} | `{0.second}`, {0.second_held} | {0.judged} | {0.expected:.1f} |"
+    row = (
+        "| `{0.first}`, {0.first_held:.1f} | `{0.second}`, {0.second_held:.1f} | {0.judged:.0f} | "
+        "{0.expected:.1f} |"
+    )
     return [row.format(one) for one in table("never_together").itertuples()]
 
 

@@ -189,11 +189,13 @@ def test_search_finds_the_likeliest_inputs_and_goes_on_where_it_was_killed(tmp_p
 
 def test_claims_that_exclude_each_other_are_found_and_rare_ones_are_not_blamed():
     held = pd.DataFrame({"leans": [1.0, 0.0] * 20, "other": [0.0, 1.0] * 20, "jump": [1.0] + 39 * [0.0]})
-    pairs = never_together(held.assign(error=""), CLAIMS)
+    pairs = never_together(held.assign(error="", weight=1.0), CLAIMS)
     assert pairs[["first", "second"]].to_numpy().tolist() == [["leans", "other"]]
     assert pairs["expected"][0] == pytest.approx(10.0)
+    thrice = pd.concat([held] * 3).assign(error="", weight=1.0 / 3.0)  # from three starts each
+    pd.testing.assert_frame_equal(never_together(thrice, CLAIMS), pairs)
     unjudged = pd.concat([held, pd.DataFrame({"leans": 100 * [1.0]})], ignore_index=True)
-    again = never_together(unjudged.assign(error=""), CLAIMS)
+    again = never_together(unjudged.assign(error="", weight=1.0), CLAIMS)
     assert again["judged"].tolist() == [40] and again["expected"].tolist() == pairs["expected"].tolist()
 
 
