@@ -17,6 +17,7 @@ LOG_UNITS = 3.0
 EXPECTED = 5.0
 """Pairs of claims are looked at that so many inputs would hold together if they were independent."""
 WEIGHT = "weight"
+DIGITS = 6
 
 
 def candidates(searched: pd.DataFrame, likelihood: Likelihood, most: int) -> pd.DataFrame:
@@ -108,7 +109,7 @@ def never_together(found: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame
     pairs = np.argwhere(np.triu((together == 0.0) & (expected >= EXPECTED), k=1))
     rows = [(ids[i], ids[j], both[i, j], count[i, j], count[j, i], expected[i, j]) for i, j in pairs]
     names = ["first", "second", "judged", "first_held", "second_held", "expected"]
-    frame = pd.DataFrame(rows, columns=names)
+    frame = pd.DataFrame(rows, columns=names).round(DIGITS)
     return frame.sort_values("expected", ascending=False, kind="stable").reset_index(drop=True)
 
 
