@@ -115,6 +115,19 @@ def test_a_number_that_is_undefined_is_kept_as_not_a_number():
     assert judge.columns == ["mean", "mean value", "mean spread"]
 
 
+def test_a_judge_reads_the_motion_from_the_start_that_is_asked_for():
+    """With the eighth random inputs the backlash study has other motions from other starts."""
+    claims = [
+        one for one in read_claims(CONFIG / "claims" / "paper.yaml").claims if one.criterion == "sharing"
+    ]
+    claims = [one for one in claims if one.args["study"] == "backlash"]
+    judge = ClaimJudge(VALUES, contact_table(), claims, QUICK)
+    found = [pd.Series(judge.found(DRAWN.rows([7])[0], start=start)) for start in (0, 0, 1)]
+    pd.testing.assert_series_equal(found[0], found[1])
+    values = [f"{claim.id} value" for claim in claims]
+    assert (found[0][values] - found[2][values]).abs().max() > 0.05
+
+
 def test_random_inputs_are_judged_and_a_chunk_that_was_killed_goes_on(tmp_path):
     claims = [one for one in read_claims(CONFIG / "claims" / "paper.yaml").claims if one.dynamic]
     claims = [one for one in claims if not reads_sweep(one.criterion)]
