@@ -35,7 +35,11 @@ class DampingSection(Section):
     mesh_n_s_per_m: float = Field(ge=0, le=1e7)
     mass_per_s: float = Field(ge=0, le=1e6)
     bearing_s: float = Field(ge=0, le=1e-2)
-    open_flanks: Literal["always", "contact_only"] = "contact_only"
+    open_flanks: Literal["always", "contact_only", "push_only"] = Field(
+        "contact_only",
+        description="where the mesh damper acts: always, across open flanks too (equation (20)); "
+        "contact_only; push_only: in contact, and spring and damper together never pull parting flanks",
+    )
 
 
 class SingleMesh(Section):
