@@ -13,7 +13,7 @@ PULLS = 1e-3
 
 
 def response_summary(response: SteadyState) -> str:
-    """Class of motion with the evidence for it, the largest share of time out of contact, and how far dampers pull."""
+    """Class of motion with the evidence for it, largest share of time out of contact, pull of the dampers."""
     parts = [response.label, f"change over the period {response.residual:.1e} of the length scale"]
     if response.multipliers is not None:
         parts.append(f"leading multiplier {abs(response.multipliers[0]):.4f}")

@@ -29,9 +29,9 @@ class Piece:
     largest_pull (P, M): largest force by which the damper of a contact pulls its flanks together, N.
     open_share, drive_share, back_share (P, M) of the time. translation_* (P, B, 3): moments of x, y, z, m.
     residual, periods_run (P,); leading_multiplier, exponent_per_period, exponent_interval (P,): NaN where
-    there is none. spectrum (P, M, orders), m. modal (P, modes): RMS velocity scale omega * coordinate of every natural mode without mean,
-    sqrt(J). modal_order (P,): where in multiples of the mesh frequency the strongest mode moves most.
-    displacement, velocity (P, n).
+    there is none. spectrum (P, M, orders), m. modal (P, modes): RMS velocity scale omega * coordinate of
+    every natural mode without mean, sqrt(J). modal_order (P,): where in multiples of the mesh frequency the
+    strongest mode moves most. displacement, velocity (P, n).
     """
 
     speeds: Array
