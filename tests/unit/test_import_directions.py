@@ -23,6 +23,7 @@ MAY_IMPORT = {
     "load_sharing": {"dynamics", "transmission", "harmonics"},
     "plots": {"geometry", "contact", "stiffness", "harmonics", "transmission", "dynamics", "load_sharing"},
     "report": {"geometry", "contact"},
+    "compare": {"plots", "report"},
     "scenarios": set(),
     "strength": {"geometry"},
     "stages": {
