@@ -7,7 +7,7 @@ from tempfile import TemporaryDirectory
 import pandas as pd
 
 from facegear.compare.causes import causes
-from facegear.compare.judge import Comparison, Verdict, declared
+from facegear.compare.judge import Comparison, Verdict
 from facegear.compare.quantities import CURVES, Curve
 from facegear.io import tables
 from facegear.io.atomic import atomic_path
@@ -15,8 +15,8 @@ from facegear.plots.compare import curves_compared
 from facegear.plots.style import save
 from facegear.report.page import Chapter, Picture, Table, render
 
-SHOWN = 200
-"""Most rows of what moved that the page and the terminal list, the largest changes first."""
+SHOWN = 8
+"""Most rows of one table that the page lists."""
 
 NAMED = 3
 """Most tables that are named behind one cause."""
@@ -40,12 +40,12 @@ def write_page(path: Path, comparison: Comparison, old: Path, new: Path) -> None
                 "One line for each difference behind a table.",
                 tables=[Table("Config, code and versions", causes_table(comparison, old, new))],
             ),
+            Chapter("Curves over each other", "The series of each table that moved most.", pictures=pictures),
             Chapter(
                 "What moved",
-                f"The {SHOWN} largest changes, relative to the largest number of their column.",
+                f"The {SHOWN} largest changes of each table, relative to the largest number of their column.",
                 tables=[Table("Changes", largest(comparison))],
             ),
-            Chapter("Curves over each other", "The series of each table that moved most.", pictures=pictures),
         ]
         text = render("Two results compared", f"Old: {old}. New: {new}.", chapters)
     with atomic_path(path) as temporary:
@@ -66,12 +66,15 @@ _HARMLESS = (Verdict.WITHIN_ERROR, Verdict.IRREGULAR)
 
 
 def largest(comparison: Comparison) -> pd.DataFrame:
-    """The largest changes, those beyond their error first."""
+    """The largest changes of every table, those beyond their error first."""
     rows = comparison.rows.assign(harmless=comparison.rows["verdict"].isin(_HARMLESS))
-    order = rows.sort_values(
-        ["harmless", "relative_change"], ascending=[True, False], na_position="first", kind="stable"
+    order = rows.sort_values(["harmless", "relative_change"], ascending=[True, False], kind="stable")
+    return (
+        order.groupby("file", sort=True)
+        .head(SHOWN)
+        .sort_values("file", kind="stable")
+        .drop(columns="harmless")
     )
-    return order.drop(columns="harmless").head(SHOWN)
 
 
 def causes_table(comparison: Comparison, old: Path, new: Path) -> pd.DataFrame:
@@ -111,16 +114,16 @@ def _pictures(comparison: Comparison, old: Path, new: Path, folder: Path) -> Ite
 
 
 def _worst_series(name: str, curve: Curve, old: Path, new: Path) -> tuple[pd.DataFrame, pd.DataFrame, str]:
-    """Rows of the series that moved most, relative to the largest of its quantity, in both folders."""
+    """Rows of the series that moved most, in both folders."""
     before, after = (tables.read(folder / name) for folder in (old, new))
+    if curve.quantity:
+        before, after = (frame[frame["quantity"] == curve.quantity] for frame in (before, after))
     if not curve.series:
         return before, after, ""
     keys = [*curve.series, curve.x]
     both = before[[*keys, curve.y]].merge(after[[*keys, curve.y]], on=keys, suffixes=("_old", "_new"))
-    quantity = declared(name).quantity or curve.series[0]
-    scale = both.groupby(quantity)[f"{curve.y}_old"].transform(lambda column: column.abs().max())
-    change = (both[f"{curve.y}_new"] - both[f"{curve.y}_old"]).abs() / scale.where(scale > 0.0)
-    worst = both.loc[change.fillna(0.0).idxmax(), list(curve.series)] if len(both) else before.iloc[0]
+    change = (both[f"{curve.y}_new"] - both[f"{curve.y}_old"]).abs().fillna(0.0)
+    worst = both.loc[change.idxmax(), list(curve.series)] if len(both) else before.iloc[0]
     picked = [
         frame[(frame[list(curve.series)] == worst[list(curve.series)].to_numpy()).all(axis=1)]
         for frame in (before, after)

@@ -89,18 +89,22 @@ TABLES: Mapping[str, Table] = {
 
 @dataclass(frozen=True)
 class Curve:
-    """A table that is drawn: `y` over `x`, one line for each value of `series`."""
+    """A table that is drawn: `y` over `x`, one line for each value of `series`.
+
+    `quantity`: the rows that are drawn of a table with one quantity a row.
+    """
 
     x: str
     y: str
     series: tuple[str, ...] = ()
+    quantity: str | None = None
 
 
 CURVES: Mapping[str, Curve] = {
     "stiffness/tvms.csv": Curve("position", "k_n_per_m"),
     "contact/by_torque.csv": Curve("torque_n_m", "k_average_mean_n_per_m"),
     "dynamics/response.csv": Curve("mesh_cycle", "deflection_um", ("mesh",)),
-    "dynamics/sweep.csv": Curve("speed_rpm", "value", ("direction", "quantity", "body_or_mesh")),
+    "dynamics/sweep.csv": Curve("speed_rpm", "value", ("direction", "body_or_mesh"), "deflection_ac_rms_um"),
     "load_sharing/nominal.csv": Curve("cycle_fraction", "coefficient", ("group",)),
     "load_sharing/speed_range.csv": Curve("speed_rpm", "mean", ("group",)),
 }
