@@ -87,7 +87,15 @@ NEEDS: dict[str, Slice] = {
     },
 }
 
-GAPS_ONLY = {"compliance": {"tooth_pair": GAPS}}
+LOADING = (
+    "torques_n_m",
+    "positions_per_pitch",
+    "fillet_contact",
+    "neighbour_coupling",
+    "edge_contact",
+)
+"""Keys of section contact that say how the bodies are loaded, and nothing of how they give way."""
+DONE_WITHOUT = {"compliance": {"tooth_pair": GAPS, "contact": LOADING}}
 """Keys inside an argument that a stage does without."""
 
 UPSTREAM = {
@@ -127,7 +135,7 @@ def stage_needs(rule: str, values: Mapping[str, Any]) -> dict[str, Any]:
         else {key.rsplit(".", 1)[-1]: _value(values, key) for key in keys}
         for name, keys in NEEDS[rule].items()
     }
-    for name, keys in GAPS_ONLY.get(rule, {}).items():
+    for name, keys in DONE_WITHOUT.get(rule, {}).items():
         for key in keys:
             found[name] = without(found[name], key)
     if "pair" in found and not many_contacts(rule, values):

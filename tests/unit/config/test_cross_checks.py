@@ -101,7 +101,8 @@ def test_a_mesh_that_cannot_fit_into_memory_is_refused_with_an_estimate(profile)
 def test_the_estimate_of_memory_agrees_with_what_was_measured_within_a_fifth(resolution, cuts, measured_gb):
     """The measured ones are those of docs/contact.md, the paper's pair."""
     refinement = dict(zip(("profile", "width", "depth"), cuts, strict=True))
-    config = parse(Config, changed(QUICK, mesh__resolution=resolution, contact__refinement=refinement))
+    values = changed(QUICK, mesh__resolution=resolution, contact__refinement=refinement)
+    config = parse(Config, changed(values, contact__torques_n_m=[600, 1000]))
     design = pair_design(config.tooth_pair)
     sizes = mesh_sizes(config.mesh, design.module)
     estimate = estimated_memory(design, sizes, contact_plan(config.contact))
