@@ -72,7 +72,7 @@ def test_a_torque_is_resolved_or_refused_whatever_others_stand_beside_it(torques
 
 
 def test_a_torque_that_is_too_small_for_the_mesh_is_named_with_the_smallest_that_is_not():
-    with pytest.raises(ConfigError, match=r"at 40 N m .* or contact\.torques_n_m at least ") as refused:
+    with pytest.raises(ConfigError, match=r"at 40 N m.* or contact\.torques_n_m at least ") as refused:
         sizes = MeshSizes(1.5e-3, 6e-3, 4e-3)
         check_resolution(DESIGN, (STEEL, STEEL), sizes, replace(plan(), torques=(40.0, 1000.0)))
     enough = float(refused.value.allowed.split("at least ")[1])
