@@ -25,7 +25,11 @@ class RunoutSection(Section):
 
     eccentricity_um: float = Field(ge=0, le=1e4, description="half of the dial gauge's reading")
     phase_deg: float = Field(
-        0.0, ge=-360, le=360, description="high point at the start, from the upper gear or the first pinion"
+        0.0,
+        ge=-360,
+        le=360,
+        description="high point at the start, as the body turns: of a pinion from the upper gear, of a face gear "
+        "from the first pinion",
     )
 
 

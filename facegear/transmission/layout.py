@@ -191,6 +191,18 @@ class Layout:
         """Distribution angles, shape (pinions,), rad."""
         return 2.0 * np.pi * np.array([pinion.pitches for pinion in self.pinions]) / self.gear_teeth
 
+    @property
+    def pitches_from_first(self) -> NDArray[np.float64]:
+        """Distribution angles counted from the first pinion, shape (pinions,), pitches of the face gear."""
+        return np.array([pinion.pitches - self.pinions[0].pitches for pinion in self.pinions])
+
+    def half_turned(self, gear: int) -> bool:
+        """Whether a gear meets a pinion half a turn of it away from the reference mesh.
+
+        The reference is the first pinion's mesh with the upper gear, or with the only gear.
+        """
+        return len(self.gears) > 1 and self.gears[gear].side is Side.LOWER
+
     def mesh_index(self, pinion: int, side: Side) -> int:
         """Position of a mesh in `meshes`. Raises KeyError if the layout has no such gear."""
         sides = [gear.side for gear in self.gears]

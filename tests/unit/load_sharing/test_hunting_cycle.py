@@ -59,10 +59,10 @@ def test_the_hunting_cycle_balances_every_torque_to_rounding():
 
 
 def test_a_pitch_curve_that_is_a_runout_gives_the_runouts_shares():
-    """A gear's teeth displaced by e cos(angle) along the pitch circle are an eccentric gear."""
+    """A gear's teeth displaced by e sin(angle) along the pitch circle are an eccentric gear."""
     eccentric = hunting_cycle(machine_with(gear_runout=(Runout(), Runout(15e-6, 0.0))), 4)
     teeth = np.arange(143)
-    curve = 15e-6 * np.cos(2.0 * np.pi * teeth / 143)
+    curve = 15e-6 * np.sin(2.0 * np.pi * teeth / 143)
     pitched = hunting_cycle(machine_with(gear_pitch={1: curve}), 4)
     whole = slice(None, None, 4)
     np.testing.assert_allclose(
