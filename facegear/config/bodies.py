@@ -28,8 +28,8 @@ class RunoutSection(Section):
         0.0,
         ge=-360,
         le=360,
-        description="high point at the start, as the body turns: of a pinion from the upper gear, of a face gear "
-        "from the first pinion",
+        description="high point at the start, as the body turns: a pinion's from the upper gear, a face "
+        "gear's from the first pinion",
     )
 
 
