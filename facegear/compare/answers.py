@@ -66,3 +66,10 @@ def _short(manifest: Path) -> str:
     record = documents.read(manifest)
     kept = ("rule", "versions", "params", "code", "rebuild", "inputs", "files")
     return json.dumps({key: record[key] for key in kept if key in record}, sort_keys=True)
+
+
+if __name__ == "__main__":
+    import sys
+
+    for case in sys.argv[2:]:
+        store(Path(case), Path(__file__).parent / "stored" / sys.argv[1] / f"{Path(case).name}.zip")
