@@ -19,6 +19,7 @@ from facegear.errors import FacegearError
 from facegear.io.run_lock import hold
 from facegear.paper.config.reproduction import design_cases, read_reproduction
 from facegear.provenance.fingerprint import fingerprint, recall, remember
+from facegear.provenance.rebuild import rebuild_command
 
 if hasattr(PersistenceBase, "_serialize_param_builtin"):
     # Snakemake imports pandas, 0.5 s of every start, only to ask whether a parameter is a table; none is here.
@@ -44,10 +45,11 @@ except FacegearError as error:
     stop(str(error))
 
 CASE = CONFIG["case"]
-config["rebuild_command"] = (
-    "snakemake --cores 2"
-    + "".join(f" --configfile {os.path.relpath(file)}" for file in workflow.configfiles)
-    + " --force"
+config["rebuild_command"] = rebuild_command(
+    workflow.main_snakefile,
+    workflow.configfiles,
+    workflow.config_settings.config,
+    workflow.overwrite_workdir,
 )
 
 

@@ -13,9 +13,6 @@ rule report:
         html="results/{case}/report.html",
         manifest="results/{case}/report.provenance.json",
     params:
-        values=sections(
-            *("case", "tooth_pair", "transmission", "mesh", "contact"),
-            *("mesh_stiffness", "dynamics", "studies", "reproduction"),
-        ),
+        values=report_values,
     script:
         "../scripts/report.py"

@@ -42,7 +42,8 @@ def report_tables(wildcards):
     tables = [rules.stiffness.output.harmonics]
     if CASES[wildcards.case]["transmission"]:
         tables += [rules.ratings.output[name] for name in ("ratings", "bodies", "meshes")]
-        tables += [rules.modal.output.frequencies, rules.dynamics_sweep.output.jumps]
+        tables += [rules.modal.output.frequencies]
+        tables += [rules.dynamics_sweep.output[name] for name in ("jumps", "sweep")]
         tables += [rules.dynamics_response.output.bearings]
     tables += [rules.load_sharing_summary.output.summary] if SHARING_KINDS else []
     tables += [rules.following.output.groups] if rules.following in stages(wildcards.case) else []
@@ -62,6 +63,12 @@ def report_tables(wildcards):
         tables += [rules.stress_over_speed.output.stress_over_speed]
     tables += [rules.scorecard.output.csv] if REPRODUCTION else []
     return [path.format(case=wildcards.case) for path in tables]
+
+
+def report_values(wildcards):
+    """All plain values of a case; `reproduction` says whether it is the machine of a publication."""
+    case = wildcards.case
+    return {**CASES[case], "reproduction": case == CASE and REPRODUCTION is not None}
 
 
 def report_pair(wildcards):
