@@ -10,6 +10,9 @@ from snakemake.persistence import PersistenceBase
 ROOT = Path(workflow.basedir)
 sys.path.insert(0, str(ROOT))
 os.environ.update(PYTHONPATH=str(ROOT), MPLBACKEND="Agg")
+for name, module in list(sys.modules.items()):  # the profile may have imported a package installed elsewhere
+    if name.partition(".")[0] == "facegear" and not Path(module.__file__).is_relative_to(ROOT):
+        del sys.modules[name]
 
 from facegear.config.cases import expand_cases, shared_sources
 from facegear.config.load import load_values
