@@ -6,7 +6,7 @@ TOOLS := $(VENV)/.tools
 CLUSTER := $(VENV)/.cluster
 CORES ?= 2
 
-.PHONY: all env tools check test lint docs release audit ci notebooks benchmarks peers identify lock clean
+.PHONY: all env tools check test random lint docs release audit ci notebooks benchmarks peers identify lock clean
 
 all: check
 	$(BIN)/snakemake --cores $(CORES)
@@ -48,6 +48,10 @@ check: env
 
 test: check tools
 	$(BIN)/python -m pytest -n $(CORES) --dist loadgroup
+
+# Properties alone, with fresh random examples each time: what one of them finds becomes a named case of its test.
+random: check tools
+	$(BIN)/python -m pytest -n $(CORES) --dist loadgroup -m hypothesis --hypothesis-profile=random
 
 lint: tools
 	$(BIN)/ruff check .

@@ -58,7 +58,8 @@ def parting_time(packed: Packed, work: Work, m: int, length: float, shortest: fl
         work.polynomial[i] = power * _push(packed, work, m, i + first) if inside else 0.0
         power *= length
     root = first_root(work.polynomial, work.order - 1, work.conversion_less, work.subdivision)
-    if first > 0 and root * length < shortest:
+    # Flanks that just met or parted: what follows at once was decided by the rates already.
+    if (first > 0 or work.at_edge[m] != 0) and root * length < shortest:
         root = root_after(work.polynomial, work.order - 1, root, work.conversion_less, work.subdivision)
     return root
 
