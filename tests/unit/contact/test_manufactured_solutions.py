@@ -1,7 +1,7 @@
 """Known displacement fields of an elastic body: the error of each kind of element falls with its order.
 
-The field is the gradient of a harmonic function: u = grad phi, div u = 0, and no body force whatever the elastic
-constants. It is not a polynomial, so no element holds it exactly. Boundary nodes are given the field;
+The field is the gradient of a harmonic function: u = grad phi, div u = 0, and no body force whatever the
+elastic constants. It is not a polynomial, so no element holds it exactly. Boundary nodes are given the field;
 the nodes inside follow from the stiffness alone. The body is bent, so that its elements are curved.
 """
 
