@@ -4,10 +4,11 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
+from importlib.util import find_spec
 from pathlib import Path
 
 from facegear.config.load import load_values, read_layers
-from facegear.errors import FacegearError
+from facegear.errors import EXTRAS, FacegearError, MissingExtra
 
 ROOT = Path(__file__).parents[1]
 
@@ -67,6 +68,10 @@ LIMITS = {
 def _run(given: argparse.Namespace) -> int:
     """Hand over to Snakemake, whose own reader of configs is not met by a file that cannot be read."""
     read_layers(given.config)
+    if find_spec("snakemake") is None:
+        raise MissingExtra("snakemake", EXTRAS["snakemake"])
+    if not (ROOT / "Snakefile").is_file():
+        raise FacegearError("the workflow is not part of an installed package: run this from its repository")
     command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")]
     command += ["--cores", given.cores, "--directory", given.directory, "--configfile", str(given.config)]
     command += ["--verbose"] * given.verbose + ["--dry-run"] * given.dry_run

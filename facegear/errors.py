@@ -9,11 +9,16 @@ class FacegearError(Exception):
     """Base of all errors whose text is meant for the user."""
 
 
+def must_be(allowed: str) -> str:
+    """What is allowed as a demand."""
+    return allowed if "must " in allowed else f"must be {allowed}"
+
+
 class ConfigError(FacegearError):
-    """A config value that cannot be used: names the key, the value and what is allowed."""
+    """A config value that cannot be used: names the key, the value and what it must be."""
 
     def __init__(self, key: str, value: object, allowed: str) -> None:
-        super().__init__(f"{key} = {value!r}: {allowed}")
+        super().__init__(f"{key} = {value!r}: {must_be(allowed)}")
         self.key, self.value, self.allowed = key, value, allowed
 
 
@@ -81,5 +86,5 @@ def extras_named() -> Iterator[None]:
 def chosen(name: str, allowed: Sequence[str], what: str) -> str:
     """`name` if it is one of `allowed`; raises FacegearError with one line otherwise."""
     if name not in allowed:
-        raise FacegearError(f"{what} = {name!r}: one of {', '.join(allowed)}")
+        raise FacegearError(f"{what} = {name!r}: must be one of {', '.join(allowed)}")
     return name

@@ -128,7 +128,7 @@ def stage_needs(rule: str, values: Mapping[str, Any]) -> dict[str, Any]:
     Raises ConfigError for modes, dynamics and load sharing of a config of tooth contact alone.
     """
     if "transmission" in NEEDS[rule] and values["transmission"] is None:
-        raise ConfigError("transmission", None, "required for modes, dynamics and load sharing")
+        raise ConfigError("transmission", None, "given for modes, dynamics and load sharing")
     found = {
         name: _value(values, keys)
         if isinstance(keys, str)
@@ -141,6 +141,23 @@ def stage_needs(rule: str, values: Mapping[str, Any]) -> dict[str, Any]:
     if "pair" in found and not many_contacts(rule, values):
         found["pair"] = None
     return found
+
+
+OWN_SECTION = {
+    **dict.fromkeys(("branches_starts", "branches", "branches_loci"), "branches"),
+    **dict.fromkeys(("tolerances_chunk", "tolerances_map", "tolerances"), "tolerances"),
+    **dict.fromkeys(("search_island", "search"), "search"),
+    "rating": "strength",
+    "duty_loads": "strength",
+}
+"""Optional section of the config without which there is nothing for a stage to do."""
+
+
+def require_sections(rule: str, values: Mapping[str, Any]) -> None:
+    """Raises ConfigError where a config lacks the section that a rule is about."""
+    section = OWN_SECTION.get(rule)
+    if section is not None and values[section] is None:
+        raise ConfigError(section, None, f"given, as rule {rule} needs it")
 
 
 def many_contacts(rule: str, values: Mapping[str, Any]) -> bool:

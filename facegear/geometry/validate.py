@@ -85,6 +85,10 @@ def _check_pinion(design: PairDesign) -> None:
 def _check_relief(design: PairDesign) -> None:
     part = design.pinion
     flank = design.pinion_base_radius * (design.pinion_tip_roll - pinion.junction_roll(design))
+    crowning, half = part.lead_crowning, 0.5 * (design.face_gear.outer_radius - design.face_gear.inner_radius)
+    if crowning.amount > 0.0 and crowning.start >= half:
+        allowed = f"less than {1e3 * half:.3f}, half of the gear's face: the crowning would begin beyond it"
+        _refuse("pinion.lead_crowning.start_mm", 1e3 * crowning.start, allowed)
     for name, relief, room in (
         ("tip_relief", part.tip_relief, flank),
         ("root_relief", part.root_relief, flank),

@@ -113,7 +113,7 @@ class Layout:
             )
         names = [pinion.name for pinion in self.pinions]
         if len(set(names)) != len(names):
-            raise ConfigError("transmission.pinions", names, "each pinion needs a name of its own")
+            raise ConfigError("transmission.pinions", names, "names that differ from pinion to pinion")
         conjugate = self.pinion_radius * self.gear_teeth / self.pinion_teeth
         if self.is_geometric and abs(self.gear_radius - conjugate) > SAME_ARM * conjugate:
             allowed = f"{conjugate:.9g} m, as the tooth numbers say, where mesh_kinematics is geometric"

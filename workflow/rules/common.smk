@@ -16,7 +16,13 @@ for name, module in list(sys.modules.items()):  # the profile may have imported 
 
 from facegear.config.cases import expand_cases, shared_sources
 from facegear.config.load import load_values
-from facegear.config.needs import NEEDS, loads_from_machine, many_contacts, stage_needs
+from facegear.config.needs import (
+    NEEDS,
+    loads_from_machine,
+    many_contacts,
+    require_sections,
+    stage_needs,
+)
 from facegear.config.notes import notes, turns
 from facegear.errors import FacegearError
 from facegear.io.run_lock import hold
@@ -120,14 +126,24 @@ def values_of(*keys, **renamed):
     return {name: value_of(key) for name, key in {**dict(zip(keys, keys)), **renamed}.items()}
 
 
+def asked_values(rule, wildcards):
+    """All plain values of a case's config; ends the run where it lacks the section that a rule is about."""
+    values = CASES[wildcards.case]
+    try:
+        require_sections(rule, values)
+    except FacegearError as error:
+        stop(f"{wildcards.case}: {error}")
+    return values
+
+
 def needs(rule):
     """Function of the wildcards giving all that a stage takes from a case's config."""
 
     def values(wildcards):
         try:
-            return stage_needs(rule, CASES[wildcards.case])
+            return stage_needs(rule, asked_values(rule, wildcards))
         except FacegearError as error:
-            stop(f"{error} of {wildcards.case}")
+            stop(f"{wildcards.case}: {error}")
 
     return values
 

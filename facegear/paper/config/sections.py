@@ -93,7 +93,7 @@ class Identify(Section):
     def _distinct(self) -> "Identify":
         labels = [design.label for design in self.designs]
         if len(set(labels)) < len(labels):
-            refuse("designs", labels, "each design needs its own label")
+            refuse("designs", labels, "designs whose labels differ")
         return self
 
 

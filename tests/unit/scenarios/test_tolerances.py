@@ -157,7 +157,7 @@ def test_the_loosest_tolerances_of_a_linear_machine_are_those_of_the_closed_form
     assert found.percentile.value <= limit
     with pytest.raises(FacegearError, match="without any deviation"):
         gearbox.loosest_tolerances(name, 1.0, samples=1)
-    with pytest.raises(FacegearError, match="quantity = 'k': one of"):
+    with pytest.raises(FacegearError, match="quantity = 'k': must be one of"):
         gearbox.loosest_tolerances("k", limit, samples=1)
 
 

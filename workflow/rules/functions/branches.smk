@@ -1,6 +1,6 @@
 def branch_starts(wildcards):
     """Files of the random starts of a case, one for each speed."""
-    explore = CASES[wildcards.case]["branches"]["explore"]
+    explore = asked_values("branches", wildcards)["branches"]["explore"]
     return expand(
         rules.branches_starts.output.found,
         case=wildcards.case,
