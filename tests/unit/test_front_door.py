@@ -178,3 +178,17 @@ def test_given_harmonics_need_no_teeth(tmp_path):
         facegear.load(config)
     with pytest.raises(FacegearError, match="geometry and contact need the bodies"):
         stored.geometry()
+
+
+def test_values_of_a_gearbox_and_of_its_results_are_copies():
+    """Setting a number inside them changed later answers, of the example until Python ended."""
+    gearbox = facegear.example().with_values({"mesh_stiffness.mean_n_per_m": 4.2e8})
+    before = gearbox.modes().table()["frequency_hz"].to_list()
+    for values in (gearbox.values, gearbox.modes().values, facegear.example().values):
+        values["transmission"]["pinion"]["mass_kg"] = 77.0
+        values["mesh_stiffness"]["mean_n_per_m"] = 1e9
+        values["transmission"]["pinions"].clear()
+    assert gearbox.values["transmission"]["pinion"]["mass_kg"] == 1.199
+    assert facegear.example().values["transmission"]["pinions"]
+    again = gearbox.with_values({"dynamics.speed_rpm": 7000}).modes().table()["frequency_hz"].to_list()
+    assert gearbox.modes().table()["frequency_hz"].to_list() == again == before
