@@ -1,5 +1,6 @@
 """Errors a user may meet. Each one's text is one clear line."""
 
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,7 +12,7 @@ class FacegearError(Exception):
 
 def must_be(allowed: str) -> str:
     """What is allowed as a demand."""
-    return allowed if "must " in allowed else f"must be {allowed}"
+    return allowed if re.search(r"(^|, )must be ", allowed) else f"must be {allowed}"
 
 
 class ConfigError(FacegearError):

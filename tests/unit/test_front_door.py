@@ -47,7 +47,7 @@ def test_modes_need_no_mesh_and_no_compiler():
         (lambda g: g.response(-1), "response: dynamics.speed_rpm = -1: must be greater than"),
         (lambda g: g.sweep(2000, 1000), "dynamics.sweep.to_rpm = 1000.0: must be more than from_rpm = 2000"),
         (lambda g: g.branches(2000, 1000), "branches.to_rpm = 1000.0: must be more than from_rpm = 2000"),
-        (lambda g: g.branch_loci(["mass"]), 'parameters[0] = "mass": should be'),
+        (lambda g: g.branch_loci(["mass"]), 'parameters[0] = "mass": must be'),
         (lambda g: g.load_sharing(float("nan")), "dynamics.speed_rpm = NaN"),
         (lambda g: g.with_values({"transmission.backlash": 1}), "with_values: transmission.backlash = 1"),
         (lambda g: g.with_values({"case": "other"}), "case = 'other': must be a dotted key"),
