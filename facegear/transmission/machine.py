@@ -124,5 +124,7 @@ def require_balance(layout: Layout, torques: NDArray[np.float64]) -> None:
     )
     excess = float(tangential.sum())
     if abs(excess) > TORQUE_BALANCE * np.abs(tangential).sum():
-        allowed = "0, as torques must balance: (sum of pinion torques) / r_pinion + (sum of gear torques) / r_gear = 0"
+        allowed = (
+            "0, as torques must balance: sum of pinion torques / r_pinion + sum of gear torques / r_gear"
+        )
         raise ConfigError("transmission.torque", f"{excess:.6g} N in excess at the mesh", allowed)
