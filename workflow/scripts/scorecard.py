@@ -31,7 +31,8 @@ with stage(snakemake) as run:
     stored = stored_evidence(claims.claims, snakemake.params.case, files.sets, files.runs, files.random)
     frame = scorecard(claims.claims, own, stored.runs, stored.rates)
     tables.write(snakemake.output.csv, frame)
-    page = render(frame, claims.source, inputs_in_words(values), stored.sets, stored.chance)
+    words = inputs_in_words(values)
+    page = render(frame, claims.source, words, stored.sets, stored.starts, stored.chance)
     with atomic_path(snakemake.output.html) as temporary:
         temporary.write_text(page, encoding="utf-8")
     run.summary(", ".join(f"{number} rows {name}" for name, number in counts(frame).items()))

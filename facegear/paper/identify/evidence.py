@@ -13,6 +13,7 @@ from facegear.paper.identify.sets import stored_sets
 from facegear.paper.scorecard.base_rates import RATE_COLUMNS, Totals, base_rates, totals
 from facegear.paper.scorecard.claims import Claim
 from facegear.paper.scorecard.rows import RUN_COLUMNS
+from facegear.paper.scorecard.starts import START_COLUMNS, start_table
 
 File = str | Path | Sequence[str]
 """A file, or nothing where there is none."""
@@ -20,12 +21,16 @@ File = str | Path | Sequence[str]
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """Sets that fit, runs made with the config's settings, rates of claims and totals of random inputs."""
+    """Sets that fit, runs made with the config's settings, rates of claims and totals of random inputs.
+
+    `starts`: how many claims each set holds from rest and from every start.
+    """
 
     sets: pd.DataFrame
     runs: pd.DataFrame
     rates: pd.DataFrame
     chance: Totals | None
+    starts: pd.DataFrame
 
 
 def stored_evidence(
@@ -34,12 +39,13 @@ def stored_evidence(
     """Read what is stored; `case` holds the full plain values of the config. Raises CorruptFile."""
     fitting = pd.read_csv(str(sets)) if sets else pd.DataFrame()
     same, rates = pd.DataFrame(columns=RUN_COLUMNS), pd.DataFrame(columns=RATE_COLUMNS)
-    chance = None
+    chance, starts = None, pd.DataFrame(columns=START_COLUMNS)
     if runs:
         others = stored_sets(str(sets)) if sets else {}
-        same = runs_of_config(tables.read(str(runs), STORED_COLUMNS[:4]), case, others)
+        stored = tables.read(str(runs), STORED_COLUMNS[:4])
+        same, starts = runs_of_config(stored, case, others), start_table(stored, claims)
     if random:
         samples = tables.read(str(random))
         judged = [claim for claim in claims if claim.id in samples.columns]
         rates, chance = base_rates(samples, judged), totals(samples, judged)
-    return Evidence(fitting, same, rates, chance)
+    return Evidence(fitting, same, rates, chance, starts)

@@ -11,7 +11,7 @@ from facegear.paper.identify.sets import set_cases
 from facegear.paper.scorecard.rows import OWN, RUN_COLUMNS
 
 HOLDS, VALUE = "holds", "value"
-STORED_COLUMNS = (*RUN_COLUMNS, "settings")
+STORED_COLUMNS = (*RUN_COLUMNS, "at_rest", "settings")
 
 
 def run_columns(ids: Sequence[str]) -> list[str]:
@@ -40,14 +40,15 @@ def one_run(
 
 
 def run_table(name: str, runs: pd.DataFrame, ids: Sequence[str], settings: str) -> pd.DataFrame:
-    """One row a claim of a set: runs that judged it, those that hold it, range of its number; `settings` is
-    their key.
+    """One row a claim of a set: runs that judged it, those that hold it, range of its number, and whether the
+    first run holds it, which begins at rest with the inputs as given; `settings` is their key.
     """
     rows = []
     for claim in ids:
         values = runs[f"{claim} {VALUE}"]
         holds = runs[f"{claim} {HOLDS}"].dropna()
-        rows.append((name, claim, len(holds), int(holds.sum()), values.min(), values.max(), settings))
+        found = (len(holds), int(holds.sum()), values.min(), values.max(), bool(holds.iloc[0]))
+        rows.append((name, claim, *found, settings))
     return pd.DataFrame(rows, columns=list(STORED_COLUMNS))
 
 

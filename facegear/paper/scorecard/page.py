@@ -19,11 +19,17 @@ def counts(frame: pd.DataFrame) -> dict[str, int]:
 
 
 def render(
-    frame: pd.DataFrame, source: str, inputs: list[str], sets: pd.DataFrame, chance: Totals | None = None
+    frame: pd.DataFrame,
+    source: str,
+    inputs: list[str],
+    sets: pd.DataFrame,
+    starts: pd.DataFrame,
+    chance: Totals | None = None,
 ) -> str:
     """The page; `inputs` are lines naming the inputs the paper does not disclose, `sets` those that fit.
 
-    `chance`: what random inputs hold.
+    `starts`: what each set holds from rest and from every start (START_COLUMNS); `chance`: what random inputs
+    hold.
     """
     held_out = frame[(frame["undisclosed"] != "") & ~frame["fitted"]]
     return pages.render(
@@ -36,6 +42,8 @@ def render(
         chance=None if chance is None else against_chance(frame, chance),
         inputs=inputs,
         parts=[(where, rows.to_dict("records")) for where, rows in frame.groupby("where", sort=False)],
+        starts_header=[str(name).replace("_", " ") for name in starts.columns],
+        starts_rows=[[_cell(value) for value in row] for row in starts.itertuples(index=False)],
         sets_header=[str(name).replace("_", " ") for name in sets.columns],
         sets_rows=[[_cell(value) for value in row] for row in sets.itertuples(index=False)],
         cell=_cell,

@@ -61,6 +61,7 @@ def test_run_table_counts_the_runs_that_judged_a_claim_and_those_that_hold_it():
     assert table["held"].tolist() == [1, 0]
     assert table["runs"].tolist() == [2, 1]
     assert (table.loc["one", "low"], table.loc["one", "high"]) == (1.7, 1.9)
+    assert table["at_rest"].tolist() == [True, False]
 
 
 class Counted(ClaimJudge):

@@ -13,6 +13,7 @@ from facegear.paper.scorecard.criteria import CRITERIA
 from facegear.paper.scorecard.outcome import Outcome
 from facegear.paper.scorecard.page import counts, render
 from facegear.paper.scorecard.rows import OWN, RUN_COLUMNS, Verdict, outcome_table, scorecard
+from facegear.paper.scorecard.starts import START_COLUMNS, start_table
 
 CLAIMS = Path(__file__).parents[4] / "config" / "claims" / "paper.yaml"
 NUMBER = Claim(
@@ -32,6 +33,7 @@ def frequencies(value):
     return {"frequencies": pd.DataFrame({"order": [1, 2], "frequency_hz": [0.0, value]})}
 
 
+NO_STARTS = pd.DataFrame(columns=START_COLUMNS)
 NO_RATES = pd.DataFrame(columns=RATE_COLUMNS)
 
 
@@ -144,7 +146,7 @@ def test_claims_file_with_a_misspelt_key_is_refused(tmp_path):
 def test_page_shows_every_row_and_escapes_text():
     claim = NUMBER.model_copy(update={"claim": "a < b"})
     frame = scorecard([claim], outcome_table([claim], frequencies(103.0)), runs(), NO_RATES)
-    page = render(frame, "source", ["torque per engine 1 N m"], pd.DataFrame())
+    page = render(frame, "source", ["torque per engine 1 N m"], pd.DataFrame(), NO_STARTS)
     assert "a &lt; b" in page
     assert "differs" in page
     assert counts(frame)[Verdict.DIFFERS] == 1
@@ -154,10 +156,10 @@ def test_page_shows_what_random_inputs_hold_beside_each_verdict_and_against_the_
     rates = pd.DataFrame([("period", 64, 40, 0.625, 0.5, 0.733)], columns=RATE_COLUMNS)
     frame = scorecard([NUMBER], outcome_table([NUMBER], frequencies(100.5)), runs(), rates)
     for held, told in (([1.0] * 64, "no better than chance; 100 %"), ([0.0] * 64, "than 95 % of random")):
-        page = render(frame, "source", [], pd.DataFrame(), Totals(1, np.array(held)))
+        page = render(frame, "source", [], pd.DataFrame(), NO_STARTS, Totals(1, np.array(held)))
         assert "<td>62 % (50 … 73)</td>" in page
         assert told.split(";")[0] in page
-    assert "random plausible" not in render(frame, "source", [], pd.DataFrame())
+    assert "random plausible" not in render(frame, "source", [], pd.DataFrame(), NO_STARTS)
 
 
 def test_repeated_numbers_and_remarks_on_other_studies_are_left_out_of_totals():
@@ -186,3 +188,29 @@ def test_the_pages_count_the_claims_that_are_judged():
     )
     assert int(rows) == len(claims)
     assert int(dynamic) - 2 == sum(claim.dynamic for claim in claims)
+
+
+def test_page_says_of_each_set_what_holds_from_rest_and_what_from_every_start():
+    """Sets were compared by their motion from rest alone, though others coexist with it."""
+    again = NUMBER.model_copy(update={"id": "again", "same_as": "period"})
+    other = NUMBER.model_copy(update={"id": "other"})
+    nan = float("nan")
+    stored = pd.DataFrame(
+        [
+            (OWN, "period", 20, 20, 99.5, 100.5, True),
+            (OWN, "other", 20, 5, 99.5, 140.0, True),
+            (OWN, "again", 20, 20, 99.5, 100.5, True),
+            ("a", "period", 20, 15, 99.5, 120.0, False),
+            ("a", "other", 20, 0, nan, nan, False),
+        ],
+        columns=[*RUN_COLUMNS, "at_rest"],
+    )
+    found = start_table(stored, [NUMBER, again, other])
+    assert found.to_dict("records") == [
+        dict(zip(START_COLUMNS, (OWN, 2, 2, 1, 2, 0), strict=True)),
+        dict(zip(START_COLUMNS, ("a", 2, 0, 0, 1, 1), strict=True)),
+    ]
+    frame = scorecard([NUMBER], outcome_table([NUMBER], frequencies(100.5)), runs(), NO_RATES)
+    page = render(frame, "source", [], pd.DataFrame(), found)
+    assert "From rest and from every start" in page and "<td>a</td><td>2</td><td>0</td>" in page
+    assert "From rest and from every start" not in render(frame, "source", [], pd.DataFrame(), NO_STARTS)
