@@ -56,6 +56,7 @@ TABLES: Mapping[str, Table] = {
     "machine/bodies.csv": Table(("body",), errors={"": ROUNDED}),
     "machine/meshes.csv": Table(("mesh",), errors={"": ROUNDED}),
     "modal/frequencies.csv": Table(("order",), errors={"frequency": ROUNDED}, motion=()),
+    "modal/contacts.csv": Table(("contact",), errors={"force": ROUNDED, "stiffness": 3e-3}, motion=()),
     "contact/by_torque.csv": Table(("torque_n_m",), errors=CONTACT),
     "contact/ltca.csv": Table(("torque_n_m", "position"), errors=CONTACT),
     "stiffness/harmonics.csv": Table(

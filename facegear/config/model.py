@@ -27,6 +27,7 @@ from facegear.config.contact import Contact, contact_plan
 from facegear.config.dynamics import Dynamics
 from facegear.config.load_sharing import LoadSharing
 from facegear.config.mesh import Mesh, mesh_sizes
+from facegear.config.modal import Modal
 from facegear.config.search import Search
 from facegear.config.stiffness import MeshStiffness
 from facegear.config.strength import Strength
@@ -51,6 +52,7 @@ class Config(Section):
     transmission: Transmission | None = Field(
         None, description="null: geometry, contact and stiffness only; modes, dynamics, load sharing need it"
     )
+    modal: Modal = Modal()
     dynamics: Dynamics = Dynamics()
     branches: Branches | None = Field(None, description="continuation of periodic motions; null: not done")
     load_sharing: LoadSharing = LoadSharing()

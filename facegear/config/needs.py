@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from facegear.config.lumped_model import TEETH
+from facegear.config.modal import modes_need_contact
 from facegear.config.variants import GAPS, moves_pair
 from facegear.errors import ConfigError
 from facegear.load_sharing.quantity_names import of_contact
@@ -52,7 +53,12 @@ NEEDS: dict[str, Slice] = {
     "dynamic_root_stress": {**_PAIR, "transmission": "transmission"},
     "stress_over_speed": {**_MACHINE, **_PAIR},
     "stiffness": {"mesh_stiffness": "mesh_stiffness"},
-    "modal": {**_MACHINE, "mean_stiffness": "mesh_stiffness.mean_n_per_m"},
+    "modal": {
+        **_MACHINE,
+        "mean_stiffness": "mesh_stiffness.mean_n_per_m",
+        "source": "mesh_stiffness.source",
+        "definition": "modal.stiffness",
+    },
     "dynamics_response": {**_MACHINE, **_ACCURACY, "speed_rpm": "dynamics.speed_rpm"},
     "dynamics_sweep_chunk": {**_MACHINE, "sweep": "dynamics.sweep"},
     "dynamics_sweep": {**_MACHINE, "sweep": "dynamics.sweep"},
@@ -185,7 +191,7 @@ def stages_before(rule: str, values: Mapping[str, Any]) -> list[str]:
     stiffness = values["mesh_stiffness"]
     if rule == "stiffness" and stiffness["source"] == "harmonics":
         return [rule]
-    if rule == "modal" and stiffness["mean_n_per_m"] is None:
+    if rule == "modal" and modes_need_contact(values):
         return [rule, *stages_before("stiffness", values)]
     before = UPSTREAM.get(rule, ())
     if rule == "rating" and loads_from_machine(values):

@@ -64,6 +64,11 @@ OVER_SPEED = (
     "factor: largest mesh force over the largest at rest; stress and pressure with that force all through "
     "the passage; worst: the hardest of all motions known at that speed"
 )
+MODE_CONTACTS = (
+    "Contacts that the modes keep as the mean torques press them, and the mesh stiffness taken. Local: the "
+    "slope dF / d deflection that small vibrations feel; average: F / deflection; given: a number of the "
+    "config. What is undecided carries too little to tell it from rounding, and counts as open"
+)
 NEAR_RESONANCE = 0.3
 """Largest relative distance of a jump from the linear resonance that it may belong to."""
 JUMPS = (
@@ -152,7 +157,11 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
     if title == "Mesh stiffness" and "harmonics" in tables:
         return [Table("Harmonics kept", tables["harmonics"].iloc[:, :4], 5)]
     if title == "Modes" and "frequencies" in tables:
-        return [Table("Natural frequencies, equal ones in one row", mode_rows(tables["frequencies"]), 6)]
+        held = [Table(MODE_CONTACTS, tables["contacts"], 4)] if "contacts" in tables else []
+        return [
+            *held,
+            Table("Natural frequencies, equal ones in one row", mode_rows(tables["frequencies"]), 6),
+        ]
     if title.startswith("Nominal"):
         bearings = [Table(BEARINGS, tables["bearings"], 4)] if "bearings" in tables else []
         return [*bearings, *_jumps(tables)]

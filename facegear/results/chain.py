@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from facegear.config.modal import modes_need_contact
 from facegear.config.needs import loads_from_machine, stage_needs
 from facegear.results.store import Store
 
@@ -131,14 +132,14 @@ class Chain:
         return self.store.result("stiffness", self.values, StiffnessResult, compute)
 
     def modes(self) -> "ModesResult":
-        """Modes, from the mean stiffness of the config or, where it gives none, from the harmonics."""
+        """Modes, from the mean stiffness of the config or from that of the contact analysis."""
         from facegear.results.modal import ModesResult
 
         def compute() -> "Outcome":
             from facegear.stages.modal import modal
 
-            given = self.values["mesh_stiffness"]["mean_n_per_m"] is not None
-            return modal(**self._needs("modal"), harmonics=None if given else self._harmonics())
+            asks = modes_need_contact(self.values)
+            return modal(**self._needs("modal"), harmonics=self._harmonics() if asks else None)
 
         return self.store.result("modal", self.values, ModesResult, compute)
 

@@ -11,10 +11,11 @@ if TYPE_CHECKING:
 
 
 class ModesResult(Result):
-    """Natural frequencies, classes and shapes with the mean mesh stiffness."""
+    """Natural frequencies, classes and shapes with the mean mesh stiffness, and the contacts they keep."""
 
     FILES: ClassVar = {
         "frequencies": Kept("modal/frequencies.csv", ("order", "frequency_hz", "symbols", "class")),
+        "contacts": Kept("modal/contacts.csv", ("contact", "state", "stiffness_n_per_m")),
         "shapes": Kept("modal/shapes.csv", ("order", "body", "dof", "relative")),
     }
 
@@ -25,6 +26,10 @@ class ModesResult(Result):
     def shapes(self) -> pd.DataFrame:
         """One row a mode, body and degree of freedom."""
         return self.content["shapes"].copy()
+
+    def contacts(self) -> pd.DataFrame:
+        """One row a mesh and a bearing with play: state under load, force, stiffness and which one it is."""
+        return self.content["contacts"].copy()
 
     def plot(self) -> "Figure":
         """Typical mode shapes, one panel for each kind of mode."""

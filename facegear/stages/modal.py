@@ -10,9 +10,8 @@ from facegear.config.machines import wired_machine
 from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
 from facegear.stages.outcome import Outcome
-from facegear.stiffness.tables import series_of
-from facegear.transmission.loaded_modes import loaded_modes
-from facegear.transmission.modal_tables import frequency_table, shape_table
+from facegear.transmission.loaded_modes import vibrating_machine
+from facegear.transmission.modal_tables import contact_table, frequency_table, shape_table
 from facegear.transmission.mode_classes import name_modes
 
 
@@ -20,23 +19,46 @@ def modal(
     transmission: Mapping[str, Any],
     teeth: Mapping[str, Any],
     mean_stiffness: float | None,
+    source: str,
+    definition: str,
     harmonics: pd.DataFrame | None = None,
 ) -> Outcome:
-    """`frequencies` and `shapes` (tables) of the machine with the mean mesh stiffness (N/m).
+    """`frequencies`, `shapes` and `contacts` (tables) of the machine with the mean mesh stiffness (N/m).
 
-    Where the config gives none it is the mean of the stiffness stage's `harmonics`. Raises ConfigError
-    without either.
+    With the stiffness stage's `harmonics` it is the mean of the `definition` asked for, local or average, at
+    the operating load; without, the config's own mean. Raises ConfigError without either.
     """
-    mean = mean_stiffness if harmonics is None else series_of(harmonics).mean
+    if harmonics is None:
+        mean = mean_stiffness
+        told = f"{definition}, given" if source == "fem_scaled" else "given"
+    else:
+        mean, told = float(harmonics[f"mean_{definition}_n_per_m"].iloc[0]), definition
     if mean is None:
         raise ConfigError("mesh_stiffness.mean_n_per_m", None, "given where k(t) is not computed")
     constant, none = Harmonics(np.zeros(1), np.array([mean])), Harmonics(np.zeros(1), np.zeros(1))
     machine = wired_machine(transmission, teeth, constant, unloaded=none)
-    shape, modes = machine.layout, loaded_modes(machine)
+    shape, found = machine.layout, vibrating_machine(machine)
+    modes, contacts = found.modes, contact_table(machine, found, told)
     rigid = int((modes.frequencies == 0.0).sum())
     elastic = modes.frequencies[rigid:]
-    frequencies = frequency_table(modes, name_modes(shape, modes))
-    return Outcome(
-        {"frequencies": frequencies, "shapes": shape_table(shape, modes)},
-        f"{rigid} rigid body modes, {elastic.size} from {elastic[0]:.1f} to {elastic[-1]:.1f} Hz",
+    content = {
+        "frequencies": frequency_table(found, name_modes(shape, modes)),
+        "shapes": shape_table(shape, modes),
+        "contacts": contacts,
+    }
+    summary = (
+        f"{rigid} rigid body modes, {elastic.size} from {elastic[0]:.1f} to {elastic[-1]:.1f} Hz, with a "
+        f"mesh stiffness of {mean:.4g} N/m ({told})"
     )
+    return Outcome(content, summary + _remarks(contacts, found.decided))
+
+
+def _remarks(contacts: pd.DataFrame, decided: np.ndarray) -> str:
+    """What a reader should know of contacts that are not simply closed."""
+    parts = []
+    for state in ("open", "wedged", "undecided"):
+        if named := contacts.loc[contacts["state"] == state, "contact"].to_list():
+            parts.append(f"; {state}: {', '.join(named)}")
+    if not decided.all():
+        parts.append(f"; {int((~decided).sum())} frequencies hang on contacts that are undecided")
+    return "".join(parts)

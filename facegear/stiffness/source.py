@@ -31,7 +31,8 @@ class Stiffness:
 def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Stiffness:
     """Curve at the requested load and its series.
 
-    Source fem_scaled multiplies the curve so that its mean is the requested one. Raises ConfigError for a
+    Source fem_scaled multiplies the curve so that its mean is the requested one. Beside the harmonics stand
+    the means of both definitions at that load, scaled alike. Raises ConfigError for a
     load outside those solved and for a variation with which k(t) is not positive throughout.
     """
     assert request.torque is not None
@@ -58,9 +59,15 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
         f"times {scale:.4f}; orders for an error of the peak-to-peak of {reach}; "
         f"{loads}unloaded transmission error {1e6 * peak_to_peak(error):.3g} um peak to peak"
     )
+    harmonics = with_unloaded_error(
+        harmonics_table(series, fit, scale * request.variation), error, cut
+    ).assign(
+        mean_average_n_per_m=scale * table.at(request.torque, "average").mean(),
+        mean_local_n_per_m=scale * table.at(request.torque, "local").mean(),
+    )
     return Stiffness(
         curve_table(table.positions, _varied(scale * samples, request.variation), series),
-        with_unloaded_error(harmonics_table(series, fit, scale * request.variation), error, cut),
+        harmonics,
         harmonics_table(whole, fit, scale * request.variation),
         summary,
     )

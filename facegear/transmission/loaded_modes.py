@@ -1,82 +1,81 @@
 """Modes of a machine about the place where its torques hold it: which flank works follows from statics."""
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.transmission.flanks import constant_errors, flank_gaps
 from facegear.transmission.layout import Layout
+from facegear.transmission.loaded_contacts import Contact, LoadedContacts, loaded_contacts
 from facegear.transmission.machine import Machine
-from facegear.transmission.matrices import bearing_matrix, flank_directions, mass_diagonal
+from facegear.transmission.matrices import flank_directions
 from facegear.transmission.modes import Modes, modes_of, natural_modes
 
-CARRIES = 1e-12
-"""Share of the largest flank force below which a force is rounding."""
-RIGID = 1e-13
-"""Share of the stiffest motion's stiffness below which a motion is free."""
-MOST_SETS = 50
-BALANCED = 1e-9
+Array = NDArray[np.float64]
+SAME = 1e-6
+"""Relative difference of a frequency, undecided contacts open or closed, that counts as none."""
 
 
-def working_flanks(machine: Machine) -> NDArray[np.bool_]:
-    """Flanks in contact at mean stiffness, shape (2 meshes,): all drive flanks, then all back flanks.
+@dataclass(frozen=True, eq=False)
+class VibratingMachine:
+    """Modes, the contacts that they keep, and which frequencies (n,) no undecided contact changes.
 
-    A mesh that carries nothing counts as closed on its drive flank. Raises NotConverged.
+    contacts: None for printed meshes, which are all closed on their one line of action.
     """
-    forces = _forces_by_active_sets(machine)
-    if forces is None:
-        from facegear.transmission.statics import mean_equilibrium  # compiled; most machines do without
 
-        forces = mean_equilibrium(machine).flank_forces[0]
-    drive, back = np.split(forces > CARRIES * forces.max(), 2)
-    return np.concatenate([drive | ~back, back])
-
-
-def _forces_by_active_sets(machine: Machine) -> NDArray[np.float64] | None:
-    """Flank forces (2 meshes,) at mean stiffness, N: the statics of one position without compiled code.
-
-    Each step solves the springs of the flanks that were closed after the last one. None for bearings with
-    play, and where the flanks do not settle or leave a loaded body free.
-    """
-    layout = machine.layout
-    if (machine.imperfections.clearance > 0.0).any():
-        return None
-    scale = 1.0 / np.sqrt(mass_diagonal(layout))
-    directions = flank_directions(layout) * scale
-    bearing = bearing_matrix(layout) * np.outer(scale, scale)
-    applied = np.zeros(layout.dof)
-    applied[layout.spins] = machine.torques
-    applied *= scale
-    stiffness = machine.stiffness.mean * np.tile(machine.imperfections.stiffness, 2)
-    gaps = constant_errors(machine) + flank_gaps(machine)
-    closed = np.arange(gaps.size) < len(layout.meshes)
-    for _ in range(MOST_SETS):
-        pressed = np.where(closed, stiffness, 0.0)
-        matrix = bearing + (directions.T * pressed) @ directions
-        moved = np.linalg.lstsq(matrix, applied + directions.T @ (pressed * gaps), rcond=RIGID)[0]
-        over = directions @ moved - gaps
-        if ((over > 0.0) == closed).all():
-            missing = matrix @ moved - applied - directions.T @ (pressed * gaps)
-            return pressed * over if np.abs(missing).max() <= BALANCED * np.abs(applied).max() else None
-        closed = over > 0.0
-    return None
+    modes: Modes
+    contacts: LoadedContacts | None
+    decided: NDArray[np.bool_]
 
 
 def loaded_modes(machine: Machine) -> Modes:
-    """Modes with mean mesh stiffness on the working flanks, and bearings with play as they are pressed.
+    """Modes with mean mesh stiffness on the flanks that carry load, bearings with play as they are pressed.
 
-    On one line of action for printed meshes. Raises NotConverged.
+    An open mesh stays open, a wedged one has both flanks; undecided contacts count as open. Raises
+    NotConverged.
     """
+    return vibrating_machine(machine).modes
+
+
+def vibrating_machine(machine: Machine) -> VibratingMachine:
+    """loaded_modes() with what is known of the contacts. Raises NotConverged."""
     if not machine.layout.is_geometric:
-        return natural_modes(machine.layout, machine.stiffness.mean)
+        modes = natural_modes(machine.layout, machine.stiffness.mean)
+        return VibratingMachine(modes, None, np.ones(modes.frequencies.size, bool))
+    contacts = loaded_contacts(machine)
+    modes = _modes(machine, contacts, (Contact.CLOSED,))
+    if not contacts.any_undecided():
+        return VibratingMachine(modes, contacts, np.ones(modes.frequencies.size, bool))
+    other = _modes(machine, contacts, (Contact.CLOSED, Contact.UNDECIDED)).frequencies
+    return VibratingMachine(modes, contacts, np.abs(other - modes.frequencies) <= SAME * other)
+
+
+def _modes(machine: Machine, contacts: LoadedContacts, holding: tuple[Contact, ...]) -> Modes:
+    """Modes with the contacts whose state is among `holding`."""
     stiffness = machine.stiffness.mean * np.tile(machine.imperfections.stiffness, 2)
-    pressed = np.where(working_flanks(machine), stiffness, 0.0)
+    pressed = np.where([state in holding for state in contacts.flank_states()], stiffness, 0.0)
     directions = flank_directions(machine.layout)
-    return modes_of(_pressed_bearings(machine), (pressed * directions.T) @ directions)
+    layout = _pressed_bearings(machine, contacts, holding)
+    return modes_of(layout, (pressed * directions.T) @ directions)
 
 
-def _pressed_bearings(machine: Machine) -> Layout:
-    if not (machine.imperfections.clearance > 0.0).any():
-        return machine.layout
-    from facegear.transmission.linear_bearings import linear_bearings  # compiled
+def _pressed_bearings(machine: Machine, contacts: LoadedContacts, holding: tuple[Contact, ...]) -> Layout:
+    """The layout with every ring of play replaced by its tangent.
 
-    return linear_bearings(machine)
+    A bearing pressed against its ring is stiff along its load, k, and less across it, k (1 - play / way); one
+    that floats inside carries nothing.
+    """
+    pinions = list(machine.layout.pinions)
+    for i, state in enumerate(contacts.ring_states()):
+        if state is None:
+            continue
+        body, tangent = pinions[i].body, np.zeros((2, 2))
+        if state in holding:
+            distance = float(np.hypot(*contacts.places[i]))
+            stiffness = body.bearing[0]
+            across = stiffness * (1.0 - machine.imperfections.clearance[i] / distance)
+            direction = contacts.places[i] / distance
+            tangent = across * np.eye(2) + (stiffness - across) * np.outer(direction, direction)
+        bearing = (float(tangent[0, 0]), float(tangent[1, 1]), body.bearing[2])
+        pinions[i] = replace(pinions[i], body=replace(body, bearing=bearing, bearing_xy=float(tangent[0, 1])))
+    return replace(machine.layout, pinions=tuple(pinions))

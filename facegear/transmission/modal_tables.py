@@ -1,14 +1,24 @@
 """The modal stage's csv tables."""
 
+import numpy as np
 import pandas as pd
 
 from facegear.transmission.layout import Layout
+from facegear.transmission.loaded_contacts import Contact
+from facegear.transmission.loaded_modes import VibratingMachine
+from facegear.transmission.machine import Machine
 from facegear.transmission.mode_classes import ModeName
 from facegear.transmission.modes import Modes
 
+CONTACT_COLUMNS = ("contact", "state", "force_n", "stiffness_n_per_m", "definition")
 
-def frequency_table(modes: Modes, names: tuple[ModeName, ...]) -> pd.DataFrame:
-    """Columns order, frequency_hz, multiplicity, symbols, class, pinion_energy_share."""
+
+def frequency_table(found: VibratingMachine, names: tuple[ModeName, ...]) -> pd.DataFrame:
+    """Columns order, frequency_hz, multiplicity, symbols, class, pinion_energy_share, decided.
+
+    decided: whether the frequency is the same with undecided contacts open and closed.
+    """
+    modes = found.modes
     multiplicity = [stop - start for start, stop in modes.groups for _ in range(stop - start)]
     return pd.DataFrame(
         {
@@ -18,8 +28,46 @@ def frequency_table(modes: Modes, names: tuple[ModeName, ...]) -> pd.DataFrame:
             "symbols": [name.symbols for name in names],
             "class": [name.mode_class.value for name in names],
             "pinion_energy_share": [name.pinion_share for name in names],
+            "decided": found.decided,
         }
     )
+
+
+def contact_table(machine: Machine, found: VibratingMachine, told: str) -> pd.DataFrame:
+    """What modes keep closed: columns contact, state, force_n, stiffness_n_per_m, definition.
+
+    One row a mesh, whose state is drive, back, wedged, open or undecided, with the mean stiffness of a closed
+    flank (`told` says which); then one a bearing with play: closed, open or undecided, with its stiffness
+    along the load. Forces under the mean torques, negative on the back flank; empty for printed meshes, all
+    of which are closed.
+    """
+    layout, contacts = machine.layout, found.contacts
+    stiffness = machine.stiffness.mean * machine.imperfections.stiffness
+    if contacts is None:
+        rows = [
+            (name, "closed", np.nan, k, told) for name, k in zip(layout.mesh_names, stiffness, strict=True)
+        ]
+        return pd.DataFrame(rows, columns=list(CONTACT_COLUMNS))
+    count = len(layout.mesh_names)
+    states, drive, back = contacts.flank_states(), *np.split(contacts.flanks, 2)
+    rows = [
+        (name, _mesh_state(states[m], states[count + m]), drive[m] - back[m], stiffness[m], told)
+        for m, name in enumerate(layout.mesh_names)
+    ]
+    rows += [
+        (f"{pinion.name} bearing", state.value, contacts.rings[i], pinion.body.bearing[0], "bearing")
+        for i, (pinion, state) in enumerate(zip(layout.pinions, contacts.ring_states(), strict=True))
+        if state is not None
+    ]
+    return pd.DataFrame(rows, columns=list(CONTACT_COLUMNS))
+
+
+def _mesh_state(drive: Contact, back: Contact) -> str:
+    if Contact.UNDECIDED in (drive, back):
+        return Contact.UNDECIDED.value
+    if drive is Contact.CLOSED:
+        return "wedged" if back is Contact.CLOSED else "drive"
+    return "back" if back is Contact.CLOSED else "open"
 
 
 def shape_table(layout: Layout, modes: Modes) -> pd.DataFrame:

@@ -8,6 +8,7 @@ rule modal:
     output:
         frequencies="results/{case}/modal/frequencies.csv",
         shapes="results/{case}/modal/shapes.csv",
+        contacts="results/{case}/modal/contacts.csv",
         manifest="results/{case}/modal/modal.provenance.json",
     script:
         "../scripts/modal.py"

@@ -29,9 +29,9 @@ from facegear.load_sharing.reference import (
 )
 from facegear.load_sharing.run import load_sharing
 from facegear.load_sharing.tables import CURVE_COLUMNS, SUMMARY_COLUMNS, curve_table, summary_table
+from facegear.transmission.loaded_modes import vibrating_machine
 from facegear.transmission.modal_tables import frequency_table, shape_table
 from facegear.transmission.mode_classes import name_modes
-from facegear.transmission.modes import natural_modes
 
 CONFIG = Path(__file__).parents[3] / "config" / "harmonics_only.yaml"
 SHORT = {"dwell_periods": 16, "settle_periods": 16, "window_periods": 16, "extensions": 0}
@@ -61,8 +61,9 @@ def chain(own):
     """Modes, nominal response, load sharing: what the stages of the workflow compute and write."""
     (case,) = expand_cases(own).values()
     machine = case_machine(case, given_series(parse(MeshStiffness, case["mesh_stiffness"])))
-    modes = natural_modes(machine.layout, machine.stiffness.mean)
-    frequencies = frequency_table(modes, name_modes(machine.layout, modes))
+    vibrating = vibrating_machine(machine)
+    modes = vibrating.modes
+    frequencies = frequency_table(vibrating, name_modes(machine.layout, modes))
     assert len(frequencies) == 4 * len(machine.layout.bodies)
     assert len(shape_table(machine.layout, modes)) == len(frequencies) ** 2
     settings = accuracy(parse(Dynamics, case["dynamics"]).accuracy)

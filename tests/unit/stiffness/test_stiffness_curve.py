@@ -1,14 +1,21 @@
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
 
 from facegear.config.base import parse
+from facegear.config.load import load_config
+from facegear.config.modal import modes_need_contact
+from facegear.config.needs import stage_needs
 from facegear.config.stiffness import MeshStiffness, stiffness_request
 from facegear.errors import ConfigError, ConfigErrors
+from facegear.stages.modal import modal
 from facegear.stiffness.curve import load_table
 from facegear.stiffness.source import stiffness_from_contact, stiffness_given
 from facegear.stiffness.tables import load_dependence, series_of
 
+ROOT = Path(__file__).parents[3]
 TORQUES = np.array([100.0, 200.0, 400.0, 800.0])
 POSITIONS = np.arange(16) / 16
 
@@ -53,6 +60,48 @@ def test_scaled_source_has_the_mean_asked_for_and_the_shape_computed():
     np.testing.assert_allclose(
         scaled.amplitudes / scaled.mean, plain.amplitudes / plain.mean, rtol=1e-12, atol=1e-15
     )
+
+
+@pytest.mark.parametrize(("source", "scale"), [("fem", 1.0), ("fem_scaled", None)])
+def test_both_means_stand_beside_the_harmonics_and_modes_take_the_local_one(source, scale):
+    """The contact's slope is 1.3 times its average here, at every load and position."""
+    section = {"source": source, "mean_n_per_m": 4.1e8, "torque_n_m": 400.0, "harmonics_kept": 4}
+    table = stiffness_from_contact(contact_table(), request(**section)).harmonics
+    average = 4e8 if scale else 4.1e8
+    assert table["mean_average_n_per_m"].to_list() == pytest.approx(5 * [average], rel=1e-9)
+    assert table["mean_local_n_per_m"].to_list() == pytest.approx(5 * [1.3 * average], rel=1e-9)
+    values = load_config(ROOT / "config" / "paper.yaml").model_dump(mode="json")
+    needs = stage_needs("modal", values) | {"mean_stiffness": None}
+    taken = {}
+    for definition in ("local", "average"):
+        found = modal(**needs | {"definition": definition}, harmonics=table)
+        taken[definition] = found.content["contacts"]["stiffness_n_per_m"].to_list()
+        assert f"N/m ({definition})" in found.summary
+    assert taken["local"] == pytest.approx(10 * [1.3 * average], rel=1e-9)
+    assert taken["average"] == pytest.approx(10 * [average], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("section", "choice", "asks"),
+    [
+        ({"source": "harmonics", "mean_n_per_m": 4e8}, "local", False),
+        ({"source": "fem", "mean_n_per_m": 4e8}, "local", False),
+        ({"source": "fem", "mean_n_per_m": None}, "average", True),
+        ({"source": "fem_scaled", "mean_n_per_m": 4e8}, "average", False),
+        ({"source": "fem_scaled", "mean_n_per_m": 4e8}, "local", True),
+    ],
+)
+def test_modes_ask_for_the_contact_where_the_config_does_not_give_their_stiffness(section, choice, asks):
+    assert modes_need_contact({"mesh_stiffness": section, "modal": {"stiffness": choice}}) is asks
+
+
+def test_the_papers_modes_are_those_of_the_mean_that_its_config_gives():
+    values = load_config(ROOT / "config" / "paper.yaml").model_dump(mode="json")
+    assert not modes_need_contact(values)
+    found = modal(**stage_needs("modal", values))
+    elastic = found.content["frequencies"]["frequency_hz"].to_numpy()[6:]
+    np.testing.assert_allclose(elastic[[0, 4, 10, 21]], [756.7, 833.5, 2260.1, 6488.0], atol=0.0501)
+    assert "4.1e+08 N/m (average, given)" in found.summary
 
 
 @pytest.mark.parametrize("source", ["fem", "fem_scaled"])

@@ -8,13 +8,18 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+import pytest
 from hypothesis import event, given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
+from scipy.linalg import eigh
 
 from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import MeshKinematics, Tilt
-from facegear.transmission.loaded_modes import _forces_by_active_sets, loaded_modes, working_flanks
+from facegear.transmission.layout import MeshKinematics, Role, Side, Tilt
+from facegear.transmission.loaded_contacts import forces_by_active_sets, loaded_contacts
+from facegear.transmission.loaded_modes import loaded_modes, vibrating_machine
+from facegear.transmission.matrices import bearing_matrix, mass_diagonal, mesh_parts
+from facegear.transmission.modal_tables import contact_table
 from facegear.transmission.mode_classes import ModeClass, name_modes
 from facegear.transmission.modes import natural_modes
 from facegear.transmission.statics import mean_equilibrium
@@ -22,6 +27,10 @@ from facegear.transmission.statics import mean_equilibrium
 ROOT = Path(__file__).parents[3]
 
 LAYOUT = make_layout(kinematics=MeshKinematics.GEOMETRIC)
+
+
+def working_flanks(machine):
+    return np.array([state == "closed" for state in loaded_contacts(machine).flank_states()])
 
 
 def test_inputs_work_on_their_drive_flanks_and_idlers_on_the_back_flank_below():
@@ -52,7 +61,7 @@ def test_active_sets_find_the_flank_forces_of_the_compiled_statics(seed, torque,
             stiffness=random.uniform(0.7, 1.4, len(LAYOUT.meshes)),
         )
     machine = make_machine(LAYOUT, torque, share, backlash, imperfections=flaws)
-    forces, exact = _forces_by_active_sets(machine), mean_equilibrium(machine).flank_forces[0]
+    forces, exact = forces_by_active_sets(machine), mean_equilibrium(machine).flank_forces[0]
     event("settled" if forces is not None else "left to the compiled statics")
     if forces is not None:
         np.testing.assert_allclose(forces, exact, atol=1e-9 * exact.max())
@@ -168,3 +177,95 @@ def test_bearings_with_play_vibrate_along_and_across_their_load_as_they_are_pres
     np.testing.assert_allclose(frequencies, loaded_modes(pressed).frequencies, rtol=1e-9, atol=1e-4)
     without = loaded_modes(make_machine(LAYOUT, torque=2000.0, tail_share=0.03)).frequencies
     assert (frequencies <= without + 1e-6).all() and (frequencies < 0.99 * without).any()
+
+
+def idle_machine(torque, clearance=0.0, turned=1.0, **options):
+    """One face gear driven by two of three pinions: the third carries nothing. `turned` -1: in a mirror."""
+    places = (("a", Role.INPUT, 0.0), ("b", Role.INPUT, turned * 45.0), ("idle", Role.IDLER, turned * 80.5))
+    layout = make_layout(places, (Side.UPPER,), kinematics=MeshKinematics.GEOMETRIC)
+    flaws = replace(perfect(layout), clearance=np.full(3, clearance))
+    return make_machine(layout, turned * torque, 0.0, imperfections=flaws, **options)
+
+
+def test_a_mesh_that_carries_nothing_stays_open_in_the_modes():
+    """The idle pinion vibrates in its bearing alone, at sqrt(k / m), along x and y.
+
+    Each of the others does so across the force of its one mesh.
+    """
+    modes = loaded_modes(idle_machine(800.0))
+    alone = np.sqrt(6.5e7 / 1.199) / (2.0 * np.pi)
+    assert (np.abs(modes.frequencies / alone - 1.0) < 1e-9).sum() == 2 + 2
+    # Three axial motions, the turn of the machine, and that of the idle pinion.
+    assert (modes.frequencies == 0.0).sum() == 5
+
+
+@settings(max_examples=20, deadline=None)
+@given(torque=st.floats(50.0, 4000.0), backlash=st.floats(0.0, 2e-4), clearance=st.sampled_from([0.0, 2e-5]))
+def test_a_machine_and_its_mirror_image_have_the_same_modes(torque, backlash, clearance):
+    one, other = (
+        loaded_modes(idle_machine(torque, clearance, turned, backlash=backlash)).frequencies
+        for turned in (1.0, -1.0)
+    )
+    np.testing.assert_allclose(one, other, rtol=1e-6, atol=1e-6)
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    torque=st.floats(50.0, 4000.0),
+    clearance=st.floats(1e-6, 5e-5),
+    backlash=st.floats(1e-6, 2e-4),
+    seed=st.integers(0, 2**31),
+)
+def test_no_mode_of_a_pinion_in_its_play_hangs_on_the_last_digits_of_a_torque(
+    torque, clearance, backlash, seed
+):
+    machine = idle_machine(torque, clearance, backlash=backlash)
+    place = 2e-6 * np.random.default_rng(seed).normal(size=(3, 2))
+    found = []
+    for factor in (1.0, 1.0 + 1e-6):
+        flaws = replace(machine.imperfections, position=place)
+        near = replace(machine, torques=factor * machine.torques, imperfections=flaws)
+        found.append(vibrating_machine(near))
+    firm = found[0].decided & found[1].decided
+    one, other = (modes.modes.frequencies[firm] for modes in found)
+    np.testing.assert_allclose(one, other, rtol=1e-4, atol=1e-6)
+    assert firm.all() or any(machine.contacts.any_undecided() for machine in found)
+
+
+def test_a_wedged_mesh_has_both_flanks_and_the_table_names_it():
+    """A pinion set too deep presses both flanks of a tooth: 2 k along its way, 2 k along the gears' axis."""
+    layout = make_layout((("a", Role.INPUT, 0.0),), kinematics=MeshKinematics.GEOMETRIC)
+    flaws = replace(perfect(layout), position=np.array([[0.0, 30e-6]]))
+    machine = make_machine(layout, 100.0, 0.0, backlash=0.0, imperfections=flaws)
+    found = vibrating_machine(machine)
+    table = contact_table(machine, found, "local").set_index("contact")
+    assert table["state"].to_list() == ["open", "wedged"]
+    tangential, separating = (parts[1] for parts in mesh_parts(layout))
+    squares = np.outer(tangential, tangential) + np.outer(separating, separating)
+    exact = eigh(bearing_matrix(layout) + 2.0 * 4.1e8 * squares, np.diag(mass_diagonal(layout)))[0]
+    np.testing.assert_allclose((2.0 * np.pi * found.modes.frequencies) ** 2, exact, atol=1e-9 * exact.max())
+
+
+def test_the_table_says_what_every_mesh_and_every_bearing_with_play_does():
+    machine = idle_machine(800.0, 2e-5)
+    table = contact_table(machine, vibrating_machine(machine), "average").set_index("contact")
+    assert table["state"].to_dict() == {
+        "a/upper": "drive",
+        "b/upper": "drive",
+        "idle/upper": "open",
+        "a bearing": "closed",
+        "b bearing": "closed",
+        "idle bearing": "open",
+    }
+    assert table.loc["a/upper", "force_n"] == pytest.approx(800.0 / machine.layout.pinion_arm, rel=1e-9)
+    assert table.loc["a/upper", ["stiffness_n_per_m", "definition"]].to_list() == [4.1e8, "average"]
+
+
+@pytest.mark.parametrize(("share", "state"), [(1e-11, "open"), (1e-8, "undecided"), (1e-3, "closed")])
+def test_a_contact_that_carries_next_to_nothing_is_undecided_and_so_are_the_modes_it_changes(share, state):
+    places = (("a", Role.INPUT, 0.0), ("tail", Role.TAIL, 45.0))
+    layout = make_layout(places, (Side.UPPER,), kinematics=MeshKinematics.GEOMETRIC)
+    found = vibrating_machine(make_machine(layout, 800.0, share))
+    states = [str(one) for one in found.contacts.flank_states()]
+    assert states == ["closed", "open", "open", state]
+    assert found.decided.all() == (state != "undecided")

@@ -42,7 +42,7 @@ def report_tables(wildcards):
     tables = [rules.stiffness.output.harmonics]
     if CASES[wildcards.case]["transmission"]:
         tables += [rules.ratings.output[name] for name in ("ratings", "bodies", "meshes")]
-        tables += [rules.modal.output.frequencies]
+        tables += [rules.modal.output.frequencies, rules.modal.output.contacts]
         tables += [rules.dynamics_sweep.output[name] for name in ("jumps", "sweep")]
         tables += [rules.dynamics_response.output.bearings]
     tables += [rules.load_sharing_summary.output.summary] if SHARING_KINDS else []

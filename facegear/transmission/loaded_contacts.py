@@ -1,0 +1,109 @@
+"""Which flanks and bearings with play the mean torques press together, and which they leave apart.
+
+Decided by load: what carries less than NOTHING of the largest flank force is open, what carries more than
+LOADED is closed. In between rounding and the last digits of a torque would decide: `undecided`.
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.transmission.flanks import constant_errors, flank_gaps
+from facegear.transmission.layout import DOF_PER_BODY
+from facegear.transmission.machine import Machine
+from facegear.transmission.matrices import bearing_matrix, flank_directions, mass_diagonal
+
+Array = NDArray[np.float64]
+NOTHING, LOADED = 1e-9, 1e-6
+RIGID = 1e-13
+"""Share of the stiffest motion's stiffness below which a motion is free."""
+MOST_SETS = 50
+BALANCED = 1e-9
+
+
+class Contact(StrEnum):
+    """State of a flank or of a bearing's ring under the mean torques."""
+
+    OPEN = "open"
+    CLOSED = "closed"
+    UNDECIDED = "undecided"
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedContacts:
+    """Forces under the mean torques: flanks (2 meshes,), drive flanks first, and rings (pinions,), N.
+
+    rings and places (pinions, 2), m: nan where a bearing has no play.
+    """
+
+    flanks: Array
+    rings: Array
+    places: Array
+
+    def flank_states(self) -> list[Contact]:
+        """Of every flank."""
+        return [self._state(force) for force in self.flanks]
+
+    def ring_states(self) -> list[Contact | None]:
+        """Of every pinion's bearing; None without play."""
+        return [None if np.isnan(force) else self._state(force) for force in self.rings]
+
+    def any_undecided(self) -> bool:
+        """Whether some contact is neither open nor closed for certain."""
+        return Contact.UNDECIDED in [*self.flank_states(), *self.ring_states()]
+
+    def _state(self, force: float) -> Contact:
+        largest = self.flanks.max()
+        if force <= NOTHING * largest:
+            return Contact.OPEN
+        return Contact.CLOSED if force >= LOADED * largest else Contact.UNDECIDED
+
+
+def loaded_contacts(machine: Machine) -> LoadedContacts:
+    """Contacts of geometric meshes at mean stiffness with constant errors. Raises NotConverged."""
+    pinions = len(machine.layout.pinions)
+    rings, places = np.full(pinions, np.nan), np.full((pinions, 2), np.nan)
+    play = machine.imperfections.clearance
+    forces = forces_by_active_sets(machine)
+    if forces is not None:
+        return LoadedContacts(forces, rings, places)
+    from facegear.transmission.statics import bearing_forces, mean_equilibrium  # compiled
+
+    found = mean_equilibrium(machine)
+    held = np.hypot(*bearing_forces(machine, found)[0, :pinions, :2].T)
+    moved = found.displacements[0, : DOF_PER_BODY * pinions].reshape(pinions, DOF_PER_BODY)[:, :2]
+    ringed = play > 0.0
+    rings[ringed], places[ringed] = held[ringed], moved[ringed]
+    return LoadedContacts(found.flank_forces[0], rings, places)
+
+
+def forces_by_active_sets(machine: Machine) -> Array | None:
+    """Flank forces (2 meshes,) at mean stiffness, N: the statics of one position without compiled code.
+
+    Each step solves the springs of the flanks that were closed after the last one. None for bearings with
+    play, and where the flanks do not settle or leave a loaded body free.
+    """
+    layout = machine.layout
+    if (machine.imperfections.clearance > 0.0).any():
+        return None
+    scale = 1.0 / np.sqrt(mass_diagonal(layout))
+    directions = flank_directions(layout) * scale
+    bearing = bearing_matrix(layout) * np.outer(scale, scale)
+    applied = np.zeros(layout.dof)
+    applied[layout.spins] = machine.torques
+    applied *= scale
+    stiffness = machine.stiffness.mean * np.tile(machine.imperfections.stiffness, 2)
+    gaps = constant_errors(machine) + flank_gaps(machine)
+    closed = np.arange(gaps.size) < len(layout.meshes)
+    for _ in range(MOST_SETS):
+        pressed = np.where(closed, stiffness, 0.0)
+        matrix = bearing + (directions.T * pressed) @ directions
+        moved = np.linalg.lstsq(matrix, applied + directions.T @ (pressed * gaps), rcond=RIGID)[0]
+        over = directions @ moved - gaps
+        if ((over > 0.0) == closed).all():
+            missing = matrix @ moved - applied - directions.T @ (pressed * gaps)
+            return pressed * over if np.abs(missing).max() <= BALANCED * np.abs(applied).max() else None
+        closed = over > 0.0
+    return None
