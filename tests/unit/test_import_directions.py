@@ -26,6 +26,7 @@ MAY_IMPORT = {
     "compare": {"plots", "report"},
     "scenarios": set(),
     "strength": {"geometry"},
+    "lubrication": {"geometry", "contact", "harmonics"},
     "stages": {
         *("config", "geometry", "mesh", "contact", "stiffness", "harmonics"),
         *("transmission", "dynamics", "load_sharing", "scenarios", "strength"),

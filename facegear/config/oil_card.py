@@ -1,0 +1,104 @@
+"""Oil cards: what the friction chain needs of an oil, with its source, read from yaml files."""
+
+from importlib.resources import files
+from itertools import pairwise
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from facegear.config.base import Section, parse, refuse
+from facegear.config.yaml_file import read_yaml
+from facegear.lubrication.oil import FixedCoefficient, Oil, PolyolEster, PowerOfViscosity
+
+OIL_CARDS = Path(str(files("facegear") / "lubrication" / "cards"))
+"""Folder of the cards that come with the package."""
+
+
+class PowerLaw(Section):
+    """Pressure coefficient scale nu^exponent in 1/GPa, nu in mm2/s."""
+
+    law: Literal["power"]
+    scale: float = Field(gt=0, le=1000)
+    exponent: float = Field(ge=0, le=1)
+
+
+class EsterLaw(Section):
+    """Pressure coefficient of MIL-L-23699 oils."""
+
+    law: Literal["polyol_ester"]
+
+
+class FixedLaw(Section):
+    """The same pressure coefficient at every temperature."""
+
+    law: Literal["fixed"]
+    per_gpa: float = Field(gt=0, le=100)
+
+
+class Conductivity(Section):
+    """Thermal conductivity at a temperature, and what it falls by in a degree."""
+
+    w_per_m_k: float = Field(gt=0, le=1)
+    at_c: float = Field(20.0, ge=-100, le=300)
+    falls_per_k: float = Field(0.0, ge=0, le=0.01)
+
+
+class OilCard(Section):
+    """An oil."""
+
+    name: str
+    source: str = Field(min_length=1, description="where the numbers are from")
+    temperatures_c: tuple[float, float] = Field(description="two temperatures, the lower first")
+    viscosities_mm2_s: tuple[
+        Annotated[float, Field(gt=0.2, le=1e5)], Annotated[float, Field(gt=0.2, le=1e5)]
+    ] = Field(description="kinematic viscosity at both; between and beyond them ASTM D341")
+    density_15_c_kg_m3: float = Field(ge=500, le=2000)
+    pressure_coefficient: PowerLaw | EsterLaw | FixedLaw = Field(
+        discriminator="law", description="of viscosity under pressure"
+    )
+    conductivity: Conductivity
+    flash_point_c: float = Field(gt=0, le=600, description="no temperature of the oil may reach it")
+    lubricant_factor: float = Field(1.0, gt=0, le=2, description="X_L of the friction models of gear tests")
+    scuffing_temperature_c: float | None = Field(
+        None, gt=0, le=1000, description="mean contact temperature at which tests scuffed"
+    )
+    fzg_stage: float | None = Field(None, ge=1, le=14, description="FZG failure load stage A/8.3/90")
+
+    @model_validator(mode="after")
+    def _thinning(self) -> "OilCard":
+        for key, falls in (("temperatures_c", False), ("viscosities_mm2_s", True)):
+            values = getattr(self, key)
+            if any((low > high) != falls or low == high for low, high in pairwise(values)):
+                refuse(key, values, f"must {'fall with temperature' if falls else 'rise'}")
+        return self
+
+
+def oil_card(path: str | Path) -> Oil:
+    """Read an oil card in SI units. Raises ConfigErrors with one line for every mistake."""
+    return oil_of(parse(OilCard, read_yaml(path), source=str(path)))
+
+
+def oil_of(card: OilCard) -> Oil:
+    """An oil card in SI units."""
+    return Oil(
+        name=card.name,
+        source=card.source,
+        temperatures=card.temperatures_c,
+        viscosities=(1e-6 * card.viscosities_mm2_s[0], 1e-6 * card.viscosities_mm2_s[1]),
+        density=card.density_15_c_kg_m3,
+        pressure_coefficient=_law(card.pressure_coefficient),
+        conductivity=card.conductivity.w_per_m_k,
+        conductivity_at=card.conductivity.at_c,
+        conductivity_slope=card.conductivity.falls_per_k,
+        flash_point=card.flash_point_c,
+        lubricant_factor=card.lubricant_factor,
+        scuffing_temperature=card.scuffing_temperature_c,
+        fzg_stage=card.fzg_stage,
+    )
+
+
+def _law(given: PowerLaw | EsterLaw | FixedLaw) -> PowerOfViscosity | PolyolEster | FixedCoefficient:
+    if isinstance(given, PowerLaw):
+        return PowerOfViscosity(given.scale, given.exponent)
+    return FixedCoefficient(1e-9 * given.per_gpa) if isinstance(given, FixedLaw) else PolyolEster()

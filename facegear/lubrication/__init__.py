@@ -1,0 +1,1 @@
+"""Sliding, friction, loss, heat and lubricant film of the loaded contact."""

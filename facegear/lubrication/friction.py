@@ -1,0 +1,294 @@
+"""Friction coefficients of lubricated rolling and sliding contacts, each with the range it was measured in.
+
+Functions take SI units; the formulas quoted in docstrings are in those of their sources: w N/mm, v m/s, rho
+mm, eta mPa s, Ra um. The models differ by a factor of five on one pair, so no number is given without the
+name of its model.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Numbers = float | Array
+Mask = NDArray[np.bool_]
+
+LEAST_LINE_LOAD = 150e3
+"""N/m, of the gear tests behind Schlenk's formula and those of the standards."""
+
+LARGEST_SPEED = 50.0
+"""Pitch line velocity (m/s) of the same."""
+
+SMALLEST_SLIDE = 1e-3
+"""Sliding over u1 + u2 below which Benedict and Kelley's logarithm, infinite on the pitch line, is cut."""
+
+XU = (-8.916465, 1.03303, 1.036077, -0.354068, 2.812084, -0.100601, 0.752755, -0.390958, 0.620305)
+"""Coefficients b1..b9 of Xu's regression (Xu 2005), one 75W-90 oil."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rubbing:
+    """Where flanks rub: m places, all (m,) unless stated.
+
+    `line_load` N/m, relative `radius` of curvature across the line m, largest `pressure` Pa, rolling
+    velocities `u1` and `u2` across the line and the whole `sliding` velocity m/s. `pitch_speed` m/s;
+    viscosity (Pa s) of the oil as supplied, `oil_viscosity`, and at the flanks' bulk temperature,
+    `bulk_viscosity`; `film_ratio` lambda. `ra` the mean of both flanks' arithmetic roughness, `rq` the root
+    of the sum of the squares of their root mean square roughness, m.
+    """
+
+    line_load: Array
+    radius: Array
+    pressure: Array
+    u1: Array
+    u2: Array
+    sliding: Array
+    pitch_speed: float
+    oil_viscosity: float
+    bulk_viscosity: float
+    film_ratio: Array
+    ra: float
+    rq: float
+
+    @property
+    def rolled(self) -> Array:
+        """v_S = u1 + u2, m/s."""
+        return self.u1 + self.u2
+
+
+class FrictionModel(Protocol):
+    """A coefficient of friction at every place, and where it was measured."""
+
+    @property
+    def name(self) -> str: ...
+
+    def coefficient(self, at: Rubbing) -> Array:
+        """mu (m,)."""
+
+    def within(self, at: Rubbing) -> Mapping[str, Mask]:
+        """Which places (m,) lie within each limit of the model, by what the limit says."""
+
+
+@dataclass(frozen=True)
+class Constant:
+    """The same coefficient everywhere: for tests, and as a bound."""
+
+    value: float
+    name: str = "constant"
+
+    def coefficient(self, at: Rubbing) -> Array:
+        """mu (m,)."""
+        return np.full_like(at.line_load, self.value)
+
+    def within(self, at: Rubbing) -> Mapping[str, Mask]:
+        """No limits."""
+        return {}
+
+
+@dataclass(frozen=True)
+class Schlenk:
+    """ISO/TR 14179-2, taken at every place; X_L is 1 for mineral oil, 0.8 for PAO (the standard).
+
+    0.65 was measured on an ester and a PAO (GEARpie).
+    """
+
+    lubricant_factor: float = 1.0
+    name: str = "schlenk"
+
+    def coefficient(self, at: Rubbing) -> Array:
+        """mu (m,)."""
+        return schlenk(at.line_load, at.rolled, at.radius, at.oil_viscosity, at.ra, self.lubricant_factor)
+
+    def within(self, at: Rubbing) -> Mapping[str, Mask]:
+        """Line load and speed of the gear tests."""
+        return _gear_tests(at)
+
+
+@dataclass(frozen=True)
+class Iso633622:
+    """ISO/TS 6336-21 and -22 (ISO/TR 13989-2, 15144-1), taken at every place."""
+
+    lubricant_factor: float = 1.0
+    name: str = "iso_6336_22"
+
+    def coefficient(self, at: Rubbing) -> Array:
+        """mu (m,)."""
+        return iso_6336_22(at.line_load, at.rolled, at.radius, at.oil_viscosity, at.ra, self.lubricant_factor)
+
+    def within(self, at: Rubbing) -> Mapping[str, Mask]:
+        """Line load and speed of the gear tests."""
+        return _gear_tests(at)
+
+
+@dataclass(frozen=True)
+class Iso633620:
+    """ISO/TS 6336-20 (ISO/TR 13989-1), taken at every place."""
+
+    lubricant_factor: float = 1.0
+    name: str = "iso_6336_20"
+
+    def coefficient(self, at: Rubbing) -> Array:
+        """mu (m,)."""
+        return iso_6336_20(at.line_load, at.rolled, at.radius, at.oil_viscosity, at.ra, self.lubricant_factor)
+
+    def within(self, at: Rubbing) -> Mapping[str, Mask]:
+        """The speed of the gear tests."""
+        return {"pitch line velocity at most 50 m/s": _slow(at)}
+
+
+@dataclass(frozen=True)
+class BenedictKelley:
+    """Benedict and Kelley in the form of AGMA 925: low speed, thick oil."""
+
+    name: str = "benedict_kelley"
+
+    def coefficient(self, at: Rubbing) -> Array:
+        """mu (m,)."""
+        return benedict_kelley(at.line_load, at.rolled, at.sliding, at.bulk_viscosity, at.ra)
+
+    def within(self, at: Rubbing) -> Mapping[str, Mask]:
+        """Where the logarithm is not cut."""
+        return {"sliding above 0.1 % of the rolling velocities": at.sliding > SMALLEST_SLIDE * at.rolled}
+
+
+@dataclass(frozen=True)
+class Xu:
+    """Xu's regression of elastohydrodynamic traction (2005): one 75W-90 oil."""
+
+    name: str = "xu"
+
+    def coefficient(self, at: Rubbing) -> Array:
+        """mu (m,)."""
+        return xu(at.pressure, at.radius, at.u1, at.u2, at.bulk_viscosity, at.rq)
+
+    def within(self, at: Rubbing) -> Mapping[str, Mask]:
+        """Slide to roll ratio of the tests."""
+        return {"slide to roll ratio at most 1": 2 * np.abs(at.u1 - at.u2) <= np.abs(at.rolled)}
+
+
+@dataclass(frozen=True)
+class Doleschel:
+    """Solid and fluid friction by the film's share of the load (Doleschel 2002).
+
+    xi mu_F + (1 - xi) mu_EHD, xi = (1 - lambda/2)^2 below lambda = 2, with p in 1000 MPa and eta in mPa s
+    at the oil's temperature: mu_F = solid p^solid_pressure v_S^solid_speed and mu_EHD = fluid
+    p^fluid_pressure v_S^fluid_speed eta^fluid_viscosity. The seven constants are from a twin disc test of
+    the oil.
+    """
+
+    solid: float
+    solid_pressure: float
+    solid_speed: float
+    fluid: float
+    fluid_pressure: float
+    fluid_speed: float
+    fluid_viscosity: float
+    name: str = "doleschel"
+
+    def coefficient(self, at: Rubbing) -> Array:
+        """mu (m,)."""
+        share = np.where(at.film_ratio < 2, (1 - np.minimum(at.film_ratio, 2.0) / 2) ** 2, 0.0)
+        pressure = 1e-9 * at.pressure
+        solid = self.solid * pressure**self.solid_pressure * at.rolled**self.solid_speed
+        fluid = self.fluid * pressure**self.fluid_pressure * at.rolled**self.fluid_speed
+        return share * solid + (1 - share) * fluid * (1e3 * at.oil_viscosity) ** self.fluid_viscosity
+
+    def within(self, at: Rubbing) -> Mapping[str, Mask]:
+        """None known: those of the test that gave the constants."""
+        return {}
+
+
+def schlenk(
+    line_load: Numbers,
+    rolled: Numbers,
+    radius: Numbers,
+    viscosity: Numbers,
+    ra: float,
+    factor: float = 1.0,
+) -> Array:
+    """0.048 (w/(v_S rho))^0.2 eta^-0.05 Ra^0.25 X_L."""
+    rough = (1e6 * ra) ** 0.25
+    return 0.048 * _loaded(line_load, rolled, radius) * _thick(viscosity) * rough * factor
+
+
+def iso_6336_22(
+    line_load: Numbers,
+    rolled: Numbers,
+    radius: Numbers,
+    viscosity: Numbers,
+    ra: float,
+    factor: float = 1.0,
+) -> Array:
+    """0.045 (w K/(v_S rho))^0.2 eta^-0.05 X_R X_L, X_R = 2.2 (Ra/rho)^0.25; `line_load` has K in it."""
+    rough = 2.2 * (1e3 * ra / np.asarray(radius, float)) ** 0.25
+    return 0.045 * _loaded(line_load, rolled, radius) * _thick(viscosity) * rough * factor
+
+
+def iso_6336_20(
+    line_load: Numbers,
+    rolled: Numbers,
+    radius: Numbers,
+    viscosity: Numbers,
+    ra: float,
+    factor: float = 1.0,
+) -> Array:
+    """0.060 (w_Bt/(v_S rho))^0.2 X_L Ra^0.25 with X_L = factor eta^-0.05."""
+    rough = (1e6 * ra) ** 0.25
+    return 0.060 * _loaded(line_load, rolled, radius) * _thick(viscosity) * rough * factor
+
+
+def benedict_kelley(
+    line_load: Numbers, rolled: Numbers, sliding: Numbers, viscosity: Numbers, ra: float
+) -> Array:
+    """0.0127 min(3, 1.13/(1.13 - Ra)) log10(29 660 w/(eta v_s v_S^2)), not below 0."""
+    left = 1.13 - 1e6 * ra
+    rough = min(3.0, 1.13 / left) if left > 0 else 3.0
+    rolled = np.asarray(rolled, float)
+    slid = np.maximum(np.asarray(sliding, float), SMALLEST_SLIDE * rolled)
+    inside = (
+        29660 * 1e-3 * np.asarray(line_load, float) / (1e3 * np.asarray(viscosity, float) * slid * rolled**2)
+    )
+    return np.maximum(0.0127 * rough * np.log10(inside), 0.0)
+
+
+def xu(pressure: Numbers, radius: Numbers, u1: Numbers, u2: Numbers, viscosity: Numbers, rq: float) -> Array:
+    """e^f p^b2 |SR|^b3 u_e^b6 eta^b7 R^b8, f = b1 + b4 A + b5 e^-A + b9 e^S, A = |SR| p log10 eta.
+
+    p GPa, u_e = (u1 + u2)/2, SR = (u1 - u2)/u_e, R m, S um.
+    """
+    p, speed, thick = (
+        1e-9 * np.asarray(pressure, float),
+        0.5 * (np.asarray(u1, float) + u2),
+        1e3 * np.asarray(viscosity, float),
+    )
+    slide = np.abs(np.asarray(u1, float) - u2) / speed
+    b1, b2, b3, b4, b5, b6, b7, b8, b9 = XU
+    heat = slide * p * np.log10(thick)
+    power = b1 + b4 * heat + b5 * np.exp(-heat) + b9 * np.exp(1e6 * rq)
+    return np.exp(power) * p**b2 * slide**b3 * speed**b6 * thick**b7 * np.asarray(radius, float) ** b8
+
+
+def _loaded(line_load: Numbers, rolled: Numbers, radius: Numbers) -> Array:
+    """(w/(v_S rho))^0.2 in N/mm, m/s and mm."""
+    return (
+        1e-6 * np.asarray(line_load, float) / (np.asarray(rolled, float) * np.asarray(radius, float))
+    ) ** 0.2
+
+
+def _thick(viscosity: Numbers) -> Array:
+    """eta^-0.05 in mPa s."""
+    return (1e3 * np.asarray(viscosity, float)) ** -0.05
+
+
+def _slow(at: Rubbing) -> Mask:
+    return np.full(at.line_load.shape, at.pitch_speed <= LARGEST_SPEED)
+
+
+def _gear_tests(at: Rubbing) -> Mapping[str, Mask]:
+    return {
+        "line load at least 150 N/mm": at.line_load >= LEAST_LINE_LOAD,
+        "pitch line velocity at most 50 m/s": _slow(at),
+    }

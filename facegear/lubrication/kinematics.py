@@ -1,0 +1,138 @@
+"""How fast the flanks slide and roll on each other, in the mesh frame of `facegear.geometry.design`.
+
+The flanks' velocities are those of the unloaded angles; load moves a contact line by some 0.01 mm.
+"""
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from facegear.contact.lines import ContactLines
+from facegear.geometry import pinion
+from facegear.geometry.design import PairDesign
+from facegear.geometry.pinion_surface import SurfacePoints, flank_points
+from facegear.geometry.placement import AXIS, RigidMotion, pinion_to_gear
+
+Array = NDArray[np.float64]
+
+FILLET_SAMPLES = 4001
+
+
+@dataclass(frozen=True, eq=False)
+class Spin:
+    """A body that turns about the unit vector `axis` (3,) through a point (3,) m at `speed` rad/s."""
+
+    axis: Array
+    through: Array
+    speed: float
+
+    def velocity(self, points: Array) -> Array:
+        """Of its points (..., 3) m, m/s."""
+        return self.speed * np.cross(self.axis, points - self.through)
+
+    def torque(self, points: Array, forces: Array) -> float:
+        """Of forces (n, 3) N at points (n, 3) m about the axis, N m."""
+        return float((np.cross(points - self.through, forces) @ self.axis).sum())
+
+
+def slip(first: Spin, second: Spin, points: Array, normals: Array) -> tuple[Array, Array]:
+    """Velocity of the first body over the second at points with common normals, each (..., 3).
+
+    The part in the tangent plane (..., 3), and the part along the normal (...), which belongs to teeth that
+    open or close; m/s.
+    """
+    relative = first.velocity(points) - second.velocity(points)
+    along = np.einsum("...i,...i->...", relative, normals)
+    return relative - along[..., None] * normals, along
+
+
+def spins(design: PairDesign, speed: float = 1.0) -> tuple[Spin, Spin]:
+    """Pinion and face gear at the pinion's speed (rad/s), the gear at the exact ratio, assembly errors in."""
+    stands = standing(design, 0.5 * 2 * pi / design.pinion.teeth, 0)
+    ratio = design.pinion.teeth / design.face_gear.teeth
+    return (
+        Spin(stands.directions(AXIS["pinion"]), stands.shift, speed),
+        Spin(AXIS["face_gear"], np.zeros(3), ratio * speed),
+    )
+
+
+def standing(design: PairDesign, phi1: ArrayLike, tooth: ArrayLike) -> RigidMotion:
+    """From the pinion's body frame to the mesh frame, its tooth 0 standing as tooth `tooth` at phi1 (rad)."""
+    turned = np.asarray(phi1, float) + np.asarray(tooth, float) * 2 * pi / design.pinion.teeth
+    return pinion_to_gear(design, turned, np.zeros_like(turned), np.zeros_like(turned))
+
+
+def pinion_angle(design: PairDesign, position: ArrayLike) -> Array:
+    """phi1 (rad) at a position 0..1 of a pitch."""
+    return (np.asarray(position, float) - 0.5) * 2 * pi / design.pinion.teeth
+
+
+def surface_normals(design: PairDesign, points: Array) -> Array:
+    """Outward unit normals (n, 3) of points (n, 3) m on the pinion's right flank or fillet, body frame.
+
+    A point of the involute lies on a tangent of the base circle, and so it does where a relief moved it along
+    that tangent; the normal is the tangent.
+    """
+    x, z = points[..., 0], points[..., 2]
+    radius, angle = np.hypot(x, z), np.arctan2(x, -z)
+    roll = np.sqrt(np.maximum((radius / design.pinion_base_radius) ** 2 - 1.0, 0.0))
+    tangent = angle - np.arctan(roll)
+    nx, nz = np.cos(tangent), np.sin(tangent)
+    end, _ = pinion.involute_point(design, max(pinion.junction_roll(design), 0.0))
+    below = radius < end * (1 - 1e-12)
+    if below.any():
+        gamma = np.linspace(design.pressure_angle, 0.5 * pi, FILLET_SAMPLES)
+        radii, _ = pinion.trochoid_point(design, gamma)
+        found = np.interp(radius[below], radii[::-1], gamma[::-1])
+        nx[below], nz[below] = pinion.trochoid_normal(design, found)
+    return np.stack([nx, np.zeros_like(nx), nz], axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class LineKinematics:
+    """Velocities at the points of contact lines for a pinion that turns by 1 rad/s: all (p, n), in m.
+
+    `sliding` the magnitude of the sliding velocity, `across` and `along` its parts across the line and along
+    it (pinion over gear). `u1` and `u2` the rolling velocities of pinion and gear across the line,
+    `entrained` half the sum of both along the line, relative to a point of the line in a plane that stands.
+    `point` (p, n, 3) in the mesh frame. nan where the line's slope is not known.
+    """
+
+    sliding: Array
+    across: Array
+    along: Array
+    u1: Array
+    u2: Array
+    entrained: Array
+    point: Array
+
+
+def line_kinematics(design: PairDesign, lines: ContactLines, position: Array, tooth: Array) -> LineKinematics:
+    """Of the lines (p, n) of pairs `tooth` (p,) at positions (p,) of a pitch.
+
+    On the pinion's flank t points across the profile towards its axis and e along that axis; the line is
+    l = cos(slope) e + sin(slope) t, and across it stands p = cos(slope) t - sin(slope) e.
+    """
+    surface = flank_points(design, lines.roll, lines.y)
+    stands = standing(design, pinion_angle(design, position), tooth)
+    placed = SurfacePoints(stands.points(surface.position), stands.directions(surface.normal))
+    sliding, _ = slip(*spins(design), placed.position, placed.normal)
+    nx, nz = surface.normal[..., 0], surface.normal[..., 2]
+    profile = stands.directions(np.stack([-nz, np.zeros_like(nx), nx], axis=-1))
+    axial = stands.directions(np.broadcast_to([0.0, 1.0, 0.0], surface.normal.shape))
+    down, beside = (np.einsum("...i,...i->...", sliding, way) for way in (profile, axial))
+    cosine, sine = np.cos(lines.slope), np.sin(lines.slope)
+    across, along = cosine * down - sine * beside, sine * down + cosine * beside
+    rho = design.pinion_base_radius * lines.roll
+    u1 = rho * cosine
+    return LineKinematics(
+        sliding=np.hypot(down, beside),
+        across=across,
+        along=along,
+        u1=u1,
+        u2=u1 - across,
+        entrained=rho * sine - 0.5 * along,
+        point=placed.position,
+    )

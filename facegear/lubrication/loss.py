@@ -1,0 +1,151 @@
+"""Loss in the mesh from the contact forces and the sliding velocities where they act."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import acos, pi, sin, sqrt, tan
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+
+from facegear.geometry.design import PairDesign
+from facegear.lubrication.kinematics import (
+    pinion_angle,
+    slip,
+    spins,
+    standing,
+    surface_normals,
+)
+
+Array = NDArray[np.float64]
+Numbers = float | Array
+
+
+@dataclass(frozen=True, eq=False)
+class HatSlip:
+    """Every loaded hat of every contact, all (m,) unless stated.
+
+    `torque` (N m on the pinion), `position` 0..1 of a pitch, `tooth` pair, `plane` of the lattice across the
+    pinion's axis, `force` (N) along the normal. `point` (m, 3) m and `normal` (m, 3) in the mesh frame.
+    `velocity` (m, 3): sliding of the pinion over the gear at 1 rad/s, in m; `closing` (m,) m: the part of
+    the relative velocity along the normal.
+    """
+
+    torque: Array
+    position: Array
+    tooth: NDArray[np.int64]
+    plane: NDArray[np.int64]
+    force: Array
+    point: Array
+    normal: Array
+    velocity: Array
+    closing: Array
+
+    @property
+    def sliding(self) -> Array:
+        """Magnitude of the sliding velocity at 1 rad/s, (m,), m."""
+        return np.linalg.norm(self.velocity, axis=-1)
+
+
+def hat_slip(design: PairDesign, arrays: Mapping[str, NDArray]) -> HatSlip:
+    """Of the forces in arrays as PRESSURE_ARRAYS (see `facegear.contact.columns`).
+
+    The forces carry the whole torque; the smoothed line loads carry 1 to 2 % less.
+    """
+    node, tooth, position = arrays["node"], arrays["tooth"], arrays["position"]
+    nodes = arrays["point_m"]
+    normals = surface_normals(design, nodes)
+    point, normal = np.empty((node.size, 3)), np.empty((node.size, 3))
+    stages, of = np.unique(np.stack([position, tooth], axis=1), axis=0, return_inverse=True)
+    motions = standing(design, pinion_angle(design, stages[:, 0]), stages[:, 1])
+    matrix, shift = motions.matrix[of.ravel()], motions.shift[of.ravel()]
+    point = np.einsum("mij,mj->mi", matrix, nodes[node]) + shift
+    normal = np.einsum("mij,mj->mi", matrix, normals[node])
+    velocity, closing = slip(*spins(design), point, normal)
+    return HatSlip(
+        torque=arrays["torque_n_m"],
+        position=position,
+        tooth=tooth,
+        plane=node % int(arrays["shape"][1]),
+        force=arrays["force_n"],
+        point=point,
+        normal=normal,
+        velocity=velocity,
+        closing=closing,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class LossFactors:
+    """H_V at t torques (N m) and p positions of a pitch, `at` (t, p): loss over mu T w.
+
+    With a coefficient that varies it is the loss over T w itself, see `loss_factors`.
+    """
+
+    torques: Array
+    positions: Array
+    at: Array
+
+    @property
+    def mean(self) -> Array:
+        """Over the positions of a pitch, which are spread evenly, (t,)."""
+        return self.at.mean(axis=1)
+
+
+def loss_factors(hats: HatSlip, friction: Numbers = 1.0) -> LossFactors:
+    """sum friction f |v| / (T w) of every contact: H_V for friction 1, the part of the power lost otherwise.
+
+    friction: a coefficient, or one of each hat (m,).
+    """
+    torques, row = np.unique(hats.torque, return_inverse=True)
+    positions, column = np.unique(hats.position, return_inverse=True)
+    summed = np.zeros((torques.size, positions.size))
+    np.add.at(summed, (row, column), friction * hats.force * hats.sliding)
+    return LossFactors(torques, positions, summed / torques[:, None])
+
+
+@dataclass(frozen=True, eq=False)
+class OverTorque:
+    """A quantity known at t torques (N m), between them monotone in the logarithm of the torque.
+
+    Outside the torques it keeps the value of the nearest; `within` says where it is known.
+    """
+
+    torques: Array
+    values: Array
+
+    def at(self, torque: Numbers) -> Array:
+        """Values at torques of any shape; a torque of 0 counts as the smallest."""
+        asked = np.clip(np.abs(np.asarray(torque, float)), self.torques[0], self.torques[-1])
+        if self.torques.size == 1:
+            return np.full(asked.shape, self.values[0])
+        return PchipInterpolator(np.log(self.torques), self.values)(np.log(asked))
+
+    def within(self, torque: Numbers) -> NDArray[np.bool_]:
+        """Whether torques of any shape lie between the smallest and the largest."""
+        asked = np.abs(np.asarray(torque, float))
+        return (asked >= self.torques[0] * (1 - 1e-12)) & (asked <= self.torques[-1] * (1 + 1e-12))
+
+
+def section_loss_factor(design: PairDesign, radius: float) -> float:
+    """H_V of the plane at a radius (m) of the face gear, load shared equally in double contact.
+
+    The form of Ohlendorf for a rack, and the part of sliding along the pinion's axis: exact for N_s = N1 and
+    no assembly errors, contact ratios between 1 and 2 and both parts of the path below a pitch.
+    """
+    ratio = design.pinion.teeth / design.face_gear.teeth
+    cosine = design.pinion_base_radius / (ratio * radius)
+    angle = acos(cosine)
+    pitch = 2 * pi * design.pinion_base_radius / design.pinion.teeth
+    recess = (design.pinion_tip_roll - tan(angle)) * design.pinion_base_radius / pitch
+    approach = (design.gear_tip_plane + ratio * radius) / (sin(angle) * pitch)
+    whole = recess + approach
+    factor = 1 - whole + recess**2 + approach**2
+    return sqrt(1 + (ratio * cosine) ** 2) * pi / design.pinion.teeth * factor
+
+
+def spur_loss_factor(teeth: tuple[int, int], recess: float, approach: float) -> float:
+    """H_V of Ohlendorf for a spur pair: contact ratios of the pinion's tip (recess) and of the wheel's."""
+    ratio = teeth[1] / teeth[0]
+    whole = recess + approach
+    return pi * (ratio + 1) / (teeth[0] * ratio) * (1 - whole + recess**2 + approach**2)

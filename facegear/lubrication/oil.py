@@ -1,0 +1,132 @@
+"""Lubricating oil: viscosity, density, pressure coefficient and conductivity over temperature, SI units.
+
+Temperatures of public functions are in degrees Celsius, as every oil card and standard has them.
+"""
+
+from dataclasses import dataclass
+from math import log, log10
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from facegear.errors import FacegearError
+
+Array = NDArray[np.float64]
+
+ZERO = 273.15
+SHIFT = 0.7
+"""Of ASTM D341, mm2/s."""
+
+DENSITY_SLOPE = 0.7
+"""kg/m3 that the density falls by in a degree (ISO/TR 15144-1)."""
+
+REFERENCE = 15.0
+"""Temperature (C) of the density that cards give."""
+
+
+@dataclass(frozen=True)
+class PowerOfViscosity:
+    """Pressure coefficient s nu^t in 1/GPa, nu in mm2/s (Gold, Schmidt, Dicke, Loos, Assmann 2001)."""
+
+    scale: float
+    exponent: float
+
+    def at(self, kinematic: Array, dynamic: Array) -> Array:
+        """Coefficient, 1/Pa, of a kinematic (m2/s) and a dynamic viscosity (Pa s)."""
+        return 1e-9 * self.scale * (1e6 * kinematic) ** self.exponent
+
+
+@dataclass(frozen=True)
+class PolyolEster:
+    """Pressure coefficient of MIL-L-23699 as a public rolling bearing code has it."""
+
+    def at(self, kinematic: Array, dynamic: Array) -> Array:
+        """Coefficient, 1/Pa, of a kinematic (m2/s) and a dynamic viscosity (Pa s)."""
+        return np.exp(1.15607 * np.log(dynamic) - 17.496) / dynamic
+
+
+@dataclass(frozen=True)
+class FixedCoefficient:
+    """A pressure coefficient (1/Pa) that does not depend on temperature."""
+
+    value: float
+
+    def at(self, kinematic: Array, dynamic: Array) -> Array:
+        """The same value for every viscosity."""
+        return np.full_like(kinematic, self.value)
+
+
+@dataclass(frozen=True)
+class Oil:
+    """An oil by kinematic `viscosities` (m2/s) at two `temperatures` (C), and its density (kg/m3) at 15 C.
+
+    `conductivity` (W/(m K)) at `conductivity_at` (C), falling by `conductivity_slope` a degree.
+    `flash_point` (C). `lubricant_factor` X_L of Schlenk's friction. `scuffing_temperature` (C), the mean of
+    tests, and `fzg_stage`, the failure load stage S_FZG, where a source gives one. Raises FacegearError
+    unless the viscosity falls with temperature.
+    """
+
+    name: str
+    source: str
+    temperatures: tuple[float, float]
+    viscosities: tuple[float, float]
+    density: float
+    pressure_coefficient: PowerOfViscosity | PolyolEster | FixedCoefficient
+    conductivity: float
+    conductivity_at: float
+    conductivity_slope: float
+    flash_point: float
+    lubricant_factor: float
+    scuffing_temperature: float | None = None
+    fzg_stage: float | None = None
+
+    def __post_init__(self) -> None:
+        (low, high), (thick, thin) = self.temperatures, self.viscosities
+        if not (low < high and thick > thin > 0):
+            raise FacegearError(f"oil {self.name}: viscosity must fall with temperature")
+
+    @property
+    def slope(self) -> float:
+        """B of log10 log10(nu + 0.7) = A - B log10 T."""
+        return (_double_log(self.viscosities[0]) - _double_log(self.viscosities[1])) / (
+            log10(self.temperatures[1] + ZERO) - log10(self.temperatures[0] + ZERO)
+        )
+
+    @property
+    def intercept(self) -> float:
+        """A of the same."""
+        return _double_log(self.viscosities[0]) + self.slope * log10(self.temperatures[0] + ZERO)
+
+    def kinematic_viscosity(self, temperature: ArrayLike) -> Array:
+        """nu (m2/s) at a temperature (C): ASTM D341."""
+        kelvin = np.asarray(temperature, float) + ZERO
+        return 1e-6 * (10.0**10.0 ** (self.intercept - self.slope * np.log10(kelvin)) - SHIFT)
+
+    def density_at(self, temperature: ArrayLike) -> Array:
+        """Density, kg/m3."""
+        return self.density - DENSITY_SLOPE * (np.asarray(temperature, float) - REFERENCE)
+
+    def viscosity(self, temperature: ArrayLike) -> Array:
+        """Dynamic viscosity, Pa s."""
+        return self.kinematic_viscosity(temperature) * self.density_at(temperature)
+
+    def thinning(self, temperature: ArrayLike) -> Array:
+        """beta = -d ln nu / dT, 1/K."""
+        shifted = 1e6 * self.kinematic_viscosity(temperature) + SHIFT
+        kelvin = np.asarray(temperature, float) + ZERO
+        return self.slope * shifted * np.log(shifted) / ((shifted - SHIFT) * kelvin)
+
+    def pressure_coefficient_at(self, temperature: ArrayLike) -> Array:
+        """alpha of Barus's law, 1/Pa."""
+        return self.pressure_coefficient.at(
+            self.kinematic_viscosity(temperature), self.viscosity(temperature)
+        )
+
+    def conductivity_of(self, temperature: ArrayLike) -> Array:
+        """Thermal conductivity, W/(m K)."""
+        above = np.asarray(temperature, float) - self.conductivity_at
+        return self.conductivity - self.conductivity_slope * above
+
+
+def _double_log(viscosity: float) -> float:
+    return log10(log(1e6 * viscosity + SHIFT) / log(10.0))

@@ -1,0 +1,164 @@
+"""Where flanks touch under load: load, curvature and velocities of every loaded plane of a contact line."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.contact.columns import EDGES
+from facegear.contact.lines import ContactLines, contact_lines
+from facegear.geometry.design import PairDesign
+from facegear.geometry.placement import conjugate_angle
+from facegear.geometry.unloaded import PAIRS
+from facegear.lubrication.kinematics import line_kinematics, pinion_angle
+from facegear.lubrication.loss import HatSlip
+
+Array = NDArray[np.float64]
+
+INSIDE = EDGES.index("inside")
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Loaded planes across the pinion's axis, all (m,), SI units; velocities for a pinion at 1 rad/s, in m.
+
+    `torque`, `position`, `tooth`, `plane` say which; `inside` whether no edge is near. `y` along the pinion's
+    axis, `roll` on its flank. `line_load` along the line and the `length` it stands for; `pressure` and
+    `half_width` of the strip and `half_length` of its line. Relative `radius` of curvature across the line,
+    rolling velocities `u1`, `u2` across it, the whole `sliding` velocity and its parts `across` and `along`,
+    and what is `entrained` along the line.
+    """
+
+    torque: Array
+    position: Array
+    tooth: NDArray[np.int64]
+    plane: NDArray[np.int64]
+    inside: NDArray[np.bool_]
+    y: Array
+    roll: Array
+    line_load: Array
+    length: Array
+    pressure: Array
+    half_width: Array
+    half_length: Array
+    radius: Array
+    u1: Array
+    u2: Array
+    sliding: Array
+    across: Array
+    along: Array
+    entrained: Array
+
+    @property
+    def ellipse_force(self) -> Array:
+        """Force (N) of an ellipse of the largest pressure, the strip's width and the line's length."""
+        return 2 / 3 * np.pi * self.half_width * self.half_length * self.pressure
+
+
+def stored_lines(
+    design: PairDesign, arrays: Mapping[str, NDArray], unloaded: Mapping[float, float]
+) -> ContactLines:
+    """The contact lines of arrays as PRESSURE_ARRAYS; `unloaded` error (m) by position.
+
+    Raises NotConverged as `facegear.geometry.separation` does.
+    """
+    position, tooth = arrays["contact_position"], arrays["contact_tooth"]
+    phi1 = pinion_angle(design, position)
+    # the pinion ahead is positive, as in `facegear.contact.pressure.flank_pressure`
+    behind = -np.array([unloaded[at] for at in position.tolist()])
+    phi2 = conjugate_angle(design, phi1) + behind / design.gear_base_radius
+    planes = arrays["point_m"].reshape(*arrays["shape"], 3)[0, :, 1]
+    return contact_lines(design, phi1, phi2, tooth, planes)
+
+
+def places(design: PairDesign, arrays: Mapping[str, NDArray], lines: ContactLines, modulus: float) -> Places:
+    """Of the line loads in arrays as PRESSURE_ARRAYS, with their contact lines; `modulus` E* (Pa).
+
+    Beside an edge the curvature and slope are those of the nearest plane that has any, and the pressure that
+    of a long strip: they serve the friction coefficient alone.
+    """
+    filled = _filled(lines)
+    position, tooth = arrays["contact_position"], arrays["contact_tooth"]
+    moving = line_kinematics(design, filled, position, tooth)
+    row = _rows(arrays)
+    at = row, arrays["line_plane"]
+    load, curvature = arrays["line_load_n_per_m"], filled.curvature[at]
+    inside = arrays["line_where"] == INSIDE
+    long = np.sqrt(load * modulus * curvature / np.pi)
+    wide = np.sqrt(4 * load / (np.pi * modulus * curvature))
+    return Places(
+        torque=arrays["line_torque_n_m"],
+        position=arrays["line_position"],
+        tooth=arrays["line_tooth"],
+        plane=arrays["line_plane"],
+        inside=inside,
+        y=lines.y[at[1]],
+        roll=lines.roll[at],
+        line_load=load,
+        length=arrays["line_length_m"],
+        pressure=np.where(inside, arrays["line_pressure_pa"], long),
+        half_width=np.where(inside, arrays["line_half_width_m"], wide),
+        half_length=_half_lengths(arrays, row),
+        radius=1 / curvature,
+        u1=moving.u1[at],
+        u2=moving.u2[at],
+        sliding=moving.sliding[at],
+        across=moving.across[at],
+        along=moving.along[at],
+        entrained=moving.entrained[at],
+    )
+
+
+def at_hats(found: Places, hats: HatSlip, values: Array) -> Array:
+    """Values (m,) of places at every hat (h,): of the hat's plane, or the nearest loaded one of its line.
+
+    A hat whose line has no value anywhere takes their mean, weighted with load.
+    """
+    torques, first = np.unique(np.concatenate([found.torque, hats.torque]), return_inverse=True)
+    positions, second = np.unique(np.concatenate([found.position, hats.position]), return_inverse=True)
+    count, planes = found.torque.size, 1 + int(max(found.plane.max(), hats.plane.max()))
+    line = (
+        (first * positions.size + second) * PAIRS.size + np.concatenate([found.tooth, hats.tooth]) - PAIRS[0]
+    )
+    table = np.full((torques.size * positions.size * PAIRS.size, planes), np.nan)
+    table[line[:count], found.plane] = values
+    near = _nearest(table)
+    on = np.isfinite(values)
+    mean = np.average(values[on], weights=(found.line_load * found.length)[on])
+    picked = near[line[count:], hats.plane]
+    return np.where(np.isfinite(picked), picked, mean)
+
+
+def _filled(lines: ContactLines) -> ContactLines:
+    known = {name: getattr(lines, name) for name in lines.__dataclass_fields__}
+    return ContactLines(**{**known, "curvature": _nearest(lines.curvature), "slope": _nearest(lines.slope)})
+
+
+def _nearest(values: Array) -> Array:
+    """Rows (p, n) in which a nan takes the value of the nearest column that has one, if any has."""
+    columns = np.arange(values.shape[1])
+    known = np.isfinite(values)
+    before = np.maximum.accumulate(np.where(known, columns, -1), axis=1)
+    after = np.minimum.accumulate(np.where(known, columns, 2 * columns.size)[:, ::-1], axis=1)[:, ::-1]
+    back = np.where(before >= 0, columns - before, 3 * columns.size)
+    take = np.where(back <= after - columns, before, after)
+    found = np.take_along_axis(values, np.clip(take, 0, columns.size - 1), axis=1)
+    return np.where(known.any(axis=1, keepdims=True), found, np.nan)
+
+
+def _rows(arrays: Mapping[str, NDArray]) -> NDArray[np.int64]:
+    """Contact line (m,) of every loaded plane."""
+    keys = zip(arrays["contact_position"].tolist(), arrays["contact_tooth"].tolist(), strict=True)
+    row = {key: number for number, key in enumerate(keys)}
+    asked = zip(arrays["line_position"].tolist(), arrays["line_tooth"].tolist(), strict=True)
+    return np.array([row[key] for key in asked], dtype=np.int64)
+
+
+def _half_lengths(arrays: Mapping[str, NDArray], row: NDArray[np.int64]) -> Array:
+    """Half the loaded length (m,) of the line that each plane belongs to."""
+    _, torque = np.unique(arrays["line_torque_n_m"], return_inverse=True)
+    _, line = np.unique(torque * (row.max() + 1) + row, return_inverse=True)
+    whole = np.zeros(line.max(initial=0) + 1)
+    np.add.at(whole, line, arrays["line_length_m"])
+    return 0.5 * whole[line]

@@ -1,0 +1,48 @@
+"""Oils: viscosity over temperature against published values, and what follows from it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from facegear.config.oil_card import OIL_CARDS, oil_card
+from facegear.errors import FacegearError
+
+NAMES = sorted(path.stem for path in OIL_CARDS.glob("*.yaml"))
+ESTER = oil_card(OIL_CARDS / "polyol_ester_5_cst.yaml")
+
+
+def test_ester_turbine_oil_has_the_viscosities_of_astm_d341():
+    assert [ESTER.intercept, ESTER.slope] == pytest.approx([9.3125865871, 3.6665030529], abs=1e-9)
+    assert ESTER.kinematic_viscosity([40, 80, 100, 120]) * 1e6 == pytest.approx(
+        [27.6, 7.896071712, 5.1, 3.569933275], rel=1e-9
+    )
+    assert float(ESTER.viscosity(80.0)) == pytest.approx(7.5644367e-3, rel=1e-8)
+
+
+def test_ester_turbine_oil_has_the_pressure_coefficient_of_its_source():
+    assert ESTER.pressure_coefficient_at([40, 100, 150]) * 1e9 == pytest.approx([14.4, 11.0, 9.6], abs=0.05)
+    assert float(ESTER.pressure_coefficient_at(80.0)) == pytest.approx(11.76317092e-9, rel=1e-8)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_oil_of_the_package_thins_as_it_warms_and_stiffens_less_under_pressure(name):
+    oil = oil_card(OIL_CARDS / f"{name}.yaml")
+    warm = np.linspace(0.0, oil.flash_point, 30)
+    for values in (oil.viscosity(warm), oil.density_at(warm), oil.pressure_coefficient_at(warm)):
+        assert (np.diff(values) < 0).all()
+    assert (oil.conductivity_of(warm) > 0.08).all()
+    assert oil.kinematic_viscosity(oil.temperatures) == pytest.approx(oil.viscosities, rel=1e-12)
+
+
+@given(st.floats(20.0, 180.0))
+def test_thinning_is_the_slope_of_the_logarithm_of_viscosity(temperature):
+    high, low = (np.log(ESTER.kinematic_viscosity(temperature + step)) for step in (0.01, -0.01))
+    assert float(ESTER.thinning(temperature)) == pytest.approx(-(high - low) / 0.02, rel=1e-6)
+
+
+def test_an_oil_that_thickens_as_it_warms_is_refused():
+    with pytest.raises(FacegearError, match="viscosity must fall with temperature"):
+        replace(ESTER, viscosities=(5e-6, 27e-6))
