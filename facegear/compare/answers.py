@@ -22,6 +22,8 @@ SAME_DATE = (2000, 1, 1, 0, 0, 0)
 def stored() -> list[str]:
     """Names `version/machine` of the stored answers."""
     folder = files("facegear.compare").joinpath("stored")
+    if not folder.is_dir():
+        return []
     return sorted(
         f"{version.name}/{entry.name.removesuffix('.zip')}"
         for version in folder.iterdir()
