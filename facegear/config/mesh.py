@@ -16,10 +16,17 @@ class SizesSection(Section):
     width_mm: float = Field(gt=0, le=100, description="along the face")
     thickness_mm: float = Field(gt=0, le=100, description="largest inside the tooth and the body below")
     fillet_mm: float | None = Field(
-        default=None, gt=0, le=100, description="along the fillet's profile; null: as across the flank"
+        default=None,
+        gt=0,
+        le=100,
+        description="along the lower half of the fillet's profile; null: as across the flank, half of that "
+        "below a thin fillet",
     )
     fillet_depth_mm: float | None = Field(
-        default=None, gt=0, le=100, description="below a thin fillet; null: half of profile_mm"
+        default=None,
+        gt=0,
+        le=100,
+        description="first row below a thin fillet, less below a sharp one; null: 0.8 of profile_mm",
     )
 
 
@@ -29,7 +36,7 @@ class Mesh(Section):
     resolution: Literal["coarse", "medium", "fine", "finest"] | SizesSection = "coarse"
     thin_fillet: bool | None = Field(
         default=None,
-        description="first row of elements thinner below the fillets; null: where root stress is asked for",
+        description="finer elements at and below the fillets; null: where root stress is asked for",
     )
     exported_teeth: int = Field(
         default=3, ge=1, le=2000, description="teeth in mesh files, at most all of them"

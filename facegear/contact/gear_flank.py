@@ -35,6 +35,7 @@ STORED = {
     "junction": (None,),
     "gauge_position_m": (None, None, None, None),
     "gauge_across": (None, None, None, None),
+    "gauge_error": (None,),
 }
 """Names and shapes of the arrays of a stored flank; u, v and junction as in `ContactSide`."""
 
@@ -52,6 +53,7 @@ def to_arrays(flank: GearFlank) -> dict[str, NDArray]:
         "junction": side.junction,
         "gauge_position_m": none if gauges is None else gauges.position,
         "gauge_across": none if gauges is None else gauges.across,
+        "gauge_error": np.zeros(0) if gauges is None else gauges.error,
     }
 
 
@@ -65,5 +67,5 @@ def from_arrays(arrays: Mapping[str, NDArray]) -> GearFlank:
         junction=arrays["junction"],
     )
     position, across = arrays["gauge_position_m"], arrays["gauge_across"]
-    gauges = RootGauges(position, across) if position.size else None
+    gauges = RootGauges(position, across, arrays["gauge_error"]) if position.size else None
     return GearFlank(side, compliance.from_arrays(arrays), gauges)

@@ -8,6 +8,7 @@ from facegear.contact.gear_flank import GearFlank
 from facegear.contact.ltca import ContactModel
 from facegear.contact.options import ContactPlan, Ends
 from facegear.contact.root_gauges import root_gauges
+from facegear.contact.section_error import section_errors
 from facegear.contact.teeth import elastic_tooth
 from facegear.errors import ConfigError
 from facegear.geometry.design import Material, PairDesign
@@ -36,7 +37,10 @@ def gear_flank(
     require_right_side_out(tooth)
     elastic, side = elastic_tooth(design, tooth, material)
     teeth, neighbours, ends = extent(tooth, body, plan)
-    gauges, rows = root_gauges(tooth, material) if plan.root_stress else (None, None)
+    gauges, rows = None, None
+    if plan.root_stress:
+        errors = section_errors(design, body, BUILDERS[body], sizes, material)
+        gauges, rows = root_gauges(tooth, material, errors)
     found = flank_compliance(elastic, plan.refinement, teeth, neighbours, ends, plan.element, rows)
     return GearFlank(side, found, gauges)
 

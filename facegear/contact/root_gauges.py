@@ -1,12 +1,13 @@
 """Gauges on both fillets of a tooth."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from facegear.contact.bodies.gauges import Gauges, gauges_on
+from facegear.contact.section_error import SectionErrors
 from facegear.contact.teeth import LOADED_SIDE
 from facegear.geometry.design import Material
 from facegear.mesh.hexahedra import hex_mesh
@@ -18,11 +19,13 @@ class RootGauges:
     """Gauges (2, a, b) on the fillets of a tooth: below the loaded flank, then below the other one.
 
     a down the fillet, b along the face. `position` (2, a, b, 3) m and unit vectors `across` (2, a, b, 3) down
-    the fillet, in the body frame with the tooth in the middle.
+    the fillet, in the body frame with the tooth in the middle. `error` (b,): relative error of the largest
+    stress at each place along the face that the mesh is measured to make (`contact.section_error`).
     """
 
     position: NDArray[np.float64]
     across: NDArray[np.float64]
+    error: NDArray[np.float64]
 
     def along(self, body: str) -> NDArray[np.float64]:
         """Where the gauges stand along the face (b,), m: gear radius, y along the pinion's axis."""
@@ -40,17 +43,25 @@ def fillet_sides(body: str) -> tuple[str, str]:
     return (LOADED_SIDE[body], "left" if LOADED_SIDE[body] == "right" else "right")
 
 
-def root_gauges(tooth: ToothMesh, material: Material) -> tuple[RootGauges, sp.csr_matrix]:
+def root_gauges(
+    tooth: ToothMesh, material: Material, errors: SectionErrors | None = None
+) -> tuple[RootGauges, sp.csr_matrix]:
     """Gauges of a tooth, and their readings (g, 3 n) by the displacements of the elastic body's nodes.
 
-    A gauge reads the normal stress (Pa) down the fillet, across its lines, with the surface in plane stress.
+    `errors` of its mesh, nan where they are not measured. A gauge reads the normal stress (Pa) down the
+    fillet, across its lines, with the surface in plane stress.
     """
     mesh, number = hex_mesh(tooth.nodes, tooth.hexes)
     found: list[Gauges] = [
         gauges_on(mesh.doflocs.T, number[tooth.surfaces[f"fillet_{side}"].nodes], material)
         for side in fillet_sides(tooth.body)
     ]
+    position = np.stack([one.position for one in found])
     gauges = RootGauges(
-        position=np.stack([one.position for one in found]), across=np.stack([one.across for one in found])
+        position=position,
+        across=np.stack([one.across for one in found]),
+        error=np.full(position.shape[2], np.nan),
     )
+    if errors is not None:
+        gauges = replace(gauges, error=errors.at(gauges.along(tooth.body)))
     return gauges, sp.vstack([one.normal for one in found], format="csr")

@@ -6,27 +6,34 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
+from facegear.geometry.fillets import smallest_radius
 from facegear.mesh.outline import Outline
 from facegear.mesh.sizes import MeshSizes
 from facegear.mesh.strip import HalfSection, coarsening_levels, depth_rows, half_section
 
 Array = NDArray[np.float64]
 
+THINNED = 2
+"""Rows of elements that are thinner below a fillet where stress is read."""
+GROWTH = 2.0
+"""Ratio of their depths there."""
+SHARP = 0.85
+"""Deepest first row below a fillet in its smallest radius."""
+ROUNDING = 1e-9
+
 
 @dataclass(frozen=True)
 class SectionPlan:
     """Where the outline's segments begin and end in sigma, and the topology.
 
-    first_row: depth t at which the first row ends; thinner: what it keeps of that below the fillet; ramp:
-    columns over which it does so on the flank's side.
+    rows: depth t at which the first rows end, (n,); fillet_rows: those below the fillet, (n,).
     """
 
     breaks: dict[str, tuple[float, float]]
     half: HalfSection
     floor_height: float
-    first_row: float
-    thinner: float
-    ramp: float
+    rows: Array
+    fillet_rows: Array
 
 
 def plan_section(outline: Outline, sizes: MeshSizes) -> SectionPlan:
@@ -37,12 +44,12 @@ def plan_section(outline: Outline, sizes: MeshSizes) -> SectionPlan:
     depth = scale * float(np.mean(outline.points("flank", np.array([0.5]))[0]))
     levels = coarsening_levels(sizes.profile, sizes.thickness, depth)
 
-    upper = max(1, round(lengths["fillet"] / 2 / (sizes.fillet or sizes.profile)))
+    lower = max(1, round(lengths["fillet"] / 2 / (sizes.fillet or sizes.profile)))
+    upper = max(1, round(lengths["fillet"] / 2 / sizes.profile))
     chamfer = max(1, round(outline.design.pinion.tip_chamfer / sizes.profile)) if outline.has_chamfer else 0
     fine = 3**levels
     wall = max(2, ceil((round(lengths["flank"] / sizes.profile) + upper + chamfer) / fine))
 
-    lower = upper
     land = max(1, round(lengths["root_land"] / sizes.profile))
     floor_columns = max(2, round(outline.half_pitch * scale / (1.5 * sizes.thickness)))
     floor_levels = 0
@@ -65,16 +72,28 @@ def plan_section(outline: Outline, sizes: MeshSizes) -> SectionPlan:
     block = max(1, round(below / (1.5 * sizes.thickness)))
     column_levels = [levels] * wall + [floor_levels] * floor_columns
     half = half_section(rows, column_levels, (wall, floor_columns), block)
-    first = rows[0].t1
-    thinner = (sizes.fillet_depth or np.inf) / (first * depth) if len(rows) > 1 else 1.0
+    thinned = np.array([row.t1 for row in rows[:THINNED] if row.t1 < 1.0])
     return SectionPlan(
         breaks=breaks,
         half=half,
         floor_height=floor,
-        first_row=first,
-        thinner=min(1.0, thinner),
-        ramp=1.0 / fine,
+        rows=thinned,
+        fillet_rows=_fillet_rows(thinned, first_row(outline, sizes) / depth),
     )
+
+
+def first_row(outline: Outline, sizes: MeshSizes) -> float:
+    """Depth (m) of the first row below the fillet: less below a sharp one, but half of what was asked."""
+    asked = sizes.fillet_depth
+    if asked is None:
+        return np.inf
+    return float(np.clip(SHARP * smallest_radius(outline.design, outline.body), 0.5 * asked, asked))
+
+
+def _fillet_rows(rows: Array, first: float) -> Array:
+    """Depth t at which rows end that begin with `first` and grow by GROWTH, but no deeper than `rows`."""
+    sizes = first * GROWTH ** np.arange(rows.size)
+    return np.minimum(rows, np.cumsum(sizes))
 
 
 def _floor_height(outline: Outline) -> float:
@@ -131,14 +150,15 @@ def section_nodes(outline: Outline, plan: SectionPlan) -> tuple[Array, Array]:
 
 
 def _depth(plan: SectionPlan, sigma: Array) -> Array:
-    """Depth (nodes,) of the half section's nodes at sigma, the first row thinner below the fillet."""
+    """Depth (nodes,) of the half section's nodes at sigma, the first rows thinner below the fillet.
+
+    They become so over the last whole column of the flank: rows that coarsen stay in shape within a column.
+    """
     t = np.minimum(plan.half.t, 1.0)
-    if plan.thinner == 1.0:
-        return t
-    (start, _), (_, end) = plan.breaks["fillet_upper"], plan.breaks["fillet_lower"]
-    below = np.interp(sigma, [start, start + plan.ramp, end, end + 1.0], [0.0, 1.0, 1.0, 0.0])
-    kept = 1.0 - (1.0 - plan.thinner) * below
-    return np.where(t <= plan.first_row, kept * t, t)
+    start, end = np.floor(plan.breaks["fillet_upper"][0] + ROUNDING), plan.breaks["fillet_lower"][1]
+    below = np.interp(sigma, [start - 1.0, start, end, end + 1.0], [0.0, 1.0, 1.0, 0.0])
+    plain, thin = (np.concatenate([[0.0], rows, [1.0]]) for rows in (plan.rows, plan.fillet_rows))
+    return (1.0 - below) * t + below * np.interp(t, plain, thin)
 
 
 def _straighten(half: HalfSection, values: Array) -> None:

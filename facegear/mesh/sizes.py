@@ -9,8 +9,9 @@ class MeshSizes:
 
     profile: along the flank's profile at its surface; width: along the face; thickness: largest size inside
     the tooth and the body below it. Between surface and inside the mesh coarsens three to one per level.
-    fillet: along the fillet's profile, None as along the flank's; fillet_depth: of the first row of elements
-    below the fillet, None as below the flank.
+    fillet: along the lower half of the fillet's profile, None as along the flank's; fillet_depth: of the
+    first row of elements below the fillet, down to half of it below a sharp one; the second row is at most
+    twice as deep. None as below the flank.
     """
 
     profile: float
@@ -30,15 +31,16 @@ RESOLUTIONS = {
 
 THIN = {"coarse": 0.4}
 """First row below the fillet where stress is read, in `profile`, from convergence (docs/strength.md)."""
-THIN_ROW = 0.5
+THIN_ROW = 0.8
 """The same of other resolutions."""
+THIN_COLUMN = 0.5
+"""Elements along the lower half of that fillet, in `profile`."""
 
 
 def thin_fillet(sizes: MeshSizes, name: str = "") -> MeshSizes:
-    """Sizes with the row below the fillet that reading stress there takes, unless they give one."""
-    if sizes.fillet_depth is not None:
-        return sizes
-    return replace(sizes, fillet_depth=THIN.get(name, THIN_ROW) * sizes.profile)
+    """Sizes with the elements at the fillet that reading stress there takes, unless they give them."""
+    depth = THIN.get(name, THIN_ROW) * sizes.profile if sizes.fillet_depth is None else sizes.fillet_depth
+    return replace(sizes, fillet=sizes.fillet or THIN_COLUMN * sizes.profile, fillet_depth=depth)
 
 
 def named_sizes(name: str, module: float) -> MeshSizes:

@@ -40,6 +40,7 @@ def passing(body: str, flank: GearFlank, loads: Mapping[str, NDArray]) -> RootSt
         np.unique(loads["position"]),
         flank.gauges.along(body),
         flank.gauges.tangent_angle,
+        flank.gauges.error,
     )
 
 

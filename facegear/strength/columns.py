@@ -8,6 +8,7 @@ ROOT_STRESS_COLUMNS = (
     "body",
     "fillet",
     "largest_mpa",
+    "largest_error_mpa",
     "passage",
     "radius_mm",
     "tangent_deg",
@@ -27,6 +28,7 @@ ROOT_STRESS_ARRAYS = {
             ("stress_pa", (None, None, 2, None, None)),
             ("position_m", (2, None, None, 3)),
             ("tangent_rad", (2, None, None)),
+            ("error", (None,)),
         )
     },
 }

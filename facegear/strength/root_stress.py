@@ -25,7 +25,8 @@ class RootStress:
     For t torques (N m): `stress` (t, n, 2, a, b) at the places `passage` (n,) in pitches, 0 to 1 while the
     tooth belongs to pair 0; fillets below the loaded and below the other flank, a gauges down them, b along
     the face. `along` (b,) m: gear radius, the pinion's distance from the gear's axis; `angle` (2, a, b) rad
-    between the tangent and the tooth's middle line.
+    between the tangent and the tooth's middle line. `error` (b,): relative error of the largest stress that
+    the mesh makes, nan where it is not known.
     """
 
     torques: Array
@@ -33,6 +34,7 @@ class RootStress:
     stress: Array
     along: Array
     angle: Array
+    error: Array
 
     def at_torque(self, torque: float) -> Array:
         """Stress (n, 2, a, b) at a torque, linear between those solved and proportional beyond them."""
@@ -53,11 +55,12 @@ def root_stress(
     positions: Array,
     along: Array,
     angle: Array,
+    error: Array | None = None,
 ) -> RootStress:
     """Superpose the readings (2 d + 1, g, c) by the loads {tooth: (t p, c)} of t torques at p positions.
 
-    Teeth further apart than d do not feel each other. `along` (b,) and `angle` (2, a, b) of the gauges as in
-    `RootStress`.
+    Teeth further apart than d do not feel each other. `along` (b,), `angle` (2, a, b) and `error` (b,) of the
+    gauges as in `RootStress`.
     """
     shape, count = angle.shape, len(positions)
     teeth = np.arange(min(loads) - 1, max(loads) + 2)
@@ -72,6 +75,7 @@ def root_stress(
         stress=found.reshape(len(torques), place.size, *shape),
         along=along,
         angle=angle,
+        error=np.full(len(along), np.nan) if error is None else error,
     )
 
 

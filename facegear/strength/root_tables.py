@@ -48,6 +48,7 @@ def _peak(root: RootStress, row: int, side: int, fine: NDArray[np.float64]) -> t
     angle = down_the_fillet(root.angle[side])
     return (
         1e-6 * float(fine[when, down, column]),
+        1e-6 * float(fine[when, down, column] * root.error[column]),
         float(root.passage[when]),
         1e3 * float(root.along[column]),
         float(np.degrees(angle[down, column])),
@@ -77,6 +78,7 @@ def root_arrays(
         arrays[f"{body}_stress_pa"] = root.stress
         arrays[f"{body}_position_m"] = positions[body]
         arrays[f"{body}_tangent_rad"] = root.angle
+        arrays[f"{body}_error"] = root.error
     return arrays
 
 
@@ -89,4 +91,5 @@ def root_from_arrays(arrays: Mapping[str, NDArray], body: str) -> RootStress:
         stress=arrays[f"{body}_stress_pa"],
         along=(y if body == "pinion" else np.hypot(x, y)).mean(axis=(0, 1)),
         angle=arrays[f"{body}_tangent_rad"],
+        error=arrays[f"{body}_error"],
     )

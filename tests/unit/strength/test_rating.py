@@ -48,7 +48,8 @@ def root(largest):
     """Tension `largest` (Pa) below the loaded flank and as much compression below the other, at 500 N m."""
     stress = np.zeros((1, 3, 2, 4, 2))
     stress[0, 1, 0], stress[0, 1, 1] = largest, -largest
-    return RootStress(np.array([500.0]), np.arange(3.0), stress, np.array([0.25, 0.27]), np.ones((2, 4, 2)))
+    along, error = np.array([0.25, 0.27]), np.array([0.01, 0.02])
+    return RootStress(np.array([500.0]), np.arange(3.0), stress, along, np.ones((2, 4, 2)), error)
 
 
 PRESSURE = ContactPressure(
@@ -249,9 +250,8 @@ def test_beyond_the_torques_solved_pressure_rises_with_the_root_of_the_torque_an
 @given(torque=st.floats(10.0, 2000.0))
 def test_the_largest_tension_between_torques_is_that_of_every_place_of_the_fillet(torque):
     stress = np.random.default_rng(3).normal(size=(3, 4, 2, 5, 3))
-    full = RootStress(
-        np.array([100.0, 400.0, 1000.0]), np.arange(4.0), stress, np.arange(3.0), np.ones((2, 5, 3))
-    )
+    torques, error = np.array([100.0, 400.0, 1000.0]), np.zeros(3)
+    full = RootStress(torques, np.arange(4.0), stress, np.arange(3.0), np.ones((2, 5, 3)), error)
     expected = down_the_fillet(full.at_torque(torque)).max()
     assert largest_tension(full)(torque) == pytest.approx(expected, rel=1e-12)
 

@@ -30,13 +30,14 @@ from facegear.transmission.flanks import flank_places, stiffness_series
 
 TORQUES, POSITIONS = np.array([100.0, 300.0]), np.array([0.0, 0.5])
 GRID = (2, 4, 3)
+ERROR = np.array([0.02, 0.01, 0.03])
 
 
 def passing(loads):
     """Root stress by readings on five teeth of gauges GRID from seven flank nodes."""
     readings = np.random.default_rng(1).normal(size=(5, int(np.prod(GRID)), 7))
     angle = np.broadcast_to(np.linspace(0.4, 1.2, 4)[:, None], GRID)
-    found = root_stress(readings, loads, TORQUES, POSITIONS, np.linspace(0.25, 0.27, 3), angle)
+    found = root_stress(readings, loads, TORQUES, POSITIONS, np.linspace(0.25, 0.27, 3), angle, ERROR)
     return readings, found
 
 
@@ -75,6 +76,8 @@ def test_tables_name_the_largest_stress_and_where_it_is():
     assert row["largest_mpa"] >= 1e-6 * found.stress[1, :, 1].max()
     assert row["radius_mm"] in 1e3 * found.along
     assert summary["at_30_deg_mpa"].le(summary["largest_mpa"]).all()
+    relative = summary["largest_error_mpa"] / summary["largest_mpa"]
+    assert relative.tolist() == pytest.approx(ERROR[np.searchsorted(1e3 * found.along, summary["radius_mm"])])
 
 
 def published(index):
