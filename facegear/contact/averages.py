@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 from facegear.contact.bodies.surface import face_functions
 from facegear.contact.options import Refinement
 
+ROUNDING = 1e-6
+"""Of coordinates on a lattice."""
+
 
 @dataclass(frozen=True, eq=False)
 class Rows:
@@ -112,12 +115,14 @@ def spread(
 class Lattice:
     """Nodes of a contact surface: their numbers before refinement both ways, and how they are refined.
 
-    `linear` where the body is of elements linear between nodes.
+    `linear` where the body is of elements linear between nodes; `flank_rows`: how many of the rows before
+    refinement belong to the flank, None for all; the others lie in the fillet.
     """
 
     coarse: tuple[int, int]
     refinement: Refinement
     linear: bool = False
+    flank_rows: int | None = None
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -129,6 +134,11 @@ class Lattice:
     def factors(self) -> NDArray[np.int64]:
         """Refined nodes a coarse one, both ways."""
         return np.array([self.refinement.profile, self.refinement.width])
+
+    def in_fillet(self, at: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Which points at refined coordinates (q, 2) lie beyond the flank."""
+        rows = self.coarse[0] if self.flank_rows is None else self.flank_rows
+        return at[:, 0] > (rows - 1) * self.refinement.profile + ROUNDING
 
     def loads(self, rows: Rows, at: NDArray[np.float64]) -> tuple[sp.csr_matrix, sp.csr_matrix]:
         """Nodal loads of unit forces, spread by `rows` over points at refined coordinates (q, 2).

@@ -16,8 +16,8 @@ class Candidates:
     edge.
 
     hats (m,) lattice nodes and their `column` along the width; gap (m,) m and lever_arm (m,) m averaged over
-    the hat; loads on the lattice nodes `pinion` (m, n1) and `gear` (m, n2), and on the unrefined ones
-    `pinion_coarse`, `gear_coarse`.
+    the hat; whether it presses on a `fillet` (m,) of either gear; loads on the lattice nodes `pinion` (m, n1)
+    and `gear` (m, n2), and on the unrefined ones `pinion_coarse`, `gear_coarse`.
     """
 
     tooth: int
@@ -25,10 +25,17 @@ class Candidates:
     column: NDArray[np.int64]
     gap: NDArray[np.float64]
     lever_arm: NDArray[np.float64]
+    fillet: NDArray[np.bool_]
     pinion: sp.csr_matrix
     gear: sp.csr_matrix
     pinion_coarse: sp.csr_matrix
     gear_coarse: sp.csr_matrix
+
+    @property
+    def overlap(self) -> float:
+        """Turn (rad) of the pinion that would part the teeth where they stand in each other; 0 if nowhere."""
+        forward = self.lever_arm > 0
+        return float(np.max(-self.gap[forward] / self.lever_arm[forward], initial=0.0))
 
     def only(self, keep: NDArray[np.bool_]) -> "Candidates":
         """Those marked (m,)."""
@@ -49,6 +56,7 @@ def candidates_of(
     names = [field.name for field in fields(Loads)[1:]]
     loads = Loads(rows=rows, **{n: np.concatenate([getattr(part, n) for part in parts]) for n in names})
     gap, lever_arm = rows.mean(loads.gap), rows.mean(loads.lever_arm)
+    beyond = pinion.in_fillet(loads.pinion) | gear.in_fillet(loads.gear)
     near = gap < limit * lever_arm
     if not near.any():
         return []
@@ -61,6 +69,7 @@ def candidates_of(
         column=loads.hats[near] % pinion.shape[1],
         gap=gap[near],
         lever_arm=lever_arm[near],
+        fillet=rows.mean(beyond.astype(float)) > 0.5,
         pinion=on_pinion,
         gear=on_gear,
         pinion_coarse=pinion_coarse,

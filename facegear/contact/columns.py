@@ -16,9 +16,16 @@ LTCA_COLUMNS = (
     "pressure_error_mpa",
     "tip_line_load_n_per_mm",
     "tip_length_mm",
+    "fillet_share",
+    "interference_um",
     "kkt_residual",
     "torque_residual",
 )
+LTCA_FINITE = tuple(
+    name for name in LTCA_COLUMNS if name not in ("k_average_n_per_m", "pressure_mpa", "pressure_error_mpa")
+)
+"""Columns whose numbers are always finite: teeth that interfere have no average stiffness, and edges may
+carry all load, where pressure has no limit."""
 
 PRESSURE_ARRAYS = {
     "torque_n_m": (None,),
@@ -26,6 +33,7 @@ PRESSURE_ARRAYS = {
     "tooth": (None,),
     "node": (None,),
     "force_n": (None,),
+    "in_fillet": (None,),
     "shape": (2,),
     "point_m": (None, 3),
     "line_torque_n_m": (None,),

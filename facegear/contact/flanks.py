@@ -118,10 +118,6 @@ class PinionSurface:
         corners = [nodes[a : nu - 2 + a : 2, b : nv - 2 + b : 2].ravel() for a in range(3) for b in range(3)]
         return points, np.stack(corners, axis=-1)
 
-    def on_flank(self, at: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Which refined coordinates (n, 2) lie on the flank, not on the fillet."""
-        return at[:, 0] <= (self.side.flank_rows - 1) * self.lattice.refinement.profile
-
     def coordinates(
         self, flank: NDArray[np.float64], fillet: NDArray[np.float64], y: NDArray[np.float64]
     ) -> NDArray[np.float64]:
@@ -196,5 +192,7 @@ def flank_pair(
     linear: bool = False,
 ) -> FlankPair:
     """Contact surfaces of pinion and gear, each refined by its own cuts."""
-    first, second = (Lattice(side.shape, cut, linear) for side, cut in zip(sides, cuts, strict=True))
+    first, second = (
+        Lattice(side.shape, cut, linear, side.flank_rows) for side, cut in zip(sides, cuts, strict=True)
+    )
     return FlankPair(PinionSurface(design, sides[0], first), GearSurface(design, sides[1], second))

@@ -91,7 +91,7 @@ def pair_loads(
     at, count = pinion.at[points], points.size
     beside = np.where(np.arange(hits.gap.shape[1]) < count, BESIDE * pair.design.module, 0.0)
     gap, on_gear = hits.gap[0], gear.coordinates(hits, options.fillet, beside)[0]
-    usable = gap[:count] if options.fillet else np.where(pinion.on_flank(at), gap[:count], np.inf)
+    usable = gap[:count] if options.fillet else np.where(pinion.lattice.in_fillet(at), np.inf, gap[:count])
     loads += flank_loads(pinion, facing(usable, pinion.lever_arm[points], at, on_gear[:count], points))
     if options.edges:
         edge = facing(gap[count:], tip.lever_arm, coordinates, on_gear[count:])

@@ -53,7 +53,7 @@ def loaded_contact(
     options = options or ContactOptions()
     phi1 = (np.asarray(positions, dtype=float) - 0.5) * 2 * pi / model.design.pinion.teeth
     unloaded = unloaded_contact(model.design, phi1)
-    guess = FIRST_GUESS / model.design.pinion_base_radius
+    guess = first = FIRST_GUESS / model.design.pinion_base_radius
     progress = Progress("loaded contact", len(phi1))
     results: list[LoadedPosition] = []
     with threadpool_limits(1):
@@ -65,7 +65,8 @@ def loaded_contact(
                 placement=(float(phi1[row]), float(unloaded.phi2[row])),
                 unloaded=-float(unloaded.transmission_error[row]),
             )
-            solved, guess = solve_position(pair, torques, guess)
+            solved, turned = solve_position(pair, torques, guess)
+            guess = turned if turned > 0.0 else first  # fillets in the way turn the pinion back
             results += solved
             progress.step()
     return results

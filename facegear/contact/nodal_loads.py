@@ -35,10 +35,16 @@ def load_arrays(results: Sequence[LoadedPosition]) -> dict[str, NDArray]:
     return arrays
 
 
-def loads_by_tooth(arrays: Mapping[str, NDArray], body: str) -> dict[int, sp.csr_matrix]:
-    """Forces (cases, nodes), N, on each loaded tooth of `pinion` or `face_gear`, from LOAD_ARRAYS."""
+def loads_by_tooth(
+    arrays: Mapping[str, NDArray], body: str, flank_nodes: int | None = None
+) -> dict[int, sp.csr_matrix]:
+    """Forces (cases, nodes), N, on each loaded tooth of `pinion` or `face_gear`, from LOAD_ARRAYS.
+
+    With `flank_nodes` those on later nodes, which lie in the body's own fillet, are left out.
+    """
     shape = arrays["torque_n_m"].size, int(arrays["nodes"][BODIES.index(body)])
     case, tooth, node, force = (arrays[f"{body}_{name}"] for name in ("case", "tooth", "node", "force_n"))
+    force = force if flank_nodes is None else np.where(node < flank_nodes, force, 0.0)
     return {
         int(number): sp.csr_matrix((force[on], (case[on], node[on])), shape=shape)
         for number in np.unique(tooth)

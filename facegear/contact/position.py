@@ -20,6 +20,10 @@ MARGIN = 1.15
 
 ENLARGEMENTS = 12
 
+UNKNOWN_REFERENCE = 0.01
+"""Part of the approach by which unloaded teeth may overlap until their average stiffness is not known: it
+counts from where the flanks alone would touch, and teeth that overlap there never stand so."""
+
 
 class PairAtPosition(Bodies, Protocol):
     """Two gears at one position: what the solution of their contact has to know about them.
@@ -42,7 +46,7 @@ class PairAtPosition(Bodies, Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Spot:
-    """Loaded hats of one pair at one position and torque: lattice node, force (N).
+    """Loaded hats of one pair at one position and torque: lattice node, force (N), whether in a `fillet`.
 
     `on_pinion` and `on_gear`: the same forces (N) on the nodes of both contact surfaces before refinement.
     """
@@ -50,6 +54,7 @@ class Spot:
     tooth: int
     hats: NDArray[np.int64]
     force: NDArray[np.float64]
+    fillet: NDArray[np.bool_]
     on_pinion: NDArray[np.float64]
     on_gear: NDArray[np.float64]
 
@@ -60,7 +65,9 @@ class LoadedPosition:
 
     `position` 0..1 of a pitch; `torque` N m on the pinion; transmission errors (m) along the line of action,
     the pinion ahead of the gear positive, `ste` loaded and `unloaded`; stiffnesses (N/m) on the line of
-    action; `share` (5,) of the torque carried by the pairs -2..2; `residual` of the contact conditions.
+    action; `share` (5,) of the torque carried by the pairs -2..2; `fillet_share` of the torque carried in
+    fillets; `overlap` (m, along the line of action) by which teeth whose flanks just touch stand in each
+    other elsewhere, with which `k_average` is nan where it matters; `residual` of the contact conditions.
     """
 
     position: float
@@ -70,6 +77,8 @@ class LoadedPosition:
     k_average: float
     k_local: float
     share: NDArray[np.float64]
+    fillet_share: float
+    overlap: float
     residual: float
     steps: int
     candidates: int
@@ -118,12 +127,16 @@ def _result(
 ) -> LoadedPosition:
     base = pair.base_radius
     share = np.zeros(len(PAIRS))
+    in_fillets = overlap = 0.0
     spots, start = [], 0
     for loads in candidates:
         rows = slice(start, start + len(loads.hats))
         start = rows.stop
         force = contact.force[rows]
-        share[np.searchsorted(PAIRS, loads.tooth)] = force @ loads.lever_arm / contact.torque
+        part = force * loads.lever_arm / contact.torque
+        share[np.searchsorted(PAIRS, loads.tooth)] = part.sum()
+        in_fillets += float(part[loads.fillet].sum())
+        overlap = max(overlap, base * loads.overlap)
         on = force > 0.0
         if on.any():
             spots.append(
@@ -131,6 +144,7 @@ def _result(
                     tooth=loads.tooth,
                     hats=loads.hats[on],
                     force=force[on],
+                    fillet=loads.fillet[on],
                     on_pinion=loads.pinion_coarse.T @ force,
                     on_gear=loads.gear_coarse.T @ force,
                 )
@@ -141,9 +155,11 @@ def _result(
         torque=contact.torque,
         ste=pair.unloaded + approach,
         unloaded=pair.unloaded,
-        k_average=contact.torque / base / approach,
+        k_average=contact.torque / base / approach if overlap <= UNKNOWN_REFERENCE * approach else np.nan,
         k_local=1.0 / (base**2 * contact.slope),
         share=share,
+        fillet_share=in_fillets,
+        overlap=overlap,
         residual=contact.residual,
         steps=contact.steps,
         candidates=len(contact.force),

@@ -3,7 +3,8 @@
 The loads of single hats depend on how the mesh lies to the strip of contact; what a plane across the pinion's
 axis carries does not. So the pressure is that of Hertz for the line load and the exact relative curvature.
 Where a tip edge or an end of the face is closer than the strip's half-width, pressure has no limit as a mesh
-is refined, and the line load is all that can be said.
+is refined, and the line load is all that can be said. What a fillet carries stands beside no contact line: it
+is left out.
 """
 
 from collections.abc import Sequence
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import binary_closing, maximum_filter1d
 
 from facegear.contact.columns import EDGES
+from facegear.contact.fillet_contact import line_rows, on_flank
 from facegear.contact.flanks import FlankPair
 from facegear.contact.hertz import contact_modulus, strip_pressure
 from facegear.contact.lines import ContactLines, contact_lines
@@ -100,16 +102,20 @@ def flank_pressure(
     lines = contact_lines(design, phi1, phi2, tooth, flanks.pinion.planes)
     row = {key: i for i, key in enumerate(zip(position.tolist(), tooth.tolist(), strict=True))}
     modulus = contact_modulus(materials)
-    loads = tuple(
-        line_loads(result.spots, [row[result.position, spot.tooth] for spot in result.spots], lines, modulus)
-        for result in results
-    )
+    places = line_rows(lines.to_pinion_tip, flanks.pinion)
+    loads = []
+    for result in results:
+        at = [row[result.position, spot.tooth] for spot in result.spots]
+        spots = [
+            on_flank(spot, places[one], flanks.pinion) for spot, one in zip(result.spots, at, strict=True)
+        ]
+        loads.append(line_loads(spots, at, lines, modulus))
     points = flank_points(design, lines.roll, lines.y).position
-    return FlankPressure(position=position, tooth=tooth, lines=lines, points=points, loads=loads)
+    return FlankPressure(position=position, tooth=tooth, lines=lines, points=points, loads=tuple(loads))
 
 
 def line_loads(spots: Sequence[Spot], rows: Sequence[int], lines: ContactLines, modulus: float) -> LineLoads:
-    """Loads of one position and torque along its contact lines.
+    """Loads of one position and torque along its contact lines, of all the forces of `spots`.
 
     `rows` numbers the line of each spot; `modulus` E* (Pa).
     """

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from facegear.contact.columns import LTCA_COLUMNS, PRESSURE_ARRAYS
+from facegear.contact.columns import LTCA_FINITE, PRESSURE_ARRAYS
 from facegear.contact.summary import path_by_position
 from facegear.io import arrays, documents, tables
 
@@ -61,7 +61,7 @@ def stored_cases(names: Sequence[Sequence[str]], files: Mapping[str, Sequence[st
             point=point,
             label=label,
             pair=documents.read(pair, ["unloaded", "backlash_um"]),
-            ltca=tables.read(ltca, LTCA_COLUMNS),
+            ltca=tables.read(ltca, LTCA_FINITE),
             by_torque=tables.read(by_torque, ["torque_n_m", "path_radius_mm"]),
             pressure=arrays.read(pressure, PRESSURE_ARRAYS),
         )

@@ -22,6 +22,8 @@ COLUMNS = (
     "pressure_error_mpa",
     "tip_line_load_n_per_mm",
     "tip_length_mm",
+    "fillet_share",
+    "interference_um",
 )
 
 
@@ -37,7 +39,8 @@ def contact_summary(ltca: pd.DataFrame) -> pd.DataFrame:
     exceed the true one; `ste_peak_to_peak_half_um` takes every second position alone and shows how much
     their number matters (NaN for an odd number, whose every second position is not spread evenly). The
     pressure and its error are those of the position where it is largest; line loads and the loaded length of
-    tip edges are the largest of all positions, which need not be one position's.
+    tip edges, the share of the torque that fillets carry and the interference are the largest of all
+    positions, which need not be one position's. A mean stiffness over positions of which one has none is nan.
     """
     rows = [_row(float(torque), found) for torque, found in ltca.groupby("torque_n_m", sort=True)]
     return pd.DataFrame(rows, columns=list(COLUMNS))
@@ -49,10 +52,10 @@ def _row(torque: float, found: pd.DataFrame) -> tuple[float, ...]:
     return (
         torque,
         len(at),
-        average.mean(),
-        average.min(),
-        average.max(),
-        at["k_local_n_per_m"].mean(),
+        average.mean(skipna=False),
+        average.min(skipna=False),
+        average.max(skipna=False),
+        np.nan if average.isna().any() else at["k_local_n_per_m"].mean(),
         float(np.ptp(error)),
         float(np.ptp(error[::2])) if len(at) % 2 == 0 else np.nan,
         float(np.ptp(at["unloaded_ste_um"])),
@@ -61,6 +64,8 @@ def _row(torque: float, found: pd.DataFrame) -> tuple[float, ...]:
         *_largest_pressure(at),
         at["tip_line_load_n_per_mm"].max(),
         at["tip_length_mm"].max(),
+        at["fillet_share"].max(),
+        at["interference_um"].max(),
     )
 
 

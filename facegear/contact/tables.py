@@ -13,7 +13,10 @@ from facegear.contact.pressure import FlankPressure, LineLoads
 
 
 def ltca_table(results: Sequence[LoadedPosition], pressure: FlankPressure) -> pd.DataFrame:
-    """One row a torque and position, columns as LTCA_COLUMNS; no pressure (nan) where none is inside."""
+    """One row a torque and position, columns as LTCA_COLUMNS.
+
+    nan: pressure where none is inside, average stiffness where the unloaded teeth interfere.
+    """
     rows = [
         (
             r.torque,
@@ -25,6 +28,8 @@ def ltca_table(results: Sequence[LoadedPosition], pressure: FlankPressure) -> pd
             r.pairs_in_contact,
             *r.share,
             *_pressures(loads),
+            r.fillet_share,
+            1e6 * r.overlap,
             r.residual,
             abs(r.share.sum() - 1.0),
         )
@@ -46,11 +51,11 @@ def pressure_arrays(
 ) -> dict[str, NDArray]:
     """Loads and pressures, as PRESSURE_ARRAYS.
 
-    First the forces of all loaded hats, one a row, and the lattice (`shape`, `point_m`) of their nodes. Then
-    `line_*`, one loaded plane across the pinion's axis a row: its number, the line load along the contact
-    line and the length it stands for, where it is (a number in EDGES), and what is known of the pressure
-    there: 0 with an error of 0 unless inside. Last the contact lines: a pair's points on the pinion in all
-    planes, whether loaded or not.
+    First the forces of all loaded hats, one a row, whether they act in a fillet, and the lattice (`shape`,
+    `point_m`) of their nodes. Then `line_*`, one loaded plane across the pinion's axis a row: its number, the
+    line load along the contact line and the length it stands for, where it is (a number in EDGES), and what
+    is known of the pressure there: 0 with an error of 0 unless inside. Last the contact lines: a pair's
+    points on the pinion in all planes, whether loaded or not.
     """
     lines: dict[str, list[NDArray]] = {}
     for result, loads in zip(results, pressure.loads, strict=True):
@@ -88,4 +93,5 @@ def _forces(results: Sequence[LoadedPosition]) -> dict[str, NDArray]:
         "tooth": np.repeat([spot.tooth for _, spot in found], count),
         "node": np.concatenate([spot.hats for _, spot in found]),
         "force_n": np.concatenate([spot.force for _, spot in found]),
+        "in_fillet": np.concatenate([spot.fillet for _, spot in found]),
     }

@@ -144,7 +144,7 @@ def _torque(
 
 def line_pressure(loads: Mapping[str, NDArray], on: NDArray[np.bool_]) -> NDArray[np.float64]:
     """Pressure (MPa) at each chosen node: that of the line of contact in its column, nan where an edge
-    carries the load.
+    carries the load, and in a fillet.
     """
     keys = ["torque_n_m", "position", "tooth", "plane"]
     known = pd.Series(
@@ -154,7 +154,8 @@ def line_pressure(loads: Mapping[str, NDArray], on: NDArray[np.bool_]) -> NDArra
     known = known[loads["line_where"] == EDGES.index("inside")].groupby(level=keys).max()
     columns = int(loads["shape"][1])
     nodes = [loads[key][on] for key in keys[:-1]]
-    return known.reindex(pd.MultiIndex.from_arrays([*nodes, loads["node"][on] % columns])).to_numpy()
+    found = known.reindex(pd.MultiIndex.from_arrays([*nodes, loads["node"][on] % columns])).to_numpy()
+    return np.where(loads["in_fillet"][on], np.nan, found)
 
 
 def line_load(loads: Mapping[str, NDArray], on: NDArray[np.bool_]) -> NDArray[np.float64]:

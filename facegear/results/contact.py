@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.contact.columns import LOAD_ARRAYS, LTCA_COLUMNS, PRESSURE_ARRAYS
+from facegear.contact.columns import LOAD_ARRAYS, LTCA_FINITE, PRESSURE_ARRAYS
 from facegear.errors import chosen
 from facegear.results.base import Kept, Result
 
@@ -19,7 +19,7 @@ class ContactResult(Result):
     """Transmission error, stiffness, load shares and pressures at every position and torque."""
 
     FILES: ClassVar = {
-        "ltca": Kept("contact/ltca.csv", LTCA_COLUMNS),
+        "ltca": Kept("contact/ltca.csv", LTCA_FINITE),
         "by_torque": Kept("contact/by_torque.csv", ("torque_n_m", "ste_peak_to_peak_um", "path_radius_mm")),
         "pressure": Kept("contact/pressure.npz", PRESSURE_ARRAYS),
         "loads": Kept("contact/loads.npz", LOAD_ARRAYS),

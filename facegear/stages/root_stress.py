@@ -27,15 +27,16 @@ def root_stress(pinion: GearFlank, face_gear: GearFlank, loads: Mapping[str, NDA
 
 
 def passing(body: str, flank: GearFlank, loads: Mapping[str, NDArray]) -> RootStress:
-    """Root stress of one body under the loads of stage contact.
+    """Root stress of one body under the loads of stage contact on its flank.
 
-    Raises ConfigError where its fillets carry no gauges.
+    What presses on its fillet is left out: the gauges below would read the dent. Raises ConfigError where its
+    fillets carry no gauges.
     """
     if flank.gauges is None:
         raise ConfigError("contact.root_stress", False, "true, for root stress")
     return superposed.root_stress(
         flank.compliance.readings,
-        loads_by_tooth(loads, body),
+        loads_by_tooth(loads, body, flank.side.flank_rows * flank.side.shape[1]),
         np.unique(loads["torque_n_m"]),
         np.unique(loads["position"]),
         flank.gauges.along(body),

@@ -7,7 +7,7 @@ import pandas as pd
 import scipy
 from numpy.typing import NDArray
 
-from facegear.errors import ConfigError
+from facegear.errors import ConfigError, FacegearError
 from facegear.stiffness.request import Definition
 
 COLUMN = {"average": "k_average_n_per_m", "local": "k_local_n_per_m"}
@@ -52,15 +52,26 @@ class LoadTable:
 
 
 def load_table(ltca: pd.DataFrame) -> LoadTable:
-    """From the contact table, all positions at all torques."""
+    """From the contact table: all positions at the torques whose average stiffness is known at every one.
+
+    Raises FacegearError where the teeth interfere, so that there is none.
+    """
     tables = {
         name: ltca.pivot(index="torque_n_m", columns="position", values=column)
         for name, column in COLUMN.items()
     }
-    average = tables["average"]
+    known = tables["average"].notna().all(axis=1)
+    if not known.any():
+        depth = ltca["interference_um"].max()
+        raise FacegearError(
+            "mesh_stiffness: there is none, as the teeth interfere: tips stand up to "
+            f"{depth:.3g} um deep in fillets along the line of action (a smaller "
+            "tooth_pair.pinion.rack_tip_radius_modules or more tooth_pair.shaper.teeth clears them)"
+        )
+    average, local = (tables[name][known] for name in COLUMN)
     return LoadTable(
         average.index.to_numpy(float),
         average.columns.to_numpy(float),
         average.to_numpy(float),
-        tables["local"].to_numpy(float),
+        local.to_numpy(float),
     )

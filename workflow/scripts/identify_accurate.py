@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from facegear.config.base import parse
-from facegear.contact.columns import LTCA_COLUMNS
+from facegear.contact.columns import LTCA_FINITE
 from facegear.io import tables
 from facegear.paper.config.sections import Identify
 from facegear.paper.identify.claim_judge import ONE_MOTION
@@ -19,7 +19,7 @@ from facegear.scenarios.chunks import identity
 
 with stage(snakemake) as run:
     files, params = snakemake.input, snakemake.params
-    ltca = tables.read(files.ltca, LTCA_COLUMNS)
+    ltca = tables.read(files.ltca, LTCA_FINITE)
     random = tables.read_joined([*files.structures, *files.random])
     likelihood = Likelihood.of(read_claims(files.claims).claims, random)
     judge = dynamic_judge(params.case, ltca, files.claims, unswept, ONE_MOTION)

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from facegear.config.base import parse
-from facegear.contact.columns import LTCA_COLUMNS
+from facegear.contact.columns import LTCA_FINITE
 from facegear.io import tables
 from facegear.paper.config.search import plausible_inputs
 from facegear.paper.config.sections import Identify, sample_numbers
@@ -15,7 +15,7 @@ from facegear.scenarios.chunks import identity
 
 with stage(snakemake) as run:
     wildcards, params = snakemake.wildcards, snakemake.params
-    ltca = tables.read(snakemake.input.ltca, LTCA_COLUMNS)
+    ltca = tables.read(snakemake.input.ltca, LTCA_FINITE)
     by_pattern = wildcards.design != "random"
     settings = {**QUICK, **(GEOMETRIC if wildcards.design == "geometric" else {})}
     kept = unswept if by_pattern else lambda claim: True

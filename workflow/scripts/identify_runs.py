@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from facegear.config.base import parse
-from facegear.contact.columns import LTCA_COLUMNS
+from facegear.contact.columns import LTCA_FINITE
 from facegear.io import tables
 from facegear.paper.config.sections import Identify
 from facegear.paper.identify.cases import settings_key
@@ -19,7 +19,7 @@ from facegear.scenarios.chunks import identity, run_chunk
 with stage(snakemake) as run:
     name, params = snakemake.wildcards.set, snakemake.params
     row = None if name == OWN else stored_sets(snakemake.input.sets)[name]
-    ltca = tables.read(snakemake.input.ltca, LTCA_COLUMNS)
+    ltca = tables.read(snakemake.input.ltca, LTCA_FINITE)
     claims = [claim for claim in read_claims(snakemake.input.claims).claims if claim.dynamic]
     judge = ClaimJudge(params.case, ltca, claims)
     section = parse(Identify, params.identify)

@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 
 from facegear.config.base import parse
-from facegear.contact.columns import LTCA_COLUMNS
+from facegear.contact.columns import LTCA_FINITE
 from facegear.io import tables
 from facegear.paper.config.search import plausible_inputs, search_budget
 from facegear.paper.config.sections import Identify
@@ -24,7 +24,7 @@ with stage(snakemake) as run:
     place, repeat = int(snakemake.wildcards.place), int(snakemake.wildcards.repeat)
     section = parse(Identify, params.identify)
     budget = search_budget(section.search)
-    ltca = tables.read(files.ltca, LTCA_COLUMNS)
+    ltca = tables.read(files.ltca, LTCA_FINITE)
     structures = tables.read_joined(files.structures)
     random = pd.concat([structures, tables.read_joined(files.random)], ignore_index=True)
     likelihood = Likelihood.of(read_claims(files.claims).claims, random)

@@ -73,7 +73,9 @@ def twin_model(
         pinion=pinion_design,
         gear=gear_design,
         centre=centre or standard_centre(pinion_design, gear_design),
-        surface=PinionSurface(pinion_design, sides[0], Lattice(sides[0].shape, layer)),
+        surface=PinionSurface(
+            pinion_design, sides[0], Lattice(sides[0].shape, layer, flank_rows=sides[0].flank_rows)
+        ),
         gear_side=sides[1],
         pinion_compliance=compliances[0],
         gear_compliance=gear,
@@ -199,8 +201,8 @@ def turned(vectors: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
 
 def _candidates(model: TwinModel, phi1: float, limit: float) -> list[Candidates]:
     surface, side = model.surface, model.gear_side
-    lattice = Lattice(side.shape, surface.lattice.refinement)
-    on_flank = surface.on_flank(surface.at)
+    lattice = Lattice(side.shape, surface.lattice.refinement, flank_rows=side.flank_rows)
+    on_flank = ~surface.lattice.in_fillet(surface.at)
     low, high = pinion.junction_roll(model.gear), model.gear.pinion_tip_roll
     depth = 3 * limit * model.pinion.pinion_base_radius + 20e-6
     found = []

@@ -1,5 +1,6 @@
 """The chapter on the machine says what an engineer looks for first."""
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -64,6 +65,7 @@ def test_the_first_screen_warns_of_what_the_results_hide(example):
         "k_average_mean_n_per_m": 5e8,
         "ste_peak_to_peak_um": 4.0,
         "ste_peak_to_peak_half_um": [3.99, 3.0],
+        "fillet_share": [0.0, 0.0],
     }
     edges = pd.DataFrame(
         {
@@ -85,6 +87,12 @@ def test_the_first_screen_warns_of_what_the_results_hide(example):
     ):
         assert any(words in one for one in told), words
     assert len(told) == len(set(told))
+    pressed = pd.DataFrame(contact).assign(fillet_share=[0.0, 0.152], k_average_mean_n_per_m=[5e8, np.nan])
+    told = [" ".join(row) for row in warnings(values, found | {"by_torque": pressed}, pair)]
+    words = "contact at 600 N m tips press into fillets and carry up to 15.2 % of the torque there"
+    assert any(words in one for one in told)
+    known = dict(verdicts(found | {"by_torque": pressed}, pair))
+    assert known["contact at 600 N m"].startswith("no mean stiffness, ")
     most = tables["meshes"]["pinion_torque_n_m"].abs().max()
     barely = found | {"by_torque": pd.DataFrame(contact).assign(torque_n_m=most * (1 - 1e-12))}
     assert not any("solved up to" in row[1] for row in warnings(values, barely, pair)), "rounding"

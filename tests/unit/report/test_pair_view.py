@@ -35,6 +35,7 @@ def loads():
         "tooth": np.repeat([-1, 0, 1, 0], nodes.size),
         "node": np.tile(nodes, len(keys)),
         "force_n": chance.uniform(1.0, 100.0, size),
+        "in_fillet": np.zeros(size, bool),
         "shape": np.array([ROWS, COLUMNS]),
         "point_m": np.stack([0 * grid, grid, 0 * grid], axis=-1).reshape(-1, 3),
         "line_torque_n_m": np.repeat([torque for torque, _ in keys], COLUMNS),
