@@ -195,7 +195,7 @@ def test_what_fillets_carry_stands_beside_the_line_loads_of_the_flanks(interferi
         assert in_fillets > 0.05 * whole
         assert 0.8 * (whole - in_fillets) < on_flanks < (1 + 1e-9) * (whole - in_fillets)
         carried = (loads.line_load * loads.length).sum()
-        assert carried == pytest.approx(on_flanks, rel=0.05)  # three planes in a face
+        assert 0.9 * on_flanks < carried < 1.01 * on_flanks  # three planes a face: its ends lose some
         rows = [spot.hats[spot.fillet] // model.flanks.pinion.shape[1] for spot in result.spots]
         assert min(row.min() for row in rows if row.size) >= beyond
 
