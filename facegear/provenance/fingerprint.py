@@ -17,13 +17,14 @@ from pathlib import Path
 from facegear.errors import FacegearError
 from facegear.io.atomic import atomic_path
 
-PACKAGE = "facegear"
+PACKAGES = ("facegear", "paper", "validation")
+"""The library and, in a checkout, what stands beside it."""
 STAGES = "facegear.stages."
 
 
 @dataclass(frozen=True)
 class _Source:
-    """What counts of a file: hash of its code without docstrings, and what it imports of the package.
+    """What counts of a file: hash of its code without docstrings, and what it imports of our packages.
 
     Of `from package.module import name` that is `package.module.name` too, be it a module or not.
     """
@@ -129,7 +130,7 @@ def _parsed(path: Path, root: Path) -> _Source:
     for node in _executed(tree):
         if isinstance(node, ast.Import | ast.ImportFrom):
             for name in _names(node):
-                if name.split(".")[0] == PACKAGE:
+                if name.split(".")[0] in PACKAGES:
                     found.update(name.rsplit(".", depth)[0] for depth in range(name.count(".") + 1))
         elif isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
             body = node.body

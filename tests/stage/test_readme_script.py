@@ -17,7 +17,6 @@ FILES = {
     "facegear/example.yaml",
     "facegear/config/config.schema.json",
     "facegear/report/page.html.j2",
-    "facegear/paper/scorecard/scorecard.html.j2",
 }
 
 

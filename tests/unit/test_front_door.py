@@ -11,9 +11,7 @@ import facegear
 from facegear.errors import FacegearError
 
 ROOT = Path(__file__).parents[2]
-HEAVY = (
-    "{'matplotlib', 'numba', 'skfem', 'gmsh', 'meshio', 'snakemake', 'facegear.paper', 'facegear.validation'}"
-)
+HEAVY = "{'matplotlib', 'numba', 'skfem', 'gmsh', 'meshio', 'snakemake', 'paper', 'validation'}"
 
 
 @pytest.fixture(scope="module")

@@ -17,7 +17,7 @@ from facegear.config.needs import NEEDS, loads_from_machine, many_contacts, stag
 from facegear.config.notes import notes, turns
 from facegear.errors import FacegearError
 from facegear.io.run_lock import hold
-from facegear.paper.config.reproduction import design_cases, read_reproduction
+from paper.reproduction import read_reproduction
 from facegear.provenance.fingerprint import fingerprint, recall, remember
 
 if hasattr(PersistenceBase, "_serialize_param_builtin"):
@@ -38,7 +38,6 @@ try:
     CONFIG = load_values(CONFIGFILES, workflow.config_settings.config)
     REPRODUCTION = read_reproduction(CONFIG["reproduction"]) if CONFIG["reproduction"] else None
     CASES = expand_cases(CONFIG)
-    CASES |= design_cases(CONFIG, REPRODUCTION.identify if REPRODUCTION else None)
     CASES[CONFIG["case"]]["reproduction"] = None  # read above; where its file lies decides nothing
 except FacegearError as error:
     stop(str(error))

@@ -2,10 +2,10 @@
 
 from facegear.io import tables
 from facegear.load_sharing.tables import SUMMARY_COLUMNS
-from facegear.paper.undisclosed import inputs_caption
 from facegear.plots.load_sharing import sharing_figure
 from facegear.plots.style import save
 from facegear.provenance.stage import stage
+from facegear.report.inputs import inputs_caption
 
 NAMES = ["study", "point", "label"]
 

@@ -24,9 +24,9 @@ def complete(job):
     job.log_modifier = job.benchmark_modifier = job.output_modifier
     job.set_log(f"results/{{case}}/logs/{name}.log")
     job.benchmark = f"results/{{case}}/benchmarks/rules/{name}.tsv"
-    job.conda_env = "../envs/facegear.yaml"
+    job.conda_env = str(ROOT / "workflow" / "envs" / "facegear.yaml")
     job.priority = PRIORITIES.get(job.name, 0)
     job.message = f"{job.docstring}: {{wildcards}}"
     if job.name in NEEDS:
         job.set_params(needs=needs(job.name))
-    job.set_params(code=fingerprint(ROOT / "workflow" / "scripts" / Path(job.script).name, ROOT))
+    job.set_params(code=fingerprint(job.basedir.join(job.script).get_path_or_uri(secret_free=True), ROOT))
