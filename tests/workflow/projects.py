@@ -13,9 +13,7 @@ from facegear.provenance.fingerprint import fingerprint, remember
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("workflow", "profiles", "facegear", "paper", "validation", "config")
-SCRIPTS = sorted(
-    path for name in ("workflow", "paper", "validation") for path in (ROOT / name / "scripts").glob("*.py")
-)
+SCRIPTS = sorted(ROOT.glob("*/scripts/*.py"))
 PARSED = "facegear_sources.json"
 """In Snakemake's folder: what counts of each source file."""
 
