@@ -13,7 +13,7 @@ rule dynamics_work_precision:
         runtime=30,
     params:
         **values_of(speed_rpm="dynamics.speed_rpm"),
-        machine=needs("machine"),
+        machine=needed(MACHINE),
     script:
         "../scripts/dynamics_work_precision.py"
 
@@ -32,7 +32,7 @@ rule dynamics_costs:
         runtime=30,
     params:
         **values_of(speed_rpm="dynamics.speed_rpm", sweep="dynamics.sweep"),
-        machine=needs("machine"),
+        machine=needed(MACHINE),
     script:
         "../scripts/dynamics_costs.py"
 
@@ -46,7 +46,7 @@ rule load_sharing_costs:
         manifest="results/{case}/benchmarks/load_sharing_costs.provenance.json",
     params:
         **values_of(accuracy="dynamics.accuracy", options="load_sharing"),
-        machine=needs("machine"),
+        machine=needed(MACHINE),
     script:
         "../scripts/load_sharing_costs.py"
 
@@ -61,7 +61,7 @@ rule branches_benchmark:
         manifest="results/{case}/benchmarks/branches.provenance.json",
     params:
         **values_of(speed_rpm="dynamics.speed_rpm"),
-        machine=needs("machine"),
+        machine=needed(MACHINE),
     script:
         "../scripts/branches_benchmark.py"
 
@@ -70,7 +70,7 @@ rule dynamics_convergence:
     "Convergence of the sweep"
     input:
         harmonics=shared("stiffness", "harmonics"),
-        chunks=sweep_chunks,
+        chunks=given("dynamics_sweep", "chunks"),
     output:
         table="results/{case}/benchmarks/dynamics_convergence.csv",
         manifest="results/{case}/benchmarks/dynamics_convergence.provenance.json",
@@ -78,7 +78,7 @@ rule dynamics_convergence:
         runtime=60,
     params:
         **values_of(sweep="dynamics.sweep"),
-        machine=needs("machine"),
+        machine=needed(MACHINE),
     script:
         "../scripts/dynamics_convergence.py"
 

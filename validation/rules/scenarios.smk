@@ -2,7 +2,7 @@ rule scenarios_benchmark:
     "Samples: costs, and error of the statistics"
     input:
         harmonics=shared("stiffness", "harmonics"),
-        flanks=flanks("tolerances_chunk"),
+        flanks=given("tolerances_chunk", "flanks"),
     output:
         costs="results/{case}/benchmarks/scenarios.csv",
         errors="results/{case}/benchmarks/scenarios_errors.csv",
@@ -10,7 +10,7 @@ rule scenarios_benchmark:
     resources:
         runtime=30,
     params:
-        chunk=needs("tolerances_chunk"),
+        chunk=needed(STAGES["tolerances_chunk"].needs),
         samples=500,
     script:
         "../scripts/scenarios_benchmark.py"

@@ -10,7 +10,7 @@ import pandas as pd
 
 from facegear.io import columnar
 from facegear.stages.sampled_machine import SampledMachine
-from facegear.stages.tolerances_chunk import tolerances_chunk
+from facegear.stages.tolerances_chunk import chunk_of
 
 MODELS = ("quasi_static", "dynamic")
 WANTED, CORES = 10_000, 2
@@ -27,9 +27,9 @@ def costs(machine: SampledMachine, samples: int) -> pd.DataFrame:
     rows, samples = [], samples if machine.pair is None else max(samples // FEWER, 1)
     for model in MODELS:
         given = replace(machine, tolerances={**machine.tolerances, "model": model})
-        tolerances_chunk("samples", samples, samples, given)
+        chunk_of(given, "samples", samples, samples)
         start = time.process_time()
-        chunk = tolerances_chunk("samples", 0, samples - 1, replace(given)).content["chunk"]
+        chunk = chunk_of(replace(given), "samples", 0, samples - 1).content["chunk"]
         seconds = (time.process_time() - start) / samples
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
         minutes = seconds * WANTED / CORES / 60.0

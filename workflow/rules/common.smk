@@ -11,12 +11,14 @@ ROOT = Path(workflow.basedir)
 sys.path.insert(0, str(ROOT))
 os.environ.update(PYTHONPATH=str(ROOT), MPLBACKEND="Agg")
 
-from facegear.config.cases import expand_cases, shared_sources
+from facegear.config.cases import expand_cases
 from facegear.config.load import load_values
-from facegear.config.needs import NEEDS, loads_from_machine, many_contacts, stage_needs
-from facegear.config.notes import notes, turns
+from facegear.config.notes import notes
 from facegear.errors import FacegearError
 from facegear.io.run_lock import hold
+from facegear.pipeline.needs import resolved_needs, shared_sources
+from facegear.pipeline.stage import Case, From
+from facegear.pipeline.table import MACHINE, STAGES
 from paper.reproduction import read_reproduction
 from facegear.provenance.fingerprint import fingerprint, recall, remember
 
@@ -91,22 +93,59 @@ onsuccess:
     print(f"done{f': {report}' if report.exists() else ''}", file=sys.stderr)
 
 
-def has_contact(case):
-    """Whether the case solves the loaded contact itself."""
-    values = CASES[case]
-    return values["mesh_stiffness"]["source"] != "harmonics" or values["contact"]["root_stress"]
+@cache
+def sources(stage):
+    """Of each case the one whose files of a stage it shares."""
+    return shared_sources(CASES, stage)
+
+
+def case_of(name):
+    """A case among the cases of the config."""
+    return Case(CASES[name], CASES, lambda stage, case: sources(stage)[case])
+
+
+BASE = case_of(CASE)
+
+
+def read_from(source):
+    """Function of the wildcards giving the files of an earlier stage that an argument is read from."""
+    stage, several = STAGES[source.stage], source.each or STAGES[source.stage].files[source.file].each
+
+    def files(wildcards):
+        case = case_of(wildcards.case)
+        places = source.places(case) if source.wanted(case) else []
+        found = [path for place in places for path in paths({"case": wildcards.case, **place})]
+        return found if several or not found else found[0]
+
+    def paths(place):
+        file = stage.files[source.file]
+        texts = [{"each": text} for text in file.each(BASE)] if file.each else [{}]
+        shared_by = sources(source.stage)[place["case"]]
+        return [f"results/{shared_by}/{file.at({**place, **text})}" for text in texts]
+
+    return files
+
+
+def given(stage, argument):
+    """Function of the wildcards giving the files that an argument of a stage is read from."""
+    return read_from(STAGES[stage].upstream[argument])
+
+
+def needed(needs):
+    """Function of the wildcards giving values of needs."""
+
+    def values(wildcards):
+        try:
+            return resolved_needs(needs, case_of(wildcards.case))
+        except FacegearError as error:
+            stop(f"{error} of {wildcards.case}")
+
+    return values
 
 
 def value_of(key):
     """Function of the wildcards giving a value of a case's config; a dotted key reaches inside."""
-
-    def value(wildcards):
-        found = CASES[wildcards.case]
-        for part in key.split("."):
-            found = found[part] if found is not None else None
-        return found
-
-    return value
+    return lambda wildcards: resolved_needs({"value": key}, case_of(wildcards.case))["value"]
 
 
 def values_of(*keys, **renamed):
@@ -114,50 +153,11 @@ def values_of(*keys, **renamed):
     return {name: value_of(key) for name, key in {**dict(zip(keys, keys)), **renamed}.items()}
 
 
-def needs(rule):
-    """Function of the wildcards giving all that a stage takes from a case's config."""
-
-    def values(wildcards):
-        try:
-            return stage_needs(rule, CASES[wildcards.case])
-        except FacegearError as error:
-            stop(f"{error} of {wildcards.case}")
-
-    return values
-
-
 def sections(*keys):
     """Function of the wildcards giving these keys of a case's config, as a config of its own."""
     return lambda wildcards: {key: CASES[wildcards.case][key] for key in keys}
 
 
-@cache
-def sources(rule):
-    """Of each case the one whose results of a rule it shares."""
-    return shared_sources(CASES, rule)
-
-
-def shared(rule, output):
-    """Function of the wildcards giving an output of an earlier rule, shared by all cases alike up to it."""
-    return lambda wildcards: str(getattr(rules, rule).output[output]).format(
-        case=sources(rule)[wildcards.case]
-    )
-
-
-def shown(name, caption):
-    """The svg of a figure, marked for Snakemake's report."""
-    category = caption.replace("_", " ").capitalize()
-    file, text = f"results/{{case}}/figures/{name}.svg", f"../report/{caption}.rst"
-    return report(file, caption=text, category=category, labels={"figure": name})
-
-
-def picture_lists(caption, names):
-    """Output lists `svg` and `png` where the named figures are drawn, however many they are."""
-    svg = [shown(name, caption) for name in names]
-    return {"svg": svg, "png": [f"results/{{case}}/figures/{name}.png" for name in names]}
-
-
-def pictures(caption, *names):
-    """Output files `svg` and `png` where the named figures are drawn: a path for one, a list for several."""
-    lists = picture_lists(caption, names)
-    return {kind: paths[0] for kind, paths in lists.items()} if len(names) == 1 else lists
+def shared(stage, file, **where):
+    """Function of the wildcards giving a file of an earlier stage, shared by all cases alike up to it."""
+    return read_from(From(stage, file, where))

@@ -2,7 +2,6 @@ include: "functions/targets.smk"
 
 
 rule report:
-    "Report"
     input:
         tables=report_tables,
         pictures=report_pictures,
@@ -12,6 +11,8 @@ rule report:
     output:
         html="results/{case}/report.html",
         manifest="results/{case}/report.provenance.json",
+    "Report"
+    localrule: True
     params:
         values=sections(
             *("case", "tooth_pair", "transmission", "mesh", "contact"),

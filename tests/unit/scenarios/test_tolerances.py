@@ -46,8 +46,8 @@ def gearbox():
 
 
 def chunk(gearbox, first, last, design="samples", **others):
-    sampled = SampledMachine(**gearbox._chain._varied("tolerances_chunk"))
-    return tolerances_chunk(design, first, last, sampled, **others).content["chunk"]
+    sampled = SampledMachine.of_stage(**gearbox._chain.arguments("tolerances_chunk"))
+    return chunk_of(sampled, design, first, last, **others).content["chunk"]
 
 
 @pytest.mark.parametrize(

@@ -139,8 +139,8 @@ def test_given_harmonics_have_no_contact_to_vary():
 
 
 def test_samples_with_contacts_of_their_own_do_not_depend_on_their_chunk(found):
-    sampled = SampledMachine(**machine(*BOTH)._chain._varied("tolerances_chunk"))
-    last = tolerances_chunk("samples", 3, 3, sampled).content["chunk"]
+    sampled = SampledMachine.of_stage(**machine(*BOTH)._chain.arguments("tolerances_chunk"))
+    last = chunk_of(sampled, "samples", 3, 3).content["chunk"]
     pd.testing.assert_frame_equal(last, found.iloc[3:].reset_index(drop=True), check_exact=True)
 
 
