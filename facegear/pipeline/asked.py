@@ -17,12 +17,12 @@ PAIR_SECTIONS = ("tooth_pair", "mesh", "contact", "mesh_stiffness")
 
 
 def always(case: Case) -> bool:
-    """Every case."""
+    """Always."""
     return True
 
 
 def contact(case: Case) -> bool:
-    """Whether the case solves the loaded contact itself."""
+    """Whether a contact analysis gives the stiffness, or root stress is asked for."""
     return case.values["mesh_stiffness"]["source"] != "harmonics" or root_stress(case)
 
 
@@ -37,22 +37,22 @@ def computed_mean(case: Case) -> bool:
 
 
 def root_stress(case: Case) -> bool:
-    """Whether the fillets carry gauges."""
+    """Whether `contact.root_stress` asks for it."""
     return bool(case.values["contact"]["root_stress"])
 
 
 def machine(case: Case) -> bool:
-    """Whether there is a machine around the tooth pair."""
+    """Whether section transmission is given."""
     return case.values["transmission"] is not None
 
 
 def machine_stress(case: Case) -> bool:
-    """Whether root stress of the running machine is known."""
+    """Whether section transmission is given and root stress asked for."""
     return machine(case) and root_stress(case)
 
 
 def strength(case: Case) -> bool:
-    """Whether safety and life are asked for."""
+    """Whether section strength is given."""
     return case.values["strength"] is not None
 
 
@@ -62,7 +62,7 @@ def machine_loads(case: Case) -> bool:
 
 
 def branches(case: Case) -> bool:
-    """Whether branches of periodic motions are followed."""
+    """Whether section branches is given."""
     return machine(case) and case.values["branches"] is not None
 
 
@@ -72,27 +72,27 @@ def shares_load(case: Case) -> bool:
 
 
 def hunting(case: Case) -> bool:
-    """Whether the hunting cycle is gone through at rest: meshes as gears have them."""
+    """Whether some meshes share a load, with geometric kinematics."""
     return shares_load(case) and case.values["transmission"]["mesh_kinematics"] == "geometric"
 
 
 def following(case: Case) -> bool:
-    """Whether the running machine is followed through the hunting cycle: something turns slowly."""
+    """Whether meshes are geometric and something has a runout or a cumulative pitch deviation."""
     return hunting(case) and turns(case.values["transmission"])
 
 
 def tolerances(case: Case) -> bool:
-    """Whether samples of the machine with its tolerances are asked for."""
+    """Whether section tolerances is given."""
     return machine(case) and case.values["tolerances"] is not None
 
 
 def load_map(case: Case) -> bool:
-    """Whether these are asked for over torque and speed."""
+    """Whether `tolerances.load_map` is given."""
     return tolerances(case) and case.values["tolerances"]["load_map"] is not None
 
 
 def search(case: Case) -> bool:
-    """Whether designs are searched."""
+    """Whether section search is given."""
     return machine(case) and case.values["search"] is not None
 
 

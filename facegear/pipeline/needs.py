@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from facegear.errors import ConfigError
-from facegear.pipeline.stage import Case, Need, Values
+from facegear.pipeline.stage import Case, Computed, Need, Values
 from facegear.pipeline.table import STAGES
 
 
@@ -49,8 +49,8 @@ def shared_sources(cases: Mapping[str, Values], stage: str) -> dict[str, str]:
 
 
 def _resolved(need: Need, case: Case) -> Any:
-    if callable(need):
-        return need(case)
+    if isinstance(need, Computed):
+        return need.function(case)
     if isinstance(need, str):
         return value_at(case.values, need)
     return {key.rsplit(".", 1)[-1]: value_at(case.values, key) for key in need}

@@ -33,8 +33,16 @@ class Case:
     source: Callable[[str, str], str] = lambda stage, case: case
 
 
-Need = str | tuple[str, ...] | Callable[[Case], Any]
-"""A dotted key of the config, several of them as a section of their own, or a function of the case."""
+@dataclass(frozen=True)
+class Computed:
+    """A value that follows from some sections of the config by a function of the case."""
+
+    function: Callable[[Case], Any]
+    sections: tuple[str, ...]
+
+
+Need = str | tuple[str, ...] | Computed
+"""A dotted key of the config, several of them as a section of their own, or what follows from sections."""
 
 
 def load(reference: str) -> Any:

@@ -5,7 +5,7 @@ Columns that a reader asks for are given by name, so that reading this table loa
 
 from facegear.config.lumped_model import TEETH
 from facegear.pipeline import asked, studies
-from facegear.pipeline.stage import NUMBER, Figures, File, From, Need, Stage
+from facegear.pipeline.stage import NUMBER, Computed, Figures, File, From, Need, Stage
 
 Needs = dict[str, Need]
 
@@ -18,7 +18,11 @@ SWEEP: Needs = {"sweep": "dynamics.sweep"}
 BRANCHES: Needs = {**MACHINE, **SPEED, "branches": "branches"}
 SHARING: Needs = {**MACHINE, **ACCURACY, **SPEED, "options": "load_sharing"}
 CAUSES = tuple(f"tolerances.{key}" for key in ("causes", "correlations", "model", "seed", "hunting_cycles"))
-SAMPLED: Needs = {**SHARING, "tolerances": CAUSES, "pair": asked.pair_where(asked.sampled_contact)}
+SAMPLED: Needs = {
+    **SHARING,
+    "tolerances": CAUSES,
+    "pair": Computed(asked.pair_where(asked.sampled_contact), asked.PAIR_SECTIONS),
+}
 SEARCHED: Needs = {
     **PAIR,
     **ACCURACY,
@@ -27,7 +31,7 @@ SEARCHED: Needs = {
     "options": "load_sharing",
     "search": "search",
     "tolerances": "tolerances",
-    "pair": asked.pair_where(asked.searched_contact),
+    "pair": Computed(asked.pair_where(asked.searched_contact), asked.PAIR_SECTIONS),
 }
 
 BODY = {"body": "pinion|face_gear"}
@@ -47,6 +51,7 @@ STUDIED_CONTACT = {
     "pair": From("geometry", "pair", each=studies.contact_cases),
     **{kind: From("contact", kind, each=studies.contact_cases) for kind in ("ltca", "by_torque", "pressure")},
 }
+CONTACT_POINTS = Computed(studies.contact_points, ("studies",))
 CASE_COLUMNS = ("study", "point", "label")
 
 ALL = (
@@ -97,7 +102,11 @@ ALL = (
     Stage(
         name="compliance",
         title="Flank compliance",
-        needs={"tooth_pair": asked.without_gaps, "mesh": "mesh", "contact": "contact"},
+        needs={
+            "tooth_pair": Computed(asked.without_gaps, ("tooth_pair",)),
+            "mesh": "mesh",
+            "contact": "contact",
+        },
         files={"arrays": File("compliance/{body}.npz", "facegear.contact.gear_flank:STORED")},
         wildcards=BODY,
         memory_mb=4000,
@@ -191,7 +200,7 @@ ALL = (
     Stage(
         name="contact_studies",
         title="Contact of the studies' cases side by side",
-        needs={"points": studies.contact_points},
+        needs={"points": CONTACT_POINTS},
         upstream=STUDIED_CONTACT,
         files={"table": File("contact/studies.csv")},
         figures=Figures(
@@ -200,9 +209,9 @@ ALL = (
             chapter="contact",
             upstream=STUDIED_CONTACT,
             needs={
-                "points": studies.contact_points,
-                "titles": studies.contact_titles,
-                "torque": studies.contact_torque,
+                "points": CONTACT_POINTS,
+                "titles": Computed(studies.contact_titles, ("studies",)),
+                "torque": Computed(studies.contact_torque, ("contact", "mesh_stiffness")),
             },
         ),
         asked=studies.contact_studied,
@@ -409,7 +418,7 @@ ALL = (
     Stage(
         name="load_sharing_summary",
         title="Load sharing of all studies",
-        needs={"points": studies.points},
+        needs={"points": Computed(studies.points, ("studies",))},
         upstream={
             "summaries": From("load_sharing", "summary", each=studies.nominal_and_every_point),
             "curves": From("load_sharing", "curve", each=studies.every_point),
@@ -426,9 +435,11 @@ ALL = (
             chapter="load_sharing",
             upstream={name: From("load_sharing_summary", name) for name in ("studies", "summary")},
             needs={
-                "titles": studies.titles,
-                "captions": studies.captions,
-                "kinds": studies.kinds,
+                "titles": Computed(studies.titles, ("studies",)),
+                "captions": Computed(
+                    studies.captions, ("studies", "tooth_pair", "transmission", "mesh_stiffness")
+                ),
+                "kinds": Computed(studies.kinds, ("transmission", "tooth_pair")),
             },
         ),
         asked=asked.shares_load,

@@ -21,7 +21,14 @@ MAY_IMPORT = {
     "transmission": {"harmonics"},
     "dynamics": {"transmission", "harmonics"},
     "load_sharing": {"dynamics", "transmission", "harmonics"},
-    "plots": {"geometry", "contact", "stiffness", "harmonics", "transmission", "dynamics", "load_sharing"},
+    "config": {
+        *("geometry", "mesh", "contact", "harmonics", "stiffness", "transmission", "dynamics"),
+        *("load_sharing", "scenarios", "strength"),
+    },
+    "plots": {
+        *("config", "geometry", "contact", "stiffness", "harmonics", "transmission"),
+        *("dynamics", "load_sharing"),
+    },
     "report": {"geometry", "contact"},
     "scenarios": set(),
     "strength": {"geometry"},
@@ -29,8 +36,9 @@ MAY_IMPORT = {
         *("config", "geometry", "mesh", "contact", "stiffness", "harmonics"),
         *("transmission", "dynamics", "load_sharing", "scenarios", "strength"),
     },
+    "pipeline": {"config", "load_sharing", "report", "stages"},
     "results": {
-        *("config", "provenance", "stages", "contact", "dynamics", "load_sharing"),
+        *("pipeline", "config", "provenance", "stages", "contact", "dynamics", "load_sharing"),
         *("plots", "report", "strength"),
     },
 }

@@ -13,7 +13,7 @@ from facegear.provenance.fingerprint import fingerprint, remember
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("workflow", "profiles", "facegear", "paper", "validation", "config")
-SCRIPTS = sorted(ROOT.glob("*/scripts/*.py"))
+SCRIPTS = sorted(path for name in FOLDERS for path in (ROOT / name / "scripts").glob("*.py"))
 PARSED = "facegear_sources.json"
 """In Snakemake's folder: what counts of each source file."""
 

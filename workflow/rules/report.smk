@@ -2,6 +2,7 @@ include: "functions/targets.smk"
 
 
 rule report:
+    "Report"
     input:
         tables=report_tables,
         pictures=report_pictures,
@@ -11,7 +12,6 @@ rule report:
     output:
         html="results/{case}/report.html",
         manifest="results/{case}/report.provenance.json",
-    "Report"
     localrule: True
     params:
         values=sections(

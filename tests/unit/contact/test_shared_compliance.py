@@ -7,12 +7,11 @@ import pytest
 from contact_bodies import STEEL, pair_design
 
 import facegear
-from facegear.config.cases import shared_sources
-from facegear.config.needs import stage_needs
 from facegear.contact.pair import BUILDERS
 from facegear.contact.teeth import elastic_tooth
 from facegear.geometry.design import Assembly, Relief
 from facegear.mesh.sizes import MeshSizes
+from facegear.pipeline.needs import shared_sources, stage_needs
 
 RELIEF = {"amount_um": 10, "start_mm": 0, "length_mm": 1}
 GAPS = {

@@ -4,7 +4,7 @@ import pandas as pd
 import pytest
 
 import facegear
-from facegear.config.needs import stage_needs
+from facegear.pipeline.needs import stage_needs
 from facegear.report.contents import caption_of
 from facegear.report.glance import verdicts, warnings
 from facegear.report.machine import key_numbers, machine_chapter

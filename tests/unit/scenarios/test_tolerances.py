@@ -8,12 +8,12 @@ import pandas as pd
 import pytest
 
 import facegear
-from facegear.config.needs import stage_needs
 from facegear.config.tolerances import Tolerances, chunks
 from facegear.errors import ConfigErrors, FacegearError
+from facegear.pipeline.needs import stage_needs
 from facegear.stages.sampled_machine import SampledMachine
 from facegear.stages.tolerances import tolerances
-from facegear.stages.tolerances_chunk import tolerances_chunk
+from facegear.stages.tolerances_chunk import chunk_of
 
 MEAN = "transmission.single_meshes"
 LINEAR = {
