@@ -6,7 +6,7 @@ TOOLS := $(VENV)/.tools
 CLUSTER := $(VENV)/.cluster
 CORES ?= 2
 
-.PHONY: all env tools check test lint docs ci notebooks benchmarks peers lock clean
+.PHONY: all env tools check test random lint docs release audit ci notebooks benchmarks peers lock clean
 
 all: check
 	$(BIN)/snakemake --cores $(CORES)
@@ -27,7 +27,7 @@ endef
 # The repository installs itself editable, so that notebooks and scripts find it from any folder.
 $(READY): requirements-run.lock pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	awk '/^[^ ]/ {wanted = /^(uv|setuptools)==/} wanted' requirements.lock > $(VENV)/installers.lock
+	awk '/^[^ ]/ {wanted = /^(uv|setuptools|setuptools-scm|packaging)==/} wanted' requirements.lock > $(VENV)/installers.lock
 	$(BIN)/python -m pip install --quiet --require-hashes -r $(VENV)/installers.lock
 	$(call install,requirements-run.lock)
 	$(BIN)/uv pip install --quiet --python $(BIN)/python --no-deps --no-build-isolation --editable .
@@ -49,6 +49,10 @@ check: env
 test: check tools
 	$(BIN)/python -m pytest -n $(CORES) --dist loadgroup
 
+# Properties alone, with fresh random examples each time: what one of them finds becomes a named case of its test.
+random: check tools
+	$(BIN)/python -m pytest -n $(CORES) --dist loadgroup -m hypothesis --hypothesis-profile=random
+
 lint: tools
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
@@ -58,9 +62,17 @@ lint: tools
 docs: tools
 	$(BIN)/sphinx-build --jobs $(CORES) --fail-on-warning --keep-going --quiet docs docs/build
 
-# What CI runs: a complaint of lint or docs stops it before the tests. Here a study is also run on a Slurm of its own.
+# What CI runs: a complaint of lint, docs or the release stops it before the tests. Here a study is also run on a Slurm of its own.
 ci: export FACEGEAR_SLURM = 1
-ci: lint docs $(CLUSTER) test
+ci: lint docs release $(CLUSTER) test
+
+# dist/: wheel and sdist, the list of all that a run installs, licences and notes of this version.
+release: tools
+	PATH=$(CURDIR)/$(BIN):$$PATH .ci/release dist
+
+# Known faults of the locked versions. It asks PyPI's own service, which a mirror of packages need not have.
+audit: tools
+	$(BIN)/uv tool run pip-audit --requirement requirements-run.lock --disable-pip
 
 notebooks: tools
 	$(BIN)/jupyter execute --inplace examples/*.ipynb

@@ -1,4 +1,7 @@
-"""For all tests: no windows; random examples of properties fresh on a developer's machine, fixed in CI."""
+"""For all tests: no windows, and the same examples of every property each time.
+
+`make random` looks at fresh ones: pytest -m hypothesis --hypothesis-profile=random.
+"""
 
 import os
 
@@ -7,9 +10,9 @@ from hypothesis import settings
 from lumped_machines import make_layout, make_machine
 
 os.environ.setdefault("MPLBACKEND", "Agg")
-settings.register_profile("ci", derandomize=True)
-if os.environ.get("CI"):
-    settings.load_profile("ci")
+settings.register_profile("fixed", derandomize=True)
+settings.register_profile("random", derandomize=False, print_blob=True)
+settings.load_profile("fixed")
 
 
 @pytest.fixture

@@ -1,7 +1,7 @@
 """How Sphinx builds the documentation: `make docs`."""
 
 import sys
-import tomllib
+from importlib.metadata import version
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
@@ -9,9 +9,9 @@ sys.path.insert(0, str(ROOT))
 
 project = "facegear"
 author = "the facegear authors"
-release = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+release = version("facegear")
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.apidoc"]
-exclude_patterns = ["build"]
+exclude_patterns = ["build", "joss"]
 default_role = "literal"  # docstrings write names in single backticks
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 4

@@ -1,13 +1,14 @@
-"""The command line: `python -m facegear run`, `check` and `limits`."""
+"""The command line: `python -m facegear run`, `check`, `limits` and `compare`."""
 
 import argparse
 import os
 import sys
 from collections.abc import Sequence
+from importlib.util import find_spec
 from pathlib import Path
 
 from facegear.config.load import load_values, read_layers
-from facegear.errors import FacegearError
+from facegear.errors import EXTRAS, FacegearError, MissingExtra
 
 ROOT = Path(__file__).parents[1]
 
@@ -42,6 +43,11 @@ def _parser() -> argparse.ArgumentParser:
         flag = f"--{name.replace('_', '-')}"
         limits.add_argument(flag, type=kind, required=default is None, default=default)
     limits.set_defaults(command=_limits)
+    compare = commands.add_parser("compare", help="what moved between two folders of results, and why")
+    compare.add_argument("old", help="a folder of results, or a release's stored answer such as 0.1.0/quick")
+    compare.add_argument("new", help="the same")
+    compare.add_argument("--page", type=Path, help="write a report page with both laid over each other")
+    compare.set_defaults(command=_compare)
     return parser
 
 
@@ -62,6 +68,10 @@ LIMITS = {
 def _run(given: argparse.Namespace) -> int:
     """Hand over to Snakemake, whose own reader of configs is not met by a file that cannot be read."""
     read_layers(given.config)
+    if find_spec("snakemake") is None:
+        raise MissingExtra("snakemake", EXTRAS["snakemake"])
+    if not (ROOT / "Snakefile").is_file():
+        raise FacegearError("the workflow is not part of an installed package: run this from its repository")
     command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")]
     command += ["--cores", given.cores, "--directory", given.directory, "--configfile", str(given.config)]
     command += ["--verbose"] * given.verbose + ["--dry-run"] * given.dry_run
@@ -81,6 +91,24 @@ def _limits(given: argparse.Namespace) -> int:
 
     print(told_limits(**{name: getattr(given, name) for name in LIMITS}))
     return 0
+
+
+def _compare(given: argparse.Namespace) -> int:
+    """Exit code 0 where nothing moved beyond its numerical error and no label changed, else 1."""
+    from facegear.compare.answers import opened
+    from facegear.compare.judge import compare
+    from facegear.compare.page import by_table, causes_table, verdict, write_page
+
+    with opened(given.old) as old, opened(given.new) as new:
+        comparison = compare(old, new)
+        print(verdict(comparison))
+        if len(comparison.rows):
+            print(by_table(comparison).to_string(index=False, na_rep=""))
+            for cause in causes_table(comparison, old, new).itertuples(index=False):
+                print(f"{cause.cause}  [{cause.table}]")
+        if given.page:
+            write_page(given.page, comparison, old, new)
+    return 0 if comparison.equal else 1
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """Errors a user may meet. Each one's text is one clear line."""
 
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -9,11 +10,16 @@ class FacegearError(Exception):
     """Base of all errors whose text is meant for the user."""
 
 
+def must_be(allowed: str) -> str:
+    """What is allowed as a demand."""
+    return allowed if re.search(r"(^|, )must be ", allowed) else f"must be {allowed}"
+
+
 class ConfigError(FacegearError):
-    """A config value that cannot be used: names the key, the value and what is allowed."""
+    """A config value that cannot be used: names the key, the value and what it must be."""
 
     def __init__(self, key: str, value: object, allowed: str) -> None:
-        super().__init__(f"{key} = {value!r}: {allowed}")
+        super().__init__(f"{key} = {value!r}: {must_be(allowed)}")
         self.key, self.value, self.allowed = key, value, allowed
 
 
@@ -81,5 +87,5 @@ def extras_named() -> Iterator[None]:
 def chosen(name: str, allowed: Sequence[str], what: str) -> str:
     """`name` if it is one of `allowed`; raises FacegearError with one line otherwise."""
     if name not in allowed:
-        raise FacegearError(f"{what} = {name!r}: one of {', '.join(allowed)}")
+        raise FacegearError(f"{what} = {name!r}: must be one of {', '.join(allowed)}")
     return name

@@ -1,6 +1,7 @@
 """The front door: one object that answers for a machine, from its teeth to its load sharing."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from importlib.resources import files
@@ -77,9 +78,16 @@ class Gearbox:
     config: Config
     store: Store = field(default_factory=Store)
 
-    @cached_property
+    @property
     def values(self) -> dict[str, Any]:
-        """The config as plain values, complete, with what follows from other keys filled in."""
+        """The config as plain values, complete, with what follows from other keys filled in.
+
+        A copy: what is changed in it changes no answer, `with_values` does.
+        """
+        return deepcopy(self._values)
+
+    @cached_property
+    def _values(self) -> dict[str, Any]:
         return resolved(self.config)
 
     def with_values(self, changes: Mapping[str, Any]) -> "Gearbox":
@@ -128,8 +136,8 @@ class Gearbox:
         if torques is not None:
             changes["contact.torques_n_m"] = torques if isinstance(torques, Iterable) else [torques]
             changes["mesh_stiffness.torque_n_m"] = None  # need not lie within these
-            if self.values["strength"] is not None:  # nor its duty cycle; the fillets keep their gauges
-                changes |= {"strength": None, "contact.root_stress": self.values["contact"]["root_stress"]}
+            if self._values["strength"] is not None:  # nor its duty cycle; the fillets keep their gauges
+                changes |= {"strength": None, "contact.root_stress": self._values["contact"]["root_stress"]}
         return self._changed("contact", changes)._chain.result(ContactResult)
 
     def root_stress(self) -> "RootStressResult":
@@ -251,7 +259,7 @@ class Gearbox:
 
         given = {"from_rpm": from_rpm, "to_rpm": to_rpm, "points": points, "directions": directions}
         changes = _given({f"dynamics.sweep.{key}": value for key, value in given.items()})
-        if points is not None and points < self.values["dynamics"]["sweep"]["chunks"]:
+        if points is not None and points < self._values["dynamics"]["sweep"]["chunks"]:
             changes["dynamics.sweep.chunks"] = 1
         return self._changed("sweep", changes)._chain.result(SweepResult, threads=threads)
 
@@ -319,7 +327,7 @@ class Gearbox:
         with extras_named():
             from facegear.stages.cad import export
 
-            return export(path, body, teeth, self.values["tooth_pair"])
+            return export(path, body, teeth, self._values["tooth_pair"])
 
     def tolerances(self, samples: int | None = None) -> "TolerancesResult":
         """Percentiles, shares and Sobol indices of the machine with its tolerances, in one process.
@@ -330,7 +338,7 @@ class Gearbox:
         from facegear.results.tolerances import TolerancesResult
 
         changes = {} if samples is None else {"samples": samples, "chunk_samples": samples, "index_blocks": 0}
-        if self.values["tolerances"] is None:
+        if self._values["tolerances"] is None:
             raise ConfigError("tolerances", None, "a section of the config: causes and what is asked of them")
         given = {f"tolerances.{key}": value for key, value in changes.items()}
         return self._changed("tolerances", given)._chain.result(TolerancesResult)
@@ -349,10 +357,10 @@ class Gearbox:
         """
         from facegear.results.tolerances import LoadMapResult
 
-        if self.values["tolerances"] is None:
+        if self._values["tolerances"] is None:
             raise ConfigError("tolerances", None, "a section of the config: causes and what is asked of them")
         given = {"torque_factors": torque_factors, "speeds_rpm": speeds_rpm, "samples": samples}
-        section = {**(self.values["tolerances"]["load_map"] or {}), **_given(given)}
+        section = {**(self._values["tolerances"]["load_map"] or {}), **_given(given)}
         return self._changed("load_map", {"tolerances.load_map": section})._chain.result(LoadMapResult)
 
     def loosest_tolerances(
@@ -373,9 +381,9 @@ class Gearbox:
         from facegear.errors import chosen
         from facegear.scenarios.inverse import loosest
 
-        if self.values["tolerances"] is None:
+        if self._values["tolerances"] is None:
             raise ConfigError("tolerances", None, "a section of the config: causes and what is asked of them")
-        given = self.values["tolerances"]["causes"]
+        given = self._values["tolerances"]["causes"]
         names = [cause["name"] for cause in given]
         named = [chosen(name, names, "causes") for name in (names if causes is None else causes)]
 
@@ -399,7 +407,7 @@ class Gearbox:
         """
         from facegear.results.search import SearchResult
 
-        if self.values["search"] is None:
+        if self._values["search"] is None:
             raise ConfigError("search", None, "a section of the config: variables and objectives")
         given = _given({"search.generations": generations, "search.seeds": seeds})
         return self._changed("search", given)._chain.result(SearchResult)
@@ -414,7 +422,7 @@ class Gearbox:
 
     def _with_branches(self, changes: Mapping[str, Any]) -> "Gearbox":
         """A copy with a section `branches`, in which some values differ from the config's."""
-        section = self.values["branches"] or {}
+        section = self._values["branches"] or {}
         inner = {
             key: {**section.get(key, {}), **value} if isinstance(value, Mapping) else value
             for key, value in changes.items()
@@ -430,7 +438,7 @@ class Gearbox:
 
     @cached_property
     def _chain(self) -> Chain:
-        return Chain(self.values, self.store)
+        return Chain(self._values, self.store)
 
 
 def _given(changes: Mapping[str, Any]) -> dict[str, Any]:

@@ -2,13 +2,13 @@
 
 import difflib
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NoReturn, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
 
-from facegear.errors import ConfigErrors
+from facegear.errors import ConfigError, ConfigErrors, must_be
 
 
 class Section(BaseModel):
@@ -23,11 +23,30 @@ SectionType = TypeVar("SectionType", bound=Section)
 def refuse(key: str, value: object, allowed: str) -> NoReturn:
     """Refuse a value inside a validator; `key` is relative to the section that is validated.
 
-    Raises an error that the loader prints as `section.key = value: allowed`.
+    Raises an error that the loader prints as `section.key = value: must be allowed`.
     """
-    raise PydanticCustomError(
-        "refused", "{allowed}", {"key": key, "value": json.dumps(value, default=str), "allowed": allowed}
-    )
+    _refuse_all([(key, value, allowed)])
+
+
+def require_all(*checks: Callable[[], None]) -> None:
+    """Run checks inside a validator, so that all that they refuse is told at once.
+
+    A check calls `refuse` or raises ConfigError with a key relative to the section that is validated.
+    """
+    refused: list[tuple[str, object, str]] = []
+    for check in checks:
+        try:
+            check()
+        except ConfigError as error:
+            refused.append((error.key, error.value, error.allowed))
+        except PydanticCustomError as error:
+            refused += (error.context or {})["refused"]
+    if refused:
+        _refuse_all(refused)
+
+
+def _refuse_all(refused: Sequence[tuple[str, object, str]]) -> NoReturn:
+    raise PydanticCustomError("refused", "refused", {"refused": list(refused)})
 
 
 def parse(model: type[SectionType], values: Mapping[str, Any], source: str = "config") -> SectionType:
@@ -42,43 +61,69 @@ def parse(model: type[SectionType], values: Mapping[str, Any], source: str = "co
     try:
         return model.model_validate_json(text)
     except ValidationError as error:
-        lines = _lines(model, error.errors(include_url=False))
+        lines = _lines(model, values, error.errors(include_url=False))
         raise ConfigErrors(source, list(dict.fromkeys(lines))) from None
 
 
-def _lines(model: type[Section], found: list[ErrorDetails]) -> list[str]:
-    """A line for each mistake; a misspelt key is not told again as a missing one."""
-    places = [[part for part in details["loc"] if not _is_union_tag(part)] for details in found]
+def _lines(model: type[Section], values: Mapping[str, Any], found: list[ErrorDetails]) -> list[str]:
+    """The lines of all mistakes; a misspelt key is not told again as a missing one."""
+    places = [_location(details, values) for details in found]
     meant = [
         [*place[:-1], _nearest(model, place)]
         for place, details in zip(places, found, strict=True)
         if details["type"] == "extra_forbidden"
     ]
     return [
-        _line(model, details, place)
+        line
         for place, details in zip(places, found, strict=True)
         if details["type"] != "missing" or place not in meant
+        for line in _told(model, details, place)
     ]
 
 
-def _line(model: type[Section], details: ErrorDetails, location: list[int | str]) -> str:
-    kind, context = details["type"], details.get("ctx", {})
+def _told(model: type[Section], details: ErrorDetails, location: list[int | str]) -> list[str]:
+    """One line for each value that is refused."""
+    kind = details["type"]
     if kind == "refused":
-        key = ".".join([_dotted(location), context["key"]]).strip(".")
-        return f"{key} = {context['value']}: {context['allowed']}"
+        where = _dotted(location)
+        return [
+            f"{'.'.join([where, key]).strip('.')} = {json.dumps(value, default=str)}: {must_be(allowed)}"
+            for key, value, allowed in details["ctx"]["refused"]
+        ]
     key = _dotted(location) or "(the whole file)"
     if kind == "extra_forbidden":
-        nearest, keys = _nearest(model, location), _keys_at(model, location[:-1])
-        hint = f"did you mean {nearest!r}?" if nearest else f"allowed here: {', '.join(sorted(keys))}"
-        return f"{key} = {_shown(details['input'])}: unknown key; {hint}"
+        allowed = _keys_at(model, location[:-1])
+        return [f"{key} = {_shown(details['input'])}: unknown key; {suggestion(str(location[-1]), allowed)}"]
     if kind == "missing":
-        return f"{key} = (missing): this key is required"
+        return [f"{key} = (missing): this key is required"]
     message = details["msg"].removeprefix("Input ").removeprefix("Value error, ")
-    return f"{key} = {_shown(details['input'])}: {message[:1].lower()}{message[1:]}"
+    message = message.replace("should ", "must ", 1)
+    return [f"{key} = {_shown(details['input'])}: {message[:1].lower()}{message[1:]}"]
+
+
+def suggestion(key: str, allowed: Iterable[str]) -> str:
+    """The allowed key that was most likely meant, or else all of them, in words."""
+    nearest = _closest(key, allowed)
+    return f"did you mean {nearest!r}?" if nearest else f"allowed here: {', '.join(sorted(allowed))}"
+
+
+def _location(details: ErrorDetails, values: Any) -> list[int | str]:
+    """Keys and list positions down to a mistake, without the names of types and models that pydantic adds."""
+    named_by_user = details["type"] in ("extra_forbidden", "missing")
+    kept: list[int | str] = []
+    for place, part in enumerate(details["loc"], start=1):
+        own = isinstance(values, Mapping) and part in values
+        last = named_by_user and place == len(details["loc"])
+        if not (own or last) and _is_union_tag(part):
+            continue
+        kept.append(part)
+        reached = own or (isinstance(values, list | tuple) and isinstance(part, int) and part < len(values))
+        values = values[part] if reached else None
+    return kept
 
 
 def _is_union_tag(part: int | str) -> bool:
-    """Config keys are lower case words; pydantic also puts model and type names into a location."""
+    """The project's keys are lower case words; names of types and models are not."""
     return isinstance(part, str) and (part in _TYPE_NAMES or part[:1].isupper() or "[" in part or "-" in part)
 
 
@@ -88,8 +133,8 @@ _TYPE_NAMES = {"float", "int", "str", "bool"}
 def _dotted(location: list[int | str]) -> str:
     text = ""
     for part in location:
-        text += f"[{part}]" if isinstance(part, int) else f".{part}"
-    return text.strip(".")
+        text += f"[{part}]" if isinstance(part, int) else f"{'.' if text else ''}{part}"
+    return text
 
 
 def _shown(value: Any) -> str:
@@ -98,8 +143,13 @@ def _shown(value: Any) -> str:
 
 
 def _nearest(model: type[Section], location: list[int | str]) -> str | None:
-    keys = _keys_at(model, location[:-1])
-    close = difflib.get_close_matches(str(location[-1]), sorted(keys), n=1, cutoff=0.6)
+    return _closest(str(location[-1]), _keys_at(model, location[:-1]))
+
+
+def _closest(key: str, allowed: Iterable[str]) -> str | None:
+    """The allowed key that is spelt most alike; capitals and hyphens count for nothing."""
+    written = key.lower().replace("-", "_").replace(" ", "_")
+    close = difflib.get_close_matches(written, sorted(allowed), n=1, cutoff=0.6)
     return close[0] if close else None
 
 

@@ -4,6 +4,9 @@ from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
 
+LIGHTEST_KG, SMALLEST_KG_M2 = 1e-6, 1e-12
+"""Less belongs to no gear: a steel pinion of 2 mm has 5e-5 kg and 2e-11 kg m2."""
+
 
 class BearingStiffness(Section):
     """Bearing stiffness along a body's axes."""
@@ -25,15 +28,19 @@ class RunoutSection(Section):
 
     eccentricity_um: float = Field(ge=0, le=1e4, description="half of the dial gauge's reading")
     phase_deg: float = Field(
-        0.0, ge=-360, le=360, description="high point at the start, from the upper gear or the first pinion"
+        0.0,
+        ge=-360,
+        le=360,
+        description="high point at the start, as the body turns: a pinion's from the upper gear, a face "
+        "gear's from the first pinion",
     )
 
 
 class PinionBody(Section):
     """Data shared by all pinions; x is tangential to the face gear, y along the face gear's axis."""
 
-    mass_kg: float = Field(gt=0, le=1e5)
-    inertia_kg_m2: float = Field(gt=0, le=1e5)
+    mass_kg: float = Field(ge=LIGHTEST_KG, le=1e5)
+    inertia_kg_m2: float = Field(ge=SMALLEST_KG_M2, le=1e5)
     bearing_stiffness_n_per_m: BearingStiffness
     base_radius_mm: float | None = Field(
         None,
@@ -48,15 +55,15 @@ class PinionBody(Section):
 class TiltSection(Section):
     """Rocking of a face gear about its diameters."""
 
-    inertia_kg_m2: float = Field(gt=0, le=1e6, description="about a diameter")
+    inertia_kg_m2: float = Field(ge=SMALLEST_KG_M2, le=1e6, description="about a diameter")
     stiffness_n_m_per_rad: float = Field(gt=0, le=1e14)
 
 
 class GearBody(Section):
     """Data shared by the face gears; z is their axis."""
 
-    mass_kg: float = Field(gt=0, le=1e6)
-    inertia_kg_m2: float = Field(gt=0, le=1e6)
+    mass_kg: float = Field(ge=LIGHTEST_KG, le=1e6)
+    inertia_kg_m2: float = Field(ge=SMALLEST_KG_M2, le=1e6)
     bearing_stiffness_n_per_m: BearingStiffness
     mesh_radius_mm: float | None = Field(
         None, gt=0, le=1e4, description="required by mesh_kinematics printed, refused by geometric"
@@ -75,8 +82,8 @@ class Position(Section):
 class SinglePinion(Section):
     """What is different in one pinion; null keeps what all pinions have."""
 
-    mass_kg: float | None = Field(None, gt=0, le=1e5)
-    inertia_kg_m2: float | None = Field(None, gt=0, le=1e5)
+    mass_kg: float | None = Field(None, ge=LIGHTEST_KG, le=1e5)
+    inertia_kg_m2: float | None = Field(None, ge=SMALLEST_KG_M2, le=1e5)
     bearing_stiffness_n_per_m: BearingStiffness | None = None
     position_um: Position = Position()
     clearance_um: float | None = Field(None, ge=0, le=1e4)
@@ -96,8 +103,8 @@ class SingleGear(Section):
         le=1e7,
         description="on the lower of two gears, negative where it is driven; the other's follows",
     )
-    mass_kg: float | None = Field(None, gt=0, le=1e6)
-    inertia_kg_m2: float | None = Field(None, gt=0, le=1e6)
+    mass_kg: float | None = Field(None, ge=LIGHTEST_KG, le=1e6)
+    inertia_kg_m2: float | None = Field(None, ge=SMALLEST_KG_M2, le=1e6)
     bearing_stiffness_n_per_m: BearingStiffness | None = None
     tilt: TiltSection | None = None
     runout: RunoutSection | None = None

@@ -37,9 +37,9 @@ def _require_assembly(section: Transmission, shape: Layout, found: Assembly) -> 
         )
         value = place.angle_deg if place.angle_pitches is None else place.angle_pitches
         allowed = (
-            f"the teeth do not fit, {1e6 * found.misfit[i]:.0f} um are left between this pinion's two meshes "
-            f"and their backlash takes up {1e6 * found.room[i]:.0f} um; nearest are "
-            f"{found.below[i] * unit:.6g} and {found.above[i] * unit:.6g}, or clocking_deg"
+            f"where the teeth fit, such as {found.below[i] * unit:.6g} and {found.above[i] * unit:.6g} "
+            f"(or clocking_deg): {1e6 * found.misfit[i]:.0f} um are left between this pinion's meshes and "
+            f"their backlash takes up {1e6 * found.room[i]:.0f} um"
         )
         raise ConfigError(f"transmission.pinions[{i}].{key}", value, allowed)
 

@@ -2,11 +2,11 @@
 
 import itertools
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from typing import Any
 
-from facegear.config.base import parse
+from facegear.config.base import parse, suggestion
 from facegear.config.model import Config, resolved
 from facegear.config.studies import Point, Study
 from facegear.errors import ConfigError, ConfigErrors
@@ -37,14 +37,16 @@ def changed_config(base: Mapping[str, Any], changes: Mapping[str, Any], where: s
 
     Raises ConfigErrors, led by `where`, for a key that does not stand in the config and a value it refuses.
     """
-    changed = deepcopy({**base, "studies": [], "reproduction": None})
-    try:
-        for key, value in changes.items():
+    changed, lines = deepcopy({**base, "studies": [], "reproduction": None}), []
+    for key, value in changes.items():
+        try:
             set_key(changed, key, value)
-        if "mesh_stiffness.csv" in changes:
-            changed["mesh_stiffness"]["table"] = []
-    except ConfigError as error:
-        raise ConfigErrors(where, [str(error)]) from None
+        except ConfigError as error:
+            lines.append(str(error))
+    if lines:
+        raise ConfigErrors(where, lines)
+    if "mesh_stiffness.csv" in changes:
+        changed["mesh_stiffness"]["table"] = []
     return parse(Config, changed, source=where)
 
 
@@ -68,19 +70,32 @@ def study_points(study: Study) -> dict[str, Point]:
 
 def set_key(values: dict[str, Any], key: str, value: Any) -> None:
     """Set a dotted key (list positions as numbers). Raises ConfigError if it does not stand in `values`."""
-    parts = key.split(".")
+    *sections, last = key.split(".")
     inside: Any = values
-    for part in parts[:-1]:
-        inside = inside[_position(inside, part, key, value)]
-    inside[_position(inside, parts[-1], key, value)] = value
+    for depth, part in enumerate(sections):
+        inside = inside[_position(inside, part, key, value, sections[:depth])]
+    inside[_position(inside, last, key, value, sections)] = value
 
 
-def _position(inside: Any, part: str, key: str, value: Any) -> str | int:
-    if isinstance(inside, dict) and part in inside and part not in ("case", "studies", "reproduction"):
+FIXED = ("case", "studies", "reproduction")
+"""Keys that no change of a config may touch."""
+
+
+def _position(inside: Any, part: str, key: str, value: Any, before: Sequence[str]) -> str | int:
+    """Key or list position of a part of a dotted key, behind the parts `before` it. Raises ConfigError."""
+    if isinstance(inside, dict) and part in inside and (before or part not in FIXED):
         return part
     if isinstance(inside, list) and part.isdecimal() and int(part) < len(inside):
         return int(part)
-    raise ConfigError(key, value, "a dotted key of the config, but not case, studies or reproduction")
+    allowed = f"a dotted key of the config, but not {', '.join(FIXED[:-1])} or {FIXED[-1]}"
+    where = ".".join(before)
+    if inside is None:
+        allowed += f"; {where} is null, set it as a whole"
+    elif isinstance(inside, list):
+        allowed += f"; {where} has the positions 0 to {len(inside) - 1}" if inside else f"; {where} is empty"
+    elif isinstance(inside, dict) and part not in FIXED:
+        allowed += f"; {suggestion(part, [name for name in inside if before or name not in FIXED])}"
+    raise ConfigError(key, value, allowed)
 
 
 def folder_name(label: str) -> str:

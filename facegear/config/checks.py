@@ -14,7 +14,7 @@ from facegear.config.search import Search
 from facegear.config.stiffness import MeshStiffness
 from facegear.config.studies import Study
 from facegear.config.tolerances import Tolerances
-from facegear.config.tooth_pair import ToothPair, pair_design
+from facegear.config.tooth_pair import ToothPair, materials, pair_design
 from facegear.config.transmission import Transmission
 from facegear.config.variants import (
     MACHINE,
@@ -32,6 +32,9 @@ MOST_POINTS = 200
 JAM = 1e-8
 """Negative backlash (m) that is rounding."""
 CONTACT_ASKED = "where machines among many differ in their teeth, or are judged by them"
+STRAIN, STEEL, WIDEST = 0.02, 206e9, 40.0
+"""Force over module, face width and Young's modulus that no tooth stands; Pa; face width in modules."""
+BROKEN = "beyond it the tooth force is 2 % of Young's modulus times module and face width"
 TAKEN_NAMES = ("nominal", "nominal_summary", "summary", "reference", "speed_range")
 """Files that load sharing writes beside those of the studies."""
 
@@ -55,6 +58,37 @@ def check_load(stiffness: MeshStiffness, contact: Contact) -> None:
     if stiffness.source != "harmonics" and torque is not None and not low <= torque <= high:
         allowed = f"within contact.torques_n_m, {low:g} to {high:g}"
         raise ConfigError("mesh_stiffness.torque_n_m", torque, allowed)
+
+
+def check_strain(pair: ToothPair, contact: Contact) -> None:
+    """No torque of the contact analysis loads teeth beyond what a linear elastic one can say.
+
+    Raises ConfigError.
+    """
+    design = pair_design(pair)
+    width = design.face_gear.outer_radius - design.face_gear.inner_radius
+    modulus = min(material.young_modulus for material in materials(pair))
+    largest = STRAIN * modulus * design.module * width * design.pinion_pitch_radius
+    if contact.torques_n_m[-1] > largest:
+        raise ConfigError("contact.torques_n_m", contact.torques_n_m[-1], f"at most {largest:.4g}: {BROKEN}")
+
+
+def check_machine_strain(pair: ToothPair, section: Transmission) -> None:
+    """No torque on a pinion is beyond any steel tooth of this module and WIDEST modules of face.
+
+    Raises ConfigError.
+    """
+    m = 1e-3 * pair.module_mm
+    largest = STRAIN * STEEL * WIDEST * m**2 * 0.5 * m * pair.pinion_teeth
+    given = {"transmission.torque.per_input_n_m": section.torque.per_input_n_m}
+    given |= {
+        f"transmission.pinions[{number}].torque_n_m": place.torque_n_m
+        for number, place in enumerate(section.pinions)
+        if place.torque_n_m is not None
+    }
+    for key, torque in given.items():
+        if abs(torque) > largest:
+            raise ConfigError(key, torque, f"at most {largest:.4g}: {BROKEN}")
 
 
 def check_places(pair: ToothPair, section: Transmission) -> None:
@@ -178,7 +212,7 @@ def check_search(
                 key = "smallest_of" if goal.large else "largest_of"
                 raise ConfigError(f"search: {goal.name}.{key}", start, allowed)
     if section.robust and tolerances is None:
-        raise ConfigError("tolerances", None, "required by percentiles in search")
+        raise ConfigError("tolerances", None, "given, as required by percentiles in search")
 
 
 def _variable(pair: ToothPair, machine: Transmission) -> dict[str, Any]:

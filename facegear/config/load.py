@@ -47,7 +47,7 @@ def read_layers(path: str | Path, below: Sequence[Path] = ()) -> dict[str, Any]:
     base = values.pop("extends")
     others = {other.name for other in path.parent.glob("*.yaml")} - {path.name, *(one.name for one in below)}
     if not isinstance(base, str) or base not in others:
-        told = f"extends = {base!r}: the name of another config file in the same folder"
+        told = f"extends = {base!r}: must be the name of another config file in the same folder"
         raise ConfigErrors(_short(path), [told])
     return merged(read_layers(path.with_name(base), (path, *below)), values)
 

@@ -1,17 +1,20 @@
 """The whole config and the checks that reach across its sections."""
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from pydantic import Field, model_validator
 
-from facegear.config.base import Section, refuse
+from facegear.config.base import Section, require_all
 from facegear.config.branches import Branches
 from facegear.config.buildable import require_buildable
 from facegear.config.checks import (
     check_load,
+    check_machine_strain,
     check_places,
     check_search,
+    check_strain,
     check_studies,
     check_tolerances,
     check_torques,
@@ -66,35 +69,46 @@ class Config(Section):
 
     @model_validator(mode="after")
     def _buildable(self) -> "Config":
-        if self.branches and not self.branches.from_rpm <= self.dynamics.speed_rpm <= self.branches.to_rpm:
-            allowed = f"from branches.from_rpm = {self.branches.from_rpm:g} to {self.branches.to_rpm:g}"
-            refuse("dynamics.speed_rpm", self.dynamics.speed_rpm, allowed)
-        try:
-            self._check_pair()
-            self._check_machine()
-            check_studies(self.studies)
-        except ConfigError as error:
-            refuse(error.key, error.value, error.allowed)
+        require_all(
+            self._check_branches,
+            self._check_reproduction,
+            lambda: check_load(self.mesh_stiffness, self.contact),
+            self._check_pair,
+            self._check_strength,
+            self._check_machine,
+            lambda: check_studies(self.studies),
+        )
         return self
+
+    def _check_branches(self) -> None:
+        speed, section = self.dynamics.speed_rpm, self.branches
+        if section and not section.from_rpm <= speed <= section.to_rpm:
+            allowed = f"from branches.from_rpm = {section.from_rpm:g} to {section.to_rpm:g}"
+            raise ConfigError("dynamics.speed_rpm", speed, allowed)
+
+    def _check_reproduction(self) -> None:
+        if self.reproduction is not None and not Path(self.reproduction).is_file():
+            raise ConfigError("reproduction", self.reproduction, "the name of a file that exists")
 
     def _check_pair(self) -> None:
         pair = self.tooth_pair
-        check_load(self.mesh_stiffness, self.contact)
         if pair.pinion is not None:
             geometric_backlash(pair)
         elif self._root_stress:
-            raise ConfigError("tooth_pair.pinion", None, "required by contact.root_stress and strength")
+            raise ConfigError(
+                "tooth_pair.pinion", None, "given, as required by contact.root_stress and strength"
+            )
         elif self.mesh_stiffness.source != "harmonics":
-            allowed = "required, as mesh_stiffness.source is not harmonics"
+            allowed = "given, as mesh_stiffness.source is not harmonics"
             raise ConfigError("tooth_pair.pinion", None, allowed)
         if self.mesh_stiffness.source != "harmonics" or self._root_stress:
             design = pair_design(pair)
             sizes = mesh_sizes(self.mesh_used, design.module)
             plan = contact_plan(self.contact)
+            check_strain(pair, self.contact)
             check_resolution(design, materials(pair), sizes, plan)
             check_fillet(design, sizes, replace(plan, root_stress=self._root_stress))
             check_memory(design, sizes, plan, memory_here())
-        self._check_strength()
 
     @property
     def mesh_used(self) -> Mesh:
@@ -130,15 +144,18 @@ class Config(Section):
         if machine is None:
             for key in ("studies", "tolerances", "search", "reproduction"):
                 if getattr(self, key):
-                    raise ConfigError("transmission", None, f"required by {key}")
+                    raise ConfigError("transmission", None, f"given, as required by {key}")
             if self.strength is not None and self.strength.load_factors == "machine":
-                raise ConfigError("transmission", None, "required by strength.load_factors = machine")
+                raise ConfigError(
+                    "transmission", None, "given, as required by strength.load_factors = machine"
+                )
             return
         self._check_duty_speeds()
         check_places(pair, machine)
+        check_machine_strain(pair, machine)
         check_torques(pair, machine)
         if machine.backlash_um is None and pair.pinion is None:
-            allowed = "required, as tooth_pair has no bodies that it could be taken from"
+            allowed = "given, as tooth_pair has no bodies that it could be taken from"
             raise ConfigError("transmission.backlash_um", None, allowed)
         errors = {"transmission_error": machine.transmission_error}
         errors |= {

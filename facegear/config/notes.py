@@ -21,14 +21,28 @@ BACKLASH_DIFFERS_UM = 1.0
 
 
 def notes(values: Mapping[str, Any]) -> list[str]:
-    """Lines for a config of one's own that counts as the publication does, for errors that turn, and for
-    dynamics with a backlash other than that of the teeth.
+    """Lines for a config of one's own that counts as the publication does, for errors that turn, for dynamics
+    with a backlash other than that of the teeth, and for numbers that several causes move.
     """
     transmission = values["transmission"]
     if transmission is None:
         return []
     own = values["reproduction"] is None and transmission["mesh_kinematics"] == "printed"
-    return [PRINTED] * own + [SLOW] * turns(transmission) + _backlash(values)
+    return [PRINTED] * own + [SLOW] * turns(transmission) + _backlash(values) + _sums(values)
+
+
+def _sums(values: Mapping[str, Any]) -> list[str]:
+    """Numbers that several causes of the tolerances move: as in a chain of tolerances, or by mistake."""
+    causes = (values.get("tolerances") or {}).get("causes", ())
+    movers: dict[str, list[str]] = {}
+    for cause in causes:
+        for key in cause["moves"]:
+            movers.setdefault(key, []).append(cause["name"])
+    return [
+        f"tolerances.causes: {' and '.join(names)} all move {key}: what they add is summed"
+        for key, names in movers.items()
+        if len(names) > 1
+    ]
 
 
 def turns(transmission: Mapping[str, Any]) -> bool:

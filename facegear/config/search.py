@@ -35,7 +35,7 @@ class VariableSection(Section):
         if self.name in (*QUANTITIES, JUMP_MARGIN):
             refuse("name", self.name, "another one: the winners have a column of that name")
         if self.limits[1] <= self.limits[0]:
-            refuse("limits", list(self.limits), "the lower one first")
+            refuse("limits", list(self.limits), "two numbers, the lower one first")
         if self.scale == "log" and self.limits[0] <= 0.0:
             refuse("limits", list(self.limits), "above 0 where scale is log")
         return self
@@ -93,7 +93,7 @@ class ConstraintSection(ObjectiveSection):
         for name, wanted in ((key, True), (other, False)):
             if (getattr(self, name) is not None) != wanted:
                 given = "smallest_of" if self.large else "largest_of"
-                refuse(name, getattr(self, name), f"{'required' if wanted else 'not'} with {given}")
+                refuse(name, getattr(self, name), f"{'given' if wanted else 'left out'} with {given}")
         return self
 
 

@@ -13,6 +13,8 @@ from facegear.harmonics.series import Harmonics
 from facegear.stiffness.request import StiffnessRequest
 
 HIGHEST_ORDER = 512
+SOFTEST = 1e5
+"""Mean stiffness (N/m) below which no pair of gears is: a pinion of 1 mm in plastic has ten times as much."""
 SAME_MEAN = 1e-6
 """Relative difference up to which two given means count as one."""
 
@@ -82,11 +84,11 @@ class MeshStiffness(Section):
         if values.get("table"):
             refuse("csv", name, "either csv or table, not both")
         if values.get("source") != "harmonics":
-            refuse("csv", name, "only with source harmonics")
+            refuse("csv", name, "left out unless source is harmonics")
         try:
             table = _harmonics(read_numbers(name, COLUMNS))
         except CsvFault as fault:
-            refuse("csv", name, str(fault))
+            refuse("csv", name, f"a csv of numbers; {fault}")
         return {**values, "csv": None, "table": table}
 
     @model_validator(mode="after")
@@ -94,15 +96,18 @@ class MeshStiffness(Section):
         if self.source != "harmonics" and self.table:
             refuse("source", self.source, "harmonics, as a table is given")
         if self.source == "fem_scaled" and self.mean_n_per_m is None:
-            refuse("mean_n_per_m", None, "required, as source fem_scaled scales the curve to it")
+            refuse("mean_n_per_m", None, "given, as source fem_scaled scales the curve to it")
         if self.source != "harmonics":
             return self
         if not self.table:
-            refuse("table", [], "source harmonics needs either table or csv")
+            refuse("table", [], "given, here or in csv, where source is harmonics")
         for number, (one, following) in enumerate(pairwise(self.table)):
             if following.order <= one.order:
-                refuse(f"table[{number + 1}].order", following.order, "orders rise, each once")
+                refuse(f"table[{number + 1}].order", following.order, "above the order before it")
         _check_mean(self.mean_n_per_m, self.table[0])
+        if (mean := self.mean) is not None and mean < SOFTEST:
+            allowed = f"at least {SOFTEST:g} N/m; values in N/um are a million times too small"
+            refuse("csv or table" if self.mean_n_per_m is None else "mean_n_per_m", mean, allowed)
         lowest = given_series(self).kept(self.harmonics_kept).varied(self.variation).minimum
         if lowest <= 0.0:
             told = "harmonics so small beside the mean that k(t) stays positive"
@@ -143,11 +148,11 @@ def _check_mean(mean: float | None, first: HarmonicSection) -> None:
     """The mean comes from the key or from order 0 of the harmonics; where both stand, they agree."""
     if first.order > 0:
         if mean is None:
-            refuse("mean_n_per_m", None, "required, as the harmonics have no order 0, which is the mean")
+            refuse("mean_n_per_m", None, "given, as the harmonics have no order 0, which is the mean")
         return
     if first.a_n_per_m != 0.0 or first.b_n_per_m <= 0.0:
         given = [first.a_n_per_m, first.b_n_per_m]
-        refuse("table", given, "order 0 has a_n_per_m = 0 and the mean, above 0, as b_n_per_m")
+        refuse("table", given, "0 for a_n_per_m of order 0, and the mean, above 0, for its b_n_per_m")
     if mean is not None and abs(mean / first.b_n_per_m - 1.0) > SAME_MEAN:
         told = f"the same as order 0 of the harmonics, {first.b_n_per_m:.10g}, or left out"
         refuse("mean_n_per_m", mean, told)

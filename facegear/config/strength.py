@@ -55,7 +55,11 @@ class BodyStrength(Section):
         try:
             return parse(Card, read_yaml(_card_file(card)) if isinstance(card, str) else card, "the card")
         except ConfigErrors as error:
-            refuse("", card if isinstance(card, str) else card.get("name"), " ".join(str(error).split()))
+            refuse(
+                "",
+                card if isinstance(card, str) else card.get("name"),
+                f"a card without mistakes: {' '.join(str(error).split())}",
+            )
 
 
 def _card_file(name: str) -> Path:
@@ -98,7 +102,7 @@ class Strength(Section):
         try:
             duty = tuple(row.values for row in read_numbers(name, BIN_COLUMNS))
         except CsvFault as fault:
-            refuse("duty_csv", name, str(fault))
+            refuse("duty_csv", name, f"a csv of numbers; {fault}")
         return {**values, "duty_csv": None, "duty": duty}
 
     @model_validator(mode="after")

@@ -27,12 +27,12 @@ class Axis(Section):
     @model_validator(mode="after")
     def _one_form(self) -> "Axis":
         if bool(self.points) == bool(self.key):
-            refuse("points", len(self.points), "an axis has either a key with values, or points")
+            refuse("points", len(self.points), "given where there is no key, and left out beside one")
         if self.key and not self.values:
-            refuse("values", list(self.values), "an axis with a key needs at least one value")
+            refuse("values", list(self.values), "at least one value, as a key is given")
         labels = [point.label for point in self.resolved()]
         if len(set(labels)) < len(labels):
-            refuse("points", labels, "each point of an axis needs its own label")
+            refuse("points", labels, "points whose labels differ")
         return self
 
     def resolved(self) -> tuple[Point, ...]:

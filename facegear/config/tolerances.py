@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 MOST_SAMPLES = 2**24
 MOST_CHUNKS = 500
+FARTHEST_CUT, NO_CUT = 6.0, 20.0
+"""Standard deviations: beyond the first 1e-9 of a normal distribution is left, beyond the second nothing."""
 MOST_MAPPED = 200_000
 """Machines of a map of loads, which is one job."""
 TAKEN = ("sample", "error")
@@ -50,10 +52,24 @@ class CauseSection(Section):
         }
         for key in asks[self.shape]:
             if not getattr(self, key):
-                refuse(key, getattr(self, key), f"required by shape {self.shape}")
+                refuse(key, getattr(self, key), f"given, as required by shape {self.shape}")
         if self.limits is not None and self.limits[1] <= self.limits[0]:
-            refuse("limits", list(self.limits), "the lower one first")
+            refuse("limits", list(self.limits), "two numbers, the lower one first")
+        self._check_cut()
         return self
+
+    def _check_cut(self) -> None:
+        """The part of a distribution that is left can be sampled, and something is cut off."""
+        if self.limits is None or self.shape not in ("normal", "rayleigh") or self.spread is None:
+            return
+        centre = self.centre if self.shape == "normal" else 0.0
+        low, high = ((end - centre) / self.spread for end in self.limits)
+        if low > FARTHEST_CUT or high < -FARTHEST_CUT:
+            told = "beyond which next to nothing is left to sample"
+            refuse("limits", list(self.limits), f"within {FARTHEST_CUT:g} spreads of the middle, {told}")
+        if high > NO_CUT and (low < -NO_CUT or self.shape == "rayleigh"):
+            allowed = f"nearer than {NO_CUT:g} spreads on one side at least, or left out: nothing is cut off"
+            refuse("limits", list(self.limits), allowed)
 
 
 class RankCorrelation(Section):

@@ -111,7 +111,7 @@ class ToothPair(Section):
         if len(missing) == len(bodies):
             return self
         if missing:
-            refuse(missing[0], None, "pinion, face_gear and shaper are given all three, or none of them")
+            refuse(missing[0], None, "given: pinion, face_gear and shaper go together")
         try:
             check(pair_design(self))
         except GeometryError as error:
@@ -126,7 +126,7 @@ def pair_design(section: ToothPair) -> PairDesign:
     m = 1e-3 * section.module_mm
     pinion, gear, shaper = section.pinion, section.face_gear, section.shaper
     if pinion is None or gear is None or shaper is None:
-        raise ConfigError("tooth_pair.pinion", None, "geometry and contact need pinion, face_gear and shaper")
+        raise ConfigError("tooth_pair.pinion", None, "given, as geometry and contact need the bodies")
     return PairDesign(
         module=m,
         pressure_angle=radians(section.pressure_angle_deg),

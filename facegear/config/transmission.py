@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from facegear.config.base import Section, refuse
+from facegear.config.base import Section, refuse, require_all
 from facegear.config.bodies import GearBody, PinionBody, SingleGear, SinglePinion
 from facegear.config.transmission_error import TransmissionError
 
@@ -25,7 +25,7 @@ class PinionPlace(Section):
     @model_validator(mode="after")
     def _one_angle(self) -> "PinionPlace":
         if (self.angle_pitches is None) == (self.angle_deg is None):
-            refuse("angle_pitches", self.angle_pitches, "give either angle_pitches or angle_deg")
+            refuse("angle_pitches", self.angle_pitches, "given, or else angle_deg, but not both")
         return self
 
 
@@ -35,7 +35,11 @@ class DampingSection(Section):
     mesh_n_s_per_m: float = Field(ge=0, le=1e7)
     mass_per_s: float = Field(ge=0, le=1e6)
     bearing_s: float = Field(ge=0, le=1e-2)
-    open_flanks: Literal["always", "contact_only"] = "contact_only"
+    open_flanks: Literal["always", "contact_only", "push_only"] = Field(
+        "contact_only",
+        description="where the mesh damper acts: always, across open flanks too (equation (20)); "
+        "contact_only; push_only: in contact, and spring and damper together never pull parting flanks",
+    )
 
 
 class SingleMesh(Section):
@@ -78,7 +82,11 @@ class Transmission(Section):
     single_gears: dict[str, SingleGear] = Field({}, description="by `lower` or `upper`")
 
     @model_validator(mode="after")
-    def _known(self) -> "Transmission":
+    def _possible(self) -> "Transmission":
+        require_all(self._known, self._lags, self._kinematics, self._play, self._distinct)
+        return self
+
+    def _known(self) -> None:
         names = [place.name for place in self.pinions]
         meshes = [f"{name}/{side}" for side in self.face_gears for name in names]
         for key, given, known in (
@@ -89,10 +97,8 @@ class Transmission(Section):
             for name in given:
                 if name not in known:
                     refuse(f"{key}.{name}", name, f"one of {', '.join(known)}")
-        return self
 
-    @model_validator(mode="after")
-    def _lags(self) -> "Transmission":
+    def _lags(self) -> None:
         phasing = self.transmission_error.phasing
         places = [*(place.name for place in self.pinions), *dict.fromkeys(one.role for one in self.pinions)]
         known = [f"{place}/{side}" for side in self.face_gears for place in places]
@@ -103,10 +109,8 @@ class Transmission(Section):
             if one.transmission_error and isinstance(one.transmission_error.phasing, dict):
                 key = f"single_meshes.{name}.transmission_error.phasing"
                 refuse(key, one.transmission_error.phasing, "left out: one mesh has no pattern")
-        return self
 
-    @model_validator(mode="after")
-    def _kinematics(self) -> "Transmission":
+    def _kinematics(self) -> None:
         radius = self.face_gear.mesh_radius_mm
         if self.mesh_kinematics == "geometric":
             for key, given in (
@@ -114,10 +118,10 @@ class Transmission(Section):
                 ("pinion.base_radius_mm", self.pinion.base_radius_mm),
             ):
                 if given is not None:
-                    refuse(key, given, "belongs to mesh_kinematics printed; geometric follows the teeth")
-            return self
+                    refuse(key, given, "left out: it belongs to mesh_kinematics printed")
+            return
         if radius is None:
-            refuse("face_gear.mesh_radius_mm", None, "required by mesh_kinematics printed")
+            refuse("face_gear.mesh_radius_mm", None, "given, as required by mesh_kinematics printed")
         for key in ("single_meshes", "single_pinions", "single_gears"):
             if named := list(getattr(self, key)):
                 refuse(key, named, "none where mesh_kinematics is printed: it knows no errors of one part")
@@ -130,10 +134,8 @@ class Transmission(Section):
             if value is not None:
                 told = value if isinstance(value, float) else value.model_dump()
                 refuse(key, told, "none where mesh_kinematics is printed")
-        return self
 
-    @model_validator(mode="after")
-    def _play(self) -> "Transmission":
+    def _play(self) -> None:
         for place in self.pinions:
             one = self.single_pinions.get(place.name, SinglePinion())
             bearing = one.bearing_stiffness_n_per_m or self.pinion.bearing_stiffness_n_per_m
@@ -142,13 +144,11 @@ class Transmission(Section):
             key = f"single_pinions.{place.name}.clearance_um" if own else "pinion.clearance_um"
             if play and (bearing.x <= 0.0 or bearing.x != bearing.y or bearing.xy != 0.0):
                 refuse(key, play, "0 unless the bearing is round: x = y above 0, without xy")
-        return self
 
-    @model_validator(mode="after")
-    def _distinct(self) -> "Transmission":
+    def _distinct(self) -> None:
         names = [place.name for place in self.pinions]
         if len(set(names)) < len(names):
-            refuse("pinions", names, "each pinion needs a name of its own")
+            refuse("pinions", names, "names that differ from pinion to pinion")
         if len(set(self.face_gears)) < len(self.face_gears):
             refuse("face_gears", list(self.face_gears), "lower, upper, or both once")
         output = "upper" if "upper" in self.face_gears else self.face_gears[0]
@@ -159,4 +159,3 @@ class Transmission(Section):
         has_tail = any(place.role == "tail" for place in self.pinions)
         if self.torque.tail_share > 0 and not has_tail:
             refuse("torque.tail_share", self.torque.tail_share, "0 where no pinion has the role tail")
-        return self

@@ -67,10 +67,19 @@ class TransmissionError(Section):
         return values
 
     @model_validator(mode="after")
+    def _orders_once(self) -> "TransmissionError":
+        orders = [1, *(term.order for term in self.more_harmonics)]
+        for place, order in enumerate(orders):
+            if order in orders[:place]:
+                allowed = f"another one than {', '.join(map(str, orders[:place]))}; amplitude_um is order 1"
+                refuse(f"more_harmonics[{place - 1}].order", order, allowed)
+        return self
+
+    @model_validator(mode="after")
     def _one_source(self) -> "TransmissionError":
         if self.source == "given":
             if self.amplitude_um is None:
-                refuse("amplitude_um", None, "required, unless transmission_error is from_contact")
+                refuse("amplitude_um", None, "given, unless transmission_error is from_contact")
             return self
         plain = TransmissionError.model_fields
         for key in ("amplitude_um", "meaning", "phase_deg", "phasing", "more_harmonics"):

@@ -68,19 +68,23 @@ def _elements_along(design: PairDesign, sizes: MeshSizes) -> float:
 def check_resolution(
     design: PairDesign, materials: tuple[Material, Material], sizes: MeshSizes, plan: ContactPlan
 ) -> None:
-    """Refuse a mesh whose nodes are too far apart for the contact strip at the largest torque.
+    """Refuse a mesh whose nodes are too far apart for the contact strip at any torque asked for.
 
-    Raises ConfigError.
+    Each torque is judged by itself, so that it makes no difference which others stand beside it. Raises
+    ConfigError.
     """
     spacing = sizes.profile / plan.refinement.profile / 2
-    strip = half_width(design, materials, max(plan.torques))
+    torque = min(plan.torques)
+    strip = half_width(design, materials, torque)
     if spacing > COARSEST * strip:
         largest = 2e3 * COARSEST * strip * plan.refinement.profile
+        enough = torque * (spacing / (COARSEST * strip)) ** 2
         raise ConfigError(
             "mesh.resolution",
             f"{1e3 * sizes.profile:.3g} mm across the profile",
-            f"too coarse to resolve contact: at most {largest:.3g} mm with contact.refinement.profile = "
-            f"{plan.refinement.profile}",
+            f"too coarse to resolve contact at {torque:g} N m, must be at most {largest:.3g} mm with "
+            f"contact.refinement.profile = {plan.refinement.profile}, or contact.torques_n_m at least "
+            f"{enough:.4g}",
         )
 
 

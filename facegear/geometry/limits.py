@@ -74,7 +74,7 @@ def face_range(design: PairDesign, limits: RadiusLimits) -> FaceRange:
 
 def _no_face(design: PairDesign, reason: str) -> GeometryError:
     tip = round(design.face_gear.addendum / design.module, 6)
-    return GeometryError("face_gear.addendum_modules", tip, f"no face width is possible: {reason}")
+    return GeometryError("face_gear.addendum_modules", tip, f"another one: no face can be, as {reason}")
 
 
 def _last(room: Callable[[PairDesign, float], float], design: PairDesign, low: float, high: float) -> float:

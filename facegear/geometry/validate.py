@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from functools import lru_cache
-from math import cos, inf, pi, sin, tan
+from math import cos, inf, pi, sin, sqrt, tan
 
 import numpy as np
 
@@ -85,12 +85,32 @@ def _check_pinion(design: PairDesign) -> None:
 def _check_relief(design: PairDesign) -> None:
     part = design.pinion
     flank = design.pinion_base_radius * (design.pinion_tip_roll - pinion.junction_roll(design))
+    crowning, half = part.lead_crowning, 0.5 * (design.face_gear.outer_radius - design.face_gear.inner_radius)
+    if crowning.amount > 0.0 and crowning.start >= half:
+        allowed = f"less than {1e3 * half:.3f}, half of the gear's face: the crowning would begin beyond it"
+        _refuse("pinion.lead_crowning.start_mm", 1e3 * crowning.start, allowed)
     for name, relief, room in (
         ("tip_relief", part.tip_relief, flank),
         ("root_relief", part.root_relief, flank),
         ("lead_crowning", part.lead_crowning, inf),
     ):
         _check_modification(name, relief, room, MOST_RELIEF * design.module)
+    _check_crowning_at_end(part.lead_crowning, part.width / 2, MOST_RELIEF * design.module)
+
+
+def _check_crowning_at_end(crowning: Relief, half_width: float, most: float) -> None:
+    """The parabola of a crowning goes on beyond its length, up to the ends of the pinion's face."""
+    beyond = half_width - crowning.start
+    if crowning.amount == 0 or beyond <= 0:
+        return
+    at_end = crowning.amount * (beyond / crowning.length) ** 2
+    if at_end > most:
+        least = beyond * sqrt(crowning.amount / most)
+        allowed = (
+            f"must be at least {1e3 * least:.4g}: the parabola would take {1e6 * at_end:.0f} um off the ends "
+            f"of the pinion's face, and at most {1e6 * most:.1f}, {MOST_RELIEF:g} modules, may come off"
+        )
+        _refuse("pinion.lead_crowning.length_mm", 1e3 * crowning.length, allowed)
 
 
 def _check_modification(name: str, relief: Relief, room: float, most: float) -> None:

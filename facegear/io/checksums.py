@@ -55,4 +55,4 @@ def verify(path: str | Path) -> None:
         if recorded is None:
             continue
         if path.stat().st_size != recorded["bytes"] or sha256(path) != recorded["sha256"]:
-            raise CorruptFile(path, "the content differs from what its stage wrote", f"{rebuild} {path}")
+            raise CorruptFile(path, "the content differs from what its stage wrote", f"{rebuild}{path.name}")

@@ -10,6 +10,9 @@ from facegear.errors import CorruptFile
 from facegear.io.atomic import atomic_path
 from facegear.io.checksums import verify
 
+NAMES = ("body", "mesh", "body_or_mesh", "pinion", "group", "study", "point", "label")
+"""Columns of names that a user has given."""
+
 
 def write(path: str | Path, frame: pd.DataFrame) -> None:
     """Write a table with full double precision."""
@@ -20,13 +23,17 @@ def write(path: str | Path, frame: pd.DataFrame) -> None:
 def read(
     path: str | Path, columns: Sequence[str] = (), allow_empty: bool = False, text: Sequence[str] = ()
 ) -> pd.DataFrame:
-    """Read a table that must hold `columns`, whose numbers there must be finite; `text` columns stay text.
+    """Read a table that must hold `columns`, whose numbers there must be finite.
+
+    Columns of NAMES and `text` stay text, so that a body may be called 12, NA or nan.
 
     Raises CorruptFile if it is missing, altered, truncated, lacks a column or holds a number not finite.
     """
     verify(path)
     try:
-        frame = pd.read_csv(path, converters=dict.fromkeys(text, str))
+        frame = pd.read_csv(
+            path, converters=dict.fromkeys((*NAMES, *text), str), keep_default_na=False, na_values=[""]
+        )
     except (ValueError, UnicodeDecodeError) as error:
         raise CorruptFile(path, f"not a readable table ({str(error).splitlines()[0]})") from None
     missing = [name for name in columns if name not in frame.columns]

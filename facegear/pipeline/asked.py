@@ -16,6 +16,13 @@ PAIR_SECTIONS = ("tooth_pair", "mesh", "contact", "mesh_stiffness")
 """What a contact analysis of machines among many takes."""
 
 
+LOADING = (
+    *("torques_n_m", "positions_per_pitch"),
+    *("fillet_contact", "neighbour_coupling", "edge_contact"),
+)
+"""Keys of section contact that say how the bodies are loaded, and nothing of how they give way."""
+
+
 def always(case: Case) -> bool:
     """Always."""
     return True
@@ -136,6 +143,11 @@ def without_gaps(case: Case) -> Any:
     for key in GAPS:
         section = without(section, key)
     return section
+
+
+def without_loads(case: Case) -> Any:
+    """Section contact without LOADING, so that cases that differ in loads share their compliance."""
+    return {key: value for key, value in case.values["contact"].items() if key not in LOADING}
 
 
 def sampled_contact(case: Case) -> bool:

@@ -21,8 +21,15 @@ def stage_needs(name: str, values: Values) -> dict[str, Any]:
 def resolved_needs(needs: Mapping[str, Need], case: Case) -> dict[str, Any]:
     """Values of needs. Raises ConfigError where they name a machine that is not there."""
     if "transmission" in needs and case.values["transmission"] is None:
-        raise ConfigError("transmission", None, "required for modes, dynamics and load sharing")
+        raise ConfigError("transmission", None, "given for modes, dynamics and load sharing")
     return {name: _resolved(need, case) for name, need in needs.items()}
+
+
+def require_section(name: str | None, values: Values) -> None:
+    """Raises ConfigError where a config lacks the section that a stage is about."""
+    section = STAGES[name].section if name else ""
+    if section and values[section] is None:
+        raise ConfigError(section, None, f"given, as rule {name} needs it")
 
 
 def stages_before(name: str, values: Values) -> list[str]:

@@ -141,6 +141,7 @@ class Stage:
     - wildcards: of its files beside the case, as regular expressions; they are arguments, too
     - asked: whether a plain run of a case makes it; one without is made where another stage takes from it,
       or where its file is asked for by name
+    - section: optional section of the config without which there is nothing to do
     - resumable: file beside which finished parts are kept, so that a killed job goes on after the last
     - local: short enough for the computer that submits jobs to a cluster
     - priority: long jobs, and those that long ones wait for, start first
@@ -154,6 +155,7 @@ class Stage:
     figures: Figures | None = None
     wildcards: Mapping[str, str] = field(default_factory=dict)
     asked: Callable[[Case], bool] | None = None
+    section: str = ""
     resumable: str = ""
     folder: str = ""
     memory_mb: int | None = None

@@ -105,7 +105,7 @@ ALL = (
         needs={
             "tooth_pair": Computed(asked.without_gaps, ("tooth_pair",)),
             "mesh": "mesh",
-            "contact": "contact",
+            "contact": Computed(asked.without_loads, ("contact",)),
         },
         files={"arrays": File("compliance/{body}.npz", "facegear.contact.gear_flank:STORED")},
         wildcards=BODY,
@@ -326,6 +326,7 @@ ALL = (
         name="branches_starts",
         title="Where random starts end at one speed",
         needs=BRANCHES,
+        section="branches",
         upstream=HARMONICS,
         files={"found": File("branches/starts/{number}.npz", "facegear.dynamics.branches.stored:SHAPES")},
         wildcards={"number": NUMBER},
@@ -336,6 +337,7 @@ ALL = (
         name="branches",
         title="Branches of periodic motions",
         needs={**BRANCHES, **SWEEP},
+        section="branches",
         upstream={
             **HARMONICS,
             "starts": From("branches_starts", "found", each=asked.random_starts),
@@ -380,6 +382,7 @@ ALL = (
         name="branches_loci",
         title="Loci of folds and period doublings",
         needs=BRANCHES,
+        section="branches",
         upstream={**HARMONICS, "orbits": From("branches", "orbits")},
         files={
             "loci": File(
@@ -518,6 +521,7 @@ ALL = (
         name="duty_loads",
         title="Loads of the running machine in every bin of the duty cycle",
         needs={**MACHINE, **ACCURACY, "strength": "strength"},
+        section="strength",
         upstream=HARMONICS,
         files={
             "duty_loads": File("strength/duty_loads.csv"),
@@ -530,6 +534,7 @@ ALL = (
         name="rating",
         title="Safety and life of the tooth pair",
         needs={**PAIR, "strength": "strength"},
+        section="strength",
         upstream={
             **STRESS,
             "duty_spectrum": From("duty_loads", "duty_spectrum", when=asked.machine_loads),
@@ -588,6 +593,7 @@ ALL = (
         name="tolerances_chunk",
         title="Samples of the machine with its tolerances",
         needs=SAMPLED,
+        section="tolerances",
         upstream=SAMPLED_FROM,
         files={"chunk": File("tolerances/chunks/{design}_{first}_{last}.parquet")},
         wildcards={"design": "samples|indices", "first": NUMBER, "last": NUMBER},
@@ -597,6 +603,7 @@ ALL = (
         name="tolerances",
         title="Percentiles, shares and Sobol indices",
         needs={"tolerances": "tolerances"},
+        section="tolerances",
         upstream={
             design: From("tolerances_chunk", "chunk", each=asked.tolerance_chunks(design))
             for design in ("samples", "indices")
@@ -628,6 +635,7 @@ ALL = (
         name="tolerances_map",
         title="Percentiles over torque and speed",
         needs={**SAMPLED, "tolerances": (*CAUSES, "tolerances.confidence", "tolerances.load_map")},
+        section="tolerances",
         upstream=SAMPLED_FROM,
         files={
             "load_map": File(
@@ -652,6 +660,7 @@ ALL = (
         name="search_island",
         title="Evolution of designs from one seed",
         needs=SEARCHED,
+        section="search",
         upstream=SEARCHED_FROM,
         files={"designs": File("search/islands/{seed}.parquet")},
         wildcards={"seed": NUMBER},
@@ -662,6 +671,7 @@ ALL = (
         name="search",
         title="Front of all islands, and its winners at full accuracy",
         needs=SEARCHED,
+        section="search",
         upstream={**SEARCHED_FROM, "islands": From("search_island", "designs", each=asked.islands)},
         files={
             "designs": File("search/designs.parquet", ("generation", "seed", "error")),

@@ -1,5 +1,7 @@
 """The machine seen from above, to scale: where pinions stand, which way bodies turn, what meshes carry."""
 
+import textwrap
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
@@ -16,6 +18,15 @@ LONGEST = 0.55
 """Longest arrow over the mesh radius."""
 HALF_FACE = 0.06
 """Half of the drawn face width over the mesh radius."""
+
+LABEL = 1.16
+"""Where the pinions' labels begin, over the mesh radius."""
+REACH, LOWEST, TITLE = 2.0, 1.75, 1.8
+"""What a panel shows beside and below the gear, and where its title stands, over the mesh radius."""
+LETTERS = 13
+"""Letters of a pinion's name in one line."""
+BESIDE = 0.4
+"""Cosine of the direction to a pinion below which its label is centred."""
 
 
 def layout_figure(layout: Layout, meshes: pd.DataFrame, bearings: pd.DataFrame) -> Figure:
@@ -71,17 +82,25 @@ def _panel(
         if gear.side is Side.UPPER or len(layout.gears) == 1:
             inside = (1.0 - 2.5 * HALF_FACE) * radius * outwards
             _arrow(axis, inside, metres * forces.loc[pinion.name, "mean_x_n"] * along, BEARING)
-        place = 1.44 * radius * outwards
-        told = f"{pinion.name}\n{np.degrees(angle):.2f} deg\n{_kilo(row['mean_n'])} kN"
-        axis.text(*place, told, ha="center", va="center", fontsize=9)
+        name = textwrap.fill(pinion.name, LETTERS)
+        _label(axis, radius, outwards, f"{name}\n{np.degrees(angle):.2f} deg\n{_kilo(row['mean_n'])} kN")
     own = forces.loc[gear.name]
     _arrow(axis, np.zeros(2), metres * own[["mean_x_n", "mean_y_n"]].to_numpy(float), BEARING)
     told = f"axial on its bearing {own['mean_z_n'] / 1e3:+.1f} kN"
-    axis.set_title(f"{gear.name.capitalize()}, seen from above\n{told}")
-    reach, height = 1.75 * radius, 1.6 * radius
-    axis.set(xlim=(-reach, reach), ylim=(-height, height), aspect="equal")
+    title = f"{gear.name.capitalize()}, seen from above\n{told}"
+    axis.text(0.0, TITLE * radius, title, ha="center", va="bottom", fontsize=10)
+    axis.set(xlim=(-REACH * radius, REACH * radius), aspect="equal")
+    axis.set_ylim(-LOWEST * radius, (2.0 * REACH - LOWEST) * radius)
     axis.text(0.0, 0.3 * radius, f"mesh radius\n{1e3 * radius:.1f} mm", ha="center", va="center", fontsize=9)
     axis.set_axis_off()
+
+
+def _label(axis: Axes, radius: float, outwards: np.ndarray, text: str) -> None:
+    """Text beside a pinion, outside the gear: it begins at the rim, whatever its length."""
+    x, y = outwards
+    across = "center" if abs(x) < BESIDE else "left" if x > 0.0 else "right"
+    along = "center" if abs(y) < BESIDE else "bottom" if y > 0.0 else "top"
+    axis.text(*(LABEL * radius * outwards), text, ha=across, va=along, multialignment="center", fontsize=9)
 
 
 def _turn_arrow(axis: Axes, radius: float, turns: float) -> None:

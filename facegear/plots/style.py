@@ -37,10 +37,13 @@ def styled() -> Iterator[None]:
 
 
 def save(figure: Figure, *paths: str | Path) -> None:
-    """Write a figure to each path (the suffix names the format) and close it."""
+    """Write a figure to each path (the suffix names the format) and close it.
+
+    The same figure gives the same bytes: without a date, names inside a svg by a fixed salt.
+    """
     for path in paths:
         dates = {"Date": None} if str(path).endswith(".svg") else None
-        with atomic_path(path) as temporary:
+        with atomic_path(path) as temporary, styled():
             figure.savefig(temporary, metadata=dates)
     plt.close(figure)
 

@@ -2,6 +2,7 @@
 
 import os
 import platform
+import shlex
 import sys
 from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
@@ -27,7 +28,8 @@ def write_manifest(
 ) -> None:
     """Write versions, config slice, fingerprint, machine, time and the checksum of every input and output.
 
-    Inputs are named as the folder of the manifest counts them.
+    Inputs are named as the folder of the manifest counts them. `rebuild`: command that makes a target again;
+    it is stored with the folder of the outputs behind it and lacks only the name of a file.
     """
     documents.write(
         path,
@@ -40,7 +42,7 @@ def write_manifest(
             "machine": {"system": platform.platform(), "cpu": platform.machine(), "cores": os.cpu_count()},
             "params": {key: value for key, value in params.items() if key != "code"},
             "code": params.get("code"),
-            "rebuild": rebuild,
+            "rebuild": f"{rebuild} {shlex.quote(f'{Path(path).parent}/')}",
             "inputs": {os.path.relpath(name, Path(path).parent): sha256(name) for name in inputs},
             "files": {
                 Path(output).name: {"sha256": sha256(output), "bytes": Path(output).stat().st_size}

@@ -1,5 +1,6 @@
 """The frame around every workflow script: log, one-line errors, summary, manifest of the outputs."""
 
+import shlex
 import sys
 import time
 import traceback
@@ -9,7 +10,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO
 
-from facegear.errors import FacegearError
+from facegear.errors import CorruptFile, FacegearError
 from facegear.io.atomic import NO_SPACE, NO_SPACE_TOLD
 from facegear.io.checksums import MANIFEST_SUFFIX, require_manifest
 from facegear.provenance.manifest import write_manifest
@@ -66,7 +67,7 @@ def stage(snakemake: Any) -> Iterator[Run]:
                     snakemake.rule,
                     time.perf_counter() - start,
                     run.text,
-                    snakemake.config.get("rebuild_command", "snakemake --cores 2 --force"),
+                    snakemake.config["rebuild_command"],
                 )
 
 
@@ -78,9 +79,17 @@ def _one_line_errors(snakemake: Any, log: Path) -> Iterator[None]:
         if isinstance(error, OSError) and error.errno not in NO_SPACE:
             raise
         where = f"{snakemake.rule} of {snakemake.wildcards.get('case', 'this workflow')}"
-        what = f"{log}: {NO_SPACE_TOLD}" if isinstance(error, OSError) else str(error)
+        what = f"{log}: {NO_SPACE_TOLD}" if isinstance(error, OSError) else str(_rebuilt(error, snakemake))
         print(f"error in {where}: {what} (log: {log})", file=sys.stderr, flush=True)
         raise SystemExit(1) from None
+
+
+def _rebuilt(error: FacegearError, snakemake: Any) -> FacegearError:
+    """The same error; where a stored file is at fault, with the command that makes it again in this run."""
+    if not isinstance(error, CorruptFile):
+        return error
+    command = snakemake.config["rebuild_command"]
+    return CorruptFile(error.path, error.what, f"{command} {shlex.quote(str(error.path))}")
 
 
 class _Copied:

@@ -64,6 +64,14 @@ OVER_SPEED = (
     "factor: largest mesh force over the largest at rest; stress and pressure with that force all through "
     "the passage; worst: the hardest of all motions known at that speed"
 )
+NEAR_RESONANCE = 0.3
+"""Largest relative distance of a jump from the linear resonance that it may belong to."""
+JUMPS = (
+    "Jumps. Moves most: the linear mode with the largest share of the energy just beside the jump, and the "
+    "multiple of the mesh frequency at which it moves most. Linear resonance: the speed at which that "
+    f"multiple meets the mode's frequency, blank where the jump is more than {100 * NEAR_RESONANCE:.0f} % "
+    "away from it and so belongs to no linear resonance of that mode"
+)
 DRAWINGS = ("layout", "tooth_pair")
 """Figures that show the machine; the first that exists stands on the first screen."""
 LARGEST_SVG = 1_500_000
@@ -191,23 +199,18 @@ def _over_speed(tables: Mapping[str, pd.DataFrame], speed_rpm: float) -> list[Ta
 
 
 def _jumps(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
-    if "jumps" in tables:
-        columns = [
-            "direction",
-            "speed_before_rpm",
-            "mesh",
-            "class_before",
-            "class_after",
-            "resonance",
-            "energy_share",
-            "resonance_rpm",
-        ]
-        caption = (
-            "Jumps; resonance: the linear mode that holds the largest share of the energy, the multiple of "
-            "the mesh frequency at which it moves most, and the speed at which that multiple would meet it"
-        )
-        return [Table(caption, tables["jumps"][columns], 6)]
-    return []
+    """Jumps with the mode that moves most; a linear resonance beside it only where the jump is near it."""
+    if "jumps" not in tables:
+        return []
+    jumps = tables["jumps"]
+    linear = jumps["resonance_rpm"].astype(float)
+    away = (jumps["speed_before_rpm"].astype(float) / linear - 1.0).abs()
+    shown = jumps[["direction", "speed_before_rpm", "mesh", "class_before", "class_after"]].assign(
+        moves_most=jumps["resonance"],
+        energy_share=jumps["energy_share"],
+        linear_resonance_rpm=linear.where(away <= NEAR_RESONANCE),
+    )
+    return [Table(JUMPS, shown, 6)]
 
 
 def _scorecard(frame: pd.DataFrame) -> Chapter:

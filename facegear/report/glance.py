@@ -1,6 +1,6 @@
 """The report's first screen: machine drawing, key numbers, verdicts and warnings."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import nan
 from typing import Any
 
@@ -12,6 +12,8 @@ from facegear.report.page import Chapter, Picture, Table, scientific
 POSITIONS_MATTER = 0.05
 """Relative change of a peak-to-peak value with half of the positions that is worth a warning."""
 BACKLASH_DIFFERS_UM = 1.0
+LISTED = 6
+"""Names that a warning lists at most."""
 
 
 def glance_chapter(
@@ -105,6 +107,8 @@ def warnings(
     missing = rated(tables).get("power_imbalance", 0.0)
     if abs(missing) > BALANCED:
         yield "power", f"in less out {100 * missing:.3g} %: lever arms as printed are not those of the teeth"
+    yield from _open_warnings(tables)
+    yield from _sweep_warnings(tables)
     for row in _nominal(tables).itertuples():
         if row.lost_share > 0.0:
             yield (
@@ -113,6 +117,45 @@ def warnings(
             )
         if not str(row.motion).startswith("period-"):
             yield f"load sharing, {row.group}", f"the motion is {row.motion}: numbers are averages"
+
+
+def _open_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[tuple[str, str]]:
+    """Meshes that carry nothing at rest."""
+    if "meshes" not in tables:
+        return
+    open_ones = tables["meshes"].loc[tables["meshes"]["flank"] == "open", "mesh"]
+    if len(open_ones):
+        yield "meshes at rest", f"no load at {_listed(open_ones)}"
+
+
+def _sweep_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[tuple[str, str]]:
+    """Speeds of the sweep without a periodic motion, and meshes out of contact."""
+    if "sweep" not in tables:
+        return
+    sweep = tables["sweep"]
+    motions = sweep.drop_duplicates(["direction", "speed_rpm"])
+    irregular = ~motions["periodic"].astype(bool)
+    if irregular.any():
+        yield (
+            "speed sweep",
+            f"the motion is not periodic at {irregular.sum()} of {len(motions)} speeds, up and down counted "
+            "apart: numbers there are averages",
+        )
+    gaps = sweep[sweep["quantity"] == "open_share"].groupby("body_or_mesh", sort=False)["value"]
+    least, most = gaps.min(), gaps.max()
+    if (always := least.index[least >= 1.0]).size:
+        yield "speed sweep", f"open at every speed: {_listed(always)}"
+    lost = most.index[(most > 0.0) & (least < 1.0)]
+    if lost.size:
+        time = f"up to {100 * most[lost].max():.2g} % of the time"
+        yield "speed sweep", f"contact is lost at some speeds, {time}: {_listed(lost)}"
+
+
+def _listed(names: Iterable[str]) -> str:
+    """Names in a row; of many the first few, and how many more there are."""
+    names = list(names)
+    more = f" and {len(names) - LISTED} more" if len(names) > LISTED else ""
+    return ", ".join(names[:LISTED]) + more
 
 
 def _contact_warnings(

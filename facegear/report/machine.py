@@ -15,9 +15,11 @@ BALANCED = 1e-9
 """Relative difference of power in and out that is rounding."""
 NUMBERS = {
     "gear_ratio": ("Gear ratio (gear teeth over pinion teeth)", "", 5),
+    "speed_ratio": ("Ratio of speeds, input over output pinion", "", 5),
     "pinion_speed_rpm": ("Speed of the pinions", "rpm", 6),
-    "gear_speed_rpm": ("Speed of the output gear", "rpm", 6),
+    "gear_speed_rpm": ("Speed of the face gears", "rpm", 6),
     "output_torque_n_m": ("Torque of the output gear", "N m", 5),
+    "output_pinions_n_m": ("Torque of the output pinions", "N m", 5),
     "mesh_frequency_hz": ("Mesh frequency", "Hz", 6),
     "power_in_kw": ("Power brought in", "kW", 5),
     "power_out_kw": ("Power taken out", "kW", 5),
@@ -59,14 +61,25 @@ def key_numbers(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | No
     return pd.DataFrame(rows, columns=["quantity", "value", "unit"])
 
 
-def rated(tables: Mapping[str, pd.DataFrame]) -> dict[str, float]:
-    """Numbers of the ratings by quantity, and the torque of the output gear; empty without a machine."""
+def rated(tables: Mapping[str, pd.DataFrame]) -> dict[str, Any]:
+    """Numbers of the ratings by quantity, and the torques of what takes most power; empty without a machine.
+
+    That is a gear, or pinions: then neither the number of teeth nor the gear's speed is that of the output.
+    """
     if "ratings" not in tables:
         return {}
-    bodies = tables["bodies"]
-    gears = bodies.loc[bodies["role"] == "face gear", "torque_n_m"]
-    output = gears.iloc[int(gears.abs().to_numpy().argmax())]
-    return dict(tables["ratings"].itertuples(index=False)) | {"output_torque_n_m": abs(output)}
+    numbers = dict(tables["ratings"].itertuples(index=False))
+    driven = tables["bodies"][tables["bodies"]["power_kw"] < 0.0]
+    gears = driven["role"] == "face gear"
+    if len(driven) and driven.loc[~gears, "power_kw"].sum() < driven.loc[gears, "power_kw"].sum():
+        torques = dict.fromkeys(sorted(driven.loc[~gears, "torque_n_m"].abs()))
+        return {
+            **{name: value for name, value in numbers.items() if name != "gear_ratio"},
+            "speed_ratio": 1.0,
+            "output_pinions_n_m": tuple(torques),
+        }
+    torques = tables["bodies"].loc[tables["bodies"]["role"] == "face gear", "torque_n_m"]
+    return numbers | {"output_torque_n_m": float(torques.abs().max())}
 
 
 def _teeth(pair: Mapping[str, Any]) -> dict[str, Any]:
@@ -92,7 +105,7 @@ def _text(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
     if transmission is None:
         return (
             f"A pinion of {pair['pinion_teeth']} teeth and a face gear of {pair['face_gear_teeth']} teeth, "
-            f"{teeth}Mesh stiffness: {source}. "
+            f"{teeth}Mesh stiffness: {source}. {_materials(values)}"
             "No transmission is configured: teeth, contact and stiffness alone."
         )
     torque = transmission["torque"]
@@ -101,9 +114,17 @@ def _text(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
         f"{_count(transmission['face_gears'], 'face gear')} of {pair['face_gear_teeth']} teeth, {teeth}"
         f"Each input brings {torque['per_input_n_m']:g} N m unless the table gives its own torque; "
         f"{100 * torque['tail_share']:.3g} % of the power leaves at the tail. Mesh stiffness: {source}. "
-        f"{_error(transmission['transmission_error'], tables)}"
+        f"{_materials(values)}{_error(transmission['transmission_error'], tables)}"
         f"Mesh kinematics: {KINEMATICS[transmission['mesh_kinematics']]}.{_balance(tables)}"
     )
+
+
+def _materials(values: Mapping[str, Any]) -> str:
+    """The material cards by which the pair is rated, if it is."""
+    if (strength := values["strength"]) is None:
+        return ""
+    pinion, gear = (strength[body]["card"]["name"] for body in ("pinion", "face_gear"))
+    return f"Rated as {pinion}. " if pinion == gear else f"Rated as {pinion} (pinion) and {gear} (gear). "
 
 
 def _error(section: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
@@ -142,12 +163,10 @@ def _count(items: Sequence[Any], name: str) -> str:
 
 
 def _config_tables(values: Mapping[str, Any]) -> list[Table]:
-    sections = ("tooth_pair", "transmission", "mesh", "contact", "mesh_stiffness", "dynamics")
-    rows = [
-        row for section in sections for row in _flat(section, values[section]) if row[1] not in (None, "")
-    ]
-    keys = pd.DataFrame([row for row in rows if ".pinions" not in row[0]], columns=["key", "value"])
-    config = Table("Config, defaults included", keys, folded=True)
+    """The pinions, and every other key of the config that holds something."""
+    rows = [row for section in values for row in _flat(section, values[section])]
+    rows = [row for row in rows if row[0] != "reproduction" and row[1] not in (None, "")]
+    config = Table("Config, defaults included", pd.DataFrame(rows, columns=["key", "value"]), folded=True)
     if values["transmission"] is None:
         return [config]
     pinions = pd.DataFrame(values["transmission"]["pinions"]).dropna(axis=1, how="all")
@@ -155,8 +174,11 @@ def _config_tables(values: Mapping[str, Any]) -> list[Table]:
 
 
 def _flat(key: str, value: Any) -> list[tuple[str, Any]]:
+    """Dotted keys and values; a list of sections has numbered keys, any other list is one value."""
     if isinstance(value, Mapping):
         return [row for name, inside in value.items() for row in _flat(f"{key}.{name}", inside)]
-    if isinstance(value, list):
+    if isinstance(value, list | tuple):
+        if any(isinstance(item, Mapping) for item in value):
+            return [row for i, item in enumerate(value) for row in _flat(f"{key}[{i}]", item)]
         return [(key, ", ".join(str(item) for item in value))]
     return [(key, value)]

@@ -1,6 +1,7 @@
 """What all results share: their content, where it came from, and the files they are kept in."""
 
 from collections.abc import Mapping
+from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar, Literal
@@ -35,6 +36,10 @@ class Result:
     summary: str
     source: Source
     values: Mapping[str, Any] = field(repr=False)
+
+    def __post_init__(self) -> None:
+        """Keep a copy of the config, so that no change of it by a user reaches later answers."""
+        object.__setattr__(self, "values", deepcopy(self.values))
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write the files that the workflow writes for this stage, below `folder`; returns their paths."""

@@ -41,7 +41,9 @@ def percentile_table(samples: pd.DataFrame, causes: Sequence[str], confidence: f
         for probability in PERCENTILES if values.size else ():
             found = _bounded(percentile(values, probability, confidence))
             rows.append((name, 100.0 * probability, *found, values.size))
-    return pd.DataFrame(rows, columns=["quantity", "percentile", "value", "low", "high", "samples"])
+    table = pd.DataFrame(rows, columns=["quantity", "percentile", "value", "low", "high", "samples"])
+    numbers = dict.fromkeys(("percentile", "value", "low", "high"), float)
+    return table.astype({"quantity": str, **numbers, "samples": int})  # also where every sample failed
 
 
 def share_table(samples: pd.DataFrame, shares: dict[str, str], confidence: float) -> pd.DataFrame:

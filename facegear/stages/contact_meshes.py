@@ -6,11 +6,13 @@ from functools import lru_cache
 
 from facegear.config.base import parse
 from facegear.config.checks import geometric_backlash
+from facegear.config.contact_setup import contact_setup
 from facegear.config.lumped_model import ToothNumbers
 from facegear.config.tooth_pair import ToothPair, materials
 from facegear.config.variants import GAPS, MODULI, without
 from facegear.contact.gear_flank import GearFlank
 from facegear.contact.nodal_loads import BODIES
+from facegear.contact.resolution import check_resolution
 from facegear.stages.compliance import flank_of
 from facegear.stages.contact import contact_of
 from facegear.stages.root_stress import passing
@@ -64,7 +66,8 @@ def _answers(pair: Values, found: Values, flanks: Flanks, numbers: ToothNumbers)
 def _bodies(pair: Values, flanks: Flanks) -> Callable[[Values], tuple[GearFlank, GearFlank]]:
     """Compliance of both bodies of a pair.
 
-    Those given serve every pair of the same nodes: displacements by a force go with 1/E exactly.
+    Those given serve every pair of the same nodes: displacements by a force go with 1/E exactly. Raises
+    ConfigError for a pair whose contact the mesh cannot resolve.
     """
     start = pair["tooth_pair"]
     known = {_nodes(start): (start, dict(flanks))}
@@ -72,6 +75,8 @@ def _bodies(pair: Values, flanks: Flanks) -> Callable[[Values], tuple[GearFlank,
     def bodies(values: Values) -> tuple[GearFlank, GearFlank]:
         key = _nodes(values)
         if key not in known:
+            setup = contact_setup(values, pair["mesh"], pair["contact"])
+            check_resolution(setup.pair.design, setup.pair.materials, setup.sizes, setup.plan)
             made = {body: flank_of(body, values, pair["mesh"], pair["contact"]) for body in BODIES}
             if len(known) > KEPT_BODIES:
                 known.pop(list(known)[1])

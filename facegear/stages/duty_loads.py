@@ -61,7 +61,7 @@ def duty_loads(
     that mean. Raises ConfigError without section strength, NotConverged naming the speed.
     """
     if strength is None:
-        raise ConfigError("strength", None, "required for the loads of its duty cycle")
+        raise ConfigError("strength", None, "given for the loads of its duty cycle")
     section, known = parse(Strength, strength), settings(parse(Accuracy, accuracy))
     progress, loads, spectrum = Progress("duty cycle", len(section.duty)), [], []
     for number, one in enumerate(section.duty, start=1):

@@ -29,7 +29,7 @@ def modal(
     """
     mean = mean_stiffness if harmonics is None else series_of(harmonics).mean
     if mean is None:
-        raise ConfigError("mesh_stiffness.mean_n_per_m", None, "required where k(t) is not computed")
+        raise ConfigError("mesh_stiffness.mean_n_per_m", None, "given where k(t) is not computed")
     constant, none = Harmonics(np.zeros(1), np.array([mean])), Harmonics(np.zeros(1), np.zeros(1))
     machine = wired_machine(transmission, teeth, constant, unloaded=none)
     shape, modes = machine.layout, loaded_modes(machine)

@@ -32,7 +32,7 @@ def rating(
     machine's. Raises ConfigError without section strength.
     """
     if strength is None:
-        raise ConfigError("strength", None, "required for safety and life")
+        raise ConfigError("strength", None, "given for safety and life")
     section, design = parse(Strength, strength), pair(tooth_pair).design
     request = rating_request(section, design, duty_spectrum)
     roots = {body: root_from_arrays(stress, body) for body in request.bodies}

@@ -19,7 +19,7 @@ FORCE_COLUMNS = ("motion", "class", "speed_rpm", "mesh", "largest_force_n")
 
 def swept_forces(sweep: pd.DataFrame) -> pd.DataFrame:
     """The mesh with the largest force at each speed and direction of a sweep, columns FORCE_COLUMNS."""
-    rows = sweep[sweep["quantity"] == "largest_force_n"].reset_index(drop=True)
+    rows = sweep[sweep["quantity"] == "largest_elastic_force_n"].reset_index(drop=True)
     worst = rows.loc[rows.groupby(["direction", "speed_rpm"], sort=False)["value"].idxmax()]
     worst = worst.assign(motion="sweep " + worst["direction"])
     named = worst.rename(columns={"body_or_mesh": "mesh", "value": "largest_force_n"})

@@ -22,7 +22,7 @@ class Springs(NamedTuple):
 
     jacobian (F, 3 + w) by the unknowns of its pinion and its gear, which start at pinion and gear (F,);
     pinion_bearing (P, 3): xx, xy, yy; clearance (P,), where positive with xx = yy and xy = 0; gear_bearing
-    (n - 3 P,); applied (n,) forces. N, m.
+    (n - 3 P,), gear_coupling (gears,) between x and y of a gear; applied (n,) forces. N, m.
     """
 
     jacobian: Array
@@ -31,6 +31,7 @@ class Springs(NamedTuple):
     pinion_bearing: Array
     clearance: Array
     gear_bearing: Array
+    gear_coupling: Array
     applied: Array
 
 
@@ -83,6 +84,10 @@ def balance(springs: Springs, stiffness: Array, over: Array, place: Array, gradi
         gradient[3 * i + 1] += y
     for j in range(first, gradient.size):
         gradient[j] += springs.gear_bearing[j - first] * place[j]
+    for g in range(springs.gear_coupling.size):
+        x = first + g * (springs.jacobian.shape[1] - 3)
+        gradient[x] += springs.gear_coupling[g] * place[x + 1]
+        gradient[x + 1] += springs.gear_coupling[g] * place[x]
     for f in range(over.size):
         if over[f] > 0.0:
             force = stiffness[f] * over[f]
@@ -99,14 +104,14 @@ def balance(springs: Springs, stiffness: Array, over: Array, place: Array, gradi
 def assemble(
     springs: Springs,
     stiffness: Array,
-    over: Array,
+    closed: Array,
     place: Array,
     gradient: Array,
     tie: float,
     blocks: Array,
     core: Array,
 ) -> None:
-    """Second derivatives of the energy and the right side, upper triangles only."""
+    """Second derivatives of the energy and the right side, upper triangles only; closed (F,) 1 or 0."""
     pinions, gears = blocks.shape[0], core.shape[0]
     first, wide = 3 * pinions, blocks.shape[2]
     blocks[:] = 0.0
@@ -127,8 +132,11 @@ def assemble(
     for a in range(gears):
         core[a, a] = springs.gear_bearing[a] + tie
         core[a, gears] = -gradient[first + a]
-    for f in range(over.size):
-        if over[f] > 0.0:
+    for g in range(springs.gear_coupling.size):
+        x = g * (springs.jacobian.shape[1] - 3)
+        core[x, x + 1] = springs.gear_coupling[g]
+    for f in range(closed.size):
+        if closed[f] > 0.0:
             i, g = springs.pinion[f] // 3, springs.gear[f] - first - 3
             for r in range(3):
                 factor = stiffness[f] * springs.jacobian[f, r]
@@ -168,6 +176,11 @@ def slope_along(
         stiff = springs.gear_bearing[j - first] * step[j]
         slope += stiff * (place[j] + share * step[j])
         curvature += stiff * step[j]
+    for g in range(springs.gear_coupling.size):
+        x = first + g * (springs.jacobian.shape[1] - 3)
+        dx, dy = springs.gear_coupling[g] * step[x + 1], springs.gear_coupling[g] * step[x]
+        slope += dx * (place[x] + share * step[x]) + dy * (place[x + 1] + share * step[x + 1])
+        curvature += dx * step[x] + dy * step[x + 1]
     for f in range(over.size):
         depth = over[f] + share * rate[f]
         if depth > 0.0:

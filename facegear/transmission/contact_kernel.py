@@ -4,6 +4,10 @@ The energy of one-sided flanks, bearings (with a ring of play or without) and to
 the rings, quadratic between changes of contact: a semismooth Newton method, each step an active set with its
 equations solved, with an exact line search that makes it global. Pinions touch each other through the gears
 only, so each is eliminated by itself (3 x 3) and the gears remain (4 or 6 unknowns each).
+
+A body that nothing holds may be stopped by a flank that only just closes, by less than its place can be told.
+Such a flank counts as closed in the next step, unless that would pull it open: the search would else stay
+where it is.
 """
 
 import numpy as np
@@ -23,6 +27,8 @@ Array = NDArray[np.float64]
 TIE, FIRST_TIE = 1e-10, 1e-1
 """Springs to ground in the matrix only (over the stiffest contact), which give free bodies a next place."""
 MOST_STEPS = 200
+JUST_CLOSED = 1e-9
+"""Part of a whole step's approach by which a flank that stopped the step may still be open."""
 
 
 @kernel
@@ -40,12 +46,14 @@ def settle_all(
     places, forces = np.zeros((count, n)), np.zeros((count, flanks))
     residuals = np.zeros(count)
     over, rate = np.zeros(flanks), np.zeros(flanks)
+    stops, closed = np.zeros(flanks), np.zeros(flanks)
     gradient, step = np.zeros(n), np.zeros(n)
     blocks = np.zeros((springs.pinion_bearing.shape[0], 3, 4 + gears))
     core = np.zeros((gears, gears + 1))
     for k in range(count):
         stiffest = stiffness[k].max()
         tie = FIRST_TIE if k == 0 else TIE
+        stops[:] = 0.0
         for _ in range(MOST_STEPS):
             penetrate(springs, gap[k], place, over)
             size = balance(springs, stiffness[k], over, place, gradient)
@@ -53,12 +61,23 @@ def settle_all(
             residuals[k] = worst / size if size > 0.0 else 0.0
             if worst <= tolerance * size:
                 break
-            _newton_step(springs, stiffness[k], over, place, gradient, tie * stiffest, blocks, core, step)
+            for _ in range(2):
+                for f in range(flanks):
+                    closed[f] = 1.0 if over[f] > 0.0 else stops[f]
+                _newton_step(
+                    springs, stiffness[k], closed, place, gradient, tie * stiffest, blocks, core, step
+                )
+                along(springs, step, rate)
+                if (stops * rate).min() >= 0.0:
+                    break
+                stops[:] = 0.0
             tie = max(0.1 * tie, TIE)
-            along(springs, step, rate)
             # Forces below the tolerance are no reason to go on: a free body would slide, the others with it.
             noise = tolerance * size * np.abs(step).sum()
             share = _line_minimum(springs, stiffness[k], over, rate, place, step, noise)
+            for f in range(flanks):
+                near = over[f] + share * rate[f] >= -JUST_CLOSED * rate[f]
+                stops[f] = 1.0 if over[f] <= 0.0 and rate[f] > 0.0 and near else 0.0
             for j in range(n):
                 place[j] += share * step[j]
         for f in range(flanks):
@@ -71,7 +90,7 @@ def settle_all(
 def _newton_step(
     springs: Springs,
     stiffness: Array,
-    over: Array,
+    closed: Array,
     place: Array,
     gradient: Array,
     tie: float,
@@ -83,7 +102,7 @@ def _newton_step(
 
     blocks (P, 3, 4 + gears) holds each pinion's 3 x 3, its coupling to the gears and its right side.
     """
-    assemble(springs, stiffness, over, place, gradient, tie, blocks, core)
+    assemble(springs, stiffness, closed, place, gradient, tie, blocks, core)
     gears = core.shape[0]
     wide = blocks.shape[2]
     for i in range(blocks.shape[0]):

@@ -53,11 +53,14 @@ def constant_errors(machine: Machine) -> Array:
 def slow_errors(machine: Machine, cycles: Array) -> Array:
     """Error of every flank from runouts and pitch deviations, shape (K, 2 meshes), m.
 
-    `cycles` (K,) counts mesh cycles of the reference from the start.
+    `cycles` (K,) counts mesh cycles of the reference from the start. A face gear's high point stands at its
+    phase from the first pinion at the start and goes on as the gear turns, the lower one against the angles.
+    Teeth whose centre lies towards the angle p stand ahead by the sine of p less the mesh's angle.
     """
     layout, errors = machine.layout, machine.imperfections
     tangential, separating = np.zeros((2, cycles.size, len(layout.meshes)))
     cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
+    from_first = 2.0 * np.pi * layout.pitches_from_first / layout.gear_teeth
     for mesh, (i, g) in enumerate(layout.meshes):
         side = layout.gears[g].sign
         runout = errors.pinion_runout[i]
@@ -65,8 +68,8 @@ def slow_errors(machine: Machine, cycles: Array) -> Array:
         tangential[:, mesh] -= side * cosine * runout.amplitude * np.sin(turn)
         separating[:, mesh] -= side * sine * runout.amplitude * np.cos(turn)
         runout = errors.gear_runout[g]
-        turn = side * 2.0 * np.pi * cycles / layout.gear_teeth + runout.phase
-        tangential[:, mesh] += side * cosine * runout.amplitude * np.cos(turn - layout.angles[i])
+        turn = 2.0 * np.pi * cycles / layout.gear_teeth + runout.phase - side * from_first[i]
+        tangential[:, mesh] += cosine * runout.amplitude * np.sin(turn)
         on_pinion, on_gear = teeth_in_mesh(layout, mesh, cycles)
         tangential[:, mesh] -= cosine * _deviation(errors.pinion_pitch.get(i), on_pinion)
         tangential[:, mesh] += cosine * _deviation(errors.gear_pitch.get(g), on_gear)
@@ -86,11 +89,12 @@ def flank_places(phases: Array, cycles: Array) -> Array:
 def teeth_in_mesh(layout: Layout, mesh: int, cycles: Array) -> tuple[Array, Array]:
     """Teeth of the pinion and of the face gear (K,) that a mesh has come to, counted on from turn to turn.
 
-    `cycles` (K,) counts mesh cycles of the reference from the start; a fraction lies between two teeth.
+    `cycles` (K,) counts mesh cycles of the reference from the start; a fraction lies between two teeth. At
+    the start the first tooth of each gear is at the first pinion.
     """
     i, g = layout.meshes[mesh]
-    half_turn = 0.5 * layout.pinion_teeth if layout.gears[g].side is Side.LOWER else 0.0
-    return cycles - half_turn, cycles - layout.gears[g].sign * layout.pinions[i].pitches
+    half_turn = 0.5 * layout.pinion_teeth if layout.half_turned(g) else 0.0
+    return cycles - half_turn, cycles - layout.gears[g].sign * layout.pitches_from_first[i]
 
 
 def mirrored(series: Harmonics) -> Harmonics:

@@ -15,7 +15,8 @@ Array = NDArray[np.float64]
 class Runout:
     """Eccentricity of a body's teeth: amplitude (m), and where its high point is at the start (rad).
 
-    A pinion's angle counts from the upper gear, a face gear's from the first pinion, both as the body turns.
+    A pinion's angle counts from the upper gear, a face gear's from the first pinion, both as the body turns
+    (of the gears: the upper one towards growing distribution angles, the lower one the other way).
     """
 
     amplitude: float = 0.0

@@ -113,7 +113,7 @@ class Layout:
             )
         names = [pinion.name for pinion in self.pinions]
         if len(set(names)) != len(names):
-            raise ConfigError("transmission.pinions", names, "each pinion needs a name of its own")
+            raise ConfigError("transmission.pinions", names, "names that differ from pinion to pinion")
         conjugate = self.pinion_radius * self.gear_teeth / self.pinion_teeth
         if self.is_geometric and abs(self.gear_radius - conjugate) > SAME_ARM * conjugate:
             allowed = f"{conjugate:.9g} m, as the tooth numbers say, where mesh_kinematics is geometric"
@@ -190,6 +190,18 @@ class Layout:
     def angles(self) -> NDArray[np.float64]:
         """Distribution angles, shape (pinions,), rad."""
         return 2.0 * np.pi * np.array([pinion.pitches for pinion in self.pinions]) / self.gear_teeth
+
+    @property
+    def pitches_from_first(self) -> NDArray[np.float64]:
+        """Distribution angles counted from the first pinion, shape (pinions,), pitches of the face gear."""
+        return np.array([pinion.pitches - self.pinions[0].pitches for pinion in self.pinions])
+
+    def half_turned(self, gear: int) -> bool:
+        """Whether a gear meets a pinion half a turn of it away from the reference mesh.
+
+        The reference is the first pinion's mesh with the upper gear, or with the only gear.
+        """
+        return len(self.gears) > 1 and self.gears[gear].side is Side.LOWER
 
     def mesh_index(self, pinion: int, side: Side) -> int:
         """Position of a mesh in `meshes`. Raises KeyError if the layout has no such gear."""

@@ -16,10 +16,15 @@ TORQUE_BALANCE = 1e-9
 
 
 class OpenFlanks(StrEnum):
-    """Mesh damping where flanks are apart: `always` acting as in equation (20), or `contact_only`."""
+    """Mesh damping where flanks are apart: `always` acting as in equation (20), or `contact_only`.
+
+    In contact the damper may pull flanks together that are about to part. `push_only` cuts the force of a
+    contact, spring and damper together, at zero.
+    """
 
     ALWAYS = "always"
     CONTACT_ONLY = "contact_only"
+    PUSH_ONLY = "push_only"
 
 
 @dataclass(frozen=True)
@@ -120,6 +125,6 @@ def require_balance(layout: Layout, torques: NDArray[np.float64]) -> None:
     excess = float(tangential.sum())
     if abs(excess) > TORQUE_BALANCE * np.abs(tangential).sum():
         allowed = (
-            "torques must balance: (sum of pinion torques) / r_pinion + (sum of gear torques) / r_gear = 0"
+            "0, as torques must balance: sum of pinion torques / r_pinion + sum of gear torques / r_gear"
         )
         raise ConfigError("transmission.torque", f"{excess:.6g} N in excess at the mesh", allowed)

@@ -20,20 +20,21 @@ def mesh_phases(
 ) -> NDArray[np.float64]:
     """Lag of each mesh behind the reference, in mesh periods within [0, 1), shape (meshes,).
 
-    The reference is the first pinion's mesh with the upper gear. That gear's teeth pass the pinions in the
-    order of their angles: equation (7). The other side of a pinion is half a turn of it away, and turned by
-    `clocking` (pinions,) in pitches. Where the lower gear is alone its teeth come round the other way.
-    Equation (13) as printed knows no direction of rotation.
+    The reference is the first pinion's mesh with the upper gear, or with the only gear. The upper gear's
+    teeth pass the pinions in the order of their angles, counted from the first pinion: equation (7). The
+    other side of a pinion is half a turn of it away, and turned by `clocking` (pinions,) in pitches. Where
+    the lower gear is alone its teeth come round the other way. Equation (13) as printed knows no direction of
+    rotation.
     """
     upper_first = any(gear.side is Side.UPPER for gear in layout.gears) or not layout.is_geometric
     turned = np.zeros(len(layout.pinions)) if clocking is None else clocking
-    half_turn = 0.5 * layout.pinion_teeth
+    lags = layout.pitches_from_first * (1.0 if upper_first else -1.0)
     phases = np.empty(len(layout.meshes))
     for row, (i, g) in enumerate(layout.meshes):
-        lag = layout.pinions[i].pitches if upper_first else -layout.pinions[i].pitches
-        if layout.gears[g].side is Side.LOWER:
+        lag = lags[i]
+        if layout.half_turned(g):
             if convention is PhaseConvention.GEOMETRIC or i == 0:
-                lag += half_turn
+                lag += 0.5 * layout.pinion_teeth
             lag -= turned[i]
         phases[row] = np.mod(lag, 1.0)
     return phases

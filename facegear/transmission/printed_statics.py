@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.transmission.machine import Machine
-from facegear.transmission.matrices import bearing_diagonal, mesh_directions
+from facegear.transmission.matrices import bearing_matrix, mesh_directions
 
 MAX_ITERATIONS = 200
 RESIDUAL = 1e-10
@@ -27,9 +27,8 @@ def dead_zone(deflections: NDArray[np.float64], half_width: float) -> NDArray[np
 
 def printed_equilibrium(
     machine: Machine, cycles: float | None
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], float, float]:
-    """Displacements (dof,), deflections and elastic forces (meshes,), largest imbalance over the largest
-    force, and what of that is rounding.
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Displacements (dof,), deflections, elastic forces and stiffness (meshes,) where it is looked for.
 
     Minimises the elastic energy less the work of the torques (convex: the dead zone only flattens it).
     """
@@ -40,27 +39,27 @@ def printed_equilibrium(
     else:
         stiffness = machine.stiffness(cycles - machine.phases)
         error = machine.error(cycles - machine.error_phases)
-    bearing = bearing_diagonal(machine.layout)
-    applied = np.zeros(bearing.size)
+    bearing = bearing_matrix(machine.layout)
+    applied = np.zeros(len(bearing))
     applied[machine.layout.spins] = machine.torques
     # Rotations are scaled by the pinion radius so that all unknowns are lengths of one order.
-    scale = np.ones(bearing.size)
+    scale = np.ones(len(bearing))
     scale[machine.layout.spins] = 1.0 / machine.layout.pinion_radius
     scaled = _Springs(
-        directions * scale, stiffness, error, bearing * scale**2, applied * scale, machine.half_backlash
+        directions * scale,
+        stiffness,
+        error,
+        bearing * np.outer(scale, scale),
+        applied * scale,
+        machine.half_backlash,
     )
     solution = _minimise(scaled)
-    deflections, forces = scaled.deflections(solution), scaled.forces(solution)
-    size = max(np.abs(applied * scale).max(), np.abs(forces).max())
-    residual = float(np.abs(scaled.balance(solution)).max() / size) if size > 0.0 else 0.0
-    # A deflection in the dead zone's neighbourhood is known to rounding only, and so is its force.
-    rounding = 100.0 * np.finfo(float).eps * stiffness.max() * np.abs(deflections).max()
-    return scale * solution, deflections, forces, residual, rounding / size if size > 0.0 else 0.0
+    return scale * solution, scaled.deflections(solution), scaled.forces(solution), stiffness
 
 
 @dataclass(frozen=True, eq=False)
 class _Springs:
-    """Meshes and bearings in scaled displacements q: directions (meshes, q), the rest per mesh or per q."""
+    """Meshes and bearings in scaled displacements: directions (meshes, q), bearing (q, q), others by one."""
 
     directions: NDArray[np.float64]
     stiffness: NDArray[np.float64]
@@ -76,20 +75,20 @@ class _Springs:
         return self.stiffness * dead_zone(self.deflections(q), self.half_width)
 
     def balance(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
-        return self.bearing * q + self.directions.T @ self.forces(q) - self.applied
+        return self.bearing @ q + self.directions.T @ self.forces(q) - self.applied
 
     def curvature(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
         active = np.where(np.abs(self.deflections(q)) > self.half_width, self.stiffness, 0.0)
-        return np.diag(self.bearing) + (self.directions.T * active) @ self.directions
+        return self.bearing + (self.directions.T * active) @ self.directions
 
     def along(
         self, q: NDArray[np.float64], step: NDArray[np.float64], tie: float, anchor: NDArray[np.float64]
     ) -> "Line":
         """The energy's slope along a step, with a spring `tie` to the anchor."""
-        at_start = self.bearing * q + tie * (q - anchor) - self.applied
+        at_start = self.bearing @ q + tie * (q - anchor) - self.applied
         return Line(
             constant=float(at_start @ step),
-            rise=float((self.bearing * step + tie * step) @ step),
+            rise=float((self.bearing @ step + tie * step) @ step),
             deflections=self.deflections(q),
             rates=self.directions @ step,
             stiffness=self.stiffness,
@@ -145,7 +144,7 @@ def _minimise(springs: _Springs) -> NDArray[np.float64]:
     """
     size = np.abs(springs.applied).max()
     stiffest = max(springs.stiffness.max(), springs.bearing.max())
-    place = np.zeros(springs.bearing.size)
+    place = np.zeros(springs.applied.size)
     for tie in stiffest * np.geomspace(FIRST_SPRING, LAST_SPRING, ROUNDS):
         last = place
         place = _newton(springs, tie, last)

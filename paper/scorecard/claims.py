@@ -38,7 +38,7 @@ class Claim(Section):
     @model_validator(mode="after")
     def _number_has_tolerance(self) -> "Claim":
         if (self.paper is None) != (self.tolerance is None):
-            refuse("tolerance", self.tolerance, "stands beside a paper value, and only there")
+            refuse("tolerance", self.tolerance, "given beside a paper value, and only there")
         return self
 
     @property
@@ -64,10 +64,10 @@ class Claims(Section):
         names = [claim.id for claim in self.claims]
         double = sorted({name for name in names if names.count(name) > 1})
         if double:
-            refuse("claims", double, "each claim needs an id of its own")
+            refuse("claims", double, "ids that differ from claim to claim")
         lost = sorted({claim.same_as for claim in self.claims if claim.same_as} - set(names))
         if lost:
-            refuse("claims", lost, "same_as names the id of another claim")
+            refuse("claims", lost, "ids of other claims, as same_as names them")
         return self
 
 

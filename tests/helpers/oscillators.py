@@ -13,6 +13,7 @@ def one_degree(
     upper=1.0,
     pieces=(),
     contact_damping=0.0,
+    push_only=False,
 ) -> System:
     return System(
         mesh_jacobian=np.ones((1, 1)),
@@ -27,6 +28,7 @@ def one_degree(
         error_kind=np.zeros(1, dtype=int),
         load=np.array([load], dtype=float),
         damping_when_open=contact_damping == 0.0,
+        push_only=push_only,
         scale=1.0,
         pieces=pieces,
     )

@@ -36,18 +36,24 @@ def test_modes_need_no_mesh_and_no_compiler():
 @pytest.mark.parametrize(
     ("mistake", "line"),
     [
-        (lambda g: g.contact(torques=[600, 300]), "contact: contact.torques_n_m = [600.0, 300.0]: rising"),
+        (
+            lambda g: g.contact(torques=[600, 300]),
+            "contact.torques_n_m = [600.0, 300.0]: must be rising",
+        ),
         (lambda g: g.contact(torques="much"), 'contact: contact.torques_n_m = "much"'),
-        (lambda g: g.contact(positions=2), "contact.positions_per_pitch = 2: should be greater"),
-        (lambda g: g.response(-1), "response: dynamics.speed_rpm = -1: should be greater than"),
-        (lambda g: g.sweep(2000, 1000), "dynamics.sweep.to_rpm = 1000.0: more than from_rpm = 2000"),
-        (lambda g: g.branches(2000, 1000), "branches.to_rpm = 1000.0: more than from_rpm = 2000"),
-        (lambda g: g.branch_loci(["mass"]), 'parameters[0] = "mass": should be'),
+        (lambda g: g.contact(positions=2), "contact.positions_per_pitch = 2: must be greater"),
+        (lambda g: g.response(-1), "response: dynamics.speed_rpm = -1: must be greater than"),
+        (lambda g: g.sweep(2000, 1000), "dynamics.sweep.to_rpm = 1000.0: must be more than from_rpm = 2000"),
+        (lambda g: g.branches(2000, 1000), "branches.to_rpm = 1000.0: must be more than from_rpm = 2000"),
+        (lambda g: g.branch_loci(["mass"]), 'parameters[0] = "mass": must be'),
         (lambda g: g.load_sharing(float("nan")), "dynamics.speed_rpm = NaN"),
         (lambda g: g.with_values({"transmission.backlash": 1}), "with_values: transmission.backlash = 1"),
-        (lambda g: g.with_values({"case": "other"}), "case = 'other': a dotted key"),
-        (lambda g: g.with_values({"transmission.backlash_um": -1}), "backlash_um = -1: should be greater"),
-        (lambda g: g.modes() and g.contact(torques=600).plot("patern"), "plot = 'patern': one of pattern"),
+        (lambda g: g.with_values({"case": "other"}), "case = 'other': must be a dotted key"),
+        (lambda g: g.with_values({"transmission.backlash_um": -1}), "backlash_um = -1: must be greater"),
+        (
+            lambda g: g.modes() and g.contact(torques=600).plot("patern"),
+            "plot = 'patern': must be one of",
+        ),
     ],
 )
 def test_a_mistake_in_an_argument_is_one_clear_line(gearbox, mistake, line):
@@ -118,8 +124,8 @@ def test_exact_teeth_are_exported_in_the_format_that_the_ending_names(gearbox, n
 @pytest.mark.parametrize(
     ("asked", "line"),
     [
-        ({"path": "teeth.iges"}, "ending of the path = '.iges': one of .step, .stp, .stl"),
-        ({"path": "teeth.stl", "body": "gear"}, "body = 'gear': one of pinion, face_gear"),
+        ({"path": "teeth.iges"}, "ending of the path = '.iges': must be one of .step, .stp, .stl"),
+        ({"path": "teeth.stl", "body": "gear"}, "body = 'gear': must be one of pinion, face_gear"),
         ({"path": "teeth.stl", "teeth": 24}, "teeth = 24: 1 to 23"),
     ],
 )
@@ -143,7 +149,7 @@ def test_branches_have_tables_figures_and_files(followed, tmp_path):
     assert (table["deflection_least_um"] <= table["deflection_most_um"]).all()
     assert all(followed.plot(name).axes for name in ("amplitudes", "shares", "multipliers"))
     assert all(path.stat().st_size for path in followed.save(tmp_path))
-    with pytest.raises(FacegearError, match="plot = 'loci': one of amplitudes"):
+    with pytest.raises(FacegearError, match="plot = 'loci': must be one of amplitudes"):
         followed.plot("loci")
 
 
@@ -168,5 +174,19 @@ def test_given_harmonics_need_no_teeth(tmp_path):
     assert stored.stiffness().table()["order"].to_list() == [0, 1, 2, 3]
     with pytest.raises(FacegearError, match=r"own\.yaml: no such config file"):
         facegear.load(config)
-    with pytest.raises(FacegearError, match="geometry and contact need pinion"):
+    with pytest.raises(FacegearError, match="geometry and contact need the bodies"):
         stored.geometry()
+
+
+def test_values_of_a_gearbox_and_of_its_results_are_copies():
+    """Setting a number inside them changed later answers, of the example until Python ended."""
+    gearbox = facegear.example().with_values({"mesh_stiffness.mean_n_per_m": 4.2e8})
+    before = gearbox.modes().table()["frequency_hz"].to_list()
+    for values in (gearbox.values, gearbox.modes().values, facegear.example().values):
+        values["transmission"]["pinion"]["mass_kg"] = 77.0
+        values["mesh_stiffness"]["mean_n_per_m"] = 1e9
+        values["transmission"]["pinions"].clear()
+    assert gearbox.values["transmission"]["pinion"]["mass_kg"] == 1.199
+    assert facegear.example().values["transmission"]["pinions"]
+    again = gearbox.with_values({"dynamics.speed_rpm": 7000}).modes().table()["frequency_hz"].to_list()
+    assert gearbox.modes().table()["frequency_hz"].to_list() == again == before

@@ -30,6 +30,7 @@ MAY_IMPORT = {
         *("dynamics", "load_sharing"),
     },
     "report": {"geometry", "contact"},
+    "compare": {"plots", "report"},
     "scenarios": set(),
     "strength": {"geometry"},
     "stages": {

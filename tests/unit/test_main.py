@@ -18,8 +18,8 @@ def test_limits_of_a_gear_are_told_from_tooth_numbers_alone(capsys):
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        ((*TEETH, "--shaper-teeth", "40"), "shaper.teeth = 40: from 25 (line contact) to 28"),
-        ((*TEETH, "--gear-addendum-modules", "-3"), "gear_addendum_modules = -3.0: from 0.1 to 2"),
+        ((*TEETH, "--shaper-teeth", "40"), "shaper.teeth = 40: must be from 25 (line contact) to 28"),
+        ((*TEETH, "--gear-addendum-modules", "-3"), "gear_addendum_modules = -3.0: must be from 0.1 to 2"),
         (("check", "none.yaml"), "none.yaml: no such config file"),
         (("run", "none.yaml"), "none.yaml: no such config file"),
         (("run", str(ROOT)), f"{ROOT}: is a directory, not a config file"),

@@ -6,6 +6,7 @@ import sys
 import pytest
 
 import facegear
+import facegear.__main__ as command_line
 
 
 def told(module, call):
@@ -39,6 +40,18 @@ def test_modes_of_a_given_mean_stiffness_need_no_extra():
 def test_a_report_without_its_template_engine_names_the_extra():
     line = 'jinja2 is not installed; get it with: pip install "facegear[workflow]"'
     assert told("jinja2", "import facegear.report.page") == line
+
+
+@pytest.mark.parametrize("missing", ["snakemake", "Snakefile"])
+def test_run_of_an_installed_package_says_what_it_lacks(tmp_path, monkeypatch, capsys, missing):
+    """From the wheel it ended in the error of a missing module."""
+    (tmp_path / "own.yaml").write_text("case: own\n")
+    monkeypatch.setattr(command_line, "ROOT", tmp_path)
+    if missing == "snakemake":
+        monkeypatch.setattr(command_line, "find_spec", lambda name: None)
+    assert command_line.main(("run", str(tmp_path / "own.yaml"))) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert ('pip install "facegear[workflow]"' if missing == "snakemake" else "from its repository") in line
 
 
 def test_a_library_of_no_extra_fails_as_python_says():

@@ -6,6 +6,7 @@ import shlex
 import shutil
 import signal
 import subprocess
+import sys
 import time
 
 import pytest
@@ -150,7 +151,22 @@ def test_an_altered_intermediate_is_named_with_the_command_that_rebuilds_it(quic
     assert done.returncode != 0
     (line,) = [line for line in done.stderr.splitlines() if line.startswith("error in ")]
     assert f"results/quick/{file}" in line
-    assert "rebuild it with: snakemake --cores 2" in line
+    assert f" --force results/quick/{file} (log: " in line
+
+
+def test_the_command_told_with_a_damaged_file_makes_it_again_from_any_folder(quick, tmp_path, monkeypatch):
+    """It lacked --snakefile and --directory, so that it worked in the folder of the run alone."""
+    project = quick.copied(tmp_path)
+    path = tmp_path / "results" / "quick" / "modal" / "shapes.csv"
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) // 2])
+    done = project.run(*QUICK, "--force", "--", "results/quick/figures/mode_shapes.svg", check=False)
+    (line,) = [line for line in done.stderr.splitlines() if line.startswith("error in ")]
+    words = shlex.split(line.split("rebuild it with: ")[1].split(" (log: ")[0])
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    subprocess.run([sys.executable, "-m", *words], env=environment(), check=True, capture_output=True)
+    assert path.read_bytes() == whole
 
 
 @pytest.mark.parametrize(

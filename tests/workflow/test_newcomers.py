@@ -53,8 +53,17 @@ def test_teeth_alone_plan_geometry_contact_stiffness_and_a_report(tmp_path):
     done = Project(tmp_path).run(*asked, check=False)
     assert done.returncode == 1
     told = done.stderr.splitlines()[-1]
-    assert told.startswith("transmission = ")
-    assert told.endswith(": required for modes, dynamics and load sharing of teeth_only")
+    assert told.startswith("teeth_only: transmission = None: must be given for modes, dynamics")
+
+
+def test_a_target_without_its_section_in_the_config_ends_in_one_line(tmp_path):
+    """It ended in a TypeError."""
+    for target, section in (("figures/branches.svg", "branches"), ("tolerances/shares.csv", "tolerances")):
+        asked = ("-n", "--configfile", str(ROOT / "config" / "harmonics_only.yaml"), "--")
+        done = Project(tmp_path).run(*asked, f"results/harmonics_only/{target}", check=False)
+        assert done.returncode == 1 and "Traceback" not in done.stderr
+        told = done.stderr.splitlines()[-1]
+        assert told == f"harmonics_only: {section} = None: must be given, as rule {section} needs it"
 
 
 def test_misalignments_of_a_machine_without_load_sharing_are_studied(tmp_path):

@@ -8,7 +8,7 @@ pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("second_machine")]
 
 COARSER = """
 mesh: {resolution: {profile_mm: 2, width_mm: 8, thickness_mm: 5}}
-contact: {positions_per_pitch: 6, refinement: {depth: 1}}
+contact: {torques_n_m: [600, 1200], positions_per_pitch: 6, refinement: {depth: 1}}
 dynamics: {sweep: {points: 8}}
 load_sharing: {cycles: 50, starts: 2, speed_range: {points: 4}}
 """

@@ -36,7 +36,9 @@ def right_side(packed: Packed, work: Work, s: float, z: Array, out: Array) -> No
         if packed.lower[m] >= packed.upper[m]:
             beyond, touching = d - packed.upper[m], True
         acting = packed.mesh_damping[m] if touching else 0.0
-        work.force[m] = work.stiffness[0, m] * beyond + acting * work.deflection[1, m]
+        push = work.stiffness[0, m] * beyond + acting * work.deflection[1, m]
+        pulls = packed.push_only and packed.lower[m] < packed.upper[m] and push * beyond < 0.0
+        work.force[m] = 0.0 if pulls else push
     for c in range(0, n, LANES):
         velocity = load(z, n + c)
         store(out, c, velocity)

@@ -10,17 +10,21 @@ from snakemake.persistence import PersistenceBase
 ROOT = Path(workflow.basedir)
 sys.path.insert(0, str(ROOT))
 os.environ.update(PYTHONPATH=str(ROOT), MPLBACKEND="Agg")
+for name, module in list(sys.modules.items()):  # the profile may have imported a package installed elsewhere
+    if name.partition(".")[0] == "facegear" and not Path(module.__file__).is_relative_to(ROOT):
+        del sys.modules[name]
 
 from facegear.config.cases import expand_cases
 from facegear.config.load import load_values
 from facegear.config.notes import notes
 from facegear.errors import FacegearError
 from facegear.io.run_lock import hold
-from facegear.pipeline.needs import resolved_needs, shared_sources
+from facegear.pipeline.needs import require_section, resolved_needs, shared_sources
 from facegear.pipeline.stage import Case, From
 from facegear.pipeline.table import MACHINE, STAGES
 from paper.reproduction import read_reproduction
 from facegear.provenance.fingerprint import fingerprint, recall, remember
+from facegear.provenance.rebuild import rebuild_command
 
 if hasattr(PersistenceBase, "_serialize_param_builtin"):
     # Snakemake imports pandas, 0.5 s of every start, only to ask whether a parameter is a table; none is here.
@@ -45,10 +49,11 @@ except FacegearError as error:
     stop(str(error))
 
 CASE = CONFIG["case"]
-config["rebuild_command"] = (
-    "snakemake --cores 2"
-    + "".join(f" --configfile {os.path.relpath(file)}" for file in workflow.configfiles)
-    + " --force"
+config["rebuild_command"] = rebuild_command(
+    workflow.main_snakefile,
+    workflow.configfiles,
+    workflow.config_settings.config,
+    workflow.overwrite_workdir,
 )
 
 
@@ -107,12 +112,21 @@ def case_of(name):
 BASE = case_of(CASE)
 
 
-def read_from(source):
-    """Function of the wildcards giving the files of an earlier stage that an argument is read from."""
+def asked_case(stage, wildcards):
+    """A case; ends the run where its config lacks the section that a stage is about."""
+    try:
+        require_section(stage, CASES[wildcards.case])
+    except FacegearError as error:
+        stop(f"{wildcards.case}: {error}")
+    return case_of(wildcards.case)
+
+
+def read_from(source, reader=None):
+    """Function of the wildcards giving the files of an earlier stage that an argument of a reader is read from."""
     stage, several = STAGES[source.stage], source.each or STAGES[source.stage].files[source.file].each
 
     def files(wildcards):
-        case = case_of(wildcards.case)
+        case = asked_case(reader, wildcards)
         places = source.places(case) if source.wanted(case) else []
         found = [path for place in places for path in paths({"case": wildcards.case, **place})]
         return found if several or not found else found[0]
@@ -128,17 +142,17 @@ def read_from(source):
 
 def given(stage, argument):
     """Function of the wildcards giving the files that an argument of a stage is read from."""
-    return read_from(STAGES[stage].upstream[argument])
+    return read_from(STAGES[stage].upstream[argument], stage)
 
 
-def needed(needs):
-    """Function of the wildcards giving values of needs."""
+def needed(needs, reader=None):
+    """Function of the wildcards giving values of the needs of a reader."""
 
     def values(wildcards):
         try:
-            return resolved_needs(needs, case_of(wildcards.case))
+            return resolved_needs(needs, asked_case(reader, wildcards))
         except FacegearError as error:
-            stop(f"{error} of {wildcards.case}")
+            stop(f"{wildcards.case}: {error}")
 
     return values
 

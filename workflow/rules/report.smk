@@ -14,9 +14,6 @@ rule report:
         manifest="results/{case}/report.provenance.json",
     localrule: True
     params:
-        values=sections(
-            *("case", "tooth_pair", "transmission", "mesh", "contact"),
-            *("mesh_stiffness", "dynamics", "studies", "reproduction"),
-        ),
+        values=report_values,
     script:
         "../scripts/report.py"

@@ -7,7 +7,7 @@ for stage in STAGES.values():
         name:
             stage.name
         input:
-            **inputs(stage.upstream),
+            **inputs(stage.upstream, stage),
         output:
             **outputs(stage),
             manifest=f"results/{{case}}/{stage.manifest}",
@@ -18,7 +18,7 @@ for stage in STAGES.values():
         resources:
             **resources(stage.memory_mb, stage.minutes),
         params:
-            needs=needed(stage.needs),
+            needs=needed(stage.needs, stage.name),
         script:
             "../scripts/stage.py"
 
@@ -29,7 +29,7 @@ for stage in DRAWN:
         name:
             f"{stage.name}{FIGURES}"
         input:
-            **inputs(stage.figures.upstream),
+            **inputs(stage.figures.upstream, stage),
         output:
             **pictures(stage.figures),
             manifest=f"results/{{case}}/figures/{stage.name}{FIGURES}.provenance.json",
@@ -37,6 +37,6 @@ for stage in DRAWN:
         resources:
             **resources(stage.figures.memory_mb),
         params:
-            needs=needed(stage.figures.needs),
+            needs=needed(stage.figures.needs, stage.name),
         script:
             "../scripts/figures.py"

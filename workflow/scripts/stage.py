@@ -1,9 +1,7 @@
 """One stage: what it takes from files, its call, what it gives to files."""
 
 from importlib import import_module
-from pathlib import Path
 
-from facegear.pipeline.run import call, read_all, write_stage
 from facegear.provenance.stage import stage
 
 with stage(snakemake) as run:

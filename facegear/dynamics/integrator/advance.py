@@ -17,8 +17,9 @@ from facegear.dynamics.integrator.lanes import (
     spread,
     store,
 )
+from facegear.dynamics.integrator.parting import correct_parting, find_parting, parting_time
 from facegear.dynamics.integrator.rings import ring_row
-from facegear.dynamics.integrator.roots import first_root, refine_root
+from facegear.dynamics.integrator.roots import first_root, refine_root, root_after
 from facegear.dynamics.integrator.taylor import deflect, evaluate, recurrence, step_length
 from facegear.dynamics.integrator.work import Work
 
@@ -58,9 +59,14 @@ def advance(
         deflect(packed, work.y, row, work.error, work.deflection)
         ring_row(packed.rings, work.rings, work, row)
     _find_state(packed, work)
+    if packed.push_only:
+        find_parting(packed, work)
     for _ in range(MOST_GUESSES):
         recurrence(packed, work, work.order, work.error, work.load, work.y, work.deflection, False)
-        if not _correct_state(packed, work):
+        changed = _correct_state(packed, work)
+        if packed.push_only:
+            changed = correct_parting(packed, work, SHORTEST) or changed
+        if not changed:
             break
     longest = stop - s
     length = step_length(packed, work, tolerance)
@@ -75,6 +81,7 @@ def advance(
 def set_state(packed: Packed, work: Work, m: int, state: int) -> None:
     """Give mesh m a contact state and what follows from it; row 0 of its deflection counts from the edge."""
     work.state[m] = state
+    work.side[m] = float(state)
     work.active[m] = 0.0 if state == OPEN else 1.0
     work.acting[m] = 0.0 if state == OPEN and not packed.damping_when_open else packed.mesh_damping[m]
     edge = packed.upper[m] if state == DRIVE else packed.lower[m] if state == BACK else 0.0
@@ -143,6 +150,8 @@ def _until_switch(packed: Packed, work: Work, length: float) -> float:
                 edge = edge if (edge == 1) == (side == 0) else 0
             if work.least[m] <= level <= work.most[m]:
                 first = _crossing(work, m, level, edge != 0, length, first)
+        if packed.push_only and closed and m < packed.contacts:
+            first = min(first, parting_time(packed, work, m, length, SHORTEST))
     return first * length
 
 
@@ -183,7 +192,7 @@ def _crossing(work: Work, m: int, level: float, on_it: bool, length: float, befo
         # A zero of this quotient before SHORTEST was decided by the acceleration already.
         root = first_root(work.polynomial, order - 1, work.conversion_less, work.subdivision)
         if root * length < SHORTEST:
-            root = _beyond(work, order - 1, root)
+            root = root_after(work.polynomial, order - 1, root, work.conversion_less, work.subdivision)
         return min(root, before)
     for i in range(order + 1):
         work.polynomial[i] = work.scaled[i, m]
@@ -206,18 +215,6 @@ def _crossing(work: Work, m: int, level: float, on_it: bool, length: float, befo
         if (value > 0.0) == (work.polynomial[0] > 0.0):
             return before
     return refine_root(work.polynomial, order, 0.0, before, work.polynomial[0], value)
-
-
-@inlined
-def _beyond(work: Work, degree: int, root: float) -> float:
-    """The next zero after a spurious one at the start: divide it out and search again."""
-    carry = work.polynomial[degree]
-    for i in range(degree - 1, -1, -1):
-        value = work.polynomial[i]
-        work.polynomial[i] = carry
-        carry = value + root * carry
-    work.polynomial[degree] = 0.0
-    return first_root(work.polynomial, degree, work.conversion_less, work.subdivision)
 
 
 @inlined

@@ -76,6 +76,7 @@ class Packed(NamedTuple):
     leverage: Array
     fastest: float
     damping_when_open: bool
+    push_only: bool
     pairs: int
     scale: float
     contacts: int
@@ -135,6 +136,7 @@ def _packed(system: System) -> Packed:
         leverage=(transposed**2).sum(axis=1),
         fastest=sum(_fastest(system)),
         damping_when_open=system.damping_when_open,
+        push_only=system.push_only and not system.damping_when_open and bool(system.mesh_damping.any()),
         pairs=system.pairs,
         scale=system.scale,
         contacts=system.contacts,

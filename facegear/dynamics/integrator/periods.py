@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from facegear.dynamics.integrator.advance import advance, after, move
 from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.kernel import inlined, kernel
+from facegear.dynamics.integrator.parting import shearing_damping
 from facegear.dynamics.integrator.rings import ring_slopes, ring_trace
 from facegear.dynamics.integrator.sums import Sums, add_step, make_sums, start_sums
 from facegear.dynamics.integrator.tangents import move_tangents, switch_tangents
@@ -94,7 +95,7 @@ def run_periods(
                 if not first:
                     switch_tangents(packed, work, acting, tangents)
                 for m in range(acting.size):
-                    acting[m] = work.acting[m]
+                    acting[m] = shearing_damping(packed, work, m)
                 for m in range(packed.contacts, packed.m):
                     acting[m] = work.active[m]
                 ring_slopes(packed.rings, work.rings, work.order)

@@ -125,6 +125,18 @@ def _restart(
         work[depth, i] = total
 
 
+@inlined
+def root_after(coefficients: Array, degree: int, root: float, conversion: Array, work: Array) -> float:
+    """The next zero after a spurious one at the start: it is divided out of `coefficients` first."""
+    carry = coefficients[degree]
+    for i in range(degree - 1, -1, -1):
+        value = coefficients[i]
+        coefficients[i] = carry
+        carry = value + root * carry
+    coefficients[degree] = 0.0
+    return first_root(coefficients, degree, conversion, work)
+
+
 @kernel
 def refine_root(
     coefficients: Array, degree: int, low: float, high: float, at_low: float, at_high: float

@@ -22,6 +22,7 @@ from facegear.dynamics.integrator.lanes import (
     magnitude,
     multiply,
     multiply_add,
+    smaller,
     splat,
     spread,
     store,
@@ -40,7 +41,9 @@ class Sums(NamedTuple):
 
     coordinates (B, n) of y and products (B, n, n) of y y^T, of which the upper half is filled, both about
     `origin` (n,); deflections and squares (B, m) about `level` (m,); forces (2, m): elastic mesh force over
-    w^2 and its magnitude. lowest, highest (m,): extremes of the deflections. Of meshes with two flanks the
+    w^2 and its magnitude. lowest, highest (m,): extremes of the deflections. pull (m,): the smallest force of
+    spring and damper of a contact over w^2, negative where flanks are pulled together, zero where they never
+    are, at the ends and inner nodes of the steps. Of meshes with two flanks the
     first `pairs` columns hold half the difference of the deflections of the two from their edges, and the
     difference of their forces.
     """
@@ -54,6 +57,7 @@ class Sums(NamedTuple):
     forces: Array
     lowest: Array
     highest: Array
+    pull: Array
 
 
 def make_sums(packed: Packed, batches: int) -> Sums:
@@ -78,6 +82,7 @@ def _sums(m: int, n: int, batches: int) -> Sums:
         forces=aligned(2, m),
         lowest=np.full(m, np.inf),
         highest=np.full(m, -np.inf),
+        pull=aligned(m),
     )
 
 
@@ -100,6 +105,8 @@ def add_step(packed: Packed, work: Work, length: float, sums: Sums, batch: int) 
         values(work.y, work.order, ahead, work.sample)
         _add_coordinates(packed, work.sample, weight, sums, batch)
         _add_meshes(packed, work, ahead, weight, sums, batch)
+    # Flanks are pulled most where they part, at the end of a step.
+    _add_meshes(packed, work, length, 0.0, sums, batch)
     if packed.pairs > 0:
         _pair_extremes(packed, work, length, sums)
         return
@@ -162,12 +169,16 @@ def _add_meshes(packed: Packed, work: Work, ahead: float, weight: float, sums: S
     step, heavy, minus = splat(ahead), splat(weight), splat(-1.0)
     value, force = work.scaled[0], work.force
     for c in range(0, wide, LANES):
-        deflection, stiffness = splat(0.0), splat(0.0)
+        deflection, rate, stiffness = splat(0.0), splat(0.0), splat(0.0)
         for i in range(work.order, -1, -1):
+            rate = multiply_add(rate, step, deflection)
             deflection = multiply_add(deflection, step, load(work.deflection, i * wide + c))
             stiffness = multiply_add(stiffness, step, load(work.stiffness, i * wide + c))
         store(value, c, add(deflection, load(work.edge, c)))
-        store(force, c, multiply(multiply(load(work.active, c), stiffness), deflection))
+        side, elastic = load(work.side, c), multiply(stiffness, deflection)
+        store(force, c, multiply(magnitude(side), elastic))
+        push = multiply_add(load(work.acting, c), rate, multiply(load(work.active, c), elastic))
+        store(sums.pull, c, smaller(load(sums.pull, c), multiply(side, push)))
     for m in range(packed.pairs):
         value[m] = _between(packed, value, value, m)
         force[m] -= force[m + packed.pairs]

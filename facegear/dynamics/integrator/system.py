@@ -38,7 +38,8 @@ class System:
     mesh_jacobian (m, n); omega_squared, damping (n,); mesh_damping, lower, upper (m,); stiffness and error
     of the kinds of mesh that differ in phase, stiffness_kind and error_kind (m,) say which; load
     (n, 2, harmonics + 1). A mesh with lower >= upper never opens. `scale`: the length that tolerances mean.
-    `two_flanks`: the m are one-sided flanks, all drive flanks, then the back flanks of the same meshes. The
+    `two_flanks`: the m are one-sided flanks, all drive flanks, then the back flanks of the same meshes.
+    `push_only`: spring and damper of a contact together never pull, F >= 0, damping acts in contact only. The
     last 3 R of the m rows belong to the rings: x, y of the body, and a row of zeros. ring_stiffness and
     ring_play (R,); ring_lag: damping over stiffness of the rings, s.
     """
@@ -57,6 +58,7 @@ class System:
     damping_when_open: bool
     scale: float
     two_flanks: bool = False
+    push_only: bool = False
     ring_stiffness: Array = field(default_factory=lambda: np.zeros(0))
     ring_play: Array = field(default_factory=lambda: np.zeros(0))
     ring_lag: float = 0.0
@@ -91,6 +93,7 @@ def machine_system(machine: Machine, reduced: Reduced) -> System:
         mesh_jacobian=reduced.mesh_jacobian,
         omega_squared=reduced.omega_squared,
         damping=reduced.damping,
+        push_only=machine.damping.open_flanks is OpenFlanks.PUSH_ONLY,
         mesh_damping=np.full(meshes, machine.damping.mesh),
         lower=np.full(meshes, -machine.half_backlash),
         upper=np.full(meshes, machine.half_backlash),
@@ -134,6 +137,7 @@ def _flank_system(machine: Machine, reduced: Reduced) -> System:
         damping_when_open=always,
         scale=length_scale(machine),
         two_flanks=True,
+        push_only=machine.damping.open_flanks is OpenFlanks.PUSH_ONLY,
         ring_stiffness=np.array([machine.layout.pinions[i].body.bearing[0] for i in rings]),
         ring_play=play[rings],
         ring_lag=machine.damping.bearing,

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from facegear.dynamics.integrator.compiled import Packed, Sparse
 from facegear.dynamics.integrator.kernel import inlined
 from facegear.dynamics.integrator.lanes import LANES, load, multiply, multiply_add, splat, spread, store, take
+from facegear.dynamics.integrator.parting import shearing_damping
 from facegear.dynamics.integrator.rings import ring_switches
 from facegear.dynamics.integrator.taylor import deflect, evaluate, recurrence
 from facegear.dynamics.integrator.work import ABREAST, Work
@@ -22,12 +23,13 @@ Array = NDArray[np.float64]
 def switch_tangents(packed: Packed, work: Work, acting: Array, tangents: Array) -> None:
     """Saltation: where the mesh damping starts or stops the velocity part shears by G^T (c- - c+) G.
 
-    Stiffness alone gives none, since the force is continuous at the edge.
+    Stiffness alone gives none, since the force is continuous at the edge. Neither do flanks that part where
+    a contact only pushes: their force was zero before.
     """
     ring_switches(packed.rings, packed, work, acting, tangents)
     for m in range(packed.contacts):
-        jump = acting[m] - work.acting[m]
-        if jump == 0.0:
+        jump = acting[m] - shearing_damping(packed, work, m)
+        if jump == 0.0 or (packed.push_only and jump > 0.0):
             continue
         for column in range(tangents.shape[0]):
             along = 0.0

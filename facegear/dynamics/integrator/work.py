@@ -39,7 +39,9 @@ class RingSeries(NamedTuple):
 class Work(NamedTuple):
     """Scratch space for one thread and one order p: coefficient tables have one row for each power of s.
 
-    edge, active, acting, state, at_edge describe the contact of each mesh during the step. powers (rows,
+    edge, active, acting, state, side, at_edge, at_parting describe the contact of each mesh during the step:
+    side is the state as a number for vectors, active and acting are zero where a contact that may only push
+    transmits nothing, at_parting says where its force is zero at the start of the step. powers (rows,
     harmonics) holds the Taylor coefficients of cos(j s) (even rows) and sin(j s) (odd rows) at 0; parts and
     kinds are used by Fourier series. bernstein holds the deflections' Bernstein coefficients over the step,
     least and most their bounds. block, block_deflection (rows, coordinates or meshes times ABREAST) and
@@ -59,6 +61,8 @@ class Work(NamedTuple):
     acting: Array
     state: NDArray[np.int64]
     at_edge: NDArray[np.int64]
+    side: Array
+    at_parting: NDArray[np.int64]
     powers: Array
     parts: Array
     kinds: Array
@@ -102,6 +106,8 @@ def make_work(packed: Packed, order: int) -> Work:
         acting=aligned(m),
         state=np.zeros(m, dtype=np.int64),
         at_edge=np.zeros(m, dtype=np.int64),
+        side=aligned(m),
+        at_parting=np.zeros(m, dtype=np.int64),
         powers=_powers(harmonics, rows),
         parts=aligned(2, harmonics, LANES),
         kinds=aligned(rows * widest),

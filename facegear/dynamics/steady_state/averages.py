@@ -37,8 +37,9 @@ class Averages:
     """Time averages over B batches of a window; M meshes, n coordinates.
 
     deflection (B, M) mean, m, and square (B, M) mean square about `level` (M,); lowest, highest (M,); force
-    (2, M): mean and mean magnitude of the elastic mesh force, in N in a response, over the squared mesh
-    frequency as the kernels count it; centre (B, n) and products (B, n, n): means of y and y y^T about
+    (2, M): mean and mean magnitude of the elastic mesh force, pull (M,): largest force by which the damper of
+    a contact pulls its flanks together, in N in a response, over the squared mesh frequency as the kernels
+    count it; centre (B, n) and products (B, n, n): means of y and y y^T about
     `origin` (n,). weight (B,): of a batch, its periods.
     """
 
@@ -49,6 +50,7 @@ class Averages:
     lowest: Array
     highest: Array
     force: Array
+    pull: Array
     origin: Array
     centre: Array
     products: Array
@@ -107,6 +109,7 @@ def averages(packed: Packed, sums: Sums, periods: int) -> Averages:
         lowest=sums.lowest[:m],
         highest=sums.highest[:m],
         force=sums.forces[:, :m] / (TAU * periods),
+        pull=-sums.pull[: packed.contacts].reshape(-1, m).min(axis=0),
         origin=sums.origin[:n],
         centre=sums.coordinates[:, :n] / phase,
         products=products / phase[:, None],

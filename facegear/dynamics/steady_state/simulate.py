@@ -182,7 +182,11 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
         per_period=window.per_period,
         deflections=deflections,
         coordinates=window.samples,
-        averages=replace(window.averages, force=window.averages.force * frequency**2),
+        averages=replace(
+            window.averages,
+            force=window.averages.force * frequency**2,
+            pull=window.averages.pull * frequency**2,
+        ),
         shares=mesh_shares(system, window.shares),
         multipliers=orbit.multipliers if orbit else None,
         liouville=orbit.liouville if orbit else None,

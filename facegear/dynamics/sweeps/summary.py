@@ -8,9 +8,12 @@ import numpy as np
 from facegear.dynamics.steady_state.simulate import SteadyState
 from facegear.dynamics.sweeps.whole_sweep import Direction
 
+PULLS = 1e-3
+"""Pull of a damper, over the largest elastic mesh force, that is worth a word."""
+
 
 def response_summary(response: SteadyState) -> str:
-    """Class of motion with the evidence for it, and the largest share of time out of contact."""
+    """Class of motion with the evidence for it, largest share of time out of contact, pull of the dampers."""
     parts = [response.label, f"change over the period {response.residual:.1e} of the length scale"]
     if response.multipliers is not None:
         parts.append(f"leading multiplier {abs(response.multipliers[0]):.4f}")
@@ -21,6 +24,9 @@ def response_summary(response: SteadyState) -> str:
             f"largest exponent {response.exponent[0]:.3f} +- {response.exponent[1]:.3f} a mesh period"
         )
     parts.append(f"open for up to {100.0 * response.shares[0].max():.0f} % of the time")
+    pull = float(response.averages.pull.max())
+    if pull > PULLS * np.abs(response.forces).max():
+        parts.append(f"mesh dampers pull by up to {pull:.0f} N before flanks part")
     return ", ".join(parts)
 
 

@@ -25,12 +25,13 @@ class Piece:
 
     motion (P,): class of motion, period (P,) its mesh periods where it is periodic, else 0. deflection_*
     (P, M): moments of the mesh deflections, m. mean_force, mean_force_magnitude (P, M) of the elastic mesh
-    forces, N; largest_force (P, M): largest magnitude of their samples. open_share, drive_share, back_share
-    (P, M) of the time. translation_* (P, B, 3): moments of x, y, z, m. residual, periods_run (P,);
-    leading_multiplier, exponent_per_period, exponent_interval (P,): NaN where there is none. spectrum (P, M,
-    orders), m. modal (P, modes): RMS velocity scale omega * coordinate of every natural mode without mean,
-    sqrt(J). modal_order (P,): where in multiples of the mesh frequency the strongest mode moves most.
-    displacement, velocity (P, n).
+    forces, without the damper's part, N; largest_force (P, M): largest magnitude of their samples.
+    largest_pull (P, M): largest force by which the damper of a contact pulls its flanks together, N.
+    open_share, drive_share, back_share (P, M) of the time. translation_* (P, B, 3): moments of x, y, z, m.
+    residual, periods_run (P,); leading_multiplier, exponent_per_period, exponent_interval (P,): NaN where
+    there is none. spectrum (P, M, orders), m. modal (P, modes): RMS velocity scale omega * coordinate of
+    every natural mode without mean, sqrt(J). modal_order (P,): where in multiples of the mesh frequency the
+    strongest mode moves most. displacement, velocity (P, n).
     """
 
     speeds: Array
@@ -46,6 +47,7 @@ class Piece:
     mean_force: Array
     mean_force_magnitude: Array
     largest_force: Array
+    largest_pull: Array
     open_share: Array
     drive_share: Array
     back_share: Array
@@ -155,6 +157,7 @@ def _row(
         **{f"deflection_{name}": getattr(meshes, name) for name in DEFLECTION},
         **dict(zip(("mean_force", "mean_force_magnitude"), response.mean_forces, strict=True)),
         "largest_force": np.abs(response.forces).max(axis=0),
+        "largest_pull": response.averages.pull,
         **dict(zip(("open_share", "drive_share", "back_share"), response.shares, strict=True)),
         **dict(zip((f"translation_{name}" for name in TRANSLATION), moved, strict=True)),
         "residual": response.residual,

@@ -15,9 +15,10 @@ from facegear.transmission.modes import Modes
 UM = 1e6
 PER_MESH = {
     **{f"deflection_{name}_um": (UM, f"deflection_{name}") for name in DEFLECTION},
-    "mean_force_n": (1.0, "mean_force"),
-    "mean_force_magnitude_n": (1.0, "mean_force_magnitude"),
-    "largest_force_n": (1.0, "largest_force"),
+    "mean_elastic_force_n": (1.0, "mean_force"),
+    "mean_elastic_force_magnitude_n": (1.0, "mean_force_magnitude"),
+    "largest_elastic_force_n": (1.0, "largest_force"),
+    "largest_pull_n": (1.0, "largest_pull"),
     **{name: (1.0, name) for name in ("open_share", "drive_share", "back_share")},
 }
 """Quantity of the table: factor to its unit, and field of a Piece."""

@@ -39,13 +39,13 @@ GOOD = {"case": "a", "bearing": {"stiffness_n_per_m": 1}}
         ({"bearing": {}}, "bearing.stiffness_n_per_m = (missing): this key is required"),
         (
             {"bearing": {"stiffness_n_per_m": -1}},
-            "bearing.stiffness_n_per_m = -1: should be greater than",
+            "bearing.stiffness_n_per_m = -1: must be greater than",
         ),
         (
             {"bearing": {"stiffness_n_per_m": True}},
-            "stiffness_n_per_m = true: should be a valid number",
+            "stiffness_n_per_m = true: must be a valid number",
         ),
-        ({"bearing": {"stiffness_n_per_m": float("nan")}}, "should be a finite number"),
+        ({"bearing": {"stiffness_n_per_m": float("nan")}}, "must be a finite number"),
         ({"pinions": [GOOD["bearing"], {"stiffness_n_per_m": 1, "teeth": 2.5}]}, "pinions[1].teeth = 2.5"),
         ({"inner_mm": 3}, "outer_mm = 2.0: must be greater than inner_mm = 3.0"),
         ({"case": None}, "case = null"),

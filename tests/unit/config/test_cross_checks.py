@@ -52,19 +52,19 @@ STUDY = {
     [
         (
             {"mesh_stiffness__torque_n_m": 2000.0},
-            "mesh_stiffness.torque_n_m = 2000.0: within contact.torques",
+            "mesh_stiffness.torque_n_m = 2000.0: must be within contact.torques",
         ),
-        ({"dynamics__speed_rpm": 1e-9}, "dynamics.speed_rpm = 1e-09: should be greater than or equal to 1"),
-        ({"load_sharing__quasi_static_rpm": 1e-9}, "quasi_static_rpm = 1e-09: should be greater"),
-        ({"dynamics__sweep__from_rpm": 1e-9}, "sweep.from_rpm = 1e-09: should be greater"),
-        ({"load_sharing__speed_range__from_rpm": 1e-9}, "from_rpm = 1e-09: should be greater"),
-        ({"transmission__pinions__1__angle_pitches": 1e18}, "angle_pitches = 1e+18: should be less than"),
+        ({"dynamics__speed_rpm": 1e-9}, "dynamics.speed_rpm = 1e-09: must be greater than or equal to 1"),
+        ({"load_sharing__quasi_static_rpm": 1e-9}, "quasi_static_rpm = 1e-09: must be greater"),
+        ({"dynamics__sweep__from_rpm": 1e-9}, "sweep.from_rpm = 1e-09: must be greater"),
+        ({"load_sharing__speed_range__from_rpm": 1e-9}, "from_rpm = 1e-09: must be greater"),
+        ({"transmission__pinions__1__angle_pitches": 1e18}, "angle_pitches = 1e+18: must be less than"),
         ({"transmission__pinions__1__angle_pitches": 150.0}, "within a turn, -143 to 143"),
         ({"transmission__pinions__1__angle_pitches": 143.0}, "0 deg apart, at least"),
         ({"transmission__pinions__1__angle_pitches": 3.0}, "their bodies would overlap"),
         ({"transmission__torque__per_input_n_m": 0.0}, "nothing would be loaded"),
         ({f"transmission__pinions__{i}__torque_n_m": 0.0 for i in (0, 2, 3)}, "not 0 at every input"),
-        ({"studies": [STUDY, STUDY]}, 'studies[1].name = "one": a name of its own for each study'),
+        ({"studies": [STUDY, STUDY]}, 'studies[1].name = "one": must be a name of its own for each study'),
         ({"studies": [{**STUDY, "name": "summary"}]}, 'studies[0].name = "summary"'),
         (
             {"studies": [{**STUDY, "figures": [13, 14]}, {**STUDY, "name": "two", "figures": [14, 15]}]},
@@ -101,7 +101,8 @@ def test_a_mesh_that_cannot_fit_into_memory_is_refused_with_an_estimate(profile)
 def test_the_estimate_of_memory_agrees_with_what_was_measured_within_a_fifth(resolution, cuts, measured_gb):
     """The measured ones are those of docs/contact.md, the paper's pair."""
     refinement = dict(zip(("profile", "width", "depth"), cuts, strict=True))
-    config = parse(Config, changed(QUICK, mesh__resolution=resolution, contact__refinement=refinement))
+    values = changed(QUICK, mesh__resolution=resolution, contact__refinement=refinement)
+    config = parse(Config, changed(values, contact__torques_n_m=[600, 1000]))
     design = pair_design(config.tooth_pair)
     sizes = mesh_sizes(config.mesh, design.module)
     estimate = estimated_memory(design, sizes, contact_plan(config.contact))
@@ -111,13 +112,13 @@ def test_the_estimate_of_memory_agrees_with_what_was_measured_within_a_fifth(res
 def test_points_of_all_studies_are_counted_before_they_are_made():
     axis = {"label": "2b", "key": "transmission.backlash_um", "values": [float(i) for i in range(1, 1501)]}
     line = told(changed(QUICK, studies=[{**STUDY, "axes": [axis]}]))
-    assert line.startswith('studies = "1500 points": at most 200 in all')
+    assert line.startswith('studies = "1500 points": must be at most 200 in all')
 
 
 def test_a_misaligned_pair_without_backlash_is_refused_with_the_amount_by_which_it_jams():
     values = changed(TWO, tooth_pair__pinion__thinning_um=0.0, tooth_pair__assembly__axial_shift_um=-50.0)
     line = told(values)
-    assert "tooth_pair.pinion.thinning_um = 0.0: at least " in line
+    assert "tooth_pair.pinion.thinning_um = 0.0: must be at least " in line
     assert "the pair jams by " in line
     least = float(line.split("at least ")[1].split(":")[0])
     assert parse(Config, changed(values, tooth_pair__pinion__thinning_um=least + 0.1))
@@ -160,11 +161,11 @@ def test_what_needs_a_transmission_says_so(key):
         "case": "teeth",
         "tooth_pair": QUICK["tooth_pair"],
         "studies": [STUDY],
-        "reproduction": "a.yaml",
+        "reproduction": str(ROOT / "config" / "reproduction" / "paper.yaml"),
     }
     other = {"studies": "reproduction", "reproduction": "studies"}[key]
     del values[other]
-    assert told(values) == f"transmission = null: required by {key}"
+    assert told(values) == f"transmission = null: must be given, as required by {key}"
 
 
 def test_a_csv_named_by_a_study_counts_from_the_folder_of_the_config(tmp_path, monkeypatch):

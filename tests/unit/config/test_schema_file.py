@@ -49,7 +49,7 @@ def test_bodies_are_optional_only_where_harmonics_are_given():
     values = load_config(ROOT / "config" / "harmonics_only.yaml").model_dump(mode="json")
     assert values["tooth_pair"]["pinion"] is None
     values["mesh_stiffness"] |= {"source": "fem", "torque_n_m": 400.0, "table": []}
-    with pytest.raises(ConfigErrors, match=r"tooth_pair\.pinion = null: required"):
+    with pytest.raises(ConfigErrors, match=r"tooth_pair\.pinion = null: must be given"):
         parse(Config, values)
 
 

@@ -54,9 +54,9 @@ def test_a_dumped_section_no_longer_needs_its_csv(tmp_path):
 @pytest.mark.parametrize(
     ("text", "changes", "line"),
     [
-        (HEADER + "1,2e7,0\n", {}, "mean_n_per_m = null: required, as the harmonics have no order 0"),
+        (HEADER + "1,2e7,0\n", {}, "mean_n_per_m = null: must be given, as the harmonics have no order 0"),
         (HEADER + "0,0,4e8\n", {"mean_n_per_m": 4.1e8}, "the same as order 0 of the harmonics, 400000000"),
-        (HEADER + "0,1,4e8\n", {}, "order 0 has a_n_per_m = 0"),
+        (HEADER + "0,1,4e8\n", {}, "must be 0 for a_n_per_m of order 0"),
         (HEADER + "0,0,4e8\n1,5e8,0\n", {}, "k(t) falls to -1"),
         (HEADER + "0,0,4e8\n1,soft,0\n", {}, "line 3: a_n_per_m = 'soft' is not a finite number"),
         (HEADER + "0,0,4e8\n1,,0\n", {}, "line 3: a_n_per_m = '' is not"),
@@ -72,7 +72,7 @@ def test_a_dumped_section_no_longer_needs_its_csv(tmp_path):
         ("order;a_n_per_m;b_n_per_m\n0;0;4e8\n", {}, "separated by commas; it has order;a_n_per_m"),
         ("order,a_n_per_m\n0,0\n", {}, "column b_n_per_m must stand once"),
         (HEADER.encode() + b"0,0,4e8\n# \xfc\n", {}, "line 3: byte 0xfc is not UTF-8"),
-        (HEADER + "0,0,4e8\n", {"source": "fem"}, "only with source harmonics"),
+        (HEADER + "0,0,4e8\n", {"source": "fem"}, "left out unless source is harmonics"),
         (HEADER + "0,0,4e8\n", {"table": [{"order": 0, "b_n_per_m": 4e8}]}, "either csv or table, not both"),
     ],
 )
@@ -94,7 +94,7 @@ def test_a_missing_csv_and_a_directory_are_told(tmp_path):
 
 def test_orders_of_a_table_rise():
     rows = [{"order": 0, "b_n_per_m": 4e8}, {"order": 2}, {"order": 2}]
-    with pytest.raises(ConfigErrors, match=r"table\[2\].order = 2: orders rise, each once"):
+    with pytest.raises(ConfigErrors, match=r"table\[2\].order = 2: must be above the order before it"):
         parse(MeshStiffness, {"source": "harmonics", "table": rows})
 
 

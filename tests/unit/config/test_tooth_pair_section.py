@@ -43,7 +43,7 @@ def test_a_body_may_have_its_own_material(section):
 @pytest.mark.parametrize(
     ("part", "key", "value", "line"),
     [
-        ("face_gear", "inner_radius_mm", 240.0, "face_gear.inner_radius_mm = 240.0: between 245.800"),
+        ("face_gear", "inner_radius_mm", 240.0, "face_gear.inner_radius_mm = 240.0: must be between 245.800"),
         (
             "face_gear",
             "outer_radius_mm",
@@ -51,12 +51,17 @@ def test_a_body_may_have_its_own_material(section):
             "and 293.208 (the shaper's tip leaves no fillet further out; a larger shaper.tip_rounding_",
         ),
         ("face_gear", "iner_radius_mm", 250.0, "did you mean 'inner_radius_mm'?"),
-        ("pinion", "rack_tip_radius_modules", 0.5, "pinion.rack_tip_radius_modules = 0.5: at most"),
-        ("pinion", "width_mm", -1.0, "pinion.width_mm = -1.0: should be greater than 0"),
-        ("shaper", "teeth", 30, "shaper.teeth = 30: from 23 (line contact) to 26"),
-        ("pinion", "width_mm", 1.0, "pinion.width_mm = 1.0: at least 12.500, half the gear's face"),
-        ("pinion", "width_mm", 600.0, "pinion.width_mm = 600.0: less than 525.000"),
-        ("pinion", "tip_relief", {"amount_um": 400, "length_mm": 2}, "amount_um = 400.0: at most 187.5"),
+        ("pinion", "rack_tip_radius_modules", 0.5, "pinion.rack_tip_radius_modules = 0.5: must be"),
+        ("pinion", "width_mm", -1.0, "pinion.width_mm = -1.0: must be greater than 0"),
+        ("shaper", "teeth", 30, "shaper.teeth = 30: must be from 23 (line contact) to 26"),
+        ("pinion", "width_mm", 1.0, "pinion.width_mm = 1.0: must be at least 12.500, half the gear's face"),
+        ("pinion", "width_mm", 600.0, "pinion.width_mm = 600.0: must be less than 525.000"),
+        (
+            "pinion",
+            "tip_relief",
+            {"amount_um": 400, "length_mm": 2},
+            "um = 400.0: must be at most 187.5",
+        ),
     ],
 )
 def test_a_wrong_value_is_one_line_with_key_and_what_is_allowed(section, part, key, value, line):
@@ -72,11 +77,11 @@ def test_mesh_sizes_by_level_and_by_number():
     own = {"profile_mm": 0.3, "width_mm": 1.5, "thickness_mm": 2.0}
     sizes = mesh_sizes(parse(Mesh, {"resolution": own}), 4e-3)
     assert (sizes.profile, sizes.width, sizes.thickness) == pytest.approx((3e-4, 1.5e-3, 2e-3))
-    with pytest.raises(ConfigErrors, match="should be 'coarse', 'medium', 'fine' or 'finest'"):
+    with pytest.raises(ConfigErrors, match="must be 'coarse', 'medium', 'fine' or 'finest'"):
         parse(Mesh, {"resolution": "superb"})
 
 
 def test_the_gear_has_more_teeth_than_the_pinion(section):
     section |= {"pinion_teeth": 150, "pinion": None, "face_gear": None, "shaper": None}
-    with pytest.raises(ConfigErrors, match="face_gear_teeth = 143: more than the pinion's 150"):
+    with pytest.raises(ConfigErrors, match="face_gear_teeth = 143: must be more than the pinion's 150"):
         parse(ToothPair, section)

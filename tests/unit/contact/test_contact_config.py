@@ -2,6 +2,8 @@ from dataclasses import replace
 from math import radians
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
@@ -50,8 +52,31 @@ def test_strip_widens_with_the_root_of_the_load():
 
 def test_mesh_that_cannot_see_the_strip_is_refused_with_the_size_that_can():
     check_resolution(DESIGN, (STEEL, STEEL), named_sizes("coarse", M), plan())
-    with pytest.raises(ConfigError, match="at most"):
+    with pytest.raises(ConfigError, match="must be at most"):
         check_resolution(DESIGN, (STEEL, STEEL), MeshSizes(6e-3, 6e-3, 6e-3), plan(cuts=Refinement()))
+
+
+def accepted(*torques):
+    try:
+        sizes = MeshSizes(1.5e-3, 6e-3, 4e-3)
+        check_resolution(DESIGN, (STEEL, STEEL), sizes, replace(plan(), torques=torques))
+    except ConfigError:
+        return False
+    return True
+
+
+@given(torques=st.lists(st.floats(20.0, 2000.0), min_size=1, max_size=5, unique=True))
+def test_a_torque_is_resolved_or_refused_whatever_others_stand_beside_it(torques):
+    """A torque was refused alone and passed beside a larger one."""
+    assert accepted(*sorted(torques)) == all(accepted(torque) for torque in torques)
+
+
+def test_a_torque_that_is_too_small_for_the_mesh_is_named_with_the_smallest_that_is_not():
+    with pytest.raises(ConfigError, match=r"at 40 N m.* or contact\.torques_n_m at least ") as refused:
+        sizes = MeshSizes(1.5e-3, 6e-3, 4e-3)
+        check_resolution(DESIGN, (STEEL, STEEL), sizes, replace(plan(), torques=(40.0, 1000.0)))
+    enough = float(refused.value.allowed.split("at least ")[1])
+    assert not accepted(0.99 * enough) and accepted(1.01 * enough)
 
 
 def test_mesh_too_coarse_for_the_sharpest_fillet_is_refused_where_its_stress_is_asked_for():

@@ -12,6 +12,10 @@ from facegear.contact.teeth import elastic_tooth
 from facegear.geometry.design import Assembly, Relief
 from facegear.mesh.sizes import MeshSizes
 from facegear.pipeline.needs import shared_sources, stage_needs
+from facegear.results.store import Store
+from facegear.stages import compliance as compliance_stage
+from facegear.stages import contact as contact_stage
+from facegear.stages.outcome import Outcome
 
 RELIEF = {"amount_um": 10, "start_mm": 0, "length_mm": 1}
 GAPS = {
@@ -49,6 +53,23 @@ def test_what_is_left_out_for_the_compliance_stays_in_the_needs_of_the_contact()
     needs = {rule: stage_needs(rule, changed.values)["tooth_pair"] for rule in ("compliance", "contact")}
     assert "assembly" not in needs["compliance"] and "tip_relief" not in needs["compliance"]["pinion"]
     assert needs["contact"]["assembly"]["offset_um"] == 20
+
+
+def test_another_torque_or_position_factorises_no_body_again(monkeypatch):
+    """Both bodies were factorised again for every list of torques."""
+    made = []
+    monkeypatch.setattr(
+        compliance_stage, "compliance", lambda body, **_: made.append(body) or Outcome({"arrays": {}}, "")
+    )
+    monkeypatch.setattr(contact_stage, "contact", lambda *_, **given: Outcome(given["contact"], ""))
+    machine = replace(facegear.example(), store=Store()).with_values({"strength": None})
+    first = machine.contact(torques=[1000], positions=4)
+    assert sorted(made) == ["face_gear", "pinion"]
+    assert machine.contact(torques=[700, 900], positions=5).content != first.content
+    machine.with_values({"contact.edge_contact": False}).contact()
+    assert len(made) == 2
+    machine.with_values({"contact.refinement.depth": 2}).contact()
+    assert len(made) == 4
 
 
 def wide():

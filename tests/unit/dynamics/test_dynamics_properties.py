@@ -95,6 +95,12 @@ def acting_damping(system, state):
     return system.mesh_damping[: system.contacts] * (1.0 if system.damping_when_open else np.abs(state))
 
 
+def contact_forces(system, stiffness, beyond, rate, state):
+    """Spring and damper of each contact together, cut at zero where it only pushes."""
+    force = stiffness * beyond + acting_damping(system, state) * rate
+    return np.where(system.push_only & (force * state < 0.0), 0.0, force)
+
+
 def rings(model, coordinates):
     """x, y (K, R, 2) of the pinions whose bearings have play, and the bearing's force there."""
     system = model.system
@@ -266,11 +272,12 @@ def test_energy_audit_over_a_period(machine, speed):
     slope = np.stack([derivative(series, cycles, omega) for series in springs], axis=1)
     error_rate = np.stack([derivative(series, cycles, omega) for series in errors], axis=1)
     state = run.states[step][:, flanks]
-    beyond, acting = pressed(system, deflection, state), acting_damping(system, state)
-    force = stiffness * beyond + acting * rate
+    beyond = pressed(system, deflection, state)
+    force = contact_forces(system, stiffness, beyond, rate, state)
+    damper = force - stiffness * beyond
     place = np.einsum("kp,kpn->kn", powers, run.coordinates[step])
     # d/dt of kinetic + bearing + mesh energy: torques in, damping out, k'(t) stores, e'(t) pushes.
-    power = velocity @ model.reduced.load - velocity**2 @ system.damping - (acting * rate**2).sum(axis=1)
+    power = velocity @ model.reduced.load - velocity**2 @ system.damping - (damper * rate).sum(axis=1)
     power -= ring_dissipation(model, place, velocity)
     power += (0.5 * slope * beyond**2).sum(axis=1) - (force * error_rate).sum(axis=1)
 
@@ -333,9 +340,9 @@ def mesh_forces(model: Model, run: Trajectory, omega: float) -> tuple[np.ndarray
     deflection = np.einsum("kp,kpm->km", ahead**order, run.deflections[step][..., flanks])
     slope = np.einsum("kp,kpm->km", order[1:] * ahead ** order[:-1], run.deflections[step][:, 1:, flanks])
     state = run.states[step][:, flanks]
-    beyond, acting = pressed(system, deflection, state), acting_damping(system, state)
+    beyond = pressed(system, deflection, state)
     stiffness = np.stack([series(phases / TAU) for series in contacts(machine)[0]], axis=1)
-    return stiffness * beyond + acting * omega * slope, weights / omega
+    return contact_forces(system, stiffness, beyond, omega * slope, state), weights / omega
 
 
 @pytest.mark.parametrize("kinematics", MeshKinematics)

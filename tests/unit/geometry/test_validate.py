@@ -12,8 +12,9 @@ from facegear.errors import GeometryError
 from facegear.geometry.design import FaceGear, PairDesign, Pinion, Relief, Shaper
 from facegear.geometry.limits import face_range, radius_limits
 from facegear.geometry.outline import pinion_outline
+from facegear.geometry.pinion import removed
 from facegear.geometry.unloaded import unloaded_contact
-from facegear.geometry.validate import check
+from facegear.geometry.validate import MOST_RELIEF, check
 from facegear.mesh.quality import scaled_jacobians
 from facegear.mesh.sizes import named_sizes
 from facegear.mesh.tooth import gear_tooth, pinion_tooth
@@ -46,6 +47,7 @@ def changed(design, **changes):
         ({"pinion__tip_chamfer": 3e-3}, "pinion.tip_chamfer_mm"),
         ({"pinion__tip_relief": Relief(1e-5, 0.0, 0.0)}, "pinion.tip_relief.length_mm"),
         ({"pinion__root_relief": Relief(1e-5, 0.01, 0.02)}, "pinion.root_relief.length_mm"),
+        ({"pinion__lead_crowning": Relief(20e-6, 0.0, 1e-3)}, "pinion.lead_crowning.length_mm"),
     ],
 )
 def test_impossible_designs_name_the_key(pair, change, key):
@@ -53,6 +55,26 @@ def test_impossible_designs_name_the_key(pair, change, key):
         check(changed(pair(26), **change))
     assert refused.value.key == key
     assert "\n" not in str(refused.value)
+
+
+@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(amount=st.floats(1e-6, 180e-6), start=st.floats(0.0, 0.014), length=st.floats(1e-4, 0.02))
+def test_an_accepted_crowning_takes_no_more_off_the_ends_of_the_face_than_the_largest_relief(
+    pair, amount, start, length
+):
+    """A length of 1 mm took 3125 um off; what a refusal names is accepted."""
+    design = changed(pair(26), pinion__lead_crowning=Relief(amount, start, length))
+    end = design.mean_radius + design.pinion.width / 2
+    try:
+        check(design)
+    except GeometryError as error:
+        assert error.key == "pinion.lead_crowning.length_mm"
+        least = float(str(error.allowed).split("at least ")[1].split(":")[0])
+        assert least > 1e3 * length
+        design = changed(design, pinion__lead_crowning=Relief(amount, start, 1.001e-3 * least))
+        check(design)
+    taken = removed(design, design.pinion_tip_roll, end)
+    assert taken <= MOST_RELIEF * design.module * (1 + 1e-9)
 
 
 def test_a_gear_outside_its_limits_is_told_both(pair):

@@ -13,7 +13,7 @@ from facegear.load_sharing.hunting import hunting_cycle, hunting_length
 from facegear.load_sharing.hunting_tables import bearing_table, cycle_table, group_table, mesh_table
 from facegear.load_sharing.sensitivity import bearing_scan, sensitivities
 from facegear.transmission.imperfections import Runout, perfect
-from facegear.transmission.layout import MeshKinematics
+from facegear.transmission.layout import MeshKinematics, Role
 
 LAYOUT = make_layout(kinematics=MeshKinematics.GEOMETRIC)
 
@@ -58,11 +58,38 @@ def test_the_hunting_cycle_balances_every_torque_to_rounding():
     np.testing.assert_allclose(net * LAYOUT.pinion_arm, torques, atol=2e-12 * np.abs(torques).max())
 
 
+def unloaded_part(seed):
+    """A random machine between stiff bearings without tail torque, whose gears run out: idlers are free."""
+    random = np.random.default_rng(seed)
+    count = int(random.integers(2, 8))
+    angles = np.sort(random.choice(np.arange(0, 286, 12), count, replace=False)) / 2
+    roles = [Role.INPUT, *(Role.INPUT if random.random() < 0.5 else Role.IDLER for _ in range(count - 1))]
+    places = tuple(
+        (f"p{i}", role, float(angle)) for i, (role, angle) in enumerate(zip(roles, angles, strict=True))
+    )
+    bearings = 10.0 ** random.uniform(8, 11), 10.0 ** random.uniform(9, 12)
+    layout = make_layout(
+        places, pinion_bearing=bearings[0], gear_bearing=bearings[1], kinematics=MeshKinematics.GEOMETRIC
+    )
+    runout = tuple(Runout(random.uniform(5e-6, 4e-5), random.uniform(0.0, 6.28)) for _ in range(2))
+    position = random.normal(0.0, 1e-5, (count, 2)) * (seed % 2)
+    flaws = replace(perfect(layout), gear_runout=runout, position=position)
+    torque, backlash = random.uniform(100.0, 2000.0), random.uniform(5e-5, 2e-4)
+    return make_machine(layout, torque, 0.0, backlash=backlash, error=0.0, imperfections=flaws)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_free_idlers_between_stiff_bearings_come_to_rest_to_rounding_in_every_position(seed):
+    """A flank that closes by less than its place can be told once kept the search where it was."""
+    found = hunting_cycle(unloaded_part(seed), 8).found
+    assert (found.residual <= 2e-13).all()
+
+
 def test_a_pitch_curve_that_is_a_runout_gives_the_runouts_shares():
-    """A gear's teeth displaced by e cos(angle) along the pitch circle are an eccentric gear."""
+    """A gear's teeth displaced by e sin(angle) along the pitch circle are an eccentric gear."""
     eccentric = hunting_cycle(machine_with(gear_runout=(Runout(), Runout(15e-6, 0.0))), 4)
     teeth = np.arange(143)
-    curve = 15e-6 * np.cos(2.0 * np.pi * teeth / 143)
+    curve = 15e-6 * np.sin(2.0 * np.pi * teeth / 143)
     pitched = hunting_cycle(machine_with(gear_pitch={1: curve}), 4)
     whole = slice(None, None, 4)
     np.testing.assert_allclose(

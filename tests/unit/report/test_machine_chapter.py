@@ -5,6 +5,7 @@ import pytest
 
 import facegear
 from facegear.pipeline.needs import stage_needs
+from facegear.report.case import _tables as case_tables
 from facegear.report.contents import caption_of
 from facegear.report.glance import verdicts, warnings
 from facegear.report.machine import key_numbers, machine_chapter
@@ -23,7 +24,7 @@ def test_key_numbers_are_ratio_torque_speed_frequency_and_power(example):
     assert numbers.loc["Gear ratio (gear teeth over pinion teeth)", "value"] == f"{143 / 23:.5g}"
     assert numbers.loc["Mesh frequency", "value"] == "2875"
     torque = float(numbers.loc["Torque of the output gear", "value"])
-    speed = float(numbers.loc["Speed of the output gear", "value"])
+    speed = float(numbers.loc["Speed of the face gears", "value"])
     bodies = example[1]["bodies"].set_index("body")["power_kw"]
     assert torque * speed * 3.14159265 / 30e3 == pytest.approx(-bodies["upper face gear"], rel=1e-4)
 
@@ -106,3 +107,82 @@ def test_the_first_screen_names_k_gamma_of_the_running_machine_beside_that_at_re
     }
     told = dict(verdicts({"following_groups": pd.DataFrame([row])}, None))
     assert told["K_gamma, idlers"].startswith("1.416 at 7500 rpm, 1.268 at rest, over 99 mesh cycles")
+
+
+def test_a_machine_whose_output_is_a_pinion_shows_its_torque_and_ratio(example):
+    """It showed the ratio of teeth, and the torque of the gear that only passes it on: 0."""
+    pinion = {"role": "idler", "angle_deg": 180.0, "name": "wheel", "torque_n_m": -250.0}
+    section = {
+        **example[0]["transmission"],
+        "pinions": [{"role": "input", "angle_deg": 0.0, "name": "engine", "torque_n_m": 250.0}, pinion],
+        "face_gears": ["upper"],
+        "torque": {"per_input_n_m": 0.0, "tail_share": 0.0},
+    }
+    harmonics = pd.DataFrame({"order": [0], "a_n_per_m": [0.0], "b_n_per_m": [4.1e8]})
+    needs = {**stage_needs("ratings", example[0]), "transmission": section}
+    numbers = key_numbers(ratings(harmonics, **needs).content, None).set_index("quantity")["value"]
+    assert numbers["Torque of the output pinions"] == "250"
+    assert numbers["Ratio of speeds, input over output pinion"] == "1"
+    assert not [name for name in numbers.index if "gear ratio" in name.lower() or "output gear" in name]
+
+
+def sweep_table(periodic, **open_shares):
+    """A sweep up and down over speeds, with shares of time out of contact by mesh."""
+    rows = [
+        (direction, 1000.0 * i, "open_share", mesh, share, regular)
+        for direction in ("up", "down")
+        for mesh, shares in open_shares.items()
+        for i, (share, regular) in enumerate(zip(shares, periodic, strict=True))
+    ]
+    columns = ["direction", "speed_rpm", "quantity", "body_or_mesh", "value", "periodic"]
+    return pd.DataFrame(rows, columns=columns)
+
+
+def test_the_first_screen_warns_of_motions_that_are_not_periodic_and_of_meshes_out_of_contact(example):
+    """A report said: warnings none, where half of the speeds were chaotic and a mesh never touched."""
+    values, tables = example
+    meshes = tables["meshes"].assign(flank=["open", *["drive"] * (len(tables["meshes"]) - 1)])
+    sweep = sweep_table([True, False, False], a=[1.0, 1.0, 1.0], b=[0.0, 0.25, 0.0], c=[0.0, 0.0, 0.0])
+    told = list(warnings(values, {**tables, "meshes": meshes, "sweep": sweep}, None))
+    assert ("meshes at rest", f"no load at {meshes['mesh'].iloc[0]}") in told
+    swept = [words for about, words in told if about == "speed sweep"]
+    assert swept[0].startswith("the motion is not periodic at 4 of 6 speeds")
+    assert swept[1:] == [
+        "open at every speed: a",
+        "contact is lost at some speeds, up to 25 % of the time: b",
+    ]
+    quiet = sweep_table([True, True, True], c=[0.0, 0.0, 0.0])
+    left = [about for about, _ in warnings(values, {**tables, "sweep": quiet}, None)]
+    assert left == ["mesh stiffness"], "what the example warns of by itself"
+
+
+def test_the_config_of_a_report_holds_every_section_and_what_the_machine_is_made_of(example):
+    values, tables = example
+    values = facegear.example().with_values({"branches": {"from_rpm": 300}}).values
+    chapter = machine_chapter({**values, "reproduction": False}, tables)
+    keys = chapter.tables[-1].frame.set_index("key")["value"]
+    assert keys["branches.from_rpm"] == 300.0 and keys["load_sharing.starts"] == 2
+    assert keys["strength.duty[0].hours"] == values["strength"]["duty"][0]["hours"]
+    assert keys["strength.pinion.card.name"] in chapter.text
+    sections = {key.split(".")[0].split("[")[0] for key in keys.index}
+    assert sections == {name for name, held in values.items() if held not in (None, [], "")}
+
+
+def test_a_jump_far_from_a_linear_resonance_is_not_given_its_speed():
+    """A jump at 2953 rpm was shown with a resonance at 16 925 rpm."""
+    jumps = pd.DataFrame(
+        {
+            "direction": "up",
+            "speed_before_rpm": [2953.0, 10475.0],
+            "mesh": "a",
+            "class_before": "period-1",
+            "class_after": "period-1",
+            "resonance": ["mode 28 at 1x", "mode 19 at 1x"],
+            "energy_share": 0.5,
+            "resonance_rpm": [16925.0, 12443.0],
+        }
+    )
+    (table,) = case_tables("Nominal response and speed sweeps", {"jumps": jumps}, 7500.0)
+    assert table.header()[-3:] == ["moves most", "energy share", "linear resonance (rpm)"]
+    assert [row[-1] for row in table.rows()] == ["", "12443"]
+    assert not case_tables("Nominal response and speed sweeps", {"jumps": jumps[:0]}, 7500.0)[0].rows()

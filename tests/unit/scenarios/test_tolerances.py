@@ -3,6 +3,7 @@
 import json
 from statistics import NormalDist
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
@@ -10,6 +11,7 @@ import pytest
 import facegear
 from facegear.config.tolerances import Tolerances, chunks
 from facegear.errors import ConfigErrors, FacegearError
+from facegear.io import tables
 from facegear.pipeline.needs import stage_needs
 from facegear.stages.sampled_machine import SampledMachine
 from facegear.stages.tolerances import tolerances
@@ -157,7 +159,7 @@ def test_the_loosest_tolerances_of_a_linear_machine_are_those_of_the_closed_form
     assert found.percentile.value <= limit
     with pytest.raises(FacegearError, match="without any deviation"):
         gearbox.loosest_tolerances(name, 1.0, samples=1)
-    with pytest.raises(FacegearError, match="quantity = 'k': one of"):
+    with pytest.raises(FacegearError, match="quantity = 'k': must be one of"):
         gearbox.loosest_tolerances("k", limit, samples=1)
 
 
@@ -218,3 +220,18 @@ def test_the_nominal_machine_among_the_samples_is_the_one_without_tolerances(mod
     else:
         paths = [row[f"k_gamma right input/{side}"] for side in ("lower", "upper")]
         assert sum(paths) == pytest.approx(2.0, rel=1e-9)  # constant loads: an even share of the mean
+
+
+def test_a_machine_none_of_whose_samples_can_be_built_has_empty_tables_and_figures(tmp_path):
+    """It ended in a TypeError of pandas."""
+    far = cause("far", "transmission.backlash_um", None, shape="uniform", limits=[-900.0, -800.0])
+    found = machine([far], samples=4, chunk_samples=4).tolerances()
+    assert (found.samples()["error"] != "").all()
+    assert found.table().empty and "4 failed" in found.summary
+    shares = found.content["shares"].set_index("what")["share"]
+    assert shares.to_dict() == {"cannot be built or computed": 1.0}
+    for kind in ("distributions", "importance", "scatter"):
+        plt.close(found.plot(kind))
+    found.save(tmp_path)
+    stored = tables.read(tmp_path / "tolerances" / "percentiles.csv", ["value"], allow_empty=True)
+    assert stored.empty

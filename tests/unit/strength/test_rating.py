@@ -262,5 +262,5 @@ def test_a_rating_brings_root_stress_and_counts_the_meshes_of_a_turn():
     assert filled["contact"]["root_stress"]
     assert [filled["strength"][body]["cycles_per_turn"] for body in ("pinion", "face_gear")] == [2, 5]
     values["strength"]["application_factor"] = 2.0
-    with pytest.raises(ConfigErrors, match=r"contact\.torques_n_m = 1000.0: at least 1800"):
+    with pytest.raises(ConfigErrors, match=r"contact\.torques_n_m = 1000.0: must be at least 1800"):
         parse(Config, values)

@@ -225,11 +225,11 @@ def test_the_place_of_a_flank_is_where_its_stiffness_is_that_of_the_reference():
 
 SWEPT = pd.DataFrame(
     [
-        ("up", 1000.0, "largest_force_n", "a/upper", 100.0, "period-1"),
-        ("up", 1000.0, "largest_force_n", "b/upper", 900.0, "period-1"),
-        ("up", 2000.0, "largest_force_n", "a/upper", 2000.0, "chaotic"),
-        ("up", 2000.0, "largest_force_n", "b/upper", 500.0, "chaotic"),
-        ("up", 1000.0, "mean_force_n", "a/upper", 1e9, "period-1"),
+        ("up", 1000.0, "largest_elastic_force_n", "a/upper", 100.0, "period-1"),
+        ("up", 1000.0, "largest_elastic_force_n", "b/upper", 900.0, "period-1"),
+        ("up", 2000.0, "largest_elastic_force_n", "a/upper", 2000.0, "chaotic"),
+        ("up", 2000.0, "largest_elastic_force_n", "b/upper", 500.0, "chaotic"),
+        ("up", 1000.0, "mean_elastic_force_n", "a/upper", 1e9, "period-1"),
     ],
     columns=["direction", "speed_rpm", "quantity", "body_or_mesh", "value", "class"],
 )

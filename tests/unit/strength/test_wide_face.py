@@ -27,12 +27,12 @@ def test_a_sharp_shaper_is_refused_with_the_one_range_its_fillet_allows():
     with pytest.raises(ConfigErrors) as refused:
         load_config(CONFIG, {"tooth_pair": {"shaper": {"tip_rounding_modules": 0.0}}})
     (line,) = refused.value.lines
-    assert "face_gear.outer_radius_mm = 559.0: between 465.173 (undercut) and 552.153 (" in line
+    assert "face_gear.outer_radius_mm = 559.0: must be between 465.173 (undercut) and 552.153 (" in line
     assert "tip_rounding_modules" in line
 
 
 def test_a_rounding_that_leaves_no_tip_land_is_refused():
-    with pytest.raises(ConfigErrors, match=r"shaper.tip_rounding_modules = 0.3: at most 0.1573"):
+    with pytest.raises(ConfigErrors, match=r"shaper.tip_rounding_modules = 0.3: must be at most 0.1573"):
         load_config(CONFIG, {"tooth_pair": {"shaper": {"tip_rounding_modules": 0.3}}})
 
 

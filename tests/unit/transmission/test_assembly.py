@@ -96,7 +96,7 @@ def test_phases_are_those_of_teeth_followed_one_by_one(halves, teeth, start):
     layout = make_layout(places, kinematics=GEOMETRIC)
     layout = replace(layout, pinion_teeth=teeth, gear_radius=layout.pinion_radius * 143 / teeth)
     phases = mesh_phases(layout, PhaseConvention.GEOMETRIC).reshape(2, -1)
-    pitches = np.array([place[2] for place in places])
+    pitches = np.array([place[2] - places[0][2] for place in places])
     lower_gear = phases[0] + pitches
     upper_gear = phases[1] - pitches
     for lag in (lower_gear - lower_gear[0], upper_gear, phases[0] - phases[1] - 0.5 * teeth):

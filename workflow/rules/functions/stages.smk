@@ -11,9 +11,9 @@ MODULES = {stage.name: stage.modules for stage in STAGES.values()} | {
 """Modules that decide the files of a rule, beside its script."""
 
 
-def inputs(upstream):
-    """Files of earlier stages, each from the case whose files are shared."""
-    return {name: read_from(source) for name, source in upstream.items()}
+def inputs(upstream, stage):
+    """Files of earlier stages that a stage, or its figures, take, each from the case whose files are shared."""
+    return {name: read_from(source, stage.name) for name, source in upstream.items()}
 
 
 def outputs(stage):

@@ -18,7 +18,7 @@ REPORTED = {
     "stiffness": ["harmonics"],
     "ratings": ["ratings", "bodies", "meshes"],
     "modal": ["frequencies"],
-    "dynamics_sweep": ["jumps"],
+    "dynamics_sweep": ["jumps", "sweep"],
     "dynamics_response": ["bearings"],
     "load_sharing_summary": ["summary"],
     "following": ["groups"],
@@ -40,6 +40,12 @@ def report_tables(wildcards):
     tables = [shared(name, file)(wildcards) for name in made for file in REPORTED[name]]
     tables += [shared("duty_loads", "duty_loads")(wildcards)] if asked.machine_loads(case) else []
     return tables + (files_of(rules.scorecard, wildcards.case)[:1] if REPRODUCTION else [])
+
+
+def report_values(wildcards):
+    """All plain values of a case; `reproduction` says whether it is the machine of a publication."""
+    case = wildcards.case
+    return {**CASES[case], "reproduction": case == CASE and REPRODUCTION is not None}
 
 
 def report_pair(wildcards):

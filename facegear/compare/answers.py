@@ -1,0 +1,75 @@
+"""Answers of the example machines, stored small with each release."""
+
+import json
+import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.resources import files
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from facegear.compare.judge import answer_tables
+from facegear.errors import chosen
+from facegear.io import documents
+from facegear.io.atomic import atomic_path
+from facegear.io.checksums import MANIFEST_SUFFIX
+
+MOST_BYTES = 60_000
+"""A table larger than this is a history or a chunk, and not stored with a release."""
+SAME_DATE = (2000, 1, 1, 0, 0, 0)
+
+
+def stored() -> list[str]:
+    """Names `version/machine` of the stored answers."""
+    folder = files("facegear.compare").joinpath("stored")
+    return sorted(
+        f"{version.name}/{entry.name.removesuffix('.zip')}"
+        for version in folder.iterdir()
+        if version.is_dir()
+        for entry in version.iterdir()
+        if entry.name.endswith(".zip")
+    )
+
+
+def store(folder: Path, path: Path) -> None:
+    """Write the small tables of a folder of results, with their manifests, as one file.
+
+    Two equal folders give the same bytes. What was on the machine that made them is left out.
+    """
+    names = [name for name in sorted(answer_tables(folder)) if (folder / name).stat().st_size <= MOST_BYTES]
+    manifests = {near for name in names for near in (folder / name).parent.glob(f"*{MANIFEST_SUFFIX}")}
+    texts = {name: (folder / name).read_text(encoding="utf-8") for name in names}
+    texts |= {manifest.relative_to(folder).as_posix(): _short(manifest) for manifest in sorted(manifests)}
+    with atomic_path(path) as temporary, zipfile.ZipFile(temporary, "w") as archive:
+        for name, text in sorted(texts.items()):
+            archive.writestr(zipfile.ZipInfo(name, SAME_DATE), text, zipfile.ZIP_DEFLATED)
+
+
+@contextmanager
+def opened(name: str) -> Iterator[Path]:
+    """The folder of a stored answer `version/machine`, unpacked while it is used, or a folder as it is.
+
+    Raises FacegearError for a name that is neither.
+    """
+    if Path(name).is_dir():
+        yield Path(name)
+        return
+    version, _, machine = chosen(name, stored(), "results (a folder, or a stored answer)").partition("/")
+    source = files("facegear.compare").joinpath("stored", version, f"{machine}.zip")
+    with TemporaryDirectory() as folder, source.open("rb") as stream, zipfile.ZipFile(stream) as archive:
+        archive.extractall(folder)
+        yield Path(folder)
+
+
+def _short(manifest: Path) -> str:
+    """What says how a table was made, without time, machine and summary."""
+    record = documents.read(manifest)
+    kept = ("rule", "versions", "params", "code", "rebuild", "inputs", "files")
+    return json.dumps({key: record[key] for key in kept if key in record}, sort_keys=True)
+
+
+if __name__ == "__main__":
+    import sys
+
+    for case in sys.argv[2:]:
+        store(Path(case), Path(__file__).parent / "stored" / sys.argv[1] / f"{Path(case).name}.zip")

@@ -1,0 +1,86 @@
+"""What may have moved a table: config, code and versions of its stage and of all stages before it."""
+
+import os
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from facegear.io import documents
+from facegear.io.checksums import MANIFEST_SUFFIX
+
+Manifest = Mapping[str, Any]
+
+
+def causes(name: str, old: Path, new: Path) -> list[str]:
+    """One line for each difference behind a table of two folders of results.
+
+    That is a changed value of the config, with both values; changed code of a stage; another version of a
+    library. A line says so where there is none, or where a folder does not say how a table was made.
+    """
+    before, after = _history(old / name), _history(new / name)
+    if not before or not after:
+        return ["a manifest is missing: how the table was made is not known"]
+    lines = list(dict.fromkeys([*_config(before, after), *_code(before, after), *_versions(before, after)]))
+    return lines or ["config, code and versions are the same: the difference is in the run itself"]
+
+
+def _history(path: Path) -> dict[str, Manifest]:
+    """Manifests of a table's stage and of all before it that the folder still holds, by rule."""
+    manifest = _manifest(path)
+    if manifest is None:
+        return {}
+    history = {str(manifest["rule"]): manifest}
+    for near in manifest.get("inputs", {}):
+        history = {**_history(Path(os.path.normpath(path.parent / near))), **history}
+    return history
+
+
+def _manifest(path: Path) -> Manifest | None:
+    for candidate in sorted(path.parent.glob(f"*{MANIFEST_SUFFIX}")):
+        manifest = documents.read(candidate, ("rule", "files", "params"))
+        if path.name in manifest["files"]:
+            return manifest
+    return None
+
+
+def _config(before: Mapping[str, Manifest], after: Mapping[str, Manifest]) -> Iterator[str]:
+    for rule in before.keys() & after.keys():
+        old, new = (dict(_leaves("", side[rule]["params"].get("needs") or {})) for side in (before, after))
+        for key in sorted(old.keys() | new.keys()):
+            if old.get(key) != new.get(key):
+                yield f"config {key}: {_shown(old, key)} -> {_shown(new, key)}"
+
+
+def _leaves(key: str, value: Any) -> Iterator[tuple[str, Any]]:
+    if isinstance(value, Mapping):
+        inside = list(value.items())
+    elif isinstance(value, list) and any(isinstance(item, Mapping) for item in value):
+        inside = [
+            (item.get("name", number) if isinstance(item, Mapping) else number, item)
+            for number, item in enumerate(value)
+        ]
+    else:
+        yield key, value
+        return
+    for name, item in inside:
+        yield from _leaves(f"{key}.{name}" if key else str(name), item)
+
+
+def _shown(values: Mapping[str, Any], key: str) -> str:
+    return repr(values[key]) if key in values else "absent"
+
+
+def _code(before: Mapping[str, Manifest], after: Mapping[str, Manifest]) -> Iterator[str]:
+    for rule in sorted(before.keys() & after.keys()):
+        if before[rule].get("code") != after[rule].get("code"):
+            yield f"code of stage {rule}"
+    for rule in sorted(before.keys() ^ after.keys()):
+        yield f"stage {rule} is behind one of them only"
+
+
+def _versions(before: Mapping[str, Manifest], after: Mapping[str, Manifest]) -> Iterator[str]:
+    for rule in before.keys() & after.keys():
+        old, new = before[rule].get("versions", {}), after[rule].get("versions", {})
+        for library in sorted(old.keys() & new.keys()):
+            if old[library] != new[library]:
+                yield f"{library} {old[library]} -> {new[library]}"

@@ -1,0 +1,178 @@
+"""Every number and label of two folders of results, and whether it moved."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from facegear.compare.quantities import REGULAR, TABLES, Table
+from facegear.errors import FacegearError
+from facegear.io import tables
+
+REPEATABLE = 1e-10
+"""What two runs of the same code on the same input may differ by, relative to the largest of the column."""
+LEFT_OUT = ("logs", "benchmarks", "figures", "chunks")
+"""Folders that hold no answers."""
+UNDETERMINED = ("shapes.csv",)
+"""Tables whose numbers are known up to a sign, or to a choice among equals: mode shapes."""
+COLUMNS = ("file", "row", "quantity", "old", "new", "relative_change", "numerical_error", "verdict")
+
+
+class Verdict(StrEnum):
+    """What became of a number or a label."""
+
+    SAME = "same"
+    WITHIN_ERROR = "within its numerical error"
+    MOVED = "moved"
+    NO_ERROR = "moved, its error is not stated"
+    IRREGULAR = "irregular motion, a statistic"
+    LABEL = "label changed"
+    GONE = "gone"
+    ADDED = "added"
+
+
+CHANGES = (Verdict.MOVED, Verdict.NO_ERROR, Verdict.LABEL, Verdict.GONE, Verdict.ADDED)
+"""Verdicts that make two folders different."""
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """What was compared.
+
+    Attributes
+    ----------
+    rows
+        COLUMNS of all that is not the same: one row a number or label; for a table or row that stands in one
+        folder only, one row.
+    counts
+        Numbers and labels of each verdict.
+    """
+
+    rows: pd.DataFrame
+    counts: dict[Verdict, int]
+
+    @property
+    def equal(self) -> bool:
+        """Whether nothing moved beyond its numerical error, and no label changed."""
+        return not any(self.counts[verdict] for verdict in CHANGES)
+
+
+def compare(old: Path, new: Path) -> Comparison:
+    """Compare all tables of two folders of results.
+
+    Raises FacegearError for a folder without tables, CorruptFile for a table that was altered since its stage
+    wrote it.
+    """
+    names = {side: answer_tables(side) for side in (old, new)}
+    judged = [
+        _judge_file(name, old if name in names[old] else None, new if name in names[new] else None)
+        for name in sorted(names[old] | names[new])
+    ]
+    rows = pd.concat(judged, ignore_index=True)
+    counts = {verdict: int((rows["verdict"] == verdict).sum()) for verdict in Verdict}
+    return Comparison(rows[rows["verdict"] != Verdict.SAME].reset_index(drop=True), counts)
+
+
+def answer_tables(folder: Path) -> set[str]:
+    """Tables of a folder of results, as paths inside it."""
+    found = (path.relative_to(folder) for path in folder.rglob("*.csv"))
+    kept = {path.as_posix() for path in found if not set(path.parts) & {*LEFT_OUT, *UNDETERMINED}}
+    if not kept:
+        raise FacegearError(f"{folder}: must be a folder of results, with tables (*.csv) in it")
+    return kept
+
+
+def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
+    if old is None or new is None:
+        return _one_sided(name, ["whole table"], Verdict.ADDED if old is None else Verdict.GONE)
+    before, after = (tables.read(folder / name, allow_empty=True) for folder in (old, new))
+    table = declared(name)
+    before, after = (_by_row(frame, table) for frame in (before, after))
+    shared = before.index.intersection(after.index, sort=False)
+    columns = [column for column in before.columns if column in after.columns]
+    parts = [_judge_column(name, table, before.loc[shared], after.loc[shared], column) for column in columns]
+    for one, other, verdict in ((before, after, Verdict.GONE), (after, before, Verdict.ADDED)):
+        lost = [f"column {column}" for column in one.columns if column not in other.columns]
+        parts.append(
+            _one_sided(name, [*one.index.difference(other.index, sort=False).astype(str), *lost], verdict)
+        )
+    return pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
+
+
+def declared(name: str) -> Table:
+    """How a table is compared; that of a study's point is compared as the machine's own."""
+    known = [path for path in TABLES if name == path or name.endswith(f"/{path}")]
+    return TABLES[known[0]] if known else Table()
+
+
+def _by_row(frame: pd.DataFrame, table: Table) -> pd.DataFrame:
+    """The table with a text index that names its rows; rows of one name are counted."""
+    keys = [key for key in table.keys if key in frame.columns]
+    if not keys:
+        return frame.set_axis([f"row {number + 1}" for number in range(len(frame))])
+    parts = [frame[key].map(_written) for key in keys]
+    names = parts[0].str.cat(parts[1:], sep=", ") if len(parts) > 1 else parts[0]
+    again = names.groupby(names).cumcount()
+    names = names.where(again == 0, names + " #" + (again + 1).astype(str))
+    kept = [column for column in frame.columns if column not in keys or column == table.quantity]
+    return frame[kept].set_axis(pd.Index(names))
+
+
+def _written(value: object) -> str:
+    return f"{value:.10g}" if isinstance(value, float) else str(value)
+
+
+def _judge_column(
+    name: str, table: Table, before: pd.DataFrame, after: pd.DataFrame, column: str
+) -> pd.DataFrame:
+    old, new = before[column], after[column]
+    numeric = all(pd.api.types.is_numeric_dtype(side) and side.dtype != bool for side in (old, new))
+    shown = pd.DataFrame({"file": name, "row": before.index, "quantity": column, "old": old, "new": new})
+    if not numeric:
+        same = (old.fillna("").astype(str) == new.fillna("").astype(str)).to_numpy()
+        return shown.assign(
+            relative_change=np.nan,
+            numerical_error=np.nan,
+            verdict=np.where(same, Verdict.SAME, Verdict.LABEL),
+        )
+    error = table.error(column)
+    change = _relative_change(old, new, before.get(table.quantity))
+    irregular = _irregular(before, table) | _irregular(after, table)
+    beyond = Verdict.NO_ERROR if error is None else Verdict.MOVED
+    verdict = np.select(
+        [change <= REPEATABLE, irregular, change <= (error or 0.0)],
+        [Verdict.SAME, Verdict.IRREGULAR, Verdict.WITHIN_ERROR],
+        beyond,
+    )
+    return shown.assign(
+        relative_change=change, numerical_error=np.nan if error is None else error, verdict=verdict
+    )
+
+
+def _relative_change(old: pd.Series, new: pd.Series, quantity: pd.Series | None) -> np.ndarray:
+    """Change over the largest magnitude of the column or of the row's quantity, shape (rows,)."""
+    pair = np.stack([old.to_numpy(float), new.to_numpy(float)])
+    with np.errstate(invalid="ignore"):
+        change = np.where((pair[0] == pair[1]) | np.isnan(pair).all(axis=0), 0.0, np.abs(pair[1] - pair[0]))
+    change = np.where(np.isnan(change), np.inf, change)
+    finite = np.where(np.isfinite(pair), np.abs(pair), 0.0).max(axis=0)
+    groups = np.zeros(len(finite)) if quantity is None else quantity.to_numpy()
+    scale = pd.Series(finite).groupby(groups).transform("max").to_numpy() if len(finite) else finite
+    return np.divide(change, scale, out=change.copy(), where=scale > 0.0)
+
+
+def _irregular(frame: pd.DataFrame, table: Table) -> np.ndarray:
+    """Rows whose motion does not repeat, shape (rows,)."""
+    motions = [frame[column] for column in table.motion if column in frame.columns]
+    rows = np.zeros(len(frame), dtype=bool)
+    for motion in motions:
+        named = motion.notna().to_numpy()
+        rows |= named & ~motion.astype(str).str.startswith(REGULAR).to_numpy()
+    return rows
+
+
+def _one_sided(name: str, rows: list[str], verdict: Verdict) -> pd.DataFrame:
+    frame = pd.DataFrame({"file": name, "row": rows}, columns=list(COLUMNS))
+    return frame.assign(verdict=verdict)

@@ -1,0 +1,131 @@
+"""The comparison as one self-contained HTML page: what moved, why it may have, curves over each other."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pandas as pd
+
+from facegear.compare.causes import causes
+from facegear.compare.judge import Comparison, Verdict
+from facegear.compare.quantities import CURVES, Curve
+from facegear.io import tables
+from facegear.io.atomic import atomic_path
+from facegear.plots.compare import curves_compared
+from facegear.plots.style import save
+from facegear.report.page import Chapter, Picture, Table, render
+
+SHOWN = 8
+"""Most rows of one table that the page lists."""
+
+NAMED = 3
+"""Most tables that are named behind one cause."""
+
+
+def write_page(path: Path, comparison: Comparison, old: Path, new: Path) -> None:
+    """Write the page; `old` and `new` are the folders that were compared."""
+    with TemporaryDirectory() as folder:
+        pictures = list(_pictures(comparison, old, new, Path(folder)))
+        chapters = [
+            Chapter(
+                "Verdict",
+                verdict(comparison),
+                tables=[
+                    Table("Numbers and labels", _counts(comparison)),
+                    Table("By table", by_table(comparison)),
+                ],
+            ),
+            Chapter(
+                "Why it may have moved",
+                "One line for each difference behind a table.",
+                tables=[Table("Config, code and versions", causes_table(comparison, old, new))],
+            ),
+            Chapter("Curves over each other", "The series of each table that moved most.", pictures=pictures),
+            Chapter(
+                "What moved",
+                f"The {SHOWN} largest changes of each table, relative to the largest number of their column.",
+                tables=[Table("Changes", largest(comparison))],
+            ),
+        ]
+        text = render("Two results compared", f"Old: {old}. New: {new}.", chapters)
+    with atomic_path(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def verdict(comparison: Comparison) -> str:
+    """One sentence on the whole."""
+    if comparison.equal:
+        within = comparison.counts[Verdict.WITHIN_ERROR] + comparison.counts[Verdict.IRREGULAR]
+        more = f" {within} numbers moved within their numerical error." if within else ""
+        return f"Both folders say the same.{more}"
+    files = comparison.rows.loc[~comparison.rows["verdict"].isin(_HARMLESS), "file"].nunique()
+    return f"The folders differ in {files} table{'s' * (files > 1)}."
+
+
+_HARMLESS = (Verdict.WITHIN_ERROR, Verdict.IRREGULAR)
+
+
+def largest(comparison: Comparison) -> pd.DataFrame:
+    """The largest changes of every table, those beyond their error first."""
+    rows = comparison.rows.assign(harmless=comparison.rows["verdict"].isin(_HARMLESS))
+    order = rows.sort_values(["harmless", "relative_change"], ascending=[True, False], kind="stable")
+    return (
+        order.groupby("file", sort=True)
+        .head(SHOWN)
+        .sort_values("file", kind="stable")
+        .drop(columns="harmless")
+    )
+
+
+def causes_table(comparison: Comparison, old: Path, new: Path) -> pd.DataFrame:
+    """Columns table, cause: what may have moved each table that stands in both folders."""
+    files = [
+        name for name in comparison.rows["file"].unique() if (old / name).exists() and (new / name).exists()
+    ]
+    rows = [(name, line) for name in files for line in causes(name, old, new)]
+    grouped = pd.DataFrame(rows, columns=["table", "cause"]).groupby("cause", sort=False)["table"]
+    return grouped.agg(_named).reset_index()
+
+
+def by_table(comparison: Comparison) -> pd.DataFrame:
+    """One row a table and verdict: how many numbers or labels, and the largest relative change among them."""
+    grouped = comparison.rows.groupby(["file", "verdict"], sort=True)["relative_change"]
+    return grouped.agg(numbers="size", largest_change="max").reset_index().rename(columns={"file": "table"})
+
+
+def _named(files: pd.Series) -> str:
+    more = f" and {len(files) - NAMED} more" if len(files) > NAMED else ""
+    return ", ".join(files[:NAMED]) + more
+
+
+def _counts(comparison: Comparison) -> pd.DataFrame:
+    rows = [(verdict.value, count) for verdict, count in comparison.counts.items() if count]
+    return pd.DataFrame(rows, columns=["verdict", "numbers and labels"])
+
+
+def _pictures(comparison: Comparison, old: Path, new: Path, folder: Path) -> Iterator[Picture]:
+    for name in comparison.rows["file"].unique():
+        known = [path for path in CURVES if name == path or name.endswith(f"/{path}")]
+        if known and (old / name).exists() and (new / name).exists():
+            before, after, title = _worst_series(name, CURVES[known[0]], old, new)
+            path = folder / f"{name.replace('/', '_')}.png"
+            save(curves_compared(before, after, CURVES[known[0]].x, CURVES[known[0]].y, title), path)
+            yield Picture(path, f"{name}{f': {title}' if title else ''}")
+
+
+def _worst_series(name: str, curve: Curve, old: Path, new: Path) -> tuple[pd.DataFrame, pd.DataFrame, str]:
+    """Rows of the series that moved most, in both folders."""
+    before, after = (tables.read(folder / name) for folder in (old, new))
+    if curve.quantity:
+        before, after = (frame[frame["quantity"] == curve.quantity] for frame in (before, after))
+    if not curve.series:
+        return before, after, ""
+    keys = [*curve.series, curve.x]
+    both = before[[*keys, curve.y]].merge(after[[*keys, curve.y]], on=keys, suffixes=("_old", "_new"))
+    change = (both[f"{curve.y}_new"] - both[f"{curve.y}_old"]).abs().fillna(0.0)
+    worst = both.loc[change.idxmax(), list(curve.series)] if len(both) else before.iloc[0]
+    picked = [
+        frame[(frame[list(curve.series)] == worst[list(curve.series)].to_numpy()).all(axis=1)]
+        for frame in (before, after)
+    ]
+    return picked[0], picked[1], ", ".join(str(worst[key]) for key in curve.series)

@@ -1,0 +1,110 @@
+"""What is compared between two folders of results, and how accurately each number is known.
+
+An error is relative to the largest magnitude of its column in either folder. In tables with one quantity a
+row it is relative to the largest magnitude of that quantity. The errors are those of the accuracy table in
+README.md and of the page that stands beside each.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+MOTION_COLUMNS = ("class", "motion", "class_before", "class_after")
+"""Columns that name a class of motion."""
+REGULAR = "period"
+"""How the name of a class begins whose numbers repeat; the numbers of the others are statistics."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """One csv table.
+
+    Attributes
+    ----------
+    keys
+        Columns that name a row. Without any, rows are compared in the order in which they stand.
+    quantity
+        Column that says what the column `value` of a row is, for tables with one quantity a row.
+    errors
+        Numerical error of columns that begin with a text, relative; the longest beginning counts. A column
+        without one has no stated error.
+    motion
+        Columns, where present, that name the class of motion of a row.
+    """
+
+    keys: tuple[str, ...] = ()
+    quantity: str | None = None
+    errors: Mapping[str, float] = field(default_factory=dict)
+    motion: tuple[str, ...] = MOTION_COLUMNS
+
+    def error(self, column: str) -> float | None:
+        """Relative numerical error of a column, or None where none is stated."""
+        fitting = [start for start in self.errors if column.startswith(start)]
+        return self.errors[max(fitting, key=len)] if fitting else None
+
+
+ROUNDED = 1e-9
+"""Linear algebra and convex problems that are solved to rounding."""
+CONTACT = {"k_": 3e-3, "ste": 1e-2, "pressure": 1e-2, "path": 1e-4}
+"""docs/contact.md: the default mesh against one that is finer in every direction."""
+MOTION = {"value": 8.6e-4}
+"""docs/dynamics.md: periodic motions against a tolerance of 1e-10 and 4096 samples."""
+SHARING = {"mean": 6e-4, "m": 2e-3, "cycle": 2e-3, "envelope": 2e-3, "coefficient": 2e-3, "lost": 2e-3}
+"""docs/load_sharing.md."""
+
+TABLES: Mapping[str, Table] = {
+    "machine/ratings.csv": Table(("quantity",), "quantity", {"value": ROUNDED}),
+    "machine/bodies.csv": Table(("body",), errors={"": ROUNDED}),
+    "machine/meshes.csv": Table(("mesh",), errors={"": ROUNDED}),
+    "modal/frequencies.csv": Table(("order",), errors={"frequency": ROUNDED}, motion=()),
+    "contact/by_torque.csv": Table(("torque_n_m",), errors=CONTACT),
+    "contact/ltca.csv": Table(("torque_n_m", "position"), errors=CONTACT),
+    "stiffness/harmonics.csv": Table(
+        ("order",), errors={"a_n": 3e-3, "b_n": 3e-3, "amplitude": 3e-3, "e_": 1e-2}
+    ),
+    "stiffness/tvms.csv": Table(("position",), errors={"k_": 3e-3}),
+    "dynamics/summary.csv": Table(("quantity", "body_or_mesh"), "quantity", MOTION),
+    "dynamics/response.csv": Table(
+        ("mesh", "mesh_cycle"), errors={"deflection": 8.6e-4, "elastic_force": 8.6e-4}
+    ),
+    "dynamics/bearings.csv": Table(("body", "direction"), errors={"static": ROUNDED, "": 8.6e-4}),
+    "dynamics/sweep.csv": Table(("direction", "speed_rpm", "quantity", "body_or_mesh"), "quantity", MOTION),
+    "dynamics/resonances.csv": Table(
+        ("direction", "speed_rpm", "quantity", "body_or_mesh"), "quantity", MOTION
+    ),
+    "dynamics/jumps.csv": Table(("direction", "speed_before_rpm", "mesh"), errors={"deflection": 8.6e-4}),
+    "load_sharing/summary.csv": Table(("study", "point", "group"), errors=SHARING),
+    "load_sharing/nominal_summary.csv": Table(("group",), errors=SHARING),
+    "load_sharing/nominal.csv": Table(("group", "cycle_fraction"), errors=SHARING),
+    "load_sharing/reference.csv": Table(("quantity", "group"), "quantity", SHARING),
+    "load_sharing/speed_range.csv": Table(("group", "speed_rpm"), errors=SHARING),
+    "load_sharing/hunting_groups.csv": Table(("group",), errors={"": ROUNDED}),
+    "load_sharing/hunting_meshes.csv": Table(("mesh",), errors={"": ROUNDED}),
+    "load_sharing/hunting_cycles.csv": Table(("cycle",), errors={"": ROUNDED}),
+    "strength/root_stress.csv": Table(("torque_n_m", "body", "fillet"), errors={"largest": 1e-2}),
+    "strength/safety.csv": Table(("body", "flank")),
+    "strength/rating.csv": Table(("body", "gear", "flank", "failure", "method")),
+    "tolerances/percentiles.csv": Table(("quantity", "percentile"), "quantity", {"value": 6e-3}),
+}
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A table that is drawn: `y` over `x`, one line for each value of `series`.
+
+    `quantity`: the rows that are drawn of a table with one quantity a row.
+    """
+
+    x: str
+    y: str
+    series: tuple[str, ...] = ()
+    quantity: str | None = None
+
+
+CURVES: Mapping[str, Curve] = {
+    "stiffness/tvms.csv": Curve("position", "k_n_per_m"),
+    "contact/by_torque.csv": Curve("torque_n_m", "k_average_mean_n_per_m"),
+    "dynamics/response.csv": Curve("mesh_cycle", "deflection_um", ("mesh",)),
+    "dynamics/sweep.csv": Curve("speed_rpm", "value", ("direction", "body_or_mesh"), "deflection_ac_rms_um"),
+    "load_sharing/nominal.csv": Curve("cycle_fraction", "coefficient", ("group",)),
+    "load_sharing/speed_range.csv": Curve("speed_rpm", "mean", ("group",)),
+}

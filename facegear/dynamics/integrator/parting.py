@@ -1,0 +1,85 @@
+"""Contacts that only push: spring and damper together are cut at zero where flanks are about to part.
+
+    F = max(k x + c x', 0) while flanks overlap by x > 0; on the back flank with all signs reversed
+
+(Hunt and Crossley, Journal of Applied Mechanics 42, 1975, on dampers that pull at the end of a contact). The
+cut adds one edge to a contact, k x + c x' = 0. The force is continuous there, so tangents pass it unchanged;
+it jumps only where flanks meet, by c x'.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.integrator.compiled import Packed
+from facegear.dynamics.integrator.kernel import inlined
+from facegear.dynamics.integrator.roots import first_root, root_after
+from facegear.dynamics.integrator.work import Work
+
+Array = NDArray[np.float64]
+NO_FORCE = 1e-10
+"""A force this small beside its spring's and its damper's part counts as zero: its rate decides what follows.
+It is continuous, so that nothing is lost by it."""
+
+
+@inlined
+def find_parting(packed: Packed, work: Work) -> None:
+    """Cut the force of every contact whose damper pulls more than its spring pushes."""
+    for m in range(packed.contacts):
+        work.at_parting[m] = 0
+        if work.side[m] == 0.0 or work.at_edge[m] != 0 or packed.lower[m] >= packed.upper[m]:
+            continue
+        spring = work.side[m] * work.stiffness[0, m] * work.deflection[0, m]
+        damper = work.side[m] * packed.mesh_damping[m] * work.deflection[1, m]
+        if abs(spring + damper) <= NO_FORCE * (abs(spring) + abs(damper)):
+            work.at_parting[m] = 1
+        _act(packed, work, m, spring + damper > 0.0)
+
+
+@inlined
+def correct_parting(packed: Packed, work: Work, soon: float) -> bool:
+    """Where a contact's force is zero, its value after the time `soon` decides; True if one changed."""
+    changed = False
+    for m in range(packed.contacts):
+        if work.at_parting[m] == 0:
+            continue
+        later = _push(packed, work, m, 1) + soon * _push(packed, work, m, 2)
+        if (later > 0.0) != (work.active[m] > 0.0):
+            _act(packed, work, m, later > 0.0)
+            changed = True
+    return changed
+
+
+@inlined
+def parting_time(packed: Packed, work: Work, m: int, length: float, shortest: float) -> float:
+    """Share of the step at which the force of contact m passes zero; 2.0 if it does not."""
+    first, power = work.at_parting[m], 1.0
+    for i in range(work.order):
+        inside = i + first < work.order
+        work.polynomial[i] = power * _push(packed, work, m, i + first) if inside else 0.0
+        power *= length
+    root = first_root(work.polynomial, work.order - 1, work.conversion_less, work.subdivision)
+    # Flanks that just met or parted: what follows at once was decided by the rates already.
+    if (first > 0 or work.at_edge[m] != 0) and root * length < shortest:
+        root = root_after(work.polynomial, work.order - 1, root, work.conversion_less, work.subdivision)
+    return root
+
+
+@inlined
+def shearing_damping(packed: Packed, work: Work, m: int) -> float:
+    """Mesh damping of contact m whose start or end makes the force jump, and so shears tangents."""
+    return packed.mesh_damping[m] * abs(work.side[m]) if packed.push_only else work.acting[m]
+
+
+@inlined
+def _push(packed: Packed, work: Work, m: int, i: int) -> float:
+    """Taylor coefficient i of what spring and damper of contact m push together."""
+    total = packed.mesh_damping[m] * (i + 1) * work.deflection[i + 1, m]
+    for j in range(i + 1):
+        total += work.stiffness[j, m] * work.deflection[i - j, m]
+    return work.side[m] * total
+
+
+@inlined
+def _act(packed: Packed, work: Work, m: int, acts: bool) -> None:
+    work.active[m] = 1.0 if acts else 0.0
+    work.acting[m] = packed.mesh_damping[m] if acts else 0.0

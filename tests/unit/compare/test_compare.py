@@ -1,0 +1,156 @@
+"""Two folders of results: nothing between equal runs, every planted change found, and its cause named."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+import facegear
+from facegear.__main__ import main
+from facegear.compare import answers
+from facegear.compare.judge import Verdict, compare
+from facegear.errors import CorruptFile, FacegearError
+
+CONFIG = Path(__file__).parents[3] / "config" / "harmonics_only.yaml"
+
+
+def answered(folder, **values):
+    """Modes and the response of a machine with given harmonics, saved; no contact analysis."""
+    changes = {"transmission.mesh_kinematics": "geometric", "transmission.face_gear.mesh_radius_mm": None}
+    changes |= {key.replace("__", "."): value for key, value in values.items()}
+    gearbox = facegear.load(CONFIG).with_values(changes)
+    for result in (gearbox.modes(), gearbox.response(), gearbox.stiffness()):
+        result.save(folder)
+    return folder
+
+
+def with_manifest(folder, path, rule, needs, code="1", versions=None, inputs=()):
+    """A table of one number and the manifest of a stage that could have written it."""
+    (folder / path).parent.mkdir(parents=True, exist_ok=True)
+    (folder / path).write_text("mesh,force_n\nright input/upper,1000.0\n")
+    record = {
+        "rule": rule,
+        "params": {"needs": needs},
+        "code": code,
+        "versions": versions or {"numpy": "2.4"},
+        "inputs": dict.fromkeys(inputs, ""),
+        "files": {Path(path).name: {"bytes": (folder / path).stat().st_size, "sha256": ""}},
+        "rebuild": "snakemake",
+    }
+    (folder / path).with_name(f"{rule}.provenance.json").write_text(json.dumps(record))
+
+
+@pytest.fixture(scope="module")
+def nominal(tmp_path_factory):
+    return answered(tmp_path_factory.mktemp("nominal"))
+
+
+def test_two_equal_runs_show_no_difference(nominal, tmp_path, capsys):
+    again = answered(tmp_path)
+    found = compare(nominal, again)
+    assert found.equal and found.rows.empty
+    assert found.counts[Verdict.SAME] > 500
+    assert main(["compare", str(nominal), str(again)]) == 0
+    assert capsys.readouterr().out == "Both folders say the same.\n"
+
+
+def test_a_mesh_a_thousandth_stiffer_is_found(nominal, tmp_path):
+    mesh = next(iter(facegear.load(CONFIG).response().content["response"]["mesh"]))
+    stiffer = answered(tmp_path, transmission__single_meshes={mesh: {"stiffness_factor": 1.001}})
+    found = compare(nominal, stiffer)
+    assert not found.equal
+    moved = found.rows[found.rows["verdict"] == Verdict.MOVED]
+    assert {"dynamics/bearings.csv"} <= set(moved["file"])
+    assert "stiffness/harmonics.csv" not in set(found.rows["file"])
+
+
+@pytest.mark.parametrize(
+    ("factor", "verdict"), [(1 + 1e-12, None), (1.002, Verdict.WITHIN_ERROR), (1.01, Verdict.MOVED)]
+)
+def test_a_number_is_judged_by_its_own_numerical_error(factor, verdict, nominal, tmp_path):
+    shutil.copytree(nominal, tmp_path, dirs_exist_ok=True)
+    table = pd.read_csv(tmp_path / "stiffness/harmonics.csv")
+    table.loc[0, "b_n_per_m"] *= factor
+    table.to_csv(tmp_path / "stiffness/harmonics.csv", index=False)
+    assert compare(nominal, tmp_path).rows["verdict"].to_list() == [verdict] * (verdict is not None)
+
+
+def test_numbers_of_an_irregular_motion_are_statistics_and_its_class_is_a_label(tmp_path):
+    for side, (value, kind) in {"old": (1.0, "chaotic"), "new": (1.3, "quasi-periodic")}.items():
+        (tmp_path / side / "dynamics").mkdir(parents=True)
+        row = f"7500.0,rms_um,gear,{value},{kind}\n"
+        (tmp_path / side / "dynamics/summary.csv").write_text(
+            f"speed_rpm,quantity,body_or_mesh,value,class\n{row}"
+        )
+    rows = compare(tmp_path / "old", tmp_path / "new").rows.set_index("quantity")["verdict"]
+    assert rows["value"] == Verdict.IRREGULAR
+    assert rows["class"] == Verdict.LABEL
+
+
+def test_rows_columns_and_tables_of_one_folder_only_are_named(nominal, tmp_path):
+    shutil.copytree(nominal, tmp_path, dirs_exist_ok=True)
+    (tmp_path / "stiffness/tvms.csv").unlink()
+    table = pd.read_csv(tmp_path / "dynamics/bearings.csv")
+    table.drop(columns="peak_n").iloc[1:].to_csv(tmp_path / "dynamics/bearings.csv", index=False)
+    gone = compare(nominal, tmp_path).rows
+    assert set(gone["verdict"]) == {Verdict.GONE}
+    assert {"whole table", "column peak_n"} < set(gone["row"]) and len(gone) == 3
+
+
+def test_a_column_of_zeros_and_undefined_numbers_compares_equal_to_itself(tmp_path):
+    for side in ("old", "new"):
+        (tmp_path / side).mkdir()
+        (tmp_path / side / "some.csv").write_text("a,b,c\n0.0,,inf\n0.0,1.0,2.0\n")
+    assert compare(tmp_path / "old", tmp_path / "new").rows.empty
+
+
+def test_a_change_is_traced_to_config_code_and_versions_of_all_stages_before(tmp_path, capsys):
+    for side, stiffness, code, numpy in (("old", 4.1e8, "1", "2.3"), ("new", 4.2e8, "2", "2.4")):
+        folder = tmp_path / side
+        needs = {"single": [{"name": "left", "stiffness": stiffness}], "alike": 1}
+        with_manifest(folder, "stiffness/k.csv", "stiffness", needs, code, {"numpy": numpy})
+        with_manifest(folder, "statics/force.csv", "statics", {}, inputs=["../stiffness/k.csv"])
+    (tmp_path / "new/statics/force.csv").write_text("mesh,force_n\nright input/upper,1100.0\n")
+    for manifest in tmp_path.rglob("*.json"):  # a table as its stage wrote it
+        record = json.loads(manifest.read_text())
+        record["files"] = {}
+        for table in manifest.parent.glob("*.csv"):
+            from facegear.io.checksums import sha256
+
+            record["files"][table.name] = {"bytes": table.stat().st_size, "sha256": sha256(table)}
+        manifest.write_text(json.dumps(record))
+    page = tmp_path / "page.html"
+    assert main(["compare", str(tmp_path / "old"), str(tmp_path / "new"), "--page", str(page)]) == 1
+    told = capsys.readouterr().out
+    assert "config single.left.stiffness: 410000000.0 -> 420000000.0  [statics/force.csv]" in told
+    assert "code of stage stiffness" in told and "numpy 2.3 -> 2.4" in told and "alike" not in told
+    assert "The folders differ in 1 table." in told
+    assert "410000000.0" in page.read_text()
+
+
+def test_a_table_edited_by_hand_is_refused_and_not_compared(tmp_path, capsys):
+    with_manifest(tmp_path, "statics/force.csv", "statics", {})
+    with pytest.raises(CorruptFile, match="differs from what its stage wrote"):
+        compare(tmp_path, tmp_path)
+
+
+def test_stored_answers_are_small_the_same_bytes_each_time_and_compare_equal_to_their_source(
+    nominal, tmp_path
+):
+    for name in ("a.zip", "b.zip"):
+        answers.store(nominal, tmp_path / name)
+    assert (tmp_path / "a.zip").read_bytes() == (tmp_path / "b.zip").read_bytes()
+    assert (tmp_path / "a.zip").stat().st_size < 100_000
+
+
+@pytest.mark.parametrize("name", ["no/such", "0.0.0/paper", str(CONFIG)])
+def test_what_is_no_folder_of_results_is_refused_in_one_line(name, capsys):
+    assert main(["compare", name, name]) == 1
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_a_folder_without_tables_is_refused(tmp_path):
+    with pytest.raises(FacegearError, match="must be a folder of results"):
+        compare(tmp_path, tmp_path)

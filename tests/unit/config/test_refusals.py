@@ -1,0 +1,184 @@
+"""What no machine can be is refused before any work: every mistake at once, each line saying what must be."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import facegear
+from facegear.__main__ import main
+from facegear.config.base import parse
+from facegear.config.cases import expand_cases
+from facegear.config.load import load_values
+from facegear.config.model import Config
+from facegear.config.notes import notes
+from facegear.errors import ConfigErrors
+
+CONFIG = Path(__file__).parents[3] / "config"
+TWO = load_values([CONFIG / "two_pinion.yaml"], {})
+GIVEN = load_values([CONFIG / "harmonics_only.yaml"], {})
+
+
+def lines(values, **keys):
+    """All that is told of a config with dotted keys (two underscores) set."""
+    changed = {**values}
+    for key, value in keys.items():
+        *sections, last = key.split("__")
+        inside = changed
+        for section in sections:
+            part = int(section) if section.isdecimal() else section
+            inside[part] = inside[part].copy()
+            inside = inside[part]
+        inside[last] = value
+    with pytest.raises(ConfigErrors) as refused:
+        expand_cases(parse(Config, changed).model_dump(mode="json"))
+    return refused.value.lines
+
+
+@pytest.mark.parametrize(
+    ("section", "key", "line"),
+    [
+        ((), "Dynamics", "Dynamics = {}: unknown key; did you mean 'dynamics'?"),
+        ((), "load-sharing", "load-sharing = {}: unknown key; did you mean 'load_sharing'?"),
+        ((), "MESH", "MESH = {}: unknown key; did you mean 'mesh'?"),
+        (("transmission",), "Backlash_um", "did you mean 'backlash_um'?"),
+        (
+            ("dynamics",),
+            "float",
+            "dynamics.float = {}: unknown key; allowed here: accuracy",
+        ),
+    ],
+)
+def test_capitals_and_hyphens_in_a_key_are_told_with_what_was_meant(section, key, line):
+    """They were taken for names of types: a traceback, or a hint at the section the key stands in."""
+    (told,) = lines(TWO, **{"__".join((*section, key)): {}})
+    assert line in told and told.startswith(".".join((*section, key)))
+
+
+@given(st.text(st.characters(categories=("L", "N", "P")), min_size=1, max_size=12))
+def test_any_unknown_key_is_one_line_that_names_it(key):
+    for place in ((), ("dynamics",), ("transmission", "torque")):
+        path = "__".join((*place, "?")).replace("?", key)
+        if "__" in key or key in Config.model_fields:
+            continue
+        (told,) = lines(GIVEN, **{path: 1})
+        assert told.startswith(".".join((*place, key)) + " = 1: unknown key; ")
+
+
+def test_mistakes_in_different_parts_of_a_config_are_told_at_once():
+    told = lines(
+        TWO,
+        transmission__mesh_kinematics="printed",
+        transmission__pinion={**TWO["transmission"]["pinion"], "clearance_um": 10.0},
+        transmission__torque={"per_input_n_m": 600.0, "tail_share": 0.1},
+    )
+    assert [line.split(" = ")[0] for line in told] == [
+        "transmission.face_gear.mesh_radius_mm",
+        "transmission.torque.tail_share",
+    ]
+    told = lines(TWO, mesh_stiffness__torque_n_m=1e4, transmission__pinions__1__angle_deg=1.0)
+    assert [line.split(" = ")[0] for line in told] == ["mesh_stiffness.torque_n_m", "transmission.pinions"]
+    assert all(": must be " in line for line in told)
+
+
+CAUSE = {"name": "a", "moves": {"transmission.backlash_um": 1.0}, "source": "drawing", "spread": 2.0}
+HARMONIC = {"order": 1, "amplitude_um": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("changes", "line"),
+    [
+        (
+            {"transmission__torque__per_input_n_m": 1e6},
+            "transmission.torque.per_input_n_m = 1000000.0: must be at most",
+        ),
+        (
+            {"transmission__pinions__1__torque_n_m": -1e6},
+            "[1].torque_n_m = -1000000.0: must be at most",
+        ),
+        ({"contact__torques_n_m": [150.0, 1e6]}, "contact.torques_n_m = 1000000.0: must be at most"),
+        (
+            {"tooth_pair__pinion__lead_crowning": {"amount_um": 20.0, "start_mm": 12.0, "length_mm": 8.0}},
+            "lead_crowning.start_mm = 12.0: must be less than 12.000, half of the gear's face",
+        ),
+        (
+            {"transmission__transmission_error__more_harmonics": [HARMONIC]},
+            "more_harmonics[0].order = 1: must be another one than 1",
+        ),
+        (
+            {"transmission__transmission_error__more_harmonics": [{**HARMONIC, "order": 3}] * 2},
+            "more_harmonics[1].order = 3: must be another one than 1, 3",
+        ),
+        (
+            {"tolerances": {"causes": [{**CAUSE, "limits": [500.0, 520.0]}]}},
+            "tolerances.causes[0].limits = [500.0, 520.0]: must be within 6 spreads of the middle",
+        ),
+        (
+            {"tolerances": {"causes": [{**CAUSE, "limits": [-500.0, 500.0]}]}},
+            "nearer than 20 spreads on one side at least, or left out: nothing is cut off",
+        ),
+        (
+            {"transmission__pinion__mass_kg": 1e-300},
+            "mass_kg = 1e-300: must be greater than or equal",
+        ),
+        (
+            {"reproduction": "nowhere.yaml"},
+            '"nowhere.yaml": must be the name of a file that exists',
+        ),
+    ],
+)
+def test_what_no_machine_can_be_is_refused(changes, line):
+    told = lines(TWO, **changes)
+    assert len(told) == 1 and line in told[0], told
+
+
+def test_a_stiffness_in_newton_per_micrometre_is_refused_by_its_size(tmp_path):
+    path = tmp_path / "harmonics.csv"
+    path.write_text("order,a_n_per_m,b_n_per_m\n0,0,410\n1,20,0\n")
+    given = {"source": "harmonics", "csv": str(path)}
+    (told,) = lines(GIVEN, mesh_stiffness=given)
+    assert told.endswith("= 410.0: must be at least 100000 N/m; values in N/um are a million times too small")
+    path.write_text("order,a_n_per_m,b_n_per_m\n0,0,4.1e8\n1,2e7,0\n")
+    assert parse(Config, {**GIVEN, "mesh_stiffness": given}).mesh_stiffness.mean == 4.1e8
+
+
+def test_check_refuses_a_reproduction_whose_file_is_missing(tmp_path, capsys):
+    """It said: no mistakes."""
+    shutil.copy(CONFIG / "harmonics_only.yaml", tmp_path)
+    shutil.copy(CONFIG / "paper.yaml", tmp_path)
+    path = tmp_path / "harmonics_only.yaml"
+    path.write_text(path.read_text().replace("reproduction: null", "reproduction: lost.yaml"))
+    assert main(("check", str(path))) == 1
+    assert 'lost.yaml": must be the name of a file that exists' in capsys.readouterr().err
+
+
+def test_causes_that_move_the_same_number_are_told_when_a_run_starts():
+    causes = [CAUSE, {**CAUSE, "name": "b"}]
+    told = notes({**TWO, "tolerances": {"causes": causes}})
+    assert "tolerances.causes: a and b all move transmission.backlash_um: what they add is summed" in told
+    assert not any("tolerances" in line for line in notes({**TWO, "tolerances": {"causes": causes[:1]}}))
+
+
+@pytest.mark.parametrize(
+    ("key", "hint"),
+    [
+        ("transmission.Backlash_um", "did you mean 'backlash_um'?"),
+        ("transmision.backlash_um", "did you mean 'transmission'?"),
+        ("transmission.pinions.7.role", "transmission.pinions has the positions 0 to 4"),
+        ("branches.from_rpm", "branches is null, set it as a whole"),
+        ("transmission.single_meshes.x.error_um", "transmission.single_meshes"),
+    ],
+)
+def test_a_misspelt_key_of_with_values_and_of_a_study_is_told_with_what_was_meant(key, hint):
+    gearbox = facegear.example()
+    with pytest.raises(ConfigErrors) as refused:
+        gearbox.with_values({key: 1, "case": "other"})
+    told = refused.value.lines
+    assert len(told) == 2 and hint in told[0] and told[0].startswith(f"with_values: {key}"[13:])
+    axis = {"label": "a", "key": key, "values": [1]}
+    study = {"name": "one", "title": "One", "axes": [axis]}
+    with pytest.raises(ConfigErrors, match=r"studies\.one\.1: ") as refused:
+        expand_cases({**gearbox.values, "studies": [study]})
+    assert hint in refused.value.lines[0]

@@ -1,0 +1,30 @@
+"""The same results give the same files of figures."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+from facegear.plots.style import save, styled
+from facegear.report.page import PNG_DPI
+
+
+def figure():
+    """One whose svg holds clip paths and markers, which have made-up names."""
+    with styled():
+        drawn, axis = plt.subplots(figsize=(3.0, 2.0))
+        axis.plot(np.arange(5.0), np.arange(5.0) ** 2, "o-")
+    return drawn
+
+
+@pytest.mark.parametrize("ending", ["svg", "png"])
+def test_a_figure_drawn_twice_is_the_same_file(tmp_path, ending):
+    """The salt for names was set while a figure was drawn, and no longer when it was written."""
+    for name in ("first", "again"):
+        save(figure(), tmp_path / f"{name}.{ending}")
+    assert (tmp_path / f"first.{ending}").read_bytes() == (tmp_path / f"again.{ending}").read_bytes()
+
+
+def test_a_png_has_the_resolution_that_the_report_counts_with(tmp_path):
+    save(figure(), tmp_path / "a.png")
+    width = int.from_bytes((tmp_path / "a.png").read_bytes()[16:20], "big")
+    assert width == 3 * PNG_DPI

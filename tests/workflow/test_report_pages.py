@@ -1,0 +1,42 @@
+"""What the report of a run says of its config and of the publication that it reproduces."""
+
+import html
+import json
+import re
+
+import pytest
+from projects import ROOT
+
+from facegear.config.yaml_file import read_yaml
+
+pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("workflow")]
+QUICK = ("--configfile", str(ROOT / "config" / "quick.yaml"))
+
+
+def captions(page):
+    return [html.unescape(text) for text in re.findall(r"<figcaption>(.*?)</figcaption>", page)]
+
+
+def test_a_reproduction_numbers_its_figures_as_the_paper_does_and_another_machine_does_not(quick, tmp_path):
+    """No report showed a number: what the report was given never held the key."""
+    claims = read_yaml(ROOT / "config" / "claims" / "paper.yaml")
+    (tmp_path / "claims.yaml").write_text(json.dumps({**claims, "claims": claims["claims"][:2]}))
+    (tmp_path / "reproduction.yaml").write_text("claims: claims.yaml\n")
+    project = quick.copied(tmp_path)
+    given = f"reproduction={tmp_path / 'reproduction.yaml'}"
+    project.run("results/quick/report.html", *QUICK, "--config", given)
+    told = captions((tmp_path / "results" / "quick" / "report.html").read_text())
+    for start in ("Figure 7 of the paper: Mesh stiffness", "Figure 13 of the paper: Effect of backlash"):
+        assert any(caption.startswith(start) for caption in told), start
+    plain = captions((quick.folder / "results" / "quick" / "report.html").read_text())
+    assert len(plain) == len(told) and not any("of the paper" in caption for caption in plain)
+
+
+def test_the_report_holds_every_key_of_the_config(quick):
+    page = (quick.folder / "results" / "quick" / "report.html").read_text()
+    for key in (
+        "load_sharing.cycles",
+        "studies[0].axes[0].points[1].set.transmission.backlash_um",
+        "transmission.pinions[0].role",
+    ):
+        assert f"<td>{key}</td>" in page, key
