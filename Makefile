@@ -6,7 +6,7 @@ TOOLS := $(VENV)/.tools
 CLUSTER := $(VENV)/.cluster
 CORES ?= 2
 
-.PHONY: all env tools check test random lint docs release audit ci notebooks benchmarks peers identify lock clean
+.PHONY: all env tools check test random lint docs release audit ci notebooks benchmarks peers lock clean
 
 all: check
 	$(BIN)/snakemake --cores $(CORES)
@@ -56,7 +56,7 @@ random: check tools
 lint: tools
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/snakefmt --check Snakefile workflow
+	$(BIN)/snakefmt --check Snakefile workflow paper validation
 	$(BIN)/mypy
 
 docs: tools
@@ -82,9 +82,6 @@ benchmarks: check tools
 
 peers: check tools
 	$(BIN)/snakemake --cores $(CORES) peers
-
-identify: check
-	$(BIN)/snakemake --cores $(CORES) identify
 
 LOCK := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes pyproject.toml
 lock: env

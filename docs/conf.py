@@ -19,7 +19,6 @@ apidoc_modules = [
     {
         "path": "../facegear",
         "destination": "api",
-        "exclude_patterns": ["../facegear/paper", "../facegear/validation", "../facegear/data"],
         "separate_modules": True,
         "module_first": True,
         "include_private": False,

@@ -112,7 +112,9 @@ class Gearbox:
         >>> facegear.example().geometry().summary.split(",")[0]
         'contact ratio 1.548'
         """
-        return self._chain.geometry()
+        from facegear.results.geometry import GeometryResult
+
+        return self._chain.result(GeometryResult)
 
     def contact(
         self, torques: float | Iterable[float] | None = None, positions: int | None = None
@@ -128,13 +130,15 @@ class Gearbox:
         >>> float(table["kkt_residual"].max()) < 1e-12
         True
         """
+        from facegear.results.contact import ContactResult
+
         changes = _given({"contact.torques_n_m": torques, "contact.positions_per_pitch": positions})
         if torques is not None:
             changes["contact.torques_n_m"] = torques if isinstance(torques, Iterable) else [torques]
             changes["mesh_stiffness.torque_n_m"] = None  # need not lie within these
             if self._values["strength"] is not None:  # nor its duty cycle; the fillets keep their gauges
                 changes |= {"strength": None, "contact.root_stress": self._values["contact"]["root_stress"]}
-        return self._changed("contact", changes)._chain.contact()
+        return self._changed("contact", changes)._chain.result(ContactResult)
 
     def root_stress(self) -> "RootStressResult":
         """Stress at the fillets of both gears over a tooth's passage, at the contact analysis' torques.
@@ -146,7 +150,9 @@ class Gearbox:
         >>> table["body"].unique().tolist()
         ['pinion', 'face_gear']
         """
-        return self._changed("root_stress", {"contact.root_stress": True})._chain.root_stress()
+        from facegear.results.root_stress import RootStressResult
+
+        return self._changed("root_stress", {"contact.root_stress": True})._chain.result(RootStressResult)
 
     def rating(self) -> "RatingResult":
         """Safety and life of the pair under the duty cycle of section `strength`.
@@ -157,7 +163,9 @@ class Gearbox:
         >>> facegear.example().rating().table()["failure"].unique().tolist()
         ['bending', 'pitting']
         """
-        return self._chain.rating()
+        from facegear.results.rating import RatingResult
+
+        return self._chain.result(RatingResult)
 
     def dynamic_stress(self, speed_rpm: float | None = None) -> "DynamicStressResult":
         """Root stress of every mesh while the machine runs at a pinion speed, the config's unless given.
@@ -169,8 +177,10 @@ class Gearbox:
         >>> bool((table["pinion_bound_mpa"] >= table["pinion_running_mpa"]).all())
         True
         """
+        from facegear.results.dynamic_stress import DynamicStressResult
+
         changes = {"contact.root_stress": True, **_given({"dynamics.speed_rpm": speed_rpm})}
-        return self._changed("dynamic_stress", changes)._chain.dynamic_stress()
+        return self._changed("dynamic_stress", changes)._chain.result(DynamicStressResult)
 
     def stress_over_speed(self) -> "StressOverSpeedResult":
         """Largest root stress and pressure over the speed range, of every motion known at a speed.
@@ -184,8 +194,10 @@ class Gearbox:
         >>> bool((table.loc[table["worst"], "dynamic_factor"] > 1).all())
         True
         """
+        from facegear.results.stress_over_speed import StressOverSpeedResult
+
         changes = {"contact.root_stress": True}
-        return self._changed("stress_over_speed", changes)._chain.stress_over_speed()
+        return self._changed("stress_over_speed", changes)._chain.result(StressOverSpeedResult)
 
     def stiffness(self) -> "StiffnessResult":
         """k(t) of one mesh at the config's load, or from given harmonics.
@@ -196,7 +208,9 @@ class Gearbox:
         >>> facegear.example().stiffness().table()["b_n_per_m"].round(-3).to_list()[0]
         410000000.0
         """
-        return self._chain.stiffness()
+        from facegear.results.stiffness import StiffnessResult
+
+        return self._chain.result(StiffnessResult)
 
     def modes(self) -> "ModesResult":
         """Natural frequencies, classes and shapes; needs neither mesh nor contact.
@@ -205,7 +219,9 @@ class Gearbox:
         >>> int((facegear.example().modes().table()["class"] == "rigid body").sum())
         6
         """
-        return self._chain.modes()
+        from facegear.results.modal import ModesResult
+
+        return self._chain.result(ModesResult)
 
     def response(self, speed_rpm: float | None = None) -> "ResponseResult":
         """Steady state at a pinion speed, the config's unless given.
@@ -216,7 +232,10 @@ class Gearbox:
         >>> facegear.example().response(1000).table()["class"].iloc[0]
         'period-1'
         """
-        return self._changed("response", _given({"dynamics.speed_rpm": speed_rpm}))._chain.response()
+        from facegear.results.response import ResponseResult
+
+        changed = self._changed("response", _given({"dynamics.speed_rpm": speed_rpm}))
+        return changed._chain.result(ResponseResult)
 
     def sweep(
         self,
@@ -236,11 +255,13 @@ class Gearbox:
         >>> found.table()["deflection_ac_rms_um"].dims
         ('direction', 'speed_rpm', 'mesh')
         """
+        from facegear.results.sweep import SweepResult
+
         given = {"from_rpm": from_rpm, "to_rpm": to_rpm, "points": points, "directions": directions}
         changes = _given({f"dynamics.sweep.{key}": value for key, value in given.items()})
         if points is not None and points < self._values["dynamics"]["sweep"]["chunks"]:
             changes["dynamics.sweep.chunks"] = 1
-        return self._changed("sweep", changes)._chain.sweep(threads)
+        return self._changed("sweep", changes)._chain.result(SweepResult, threads=threads)
 
     def branches(
         self,
@@ -261,9 +282,12 @@ class Gearbox:
         >>> found.table()["period"].unique().tolist()
         [1]
         """
+        from facegear.results.branches import BranchesResult
+
         explore = _given({"starts": starts})
         changes = _given({"from_rpm": from_rpm, "to_rpm": to_rpm, "longest_period": longest_period})
-        return self._with_branches({**changes, **({"explore": explore} if explore else {})})._chain.branches()
+        changed = self._with_branches({**changes, **({"explore": explore} if explore else {})})
+        return changed._chain.result(BranchesResult)
 
     def branch_loci(
         self, parameters: Sequence[str] | None = None, nearest: int | None = None
@@ -274,8 +298,10 @@ class Gearbox:
         points nearest to the nominal speed are followed; both as in section `branches.loci` unless given.
         Raises ConfigErrors for values that the config would refuse.
         """
+        from facegear.results.branch_loci import BranchLociResult
+
         loci = _given({"parameters": parameters, "nearest": nearest})
-        return self._with_branches({"loci": loci} if loci else {})._chain.branch_loci()
+        return self._with_branches({"loci": loci} if loci else {})._chain.result(BranchLociResult)
 
     def load_sharing(self, speed_rpm: float | None = None) -> "LoadSharingResult":
         """Load-sharing coefficients at a pinion speed, the config's unless given, averaged as section
@@ -287,7 +313,10 @@ class Gearbox:
         >>> facegear.example().load_sharing().table()["group"].to_list()
         ['right input', 'left input', 'idlers']
         """
-        return self._changed("load_sharing", _given({"dynamics.speed_rpm": speed_rpm}))._chain.load_sharing()
+        from facegear.results.load_sharing import LoadSharingResult
+
+        changed = self._changed("load_sharing", _given({"dynamics.speed_rpm": speed_rpm}))
+        return changed._chain.result(LoadSharingResult)
 
     def export(self, path: str | Path, body: str = "pinion", teeth: int | None = None) -> Path:
         """Write the exact teeth of a body, modifications included, as STEP or STL (mm), by the path's ending.
@@ -306,11 +335,13 @@ class Gearbox:
         `samples`: as many instead of the config's, without Sobol indices. Raises ConfigErrors without a
         section `tolerances`.
         """
+        from facegear.results.tolerances import TolerancesResult
+
         changes = {} if samples is None else {"samples": samples, "chunk_samples": samples, "index_blocks": 0}
         if self._values["tolerances"] is None:
             raise ConfigError("tolerances", None, "a section of the config: causes and what is asked of them")
         given = {f"tolerances.{key}": value for key, value in changes.items()}
-        return self._changed("tolerances", given)._chain.tolerances()
+        return self._changed("tolerances", given)._chain.result(TolerancesResult)
 
     def load_map(
         self,
@@ -324,11 +355,13 @@ class Gearbox:
         `tolerances.load_map`, or its defaults, unless given. Raises ConfigErrors without a section
         `tolerances`.
         """
+        from facegear.results.tolerances import LoadMapResult
+
         if self._values["tolerances"] is None:
             raise ConfigError("tolerances", None, "a section of the config: causes and what is asked of them")
         given = {"torque_factors": torque_factors, "speeds_rpm": speeds_rpm, "samples": samples}
         section = {**(self._values["tolerances"]["load_map"] or {}), **_given(given)}
-        return self._changed("load_map", {"tolerances.load_map": section})._chain.load_map()
+        return self._changed("load_map", {"tolerances.load_map": section})._chain.result(LoadMapResult)
 
     def loosest_tolerances(
         self,
@@ -372,10 +405,12 @@ class Gearbox:
         `generations` and `seeds` as in the config unless given. Raises ConfigErrors without a section
         `search`, and FacegearError naming the extra where pymoo is not installed.
         """
+        from facegear.results.search import SearchResult
+
         if self._values["search"] is None:
             raise ConfigError("search", None, "a section of the config: variables and objectives")
         given = _given({"search.generations": generations, "search.seeds": seeds})
-        return self._changed("search", given)._chain.search()
+        return self._changed("search", given)._chain.result(SearchResult)
 
     def __repr__(self) -> str:
         pair, machine = self.config.tooth_pair, self.config.transmission

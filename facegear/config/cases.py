@@ -1,7 +1,6 @@
 """The cases of a config: the machine itself, and one case for every point of every study."""
 
 import itertools
-import json
 import re
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
@@ -9,7 +8,6 @@ from typing import Any
 
 from facegear.config.base import parse, suggestion
 from facegear.config.model import Config, resolved
-from facegear.config.needs import stage_needs, stages_before
 from facegear.config.studies import Point, Study
 from facegear.errors import ConfigError, ConfigErrors
 
@@ -77,16 +75,6 @@ def set_key(values: dict[str, Any], key: str, value: Any) -> None:
     for depth, part in enumerate(sections):
         inside = inside[_position(inside, part, key, value, sections[:depth])]
     inside[_position(inside, last, key, value, sections)] = value
-
-
-def shared_sources(cases: Mapping[str, Mapping[str, Any]], stage: str) -> dict[str, str]:
-    """Of each case the first whose config agrees with it in everything that `stage` depends on."""
-    first: dict[str, str] = {}
-    found = {}
-    for case, values in cases.items():
-        needs = [stage_needs(rule, values) for rule in stages_before(stage, values)]
-        found[case] = first.setdefault(json.dumps(needs, sort_keys=True), case)
-    return found
 
 
 FIXED = ("case", "studies", "reproduction")

@@ -33,6 +33,15 @@ def variable_part(
     }
 
 
+def without(values: Any, key: str) -> Any:
+    """A copy of nested mappings without one dotted key."""
+    first, _, rest = key.partition(".")
+    if not isinstance(values, Mapping) or first not in values:
+        return values
+    kept = {name: value for name, value in values.items() if name != first}
+    return {**kept, first: without(values[first], rest)} if rest else kept
+
+
 def moves_pair(keys: Iterable[str]) -> bool:
     """Whether one of the dotted keys belongs to the tooth pair."""
     return any(key.startswith(PAIR) for key in keys)

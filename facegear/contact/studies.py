@@ -8,11 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from facegear.contact.columns import LTCA_FINITE, PRESSURE_ARRAYS
 from facegear.contact.summary import path_by_position
-from facegear.io import arrays, documents, tables
-
-NOMINAL = "nominal"
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,29 +40,15 @@ class StudiedContact:
         near = self.torque_near(torque)
         return self.label if near == torque else f"{self.label} ({near:g} N m)"
 
+    @classmethod
+    def several(cls, points: Sequence[Sequence[str]], *stored: Sequence[Any]) -> "list[StudiedContact]":
+        """Cases of which study, point and label are given; `stored`: the other fields of each, in order."""
+        return [cls(*point, *parts) for point, *parts in zip(points, *stored, strict=True)]
+
     def over_pitch(self, torque: float) -> pd.DataFrame:
         """Rows of `ltca` at the torque nearest to `torque` (N m) with `path_radius_mm`, by position."""
         rows = self.ltca[self.ltca["torque_n_m"] == self.torque_near(torque)].sort_values("position")
         return rows.merge(path_by_position(self.pressure), on=["torque_n_m", "position"], how="left")
-
-
-def stored_cases(names: Sequence[Sequence[str]], files: Mapping[str, Sequence[str]]) -> list[StudiedContact]:
-    """The cases of which study, point and label are given, from as many files `pair`, `ltca`, `by_torque` and
-    `pressure`. Raises CorruptFile for a file that is missing or altered.
-    """
-    kinds = [files[kind] for kind in ("pair", "ltca", "by_torque", "pressure")]
-    return [
-        StudiedContact(
-            study=study,
-            point=point,
-            label=label,
-            pair=documents.read(pair, ["unloaded", "backlash_um"]),
-            ltca=tables.read(ltca, LTCA_FINITE),
-            by_torque=tables.read(by_torque, ["torque_n_m", "path_radius_mm"]),
-            pressure=arrays.read(pressure, PRESSURE_ARRAYS),
-        )
-        for (study, point, label), pair, ltca, by_torque, pressure in zip(names, *kinds, strict=True)
-    ]
 
 
 def study_table(cases: Sequence[StudiedContact]) -> pd.DataFrame:

@@ -1,24 +1,53 @@
-"""Write what a stage found, each file in the format that its ending names."""
+"""Read and write one part of what a stage gives, in the format that the ending of its file names."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from facegear.io import arrays, documents, tables
+from facegear.io.atomic import atomic_path
 
 
-def write_all(content: Mapping[str, Any], paths: Mapping[str, str | Path]) -> None:
-    """Write every part of `content` to the path of the same name: csv, parquet, npz or json."""
-    for name, part in content.items():
-        path = Path(paths[name])
-        if path.suffix == ".csv":
-            tables.write(path, part)
-        elif path.suffix == ".parquet":
-            # Imported here: only the results of many samples need its library.
-            from facegear.io import columnar
+def read_part(
+    path: Path,
+    holds: Mapping[str, tuple[int | None, ...]] | Sequence[str] = (),
+    may_be_empty: bool = False,
+    text: Sequence[str] = (),
+) -> Any:
+    """A table, a mapping of arrays or a record.
 
-            columnar.write(path, part)
-        elif path.suffix == ".npz":
-            arrays.write(path, **part)
-        else:
-            documents.write(path, part)
+    `holds`: columns of a table, shapes of arrays, keys of a record; `text`: columns that stay text. Raises
+    CorruptFile if the file is missing, altered or lacks something.
+    """
+    if path.suffix == ".npz":
+        return arrays.read(path, holds if isinstance(holds, Mapping) else {})
+    if path.suffix == ".parquet":
+        # Imported here: only the results of many samples need its library.
+        from facegear.io import columnar
+
+        return columnar.read(path, tuple(holds))
+    if path.suffix == ".json":
+        return documents.read(path, tuple(holds))
+    return tables.read(path, tuple(holds), may_be_empty, text)
+
+
+def write_part(path: str | Path, part: Any) -> None:
+    """Write csv, parquet, npz, json or vtu; bytes are written as they are."""
+    path = Path(path)
+    if isinstance(part, bytes):
+        with atomic_path(path) as temporary:
+            temporary.write_bytes(part)
+    elif path.suffix == ".csv":
+        tables.write(path, part)
+    elif path.suffix == ".parquet":
+        from facegear.io import columnar
+
+        columnar.write(path, part)
+    elif path.suffix == ".npz":
+        arrays.write(path, **part)
+    elif path.suffix == ".vtu":
+        from facegear.io.meshes import write_vtu
+
+        write_vtu(path, *part)
+    else:
+        documents.write(path, part)

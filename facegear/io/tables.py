@@ -1,6 +1,6 @@
 """Read and write csv tables; units stand in the column names."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -46,9 +46,3 @@ def read(
     if bad:
         raise CorruptFile(path, f"column {bad[0]!r} holds a value that is not finite")
     return frame
-
-
-def read_joined(paths: Iterable[str | Path], allow_empty: bool = False) -> pd.DataFrame:
-    """Rows of several tables, one after another. Raises CorruptFile as `read` does."""
-    read_all = [read(path, allow_empty=allow_empty) for path in paths]
-    return pd.concat([one for one in read_all if not one.empty] or read_all, ignore_index=True)

@@ -214,3 +214,23 @@ def multipliers(table: pd.DataFrame, branch: int = 0) -> Figure:
         figure.colorbar(drawn, ax=axis, label="pinion speed (rpm)", shrink=0.8)
         figure.suptitle(f"Floquet multipliers along branch {branch}; outside the circle: unstable")
     return figure
+
+
+def figures(
+    branches: pd.DataFrame,
+    special: pd.DataFrame,
+    circle: pd.DataFrame,
+    coexistence: pd.DataFrame,
+    curves: pd.DataFrame,
+    sweep: pd.DataFrame,
+    speed_rpm: float,
+    pinions: Sequence[Mapping[str, Any]],
+) -> tuple[Figure, ...]:
+    """Amplitudes over speed, loci (`curves`), shares of random starts, multipliers (`circle`)."""
+    meshes = typical_meshes(pinions, branches["mesh"])
+    return (
+        amplitudes(branches, special, sweep, meshes, speed_rpm),
+        loci(curves, speed_rpm),
+        shares(coexistence),
+        multipliers(circle),
+    )

@@ -128,3 +128,8 @@ def _told(arrays: Mapping[str, NDArray], torque: float) -> str:
     tip = 1e-3 * arrays["line_load_n_per_m"][on][tips].max(initial=0.0)
     edge = f"; tip edges up to {tip:.0f} N/mm" if tip > 0 else ""
     return f"{torque:g} N m: {pressure:.0f} ± {error:.0f} MPa{edge}"
+
+
+def figures(ltca: pd.DataFrame, pressure: Mapping[str, NDArray]) -> tuple[Figure, ...]:
+    """Curves over a pitch, and the contact pattern."""
+    return contact_curves(ltca), contact_pattern(pressure)

@@ -1,10 +1,12 @@
 """Contact of the cases of a study side by side."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import matplotlib.pyplot as plt
 import pandas as pd
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from facegear.contact.studies import StudiedContact
 from facegear.plots.contact import closed, pattern_panels
@@ -45,3 +47,24 @@ def pattern_study(cases: Sequence[StudiedContact], torque: float) -> Figure:
     return pattern_panels(
         {case.label_at(torque): (case.pressure, case.torque_near(torque)) for case in cases}
     )
+
+
+def figures(
+    points: Sequence[Sequence[str]],
+    titles: Mapping[str, str],
+    torque: float,
+    pair: Sequence[Mapping[str, Any]],
+    ltca: Sequence[pd.DataFrame],
+    by_torque: Sequence[pd.DataFrame],
+    pressure: Sequence[Mapping[str, NDArray]],
+) -> list[Figure]:
+    """Curves and patterns of each study beside those of the machine itself.
+
+    `points`: study, point and label of each case; `titles`: of each study by its name.
+    """
+    machine, *others = StudiedContact.several(points, pair, ltca, by_torque, pressure)
+    found = []
+    for study, title in titles.items():
+        shown = [machine, *(case for case in others if case.study == study)]
+        found += [contact_study(shown, torque, title), pattern_study(shown, torque)]
+    return found

@@ -4,9 +4,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import pandas as pd
 from matplotlib.figure import Figure
 
 from facegear.plots.campbell import campbell, waterfall
+from facegear.plots.response import deflections
 from facegear.plots.sweep import mesh_sweeps, translations
 
 
@@ -66,3 +68,17 @@ SWEEP_FIGURES: dict[str, Callable[[Mapping[str, Any], DrawnMachine], Figure]] = 
 
 `found` holds the tables sweep, jumps, resonances, frequencies and the arrays waterfall.
 """
+
+
+def figures(
+    response: pd.DataFrame,
+    spectrum: pd.DataFrame,
+    transmission: Mapping[str, Any],
+    pinion_teeth: int,
+    speed_rpm: float,
+    **swept: Any,
+) -> list[Figure]:
+    """Deflections at the nominal speed, and every figure of SWEEP_FIGURES from the tables `swept`."""
+    machine = drawn_machine(transmission, pinion_teeth)
+    nominal = deflections(response, spectrum, machine.pinions, speed_rpm)
+    return [nominal, *(draw(swept, machine) for draw in SWEEP_FIGURES.values())]

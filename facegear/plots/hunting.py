@@ -1,10 +1,15 @@
 """Quasi-static load sharing: over the hunting cycle, against bearing stiffness, and error by error."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from facegear.config.lumped_model import wired_layout
+from facegear.plots.gearbox_layout import layout_figure
 from facegear.plots.style import NARROW, styled
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
@@ -81,3 +86,23 @@ def sensitivity_figure(table: pd.DataFrame, torque: float) -> Figure:
         figure.legend(handles=handles, loc="outside lower center", ncols=2)
         figure.suptitle(f"Which errors matter: largest first,\ninput torque {torque:g} N m")
     return figure
+
+
+def figures(
+    meshes: pd.DataFrame,
+    groups: pd.DataFrame,
+    bearings: pd.DataFrame,
+    cycles: pd.DataFrame,
+    scan: pd.DataFrame,
+    sensitivity: pd.DataFrame,
+    transmission: Mapping[str, Any],
+    teeth: Mapping[str, Any],
+) -> tuple[Figure, ...]:
+    """Layout of the machine with its mean forces, loads over the hunting cycle, bearings, single errors."""
+    torque = float(groups["torque_n_m"].iloc[0])
+    return (
+        layout_figure(wired_layout(transmission, teeth), meshes, bearings),
+        hunting_figure(cycles, meshes, torque),
+        bearing_figure(scan, torque),
+        sensitivity_figure(sensitivity, torque),
+    )

@@ -1,6 +1,7 @@
 """Load-sharing coefficients over one mesh cycle, one line a point of a study."""
 
 import textwrap
+from collections.abc import Sequence
 
 import matplotlib.pyplot as plt
 import pandas as pd
@@ -73,3 +74,15 @@ def _closed(curve: pd.DataFrame) -> pd.DataFrame:
     end = curve.iloc[[0]].copy()
     end["time_s"] = curve["time_s"].iloc[-1] + curve["time_s"].iloc[1]
     return pd.concat([curve, end], ignore_index=True)
+
+
+def figures(
+    studies: Sequence[pd.DataFrame],
+    summary: pd.DataFrame,
+    titles: Sequence[str],
+    captions: Sequence[str],
+    kinds: Sequence[str],
+) -> list[Figure]:
+    """A figure for each study and kind of group."""
+    told = zip(studies, titles, captions, strict=True)
+    return [sharing_figure(one, summary, kind, title, text) for one, title, text in told for kind in kinds]

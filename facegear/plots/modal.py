@@ -66,3 +66,8 @@ def _title(orders: tuple[int, ...], mode: pd.Series) -> str:
         return f"Mode {orders[0]}, {mode['frequency_hz']:.1f} Hz\n{mode['symbols']}"
     which = f"Modes {orders[0]} to {orders[-1]} (x {len(orders)}), {mode['frequency_hz']:.1f} Hz"
     return f"{which}, root sum of squares\n{mode['symbols']}"
+
+
+def figures(frequencies: pd.DataFrame, shapes: pd.DataFrame) -> tuple[Figure, ...]:
+    """Typical mode shapes."""
+    return (mode_shapes(frequencies, shapes),)

@@ -1,5 +1,8 @@
 """Designs of a search: the front between objectives, and how the islands came to it."""
 
+from collections.abc import Mapping, Sequence
+from typing import Any
+
 import matplotlib.pyplot as plt
 import pandas as pd
 from matplotlib.figure import Figure
@@ -54,3 +57,15 @@ def hypervolume_figure(hypervolume: pd.DataFrame) -> Figure:
         if len(hypervolume):
             legend_above(axis, 4)
     return figure
+
+
+def figures(
+    designs: pd.DataFrame,
+    front: pd.DataFrame,
+    hypervolume: pd.DataFrame,
+    winners: pd.DataFrame,
+    objectives: Sequence[Mapping[str, Any]],
+) -> tuple[Figure, ...]:
+    """The front between the objectives, and how the islands came to it."""
+    names = [objective["name"] for objective in objectives]
+    return front_figure(designs, front, winners, names), hypervolume_figure(hypervolume)

@@ -59,3 +59,13 @@ def stiffness_against_load(table: pd.DataFrame) -> Figure:
         bottom.set_xlim(left=0, right=float(np.max(table["torque_n_m"])) * 1.03)
         legend_above(top, 2)
     return figure
+
+
+def figures(tvms: pd.DataFrame, spectrum: pd.DataFrame) -> tuple[Figure, ...]:
+    """k(t) over a period, and its harmonics."""
+    return stiffness_curve(tvms), harmonic_amplitudes(spectrum)
+
+
+def load_figures(table: pd.DataFrame) -> tuple[Figure, ...]:
+    """Mean stiffness against load."""
+    return (stiffness_against_load(table),)

@@ -18,7 +18,7 @@ LINES = {"finite elements": "-", "ISO 6336-3": "--", "contact analysis": "-", "I
 MARKS = {"finite elements": "o", "ISO 6336-3": "x", "contact analysis": "s", "ISO 6336-2": "^"}
 
 
-def passage(table: pd.DataFrame) -> Figure:
+def passage_figure(table: pd.DataFrame) -> Figure:
     """Largest tension below the loaded flank, and largest compression below the other, for each torque."""
     felt = table[["largest_mpa", "smallest_mpa"]].abs().max(axis=1)
     places = table.loc[felt > PART_SHOWN * felt.max(), "passage"]
@@ -26,7 +26,7 @@ def passage(table: pd.DataFrame) -> Figure:
     return _both(shown, "passage", "Passage of a tooth (pitches)")
 
 
-def along_face(table: pd.DataFrame) -> Figure:
+def along_face_figure(table: pd.DataFrame) -> Figure:
     """The same along the face: the largest over the passage."""
     return _both(table, "radius_mm", "Gear radius (mm)")
 
@@ -115,3 +115,13 @@ def _subject(row: Any) -> str:
 
 def _label(row: Any, bins: pd.DataFrame) -> str:
     return f"{_subject(row)} ({row.failure}){'' if len(bins) else ': none'}"
+
+
+def root_figures(passage: pd.DataFrame, along_face: pd.DataFrame) -> tuple[Figure, ...]:
+    """Root stress over a passage, and along the face."""
+    return passage_figure(passage), along_face_figure(along_face)
+
+
+def rating_figures(rating: pd.DataFrame, damage: pd.DataFrame, curves: pd.DataFrame) -> tuple[Figure, ...]:
+    """Bins of the duty cycle beside the stress that may be repeated so often, and their damage."""
+    return life(rating, damage, curves), damage_by_bin(rating, damage)

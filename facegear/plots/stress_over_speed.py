@@ -45,3 +45,8 @@ def stress_over_speed(table: pd.DataFrame, speed_rpm: float) -> Figure:
         axes[-1].xaxis.set_major_locator(MaxNLocator(5))
         axes[-1].set_xlabel("Input rotation speed (rpm)")
     return figure
+
+
+def figures(table: pd.DataFrame, speed_rpm: float) -> tuple[Figure, ...]:
+    """Root stress, pressure and dynamic factor over speed."""
+    return (stress_over_speed(table, speed_rpm),)

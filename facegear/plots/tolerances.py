@@ -164,3 +164,19 @@ def _exceedance(axis: Axes, values: np.ndarray, percentiles: pd.DataFrame) -> No
         axis.axvline(row.value, color=COLOURS[1], lw=1.0, ls=PERCENTILE_LINES[row.percentile])
         if np.isfinite([row.low, row.high]).all():
             axis.axvspan(row.low, row.high, color=COLOURS[1], alpha=0.15, lw=0)
+
+
+def figures(
+    samples: pd.DataFrame, percentiles: pd.DataFrame, importance: pd.DataFrame, indices: pd.DataFrame
+) -> tuple[Figure, ...]:
+    """Distributions, what matters most, and how."""
+    return (
+        distribution_figure(samples, percentiles),
+        importance_figure(percentiles, importance, indices),
+        scatter_figure(samples, percentiles, importance, indices),
+    )
+
+
+def map_figures(load_map: pd.DataFrame) -> tuple[Figure, ...]:
+    """K_gamma of the worst path over torque and speed."""
+    return (load_map_figure(load_map),)

@@ -206,3 +206,10 @@ def _contours(
         f"pinion {gap_record['pinion_part']})",
     )
     axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.16), borderaxespad=0.0)
+
+
+def figures(
+    pair: Mapping[str, Any], flanks: Mapping[str, Array], contact: Mapping[str, Array]
+) -> tuple[Figure, ...]:
+    """Both gears in mesh, sections of both teeth, separation around the contact path."""
+    return tooth_pair(pair, flanks), tooth_sections(pair, flanks), separation(pair, flanks, contact)

@@ -8,7 +8,7 @@ import ast
 import hashlib
 import json
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
@@ -17,13 +17,13 @@ from pathlib import Path
 from facegear.errors import FacegearError
 from facegear.io.atomic import atomic_path
 
-PACKAGE = "facegear"
-STAGES = "facegear.stages."
+PACKAGES = ("facegear", "paper", "validation")
+"""The library and, in a checkout, what stands beside it."""
 
 
 @dataclass(frozen=True)
 class _Source:
-    """What counts of a file: hash of its code without docstrings, and what it imports of the package.
+    """What counts of a file: hash of its code without docstrings, and what it imports of our packages.
 
     Of `from package.module import name` that is `package.module.name` too, be it a module or not.
     """
@@ -67,23 +67,22 @@ def _version() -> str:
     return f"{sys.version_info[:2]} {hashlib.sha256(Path(__file__).read_bytes()).hexdigest()}"
 
 
-def fingerprint(script: str | Path, root: str | Path) -> str:
+def fingerprint(script: str | Path, root: str | Path, modules: Sequence[str] = ()) -> str:
     """Hash of a script's own code and of all package modules below `root` that it reaches by imports.
 
-    Templates (`*.j2`) count with the package they lie in. If the script calls a stage of `facegear.stages`,
-    the stage's own fingerprint follows after a dot, so that its results can be known without the script.
+    Templates (`*.j2`) count with the package they lie in. Where the script calls `modules` that it does not
+    import itself, their own fingerprint follows after a dot, so that results can be known without the script.
     """
     root, script = Path(root), Path(script)
-    code = _source(script, root)
-    own = _hash(code.code, reached_modules(script, root), root)
-    stages = [name for name in code.names if name.startswith(STAGES) and _exists(name, root)]
-    return ".".join([own, *(stage_fingerprint(module, root) for module in stages)])
+    own = _hash(_source(script, root).code, reached_modules(script, root), root)
+    return ".".join([own, *([stage_fingerprint(modules, root)] if modules else [])])
 
 
-def stage_fingerprint(module: str, root: str | Path) -> str:
-    """Hash of a module of the package (by its dotted name) and of all that it reaches by imports."""
+def stage_fingerprint(modules: Sequence[str], root: str | Path) -> str:
+    """Hash of modules of the package (by their dotted names) and of all that they reach by imports."""
     root = Path(root)
-    return _hash("", reached_modules(_file(module, root), root), root, module)
+    reached = {name for module in modules for name in reached_modules(_file(module, root), root)}
+    return _hash("", reached, root, *modules)
 
 
 def _hash(code: str, modules: Iterable[str], root: Path, *more: str) -> str:
@@ -129,7 +128,7 @@ def _parsed(path: Path, root: Path) -> _Source:
     for node in _executed(tree):
         if isinstance(node, ast.Import | ast.ImportFrom):
             for name in _names(node):
-                if name.split(".")[0] == PACKAGE:
+                if name.split(".")[0] in PACKAGES:
                     found.update(name.rsplit(".", depth)[0] for depth in range(name.count(".") + 1))
         elif isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
             body = node.body

@@ -40,6 +40,12 @@ def inputs_in_words(values: Mapping[str, Any]) -> list[str]:
     ]
 
 
+def inputs_caption(values: Mapping[str, Any], of_publication: bool) -> str:
+    """A figure's line of inputs; for a figure of a publication it says who chose them."""
+    lead = "Not disclosed by the paper, chosen here: " if of_publication else "Inputs of the base case: "
+    return lead + "; ".join(inputs_in_words(values))
+
+
 def _phasing(phasing: str | Mapping[str, float]) -> str:
     if isinstance(phasing, str):
         return {"in_step": "in step at all meshes", "mesh": "shifted like the mesh stiffness"}[phasing]

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.results.base import Kept, Result
+from facegear.results.base import Result
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -13,11 +13,7 @@ if TYPE_CHECKING:
 class BranchLociResult(Result):
     """Where motions end or double their period in the plane of speed and a second parameter."""
 
-    FILES: ClassVar = {
-        "loci": Kept(
-            "branches/loci.csv", ("locus", "kind", "factor", "speed_rpm"), may_be_empty=True, text=("corner",)
-        )
-    }
+    STAGE: ClassVar = "branches_loci"
 
     def table(self) -> pd.DataFrame:
         """One row a point: locus, kind, parameter and the factor on it, speed_rpm; `corner` at a cusp."""

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pandas as pd
 
 from facegear.errors import chosen
-from facegear.results.base import Kept, Result
+from facegear.results.base import Result
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -17,30 +17,8 @@ PLACE = ("branch", "period", "kind", "speed_rpm", "arc")
 class BranchesResult(Result):
     """Every periodic motion found over speed, stable or not, and the points where motions end or change."""
 
-    FILES: ClassVar = {
-        "branches": Kept("branches/branches.csv", ("branch", "speed_rpm", "stable", "mesh")),
-        "ends": Kept("branches/ends.csv", ("branch", "period", "points"), text=("tried",)),
-        "unfollowed": Kept("branches/unfollowed.csv", ("period", "origin"), may_be_empty=True),
-        "multipliers": Kept("branches/multipliers.csv", ("branch", "speed_rpm", "real", "imaginary")),
-        "special": Kept(
-            "branches/special_points.csv", PLACE, may_be_empty=True, text=("meshes", "edge", "proof")
-        ),
-        "coexistence": Kept(
-            "branches/coexistence.csv", ("speed_rpm", "share", "error"), text=("branch", "motion")
-        ),
-        "ranges": Kept("branches/ranges.csv", ("from_rpm", "to_rpm"), may_be_empty=True, text=("branches",)),
-        "margins": Kept("branches/margins.csv", ("branch", "parameter", "margin"), may_be_empty=True),
-        "swept": Kept(
-            "branches/swept.csv", ("direction", "period"), may_be_empty=True, text=("branch", "note")
-        ),
-        "jumps": Kept(
-            "branches/jumps.csv",
-            ("direction", "speed_before_rpm", "speed_after_rpm"),
-            may_be_empty=True,
-            text=("class_before", "branch", "kind", "note"),
-        ),
-        "orbits": Kept("branches/special_points.npz", {"x": (None, None)}),
-    }
+    STAGE: ClassVar = "branches"
+    BESIDE: ClassVar = {"sweep": ("dynamics_sweep", "sweep")}
 
     def table(self) -> pd.DataFrame:
         """One row a branch, point and mesh: speed, stable or not, deflections, peak force, contact."""

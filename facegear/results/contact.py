@@ -1,13 +1,11 @@
 """Loaded tooth contact."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.contact.columns import LOAD_ARRAYS, LTCA_FINITE, PRESSURE_ARRAYS
 from facegear.errors import chosen
-from facegear.results.base import Kept, Result
+from facegear.results.base import Result
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -18,12 +16,7 @@ if TYPE_CHECKING:
 class ContactResult(Result):
     """Transmission error, stiffness, load shares and pressures at every position and torque."""
 
-    FILES: ClassVar = {
-        "ltca": Kept("contact/ltca.csv", LTCA_FINITE),
-        "by_torque": Kept("contact/by_torque.csv", ("torque_n_m", "ste_peak_to_peak_um", "path_radius_mm")),
-        "pressure": Kept("contact/pressure.npz", PRESSURE_ARRAYS),
-        "loads": Kept("contact/loads.npz", LOAD_ARRAYS),
-    }
+    STAGE: ClassVar = "contact"
 
     def table(self) -> pd.DataFrame:
         """One row a torque and position; columns in docs/stages.md."""
@@ -54,13 +47,3 @@ class ContactResult(Result):
         if chosen(what, ("pattern", "curves"), "plot") == "curves":
             return contact_curves(self.content["ltca"])
         return contact_pattern(self.content["pressure"])
-
-    def save(self, folder: str | Path) -> list[Path]:
-        """Write two tables, `pressure.npz`, `loads.npz` and, for ParaView, `pressure.vtu`."""
-        from facegear.contact.pattern import pressure_surface
-        from facegear.io.meshes import write_vtu
-
-        vtu = Path(folder) / "contact" / "pressure.vtu"
-        paths = super().save(folder)
-        write_vtu(vtu, *pressure_surface(self.content["pressure"]))
-        return [*paths, vtu]

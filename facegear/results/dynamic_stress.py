@@ -4,14 +4,13 @@ from typing import ClassVar
 
 import pandas as pd
 
-from facegear.results.base import Kept, Result
-from facegear.strength.columns import DYNAMIC_STRESS_FINITE
+from facegear.results.base import Result
 
 
 class DynamicStressResult(Result):
     """Largest root stress of every mesh at the nominal speed: with its mean force, and running."""
 
-    FILES: ClassVar = {"dynamic_stress": Kept("strength/dynamic_stress.csv", DYNAMIC_STRESS_FINITE)}
+    STAGE: ClassVar = "dynamic_root_stress"
 
     def table(self) -> pd.DataFrame:
         """A row a mesh: forces, dynamic factor, root stress of both bodies (docs/strength.md)."""

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pandas as pd
 
 from facegear.errors import chosen
-from facegear.results.base import Kept, Result
+from facegear.results.base import Result
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -14,11 +14,7 @@ if TYPE_CHECKING:
 class GeometryResult(Result):
     """Limits, contact path, backlash and smallest gaps of the unloaded pair."""
 
-    FILES: ClassVar = {
-        "pair": Kept("geometry/pair.json", ("design_si", "radii_mm", "limits_mm", "smallest_gap")),
-        "flanks": Kept("geometry/flanks.npz", {"pinion_section": (None, 2), "gear_flank": (None, None, 3)}),
-        "contact": Kept("geometry/contact.npz", {"contour_gap": (None, None), "path_roll": (None,)}),
-    }
+    STAGE: ClassVar = "geometry"
 
     def table(self) -> pd.DataFrame:
         """Columns quantity and value; the unit stands at the end of a quantity's name."""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pandas as pd
 
 from facegear.errors import FacegearError, chosen
-from facegear.results.base import Kept, Result
+from facegear.results.base import Result
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -17,10 +17,7 @@ STUDY = "compared"
 class LoadSharingResult(Result):
     """Load-sharing coefficients of every group of meshes that share a load."""
 
-    FILES: ClassVar = {
-        "curve": Kept("load_sharing/nominal.csv", ("cycle_fraction",), may_be_empty=True),
-        "summary": Kept("load_sharing/nominal_summary.csv", ("group", "kind"), may_be_empty=True),
-    }
+    STAGE: ClassVar = "load_sharing"
 
     def table(self) -> pd.DataFrame:
         """One row a group: mean and its half_width, extremes, lost contact, class of motion."""

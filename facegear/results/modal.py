@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.results.base import Kept, Result
+from facegear.results.base import Result
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -13,11 +13,7 @@ if TYPE_CHECKING:
 class ModesResult(Result):
     """Natural frequencies, classes and shapes with the mean mesh stiffness, and the contacts they keep."""
 
-    FILES: ClassVar = {
-        "frequencies": Kept("modal/frequencies.csv", ("order", "frequency_hz", "symbols", "class")),
-        "contacts": Kept("modal/contacts.csv", ("contact", "state", "stiffness_n_per_m")),
-        "shapes": Kept("modal/shapes.csv", ("order", "body", "dof", "relative")),
-    }
+    STAGE: ClassVar = "modal"
 
     def table(self) -> pd.DataFrame:
         """One row a mode: order, frequency_hz, what moves (symbols), class."""

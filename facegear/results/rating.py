@@ -5,8 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pandas as pd
 
 from facegear.errors import chosen
-from facegear.results.base import Kept, Result
-from facegear.strength.columns import CURVE_COLUMNS, DAMAGE_FINITE, RATING_FINITE, SAFETY_FINITE
+from facegear.results.base import Result
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -15,12 +14,7 @@ if TYPE_CHECKING:
 class RatingResult(Result):
     """Safety against tooth breakage and pitting, and life, under the duty cycle of section strength."""
 
-    FILES: ClassVar = {
-        "safety": Kept("strength/safety.csv", SAFETY_FINITE),
-        "curves": Kept("strength/curves.csv", CURVE_COLUMNS),
-        "rating": Kept("strength/rating.csv", RATING_FINITE),
-        "damage": Kept("strength/damage.csv", DAMAGE_FINITE),
-    }
+    STAGE: ClassVar = "rating"
 
     def table(self) -> pd.DataFrame:
         """A row a flank, failure and method: stress, safety, verdict and life (docs/strength.md)."""

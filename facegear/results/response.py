@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.results.base import Kept, Result
+from facegear.results.base import Result
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -13,13 +13,7 @@ if TYPE_CHECKING:
 class ResponseResult(Result):
     """Steady state at one speed: mesh deflections and forces, spectrum, class of motion, bearing forces."""
 
-    FILES: ClassVar = {
-        "response": Kept("dynamics/response.csv", ("mesh_cycle", "mesh", "deflection_um")),
-        "spectrum": Kept("dynamics/spectrum.csv", ("mesh", "order", "amplitude_um")),
-        "summary": Kept("dynamics/summary.csv"),
-        "multipliers": Kept("dynamics/multipliers.csv", (), may_be_empty=True),
-        "bearings": Kept("dynamics/bearings.csv", ("body", "direction", "static_n", "mean_n", "peak_n")),
-    }
+    STAGE: ClassVar = "dynamics_response"
 
     def table(self) -> pd.DataFrame:
         """The numbers that a sweep keeps: quantity (unit at its end), body_or_mesh, value, class."""

@@ -1,18 +1,11 @@
 """Root stress of both gears."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
 from facegear.errors import chosen
-from facegear.results.base import Kept, Result
-from facegear.strength.columns import (
-    ALONG_FACE_COLUMNS,
-    PASSAGE_COLUMNS,
-    ROOT_STRESS_ARRAYS,
-    ROOT_STRESS_FINITE,
-)
+from facegear.results.base import Result
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,12 +16,7 @@ if TYPE_CHECKING:
 class RootStressResult(Result):
     """Stress at the fillets of both gears while a tooth passes through the mesh."""
 
-    FILES: ClassVar = {
-        "summary": Kept("strength/root_stress.csv", ROOT_STRESS_FINITE),
-        "passage": Kept("strength/passage.csv", PASSAGE_COLUMNS),
-        "along_face": Kept("strength/along_face.csv", ALONG_FACE_COLUMNS),
-        "stress": Kept("strength/root_stress.npz", ROOT_STRESS_ARRAYS),
-    }
+    STAGE: ClassVar = "root_stress"
 
     def table(self) -> pd.DataFrame:
         """Peak of each fillet with its place, a row a torque, body and fillet (docs/strength.md)."""
@@ -51,20 +39,10 @@ class RootStressResult(Result):
             attrs={"units": "MPa"},
         )
 
-    def save(self, folder: str | Path) -> list[Path]:
-        """Write three tables, `root_stress.npz` and, for ParaView, `root_stress.vtu`."""
-        from facegear.io.meshes import write_vtu
-        from facegear.strength.fillet_surface import stress_surface
-
-        vtu = Path(folder) / "strength" / "root_stress.vtu"
-        paths = super().save(folder)
-        write_vtu(vtu, *stress_surface(self.content["stress"]))
-        return [*paths, vtu]
-
     def plot(self, what: str = "passage") -> "Figure":
         """Root stress over a tooth's `passage` through the mesh, or along the `face`."""
-        from facegear.plots.strength import along_face, passage
+        from facegear.plots.strength import along_face_figure, passage_figure
 
         if chosen(what, ("passage", "face"), "plot") == "passage":
-            return passage(self.content["passage"])
-        return along_face(self.content["along_face"])
+            return passage_figure(self.content["passage"])
+        return along_face_figure(self.content["along_face"])

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pandas as pd
 
 from facegear.errors import chosen
-from facegear.results.base import Kept, Result
+from facegear.results.base import Result
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -16,12 +16,7 @@ KINDS = ("front", "hypervolume")
 class SearchResult(Result):
     """Front of a design search, the winners beside the nominal design, and the spread over seeds."""
 
-    FILES: ClassVar = {
-        "designs": Kept("search/designs.parquet", ("generation", "seed", "error")),
-        "front": Kept("search/front.csv", may_be_empty=True),
-        "hypervolume": Kept("search/hypervolume.csv", may_be_empty=True),
-        "winners": Kept("search/winners.csv"),
-    }
+    STAGE: ClassVar = "search"
 
     def table(self) -> pd.DataFrame:
         """One row a design of the front: variables and goals."""

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pandas as pd
 
 from facegear.errors import chosen
-from facegear.results.base import Kept, Result
+from facegear.results.base import Result
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -16,11 +16,7 @@ HARMONICS = ("order", "a_n_per_m", "b_n_per_m", "amplitude_n_per_m")
 class StiffnessResult(Result):
     """k(t) that the lumped model uses."""
 
-    FILES: ClassVar = {
-        "tvms": Kept("stiffness/tvms.csv", ("position", "k_n_per_m", "k_series_n_per_m")),
-        "harmonics": Kept("stiffness/harmonics.csv", HARMONICS),
-        "spectrum": Kept("stiffness/spectrum.csv", ("order", "amplitude_n_per_m")),
-    }
+    STAGE: ClassVar = "stiffness"
 
     def table(self) -> pd.DataFrame:
         """Orders kept of k = sum a sin(j w t) + b cos(j w t), with the errors of cutting and sampling."""

@@ -7,14 +7,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from facegear.config.needs import NEEDS, stage_needs, stages_before
 from facegear.errors import CorruptFile, extras_named
-from facegear.results.base import Result
+from facegear.pipeline.needs import stage_needs, stages_before
+from facegear.pipeline.stage import Wildcards
+from facegear.pipeline.table import STAGES
+from facegear.results.base import Found
 
 if TYPE_CHECKING:
     from facegear.stages.outcome import Outcome
 
-Found = TypeVar("Found", bound=Result)
 Value = TypeVar("Value")
 Values = Mapping[str, Any]
 ROOT = Path(__file__).parents[2]
@@ -31,58 +32,54 @@ class Store:
     folder: Path | None = None
     known: dict[str, Any] = field(default_factory=dict)
 
-    def result(self, rule: str, values: Values, kind: type[Found], compute: Callable[[], "Outcome"]) -> Found:
-        """A stage's result: known already, else stored and current, else computed."""
+    def found(self, name: str, values: Values, compute: Callable[[], "Outcome"]) -> Found:
+        """All that a stage gives: known already, else stored and current, else computed."""
 
         def find() -> Found:
-            stored = self._stored(kind, values)
+            stored = self._stored(name, values)
             if stored is not None:
                 return stored
-            found = compute()
-            return kind(found.content, found.summary, "computed", values)
+            outcome = compute()
+            return Found(outcome.content, outcome.summary, "computed")
 
-        return self._once((rule,), values, find)
+        return self._once(name, (), values, find)
 
     def part(
-        self,
-        rule: str,
-        name: str,
-        values: Values,
-        path: str,
-        read: Callable[[Path], Value],
-        compute: Callable[[], Value],
-    ) -> Value:
-        """As `result`, for the part of a stage's results that is kept in the single file `path`."""
+        self, name: str, file: str, wildcards: Wildcards, values: Values, compute: Callable[[], Any]
+    ) -> Any:
+        """As `found`, for one file of a stage that has wildcards."""
 
-        def find() -> Value:
-            if self.folder is not None and self._current_manifest(file := self.folder / path, values):
-                stored = _unless_corrupt(lambda: read(file))
+        def find() -> Any:
+            kept = STAGES[name].files[file]
+            path = None if self.folder is None else self.folder / kept.at(wildcards)
+            if path is not None and self._current_manifest(path, values):
+                stored = _unless_corrupt(lambda: kept.read(path))
                 if stored is not None:
                     return stored
             return compute()
 
-        return self._once((rule, name), values, find)
+        return self._once(name, (file, *wildcards.values()), values, find)
 
-    def _once(self, name: tuple[str, ...], values: Values, find: Callable[[], Value]) -> Value:
+    def _once(self, name: str, part: tuple[str, ...], values: Values, find: Callable[[], Value]) -> Value:
         """What `find` gives, kept under the part of the config that it depends on."""
-        rules = stages_before(name[0], values)
-        key = json.dumps([name, [stage_needs(rule, values) for rule in rules]])
+        needs = [stage_needs(stage, values) for stage in stages_before(name, values)]
+        key = json.dumps([name, part, needs])
         if key not in self.known:
             with extras_named():
                 self.known[key] = find()
         return self.known[key]
 
-    def _stored(self, kind: type[Found], values: Values) -> Found | None:
+    def _stored(self, name: str, values: Values) -> Found | None:
         if self.folder is None:
             return None
-        folder, summary = self.folder, ""
-        for kept in kind.FILES.values():
-            manifest = self._current_manifest(folder / kept.path, values)
+        folder, summary, files = self.folder, "", STAGES[name].readable
+        for file in files.values():
+            manifest = self._current_manifest(folder / file.path, values)
             if manifest is None:
                 return None
             summary = manifest["summary"]
-        content = _unless_corrupt(lambda: {name: kept.read(folder) for name, kept in kind.FILES.items()})
-        return None if content is None else kind(content, summary, "stored", values)
+        content = _unless_corrupt(lambda: {key: file.read(folder / file.path) for key, file in files.items()})
+        return None if content is None else Found(content, summary, "stored")
 
     def _current_manifest(self, path: Path, values: Values) -> Mapping[str, Any] | None:
         from facegear.provenance.current import current_manifest
@@ -90,8 +87,8 @@ class Store:
 
         return current_manifest(
             path,
-            lambda rule: stage_needs(rule, values) if rule in NEEDS else None,
-            lambda rule: stage_fingerprint(f"facegear.stages.{rule}", ROOT),
+            lambda rule: stage_needs(rule, values) if rule in STAGES else None,
+            lambda rule: stage_fingerprint(STAGES[rule].modules, ROOT),
         )
 
 

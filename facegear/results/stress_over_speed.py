@@ -4,8 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.results.base import Kept, Result
-from facegear.strength.columns import STRESS_OVER_SPEED_FINITE
+from facegear.results.base import Result
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -14,9 +13,7 @@ if TYPE_CHECKING:
 class StressOverSpeedResult(Result):
     """Largest root stress and pressure of all meshes under every motion known at a speed."""
 
-    FILES: ClassVar = {
-        "stress_over_speed": Kept("strength/stress_over_speed.csv", STRESS_OVER_SPEED_FINITE),
-    }
+    STAGE: ClassVar = "stress_over_speed"
 
     def table(self) -> pd.DataFrame:
         """A row a motion and speed; `worst` marks the hardest of all known at it (docs/strength.md)."""

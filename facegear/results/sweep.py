@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pandas as pd
 
 from facegear.errors import chosen
-from facegear.results.base import Kept, Result
+from facegear.results.base import Result
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -18,13 +18,8 @@ SWEEP = ("direction", "speed_rpm", "quantity", "body_or_mesh", "value", "class")
 class SweepResult(Result):
     """Steady states over speed, up and down, with jumps and resonances."""
 
-    FILES: ClassVar = {
-        "sweep": Kept("dynamics/sweep.csv", SWEEP),
-        "jumps": Kept("dynamics/jumps.csv", ("direction", "speed_after_rpm"), may_be_empty=True),
-        "resonances": Kept("dynamics/resonances.csv", ("speed_rpm", "resonance"), may_be_empty=True),
-        "seams": Kept("dynamics/seams.csv", (), may_be_empty=True),
-        "waterfall": Kept("dynamics/waterfall.npz", {"orders": (None,)}),
-    }
+    STAGE: ClassVar = "dynamics_sweep"
+    BESIDE: ClassVar = {"frequencies": ("modal", "frequencies")}
 
     def table(self) -> "xr.Dataset":
         """Every quantity (unit at the end of its name) over direction, speed_rpm and mesh or body.

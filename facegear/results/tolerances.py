@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, ClassVar
 import pandas as pd
 
 from facegear.errors import chosen
-from facegear.results.base import Kept, Result
+from facegear.results.base import Result
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -16,10 +16,7 @@ KINDS = ("distributions", "importance", "scatter")
 class LoadMapResult(Result):
     """Percentiles, and shares of machines that open or reverse, over torque and speed."""
 
-    FILES: ClassVar = {
-        "load_map": Kept("tolerances/load_map.csv", ("torque_factor", "speed_rpm", "value")),
-        "load_shares": Kept("tolerances/load_shares.csv", ("torque_factor", "speed_rpm", "share")),
-    }
+    STAGE: ClassVar = "tolerances_map"
 
     def table(self) -> pd.DataFrame:
         """One row a torque, speed, quantity and percentile: value, and the interval that holds it."""
@@ -39,13 +36,7 @@ class LoadMapResult(Result):
 class TolerancesResult(Result):
     """Percentiles of K_gamma and mesh forces, shares of machines that open or reverse, what matters most."""
 
-    FILES: ClassVar = {
-        "samples": Kept("tolerances/samples.parquet", ("sample", "error")),
-        "percentiles": Kept("tolerances/percentiles.csv", ("percentile", "value"), may_be_empty=True),
-        "shares": Kept("tolerances/shares.csv", ("share",)),
-        "importance": Kept("tolerances/importance.csv"),
-        "indices": Kept("tolerances/indices.csv", may_be_empty=True),
-    }
+    STAGE: ClassVar = "tolerances"
 
     def table(self) -> pd.DataFrame:
         """One row a quantity and percentile: value, and the confidence interval that holds it."""

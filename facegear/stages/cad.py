@@ -2,10 +2,8 @@
 
 from collections.abc import Mapping
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
-
-from numpy import float64
-from numpy.typing import NDArray
 
 from facegear.config.base import parse
 from facegear.config.mesh import Mesh
@@ -13,12 +11,22 @@ from facegear.config.tooth_pair import pair
 from facegear.errors import FacegearError, chosen
 from facegear.geometry.solids import BODIES, Body, solid, teeth_of, triangles
 from facegear.io.cad import write_step, write_stl
+from facegear.stages.outcome import Outcome
 
 
-def cad(body: Body, tooth_pair: Mapping[str, Any], mesh: Mapping[str, Any]) -> list[NDArray[float64]]:
-    """Patches of as many teeth of a body as mesh files hold. Raises ConfigError for a pair without bodies."""
+def cad(body: Body, tooth_pair: Mapping[str, Any], mesh: Mapping[str, Any]) -> Outcome:
+    """`step` and `stl` (bytes of a file) of as many teeth of a body as mesh files hold.
+
+    Raises ConfigError for a pair without bodies.
+    """
     design = pair(tooth_pair).design
-    return solid(design, body, min(parse(Mesh, mesh).exported_teeth, teeth_of(design, body)))
+    patches = solid(design, body, min(parse(Mesh, mesh).exported_teeth, teeth_of(design, body)))
+    with TemporaryDirectory() as folder:
+        step, stl = Path(folder, "body.step"), Path(folder, "body.stl")
+        volume = write_step(step, patches, body)
+        write_stl(stl, triangles(patches))
+        content = {"step": step.read_bytes(), "stl": stl.read_bytes()}
+    return Outcome(content, f"{len(patches)} surfaces around {1e9 * volume:.2f} mm3")
 
 
 def export(path: str | Path, body: str, teeth: int | None, tooth_pair: Mapping[str, Any]) -> Path:

@@ -5,11 +5,12 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.tooth_pair import pair
-from facegear.contact.gear_flank import GearFlank
+from facegear.contact.gear_flank import GearFlank, from_arrays
 from facegear.contact.ltca import even_positions, loaded_contact
 from facegear.contact.nodal_loads import load_arrays
 from facegear.contact.pair import contact_model
@@ -23,12 +24,22 @@ WORTH_A_WORD = 0.005
 
 
 def contact(
-    pinion: GearFlank, face_gear: GearFlank, tooth_pair: Mapping[str, Any], contact: Mapping[str, Any]
+    pinion: Mapping[str, NDArray],
+    face_gear: Mapping[str, NDArray],
+    tooth_pair: Mapping[str, Any],
+    contact: Mapping[str, Any],
 ) -> Outcome:
-    """`ltca`, `by_torque` (tables), `pressure`, `loads` (arrays).
+    """`ltca`, `by_torque` (tables), `pressure`, `loads` (arrays) from the flanks of stage compliance.
 
     Raises NotConverged naming position and torque.
     """
+    return contact_of(from_arrays(pinion), from_arrays(face_gear), tooth_pair, contact)
+
+
+def contact_of(
+    pinion: GearFlank, face_gear: GearFlank, tooth_pair: Mapping[str, Any], contact: Mapping[str, Any]
+) -> Outcome:
+    """`contact` of flanks in memory."""
     plan = contact_plan(parse(Contact, contact))
     teeth = pair(tooth_pair)
     model = contact_model(teeth.design, pinion, face_gear)

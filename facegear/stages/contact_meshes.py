@@ -8,14 +8,13 @@ from facegear.config.base import parse
 from facegear.config.checks import geometric_backlash
 from facegear.config.contact_setup import contact_setup
 from facegear.config.lumped_model import ToothNumbers
-from facegear.config.needs import without
 from facegear.config.tooth_pair import ToothPair, materials
-from facegear.config.variants import GAPS, MODULI
+from facegear.config.variants import GAPS, MODULI, without
 from facegear.contact.gear_flank import GearFlank
 from facegear.contact.nodal_loads import BODIES
 from facegear.contact.resolution import check_resolution
-from facegear.stages.compliance import compliance
-from facegear.stages.contact import contact
+from facegear.stages.compliance import flank_of
+from facegear.stages.contact import contact_of
 from facegear.stages.root_stress import passing
 from facegear.stages.stiffness import stiffness
 from facegear.stages.tooth_meshes import Flanks, Meshes, ToothMesh, Values, numbers_of
@@ -41,7 +40,7 @@ def meshes_in_contact(pair: Values, flanks: Flanks) -> Meshes:
         section = parse(ToothPair, values, "this pair")
         added = geometric_backlash(section) - backlash
         both = bodies(values)
-        found = contact(*both, values, pair["contact"]).content
+        found = contact_of(*both, values, pair["contact"]).content
         table = stiffness(pair["mesh_stiffness"], found["ltca"]).content["harmonics"]
         numbers = numbers_of(values)
         return ToothMesh(
@@ -78,7 +77,7 @@ def _bodies(pair: Values, flanks: Flanks) -> Callable[[Values], tuple[GearFlank,
         if key not in known:
             setup = contact_setup(values, pair["mesh"], pair["contact"])
             check_resolution(setup.pair.design, setup.pair.materials, setup.sizes, setup.plan)
-            made = {body: compliance(body, values, pair["mesh"], pair["contact"]) for body in BODIES}
+            made = {body: flank_of(body, values, pair["mesh"], pair["contact"]) for body in BODIES}
             if len(known) > KEPT_BODIES:
                 known.pop(list(known)[1])
             known[key] = values, made

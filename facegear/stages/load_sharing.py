@@ -21,17 +21,13 @@ def load_sharing(
     accuracy: Mapping[str, Any],
     speed_rpm: float,
     options: Mapping[str, Any],
-    start: int = 0,
 ) -> Outcome:
-    """`curve` and `summary` (tables) of the motion from a starting state. Raises NotConverged naming the
-    speed.
-    """
+    """`curve` and `summary` (tables). Raises NotConverged naming the speed."""
     found = shared(
         wired_machine(transmission, teeth, harmonics),
         speed_rpm,
         settings(parse(Accuracy, accuracy)),
         sharing_options(parse(LoadSharing, options)),
-        start,
     )
     summary = summary_table(found)
     means = ", ".join(f"{row.group} {row.mean:.3f}" for row in summary.itertuples())

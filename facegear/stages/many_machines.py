@@ -1,11 +1,12 @@
 """Machines put together and judged again and again: what samples and designs have in common."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import pandas as pd
+from numpy.typing import NDArray
 
 from facegear.config.base import parse
 from facegear.config.buildable import require_buildable
@@ -19,7 +20,7 @@ from facegear.dynamics.sweeps.plan import JumpRange
 from facegear.load_sharing.quantities import dynamic_quantities, quasi_static_quantities
 from facegear.load_sharing.quantity_names import JUMP_MARGIN, PEAK, quantity_names
 from facegear.scenarios.chunks import identity
-from facegear.stages.tooth_meshes import Flanks, Meshes, Values, tooth_meshes
+from facegear.stages.tooth_meshes import Flanks, Meshes, Values, stored_flanks, tooth_meshes
 from facegear.transmission.layout import Layout
 
 Judge = Callable[[Mapping[str, Any]], dict[str, float]]
@@ -64,6 +65,11 @@ class VariedMachine:
     tolerances: Values | None
     pair: Values | None = None
     flanks: Flanks = field(default_factory=dict)
+
+    @classmethod
+    def of_stage(cls, flanks: Sequence[Mapping[str, NDArray]] = (), **given: Any) -> Self:
+        """From the arguments of a stage; `flanks`: arrays of both bodies from stage compliance, if any."""
+        return cls(flanks=stored_flanks(flanks), **given)
 
     @cached_property
     def meshes(self) -> Meshes:

@@ -1,13 +1,37 @@
-"""Structured meshes of both bodies, for gmsh, ParaView, Abaqus and CalculiX."""
+"""Meshes of both bodies as files for gmsh, ParaView, Abaqus and CalculiX."""
 
 from collections.abc import Mapping
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
+
+import pandas as pd
 
 from facegear.config.base import parse
 from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.tooth_pair import pair
+from facegear.mesh.export import write_files
 from facegear.mesh.sector import SectorMesh, sector
 from facegear.mesh.tooth import gear_tooth, pinion_tooth
+from facegear.stages.outcome import Outcome
+
+KINDS = ("msh", "vtu", "inp")
+
+
+def mesh(tooth_pair: Mapping[str, Any], mesh: Mapping[str, Any]) -> Outcome:
+    """`<body>_<kind>` (bytes of a mesh file) for both bodies and KINDS, and `quality` (table)."""
+    content: dict[str, Any] = {}
+    quality = []
+    with TemporaryDirectory() as folder:
+        for body, found in meshes(tooth_pair, mesh).items():
+            files = [Path(folder, f"{body}.{kind}") for kind in KINDS]
+            quality.append(write_files(found, *files))
+            content |= {f"{body}_{kind}": file.read_bytes() for kind, file in zip(KINDS, files, strict=True)}
+    table = pd.concat(quality, ignore_index=True)
+    worst = table.query("quantity == 'scaled_jacobian'")["value"].min()
+    elements = int(table.query("quantity == 'elements'")["value"].sum())
+    told = f"{elements} hexahedra, smallest scaled Jacobian {worst:.3f}"
+    return Outcome({**content, "quality": table}, told)
 
 
 def meshes(tooth_pair: Mapping[str, Any], mesh: Mapping[str, Any]) -> dict[str, SectorMesh]:

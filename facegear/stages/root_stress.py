@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.contact.gear_flank import GearFlank
+from facegear.contact.gear_flank import GearFlank, from_arrays
 from facegear.contact.nodal_loads import loads_by_tooth
 from facegear.errors import ConfigError
 from facegear.stages.outcome import Outcome
@@ -14,12 +14,16 @@ from facegear.strength.root_stress import RootStress
 from facegear.strength.root_tables import root_arrays, root_tables
 
 
-def root_stress(pinion: GearFlank, face_gear: GearFlank, loads: Mapping[str, NDArray]) -> Outcome:
-    """`summary`, `passage`, `along_face` (tables) and `stress` (arrays) from the loads of stage contact.
+def root_stress(
+    pinion: Mapping[str, NDArray], face_gear: Mapping[str, NDArray], loads: Mapping[str, NDArray]
+) -> Outcome:
+    """`summary`, `passage`, `along_face` (tables) and `stress` (arrays).
+
+    From the flanks of stage compliance and the loads of stage contact.
 
     Raises ConfigError where the fillets carry no gauges.
     """
-    flanks = {"pinion": pinion, "face_gear": face_gear}
+    flanks = {"pinion": from_arrays(pinion), "face_gear": from_arrays(face_gear)}
     found = {body: passing(body, flank, loads) for body, flank in flanks.items()}
     positions = {body: flank.gauges.position for body, flank in flanks.items() if flank.gauges}
     tables = root_tables(found)

@@ -1,6 +1,7 @@
 """The front of all islands of a search, how far it may be trusted, and its winners at full accuracy."""
 
-from collections.abc import Mapping
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -14,18 +15,22 @@ WHOLE = 2**31
 """More mesh cycles than any hunting cycle has: all of them."""
 
 
-def search(islands: Mapping[int, pd.DataFrame], given: SearchedMachine) -> Outcome:
-    """`designs`, `front`, `hypervolume`, `winners` (tables) from the designs of each island by its seed."""
-    asked = task(given.section)
-    every = pd.concat([one.assign(seed=seed) for seed, one in islands.items()], ignore_index=True)
+def search(islands: Sequence[pd.DataFrame], **given: Any) -> Outcome:
+    """`designs`, `front`, `hypervolume`, `winners` (tables) from the designs of each island.
+
+    `islands`: in the order of the config's seeds; `given`: fields of SearchedMachine.
+    """
+    machine = SearchedMachine.of_stage(**given)
+    asked, by_seed = task(machine.section), dict(zip(machine.section.seeds, islands, strict=True))
+    every = pd.concat([one.assign(seed=seed) for seed, one in by_seed.items()], ignore_index=True)
     best = front(every, asked)
-    covered = hypervolumes(islands, asked)
+    covered = hypervolumes(by_seed, asked)
     return Outcome(
         {
             "designs": every,
             "front": best,
             "hypervolume": covered,
-            "winners": _winners(best, asked, given),
+            "winners": _winners(best, asked, machine),
         },
         f"front of {len(best)} designs out of {len(every)}; {_spread(covered)}",
     )

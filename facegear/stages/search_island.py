@@ -2,6 +2,7 @@
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 from facegear.progress import Progress
 from facegear.scenarios.evolution import Effort, evolve
@@ -9,19 +10,18 @@ from facegear.stages.designs import SearchedMachine, assessor, task
 from facegear.stages.outcome import Outcome
 
 
-def search_island(
-    seed: int, given: SearchedMachine, partial: str | Path | None = None, code: str = ""
-) -> Outcome:
+def search_island(seed: int, partial: str | Path | None = None, code: str = "", **given: Any) -> Outcome:
     """`designs` (table): every design tried, its generation, its goals, the error where it has none.
 
     `partial` is a file that keeps finished designs, so that a killed island goes on after its last one; it
-    counts only for the same config and `code`.
+    counts only for the same config and `code`. `given`: fields of SearchedMachine.
     """
-    section = given.section
-    assess = assessor(given, section.hunting_cycles, section.samples)
+    machine = SearchedMachine.of_stage(**given)
+    section = machine.section
+    assess = assessor(machine, section.hunting_cycles, section.samples)
     effort = Effort(section.population, section.generations, seed)
     progress = Progress(f"search from seed {seed}", effort.population * effort.generations)
-    same = given.identity(seed, code)
+    same = machine.identity(seed, code)
     with TemporaryDirectory() as folder:
         kept = Path(folder) / "partial" if partial is None else partial
         designs = evolve(task(section), lambda design: assess(design)[0], effort, kept, same, progress.step)

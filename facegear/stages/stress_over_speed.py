@@ -18,13 +18,13 @@ from facegear.transmission.statics import static_equilibrium
 
 def stress_over_speed(
     sweep: pd.DataFrame,
-    branches: pd.DataFrame | None,
     stress: Mapping[str, NDArray],
     by_torque: pd.DataFrame,
     harmonics: pd.DataFrame,
     transmission: Mapping[str, Any],
     teeth: Mapping[str, Any],
     tooth_pair: Mapping[str, Any],
+    branches: pd.DataFrame | None = None,
 ) -> Outcome:
     """`stress_over_speed` (table) from the sweep and, where there are any, the branches.
 

@@ -1,6 +1,7 @@
 """A chunk of samples of one machine with its tolerances."""
 
 from pathlib import Path
+from typing import Any
 
 from facegear.config.tolerances import Design
 from facegear.scenarios.sampling import index_samples, samples
@@ -12,15 +13,28 @@ def tolerances_chunk(
     design: Design,
     first: int,
     last: int,
-    machine: SampledMachine,
     partial: str | Path | None = None,
     code: str = "",
+    **given: Any,
 ) -> Outcome:
     """`chunk` (table): samples `first` to `last`, the values of their causes, what was found, the error.
 
     A sample that cannot be built or computed is a row with its error. `partial` is a file that keeps finished
     samples, so that a killed chunk goes on after its last one; it counts only for the same config and `code`.
+    `given`: fields of SampledMachine.
     """
+    return chunk_of(SampledMachine.of_stage(**given), design, first, last, partial, code)
+
+
+def chunk_of(
+    machine: SampledMachine,
+    design: Design,
+    first: int,
+    last: int,
+    partial: str | Path | None = None,
+    code: str = "",
+) -> Outcome:
+    """`tolerances_chunk` of a machine in memory."""
     draw = samples if design == "samples" else index_samples
     judge, values = machine.judge, draw(machine.causes, first, last - first + 1)
 

@@ -1,6 +1,7 @@
 """Percentiles of a machine with its tolerances over torque and speed."""
 
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -19,13 +20,15 @@ COLUMNS = (
 )
 
 
-def tolerances_map(machine: SampledMachine, partial: str | Path | None = None, code: str = "") -> Outcome:
+def tolerances_map(partial: str | Path | None = None, code: str = "", **given: Any) -> Outcome:
     """`load_map` (table): percentiles of every quantity at every torque and speed, COLUMNS; `load_shares`
     (table): share of the machines that fail, open or change their flank there.
 
     The same machines at every load, so that differences between loads are no accident of the samples. The
-    mesh stiffness stays that of mesh_stiffness.torque_n_m. `partial` and `code` as of `tolerances_chunk`.
+    mesh stiffness stays that of mesh_stiffness.torque_n_m. `partial`, `code` and `given` as of
+    `tolerances_chunk`.
     """
+    machine = SampledMachine.of_stage(**given)
     section, judge = machine.section, machine.judge
     asked = section.load_map or LoadMap()
     values, loads = samples(machine.causes, 0, asked.samples), asked.loads(machine.speed_rpm)

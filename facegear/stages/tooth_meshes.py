@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import pandas as pd
+from numpy.typing import NDArray
 
 from facegear.config.lumped_model import TEETH, ToothNumbers, tooth_numbers
 from facegear.harmonics.series import Harmonics
@@ -78,15 +79,14 @@ def tooth_meshes(harmonics: pd.DataFrame, pair: Values | None, flanks: Flanks) -
     return lambda values: ToothMesh(numbers_of(values), series, error)
 
 
-def read_flanks(paths: Sequence[str]) -> Flanks:
-    """From the files of the pinion and of the face gear, or from none where there is no contact."""
-    if not paths:
+def stored_flanks(arrays: Sequence[Mapping[str, NDArray]]) -> Flanks:
+    """From the arrays of the pinion and of the face gear, or from none where there is no contact."""
+    if not arrays:
         return {}
-    from facegear.contact.gear_flank import STORED, from_arrays
+    from facegear.contact.gear_flank import from_arrays
     from facegear.contact.nodal_loads import BODIES
-    from facegear.io import arrays
 
-    return {body: from_arrays(arrays.read(path, STORED)) for body, path in zip(BODIES, paths, strict=True)}
+    return {body: from_arrays(one) for body, one in zip(BODIES, arrays, strict=True)}
 
 
 def numbers_of(tooth_pair: Values) -> ToothNumbers:

@@ -15,7 +15,7 @@ from facegear.geometry.design import FaceGear, PairDesign, Pinion, Shaper
 from facegear.mesh.sizes import named_sizes
 from facegear.strength.root_stress import down_the_fillet
 from facegear.strength.spur import SpurGear, SpurMesh
-from facegear.validation.contact.twin import slab_tooth
+from validation.contact.twin import slab_tooth
 
 
 def fzg_c() -> SpurMesh:

@@ -17,8 +17,10 @@ FILES = {
     "facegear/example.yaml",
     "facegear/config/config.schema.json",
     "facegear/report/page.html.j2",
-    "facegear/paper/scorecard/scorecard.html.j2",
 }
+
+
+TENANTS = ("paper", "validation")
 
 
 def pip(*arguments):
@@ -31,9 +33,9 @@ def pip(*arguments):
 def installed(tmp_path_factory):
     """Where the wheel of the sources as they stand is installed; no network, nothing of the checkout."""
     sources, wheels, site = (tmp_path_factory.mktemp(name) for name in ("sources", "wheels", "site"))
-    shutil.copytree(
-        ROOT / "facegear", sources / "facegear", ignore=shutil.ignore_patterns("__pycache__", "*.egg-info")
-    )
+    for name in ("facegear", *TENANTS):
+        ignored = shutil.ignore_patterns("__pycache__", "*.egg-info")
+        shutil.copytree(ROOT / name, sources / name, ignore=ignored)
     for name in ("pyproject.toml", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, sources)
     offline = ("--no-deps", "--no-index", "--no-cache-dir")
@@ -79,6 +81,11 @@ def test_wheel_holds_every_module_template_and_schema(installed):
     modules = {str(path.relative_to(ROOT)) for path in (ROOT / "facegear").rglob("*.py")}
     held = {str(path.relative_to(installed)) for path in installed.rglob("*") if path.is_file()}
     assert modules | FILES <= held
+
+
+@pytest.mark.xdist_group("wheel")
+def test_wheel_holds_neither_the_reproduction_nor_the_validation(installed):
+    assert {path.name for path in installed.iterdir() if path.suffix != ".dist-info"} == {"facegear"}
 
 
 @pytest.mark.xdist_group("wheel")

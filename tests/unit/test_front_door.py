@@ -11,9 +11,7 @@ import facegear
 from facegear.errors import FacegearError
 
 ROOT = Path(__file__).parents[2]
-HEAVY = (
-    "{'matplotlib', 'numba', 'skfem', 'gmsh', 'meshio', 'snakemake', 'facegear.paper', 'facegear.validation'}"
-)
+HEAVY = "{'matplotlib', 'numba', 'skfem', 'gmsh', 'meshio', 'snakemake', 'paper', 'validation'}"
 
 
 @pytest.fixture(scope="module")
@@ -73,9 +71,9 @@ def test_numpy_values_and_single_torques_are_as_good_as_lists(gearbox):
 
 def test_a_change_of_backlash_computes_no_contact_again(gearbox):
     tight = gearbox.with_values({"transmission.backlash_um": 80})
-    assert tight.contact() is gearbox.contact()
-    assert tight.stiffness() is gearbox.stiffness()
-    assert tight.load_sharing() is not gearbox.load_sharing()
+    assert tight.contact().content["ltca"] is gearbox.contact().content["ltca"]
+    assert tight.stiffness().content["tvms"] is gearbox.stiffness().content["tvms"]
+    assert tight.load_sharing().content["curve"] is not gearbox.load_sharing().content["curve"]
 
 
 def test_a_change_of_teeth_forgets_the_contact(gearbox):

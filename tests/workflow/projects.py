@@ -12,7 +12,8 @@ from pathlib import Path
 from facegear.provenance.fingerprint import fingerprint, remember
 
 ROOT = Path(__file__).parents[2]
-FOLDERS = ("workflow", "profiles", "facegear", "config")
+FOLDERS = ("workflow", "profiles", "facegear", "paper", "validation", "config")
+SCRIPTS = sorted(path for name in FOLDERS for path in (ROOT / name / "scripts").glob("*.py"))
 PARSED = "facegear_sources.json"
 """In Snakemake's folder: what counts of each source file."""
 
@@ -63,7 +64,7 @@ class Project:
 @cache
 def parsed_sources() -> bytes:
     """What `remember` stores of this checkout's sources."""
-    for script in (ROOT / "workflow" / "scripts").glob("*.py"):
+    for script in SCRIPTS:
         fingerprint(script, ROOT)
     with tempfile.TemporaryDirectory() as folder:
         remember(Path(folder) / PARSED)

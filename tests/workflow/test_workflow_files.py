@@ -2,20 +2,20 @@
 
 import ast
 import json
-import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
-from projects import ROOT, Project
+from projects import FOLDERS, ROOT, SCRIPTS, Project
 
 from facegear.config.load import load_values
 from facegear.config.yaml_file import read_yaml
+from facegear.pipeline.stage import FIGURES
+from facegear.pipeline.table import STAGES as TABLE
 from facegear.report.inputs import inputs_in_words
 
 pytestmark = pytest.mark.xdist_group("workflow_files")
-SCRIPTS = sorted((ROOT / "workflow" / "scripts").glob("*.py"))
 STAGES = sorted((ROOT / "facegear" / "stages").glob("*.py"))
 TOLD = """
 import json
@@ -33,7 +33,6 @@ def told(rule):
     }
 
 Path("rules.json").write_text(json.dumps({rule.name: told(rule) for rule in workflow.rules if rule.output}))
-assert set(PRIORITIES) <= {rule.name for rule in workflow.rules}
 """
 
 
@@ -41,7 +40,7 @@ assert set(PRIORITIES) <= {rule.name for rule in workflow.rules}
 def rules(tmp_path_factory):
     """What Snakemake knows of every rule that writes files, with the profile that loads by itself."""
     folder = tmp_path_factory.mktemp("rules")
-    for name in ("workflow", "facegear", "config", "profiles"):
+    for name in FOLDERS:
         (folder / name).symlink_to(ROOT / name)
     (folder / "Snakefile").write_text((ROOT / "Snakefile").read_text() + TOLD)
     Project(folder, folder).run("-n", "--quiet")
@@ -60,14 +59,25 @@ def test_rules_share_no_log_and_no_benchmark(rules):
         assert len({str(rule[key]) for rule in rules.values()}) == len(rules)
 
 
-def test_every_script_has_the_name_of_its_rule(rules):
-    assert {name: Path(rule["script"]).stem for name, rule in rules.items()} == {name: name for name in rules}
-    assert sorted(rules) == [script.stem for script in SCRIPTS]
+def test_stages_and_figures_have_one_script_each_and_every_other_rule_one_of_its_name(rules):
+    used = {name: Path(rule["script"]).stem for name, rule in rules.items()}
+    shared = {"stage": set(TABLE), "figures": {name for name in used if name.endswith(FIGURES)}}
+    for script, names in shared.items():
+        assert {name for name, stem in used.items() if stem == script} == names
+    own = set(used) - set().union(*shared.values())
+    assert {used[name] for name in own} == own
+    assert sorted(script.stem for script in SCRIPTS) == sorted({*own, *shared})
+
+
+def test_no_two_rules_write_the_same_file(rules):
+    written = [file for rule in rules.values() for file in rule["outputs"]]
+    assert len(set(written)) == len(written)
 
 
 def test_every_input_and_parameter_of_a_rule_is_used_by_its_script(rules):
     """What a script names is an attribute or a text in it; those that take all by `items()` name none."""
-    for name, rule in rules.items():
+    for name in set(rules) - set(TABLE) - {name for name in rules if name.endswith(FIGURES)}:
+        rule = rules[name]
         words = {word for node in ast.walk(_script(name)) for word in _words(node)}
         inputs, parameters = rule["taken"]
         assert set(parameters) <= words, name
@@ -76,7 +86,7 @@ def test_every_input_and_parameter_of_a_rule_is_used_by_its_script(rules):
 
 def test_no_script_reads_a_file_and_drops_what_it_read():
     for script in SCRIPTS:
-        for node in ast.walk(_script(script.stem)):
+        for node in ast.walk(ast.parse(script.read_text())):
             if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
                 assert "read" not in _words(node.value.func), script
 
@@ -94,8 +104,7 @@ def test_no_rule_is_handed_the_whole_config(rules):
         assert set(rule["sections"]) < whole | {"none"}, name
 
 
-@pytest.mark.parametrize("rule", ["load_sharing_figures", "scorecard"])
-def test_captions_are_handed_the_sections_that_they_tell_of(rules, rule):
+def test_the_scorecard_is_handed_the_sections_that_its_caption_tells_of(rules):
     read = set()
 
     class Recorded(dict):
@@ -104,11 +113,12 @@ def test_captions_are_handed_the_sections_that_they_tell_of(rules, rule):
             return super().__getitem__(key)
 
     inputs_in_words(Recorded(load_values([ROOT / "config" / "paper.yaml"], {})))
-    assert set(rules[rule]["sections"]) == read
+    assert set(rules["scorecard"]["sections"]) == read
 
 
 def _script(name):
-    return ast.parse((ROOT / "workflow" / "scripts" / f"{name}.py").read_text())
+    (script,) = [script for script in SCRIPTS if script.stem == name]
+    return ast.parse(script.read_text())
 
 
 def _words(node):
@@ -126,7 +136,7 @@ def test_every_profile_says_what_the_one_says_that_loads_by_itself():
 
 
 def test_rules_are_formatted():
-    command = [sys.executable, "-m", "snakefmt", "--check", "Snakefile", "workflow"]
+    command = [sys.executable, "-m", "snakefmt", "--check", "Snakefile", "workflow", "paper", "validation"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
 
@@ -147,18 +157,7 @@ def test_scripts_only_adapt():
         assert "with stage(snakemake)" in text, script
 
 
-READ_ON = sorted((ROOT / "workflow" / "rules").glob("*.smk"))
-READ_ON = [path for path in READ_ON if "benchmark" not in path.stem and path.stem != "identify"]
-"""Rules whose outputs others read."""
-
-
-@pytest.mark.parametrize("path", READ_ON, ids=lambda path: path.stem)
-def test_every_file_of_a_rule_lies_beside_its_manifest(path):
+def test_every_file_of_a_rule_lies_beside_its_manifest(rules):
     """Readers look for the manifest in the folder of a file: one that drew elsewhere stopped the report."""
-    for rule in re.split(r"^rule ", path.read_text(), flags=re.MULTILINE)[1:]:
-        outputs = re.search(r"    output:\n((?: {8}.*\n)+)", rule)[1].replace("{{case}}", "{case}")
-        folders = {str(Path(name).parent) for name in re.findall(r'"(results/[^"]+)"', outputs)}
-        if "picture" in outputs:
-            folders.add("results/{case}/figures")
-        if "provenance.json" in outputs:
-            assert len(folders) == 1, rule.splitlines()[0]
+    for name in {*TABLE, "report", "scorecard", *(name for name in rules if name.endswith(FIGURES))}:
+        assert len({str(Path(file).parent) for file in rules[name]["outputs"]}) == 1, name

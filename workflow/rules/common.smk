@@ -14,19 +14,15 @@ for name, module in list(sys.modules.items()):  # the profile may have imported 
     if name.partition(".")[0] == "facegear" and not Path(module.__file__).is_relative_to(ROOT):
         del sys.modules[name]
 
-from facegear.config.cases import expand_cases, shared_sources
+from facegear.config.cases import expand_cases
 from facegear.config.load import load_values
-from facegear.config.needs import (
-    NEEDS,
-    loads_from_machine,
-    many_contacts,
-    require_sections,
-    stage_needs,
-)
-from facegear.config.notes import notes, turns
+from facegear.config.notes import notes
 from facegear.errors import FacegearError
 from facegear.io.run_lock import hold
-from facegear.paper.config.reproduction import design_cases, read_reproduction
+from facegear.pipeline.needs import require_section, resolved_needs, shared_sources
+from facegear.pipeline.stage import Case, From
+from facegear.pipeline.table import MACHINE, STAGES
+from paper.reproduction import read_reproduction
 from facegear.provenance.fingerprint import fingerprint, recall, remember
 from facegear.provenance.rebuild import rebuild_command
 
@@ -48,7 +44,6 @@ try:
     CONFIG = load_values(CONFIGFILES, workflow.config_settings.config)
     REPRODUCTION = read_reproduction(CONFIG["reproduction"]) if CONFIG["reproduction"] else None
     CASES = expand_cases(CONFIG)
-    CASES |= design_cases(CONFIG, REPRODUCTION.identify if REPRODUCTION else None)
     CASES[CONFIG["case"]]["reproduction"] = None  # read above; where its file lies decides nothing
 except FacegearError as error:
     stop(str(error))
@@ -103,22 +98,68 @@ onsuccess:
     print(f"done{f': {report}' if report.exists() else ''}", file=sys.stderr)
 
 
-def has_contact(case):
-    """Whether the case solves the loaded contact itself."""
-    values = CASES[case]
-    return values["mesh_stiffness"]["source"] != "harmonics" or values["contact"]["root_stress"]
+@cache
+def sources(stage):
+    """Of each case the one whose files of a stage it shares."""
+    return shared_sources(CASES, stage)
+
+
+def case_of(name):
+    """A case among the cases of the config."""
+    return Case(CASES[name], CASES, lambda stage, case: sources(stage)[case])
+
+
+BASE = case_of(CASE)
+
+
+def asked_case(stage, wildcards):
+    """A case; ends the run where its config lacks the section that a stage is about."""
+    try:
+        require_section(stage, CASES[wildcards.case])
+    except FacegearError as error:
+        stop(f"{wildcards.case}: {error}")
+    return case_of(wildcards.case)
+
+
+def read_from(source, reader=None):
+    """Function of the wildcards giving the files of an earlier stage that an argument of a reader is read from."""
+    stage, several = STAGES[source.stage], source.each or STAGES[source.stage].files[source.file].each
+
+    def files(wildcards):
+        case = asked_case(reader, wildcards)
+        places = source.places(case) if source.wanted(case) else []
+        found = [path for place in places for path in paths({"case": wildcards.case, **place})]
+        return found if several or not found else found[0]
+
+    def paths(place):
+        file = stage.files[source.file]
+        texts = [{"each": text} for text in file.each(BASE)] if file.each else [{}]
+        shared_by = sources(source.stage)[place["case"]]
+        return [f"results/{shared_by}/{file.at({**place, **text})}" for text in texts]
+
+    return files
+
+
+def given(stage, argument):
+    """Function of the wildcards giving the files that an argument of a stage is read from."""
+    return read_from(STAGES[stage].upstream[argument], stage)
+
+
+def needed(needs, reader=None):
+    """Function of the wildcards giving values of the needs of a reader."""
+
+    def values(wildcards):
+        try:
+            return resolved_needs(needs, asked_case(reader, wildcards))
+        except FacegearError as error:
+            stop(f"{wildcards.case}: {error}")
+
+    return values
 
 
 def value_of(key):
     """Function of the wildcards giving a value of a case's config; a dotted key reaches inside."""
-
-    def value(wildcards):
-        found = CASES[wildcards.case]
-        for part in key.split("."):
-            found = found[part] if found is not None else None
-        return found
-
-    return value
+    return lambda wildcards: resolved_needs({"value": key}, case_of(wildcards.case))["value"]
 
 
 def values_of(*keys, **renamed):
@@ -126,60 +167,11 @@ def values_of(*keys, **renamed):
     return {name: value_of(key) for name, key in {**dict(zip(keys, keys)), **renamed}.items()}
 
 
-def asked_values(rule, wildcards):
-    """All plain values of a case's config; ends the run where it lacks the section that a rule is about."""
-    values = CASES[wildcards.case]
-    try:
-        require_sections(rule, values)
-    except FacegearError as error:
-        stop(f"{wildcards.case}: {error}")
-    return values
-
-
-def needs(rule):
-    """Function of the wildcards giving all that a stage takes from a case's config."""
-
-    def values(wildcards):
-        try:
-            return stage_needs(rule, asked_values(rule, wildcards))
-        except FacegearError as error:
-            stop(f"{wildcards.case}: {error}")
-
-    return values
-
-
 def sections(*keys):
     """Function of the wildcards giving these keys of a case's config, as a config of its own."""
     return lambda wildcards: {key: CASES[wildcards.case][key] for key in keys}
 
 
-@cache
-def sources(rule):
-    """Of each case the one whose results of a rule it shares."""
-    return shared_sources(CASES, rule)
-
-
-def shared(rule, output):
-    """Function of the wildcards giving an output of an earlier rule, shared by all cases alike up to it."""
-    return lambda wildcards: str(getattr(rules, rule).output[output]).format(
-        case=sources(rule)[wildcards.case]
-    )
-
-
-def shown(name, caption):
-    """The svg of a figure, marked for Snakemake's report."""
-    category = caption.replace("_", " ").capitalize()
-    file, text = f"results/{{case}}/figures/{name}.svg", f"../report/{caption}.rst"
-    return report(file, caption=text, category=category, labels={"figure": name})
-
-
-def picture_lists(caption, names):
-    """Output lists `svg` and `png` where the named figures are drawn, however many they are."""
-    svg = [shown(name, caption) for name in names]
-    return {"svg": svg, "png": [f"results/{{case}}/figures/{name}.png" for name in names]}
-
-
-def pictures(caption, *names):
-    """Output files `svg` and `png` where the named figures are drawn: a path for one, a list for several."""
-    lists = picture_lists(caption, names)
-    return {kind: paths[0] for kind, paths in lists.items()} if len(names) == 1 else lists
+def shared(stage, file, **where):
+    """Function of the wildcards giving a file of an earlier stage, shared by all cases alike up to it."""
+    return read_from(From(stage, file, where))

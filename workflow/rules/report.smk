@@ -12,6 +12,7 @@ rule report:
     output:
         html="results/{case}/report.html",
         manifest="results/{case}/report.provenance.json",
+    localrule: True
     params:
         values=report_values,
     script:

@@ -19,6 +19,8 @@ BRANCH_COLUMNS = (
     "drive_share",
     "back_share",
 )
+BRANCH_FINITE = tuple(name for name in BRANCH_COLUMNS if "multiplier" not in name)
+"""Those whose numbers are finite in every row."""
 SPECIAL_COLUMNS = (
     "branch",
     "period",

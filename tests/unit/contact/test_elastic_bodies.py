@@ -25,8 +25,8 @@ from facegear.mesh.hexahedra import hex_mesh
 from facegear.mesh.sector import sector
 from facegear.mesh.sizes import MeshSizes
 from facegear.mesh.tooth import pinion_tooth
-from facegear.validation.contact.sector_model import sector_blocks
-from facegear.validation.contact.twin import slab_tooth
+from validation.contact.sector_model import sector_blocks
+from validation.contact.twin import slab_tooth
 
 DISC = half_disc(0.01, np.linspace(0, 1, 5), np.linspace(0, 1, 5))
 CUTS = Refinement(3, 1, 2, 2.0)

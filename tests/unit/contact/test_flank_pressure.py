@@ -24,8 +24,8 @@ from facegear.geometry.design import Assembly
 from facegear.geometry.pinion_surface import flank_points
 from facegear.geometry.separation import separation
 from facegear.geometry.unloaded import PAIRS, unloaded_contact
-from facegear.validation.contact.half_space import half_space, pressures
-from facegear.validation.contact.strip_study import strip_at
+from validation.contact.half_space import half_space, pressures
+from validation.contact.strip_study import strip_at
 
 PLANE = STEEL.young_modulus / (1 - STEEL.poisson_ratio**2)
 

@@ -15,7 +15,7 @@ from facegear.contact.section_error import HEIGHTS, section_errors
 from facegear.contact.teeth import elastic_tooth
 from facegear.mesh.sizes import MeshSizes, named_sizes, thin_fillet
 from facegear.strength.root_stress import down_the_fillet
-from facegear.validation.contact.twin import slab_tooth
+from validation.contact.twin import slab_tooth
 
 DESIGN = pair_design()
 M = DESIGN.module

@@ -15,7 +15,7 @@ from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate, steady_state
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.layout import MeshKinematics
-from facegear.validation.dynamics.oscillators import (
+from validation.dynamics.oscillators import (
     Oscillator,
     closed_form_run,
     end_of,

@@ -21,7 +21,7 @@ from facegear.dynamics.sweeps.whole_sweep import whole_sweep
 from facegear.io import arrays
 from facegear.plots.campbell import campbell
 from facegear.transmission.modes import natural_modes
-from facegear.validation.dynamics.convergence import Watched, convergence_table, not_converged, watched_longer
+from validation.dynamics.convergence import Watched, convergence_table, not_converged, watched_longer
 
 SETTINGS = Settings(tolerance=1e-5, settle=256, window=64, periodic_residual=1e-7, extensions=0)
 

@@ -141,15 +141,3 @@ def test_a_config_cannot_call_code(tmp_path):
     with pytest.raises(FacegearError):
         load_values([path], {})
     assert not (tmp_path / "sprung").exists()
-
-
-def test_tables_are_joined_in_order_and_an_empty_one_among_them_changes_no_number(tmp_path):
-    frames = [pd.DataFrame({"n": [1, 2], "x": [0.5, 0.25]}), pd.DataFrame({"n": [3], "x": [1.0]})]
-    for name, frame in zip("abc", [frames[0], frames[0].head(0), frames[1]], strict=True):
-        tables.write(tmp_path / f"{name}.csv", frame)
-    paths = [tmp_path / f"{name}.csv" for name in "abc"]
-    joined = tables.read_joined(paths, allow_empty=True)
-    pd.testing.assert_frame_equal(joined, pd.concat(frames, ignore_index=True))
-    assert tables.read_joined(paths[1:2], allow_empty=True).empty
-    with pytest.raises(CorruptFile, match="empty"):
-        tables.read_joined(paths)

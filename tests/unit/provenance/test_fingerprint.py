@@ -101,7 +101,7 @@ def test_a_damaged_memory_is_passed_over(package, tmp_path, text):
 def test_reading_configs_leaves_solvers_and_tables_unloaded():
     """They took most of the five seconds in which a start with nothing to do ended."""
     code = (
-        "import sys, facegear.paper.config.reproduction\n"
+        "import sys, paper.reproduction\n"
         "from facegear.config.cases import expand_cases\n"
         "from facegear.config.load import load_values\n"
         "expand_cases(load_values(['config/paper.yaml'], {}))\n"

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 import facegear
-from facegear.config.needs import stage_needs
+from facegear.pipeline.needs import stage_needs
 from facegear.report.case import _tables as case_tables
 from facegear.report.contents import caption_of
 from facegear.report.glance import verdicts, warnings

@@ -8,7 +8,7 @@ from facegear.scenarios.distributions import Distribution, Shape
 from facegear.scenarios.inverse import HALVINGS, loosest
 from facegear.scenarios.sampling import Cause, Population, index_samples, samples
 from facegear.scenarios.statistics import percentile, share, sobol_indices
-from facegear.validation.scenarios.errors import statistics_errors
+from validation.scenarios.errors import statistics_errors
 
 SPREADS = np.array([3.0, 2.0, 1.0])
 

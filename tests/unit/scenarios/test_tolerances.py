@@ -9,13 +9,13 @@ import pandas as pd
 import pytest
 
 import facegear
-from facegear.config.needs import stage_needs
 from facegear.config.tolerances import Tolerances, chunks
 from facegear.errors import ConfigErrors, FacegearError
 from facegear.io import tables
+from facegear.pipeline.needs import stage_needs
 from facegear.stages.sampled_machine import SampledMachine
 from facegear.stages.tolerances import tolerances
-from facegear.stages.tolerances_chunk import tolerances_chunk
+from facegear.stages.tolerances_chunk import chunk_of
 
 MEAN = "transmission.single_meshes"
 LINEAR = {
@@ -48,8 +48,8 @@ def gearbox():
 
 
 def chunk(gearbox, first, last, design="samples", **others):
-    sampled = SampledMachine(**gearbox._chain._varied("tolerances_chunk"))
-    return tolerances_chunk(design, first, last, sampled, **others).content["chunk"]
+    sampled = SampledMachine.of_stage(**gearbox._chain.arguments("tolerances_chunk"))
+    return chunk_of(sampled, design, first, last, **others).content["chunk"]
 
 
 @pytest.mark.parametrize(

@@ -8,14 +8,18 @@ import pytest
 from contact_bodies import STEEL, pair_design
 
 import facegear
-from facegear.config.needs import many_contacts, stage_needs
+from facegear.contact.gear_flank import from_arrays
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
 from facegear.contact.pair import gear_flank
 from facegear.errors import ConfigErrors
 from facegear.mesh.sizes import MeshSizes
+from facegear.pipeline.asked import sampled_contact
+from facegear.pipeline.needs import stage_needs
+from facegear.pipeline.stage import Case
 from facegear.stages import contact_meshes
 from facegear.stages.sampled_machine import SampledMachine
-from facegear.stages.tolerances_chunk import tolerances_chunk
+from facegear.stages.tolerances_chunk import chunk_of
+from facegear.stages.tooth_meshes import stored_flanks
 
 pytestmark = pytest.mark.xdist_group("notebooks")  # the example's compliance is computed once a process
 CROWNING = "tooth_pair.pinion.lead_crowning.amount_um"
@@ -60,9 +64,11 @@ def test_a_sample_is_the_machine_of_a_config_with_its_values(found):
 def test_no_compliance_is_computed_for_a_sample_and_pairs_that_are_alike_are_solved_once(monkeypatch):
     gearbox = machine(*BOTH, cause("young", YOUNG, -6.0), cause("speed", "dynamics.speed_rpm", 0.0, 100.0))
     solved = []
-    monkeypatch.setattr(contact_meshes, "compliance", lambda *_: pytest.fail("compliance"))
-    contact = contact_meshes.contact
-    monkeypatch.setattr(contact_meshes, "contact", lambda *given: solved.append(given[2]) or contact(*given))
+    monkeypatch.setattr(contact_meshes, "flank_of", lambda *_: pytest.fail("compliance"))
+    contact_of = contact_meshes.contact_of
+    monkeypatch.setattr(
+        contact_meshes, "contact_of", lambda *given: solved.append(given[2]) or contact_of(*given)
+    )
     table = gearbox.tolerances().samples()
     assert (table["error"] == "").all()
     pairs = table[["crowning", "offset"]].drop_duplicates()
@@ -89,7 +95,7 @@ def test_what_the_assembly_adds_to_the_backlash_counts_for_every_mesh():
     own = {"transmission.single_meshes": {"tail idler/upper": {"backlash_um": 90.0}}}
     gearbox = machine(cause("shim", "tooth_pair.assembly.axial_shift_um", 20.0)).with_values(own)
     needs = stage_needs("tolerances_chunk", gearbox.values)
-    flanks = gearbox._chain._flanks(needs["pair"])
+    flanks = stored_flanks(gearbox._chain.arguments("tolerances_chunk")["flanks"])
     mesh = contact_meshes.meshes_in_contact(needs["pair"], flanks)
     shifted = {**needs["pair"]["tooth_pair"]}
     shifted["assembly"] = {**shifted["assembly"], "axial_shift_um": 20.0}
@@ -110,9 +116,9 @@ def test_teeth_that_cannot_be_built_are_rows_with_their_error():
 
 def test_contact_is_asked_for_only_where_something_of_it_is_wanted():
     speed = cause("speed", "dynamics.speed_rpm", 0.0)
-    assert not many_contacts("tolerances_chunk", machine(speed).values)
-    assert many_contacts("tolerances_chunk", machine(speed, tooth_contact=True).values)
-    assert many_contacts("tolerances_chunk", machine(BOTH[0]).values)
+    assert not sampled_contact(Case(machine(speed).values))
+    assert sampled_contact(Case(machine(speed, tooth_contact=True).values))
+    assert sampled_contact(Case(machine(BOTH[0]).values))
     assert stage_needs("tolerances_chunk", machine(speed).values)["pair"] is None
 
 
@@ -139,8 +145,8 @@ def test_given_harmonics_have_no_contact_to_vary():
 
 
 def test_samples_with_contacts_of_their_own_do_not_depend_on_their_chunk(found):
-    sampled = SampledMachine(**machine(*BOTH)._chain._varied("tolerances_chunk"))
-    last = tolerances_chunk("samples", 3, 3, sampled).content["chunk"]
+    sampled = SampledMachine.of_stage(**machine(*BOTH)._chain.arguments("tolerances_chunk"))
+    last = chunk_of(sampled, "samples", 3, 3).content["chunk"]
     pd.testing.assert_frame_equal(last, found.iloc[3:].reset_index(drop=True), check_exact=True)
 
 
@@ -172,7 +178,7 @@ def searched(**section):
 
 
 def test_a_search_over_teeth_weighs_error_against_pressure(monkeypatch):
-    monkeypatch.setattr(contact_meshes, "compliance", lambda *_: pytest.fail("compliance"))
+    monkeypatch.setattr(contact_meshes, "flank_of", lambda *_: pytest.fail("compliance"))
     found = searched().search()
     designs = found.designs()
     assert (designs["error"] != "").sum() == 0 and designs["crowning"].nunique() > 1
@@ -187,13 +193,14 @@ def test_a_variable_that_changes_a_body_has_it_condensed_anew_and_once(monkeypat
     limits = [23, 24] if key == "pinion_teeth" else [30, 31]
     variable = {"name": "body", "limits": limits, "steps": 2, "sets": [f"tooth_pair.{key}"]}
     asked = []
-    nominal = facegear.example()._chain._flanks({})
+    given = facegear.example()._chain.arguments("contact")
+    nominal = {body: from_arrays(given[body]) for body in ("pinion", "face_gear")}
 
     def made(body, values, *_):
         asked.append((body, values["pinion_teeth"], values["pinion"]["width_mm"]))
         return nominal[body]
 
-    monkeypatch.setattr(contact_meshes, "compliance", made)
+    monkeypatch.setattr(contact_meshes, "flank_of", made)
     sizes = {"variables": [variable], "population": 4, "generations": 1}
     objectives = [{"name": "pressure", "largest_of": ["pressure"]}]
     designs = searched(objectives=objectives, **sizes).search().designs()

@@ -3,11 +3,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from facegear.config.needs import stage_needs
 
 from facegear.config.base import parse
 from facegear.config.load import load_config
 from facegear.config.modal import modes_need_contact
-from facegear.config.needs import stage_needs
 from facegear.config.stiffness import MeshStiffness, stiffness_request
 from facegear.errors import ConfigError, ConfigErrors
 from facegear.stages.modal import modal

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 import facegear
 from facegear.config.lumped_model import at_mesh_torque
 from facegear.config.machines import wired_machine
-from facegear.config.needs import stage_needs, stages_before
 from facegear.errors import ConfigError, ConfigErrors
+from facegear.pipeline.needs import stage_needs, stages_before
 from facegear.stages.duty_loads import duty_loads
 from facegear.strength.duty import DutyBin, machine_duty
 from facegear.strength.passage_loads import classes, hardest_tooth

@@ -1,0 +1,25 @@
+"""For all tests: no windows, and the same examples of every property each time.
+
+`make random` looks at fresh ones: pytest -m hypothesis --hypothesis-profile=random.
+"""
+
+import os
+
+import pytest
+from hypothesis import settings
+from lumped_machines import make_layout, make_machine
+
+os.environ.setdefault("MPLBACKEND", "Agg")
+settings.register_profile("fixed", derandomize=True)
+settings.register_profile("random", derandomize=False, print_blob=True)
+settings.load_profile("fixed")
+
+
+@pytest.fixture
+def layout_of():
+    return make_layout
+
+
+@pytest.fixture
+def machine_of():
+    return make_machine

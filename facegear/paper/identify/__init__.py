@@ -1,1 +1,0 @@
-"""Search for the inputs that the paper leaves out."""

@@ -1,0 +1,186 @@
+"""What a case asks for, and what of a stage's needs and inputs depends on the case: plain functions of it."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from facegear.config.base import parse
+from facegear.config.modal import modes_need_contact
+from facegear.config.notes import turns
+from facegear.config.sharing_groups import group_kinds
+from facegear.config.tolerances import Design, Tolerances, chunks
+from facegear.config.variants import GAPS, moves_pair, without
+from facegear.load_sharing.quantity_names import of_contact
+from facegear.pipeline.stage import Case, Wildcards
+
+BODIES = ("pinion", "face_gear")
+PAIR_SECTIONS = ("tooth_pair", "mesh", "contact", "mesh_stiffness")
+"""What a contact analysis of machines among many takes."""
+
+
+LOADING = (
+    *("torques_n_m", "positions_per_pitch"),
+    *("fillet_contact", "neighbour_coupling", "edge_contact"),
+)
+"""Keys of section contact that say how the bodies are loaded, and nothing of how they give way."""
+
+
+def always(case: Case) -> bool:
+    """Always."""
+    return True
+
+
+def contact(case: Case) -> bool:
+    """Whether a contact analysis gives the stiffness, or root stress is asked for."""
+    return case.values["mesh_stiffness"]["source"] != "harmonics" or root_stress(case)
+
+
+def computed_stiffness(case: Case) -> bool:
+    """Whether k(t) follows from the contact."""
+    return case.values["mesh_stiffness"]["source"] != "harmonics"
+
+
+def modes_from_contact(case: Case) -> bool:
+    """Whether modes take their stiffness from the contact analysis."""
+    return modes_need_contact(case.values)
+
+
+def root_stress(case: Case) -> bool:
+    """Whether `contact.root_stress` asks for it."""
+    return bool(case.values["contact"]["root_stress"])
+
+
+def machine(case: Case) -> bool:
+    """Whether section transmission is given."""
+    return case.values["transmission"] is not None
+
+
+def machine_stress(case: Case) -> bool:
+    """Whether section transmission is given and root stress asked for."""
+    return machine(case) and root_stress(case)
+
+
+def strength(case: Case) -> bool:
+    """Whether section strength is given."""
+    return case.values["strength"] is not None
+
+
+def machine_loads(case: Case) -> bool:
+    """Whether the rating takes K_v and K_gamma from the machine's motion."""
+    return strength(case) and case.values["strength"]["load_factors"] == "machine"
+
+
+def branches(case: Case) -> bool:
+    """Whether section branches is given."""
+    return machine(case) and case.values["branches"] is not None
+
+
+def shares_load(case: Case) -> bool:
+    """Whether some meshes share a load."""
+    return machine(case) and bool(group_kinds(case.values))
+
+
+def hunting(case: Case) -> bool:
+    """Whether some meshes share a load, with geometric kinematics."""
+    return shares_load(case) and case.values["transmission"]["mesh_kinematics"] == "geometric"
+
+
+def following(case: Case) -> bool:
+    """Whether meshes are geometric and something has a runout or a cumulative pitch deviation."""
+    return hunting(case) and turns(case.values["transmission"])
+
+
+def tolerances(case: Case) -> bool:
+    """Whether section tolerances is given."""
+    return machine(case) and case.values["tolerances"] is not None
+
+
+def load_map(case: Case) -> bool:
+    """Whether `tolerances.load_map` is given."""
+    return tolerances(case) and case.values["tolerances"]["load_map"] is not None
+
+
+def search(case: Case) -> bool:
+    """Whether section search is given."""
+    return machine(case) and case.values["search"] is not None
+
+
+def sweep_chunks(case: Case) -> list[Wildcards]:
+    """Chunks of the sweep, direction by direction."""
+    sweep = case.values["dynamics"]["sweep"]
+    numbers = range(sweep["chunks"])
+    return [{"direction": name, "number": str(n)} for name in sweep["directions"] for n in numbers]
+
+
+def random_starts(case: Case) -> list[Wildcards]:
+    """Speeds at which random starts are made, by number."""
+    speeds = case.values["branches"]["explore"]["speeds_rpm"]
+    return [{"number": str(number)} for number in range(max(len(speeds), 1))]
+
+
+def tolerance_chunks(design: Design) -> Callable[[Case], list[Wildcards]]:
+    """Chunks of a design, named by the samples they hold."""
+
+    def places(case: Case) -> list[Wildcards]:
+        section = parse(Tolerances, case.values["tolerances"])
+        found = chunks(section, design)
+        return [{"design": design, "first": str(first), "last": str(last)} for first, last in found]
+
+    return places
+
+
+def islands(case: Case) -> list[Wildcards]:
+    """Islands of a search by their seeds."""
+    return [{"seed": str(seed)} for seed in case.values["search"]["seeds"]]
+
+
+def both_bodies(case: Case) -> list[Wildcards]:
+    """Pinion and face gear."""
+    return [{"body": body} for body in BODIES]
+
+
+def without_gaps(case: Case) -> Any:
+    """Section tooth_pair without what moves no node: cases that differ in gaps share their compliance."""
+    section: Any = case.values["tooth_pair"]
+    for key in GAPS:
+        section = without(section, key)
+    return section
+
+
+def without_loads(case: Case) -> Any:
+    """Section contact without LOADING, so that cases that differ in loads share their compliance."""
+    return {key: value for key, value in case.values["contact"].items() if key not in LOADING}
+
+
+def sampled_contact(case: Case) -> bool:
+    """Whether samples have a contact analysis of their own: asked for, or a cause moves the tooth pair."""
+    section = case.values["tolerances"]
+    return section is not None and (section["tooth_contact"] or moves_pair(_causes(section)))
+
+
+def searched_contact(case: Case) -> bool:
+    """Whether designs have a contact analysis of their own.
+
+    They have where a variable, or a cause of a percentile, moves the tooth pair, or an objective asks for
+    what contact alone tells.
+    """
+    section = case.values["search"]
+    if section is None:
+        return False
+    goals = [*section["objectives"], *section["constraints"]]
+    robust = any(goal["percentile"] is not None for goal in goals)
+    keys = [key for variable in section["variables"] for key in variable["sets"]]
+    asked = any(of_contact(text) for goal in goals for text in (*goal["largest_of"], *goal["smallest_of"]))
+    return asked or moves_pair(keys) or (robust and moves_pair(_causes(case.values["tolerances"])))
+
+
+def pair_where(has_contact: Callable[[Case], bool]) -> Callable[[Case], dict[str, Any] | None]:
+    """Sections of the tooth pair where machines among many are put into contact."""
+
+    def sections(case: Case) -> dict[str, Any] | None:
+        return {key: case.values[key] for key in PAIR_SECTIONS} if has_contact(case) else None
+
+    return sections
+
+
+def _causes(section: Mapping[str, Any] | None) -> list[str]:
+    return [key for cause in (section or {}).get("causes", ()) for key in cause["moves"]]

@@ -1,0 +1,192 @@
+"""What one row of the table of stages is made of."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib import import_module
+from pathlib import Path, PurePosixPath
+from types import MappingProxyType
+from typing import Any
+
+from facegear.io.checksums import MANIFEST_SUFFIX
+
+Values = Mapping[str, Any]
+"""Plain values of a whole config."""
+Wildcards = Mapping[str, str]
+NONE: Mapping[str, Any] = MappingProxyType({})
+READABLE = {".csv", ".npz", ".parquet", ".json"}
+FIGURES = "_figures"
+"""Ending of the name of a rule that draws a stage's figures."""
+NUMBER = r"\d+"
+"""A wildcard that stands for a number is handed to the stage as one."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A case by its plain values, among the cases of its config.
+
+    - cases: values of all of them by case id
+    - source: the case whose files of a stage a case shares
+    """
+
+    values: Values
+    cases: Mapping[str, Values] = field(default_factory=dict)
+    source: Callable[[str, str], str] = lambda stage, case: case
+
+
+@dataclass(frozen=True)
+class Computed:
+    """A value that follows from some sections of the config by a function of the case."""
+
+    function: Callable[[Case], Any]
+    sections: tuple[str, ...]
+
+
+Need = str | tuple[str, ...] | Computed
+"""A dotted key of the config, several of them as a section of their own, or what follows from sections."""
+
+
+def load(reference: str) -> Any:
+    """What `module:name` names. Nothing that is named so counts as an import of the module that names it."""
+    module, _, name = reference.partition(":")
+    return getattr(import_module(module), name)
+
+
+@dataclass(frozen=True)
+class File:
+    """One file of a stage below a case's folder.
+
+    - path: may hold wildcards of the stage, in braces
+    - holds: columns of a table, shapes of arrays or keys of a record that its reader asks for, or the
+      `module:name` that holds them; numbers of such columns are finite
+    - text: columns that stay text
+    - view, of: `module:function` that makes the file's content from the part `of`, for other programs
+    - each: where the stage writes several such files, the text that stands for `{each}` in each path
+    """
+
+    path: str
+    holds: Mapping[str, tuple[int | None, ...]] | Sequence[str] | str = ()
+    may_be_empty: bool = False
+    text: Sequence[str] = ()
+    view: str = ""
+    of: str = ""
+    each: Callable[[Case], Sequence[str]] | None = None
+
+    @property
+    def readable(self) -> bool:
+        """Whether it is read again, not only by other programs."""
+        return PurePosixPath(self.path).suffix in READABLE and self.each is None
+
+    def at(self, wildcards: Wildcards = NONE) -> str:
+        """The path with these wildcards filled in."""
+        return self.path.format(**wildcards)
+
+    def read(self, path: Path) -> Any:
+        """What is stored. Raises CorruptFile if it is missing, altered or lacks something."""
+        from facegear.io.files import read_part
+
+        holds = load(self.holds) if isinstance(self.holds, str) else self.holds
+        return read_part(path, holds, self.may_be_empty, self.text)
+
+
+@dataclass(frozen=True)
+class From:
+    """Where an argument comes from: a file of an earlier stage.
+
+    - where: values of that stage's wildcards
+    - each: instead, several of them; the argument is then a list. A wildcard `case` names another case
+    - when: whether the argument is given at all
+    """
+
+    stage: str
+    file: str
+    where: Wildcards = field(default_factory=dict)
+    each: Callable[[Case], Sequence[Wildcards]] | None = None
+    when: Callable[[Case], bool] | None = None
+
+    def wanted(self, case: Case) -> bool:
+        """Whether the argument is given."""
+        return self.when is None or self.when(case)
+
+    def places(self, case: Case) -> Sequence[Wildcards]:
+        """Wildcards of each file that is read."""
+        return [self.where] if self.each is None else self.each(case)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Figures:
+    """Figures drawn from stored files alone.
+
+    - draw: `module:function` giving as many figures as there are `names`
+    - chapter: of the report, and caption in workflow/report
+    """
+
+    draw: str
+    names: Sequence[str] | Callable[[Case], Sequence[str]]
+    chapter: str
+    upstream: Mapping[str, From]
+    needs: Mapping[str, Need] = field(default_factory=dict)
+    memory_mb: int | None = None
+
+    def named(self, case: Case) -> Sequence[str]:
+        """Names of all that are drawn."""
+        return self.names(case) if callable(self.names) else self.names
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stage:
+    """One stage: function `facegear.stages.<name>.<name>`, what it takes and what it writes.
+
+    - needs: its arguments from the config; nothing else of it decides a result
+    - upstream: its arguments from earlier stages
+    - wildcards: of its files beside the case, as regular expressions; they are arguments, too
+    - asked: whether a plain run of a case makes it; one without is made where another stage takes from it,
+      or where its file is asked for by name
+    - section: optional section of the config without which there is nothing to do
+    - resumable: file beside which finished parts are kept, so that a killed job goes on after the last
+    - local: short enough for the computer that submits jobs to a cluster
+    - priority: long jobs, and those that long ones wait for, start first
+    """
+
+    name: str
+    title: str
+    needs: Mapping[str, Need] = field(default_factory=dict)
+    upstream: Mapping[str, From] = field(default_factory=dict)
+    files: Mapping[str, File] = field(default_factory=dict)
+    figures: Figures | None = None
+    wildcards: Mapping[str, str] = field(default_factory=dict)
+    asked: Callable[[Case], bool] | None = None
+    section: str = ""
+    resumable: str = ""
+    folder: str = ""
+    memory_mb: int | None = None
+    minutes: int | None = None
+    local: bool = False
+    priority: int = 0
+
+    @property
+    def function(self) -> str:
+        """The stage as `module:function`."""
+        return f"facegear.stages.{self.name}:{self.name}"
+
+    @property
+    def modules(self) -> tuple[str, ...]:
+        """Modules whose code decides its files."""
+        named = [self.function, *(file.view for file in self.files.values() if file.view)]
+        return tuple(name.partition(":")[0] for name in named)
+
+    @property
+    def manifest(self) -> str:
+        """Path of the record beside its files."""
+        paths = [PurePosixPath(file.path) for file in self.files.values()]
+        name = "_".join([self.name, *(f"{{{wildcard}}}" for wildcard in self.wildcards)])
+        return f"{paths[0].parent if paths else self.folder}/{name}{MANIFEST_SUFFIX}"
+
+    @property
+    def readable(self) -> dict[str, File]:
+        """Its files that are read again."""
+        return {name: file for name, file in self.files.items() if file.readable}
+
+    def typed(self, wildcards: Wildcards) -> dict[str, Any]:
+        """Wildcards as arguments."""
+        kinds = self.wildcards
+        return {name: int(text) if kinds[name] == NUMBER else text for name, text in wildcards.items()}

@@ -1,0 +1,111 @@
+"""Stages that set the cases of a config's studies side by side: which cases, and what they are called."""
+
+from typing import Any
+
+from facegear.config.base import parse
+from facegear.config.cases import study_points
+from facegear.config.sharing_groups import group_kinds
+from facegear.config.studies import Study
+from facegear.pipeline import asked
+from facegear.pipeline.stage import Case, Wildcards
+from facegear.report.inputs import inputs_caption
+
+NOMINAL = ("nominal", "nominal", "as configured")
+"""Study, point and label of the machine itself."""
+Points = list[tuple[str, str, str]]
+
+
+def points(case: Case) -> Points:
+    """Study, point and label of every point of the studies."""
+    studies = [parse(Study, study) for study in case.values["studies"]]
+    return [(one.name, name, point.label) for one in studies for name, point in study_points(one).items()]
+
+
+def every_point(case: Case) -> list[Wildcards]:
+    """The case of every point."""
+    return [{"case": _id(case, *point[:2])} for point in points(case)]
+
+
+def nominal_and_every_point(case: Case) -> list[Wildcards]:
+    """The machine itself and the case of every point."""
+    return [{"case": str(case.values["case"])}, *every_point(case)]
+
+
+def names(case: Case) -> list[str]:
+    """Names of the studies."""
+    return [str(study["name"]) for study in case.values["studies"]]
+
+
+def sharing_figures(case: Case) -> list[str]:
+    """A figure a study and kind of group."""
+    return [f"study_{name}_{kind}" for name in names(case) for kind in kinds(case)]
+
+
+def kinds(case: Case) -> list[str]:
+    """Kinds of groups that share a load; none without a machine."""
+    return group_kinds(case.values) if asked.machine(case) else []
+
+
+def titles(case: Case) -> list[str]:
+    """Title of each study."""
+    return [str(study["title"]) for study in case.values["studies"]]
+
+
+def captions(case: Case) -> list[str]:
+    """What stands below the figures of each study: the inputs of the machine."""
+    return [inputs_caption(case.values, study["figures"] is not None) for study in case.values["studies"]]
+
+
+def contact_points(case: Case) -> Points:
+    """The machine itself and all points that stand side by side with it.
+
+    Those of a study are its points with a contact of their own, if one of them has another contact than the
+    machine.
+    """
+    if not asked.contact(case) or not case.values["studies"]:
+        return [NOMINAL]
+    found: Points = []
+    for name in names(case):
+        own = [point for point in points(case) if point[0] == name]
+        solved = [point for point in own if asked.contact(Case(case.cases[_id(case, *point[:2])]))]
+        if any(case.source("contact", _id(case, *point[:2])) != case.values["case"] for point in solved):
+            found += solved
+    return [NOMINAL, *found]
+
+
+def contact_cases(case: Case) -> list[Wildcards]:
+    """The cases of `contact_points`."""
+    others = contact_points(case)[1:]
+    return [{"case": str(case.values["case"])}, *({"case": _id(case, *point[:2])} for point in others)]
+
+
+def contact_studied(case: Case) -> bool:
+    """Whether a study changes the contact."""
+    return len(contact_points(case)) > 1
+
+
+def contact_titles(case: Case) -> dict[str, str]:
+    """Name and title of each study that changes the contact."""
+    shown = {name for name, _, _ in contact_points(case)}
+    return {study["name"]: study["title"] for study in case.values["studies"] if study["name"] in shown}
+
+
+def contact_figures(case: Case) -> list[str]:
+    """Curves and patterns of each study that changes the contact."""
+    both = ("study_", "pattern_study_")
+    return [f"contact_{kind}{name}" for name in contact_titles(case) for kind in both]
+
+
+def contact_torque(case: Case) -> float:
+    """The torque that the figures show: that of the mesh stiffness, else the largest solved."""
+    own: Any = case.values["mesh_stiffness"]["torque_n_m"]
+    return float(own or max(case.values["contact"]["torques_n_m"]))
+
+
+def studied(case: Case) -> bool:
+    """Whether there are studies of a machine that shares loads."""
+    return asked.shares_load(case) and bool(case.values["studies"])
+
+
+def _id(case: Case, study: str, point: str) -> str:
+    return f"{case.values['case']}/studies/{study}/{point}"

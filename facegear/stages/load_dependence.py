@@ -1,0 +1,15 @@
+"""Mean and variation of the mesh stiffness at every torque of the contact analysis."""
+
+import pandas as pd
+
+from facegear.stages.outcome import Outcome
+from facegear.stiffness.curve import load_table
+from facegear.stiffness.tables import load_dependence as table_of
+
+
+def load_dependence(ltca: pd.DataFrame) -> Outcome:
+    """`table` from the table of stage contact."""
+    table = table_of(load_table(ltca))
+    means = table.loc[table["definition"] == "average", "mean_n_per_m"]
+    told = f"mean average stiffness {means.min():.3g} to {means.max():.3g} N/m over the torques solved"
+    return Outcome({"table": table}, told)

@@ -1,0 +1,29 @@
+"""Load sharing of the machine itself and of all points of its studies, study by study."""
+
+from collections.abc import Sequence
+
+import pandas as pd
+
+from facegear.load_sharing.collect import NOMINAL, collected
+from facegear.stages.outcome import Outcome
+
+
+def load_sharing_summary(
+    points: Sequence[Sequence[str]], summaries: Sequence[pd.DataFrame], curves: Sequence[pd.DataFrame]
+) -> Outcome:
+    """`summary` (table) of all, and `studies` (a table of curves for each study).
+
+    `points`: study, point and label of every point; `summaries`: tables of stage load_sharing, that of the
+    machine itself first; `curves`: those of the points alone.
+    """
+    keys = [(study, point) for study, point, _ in points]
+    labels = {(study, point): label for study, point, label in points}
+    frames = dict(zip([(NOMINAL, NOMINAL), *keys], summaries, strict=True))
+    summary, every = collected(frames, labels), dict(zip(keys, curves, strict=True))
+    studies = [
+        collected({key: one for key, one in every.items() if key[0] == name}, labels)
+        for name in dict.fromkeys(study for study, _ in keys)
+    ]
+    irregular = summary.loc[~summary["periodic"].astype(bool), ["study", "point"]].drop_duplicates()
+    told = f"{len(frames)} cases, {len(irregular)} of them not periodic"
+    return Outcome({"summary": summary, "studies": studies}, told)

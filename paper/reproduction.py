@@ -1,0 +1,28 @@
+"""The file that a config's key `reproduction` names: claims of a publication, and stored results."""
+
+from pathlib import Path
+
+from pydantic import Field
+
+from facegear.config.base import Section, parse
+from facegear.config.load import located
+from facegear.config.yaml_file import read_yaml
+
+
+class Reproduction(Section):
+    """What the results of a case are held against."""
+
+    claims: str = Field(min_length=1, description="its claims (yaml)")
+    sets: str | None = Field(None, min_length=1, description="sets of undisclosed inputs that fit (csv)")
+    runs: str | None = Field(None, min_length=1, description="runs of those sets and of the config (csv)")
+    random: str | None = Field(None, min_length=1, description="claims held by random inputs (csv)")
+
+
+def read_reproduction(path: str | Path) -> Reproduction:
+    """Read and validate the file; the files it names are found from the working directory afterwards.
+
+    Raises ConfigErrors with one line for every mistake.
+    """
+    read, folder = parse(Reproduction, read_yaml(path), str(path)), Path(path).parent
+    files = {key: file for key, file in read.model_dump().items() if file is not None}
+    return read.model_copy(update={key: located(file, folder) for key, file in files.items()})

@@ -1,0 +1,43 @@
+"""Criteria on natural frequencies and mode classes; table `frequencies`."""
+
+from paper.scorecard.outcome import Outcome, Tables, number, statement
+
+EQUAL_HZ = 1e-6
+
+
+def count_rigid(tables: Tables) -> Outcome:
+    """Number of modes at exactly 0 Hz."""
+    return number(int((tables["frequencies"]["frequency_hz"] == 0.0).sum()))
+
+
+def frequency(tables: Tables, order: int) -> Outcome:
+    """Natural frequency of an order, counted from 1."""
+    frame = tables["frequencies"].set_index("order")
+    return number(frame.loc[order, "frequency_hz"], 7)
+
+
+def multiplicity(tables: Tables, order: int) -> Outcome:
+    """Number of modes within 1e-6 Hz of an order's frequency."""
+    values = tables["frequencies"].set_index("order")["frequency_hz"]
+    return number(int((abs(values - values[order]) < EQUAL_HZ).sum()))
+
+
+def mode_class(tables: Tables, orders: list[int], mode_class: str) -> Outcome:
+    """The orders of a class, found from the mode shapes, are exactly the paper's."""
+    frame = tables["frequencies"]
+    found = sorted(frame.loc[frame["class"] == mode_class, "order"].astype(int))
+    return statement(found == sorted(orders), f"orders {', '.join(map(str, found))}")
+
+
+def class_count(tables: Tables) -> Outcome:
+    """Number of classes among the modes that are not rigid."""
+    frame = tables["frequencies"]
+    return number(int(frame.loc[frame["frequency_hz"] > 0.0, "class"].nunique()))
+
+
+def coupled_share(tables: Tables, lower: float) -> Outcome:
+    """More than the stated share of the elastic modes has bodies that both translate and rotate."""
+    frame = tables["frequencies"]
+    symbols = frame.loc[frame["frequency_hz"] > 0.0, "symbols"]
+    coupled = symbols.str.contains(r"T(?:\([xy]\))?-R")
+    return statement(coupled.mean() > lower, f"{coupled.sum()} of {coupled.size} modes")

@@ -1,0 +1,23 @@
+"""Criteria on the mesh stiffness; tables `tvms` and `load_dependence` of the stiffness stage."""
+
+import numpy as np
+
+from paper.scorecard.outcome import Outcome, Tables, number, statement
+
+
+def fe_mean_stiffness(tables: Tables) -> Outcome:
+    """Mean of the average stiffness from contact analysis at the load at which k(t) is taken."""
+    frame = tables["load_dependence"]
+    rows = frame[frame["definition"] == "average"].sort_values("torque_n_m")
+    logs = np.log(rows["torque_n_m"].to_numpy(float))
+    torque = float(tables["inputs"]["stiffness_torque_n_m"].iloc[0])
+    return number(float(np.interp(np.log(torque), logs, rows["mean_n_per_m"])), 4)
+
+
+def series_carries_curve(tables: Tables, within: float) -> Outcome:
+    """The kept Fourier series differs from the contact analysis nowhere by more than this part of the
+    peak-to-peak value.
+    """
+    frame = tables["tvms"]
+    off = float(np.abs(frame["k_series_n_per_m"] - frame["k_n_per_m"]).max() / np.ptp(frame["k_n_per_m"]))
+    return statement(off <= within, f"{100 * off:.2g} % of peak-to-peak")

@@ -1,0 +1,73 @@
+"""The scorecard as an HTML page."""
+
+from pathlib import Path
+
+import pandas as pd
+
+from facegear.io import pages
+from paper.scorecard.base_rates import Totals
+from paper.scorecard.rows import Verdict
+
+TEMPLATE = Path(__file__).with_name("scorecard.html.j2")
+DIGITS = 5
+
+
+def counts(frame: pd.DataFrame) -> dict[str, int]:
+    """Distinct rows about this model by verdict, all verdicts present."""
+    kept = frame[frame["counted"]]
+    return {one.value: int((kept["verdict"] == one.value).sum()) for one in Verdict}
+
+
+def render(
+    frame: pd.DataFrame,
+    source: str,
+    inputs: list[str],
+    sets: pd.DataFrame,
+    starts: pd.DataFrame,
+    chance: Totals | None = None,
+) -> str:
+    """The page; `inputs` are lines naming the inputs the paper does not disclose, `sets` those that fit.
+
+    `starts`: what each set holds from rest and from every start (START_COLUMNS); `chance`: what random inputs
+    hold.
+    """
+    held_out = frame[(frame["undisclosed"] != "") & ~frame["fitted"]]
+    return pages.render(
+        TEMPLATE,
+        source=source,
+        counts=counts(frame),
+        fitted=counts(frame[frame["fitted"]]),
+        held_out=counts(held_out),
+        left_out=int((~frame["counted"]).sum()),
+        chance=None if chance is None else against_chance(frame, chance),
+        inputs=inputs,
+        parts=[(where, rows.to_dict("records")) for where, rows in frame.groupby("where", sort=False)],
+        starts_header=[str(name).replace("_", " ") for name in starts.columns],
+        starts_rows=[[_cell(value) for value in row] for row in starts.itertuples(index=False)],
+        sets_header=[str(name).replace("_", " ") for name in sets.columns],
+        sets_rows=[[_cell(value) for value in row] for row in sets.itertuples(index=False)],
+        cell=_cell,
+    )
+
+
+def against_chance(frame: pd.DataFrame, chance: Totals) -> str:
+    """What the config's inputs hold beside what random ones do, in words."""
+    kept = frame[frame["counted"] & frame["dynamic"]]
+    ours = int(kept["holds"].sum())
+    steady = int((kept["verdict"] == Verdict.REPRODUCED).sum())
+    low, high = chance.spread
+    reaching = chance.share_reaching(ours)
+    better = "no better than chance" if ours <= high else "more than 95 % of random inputs do"
+    return (
+        f"Of {chance.claims} distinct claims that hang on the dynamics' undisclosed inputs, "
+        f"{chance.held.size} random plausible sets of inputs hold {chance.mean:.1f} on average (the middle "
+        f"90 % of them {low:.0f} to {high:.0f}, the best {chance.held.max():.0f}). The inputs used here hold "
+        f"{ours}, {steady} of them in every run: {better}; {100 * reaching:.0f} % of the random sets hold as "
+        "many or more."
+    )
+
+
+def _cell(value: object) -> str:
+    if value is None or value != value:
+        return ""
+    return f"{value:.{DIGITS}g}" if isinstance(value, float) else str(value)

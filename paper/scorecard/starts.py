@@ -1,0 +1,30 @@
+"""How many claims sets of inputs hold by their motion from rest, and how many from every start."""
+
+from collections.abc import Sequence
+
+import pandas as pd
+
+from paper.scorecard.claims import Claim
+
+START_COLUMNS = ("set", "claims", "from_rest", "from_every_start", "from_some_start", "without_number")
+
+
+def start_table(runs: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:
+    """One row a set: distinct claims on the dynamics, and how many of them hold (START_COLUMNS).
+
+    `without_number` counts those on a number that no run gives, of every set by the same rule: a mean
+    coefficient is none where no mesh of its group carries load for half the cycle or more.
+
+    `runs`: columns set, id, runs, held, low, high, at_rest: how many runs from all starts judged a claim, how
+    many hold it, the range of its number, and whether the one from rest, with the inputs as given, holds it.
+    """
+    counted = {claim.id for claim in claims if claim.counts and claim.dynamic}
+    numbers = {claim.id for claim in claims if claim.paper is not None}
+    rows = []
+    for name, found in runs[runs["id"].isin(counted)].groupby("set", sort=False):
+        held, judged = found["held"], found["runs"]
+        rest = int(found["at_rest"].astype(bool).sum())
+        missing = int((found["id"].isin(numbers) & found["low"].isna()).sum())
+        every, some = int((held == judged).sum()), int((held > 0).sum())
+        rows.append((str(name), len(found), rest, every, some, missing))
+    return pd.DataFrame(rows, columns=list(START_COLUMNS))

@@ -1,0 +1,116 @@
+"""The table of stages is whole: every file once, every argument from somewhere, every page in step."""
+
+import inspect
+from pathlib import Path
+
+import pytest
+
+from facegear.pipeline.listing import listing
+from facegear.pipeline.needs import stages_before
+from facegear.pipeline.stage import FIGURES, load
+from facegear.pipeline.table import STAGES
+from facegear.provenance.fingerprint import reached_modules
+
+ROOT = Path(__file__).parents[3]
+DRAWN = [stage for stage in STAGES.values() if stage.figures]
+RESUMED = {"partial", "code"}
+"""Arguments of a stage that goes on where it was killed."""
+
+
+def arguments(reference):
+    """Names that a function asks for, those it may be given, and whether it passes others on."""
+    given = inspect.signature(load(reference)).parameters.values()
+    named = [one for one in given if one.kind is not one.VAR_KEYWORD]
+    needed = {one.name for one in named if one.default is one.empty}
+    return needed, {one.name for one in named}, len(named) < len(given)
+
+
+def accepts(reference, offered, optional=frozenset()):
+    needed, known, passes_on = arguments(reference)
+    missing = needed - (offered - optional)
+    return not missing and (passes_on or offered <= known)
+
+
+def test_every_file_of_every_rule_is_declared_once():
+    stages = [path for stage in STAGES.values() for path in (stage.manifest, *paths(stage))]
+    figures = [name for stage in DRAWN if not callable(stage.figures.names) for name in stage.figures.names]
+    assert len(set(stages)) == len(stages) and len(set(figures)) == len(figures)
+
+
+def paths(stage):
+    return [file.path for file in stage.files.values()]
+
+
+@pytest.mark.parametrize("stage", STAGES.values(), ids=lambda stage: stage.name)
+def test_a_stage_is_given_what_its_function_asks_for(stage):
+    optional = {name for name, source in stage.upstream.items() if source.when}
+    offered = {*stage.needs, *stage.upstream, *stage.wildcards, *(RESUMED if stage.resumable else ())}
+    assert len(offered) == len(stage.needs) + len(stage.upstream) + len(stage.wildcards) + (
+        2 if stage.resumable else 0
+    )
+    assert accepts(stage.function, offered, optional)
+
+
+@pytest.mark.parametrize("stage", DRAWN, ids=lambda stage: stage.name)
+def test_figures_are_given_what_their_function_asks_for(stage):
+    assert accepts(stage.figures.draw, {*stage.figures.needs, *stage.figures.upstream})
+
+
+def test_what_is_taken_from_a_stage_is_a_file_of_it_that_is_read_again_and_stands_before():
+    order = list(STAGES)
+    for stage in STAGES.values():
+        for source in stage.upstream.values():
+            assert order.index(source.stage) < order.index(stage.name), (stage.name, source)
+        drawn = stage.figures.upstream if stage.figures else {}
+        for source in (*stage.upstream.values(), *drawn.values()):
+            file = STAGES[source.stage].files[source.file]
+            assert file.readable or file.each, (stage.name, source)
+            assert source.each or set(source.where) == set(STAGES[source.stage].wildcards)
+
+
+def test_the_files_of_a_stage_lie_beside_its_manifest_and_hold_its_wildcards():
+    """Readers look for the manifest in the folder of a file."""
+    for stage in STAGES.values():
+        assert {str(Path(path).parent) for path in paths(stage)} <= {str(Path(stage.manifest).parent)}
+        for path in (stage.manifest, *paths(stage)):
+            assert all(f"{{{name}}}" in path for name in stage.wildcards)
+
+
+def test_columns_and_views_that_are_named_exist():
+    for stage in STAGES.values():
+        for name, file in stage.files.items():
+            if isinstance(file.holds, str):
+                assert load(file.holds), name
+            if file.view:
+                assert callable(load(file.view)) and file.of in stage.files
+
+
+@pytest.mark.parametrize("stage", STAGES.values(), ids=lambda stage: stage.name)
+def test_no_stage_is_made_again_because_the_table_got_another_row(stage):
+    """Its fingerprint holds neither the table nor what only rules and the door need."""
+    files = [ROOT / f"{module.replace('.', '/')}.py" for module in stage.modules]
+    reached = {name for file in files for name in reached_modules(file, ROOT)}
+    assert not {name for name in reached if name.startswith(("facegear.pipeline", "facegear.results"))}
+
+
+def test_each_figure_has_one_chapter_with_a_caption():
+    captions = {path.stem for path in (ROOT / "workflow" / "report").glob("*.rst")}
+    assert {stage.figures.chapter for stage in DRAWN} == captions
+    assert not any(name.endswith(FIGURES) for name in STAGES)
+
+
+def test_what_a_stage_depends_on_reaches_back_to_the_teeth():
+    import facegear
+
+    values = facegear.example().values
+    assert set(stages_before("load_sharing", values)) == {
+        "load_sharing",
+        "stiffness",
+        "contact",
+        "compliance",
+    }
+
+
+def test_the_page_shows_the_table_as_it_is():
+    """Renewed by `python -m facegear.pipeline.listing`."""
+    assert listing() in (ROOT / "docs" / "stages.md").read_text()

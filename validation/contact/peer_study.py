@@ -1,0 +1,104 @@
+"""CalculiX beside the chain: the same sector on the same mesh, the pinion turned by the same angle."""
+
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from scipy.interpolate import PchipInterpolator
+
+from facegear.contact.options import Refinement
+from facegear.contact.pair import BUILDERS
+from facegear.geometry.design import Material, PairDesign
+from facegear.mesh.sizes import MeshSizes, named_sizes
+from facegear.progress import Progress
+from validation.contact.calculix import run_deck, write_deck
+from validation.contact.refinement_levels import CUTS
+from validation.contact.sector_model import SectorPair, angles_at, sector_pair
+
+TEETH = 5
+LOADED = (-1, 0, 1, 2)
+HAND_OVER = 0.0
+POSITIONS = (HAND_OVER, 0.34, 0.67)
+RESOLVED = "coarse_4x1x2"
+"""The level that the errors of both are taken from."""
+AMORTISED = 128
+"""Solutions over which one compliance is shared: 32 positions at 4 loads."""
+LOADS = (0.25, 0.5, 0.75, 1.0)
+"""Torques solved at a position, parts of the one compared: `seconds` is the time for one of them."""
+AROUND = tuple(np.linspace(0.85, 1.15, 13))
+"""Torques, in parts of the one compared, between which the resolved sector's torque at a turn is read."""
+
+
+def peer_study(
+    design: PairDesign,
+    levels: Mapping[str, tuple[MeshSizes, Sequence[float]]],
+    materials: tuple[Material, Material],
+    torque: float,
+    folder: Path,
+    threads: int,
+) -> pd.DataFrame:
+    """Torque (N m) that both need for the turn our sector takes under `torque`, with times (s) and memory
+    (GB), for each level at its positions (0..1 of a pitch).
+
+    CalculiX runs with either body's flank as the slave surface, a row each: its answer should not depend on
+    it. `resolved_torque_n_m` is what the same sector takes at that turn with its contact strip resolved, by
+    our solver on the level RESOLVED; errors are taken from it. At a given turn torques differ by some
+    1.3 times what turns do at a given torque (local over average stiffness). `seconds` is ours for one
+    solution with its part of the compliances of both sectors, `calculix_seconds` one run.
+    Raises FacegearError if ccx is not installed or fails.
+    """
+    size, cuts = CUTS[RESOLVED]
+    resolved = sector_pair(design, named_sizes(size, design.module), materials, TEETH, LOADED, cuts)
+    asked = {position for _, positions in levels.values() for position in positions}
+    fine = {position: _torque_by_turn(resolved, position, torque) for position in asked}
+    del resolved
+    progress = Progress("CalculiX", sum(len(positions) for _, positions in levels.values()) * len(BUILDERS))
+    rows = []
+    for name, (sizes, positions) in levels.items():
+        start = time.perf_counter()
+        pair = sector_pair(design, sizes, materials, TEETH, LOADED, Refinement())
+        # one more solution makes what all positions share
+        pair.solve(0.5, (1.0,))
+        shared = time.perf_counter() - start
+        for position in positions:
+            start = time.perf_counter()
+            ours = pair.solve(position, tuple(part * torque for part in LOADS))[-1]
+            seconds = shared / AMORTISED + (time.perf_counter() - start) / len(LOADS)
+            turn = ours.ste / design.pinion_base_radius
+            exact = float(fine[position](turn))
+            for slave in BUILDERS:
+                deck = folder / f"{name}_{round(100 * position):03d}_{slave}.inp"
+                dof = write_deck(
+                    deck, design, sizes, materials, TEETH, angles_at(design, position), turn, slave
+                )
+                peer = run_deck(deck, threads, dof)
+                progress.step()
+                rows.append(
+                    {
+                        "level": name,
+                        "position": position,
+                        "slave": slave,
+                        "dof": dof,
+                        "torque_n_m": torque,
+                        "calculix_torque_n_m": peer.torque,
+                        "resolved_torque_n_m": exact,
+                        "difference_percent": 100 * (torque / peer.torque - 1),
+                        "error_percent": 100 * (torque / exact - 1),
+                        "calculix_error_percent": 100 * (peer.torque / exact - 1),
+                        "seconds": seconds,
+                        "calculix_seconds": peer.run.seconds,
+                        "time_ratio": peer.run.seconds / seconds,
+                        "calculix_memory_gb": peer.run.gigabytes,
+                        "calculix_version": peer.run.version,
+                    }
+                )
+    return pd.DataFrame(rows)
+
+
+def _torque_by_turn(pair: SectorPair, position: float, torque: float) -> PchipInterpolator:
+    """Torque (N m) against the turn (rad) of the pinion around `torque`."""
+    torques = tuple(part * torque for part in AROUND)
+    turns = [result.ste / pair.flanks.design.pinion_base_radius for result in pair.solve(position, torques)]
+    return PchipInterpolator(turns, torques, extrapolate=False)

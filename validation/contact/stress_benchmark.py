@@ -1,0 +1,125 @@
+"""Root stress beside that of a mesh twice as fine, and what reading it costs."""
+
+import resource
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from facegear.contact.gear_flank import GearFlank
+from facegear.contact.options import ContactPlan
+from facegear.contact.pair import gear_flank
+from facegear.geometry.design import Material, PairDesign
+from facegear.mesh.sizes import MeshSizes
+from facegear.strength.root_stress import down_the_fillet, root_stress
+from validation.contact.line_load import LoadedTooth, loaded_tooth
+from validation.contact.stress_levels import HALVED
+
+Array = NDArray[np.float64]
+Result = TypeVar("Result")
+
+TEETH = 3
+"""Of the sector, its cut faces free; the middle one is loaded."""
+ENDS = 0.1
+"""Part of the face at each end that is left out: an edge's stress is no element's to give."""
+REPEATS = 3
+POSITIONS, LOADS, NODES = 32, 1000, 80
+"""Of the timed root stress; nodes of each of three pairs that carry load."""
+
+
+def stress_convergence(
+    design: PairDesign, body: str, sizes: MeshSizes, material: Material, halvings: Sequence[str]
+) -> Iterator[dict[str, float | str]]:
+    """One row a halving: largest tension (MPa) below an even line load of 1 kN, and its change.
+
+    error_percent: of the largest value; largest_error_percent: of the largest down the fillet, anywhere along
+    the face but at its ends. CPU seconds of both meshes, condensation and gauges included.
+    """
+    coarse, seconds = _timed(design, body, sizes, material)
+    at, own = _along_the_face(coarse)
+    for halved in halvings:
+        changes = {name: 0.5 * getattr(sizes, name) for name in HALVED[halved]}
+        fine, fine_seconds = _timed(design, body, replace(sizes, **changes), material)
+        reference = np.interp(at, *_along_the_face(fine))
+        yield {
+            "body": body,
+            "halved": halved,
+            "dof": 3 * len(coarse.mesh.nodes),
+            "fine_dof": 3 * len(fine.mesh.nodes),
+            "stress_mpa": 1e-3 * float(own.max()),
+            "fine_stress_mpa": 1e-3 * float(reference.max()),
+            "error_percent": 100.0 * float(own.max() / reference.max() - 1.0),
+            "largest_error_percent": 100.0 * float(np.abs(own / reference - 1.0).max()),
+            "cpu_s": seconds,
+            "fine_cpu_s": fine_seconds,
+        }
+
+
+def stress_costs(
+    design: PairDesign, body: str, sizes: MeshSizes, material: Material, plan: ContactPlan
+) -> dict[str, float | str]:
+    """CPU seconds of the compliance of one body without and with gauges, and of many loads' root stress.
+
+    Both in turn, the least of REPEATS each: what other programs do to memory counts in CPU seconds as well.
+    """
+    plain, reading = (replace(plan, root_stress=asked) for asked in (False, True))
+    without = with_gauges = np.inf
+    for _ in range(REPEATS):
+        without = min(without, _cpu(lambda: gear_flank(design, body, sizes, material, plain))[0])
+        seconds, flank = _cpu(lambda: gear_flank(design, body, sizes, material, reading))
+        with_gauges = min(with_gauges, seconds)
+    product, teeth = _many_loads(flank, body)
+    return {
+        "body": body,
+        "compliance_cpu_s": without,
+        "with_gauges_cpu_s": with_gauges,
+        "gauges_percent": 100.0 * (with_gauges / without - 1.0),
+        "gauges": float(flank.compliance.readings.shape[1]),
+        "loads": float(LOADS),
+        "positions": float(POSITIONS),
+        "teeth": float(teeth),
+        "root_stress_cpu_s": product,
+        "peak_memory_gb": 1e-6 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
+    }
+
+
+def _along_the_face(tooth: LoadedTooth) -> tuple[Array, Array]:
+    """Places (b,) along the face and the largest tension (Pa) down the loaded fillet there, ends left out."""
+    at, values = tooth.gauges.along(tooth.mesh.body), down_the_fillet(tooth.stress[0]).max(axis=0)
+    inside = np.abs(at - at.mean()) < (0.5 - ENDS) * np.ptp(at)
+    return at[inside], values[inside]
+
+
+def _many_loads(flank: GearFlank, body: str) -> tuple[float, int]:
+    """CPU seconds of the root stress of LOADS loads at POSITIONS positions, three pairs, and teeth read.
+
+    Each pair loads as many nodes as a line of contact across the flank does in the chain.
+    """
+    assert flank.gauges is not None
+    random, nodes = np.random.default_rng(1), flank.side.nodes.size
+    cases = np.tile(random.permuted(np.tile(np.arange(nodes), (POSITIONS, 1)), axis=1)[:, :NODES], (LOADS, 1))
+    values = random.uniform(0.0, 100.0, cases.shape)
+    rows = np.arange(len(cases))[:, None].repeat(NODES, axis=1)
+    force = sp.csr_matrix((values.ravel(), (rows.ravel(), cases.ravel())), shape=(len(cases), nodes))
+    loads = dict.fromkeys((-1, 0, 1), force)
+    torques, positions = np.linspace(1.0, 1000.0, LOADS), np.arange(POSITIONS) / POSITIONS
+    along, angle = flank.gauges.along(body), flank.gauges.tangent_angle
+    seconds, found = _cpu(
+        lambda: root_stress(flank.compliance.readings, loads, torques, positions, along, angle)
+    )
+    return seconds, found.passage.size // POSITIONS
+
+
+def _timed(design: PairDesign, body: str, sizes: MeshSizes, material: Material) -> tuple[LoadedTooth, float]:
+    seconds, tooth = _cpu(lambda: loaded_tooth(design, body, sizes, material, TEETH))
+    return tooth, seconds
+
+
+def _cpu(work: Callable[[], Result]) -> tuple[float, Result]:
+    start = time.process_time()
+    found = work()
+    return time.process_time() - start, found

@@ -1,0 +1,75 @@
+"""Flank pressure against a strip fine in both directions: exact gaps, half spaces, the same line load."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.contact.pressure import INSIDE, FlankPressure
+from facegear.geometry.design import PairDesign
+from facegear.geometry.pinion_surface import SurfacePoints, flank_points
+from facegear.geometry.placement import conjugate_angle
+from facegear.geometry.separation import separation
+from validation.contact.half_space import half_space, pressures
+
+Array = NDArray[np.float64]
+
+ACROSS, ALONG = 12, 2
+"""Cells in the strip's half-width across the line and along the axis."""
+
+BESIDE = 2.0
+"""Half-widths of flank on each side of the strip."""
+
+ENDS = 6.0
+"""Half-widths at the ends of the piece that are left out: there the strip goes on and the piece does not."""
+
+
+@dataclass(frozen=True, eq=False)
+class Strip:
+    """Largest pressure (Pa) across the line on planes y (m,) m: of the strip, and of the line load."""
+
+    y: Array
+    strip: Array
+    line: Array
+
+
+def strip_at(
+    design: PairDesign,
+    pressure: FlankPressure,
+    result: int,
+    unloaded: float,
+    modulus: float,
+    half_length: float = 4e-3,
+) -> Strip:
+    """The piece of a contact line around the largest pressure of a result, `half_length` (m) each way.
+
+    `result` numbers the loads of `pressure`; `unloaded` its unloaded transmission error (m).
+    """
+    loads, lines = pressure.loads[result], pressure.lines
+    at = int(np.nanargmax(loads.pressure))
+    row = loads.line[at]
+    y0 = lines.y[loads.plane[at]]
+    on = (loads.line == row) & (loads.where == INSIDE) & (np.abs(lines.y[loads.plane] - y0) <= half_length)
+    planes, width = loads.plane[on], loads.half_width[at]
+    known = lines.y[planes]
+    arcs = 0.5 * design.pinion_base_radius * lines.roll[row, planes] ** 2
+    y = np.arange(known[0], known[-1], width / ALONG)
+    arc = np.arange(arcs.min() - BESIDE * width, arcs.max() + BESIDE * width, width / ACROSS)
+    gap = _gap(design, pressure, row, unloaded, arc, y)
+    across = np.interp(y, known, loads.line_load[on] / np.cos(lines.slope[row, planes]))
+    size = arc[1] - arc[0], y[1] - y[0]
+    found = pressures(half_space(gap.shape, size, modulus), gap, across / size[0]).max(axis=0)
+    inner = (y > y[0] + ENDS * width) & (y < y[-1] - ENDS * width)
+    return Strip(y[inner], found[inner], np.interp(y[inner], known, loads.pressure[on]))
+
+
+def _gap(
+    design: PairDesign, pressure: FlankPressure, row: int, unloaded: float, arc: Array, y: Array
+) -> Array:
+    """Exact gaps (n, m) m of one pair at lengths of the involute (n,) and planes (m,)."""
+    phi1 = (pressure.position[row] - 0.5) * 2 * np.pi / design.pinion.teeth
+    phi2 = conjugate_angle(design, phi1) - unloaded / design.gear_base_radius
+    roll, along = np.meshgrid(np.sqrt(2 * arc / design.pinion_base_radius), y, indexing="ij")
+    points: SurfacePoints = flank_points(design, roll, along).flat()
+    seen = separation(design, points, phi1, phi2, pressure.tooth[row])
+    return seen.continued[0].reshape(roll.shape)

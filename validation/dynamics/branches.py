@@ -1,0 +1,254 @@
+"""Branches of periodic motions: error against tolerance, and what an orbit costs against settling."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from facegear.dynamics.branches.continuation import Branch, Run, follow, turned
+from facegear.dynamics.branches.explore import crossings
+from facegear.dynamics.branches.family import Family, speed_family
+from facegear.dynamics.branches.period_map import PeriodMap
+from facegear.dynamics.branches.points import Point, at_parameter
+from facegear.dynamics.branches.special import Kind
+from facegear.dynamics.integrator.system import System
+from facegear.dynamics.motion import Settings, State
+from facegear.dynamics.steady_state.simulate import Model, build_model, simulate, static_start, steady_state
+from facegear.transmission.machine import Machine
+from validation.dynamics.oscillators import Oscillator
+
+Array = NDArray[np.float64]
+TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
+REFERENCE = 1e-13
+EXACT_POINTS = (
+    (Kind.FOLD, 0.828463984388),
+    (Kind.GRAZE, 0.820631087712),
+    (Kind.FOLD, 0.708031618722),
+    (Kind.GRAZE, 1.407088466023),
+)
+"""Special points of x'' + 0.1 x' + f(x) = 0.1 + 0.05 W^2 cos W t over W, in closed-form pieces, 50 digits."""
+EXACT_STATE = (1.2287262208378, 0.1646816908020)
+EXACT_MULTIPLIERS = (1.7871104711, 0.2421112145)
+"""Displacement, velocity and Floquet multipliers of the unstable orbit at W = 0.75."""
+ERRORS = ((1.0, 1.0), (0.1, 1.2))
+"""Factors on the machine's error and on its nominal speed: as it is, and where it stays stable undamped."""
+DAMPING = (1.0, 0.3, 0.1, 0.03, 0.01)
+TOLERANCE = 1e-8
+BLOCK = 32
+SETTLED = 1e-6
+"""Change over a mesh period, in length scales, at which plain running counts as settled."""
+REPEATS = 5
+MOST_PERIODS = 100_000
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A family with the run that follows one branch of it, and an orbit of that branch to look at."""
+
+    name: str
+    family: Family
+    begin: Callable[[PeriodMap], Point]
+    run: Run
+    value: float
+
+
+def oscillator_case() -> Case:
+    """The oscillator with exact answers."""
+    family = Family("W", lambda speed: (Oscillator(0.05, 0.1, 0.05, speed, 0.0, 0.0).system, speed))
+    return Case(
+        "oscillator",
+        family,
+        lambda flow: at_parameter(flow, np.array([1.1, 0.0]), float(np.log(0.3))),
+        Run(0.25, 2.6),
+        0.75,
+    )
+
+
+def machine_case(machine: Machine, speed_rpm: float) -> Case:
+    """The branch through the motion at a speed, from 0.9 to 1.3 times that speed."""
+    model = build_model(machine)
+    state = simulate(model, speed_rpm, Settings(tolerance=1e-8)).state
+    u = float(np.log(speed_rpm))
+    return Case(
+        "machine",
+        speed_family(model),
+        lambda flow: at_parameter(flow, flow.weighted(state, u), u),
+        Run(0.9 * speed_rpm, 1.3 * speed_rpm),
+        1.05 * speed_rpm,
+    )
+
+
+def accuracy(machine: Machine, speed_rpm: float, step: Callable[[], None] = lambda: None) -> pd.DataFrame:
+    """Error against tolerance. Columns case, tolerance, points, seconds, special_points, same_list (whether
+    the kinds of the special points come in the same order as in the reference), fold_error, other_error,
+    graze_error (largest relative error of the parameter), orbit_error (over the length scale) and
+    multiplier_error (of the leading two) of the unstable orbit at one value.
+
+    The oscillator is held against exact answers, the machine against a run at a tolerance of 1e-13.
+    """
+    rows = []
+    for case in (oscillator_case(), machine_case(machine, speed_rpm)):
+        exact = None if case.name == "machine" else _exact()
+        expected = exact or _found(case, *_followed(case, REFERENCE)[:2])
+        for tolerance in TOLERANCES:
+            flow, branch, seconds = _followed(case, tolerance)
+            found = _found(case, flow, branch)
+            rows.append(
+                {
+                    "case": case.name,
+                    "tolerance": tolerance,
+                    "points": len(branch.points),
+                    "seconds": seconds,
+                    "special_points": len(branch.specials),
+                    **_errors(found, expected),
+                }
+            )
+            step()
+    return pd.DataFrame(rows)
+
+
+@dataclass(frozen=True, eq=False)
+class _Answers:
+    kinds: list[Kind]
+    values: Array
+    state: Array
+    multipliers: Array
+
+
+def _exact() -> _Answers:
+    kinds, values = [kind for kind, _ in EXACT_POINTS], [value for _, value in EXACT_POINTS]
+    place, velocity = EXACT_STATE
+    return _Answers(kinds, np.array(values), np.array([place, velocity / 0.75]), np.array(EXACT_MULTIPLIERS))
+
+
+def _followed(case: Case, tolerance: float) -> tuple[PeriodMap, Branch, float]:
+    flow = PeriodMap(case.family, 1, tolerance)
+    start = case.begin(flow)
+    begin = time.process_time()
+    branch = follow(flow, start, case.run)
+    return flow, branch, time.process_time() - begin
+
+
+def _found(case: Case, flow: PeriodMap, branch: Branch) -> _Answers:
+    orbits = crossings(branch, case.value)
+    chosen = next((orbit for orbit in orbits if not orbit.stable), orbits[0])
+    return _Answers(
+        [special.kind for special in branch.specials],
+        np.array([special.point.value for special in branch.specials]),
+        chosen.z,
+        np.abs(chosen.multipliers[:2]),
+    )
+
+
+def _errors(found: _Answers, expected: _Answers) -> dict[str, float | bool]:
+    """Relative errors of each kind in its own order along the branch, whichever end that began at."""
+    errors: dict[str, float | bool] = {"same_list": _in_order(found) == _in_order(expected)}
+    for name, kinds in (
+        ("fold_error", (Kind.FOLD,)),
+        ("other_error", (Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)),
+        ("graze_error", (Kind.GRAZE,)),
+    ):
+        one, two = (_values(answers, kinds) for answers in (found, expected))
+        same = one.size == two.size > 0
+        errors[name] = float(np.abs(one / two - 1.0).max()) if same else np.nan
+    errors["orbit_error"] = float(np.abs(found.state - expected.state).max())
+    errors["multiplier_error"] = float(np.abs(found.multipliers - expected.multipliers).max())
+    return errors
+
+
+def _in_order(answers: _Answers) -> list[Kind]:
+    return [answers.kinds[i] for i in np.argsort(answers.values)]
+
+
+def _values(answers: _Answers, kinds: tuple[Kind, ...]) -> Array:
+    return np.sort([v for v, kind in zip(answers.values, answers.kinds, strict=True) if kind in kinds])
+
+
+def costs(machine: Machine, speed_rpm: float, step: Callable[[], None] = lambda: None) -> pd.DataFrame:
+    """An orbit by continuation against settling by integration, where all damping is multiplied by a factor.
+
+    Once with the machine's error and once with a tenth of it, where contact is kept; both from the orbit at a
+    speed 0.5 % lower, at a local tolerance of 1e-8. Columns error_factor, damping_factor, speed_rpm,
+    leading_multiplier, orbit_seconds (the orbit with its multipliers by Newton's method), point_seconds (a
+    point of the branch within 2 % of the speed, refused steps and location of special points included),
+    settling_periods and settling_seconds (plain running until a period moves it by 1e-6 length scales),
+    settled
+    (whether that happens within 100 000 periods), steady_state_seconds (our own search, which ends with
+    Newton's method), ratio of plain settling to orbit_seconds.
+    """
+    model = build_model(machine)
+    rows = []
+    for error, part in ERRORS:
+        smooth = replace(model, system=replace(model.system, error=error * model.system.error))
+        speed = part * speed_rpm
+        orbits = _orbits(smooth, speed)
+        for factor in DAMPING:
+            if factor in orbits:
+                damped = replace(smooth, system=_damped(smooth.system, factor))
+                rows.append({"error_factor": error, **_cost(damped, factor, speed, orbits[factor])})
+            step()
+    return pd.DataFrame(rows)
+
+
+def _damped(system: System, factor: float) -> System:
+    return replace(system, damping=factor * system.damping, mesh_damping=factor * system.mesh_damping)
+
+
+def _orbits(model: Model, speed_rpm: float) -> dict[float, State]:
+    """The orbit at a speed, carried on to less and less damping by continuation in the factor."""
+    system, frequency = speed_family(model).at(speed_rpm)
+    flow = PeriodMap(
+        Family("damping_factor", lambda factor: (_damped(system, factor), frequency)), 1, TOLERANCE
+    )
+    state = steady_state(system, frequency, Settings(tolerance=TOLERANCE), static_start(model)).state
+    start = at_parameter(flow, flow.weighted(state, 0.0), 0.0)
+    branch = follow(flow, turned(start), Run(0.99 * DAMPING[-1], 1.0), both=False)
+    found = {1.0: state}
+    for factor in DAMPING[1:]:
+        for point in crossings(branch, factor)[:1]:
+            found[factor] = flow.state(point.z, point.u)
+    return found
+
+
+def _cost(model: Model, factor: float, speed_rpm: float, state: State) -> dict[str, float | bool]:
+    flow = PeriodMap(speed_family(model), 1, TOLERANCE)
+    u = float(np.log(speed_rpm))
+    start = at_parameter(flow, flow.weighted(state, u), u)
+    begin = time.process_time()
+    branch = follow(flow, start, Run(0.98 * speed_rpm, 1.02 * speed_rpm))
+    point_seconds = (time.process_time() - begin) / len(branch.points)
+    beside = at_parameter(flow, start.z, float(np.log(0.995 * speed_rpm))).z
+    begin = time.process_time()
+    for _ in range(REPEATS):
+        orbit = at_parameter(flow, beside, u)
+    orbit_seconds = (time.process_time() - begin) / REPEATS
+    periods, seconds, settled = _plain(flow, beside, u)
+    begin = time.process_time()
+    system, frequency = flow.family.at(speed_rpm)
+    steady_state(system, frequency, Settings(tolerance=TOLERANCE), flow.state(beside, u))
+    searched = time.process_time() - begin
+    return {
+        "damping_factor": factor,
+        "speed_rpm": speed_rpm,
+        "leading_multiplier": float(np.abs(orbit.multipliers[0])),
+        "orbit_seconds": orbit_seconds,
+        "point_seconds": point_seconds,
+        "settling_periods": periods,
+        "settling_seconds": seconds,
+        "settled": settled,
+        "steady_state_seconds": searched,
+        "ratio": seconds / orbit_seconds if settled else np.nan,
+    }
+
+
+def _plain(flow: PeriodMap, z: Array, u: float) -> tuple[int, float, bool]:
+    """Periods and seconds of plain running from z until the state hardly changes over a period."""
+    block, begin = flow.over(BLOCK), time.process_time()
+    for count in range(1, MOST_PERIODS // BLOCK + 1):
+        z = z + block.gap(z, u)
+        if np.abs(flow.gap(z, u)).max() < SETTLED:
+            return count * BLOCK, time.process_time() - begin, True
+    return MOST_PERIODS, time.process_time() - begin, False

@@ -1,0 +1,159 @@
+"""What a sweep costs: against settings, against the number of pinions and of harmonics."""
+
+import itertools
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from facegear.dynamics.integrator.compiled import TAU, pack
+from facegear.dynamics.integrator.periods import make_log, run_periods
+from facegear.dynamics.integrator.work import make_work
+from facegear.dynamics.motion import Settings
+from facegear.dynamics.steady_state.orbits import require
+from facegear.dynamics.steady_state.simulate import Model, build_model, simulate, static_start
+from facegear.dynamics.sweeps.plan import SweepPlan
+from facegear.dynamics.sweeps.sweep import Piece, collect, run_speeds
+from facegear.harmonics.series import Harmonics
+from facegear.transmission.imperfections import perfect
+from facegear.transmission.layout import Layout, Role
+from facegear.transmission.machine import Machine, balanced_torques, mesh_frequency
+from validation.dynamics.methods import scipy_method
+from validation.dynamics.problems import Compared, Problem
+
+Array = NDArray[np.float64]
+SPEEDS = 40
+TOLERANCES = (1e-3, 1e-4, 3e-5, 1e-6, 1e-8)
+DWELLS = (32, 128)
+PLAIN_PERIODS = 20
+COST_PERIODS = 1000
+
+
+def sweep_costs(machine: Machine, plan: SweepPlan, step: Callable[[], None] = lambda: None) -> pd.DataFrame:
+    """Settings of a sweep of 40 speeds up against time and the error of the RMS where motions are periodic.
+
+    Each periodic motion is run again from its own state at a tight tolerance, so that the error is that of
+    the orbit found and not of the branch chosen. Columns tolerance, settle_periods, refine,
+    seconds_per_speed, periodic_speeds, not_confirmed (periodic speeds whose class is another one then),
+    rms_error (largest of the confirmed, relative to the largest mesh at the speed), rms_error_median,
+    plain_seconds_per_speed (SciPy RK45 on NumPy for as many periods as ours ran, from a shorter run).
+    """
+    model = build_model(machine)
+    speeds = np.linspace(plan.first_rpm, plan.last_rpm, SPEEDS)
+    plain = plain_seconds_per_period(machine, speeds)
+    rows = []
+    for tolerance, settle, refine in itertools.product(TOLERANCES, DWELLS, (True, False)):
+        settings = replace(plan.settings, tolerance=tolerance, settle=settle, refine=refine, extensions=0)
+        begin = time.process_time()
+        piece = collect(model, run_speeds(model, speeds, settings, None))
+        seconds = (time.process_time() - begin) / SPEEDS
+        periodic, errors = _rms_errors(model, piece, plan.settings)
+        rows.append(
+            {
+                "tolerance": tolerance,
+                "settle_periods": settle,
+                "refine": refine,
+                "seconds_per_speed": seconds,
+                "periodic_speeds": periodic,
+                "not_confirmed": periodic - errors.size,
+                "rms_error": errors.max(initial=0.0),
+                "rms_error_median": np.median(errors),
+                "plain_seconds_per_speed": plain * piece.periods_run.mean(),
+            }
+        )
+        step()
+    return pd.DataFrame(rows)
+
+
+def _rms_errors(model: Model, piece: Piece, settings: Settings) -> tuple[int, Array]:
+    """Number of periodic speeds, and the relative RMS errors of those that are the same motion when tight."""
+    tight = replace(settings, tolerance=1e-10, order=None, periodic_residual=1e-9, extensions=0)
+    periodic = np.flatnonzero(piece.periodic)
+    errors = []
+    for i in periodic:
+        best = collect(model, run_speeds(model, piece.speeds[i : i + 1], tight, piece.state(int(i))))
+        if best.period[0] == piece.period[i]:
+            found, exact = piece.deflection_ac_rms[i], best.deflection_ac_rms[0]
+            errors.append(np.abs(found - exact).max() / exact.max())
+    return len(periodic), np.array(errors)
+
+
+def plain_seconds_per_period(machine: Machine, speeds: Array) -> float:
+    """Time of a mesh period with SciPy's RK45 at 1e-6 on a NumPy right-hand side, mean over three speeds."""
+    model = build_model(machine)
+    prepare = scipy_method("RK45", plain=True)
+    times = []
+    for speed in speeds[[len(speeds) // 4, len(speeds) // 2, -1]]:
+        state = simulate(model, float(speed), Settings(settle=32, extensions=0, window=16)).state
+        omega = TAU * mesh_frequency(machine.layout, float(speed))
+        problem = Problem("plain", model.system, omega, state, PLAIN_PERIODS, Compared.DEFLECTIONS)
+        run = prepare(problem, 1e-6)
+        begin = time.process_time()
+        run()
+        times.append((time.process_time() - begin) / PLAIN_PERIODS)
+    return float(np.mean(times))
+
+
+def scaling_costs(machine: Machine, speed_rpm: float) -> pd.DataFrame:
+    """Time of a mesh period against pinions (evenly spread copies) and harmonics of k.
+
+    Columns pinions, harmonics, coordinates, seconds_per_period (least of three long runs), steps_per_period.
+    """
+    order = machine.stiffness.order
+    sizes = [(pinions, order) for pinions in (1, 2, 5, 8, 12)] + [(5, harmonics) for harmonics in (1, 20, 40)]
+    rows = []
+    for pinions, harmonics in sizes:
+        model = build_model(resized(machine, pinions, harmonics))
+        seconds, steps = _period_cost(model, TAU * mesh_frequency(machine.layout, speed_rpm))
+        rows.append((pinions, harmonics, model.system.size, seconds, steps))
+    names = ["pinions", "harmonics", "coordinates", "seconds_per_period", "steps_per_period"]
+    return pd.DataFrame(rows, columns=names)
+
+
+def _period_cost(model: Model, frequency: float) -> tuple[float, float]:
+    """CPU seconds and steps of a mesh period at the sweep's tolerance, once the start is forgotten."""
+    settings = Settings(tolerance=3e-5)
+    packed = pack(model.system, frequency)
+    work = make_work(packed, settings.taylor_order)
+    start = static_start(model)
+    displacement, velocity = np.zeros((2, packed.omega_squared.size))
+    displacement[: packed.n] = start.displacement
+    none = np.zeros((0, 2, displacement.size))
+    times = []
+    for periods in (100, COST_PERIODS, COST_PERIODS, COST_PERIODS):
+        log = make_log(packed, periods)
+        begin = time.process_time()
+        require(
+            run_periods(packed, work, displacement, velocity, none, periods, 0, settings.tolerance, log, TAU)
+        )
+        times.append((time.process_time() - begin) / periods)
+    return min(times[1:]), float(log.steps[0]) / COST_PERIODS
+
+
+def resized(machine: Machine, count: int, harmonics: int) -> Machine:
+    """The machine with `count` pinions evenly spread, half of them driving, and as many harmonics of k."""
+    old = machine.layout
+    pinions = tuple(
+        replace(
+            old.pinions[0],
+            name=f"pinion {i}",
+            role=Role.INPUT if i % 2 == 0 else Role.IDLER,
+            pitches=round(2.0 * i * old.gear_teeth / count) / 2.0,
+        )
+        for i in range(count)
+    )
+    layout: Layout = replace(old, pinions=pinions)
+    torque = np.where(np.arange(count) % 2 == 0, np.abs(machine.torques).max() / 20.0, 0.0)
+    size = np.r_[0.0, machine.stiffness.amplitudes[1:].max() / np.arange(1, harmonics + 1) ** 2]
+    series = Harmonics(size, np.r_[machine.stiffness.mean, np.zeros(harmonics)])
+    return replace(
+        machine,
+        layout=layout,
+        torques=balanced_torques(layout, torque),
+        stiffness=series,
+        error_lags=None if machine.error_lags is None else np.zeros(len(layout.meshes)),
+        imperfections=perfect(layout),
+    )

@@ -1,0 +1,220 @@
+"""The integrators that are compared; each gives coordinates (samples, n) at SAMPLES phases of every period,
+or the tangents' matrix.
+
+Each is prepared first (memory, compiling for this problem), then run as often as its time is taken.
+"""
+
+import contextlib
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+from facegear.dynamics.integrator.compiled import TAU, Packed, pack
+from facegear.dynamics.integrator.periods import make_log, run_periods
+from facegear.dynamics.integrator.work import make_work
+from facegear.dynamics.motion import Settings
+from facegear.dynamics.steady_state.orbits import monodromy, require
+from validation.dynamics import heyoka_peer
+from validation.dynamics.problems import SAMPLES, Compared, Problem
+from validation.dynamics.right_side import compiled_right_side, fixed_rk4, plain_right_side
+
+Array = NDArray[np.float64]
+Run = Callable[[], Array]
+Prepare = Callable[[Problem, float], Run]
+TOLERANCES = tuple(10.0**-k for k in range(2, 13))
+PATIENCE, PATIENCE_IRREGULAR = 2.0, 6.0
+STEPS = (16, 32, 64, 128, 256, 512, 1024, 2048, 4096)
+
+
+@dataclass(frozen=True)
+class Method:
+    """A name, how to prepare a run of it, and its settings: tolerances, or steps a period.
+
+    A run takes `together` trajectories at once, of which the first is returned.
+    """
+
+    name: str
+    prepare: Prepare
+    settings: Sequence[float]
+    together: int = 1
+
+
+def start_of(packed: Packed, problem: Problem) -> Array:
+    """Padded start (2, width): coordinates, and rates by phase."""
+    n = problem.system.size
+    z = np.zeros((2, packed.omega_squared.size))
+    z[0, :n] = problem.start.displacement
+    z[1, :n] = problem.start.velocity / problem.frequency
+    return z
+
+
+def limited(derivative: Callable[[float, Array], Array], problem: Problem) -> Callable[[float, Array], Array]:
+    """The same right-hand side, which raises TimeoutError once the patience with a run is over."""
+    patience = PATIENCE_IRREGULAR if problem.compared is Compared.RMS else PATIENCE
+    end = time.process_time() + patience
+
+    def checked(s: float, z: Array) -> Array:
+        if time.process_time() > end:
+            raise TimeoutError(f"longer than {patience:g} s of CPU time")
+        return derivative(s, z)
+
+    return checked
+
+
+def ours(problem: Problem, tolerance: float) -> Array:
+    """Taylor steps with located contact switches, prepared and run."""
+    return prepare_ours(problem, tolerance)()
+
+
+def prepare_ours(problem: Problem, tolerance: float) -> Run:
+    """Taylor steps with located contact switches."""
+    packed = pack(problem.system, problem.frequency)
+    start = start_of(packed, problem)
+    log = make_log(packed, problem.periods, SAMPLES)
+    work = make_work(packed, Settings(tolerance=tolerance).taylor_order)
+    none = np.zeros((0, *start.shape))
+
+    def run() -> Array:
+        place, rate = start.copy()
+        status = run_periods(packed, work, place, rate, none, problem.periods, SAMPLES, tolerance, log, TAU)
+        require(status)
+        return log.samples[:, : packed.n]
+
+    return run
+
+
+def our_tangents(problem: Problem, tolerance: float) -> Run:
+    """Our tangents: derivatives (2 n, 2 n) of coordinates and rates after the periods by the first ones."""
+    packed = pack(problem.system, problem.frequency)
+    start = start_of(packed, problem)
+    work = make_work(packed, Settings(tolerance=tolerance).taylor_order)
+
+    def run() -> Array:
+        return monodromy(packed, work, start[0], start[1], problem.periods, tolerance)[2]
+
+    return run
+
+
+def rk4(problem: Problem, steps: float) -> Run:
+    """Fixed steps, all compiled, no event location."""
+    packed = pack(problem.system, problem.frequency)
+    start = start_of(packed, problem).ravel()
+    out = np.empty((problem.periods * SAMPLES, start.size))
+    work, stages = make_work(packed, 2), np.empty((5, start.size))
+    per_sample = round(steps) // SAMPLES
+
+    def run() -> Array:
+        fixed_rk4(packed, work, start.copy(), stages, per_sample, TAU / steps, out)
+        return out[:, : packed.n]
+
+    return run
+
+
+def scipy_method(name: str, plain: bool = False) -> Prepare:
+    """SciPy's solve_ivp on the compiled right-hand side, or on plain NumPy."""
+
+    def prepare(problem: Problem, tolerance: float) -> Run:
+        packed = pack(problem.system, problem.frequency)
+        start = start_of(packed, problem).ravel()
+        derivative = compiled_right_side(packed)
+        if plain:
+            derivative = plain_right_side(problem.system, problem.frequency, start.size // 2)
+        times = TAU * np.arange(problem.periods * SAMPLES) / SAMPLES
+
+        def run() -> Array:
+            solution = solve_ivp(
+                limited(derivative, problem),
+                (0.0, TAU * problem.periods),
+                start,
+                name,
+                t_eval=times,
+                rtol=max(tolerance, 3e-14),
+                atol=tolerance * np.abs(start).max(),
+            )
+            if not solution.success:
+                raise RuntimeError(solution.message)
+            return solution.y[: problem.system.size].T
+
+        return run
+
+    return prepare
+
+
+def cvode(method: str) -> Prepare:
+    """SUNDIALS CVODE through scikit-sundae. Raises ImportError where it is not installed."""
+    from sksundae.cvode import CVODE
+
+    def prepare(problem: Problem, tolerance: float) -> Run:
+        packed = pack(problem.system, problem.frequency)
+        start = start_of(packed, problem).ravel()
+        compiled = compiled_right_side(packed)
+        times = TAU * np.arange(problem.periods * SAMPLES) / SAMPLES
+
+        def run() -> Array:
+            inside = limited(compiled, problem)
+
+            def derivative(s: float, y: Array, out: Array) -> None:
+                out[:] = inside(s, np.array(y))
+
+            solver = CVODE(
+                derivative,
+                method=method,
+                rtol=max(tolerance, 1e-14),
+                atol=tolerance * np.abs(start).max(),
+                max_num_steps=100_000,
+            )
+            solution = solver.solve(times, start)
+            if not solution.success:
+                raise RuntimeError(str(solution.message))
+            return solution.y[:, : problem.system.size]
+
+        return run
+
+    return prepare
+
+
+def heyoka_methods() -> list[Method]:
+    """heyoka.py with its own event handling, alone and in a batch as wide as it recommends.
+
+    Raises ImportError where it is not installed.
+    """
+    import heyoka
+
+    lanes = heyoka.recommended_simd_size()
+    return [
+        Method("heyoka.py", heyoka_peer.trajectory(heyoka), TOLERANCES),
+        Method(f"heyoka.py, each of {lanes}", heyoka_peer.batch(heyoka, lanes), TOLERANCES, lanes),
+    ]
+
+
+def heyoka_tangents() -> Method:
+    """heyoka.py's variational equations. Raises ImportError where it is not installed."""
+    import heyoka
+
+    return Method("heyoka.py", heyoka_peer.tangents(heyoka), TOLERANCES)
+
+
+def all_methods() -> list[Method]:
+    """Ours first. CVODE and heyoka.py are left out where they are not installed (no wheel for a platform)."""
+    methods = [Method("facegear", prepare_ours, TOLERANCES)]
+    with contextlib.suppress(ImportError):
+        methods += heyoka_methods()
+    methods.append(Method("RK4 fixed", rk4, STEPS))
+    for name in ("RK45", "DOP853", "LSODA", "Radau"):
+        methods.append(Method(f"SciPy {name}", scipy_method(name), TOLERANCES))
+    methods.append(Method("SciPy RK45, NumPy", scipy_method("RK45", plain=True), TOLERANCES))
+    with contextlib.suppress(ImportError):
+        methods += [Method(f"CVODE {name}", cvode(name), TOLERANCES) for name in ("BDF", "Adams")]
+    return methods
+
+
+def tangent_methods() -> list[Method]:
+    """Those that carry tangents, ours first."""
+    methods = [Method("facegear", our_tangents, TOLERANCES)]
+    with contextlib.suppress(ImportError):
+        methods.append(heyoka_tangents())
+    return methods

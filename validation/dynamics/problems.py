@@ -1,0 +1,82 @@
+"""What is integrated in the comparison: three regimes of a machine, and the oscillator of oracle (a)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.system import System
+from facegear.dynamics.motion import Motion, Settings, State
+from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
+from facegear.transmission.machine import Machine, mesh_frequency
+from validation.dynamics.oscillators import Oscillator
+
+Array = NDArray[np.float64]
+SAMPLES = 16
+FACTORS = (1.0, 2.0, 1.5, 1.75, 2.5)
+PERIODS, IRREGULAR_PERIODS = 24, 400
+
+
+class Compared(StrEnum):
+    """What is held against the reference: deflections at every sample, their RMS, or the tangents' matrix."""
+
+    DEFLECTIONS = "deflections"
+    RMS = "rms"
+    TANGENTS = "tangents"
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A start, a length in mesh periods, and what is compared."""
+
+    name: str
+    system: System
+    frequency: float
+    start: State
+    periods: int
+    compared: Compared
+
+
+def machine_problems(machine: Machine, speed_rpm: float) -> list[Problem]:
+    """Contact kept (no backlash), contact lost on a stable orbit at 0.6 of the speed, and irregular motion at
+    the first of FACTORS times the speed where there is any.
+    """
+    regular = replace(machine, half_backlash=0.0)
+    problems = [
+        _problem("contact kept", regular, speed_rpm, PERIODS, Compared.DEFLECTIONS)[0],
+        _problem("contact lost", machine, 0.6 * speed_rpm, PERIODS, Compared.DEFLECTIONS)[0],
+    ]
+    for factor in FACTORS:
+        name = f"irregular, {factor * speed_rpm:.0f} rpm"
+        problem, motion = _problem(name, machine, factor * speed_rpm, IRREGULAR_PERIODS, Compared.RMS)
+        if motion is Motion.CHAOTIC:
+            problems.append(problem)
+            break
+    return problems
+
+
+def _problem(
+    name: str, machine: Machine, speed_rpm: float, periods: int, compared: Compared
+) -> tuple[Problem, Motion]:
+    model = build_model(machine)
+    response = simulate(model, speed_rpm, Settings(settle=128, extensions=0), static_start(model))
+    frequency = TAU * mesh_frequency(machine.layout, speed_rpm)
+    return Problem(name, model.system, frequency, response.state, periods, compared), response.motion
+
+
+def tangent_problems(problems: Sequence[Problem]) -> list[Problem]:
+    """The map over one mesh period for each problem whose deflections are compared."""
+    return [
+        replace(problem, name=f"{problem.name}, tangents", periods=1, compared=Compared.TANGENTS)
+        for problem in problems
+        if problem.compared is Compared.DEFLECTIONS
+    ]
+
+
+def oscillator_problem() -> Problem:
+    """Oracle (a) at W = 0.75 from a point off its upper orbit."""
+    one = Oscillator(0.05, 0.1, 0.05, speed=0.75, displacement=0.8, velocity=0.2)
+    return Problem("oracle (a)", one.system, one.speed, one.start, 20, Compared.DEFLECTIONS)

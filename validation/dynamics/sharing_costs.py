@@ -1,0 +1,130 @@
+"""Load sharing of one machine at one speed: time and error over random machines."""
+
+import statistics
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+
+from facegear.dynamics.motion import Motion, Settings
+from facegear.dynamics.steady_state.simulate import SteadyState, build_model, simulate
+from facegear.load_sharing.options import SharingOptions
+from facegear.load_sharing.run import Sharing, group_average, load_sharing
+from facegear.load_sharing.statistics import Average
+from facegear.transmission.machine import Machine
+from validation.dynamics.convergence import exact
+
+COUNT = 20
+REPEATS = 3
+MORE_CYCLES = 10
+"""Times the cycles over which the averages of irregular motion are taken again."""
+
+
+@dataclass(frozen=True, eq=False)
+class RandomMachine:
+    """A machine with torques, backlash and e(t) of its own, and its speed in rpm; factors of the original."""
+
+    machine: Machine
+    speed_rpm: float
+    torque_factor: float
+    backlash_factor: float
+    error_factor: float
+
+
+def random_machines(machine: Machine, count: int, seed: int = 1) -> Iterator[RandomMachine]:
+    """Machines between a quarter of the torque and twice as much, at 1000 to 15 000 rpm."""
+    random = np.random.default_rng(seed)
+    for _ in range(count):
+        torque = float(np.exp(random.uniform(np.log(0.25), np.log(2.0))))
+        error, backlash = random.uniform(0.2, 1.2), random.uniform(0.5, 1.5)
+        changed = replace(
+            machine,
+            torques=torque * machine.torques,
+            half_backlash=backlash * machine.half_backlash,
+            error=machine.error.scaled(error),
+        )
+        yield RandomMachine(changed, random.uniform(1e3, 15e3), torque, backlash, error)
+
+
+def sharing_costs(
+    machine: Machine,
+    settings: Settings,
+    options: SharingOptions,
+    count: int = COUNT,
+    step: Callable[[], None] = lambda: None,
+) -> pd.DataFrame:
+    """One row for each random machine: its factors and speed_rpm, motion, motions_from_starts, periods_run,
+    seconds (median CPU time of warm runs with all starts), mean, error, chance, motion_exact.
+
+    error: largest change of a group's mean coefficient, which lies between one and the number of paths, when
+    a periodic motion is run again from its own state at 1e-10 and 4096 samples, or an irregular one for ten
+    times as long at a hundredth of the tolerance. chance: what of that the 95 % intervals of both explain.
+    mean is that of the group with the largest error.
+    """
+    rows = []
+    for case in random_machines(machine, count):
+        times = []
+        for _ in range(REPEATS):
+            begin = time.process_time()
+            found = load_sharing(case.machine, case.speed_rpm, settings, options)
+            times.append(time.process_time() - begin)
+        finer = _again(case, found, settings, options)
+        rows.append(
+            {
+                "torque_factor": case.torque_factor,
+                "backlash_factor": case.backlash_factor,
+                "error_factor": case.error_factor,
+                "speed_rpm": case.speed_rpm,
+                "motion": found.response.label,
+                "motions_from_starts": "; ".join(dict.fromkeys(found.motions)),
+                "periods_run": found.response.periods_run,
+                "seconds": statistics.median(times),
+                **_error(found, finer, options),
+                "motion_exact": finer.label,
+            }
+        )
+        step()
+    return pd.DataFrame(rows)
+
+
+def _again(case: RandomMachine, found: Sharing, settings: Settings, options: SharingOptions) -> SteadyState:
+    """The motion once more from where it was left, far finer."""
+    model, state = build_model(case.machine), found.response.state
+    if found.response.motion is Motion.PERIODIC:
+        return simulate(model, case.speed_rpm, exact(settings), state)
+    longer = replace(
+        settings,
+        tolerance=0.01 * settings.tolerance,
+        window=MORE_CYCLES * options.cycles,
+        samples=64,
+        extensions=0,
+    )
+    return simulate(model, case.speed_rpm, longer, state)
+
+
+def _error(found: Sharing, finer: SteadyState, options: SharingOptions) -> dict[str, float]:
+    """Of the group whose mean coefficient changes most."""
+    pairs: list[tuple[Average, Average]] = [
+        (one.average, group_average(finer, one.group, options.confidence)[2]) for one in found.groups
+    ]
+    first, second = max(pairs, key=lambda pair: abs(pair[0].mean - pair[1].mean))
+    return {
+        "mean": first.mean,
+        "error": abs(first.mean - second.mean),
+        "chance": float(np.hypot(first.half_width, second.half_width)),
+    }
+
+
+def sharing_summary(table: pd.DataFrame) -> str:
+    """Times and errors of periodic and of irregular motions in words."""
+    periodic = table["motion"].str.startswith("period-")
+    times = 1e3 * table["seconds"]
+    within = (table["error"] <= table["chance"])[~periodic].sum()
+    return (
+        f"{times.median():.0f} ms in the median, {times.mean():.0f} ms on average; "
+        f"{periodic.sum()} periodic: {times[periodic].median():.0f} ms, error at most "
+        f"{table['error'][periodic].max():.1e}; {(~periodic).sum()} irregular: "
+        f"{times[~periodic].median():.0f} ms, {within} within chance"
+    )

@@ -1,0 +1,181 @@
+"""Error against time for every method, setting and problem."""
+
+import statistics
+import time
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from facegear.dynamics.steady_state.mesh_samples import mesh_response
+from facegear.dynamics.steady_state.statistics import moments
+from validation.dynamics.methods import Method, our_tangents, ours, prepare_ours
+from validation.dynamics.problems import SAMPLES, Compared, Problem
+
+Array = NDArray[np.float64]
+REFERENCE = 1e-13
+REFERENCE_TOLERANCE = 1e-8
+REFERENCE_PERIODS = 16_000
+COLUMNS = ["problem", "method", "setting", "error", "interval", "seconds", "preparation_seconds", "failure"]
+
+
+@dataclass(frozen=True)
+class Budget:
+    """Most repeats of each run for the median CPU time, fewer once they take `longest` seconds together.
+
+    A method stops at its first run longer than that.
+    """
+
+    repeats: int = 9
+    longest: float = 1.0
+    longest_irregular: float = 3.0
+
+    def limit(self, problem: Problem) -> float:
+        """The longest run of a problem, s."""
+        return self.longest_irregular if problem.compared is Compared.RMS else self.longest
+
+
+def work_precision(
+    problems: Sequence[Problem],
+    methods: Iterable[Method],
+    budget: Budget,
+    step: Callable[[], None] = lambda: None,
+) -> pd.DataFrame:
+    """One row for each run: COLUMNS. Errors of deflections over the length scale; of the RMS, with the 95 %
+    half-width that chance leaves in it (0 otherwise); of the tangents over the largest entry of their matrix.
+
+    `seconds` is the run alone (its share, where several run at once), `preparation_seconds` what comes before
+    it (memory; heyoka.py compiles then).
+    """
+    references = {problem.name: reference(problem) for problem in problems}
+    rows = []
+    for method in methods:
+        for problem in problems:
+            method.prepare(replace(problem, periods=1), method.settings[0])()
+            for setting in method.settings:
+                found = measure(problem, method, setting, references[problem.name], budget)
+                rows.append((problem.name, method.name, setting, *found))
+                *_, seconds, _, failure = found
+                if failure or seconds > budget.limit(problem):
+                    break
+            step()
+    return pd.DataFrame(rows, columns=COLUMNS)
+
+
+def reference(problem: Problem) -> tuple[Array, Array]:
+    """What `compared_values` is held against, from a tight tolerance, and its half-widths.
+
+    For the RMS of irregular motion a much longer run takes the place of the tighter one.
+    """
+    if problem.compared is Compared.RMS:
+        longer = replace(problem, periods=REFERENCE_PERIODS)
+        return compared_values(problem, ours(longer, REFERENCE_TOLERANCE))
+    prepare = our_tangents if problem.compared is Compared.TANGENTS else prepare_ours
+    return compared_values(problem, prepare(problem, REFERENCE)())
+
+
+def compared_values(problem: Problem, found: Array) -> tuple[Array, Array]:
+    """Values whose differences are errors, from what a run returns, and their half-widths.
+
+    Tangents count in mesh deflections and their rates.
+    """
+    system = problem.system
+    if problem.compared is Compared.TANGENTS:
+        weights = np.tile(np.abs(system.mesh_jacobian).max(axis=0), 2)
+        matrix = found * weights[:, None] / weights
+        return matrix, np.zeros(matrix.shape)
+    deflections = mesh_response(system, found, SAMPLES)[0]
+    if problem.compared is Compared.RMS:
+        return ac_rms(deflections)
+    return deflections / system.scale, np.zeros(deflections.shape)
+
+
+def error_of(problem: Problem, found: Array, exact: tuple[Array, Array]) -> tuple[float, float]:
+    """Error of a run against the reference, and its half-width."""
+    values, doubt = compared_values(problem, found)
+    if problem.compared is Compared.RMS:
+        error = float((np.abs(values - exact[0]) / exact[0]).mean())
+        return error, float((np.hypot(doubt, exact[1]) / exact[0]).mean())
+    largest = np.abs(exact[0]).max() if problem.compared is Compared.TANGENTS else 1.0
+    return float(np.abs(values - exact[0]).max() / largest), 0.0
+
+
+def ac_rms(deflections: Array) -> tuple[Array, Array]:
+    """RMS without mean of each mesh and its 95 % half-width, each (meshes,)."""
+    found = moments(deflections, SAMPLES, False)
+    return found.ac_rms, found.ac_rms_interval
+
+
+def measure(
+    problem: Problem, method: Method, setting: float, exact: tuple[Array, Array], budget: Budget
+) -> tuple[float, float, float, float, str]:
+    """Error, its half-width, median time of a run and time of its preparation in s, and what went wrong.
+
+    A run whose motion is irregular is measured once: its length gives the time its accuracy already.
+    """
+    times = []
+    begin = time.process_time()
+    preparation = 0.0
+    try:
+        run = method.prepare(problem, setting)
+        preparation = time.process_time() - begin
+        for _ in range(1 if problem.compared is Compared.RMS else budget.repeats):
+            begin = time.process_time()
+            found = run()
+            times.append(time.process_time() - begin)
+            if sum(times) > budget.longest:
+                break
+    except Exception as error:  # a solver that fails is a result of the comparison
+        told = f"{type(error).__name__}: {error}".splitlines()[0][:100]
+        return np.nan, np.nan, time.process_time() - begin, preparation, told
+    return *error_of(problem, found, exact), statistics.median(times) / method.together, preparation, ""
+
+
+def cheapest_within_chance(table: pd.DataFrame, problem: str) -> pd.DataFrame:
+    """For each method its cheapest setting whose RMS and those of all finer ones agree with the reference.
+
+    Columns method, setting, error, interval, seconds; one row for each method that has such a setting. Chance
+    allows a mean gap of the half-width.
+    """
+    rows = []
+    for method, curve in table[table["problem"] == problem].groupby("method", sort=False):
+        agrees = (curve["error"] <= curve["interval"]).to_numpy()
+        kept = curve[np.logical_and.accumulate(agrees[::-1])[::-1]]
+        if len(kept):
+            best = kept.loc[kept["seconds"].idxmin()]
+            rows.append((method, best["setting"], best["error"], best["interval"], best["seconds"]))
+    return pd.DataFrame(rows, columns=["method", "setting", "error", "interval", "seconds"])
+
+
+def seconds_at(table: pd.DataFrame, problem: str, method: str, error: float) -> float:
+    """Time of a method at an error, interpolated between its settings in logarithms; NaN beyond
+    them.
+    """
+    rows = table[(table["problem"] == problem) & (table["method"] == method)].dropna(subset="error")
+    best = rows.sort_values("error")
+    reached = best[best["error"] <= error]
+    if reached.empty:
+        return float("nan")
+    cheapest = reached.loc[reached["seconds"].idxmin()]
+    worse = best[(best["error"] > error) & (best["seconds"] < cheapest["seconds"])]
+    if worse.empty:
+        return float(cheapest["seconds"])
+    near = worse.loc[worse["error"].idxmin()]
+    weight = np.log(error / cheapest["error"]) / np.log(near["error"] / cheapest["error"])
+    return float(cheapest["seconds"] * (near["seconds"] / cheapest["seconds"]) ** weight)
+
+
+def gain(table: pd.DataFrame, problem: Problem, methods: Sequence[Method]) -> str:
+    """How much longer than the first method the next best takes, in words."""
+    own, rest = methods[0].name, [method.name for method in methods[1:]]
+    if problem.compared is Compared.RMS:
+        enough = cheapest_within_chance(table, problem.name).set_index("method")["seconds"]
+        ratio = enough.drop(own).min() / enough[own]
+        return f"{problem.name}: {ratio:.1f} times the next best where only chance is left of the error"
+    others = pd.Series({name: seconds_at(table, problem.name, name, 1e-6) for name in rest}, dtype=float)
+    if others.isna().all():
+        return f"{problem.name}: no other method"
+    ratio = others.min() / seconds_at(table, problem.name, own, 1e-6)
+    return f"{problem.name}: {ratio:.1f} times the next best at 1e-6 ({others.idxmin()})"

@@ -1,0 +1,92 @@
+rule dynamics_work_precision:
+    "Integrators compared"
+    input:
+        harmonics=shared("stiffness", "harmonics"),
+    output:
+        table="results/{case}/benchmarks/dynamics.csv",
+        svg="results/{case}/figures/dynamics_work_precision.svg",
+        png="results/{case}/figures/dynamics_work_precision.png",
+        manifest="results/{case}/benchmarks/dynamics.provenance.json",
+    threads: 2
+    resources:
+        mem_mb=1300,
+        runtime=30,
+    params:
+        **values_of(speed_rpm="dynamics.speed_rpm"),
+        machine=needed(MACHINE),
+    script:
+        "../scripts/dynamics_work_precision.py"
+
+
+rule dynamics_costs:
+    "Costs of a sweep"
+    input:
+        harmonics=shared("stiffness", "harmonics"),
+    output:
+        sweep="results/{case}/benchmarks/dynamics_sweep.csv",
+        scaling="results/{case}/benchmarks/dynamics_scaling.csv",
+        manifest="results/{case}/benchmarks/dynamics_costs.provenance.json",
+    threads: 2
+    resources:
+        mem_mb=1300,
+        runtime=30,
+    params:
+        **values_of(speed_rpm="dynamics.speed_rpm", sweep="dynamics.sweep"),
+        machine=needed(MACHINE),
+    script:
+        "../scripts/dynamics_costs.py"
+
+
+rule load_sharing_costs:
+    "Load sharing of random machines: time and error"
+    input:
+        harmonics=shared("stiffness", "harmonics"),
+    output:
+        table="results/{case}/benchmarks/load_sharing_costs.csv",
+        manifest="results/{case}/benchmarks/load_sharing_costs.provenance.json",
+    params:
+        **values_of(accuracy="dynamics.accuracy", options="load_sharing"),
+        machine=needed(MACHINE),
+    script:
+        "../scripts/load_sharing_costs.py"
+
+
+rule branches_benchmark:
+    "Branches: error against tolerance, cost against settling"
+    input:
+        harmonics=shared("stiffness", "harmonics"),
+    output:
+        table="results/{case}/benchmarks/branches.csv",
+        costs="results/{case}/benchmarks/branches_costs.csv",
+        manifest="results/{case}/benchmarks/branches.provenance.json",
+    params:
+        **values_of(speed_rpm="dynamics.speed_rpm"),
+        machine=needed(MACHINE),
+    script:
+        "../scripts/branches_benchmark.py"
+
+
+rule dynamics_convergence:
+    "Convergence of the sweep"
+    input:
+        harmonics=shared("stiffness", "harmonics"),
+        chunks=given("dynamics_sweep", "chunks"),
+    output:
+        table="results/{case}/benchmarks/dynamics_convergence.csv",
+        manifest="results/{case}/benchmarks/dynamics_convergence.provenance.json",
+    resources:
+        runtime=60,
+    params:
+        **values_of(sweep="dynamics.sweep"),
+        machine=needed(MACHINE),
+    script:
+        "../scripts/dynamics_convergence.py"
+
+
+rule dynamics_labels:
+    "Classes of 500 random oscillators held against plain running"
+    output:
+        table="results/{case}/benchmarks/dynamics_labels.csv",
+        manifest="results/{case}/benchmarks/dynamics_labels.provenance.json",
+    script:
+        "../scripts/dynamics_labels.py"

@@ -1,0 +1,33 @@
+from validation.contact.stress_levels import OF_LEVEL
+
+
+rule strength_level:
+    "Root stress beside that of finer meshes"
+    output:
+        table="results/{case}/benchmarks/strength/{level}.csv",
+        manifest="results/{case}/benchmarks/strength/{level}.provenance.json",
+    threads: 2
+    resources:
+        mem_mb=12000,
+        runtime=60,
+    params:
+        **values_of("tooth_pair"),
+    script:
+        "../scripts/strength_level.py"
+
+
+rule strength_benchmark:
+    "Error and cost of root stress"
+    input:
+        expand("results/{{case}}/benchmarks/strength/{level}.csv", level=OF_LEVEL),
+    output:
+        table="results/{case}/benchmarks/strength.csv",
+        costs="results/{case}/benchmarks/strength_costs.csv",
+        manifest="results/{case}/benchmarks/strength.provenance.json",
+    threads: 2
+    resources:
+        mem_mb=4000,
+    params:
+        **values_of("tooth_pair", "mesh", "contact"),
+    script:
+        "../scripts/strength_benchmark.py"

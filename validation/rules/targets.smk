@@ -1,0 +1,27 @@
+rule benchmarks:
+    input:
+        expand(
+            "results/{case}/benchmarks/{name}.csv",
+            case=CASE,
+            name=[
+                "mesh",
+                "contact",
+                "contact_shortcuts",
+                "strength",
+                "twin",
+                "dynamics",
+                "dynamics_sweep",
+                "dynamics_convergence",
+                "dynamics_labels",
+                "load_sharing_costs",
+                "branches",
+                *(["scenarios"] if CASES[CASE]["tolerances"] else []),
+            ],
+        ),
+    localrule: True
+
+
+rule peers:
+    input:
+        expand(f"results/{CASE}/benchmarks/{{name}}.csv", name=["calculix", "calculix_stress"]),
+    localrule: True

@@ -1,0 +1,19 @@
+"""Branches of periodic motions: error against tolerance, and cost of an orbit against settling."""
+
+from facegear.config.machines import wired_machine
+from facegear.io import tables
+from facegear.progress import Progress
+from facegear.provenance.stage import stage
+from facegear.stiffness.tables import HARMONICS_COLUMNS
+from validation.dynamics.branches import DAMPING, ERRORS, TOLERANCES, accuracy, costs
+
+with stage(snakemake) as run:
+    params = snakemake.params
+    harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
+    built = wired_machine(**params.machine, stiffness=harmonics)
+    errors = accuracy(built, params.speed_rpm, Progress("tolerances", 2 * len(TOLERANCES)).step)
+    prices = costs(built, params.speed_rpm, Progress("dampings", len(ERRORS) * len(DAMPING)).step)
+    tables.write(snakemake.output.table, errors)
+    tables.write(snakemake.output.costs, prices)
+    settled = prices[prices["settled"]]
+    run.summary(f"an orbit costs down to 1/{settled['ratio'].max():.0f} of settling by integration")

@@ -1,0 +1,17 @@
+"""One resolution of the contact benchmark."""
+
+from facegear.config.base import parse
+from facegear.config.contact import Contact, contact_plan
+from facegear.config.tooth_pair import pair
+from facegear.io import tables
+from facegear.provenance.stage import stage
+from validation.contact.benchmark import level, measure
+
+with stage(snakemake) as run:
+    teeth = pair(snakemake.params.tooth_pair)
+    design = teeth.design
+    plan = contact_plan(parse(Contact, snakemake.params.contact))
+    table = measure(design, level(snakemake.wildcards.level, design, plan), teeth.materials)
+    tables.write(snakemake.output.table, table)
+    row = table.iloc[-1]
+    run.summary(f"{row['dof']} dof, mean {row['mean_n_per_m']:.4g} N/m at {row['torque_n_m']:g} N m")

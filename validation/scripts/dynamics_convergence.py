@@ -1,0 +1,37 @@
+"""Each speed of the sweep once more with everything finer that is discretised."""
+
+import pandas as pd
+
+from facegear.config.base import parse
+from facegear.config.dynamics import Sweep, sweep_plan
+from facegear.config.machines import wired_machine
+from facegear.dynamics.steady_state.simulate import build_model
+from facegear.dynamics.sweeps.stored import SHAPES, from_arrays
+from facegear.dynamics.sweeps.sweep import joined
+from facegear.io import arrays, tables
+from facegear.progress import Progress
+from facegear.provenance.stage import stage
+from facegear.stiffness.tables import HARMONICS_COLUMNS
+from validation.dynamics.convergence import (
+    convergence_table,
+    not_converged,
+    rerun,
+    watched_longer,
+)
+
+with stage(snakemake) as run:
+    params = snakemake.params
+    harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
+    model = build_model(wired_machine(**params.machine, stiffness=harmonics))
+    plan = sweep_plan(parse(Sweep, params.sweep))
+    files = iter(snakemake.input.chunks)
+    progress = Progress("finer sweep", len(plan.directions) * plan.points)
+    found = []
+    for name in plan.directions:
+        piece = joined([from_arrays(arrays.read(next(files), SHAPES))[1] for _ in range(plan.chunks)])
+        again = rerun(model, piece, plan.settings, progress.step)
+        longer = watched_longer(model, piece, again, plan.settings)
+        found.append(convergence_table(name, piece, again, longer))
+    table = pd.concat(found, ignore_index=True)
+    tables.write(snakemake.output.table, table)
+    run.summary(not_converged(table))

@@ -1,0 +1,31 @@
+"""Error against time of our integrator and others."""
+
+import pandas as pd
+
+from facegear.config.machines import wired_machine
+from facegear.io import tables
+from facegear.plots.style import save
+from facegear.progress import Progress
+from facegear.provenance.stage import stage
+from facegear.stiffness.tables import HARMONICS_COLUMNS
+from validation.dynamics.methods import all_methods, tangent_methods
+from validation.dynamics.problems import machine_problems, oscillator_problem, tangent_problems
+from validation.dynamics.work_precision import (
+    Budget,
+    gain,
+    work_precision,
+)
+from validation.plots.work_precision import work_precision_diagram
+
+with stage(snakemake) as run:
+    params, output = snakemake.params, snakemake.output
+    harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
+    built = wired_machine(**params.machine, stiffness=harmonics)
+    problems = [*machine_problems(built, params.speed_rpm), oscillator_problem()]
+    comparisons = [(problems, all_methods()), (tangent_problems(problems), tangent_methods())]
+    step = Progress("methods", sum(len(first) * len(second) for first, second in comparisons)).step
+    table = pd.concat([work_precision(*both, Budget(), step) for both in comparisons])
+    tables.write(output.table, table)
+    save(work_precision_diagram(table), output.svg, output.png)
+    gains = [gain(table, problem, methods) for problems, methods in comparisons for problem in problems]
+    run.summary("; ".join(gains))

@@ -1,0 +1,23 @@
+"""Time and error of load sharing over random machines."""
+
+from facegear.config.base import parse
+from facegear.config.dynamics import Accuracy, settings
+from facegear.config.load_sharing import LoadSharing, sharing_options
+from facegear.config.machines import wired_machine
+from facegear.io import tables
+from facegear.progress import Progress
+from facegear.provenance.stage import stage
+from facegear.stiffness.tables import HARMONICS_COLUMNS
+from validation.dynamics.sharing_costs import COUNT, sharing_costs, sharing_summary
+
+with stage(snakemake) as run:
+    params = snakemake.params
+    harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
+    table = sharing_costs(
+        wired_machine(**params.machine, stiffness=harmonics),
+        settings(parse(Accuracy, params.accuracy)),
+        sharing_options(parse(LoadSharing, params.options)),
+        step=Progress("random machines", COUNT).step,
+    )
+    tables.write(snakemake.output.table, table)
+    run.summary(sharing_summary(table))

@@ -1,0 +1,20 @@
+"""What samples cost, and the error of their statistics against their number."""
+
+from facegear.contact.gear_flank import STORED
+from facegear.io import arrays, tables
+from facegear.provenance.stage import stage
+from facegear.stages.sampled_machine import SampledMachine
+from facegear.stiffness.tables import HARMONICS_COLUMNS
+from validation.scenarios.costs import costs
+from validation.scenarios.errors import statistics_errors
+
+with stage(snakemake) as run:
+    params = snakemake.params
+    harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
+    flanks = [arrays.read(path, STORED) for path in snakemake.input.flanks]
+    sampled = SampledMachine.of_stage(harmonics=harmonics, flanks=flanks, **params.chunk)
+    found = costs(sampled, params.samples)
+    tables.write(snakemake.output.costs, found)
+    tables.write(snakemake.output.errors, statistics_errors([2**power for power in range(7, 14)]))
+    told = ", ".join(f"{row.model} {row.ms_a_sample:.3g} ms" for row in found.itertuples())
+    run.summary(f"a sample takes: {told}")

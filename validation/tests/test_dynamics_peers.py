@@ -1,0 +1,107 @@
+"""The integrators of the comparison solve the same equations."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+from lumped_machines import make_machine
+
+from facegear.dynamics.integrator.compiled import pack
+from validation.dynamics.heyoka_peer import batch, scaled, trajectory
+from validation.dynamics.methods import all_methods, ours, rk4, tangent_methods
+from validation.dynamics.problems import (
+    SAMPLES,
+    machine_problems,
+    oscillator_problem,
+    tangent_problems,
+)
+from validation.dynamics.right_side import compiled_right_side, plain_right_side
+from validation.dynamics.work_precision import (
+    Budget,
+    cheapest_within_chance,
+    error_of,
+    reference,
+    seconds_at,
+    work_precision,
+)
+
+
+@pytest.fixture(scope="module")
+def problems():
+    return [*machine_problems(make_machine(), 7500.0), oscillator_problem()]
+
+
+def test_compiled_and_plain_right_hand_sides_agree(problems):
+    for problem in (problems[1], problems[3]):
+        packed = pack(problem.system, problem.frequency)
+        width, n = packed.omega_squared.size, problem.system.size
+        rng = np.random.default_rng(0)
+        z = np.zeros(2 * width)
+        z[:n], z[width : width + n] = problem.system.scale * rng.normal(size=(2, n))
+        first = compiled_right_side(packed)(1.3, z)
+        second = plain_right_side(problem.system, problem.frequency, width)(1.3, z)
+        np.testing.assert_allclose(first, second, rtol=1e-12, atol=1e-13 * np.abs(second).max())
+
+
+def test_every_method_converges_to_ours(problems):
+    problem = problems[3]
+    exact = ours(problem, 1e-14)
+    assert exact.shape == (problem.periods * SAMPLES, 1)
+    for method in all_methods():
+        setting = 1024 if method.name.startswith("RK4") else 1e-6
+        assert np.abs(method.prepare(problem, setting)() - exact).max() < 1e-3, method.name
+
+
+def test_fixed_steps_lose_their_order_where_contact_switches(problems):
+    kept, lost = problems[0], problems[1]
+
+    def gain(problem, coarsest):
+        exact = ours(problem, 1e-14)
+        steps = coarsest * 2 ** np.arange(4)
+        errors = [np.abs(rk4(problem, count)() - exact).max() for count in steps]
+        return np.mean(np.log2(np.divide(errors[:-1], errors[1:])))
+
+    # More steps would reach rounding where contact is kept.
+    assert gain(kept, 64) == pytest.approx(4.0, abs=0.25)
+    assert gain(lost, 256) < 3.2
+
+
+def test_the_table_lists_failures_and_interpolates_times(problems):
+    methods = [one for one in all_methods() if one.name in ("facegear", "RK4 fixed")]
+    table = work_precision([problems[3]], methods, Budget(repeats=1, longest=1.0))
+    assert set(table["method"]) == {"facegear", "RK4 fixed"}
+    assert (table["failure"] == "").all()
+    time = seconds_at(table, "oracle (a)", "facegear", 1e-8)
+    assert table["seconds"].min() <= time <= table["seconds"].max()
+
+
+def test_heyoka_follows_the_same_motion_through_every_switch(problems):
+    heyoka = pytest.importorskip("heyoka", reason="heyoka.py is not installed (extra `benchmark`)")
+    lost, oscillator = problems[1], problems[3]
+    runs = [(lost, trajectory(heyoka)), (oscillator, trajectory(heyoka)), (oscillator, batch(heyoka, 2))]
+    for problem, prepare in runs:
+        error, _ = error_of(problem, prepare(problem, 1e-9)(), reference(problem))
+        assert error < 1e-9, problem.name
+
+
+def test_heyoka_carries_the_same_tangents(problems):
+    pytest.importorskip("heyoka", reason="heyoka.py is not installed (extra `benchmark`)")
+    for problem in tangent_problems([problems[1], problems[3]]):
+        for method in tangent_methods():
+            error, _ = error_of(problem, method.prepare(problem, 1e-9)(), reference(problem))
+            assert error < 1e-8, (problem.name, method.name)
+
+
+def test_heyoka_is_refused_what_its_setup_leaves_out(problems):
+    with pytest.raises(ValueError, match="in contact only"):
+        scaled(replace(problems[1].system, damping_when_open=False))
+
+
+def test_an_rms_counts_as_right_only_where_every_finer_setting_is_right_too():
+    rows = [("a", 1e-2, 0.01, 1.0), ("a", 1e-3, 0.09, 2.0), ("a", 1e-4, 0.02, 3.0), ("a", 1e-5, 0.01, 4.0)]
+    table = pd.DataFrame(rows, columns=["method", "setting", "error", "seconds"])
+    table = table.assign(problem="irregular", interval=0.03)
+    found = cheapest_within_chance(table, "irregular")
+    assert found["setting"].tolist() == [1e-4]
+    assert cheapest_within_chance(table.assign(error=0.5), "irregular").empty

@@ -1,0 +1,16 @@
+"""The figures of one stage, from stored files alone."""
+
+from importlib import import_module
+
+from facegear.pipeline.run import read_all
+from facegear.pipeline.stage import FIGURES, load
+from facegear.plots.style import save
+from facegear.provenance.stage import stage
+
+with stage(snakemake) as run:
+    stages = import_module("facegear.pipeline.table").STAGES  # as in stage.py
+    drawn = stages[snakemake.rule.removesuffix(FIGURES)].figures
+    given = read_all(drawn.upstream, snakemake.input, stages)
+    figures = load(drawn.draw)(**given, **snakemake.params.needs)
+    for figure, *paths in zip(figures, snakemake.output.svg, snakemake.output.png, strict=True):
+        save(figure, *paths)
