@@ -79,6 +79,21 @@ class Position(Section):
     y: float = Field(0.0, ge=-5000, le=5000, description="towards the upper gear")
 
 
+class PinionForce(Section):
+    """External force on a pinion, N: its weight, a pulley, a coupling."""
+
+    x: float = Field(0.0, ge=-1e8, le=1e8, description="as the upper gear's teeth move")
+    y: float = Field(0.0, ge=-1e8, le=1e8, description="towards the upper gear")
+
+
+class GearForce(Section):
+    """External force on a face gear, N, in the frame of the angles."""
+
+    x: float = Field(0.0, ge=-1e8, le=1e8, description="towards angle 0")
+    y: float = Field(0.0, ge=-1e8, le=1e8, description="towards a quarter turn")
+    z: float = Field(0.0, ge=-1e8, le=1e8, description="along the axis, from the lower to the upper gear")
+
+
 class SinglePinion(Section):
     """What is different in one pinion; null keeps what all pinions have."""
 
@@ -86,6 +101,7 @@ class SinglePinion(Section):
     inertia_kg_m2: float | None = Field(None, ge=SMALLEST_KG_M2, le=1e5)
     bearing_stiffness_n_per_m: BearingStiffness | None = None
     position_um: Position = Position()
+    force_n: PinionForce = PinionForce()
     clearance_um: float | None = Field(None, ge=0, le=1e4)
     clocking_deg: float = Field(
         0.0, ge=-360, le=360, description="lower rim of a compound pinion ahead of its upper rim"
@@ -103,6 +119,7 @@ class SingleGear(Section):
         le=1e7,
         description="on the lower of two gears, negative where it is driven; the other's follows",
     )
+    force_n: GearForce = GearForce()
     mass_kg: float | None = Field(None, ge=LIGHTEST_KG, le=1e6)
     inertia_kg_m2: float | None = Field(None, ge=SMALLEST_KG_M2, le=1e6)
     bearing_stiffness_n_per_m: BearingStiffness | None = None

@@ -1,17 +1,24 @@
 """Whether the machine of a config can be put together, before anything is computed."""
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
+from facegear.config.bodies import SingleGear, SinglePinion
 from facegear.config.lumped_model import ToothNumbers, half_backlash, imperfections, layout
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.transmission.assembly import Assembly, assembly, squeezed
+from facegear.transmission.imperfections import Imperfections
 from facegear.transmission.layout import Layout
 
 
 def require_buildable(section: Transmission, teeth: ToothNumbers) -> None:
-    """Raise ConfigError for pinions that do not mount, errors that jam them, pitch curves of other teeth."""
+    """Raise ConfigError for teeth that do not fit, pitch curves of other teeth, forces that nothing holds.
+
+    Errors that press a machine together at rest are no hindrance, as its bearings give: preloads().
+    """
     shape = layout(section, teeth)
     for key, given, count in (
         ("single_pinions", section.single_pinions, teeth.pinion_teeth),
@@ -22,11 +29,37 @@ def require_buildable(section: Transmission, teeth: ToothNumbers) -> None:
             if told not in (0, count):
                 where = f"transmission.{key}.{name}.cumulative_pitch_um"
                 raise ConfigError(where, f"{told} values", f"one for each of the {count} teeth")
+    bodies: dict[str, SinglePinion | SingleGear] = {**section.single_pinions, **section.single_gears}
+    for name, body in bodies.items():
+        _require_hold(shape, name, body)
     flaws = imperfections(section, shape)
-    half = np.full(len(shape.meshes), half_backlash(section))
-    half = np.where(np.isnan(flaws.half_backlash), half, flaws.half_backlash)
-    _require_assembly(section, shape, assembly(shape, half, flaws.clocking))
-    _require_room(shape, assembly(shape, half, flaws.clocking, flaws), squeezed(shape, half, flaws))
+    _require_assembly(section, shape, assembly(shape, _half_backlashes(section, flaws), flaws.clocking))
+
+
+def require_room(section: Transmission, teeth: ToothNumbers) -> None:
+    """Raise ConfigError for a machine that is pressed together at rest: it jams where it should turn."""
+    for key, amount, allowed in _pressed(section, teeth):
+        raise ConfigError(key, amount, allowed)
+
+
+def preloads(section: Transmission, teeth: ToothNumbers) -> list[str]:
+    """A line for each pinion and mesh that is pressed together at rest, with key and amount."""
+    return [f"{key}: {amount}" for key, amount, _ in _pressed(section, teeth)]
+
+
+def _half_backlashes(section: Transmission, flaws: Imperfections) -> NDArray[np.float64]:
+    return np.where(np.isnan(flaws.half_backlash), half_backlash(section), flaws.half_backlash)
+
+
+def _require_hold(shape: Layout, name: str, one: SinglePinion | SingleGear) -> None:
+    """Raise ConfigError for an external force along an axis of a body whose bearing gives way to it."""
+    key = "single_pinions" if isinstance(one, SinglePinion) else "single_gears"
+    names = [pinion.name for pinion in shape.pinions] + [gear.side.value for gear in shape.gears]
+    bearing = shape.bodies[names.index(name)].bearing
+    for axis, force in one.force_n.model_dump().items():
+        if force != 0.0 and bearing["xyz".index(axis)] == 0.0:
+            allowed = f"0, as the bearing has no stiffness along {axis}"
+            raise ConfigError(f"transmission.{key}.{name}.force_n.{axis}", force, allowed)
 
 
 def _require_assembly(section: Transmission, shape: Layout, found: Assembly) -> None:
@@ -44,13 +77,19 @@ def _require_assembly(section: Transmission, shape: Layout, found: Assembly) -> 
         raise ConfigError(f"transmission.pinions[{i}].{key}", value, allowed)
 
 
-def _require_room(shape: Layout, found: Assembly, squeeze: NDArray[np.float64]) -> None:
+def _pressed(section: Transmission, teeth: ToothNumbers) -> Iterator[tuple[str, str, str]]:
+    """Key, amount and what is allowed of everything that is pressed together at rest."""
+    shape = layout(section, teeth)
+    flaws = imperfections(section, shape)
+    half = _half_backlashes(section, flaws)
+    found = assembly(shape, half, flaws.clocking, flaws)
     for i in np.flatnonzero(~found.fits):
         allowed = f"errors of this pinion and its meshes within the {1e6 * found.room[i]:.0f} um they leave"
-        told = f"{1e6 * found.misfit[i]:.0f} um between its two meshes"
-        raise ConfigError(f"transmission.single_pinions.{shape.pinions[i].name}", told, allowed)
+        amount = f"{1e6 * found.misfit[i]:.0f} um between its two meshes"
+        yield f"transmission.single_pinions.{shape.pinions[i].name}", amount, allowed
+    squeeze = squeezed(shape, half, flaws)
     for mesh in np.flatnonzero(squeeze > 0.0):
         pinion = shape.pinions[shape.meshes[mesh][0]].name
-        told = f"{1e6 * squeeze[mesh]:.1f} um too deep in {shape.mesh_names[mesh]}"
+        amount = f"{1e6 * squeeze[mesh]:.1f} um too deep in {shape.mesh_names[mesh]}"
         allowed = "within backlash and clearance, or the pinion jams"
-        raise ConfigError(f"transmission.single_pinions.{pinion}.position_um.y", told, allowed)
+        yield f"transmission.single_pinions.{pinion}.position_um.y", amount, allowed

@@ -107,6 +107,7 @@ def machine(
         phase_convention=PhaseConvention(section.phase_convention),
         error_lags=error_lags(section, shape),
         imperfections=imperfections(section, shape, unloaded),
+        forces=external_forces(section, shape),
     )
 
 
@@ -151,6 +152,14 @@ def imperfections(section: Transmission, shape: Layout, unloaded: Harmonics | No
         pinion_pitch=_pitch_curves(pinions),
         gear_pitch=_pitch_curves(gears),
     )
+
+
+def external_forces(section: Transmission, shape: Layout) -> NDArray[np.float64]:
+    """External force on each body along its x, y, z, shape (bodies, 3), N."""
+    pinions = [section.single_pinions.get(pinion.name, SinglePinion()) for pinion in shape.pinions]
+    gears = [section.single_gears.get(gear.side.value, SingleGear()) for gear in shape.gears]
+    on_pinions = [(one.force_n.x, one.force_n.y, 0.0) for one in pinions]
+    return np.array(on_pinions + [(one.force_n.x, one.force_n.y, one.force_n.z) for one in gears])
 
 
 def given_torques(section: Transmission, shape: Layout) -> NDArray[np.float64]:

@@ -4,7 +4,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from facegear.config.base import parse
+from facegear.config.buildable import preloads
 from facegear.config.checks import geometric_backlash
+from facegear.config.lumped_model import lumped_sections
 from facegear.config.tooth_pair import ToothPair
 
 PRINTED = (
@@ -15,6 +17,10 @@ SLOW = (
     "transmission: runouts and cumulative pitch deviations enter the hunting cycle, at rest and running; "
     "steady states and sweeps leave them out (docs/theory.md)"
 )
+EXTERNAL = (
+    "transmission: external forces on {} act at rest and in motion, the same at every speed and torque of a "
+    "duty cycle"
+)
 
 BACKLASH_DIFFERS_UM = 1.0
 """Difference between the backlash of the dynamics and that of the teeth that is worth a note."""
@@ -22,13 +28,36 @@ BACKLASH_DIFFERS_UM = 1.0
 
 def notes(values: Mapping[str, Any]) -> list[str]:
     """Lines for a config of one's own that counts as the publication does, for errors that turn, for dynamics
-    with a backlash other than that of the teeth, and for numbers that several causes move.
+    with a backlash other than that of the teeth, for preloads and external forces, and for numbers that
+    several causes move.
     """
     transmission = values["transmission"]
     if transmission is None:
         return []
     own = values["reproduction"] is None and transmission["mesh_kinematics"] == "printed"
-    return [PRINTED] * own + [SLOW] * turns(transmission) + _backlash(values) + _sums(values)
+    return (
+        [PRINTED] * own
+        + [SLOW] * turns(transmission)
+        + _backlash(values)
+        + _preloads(values)
+        + _pushes(transmission)
+        + _sums(values)
+    )
+
+
+def _preloads(values: Mapping[str, Any]) -> list[str]:
+    """Pinions and meshes that errors press together at rest: bearings and teeth give, and carry that load."""
+    if "tooth_pair" not in values or values["transmission"].get("backlash_um") is None:
+        return []
+    lines = preloads(*lumped_sections(values["transmission"], values["tooth_pair"]))
+    return [f"{line}: preloaded at rest, carried by bearings and teeth at any torque" for line in lines]
+
+
+def _pushes(transmission: Mapping[str, Any]) -> list[str]:
+    """Bodies with an external force."""
+    singles = {**transmission["single_pinions"], **transmission["single_gears"]}
+    named = [name for name, one in singles.items() if any((one.get("force_n") or {}).values())]
+    return [EXTERNAL.format(", ".join(named))] if named else []
 
 
 def _sums(values: Mapping[str, Any]) -> list[str]:

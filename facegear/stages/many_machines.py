@@ -9,7 +9,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from facegear.config.base import parse
-from facegear.config.buildable import require_buildable
+from facegear.config.buildable import require_buildable, require_room
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.load_sharing import LoadSharing, sharing_options
 from facegear.config.lumped_model import machine
@@ -95,6 +95,7 @@ def judge(question: Question, meshes: Meshes, told: str) -> Judge:
         mesh = meshes(values["tooth_pair"])
         section = parse(Transmission, mesh.in_machine(values["transmission"]), told)
         require_buildable(section, mesh.numbers)
+        require_room(section, mesh.numbers)
         built = machine(section, mesh.numbers, mesh.stiffness, mesh.unloaded)
         speed = values["dynamics"]["speed_rpm"]
         found = ask(built, speed)

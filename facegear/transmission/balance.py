@@ -52,8 +52,7 @@ def balance(machine: Machine, displacements: Array, forces: Array, stiffness: Ar
     whole = forces.shape[1] == len(layout.meshes)
     directions = mesh_directions(layout) if whole else flank_directions(layout)
     arms = _arms(layout)
-    applied = np.zeros(layout.dof)
-    applied[layout.spins] = machine.torques
+    applied = machine.applied
     left_over = bearing_loads(machine, displacements) + forces @ directions - applied
     size = np.maximum(np.abs(applied / arms).max(), np.abs(forces).max(axis=1))
     size = np.where(size > 0.0, size, 1.0)

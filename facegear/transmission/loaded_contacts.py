@@ -91,9 +91,7 @@ def forces_by_active_sets(machine: Machine) -> Array | None:
     scale = 1.0 / np.sqrt(mass_diagonal(layout))
     directions = flank_directions(layout) * scale
     bearing = bearing_matrix(layout) * np.outer(scale, scale)
-    applied = np.zeros(layout.dof)
-    applied[layout.spins] = machine.torques
-    applied *= scale
+    applied = machine.applied * scale
     stiffness = machine.stiffness.mean * np.tile(machine.imperfections.stiffness, 2)
     gaps = constant_errors(machine) + flank_gaps(machine)
     closed = np.arange(gaps.size) < len(layout.meshes)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.imperfections import Imperfections, perfect
-from facegear.transmission.layout import Layout, Role, Side
+from facegear.transmission.layout import DOF_PER_BODY, Layout, Role, Side
 from facegear.transmission.phases import PhaseConvention, mesh_phases
 
 TORQUE_BALANCE = 1e-9
@@ -42,7 +42,8 @@ class Machine:
     """Layout, torques on the bodies (N m), reference mesh stiffness and error, half backlash (m).
 
     `error` is a Fourier series in m on the reference mesh; each mesh lags by its `error_lags` (meshes,), in
-    mesh periods, or by its stiffness phase if there are none. `imperfections` default to none.
+    mesh periods, or by its stiffness phase if there are none. `imperfections` default to none. `forces`
+    (bodies, 3): external ones on the bodies along x, y, z, N, none by default.
     """
 
     layout: Layout
@@ -54,10 +55,13 @@ class Machine:
     phase_convention: PhaseConvention = PhaseConvention.GEOMETRIC
     error_lags: NDArray[np.float64] | None = None
     imperfections: Imperfections = None  # type: ignore[assignment]
+    forces: NDArray[np.float64] = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
         if self.imperfections is None:
             object.__setattr__(self, "imperfections", perfect(self.layout))
+        if self.forces is None:
+            object.__setattr__(self, "forces", np.zeros((len(self.layout.bodies), 3)))
         require_balance(self.layout, self.torques)
         meshes = len(self.layout.meshes)
         for key, given in (
@@ -69,6 +73,14 @@ class Machine:
         lowest = self.stiffness.minimum
         if lowest <= 0.0:
             raise ConfigError("mesh_stiffness", f"{lowest:.3g} N/m", "positive everywhere in the mesh cycle")
+
+    @property
+    def applied(self) -> NDArray[np.float64]:
+        """External forces and torques on all degrees of freedom, shape (dof,), N and N m."""
+        loads = np.zeros(self.layout.dof)
+        bodies = loads[: DOF_PER_BODY * len(self.layout.bodies)].reshape(-1, DOF_PER_BODY)
+        bodies[:, :3], bodies[:, 3] = self.forces, self.torques
+        return loads
 
     @property
     def phases(self) -> NDArray[np.float64]:

@@ -40,8 +40,7 @@ def printed_equilibrium(
         stiffness = machine.stiffness(cycles - machine.phases)
         error = machine.error(cycles - machine.error_phases)
     bearing = bearing_matrix(machine.layout)
-    applied = np.zeros(len(bearing))
-    applied[machine.layout.spins] = machine.torques
+    applied = machine.applied
     # Rotations are scaled by the pinion radius so that all unknowns are lengths of one order.
     scale = np.ones(len(bearing))
     scale[machine.layout.spins] = 1.0 / machine.layout.pinion_radius

@@ -126,8 +126,6 @@ def static_springs(machine: Machine) -> tuple[Springs, NDArray[np.int64], Array]
     first = 3 * pinions
     wide = (kept.size - first) // len(layout.gears)
     x = DOF_PER_BODY * np.arange(pinions)
-    applied = np.zeros(layout.dof)
-    applied[layout.spins] = machine.torques
     touched = np.array(layout.meshes * 2) * [3, wide] + [0, first]
     columns = np.concatenate([touched[:, :1] + np.arange(3), touched[:, 1:] + np.arange(wide)], axis=1)
     directions = flank_directions(layout)[:, kept] * scale
@@ -140,7 +138,7 @@ def static_springs(machine: Machine) -> tuple[Springs, NDArray[np.int64], Array]
             clearance=machine.imperfections.clearance,
             gear_bearing=bearing_diagonal(layout)[kept[first:]] * scale[first:] ** 2,
             gear_coupling=np.array([gear.body.bearing_xy for gear in layout.gears]),
-            applied=applied[kept] * scale,
+            applied=machine.applied[kept] * scale,
         ),
         kept,
         scale,

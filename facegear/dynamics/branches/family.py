@@ -67,7 +67,10 @@ def changed(model: Model, parameter: str, factor: float) -> System:
     if factor == 1.0:
         return system
     if parameter == "torque":
-        return replace(system, load=system.load * factor)
+        load = system.load.copy()
+        torques = replace(machine, forces=np.zeros_like(machine.forces)).applied
+        load[:, 1, 0] += (factor - 1.0) * (model.reduced.basis.T @ torques)
+        return replace(system, load=load)
     if parameter == "backlash":
         return replace(system, lower=system.lower * factor, upper=system.upper * factor)
     if parameter == "mesh_damping":

@@ -30,6 +30,10 @@ BRIEFEST = 1e-14
 """An edge that is crossed within this time (rad of mesh phase) is stood on: s itself is not known better."""
 SHORTEST = 1e-10
 """Shortest time (rad of mesh phase) between two switches of one mesh that is followed."""
+LATEST = 1e-4
+"""How far ahead (rad of mesh phase) a mesh that stands on an edge is looked at."""
+STILL = 1e-14
+"""A rate (length scales per rad) that rounding explains."""
 ROUNDING = 1e-13
 """A step that ends this close to the end of a period (rad) ends there."""
 MOST_GUESSES = 4
@@ -116,20 +120,33 @@ def _find_state(packed: Packed, work: Work) -> None:
 
 @inlined
 def _correct_state(packed: Packed, work: Work) -> bool:
-    """Where a mesh stands on an edge with hardly any speed, its place after SHORTEST decides; True if one
+    """Where a mesh stands on an edge with hardly any speed, its place a little later decides; True if one
     changed.
+
+    After SHORTEST, or later where rounding would decide: a body at rest that is just being touched starts
+    with the cube of time.
     """
     changed = False
     for m in range(packed.m):
         if work.at_edge[m] == 0:
             continue
-        soon = work.deflection[2, m] + SHORTEST * work.deflection[3, m]
-        soon = work.deflection[1, m] + SHORTEST * soon
+        ahead = SHORTEST
+        soon = _rise(work, m, ahead)
+        while ahead < LATEST and abs(soon) <= STILL * packed.scale:
+            ahead *= 1e2
+            soon = _rise(work, m, ahead)
         wanted = (DRIVE if soon > 0.0 else OPEN) if work.at_edge[m] == 1 else BACK if soon < 0.0 else OPEN
         if wanted != work.state[m]:
             set_state(packed, work, m, wanted)
             changed = True
     return changed
+
+
+@inlined
+def _rise(work: Work, m: int, ahead: float) -> float:
+    """Mean rate of deflection m from now until `ahead` (rad), to third order."""
+    bend = work.deflection[2, m] + ahead * work.deflection[3, m]
+    return work.deflection[1, m] + ahead * bend
 
 
 @inlined

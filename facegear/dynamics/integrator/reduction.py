@@ -51,16 +51,18 @@ def reduce(machine: Machine) -> Reduced:
     mass = mass_diagonal(layout)
     mesh_jacobian = flank_directions(layout) if layout.is_geometric else mesh_directions(layout)
     mesh_jacobian = np.concatenate([mesh_jacobian, *(_ring_rows(layout, int(i)) for i in rings)])
-    applied = np.zeros(layout.dof)
-    applied[layout.spins] = machine.torques
+    applied = machine.applied
+    # What external forces move belongs to the motion, though no mesh may feel it: bearings carry it.
+    pushes = [_push_row(machine)] if machine.forces.any() else []
+    felt = np.concatenate([mesh_jacobian, *pushes])
     bearing = bearing_diagonal(layout)
     if any(body.bearing_xy != 0.0 for body in layout.bodies):
         axes = bearing_axes(layout)
         principal = np.einsum("ij,ij->j", axes, bearing_matrix(layout) @ axes)
-        basis, omega_squared = coupled_basis(mesh_jacobian @ axes, mass, principal)
+        basis, omega_squared = coupled_basis(felt @ axes, mass, principal)
         basis = axes @ basis
     else:
-        basis, omega_squared = coupled_basis(mesh_jacobian, mass, bearing)
+        basis, omega_squared = coupled_basis(felt, mass, bearing)
     touched = (mesh_jacobian != 0.0).any(axis=0) | (bearing != 0.0) | (applied != 0.0)
     names = np.array(layout.dof_names)
     return Reduced(
@@ -80,6 +82,13 @@ def without_bearings(layout: Layout, pinions: NDArray[np.int64]) -> Layout:
         body = changed[i].body
         changed[i] = replace(changed[i], body=replace(body, bearing=(0.0, 0.0, body.bearing[2])))
     return replace(layout, pinions=tuple(changed))
+
+
+def _push_row(machine: Machine) -> NDArray[np.float64]:
+    """Direction of the external forces without the torques, (1, dof)."""
+    loads = machine.applied
+    loads[machine.layout.spins] = 0.0
+    return (loads / np.linalg.norm(loads))[None]
 
 
 def _ring_rows(layout: Layout, pinion: int) -> NDArray[np.float64]:

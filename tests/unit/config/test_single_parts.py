@@ -1,18 +1,20 @@
 """Errors of single meshes and bodies in the config: one line each, and one line of refusal."""
 
+import re
+
 import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
 import facegear
 from facegear.config.base import parse
-from facegear.config.buildable import require_buildable
+from facegear.config.buildable import require_buildable, require_room
 from facegear.config.lumped_model import machine, tooth_numbers
 from facegear.config.notes import notes
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError, ConfigErrors
 from facegear.harmonics.series import Harmonics
-from facegear.transmission.statics import static_equilibrium
+from facegear.transmission.statics import mean_equilibrium, static_equilibrium
 
 TEETH = tooth_numbers(23, 143, 3.75, 25)
 STIFFNESS = Harmonics(np.array([0.0, 1e7]), np.array([4.1e8, 2e7]))
@@ -221,12 +223,14 @@ def test_parts_that_are_not_there_or_cannot_be_are_refused_by_key(changes, line)
             r"pinions\[2\]\.angle_deg = 56\.0: .* fit, .* 55\.38.* 56\.64.* -5220 um .* 100 um",
         ),
         (
-            {"single_pinions": {"two": {"position_um": {"x": 150.0}}}},
-            r"single_pinions\.two = '-\d+ um between its two meshes': must be errors .* within the 100 um",
-        ),
-        (
-            {"single_pinions": {"two": {"position_um": {"y": 150.0}}}},
-            r"single_pinions\.two\.position_um\.y = '13\.4 um too deep in two/upper'",
+            {
+                "face_gear": {
+                    **section()["face_gear"],
+                    "bearing_stiffness_n_per_m": {"x": 1e9, "y": 1e9, "z": 0},
+                },
+                "single_gears": {"lower": {"force_n": {"z": 80}}},
+            },
+            r"single_gears\.lower\.force_n\.z = 80\.0: must be 0, as the bearing has no stiffness along z",
         ),
         (
             {"single_pinions": {"one": {"cumulative_pitch_um": [1.0, 2.0]}}},
@@ -237,6 +241,42 @@ def test_parts_that_are_not_there_or_cannot_be_are_refused_by_key(changes, line)
 def test_machines_that_do_not_go_together_are_refused(changes, line):
     with pytest.raises(ConfigError, match=line):
         require_buildable(parse(Transmission, section(**changes)), TEETH)
+
+
+PRELOADED = [
+    ({"position_um": {"x": 150.0}}, {}, r"single_pinions\.two: -\d+ um between its two meshes: preloaded"),
+    ({"position_um": {"y": 150.0}}, {}, r"two\.position_um\.y: 13\.4 um too deep in two/upper: preloaded"),
+    (
+        {"position_um": {"x": 20.0}},
+        {"backlash_um": 0},
+        r"single_pinions\.two: -\d+ um between its two meshes",
+    ),
+]
+
+
+@pytest.mark.parametrize(("own", "changes", "line"), PRELOADED)
+def test_a_machine_that_errors_press_together_is_solved_with_a_note_and_jams_in_a_series(own, changes, line):
+    parts = parse(Transmission, section(single_pinions={"two": own}, **changes))
+    require_buildable(parts, TEETH)
+    teeth = {"pinion_teeth": 23, "face_gear_teeth": 143, "module_mm": 3.75, "pressure_angle_deg": 25}
+    values = {"transmission": parts.model_dump(mode="json"), "reproduction": None, "tooth_pair": teeth}
+    told = [note for note in notes(values) if "preloaded" in note]
+    assert told and re.search(line, told[0])
+    idle = parse(Transmission, parts.model_dump() | {"torque": {"per_input_n_m": 1e-3, "tail_share": 0.1}})
+    found = mean_equilibrium(machine(idle, TEETH, STIFFNESS))
+    assert found.flank_forces[0].max() > 100.0
+    assert found.residual[0] < 1e-12
+    with pytest.raises(ConfigError):
+        require_room(parts, TEETH)
+
+
+def test_an_external_force_is_carried_by_the_bearings_and_noted():
+    own = {"single_pinions": {"two": {"force_n": {"x": 300, "y": -200}}}}
+    parts = parse(Transmission, section(**own))
+    loaded = machine(parts, TEETH, STIFFNESS)
+    np.testing.assert_array_equal(loaded.applied[4:8], [300.0, -200.0, 0.0, 800.0])
+    values = {"transmission": parts.model_dump(mode="json"), "reproduction": None}
+    assert "external forces on two" in notes(values)[0]
 
 
 def test_a_machine_with_errors_within_its_backlash_is_buildable():

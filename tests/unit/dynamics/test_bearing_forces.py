@@ -84,6 +84,21 @@ def test_mean_forces_on_bearings_balance_torques_and_meshes(kinematics, error, b
     np.testing.assert_allclose(mean, -pulls.reshape(-1, 4)[:, :3], atol=1e-4 * np.abs(pulls).max())
 
 
+@pytest.mark.parametrize("kinematics", MeshKinematics)
+def test_external_forces_stand_in_the_bearings_of_the_running_machine(kinematics):
+    """Across the mesh force as well, where no mesh feels the body's motion."""
+    layout = make_layout(kinematics=kinematics)
+    forces = np.zeros((7, 3))
+    forces[1], forces[3], forces[5] = (400.0, -900.0, 0.0), (0.0, 700.0, 0.0), (300.0, 0.0, -5000.0)
+    machine = make_machine(layout, 1500.0, error=4e-6)
+    model = build_model(replace(machine, forces=forces))
+    found = simulate(model, 3000.0, Settings(tolerance=1e-10, samples=256))
+    assert found.motion is Motion.PERIODIC
+    pulls = (flank_means(found) @ flank_directions(layout)).reshape(-1, 4)[:, :3]
+    mean = bearing_history(model, found).mean(axis=0)
+    np.testing.assert_allclose(mean, forces - pulls, atol=1e-4 * np.abs(pulls).max())
+
+
 @pytest.mark.parametrize(("kinematics", "backlash"), [(GEOMETRIC, 20e-6), (MeshKinematics.PRINTED, 0.0)])
 def test_bearings_masses_and_meshes_take_no_more_power_than_is_brought_in(kinematics, backlash):
     steady = {"stiffness": FLAT, "error": 8e-6, "backlash": backlash, "open_flanks": OpenFlanks.CONTACT_ONLY}

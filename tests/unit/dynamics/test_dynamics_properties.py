@@ -194,6 +194,28 @@ def standing_on_an_edge():
     return make_machine(layout, 50.0, 0.0, backlash=1.14732774e-4, imperfections=flaws, **options)
 
 
+def resting_on_rings():
+    """Idle pinions that stand on the rims of their play until a flank touches one, without mesh damping.
+
+    What such a touch moves grows with the cube of time. Rounding once decided whether the ring was pressed in
+    the first 1e-4 rad, which impacts magnified to 2e-9 of the length scale.
+    """
+    roles = (Role.INPUT, Role.TAIL, Role.IDLER, Role.INPUT, Role.TAIL, Role.IDLER)
+    pitches = (117.0, 128.0, 88.5, 84.5, 62.0, 117.0)
+    places = tuple((f"p{i}", *place) for i, place in enumerate(zip(roles, pitches, strict=True)))
+    layout = make_layout(places, (Side.UPPER,), 1e7, 6329249313.423762, MeshKinematics.GEOMETRIC)
+    tilting = tuple(replace(gear, body=replace(gear.body, tilt=Tilt(0.3, 1e7))) for gear in layout.gears)
+    layout = replace(layout, gears=tilting)
+    swing = Harmonics(
+        np.array([0.0, 87174057.83775103, 8200000.0]), np.array([4.1e8, 43587028.918875515, 0.0])
+    )
+    options = {"stiffness": swing, "mesh_damping": 0.0, "mass_damping": 468.78866131223623}
+    options |= {"open_flanks": OpenFlanks.CONTACT_ONLY, "backlash": 6.103515625e-05}
+    flaws = replace(perfect(layout), clearance=np.full(6, 1e-5))
+    error = 3.0399327968901198e-05
+    return make_machine(layout, 1996.3598187060481, 0.0, error=error, imperfections=flaws, **options)
+
+
 def mirrored_start(model: Model, mirrored: Model) -> State:
     """The mirror image of static equilibrium; bodies that float freely have no other way to match."""
     layout = model.machine.layout
@@ -209,6 +231,7 @@ def mirrored_start(model: Model, mirrored: Model) -> State:
 @settings(max_examples=12, deadline=None)
 @given(machine=machines(kinematics=MeshKinematics.GEOMETRIC, symmetric=True), speed=speeds)
 @example(machine=standing_on_an_edge(), speed=3000.0)
+@example(machine=resting_on_rings(), speed=6836.269395264446)
 def test_in_a_mirror_drive_and_back_flanks_change_places(machine, speed):
     """Angles, torques and the waveforms' direction mirrored; at half pitches the teeth stand as before."""
     model = build_model(machine)
@@ -229,7 +252,7 @@ def test_in_a_mirror_drive_and_back_flanks_change_places(machine, speed):
     flanks = slice(0, model.system.contacts)
     drive, back = np.split(run.at(phases)[1][:, flanks], 2, axis=1)
     swapped = np.concatenate([back, drive], axis=1)
-    np.testing.assert_allclose(other.at(phases)[1][:, flanks], swapped, atol=1e-8 * model.system.scale)
+    np.testing.assert_allclose(other.at(phases)[1][:, flanks], swapped, atol=1e-9 * model.system.scale)
 
 
 @settings(max_examples=12, deadline=None)

@@ -13,7 +13,7 @@ from facegear.harmonics.series import Harmonics
 from facegear.transmission.balance import balance, bearing_loads
 from facegear.transmission.flanks import constant_errors, flank_gaps
 from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import Layout, MeshKinematics
+from facegear.transmission.layout import Layout, MeshKinematics, Role, Side
 from facegear.transmission.matrices import bearing_matrix, flank_directions, mesh_directions
 from facegear.transmission.statics import mean_equilibrium, static_bearing_forces, static_equilibrium
 
@@ -64,6 +64,33 @@ def test_what_the_bearings_of_a_gearbox_take_balances_its_torques_however_they_c
     forces, moment = external_forces(layout, static_bearing_forces(machine), machine.torques)
     np.testing.assert_allclose(forces, 0.0, atol=1e-9 * size)
     assert moment == pytest.approx(0.0, abs=1e-9 * size * layout.mesh_radius)
+
+
+@settings(max_examples=10, deadline=None)
+@given(coupled_machines(MeshKinematics.GEOMETRIC), st.integers(0, 2**31))
+def test_external_forces_on_any_bodies_end_in_the_bearings(machine, seed):
+    layout = machine.layout
+    forces = 2000.0 * np.random.default_rng(seed).normal(size=(7, 3))
+    forces[:5, 2] = 0.0
+    pushed = static_bearing_forces(replace(machine, forces=forces))
+    taken, moment = external_forces(layout, pushed, machine.torques)
+    brought, turning = external_forces(layout, forces, 0.0 * machine.torques)
+    np.testing.assert_allclose(taken, brought, atol=1e-6)
+    assert moment == pytest.approx(turning, abs=1e-6)
+    assert np.abs(pushed - static_bearing_forces(machine)).max() > 100.0
+
+
+def test_a_pinion_set_too_deep_presses_both_flanks_as_the_closed_form_says():
+    """Bearing k_b and both flanks along the gear's axis, held gear: k_b (d - u) = 2 k u sin^2 a."""
+    layout = make_layout((("a", Role.INPUT, 0.0),), (Side.UPPER,), 6.5e7, 1e19, MeshKinematics.GEOMETRIC)
+    deep = 20e-6
+    flaws = replace(perfect(layout), position=np.array([[0.0, deep]]))
+    machine = make_machine(layout, 0.001, 0.0, 0.0, 0.0, FLAT, imperfections=flaws)
+    given_way = deep * 6.5e7 / (6.5e7 + 2.0 * K * np.sin(layout.pressure_angle) ** 2)
+    exact = K * given_way * np.sin(layout.pressure_angle)
+    found = mean_equilibrium(machine)
+    np.testing.assert_allclose(found.flank_forces[0], 2 * [exact], rtol=1e-4)
+    assert found.residual[0] < 1e-12
 
 
 @settings(max_examples=10, deadline=None)
