@@ -91,7 +91,7 @@ def test_power_in_less_power_out_is_the_friction_and_the_closing_work(loaded):
 
 
 def test_normal_forces_alone_carry_the_torque_of_the_pinion(loaded):
-    """To the last digits on the involute; a loaded hat of the fillet has the lever arm of its node."""
+    """To the last digits on the involute; a hat at the fillet has an arm of its own within a tenth."""
     design, hats, _ = loaded
     pinion, _ = spins(design)
     arm = np.cross(hats.point - pinion.through, hats.normal) @ pinion.axis
@@ -99,10 +99,13 @@ def test_normal_forces_alone_carry_the_torque_of_the_pinion(loaded):
     assert involute.mean() > 0.95
     assert arm[involute] == pytest.approx(design.pinion_base_radius, rel=1e-11)
     carried = hats.force * arm
+    end = np.linalg.norm(hats.point[~involute][:, [0, 2]], axis=1).max(initial=0.0)
+    near = np.linalg.norm(hats.point[:, [0, 2]], axis=1) < end + 2e-4
     for torque in TORQUES:
         for position in np.unique(hats.position):
             at = (hats.torque == torque) & (hats.position == position)
-            assert carried[at].sum() == pytest.approx(torque, rel=5e-5)
+            allowed = 0.1 * carried[at & near].sum() + 1e-11 * torque
+            assert carried[at].sum() == pytest.approx(torque, rel=0, abs=allowed)
 
 
 @pytest.mark.parametrize(
