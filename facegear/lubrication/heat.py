@@ -9,10 +9,9 @@ from facegear.errors import FacegearError, NotConverged
 from facegear.lubrication.film import elliptic_film, line_film, shear_heating
 from facegear.lubrication.flash import Heated, flash_at_any_speed
 from facegear.lubrication.friction import FrictionModel, Rubbing
-from facegear.lubrication.loss import HatSlip
 from facegear.lubrication.micropitting import local_film, sliding_factor
 from facegear.lubrication.oil import Oil
-from facegear.lubrication.places import Places, at_hats
+from facegear.lubrication.places import LoadedContact, Places
 
 Array = NDArray[np.float64]
 
@@ -47,6 +46,16 @@ class Cooling:
     face_gear: float
 
 
+@dataclass(frozen=True)
+class BorrowedBulk:
+    """Bulk temperature of ISO/TR 13989-1: the oil's and 0.47 X_S times the mean flash along the path.
+
+    The rule is that of cylindrical gears, borrowed. `supply_factor` X_S: 1.2 jet, 1 dip, 0.2 submerged.
+    """
+
+    supply_factor: float
+
+
 @dataclass(frozen=True, eq=False)
 class Lubrication:
     """What the flanks run with.
@@ -60,7 +69,7 @@ class Lubrication:
     friction: FrictionModel
     ra: tuple[float, float]
     rq: tuple[float, float]
-    bulk: GivenBulk | Cooling
+    bulk: GivenBulk | Cooling | BorrowedBulk
     flanks: tuple[Heated, Heated]
     reduced_modulus: float
     pitch_radius: float
@@ -106,45 +115,78 @@ class Running:
         return 0.5 * sum(self.bulk)
 
 
-def running(found: Places, hats: HatSlip, speed: float, known: Lubrication) -> Running:
-    """Of the places and hats of a single torque at the pinion's speed (rad/s); one mesh, bodies of its own.
+def running(contact: LoadedContact, speed: float, known: Lubrication) -> Running:
+    """At the pinion's speed (rad/s); one mesh, bodies of its own.
 
-    With cooling given, bulk temperatures and loss are iterated. Raises TooHot where a body passes the oil's
-    flash point, NotConverged where they do not settle.
+    Where bulk temperatures follow from the loss both are iterated. Raises TooHot where a body passes the
+    oil's flash point, NotConverged where they do not settle.
     """
-    positions = np.unique(hats.position).size
-    bulk = _start(known)
+    bulk = starting_bulk(known)
     for _ in range(STEPS):
-        state = _at_bulk(found, hats, speed, known, bulk, positions)
-        after = bulk_temperatures(state.heat, known)
-        if max(abs(new - old) for new, old in zip(after, bulk, strict=True)) < SETTLED:
+        state = running_at(contact, speed, known, bulk)
+        after = _bulk_after(state, contact.places, known)
+        if settled(after, bulk):
             return state
-        if max(after) > known.oil.flash_point:
-            raise TooHot(float(found.torque[0]), speed, max(after), known.oil.flash_point)
+        require_cool(after, known, contact.torque, speed)
         bulk = after
-    where = f"torque {found.torque[0]:g} N m, {speed:g} rad/s"
+    where = f"torque {contact.torque:g} N m, {speed:g} rad/s"
     raise NotConverged("bulk temperature", where, f"{STEPS} steps of loss and bulk temperature")
 
 
-def bulk_temperatures(heat: tuple[float, float], known: Lubrication) -> tuple[float, float]:
-    """Of pinion and gear (C) that take up `heat` (W): what the oil has plus heat over what is given off."""
-    if isinstance(known.bulk, GivenBulk):
-        return known.bulk.temperature, known.bulk.temperature
-    return (
-        known.oil_temperature + heat[0] / known.bulk.pinion,
-        known.oil_temperature + heat[1] / known.bulk.face_gear,
-    )
-
-
-def _start(known: Lubrication) -> tuple[float, float]:
+def starting_bulk(known: Lubrication) -> tuple[float, float]:
+    """Bulk temperatures (C) of pinion and gear to start from: those given, or the oil's."""
     if isinstance(known.bulk, GivenBulk):
         return known.bulk.temperature, known.bulk.temperature
     return known.oil_temperature, known.oil_temperature
 
 
-def _at_bulk(
-    found: Places, hats: HatSlip, speed: float, known: Lubrication, bulk: tuple[float, float], positions: int
+def settled(after: tuple[float, float], before: tuple[float, float]) -> bool:
+    """Whether two bulk temperatures have changed by no more than SETTLED."""
+    return max(abs(new - old) for new, old in zip(after, before, strict=True)) < SETTLED
+
+
+def require_cool(bulk: tuple[float, float], known: Lubrication, torque: float, speed: float) -> None:
+    """Raise TooHot for bulk temperatures (C) above the oil's flash point."""
+    if max(bulk) > known.oil.flash_point:
+        raise TooHot(torque, speed, max(bulk), known.oil.flash_point)
+
+
+def mean_flash(found: Places, rise: Array) -> float:
+    """Mean along the path of contact of the largest flash at each place of it (K), away from edges.
+
+    found: places of one torque. The path runs through all positions of all pairs; 0 without any.
+    """
+    stage = np.round(found.position + found.tooth, 9)[found.inside]
+    if stage.size == 0:
+        return 0.0
+    _, row = np.unique(stage, return_inverse=True)
+    largest = np.zeros(row.max() + 1)
+    np.maximum.at(largest, row, rise[found.inside])
+    return float(largest.mean())
+
+
+def warmed(heat: tuple[float, float], cooling: Cooling, oil_temperature: float) -> tuple[float, float]:
+    """Bulk temperatures (C) of pinion and gear that take up `heat` (W)."""
+    return (
+        oil_temperature + heat[0] / cooling.pinion,
+        oil_temperature + heat[1] / cooling.face_gear,
+    )
+
+
+def _bulk_after(state: "Running", found: Places, known: Lubrication) -> tuple[float, float]:
+    if isinstance(known.bulk, Cooling):
+        return warmed(state.heat, known.bulk, known.oil_temperature)
+    if isinstance(known.bulk, BorrowedBulk):
+        rise = 0.47 * known.bulk.supply_factor * mean_flash(found, state.flash)
+        return known.oil_temperature + rise, known.oil_temperature + rise
+    return state.bulk
+
+
+def running_at(
+    contact: LoadedContact, speed: float, known: Lubrication, bulk: tuple[float, float]
 ) -> Running:
+    """The same with bulk temperatures (C) of pinion and gear as they are given."""
+    found, hats = contact.places, contact.hats
     warm, oil = 0.5 * sum(bulk), known.oil
     viscosity, coefficient = float(oil.viscosity(warm)), float(oil.pressure_coefficient_at(warm))
     u1, u2, sliding = speed * found.u1, speed * found.u2, speed * found.sliding
@@ -186,9 +228,9 @@ def _at_bulk(
     micro = local_film(
         found.radius, u1 + u2, found.pressure, viscosity, coefficient, slid, known.reduced_modulus
     )
-    rubbed, parted = (at_hats(found, hats, values) for values in (friction, share))
+    rubbed, parted = (contact.at_hats(values) for values in (friction, share))
     hat_loss = rubbed * hats.force * speed * hats.sliding
-    loss, warmed = float(hat_loss.sum()) / positions, float((parted * hat_loss).sum()) / positions
+    loss, to_pinion = (float(part.sum()) / contact.positions for part in (hat_loss, parted * hat_loss))
     return Running(
         friction=friction,
         flash=rise,
@@ -200,7 +242,7 @@ def _at_bulk(
         micropitting=micro / known.mean_ra,
         bulk=bulk,
         loss=loss,
-        heat=(warmed, loss - warmed),
+        heat=(to_pinion, loss - to_pinion),
         hat_loss=hat_loss,
         rubbing=rubbing,
     )

@@ -1,7 +1,8 @@
 """Where flanks touch under load: load, curvature and velocities of every loaded plane of a contact line."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,7 +77,7 @@ def places(design: PairDesign, arrays: Mapping[str, NDArray], lines: ContactLine
     """Of the line loads in arrays as PRESSURE_ARRAYS, with their contact lines; `modulus` E* (Pa).
 
     Beside an edge the curvature and slope are those of the nearest plane that has any, and the pressure that
-    of a long strip: they serve the friction coefficient alone.
+    of a long strip: they serve the friction coefficient alone. Lines without any are left out.
     """
     filled = _filled(lines)
     position, tooth = arrays["contact_position"], arrays["contact_tooth"]
@@ -87,7 +88,7 @@ def places(design: PairDesign, arrays: Mapping[str, NDArray], lines: ContactLine
     inside = arrays["line_where"] == INSIDE
     long = np.sqrt(load * modulus * curvature / np.pi)
     wide = np.sqrt(4 * load / (np.pi * modulus * curvature))
-    return Places(
+    whole = Places(
         torque=arrays["line_torque_n_m"],
         position=arrays["line_position"],
         tooth=arrays["line_tooth"],
@@ -108,26 +109,54 @@ def places(design: PairDesign, arrays: Mapping[str, NDArray], lines: ContactLine
         along=moving.along[at],
         entrained=moving.entrained[at],
     )
+    return _of(whole, np.isfinite(whole.radius))
 
 
-def at_hats(found: Places, hats: HatSlip, values: Array) -> Array:
-    """Values (m,) of places at every hat (h,): of the hat's plane, or the nearest loaded one of its line.
+@dataclass(frozen=True, eq=False)
+class LoadedContact:
+    """The contact at one torque (N m) over a pitch: its places (m,), its hats (h,), which belong to which.
 
-    A hat whose line has no value anywhere takes their mean, weighted with load.
+    `nearest` (h,): the place of a hat's plane, or the nearest loaded one of its line; -1 where its line has
+    none. `positions`: how many there are in the pitch.
     """
-    torques, first = np.unique(np.concatenate([found.torque, hats.torque]), return_inverse=True)
-    positions, second = np.unique(np.concatenate([found.position, hats.position]), return_inverse=True)
-    count, planes = found.torque.size, 1 + int(max(found.plane.max(), hats.plane.max()))
-    line = (
-        (first * positions.size + second) * PAIRS.size + np.concatenate([found.tooth, hats.tooth]) - PAIRS[0]
+
+    torque: float
+    places: Places
+    hats: HatSlip
+    nearest: NDArray[np.int64]
+    positions: int
+
+    def at_hats(self, values: Array) -> Array:
+        """Values (m,) of places at every hat (h,); their mean, weighted with load, where a line has none."""
+        weights = self.places.line_load * self.places.length
+        mean = np.average(values, weights=weights) if weights.size else 0.0
+        return np.append(values, mean)[self.nearest]
+
+
+def loaded_contacts(found: Places, hats: HatSlip) -> tuple[LoadedContact, ...]:
+    """Places and hats apart by torque, rising."""
+    return tuple(
+        _contact(float(torque), _of(found, found.torque == torque), _of(hats, hats.torque == torque))
+        for torque in np.unique(hats.torque)
     )
-    table = np.full((torques.size * positions.size * PAIRS.size, planes), np.nan)
-    table[line[:count], found.plane] = values
-    near = _nearest(table)
-    on = np.isfinite(values)
-    mean = np.average(values[on], weights=(found.line_load * found.length)[on])
-    picked = near[line[count:], hats.plane]
-    return np.where(np.isfinite(picked), picked, mean)
+
+
+Loads = TypeVar("Loads", Places, HatSlip)
+
+
+def _of(loads: Loads, on: NDArray[np.bool_]) -> Loads:
+    return replace(loads, **{field.name: getattr(loads, field.name)[on] for field in fields(loads)})
+
+
+def _contact(torque: float, found: Places, hats: HatSlip) -> LoadedContact:
+    positions, row = np.unique(np.concatenate([found.position, hats.position]), return_inverse=True)
+    line = row * PAIRS.size + np.concatenate([found.tooth, hats.tooth]) - PAIRS[0]
+    count, planes = found.plane.size, 1 + int(max(found.plane.max(initial=0), hats.plane.max()))
+    table = np.full((positions.size * PAIRS.size, planes), np.nan)
+    table[line[:count], found.plane] = np.arange(count)
+    picked = _nearest(table)[line[count:], hats.plane]
+    nearest = np.where(np.isfinite(picked), np.nan_to_num(picked), -1).astype(np.int64)
+    return LoadedContact(torque, found, hats, nearest, np.unique(hats.position).size)
 
 
 def _filled(lines: ContactLines) -> ContactLines:

@@ -1,6 +1,5 @@
 """Loss, heat and film of the paper's pair under load, 32 positions of a pitch."""
 
-from dataclasses import fields, replace
 from math import pi
 
 import numpy as np
@@ -17,7 +16,7 @@ from facegear.lubrication.friction import Constant, Schlenk, Xu
 from facegear.lubrication.heat import Cooling, GivenBulk, Lubrication, TooHot, running
 from facegear.lubrication.kinematics import spins
 from facegear.lubrication.loss import hat_slip, loss_factors
-from facegear.lubrication.places import at_hats, places, stored_lines
+from facegear.lubrication.places import loaded_contacts, places, stored_lines
 
 SPEED = 7500 * pi / 30
 MODULUS = contact_modulus((STEEL, STEEL))
@@ -33,17 +32,13 @@ def stored(model, positions, torques):
 
 @pytest.fixture(scope="module")
 def loaded(model_of):
-    """Design, hats and places of the stored contact."""
+    """Design, hats and contacts by torque of the stored contact."""
     model = model_of()
     arrays, unloaded = stored(model, 32, TORQUES)
     lines = stored_lines(model.design, arrays, unloaded)
-    return model.design, hat_slip(model.design, arrays), places(model.design, arrays, lines, MODULUS)
-
-
-def at_torque(found, torque):
-    """Entries of a frozen dataclass of arrays that belong to a torque."""
-    on = found.torque == torque
-    return replace(found, **{field.name: getattr(found, field.name)[on] for field in fields(found)})
+    hats = hat_slip(model.design, arrays)
+    contacts = loaded_contacts(places(model.design, arrays, lines, MODULUS), hats)
+    return model.design, hats, {contact.torque: contact for contact in contacts}
 
 
 def lubrication(design, friction, bulk=None):
@@ -67,16 +62,16 @@ def test_loss_factors_are_the_reference_s_within_a_percent(loaded):
     assert found.mean == pytest.approx([0.112617, 0.124134], rel=0.01)
     assert found.at.min(axis=1) == pytest.approx([0.0548, 0.0881], rel=0.04)
     assert found.at.max(axis=1) == pytest.approx([0.1388, 0.1395], rel=0.01)
-    largest = [1e3 * at_torque(hats, torque).sliding.max() for torque in TORQUES]
+    largest = [1e3 * hats.sliding[hats.torque == torque].max() for torque in TORQUES]
     assert largest == pytest.approx([13.137, 16.453], rel=0.03)  # at the outermost loaded hat
 
 
 def test_power_in_less_power_out_is_the_friction_and_the_closing_work(loaded):
-    design, hats, _ = loaded
+    design, _, contacts = loaded
     pinion, gear = spins(design)
     mu = 0.05
     for torque in TORQUES:
-        one = at_torque(hats, torque)
+        one = contacts[torque].hats
         factor = loss_factors(one)
         for number, position in enumerate(factor.positions):
             at = one.position == position
@@ -119,9 +114,9 @@ def test_largest_flash_and_thinnest_film_are_the_reference_s(
     loaded, torque, largest, place, thinnest, kept, ratio
 ):
     """Those of the default mesh; here planes lie closer, so that the hottest place lies nearer to an edge."""
-    design, hats, found = loaded
-    one = at_torque(found, torque)
-    state = running(one, at_torque(hats, torque), SPEED, lubrication(design, Constant(0.05)))
+    design, _, contacts = loaded
+    one = contacts[torque].places
+    state = running(contacts[torque], SPEED, lubrication(design, Constant(0.05)))
     hottest = np.flatnonzero(one.inside)[state.flash[one.inside].argmax()]
     assert state.flash[hottest] == pytest.approx(largest, rel=0.04)
     stage, y = one.position[hottest] + one.tooth[hottest], 1e3 * one.y[hottest]
@@ -135,43 +130,42 @@ def test_largest_flash_and_thinnest_film_are_the_reference_s(
 
 def test_models_of_friction_differ_as_much_as_the_reference_says(loaded):
     """Means weighted with loss: Schlenk 0.029 and 0.035; Xu 0.009 and 0.012 with one flank's roughness."""
-    design, hats, found = loaded
+    design, hats, contacts = loaded
     factors = loss_factors(hats).mean
     for model, means, bound in ((Schlenk(), (0.029, 0.035), 0.02), (Xu(), (0.009, 0.012), 0.35)):
         for torque, factor, mean in zip(TORQUES, factors, means, strict=True):
-            state = running(
-                at_torque(found, torque), at_torque(hats, torque), SPEED, lubrication(design, model)
-            )
+            state = running(contacts[torque], SPEED, lubrication(design, model))
             assert state.loss / (factor * torque * SPEED) == pytest.approx(mean, rel=bound)
 
 
 def test_loss_is_linear_in_a_constant_coefficient_and_none_without(loaded):
-    design, hats, found = loaded
-    one, loads = at_torque(found, 300.0), at_torque(hats, 300.0)
-    losses = [running(one, loads, SPEED, lubrication(design, Constant(mu))).loss for mu in (0.0, 0.02, 0.06)]
+    design, _, contacts = loaded
+    one = contacts[300.0]
+    losses = [running(one, SPEED, lubrication(design, Constant(mu))).loss for mu in (0.0, 0.02, 0.06)]
     assert losses[0] == 0.0
     assert losses[2] == pytest.approx(3 * losses[1], rel=1e-13)
-    slow = running(one, loads, 0.1 * SPEED, lubrication(design, Constant(0.02))).loss
+    slow = running(one, 0.1 * SPEED, lubrication(design, Constant(0.02))).loss
     assert slow == pytest.approx(0.1 * losses[1], rel=1e-13)
 
 
 def test_heat_of_both_bodies_is_the_loss_and_warms_them_until_it_settles(loaded):
-    design, hats, found = loaded
-    one, loads = at_torque(found, 1000.0), at_torque(hats, 1000.0)
-    state = running(one, loads, SPEED, lubrication(design, Xu(), Cooling(60.0, 200.0)))
+    design, _, contacts = loaded
+    one = contacts[1000.0]
+    state = running(one, SPEED, lubrication(design, Xu(), Cooling(60.0, 200.0)))
     assert sum(state.heat) == pytest.approx(state.loss, rel=1e-12)
     assert state.bulk == pytest.approx(
         [100.0 + state.heat[0] / 60.0, 100.0 + state.heat[1] / 200.0], abs=1e-4
     )
     assert state.bulk[0] > 105.0
     with pytest.raises(TooHot, match=r"a body reaches 2\d+ C at 1000 N m and 7500 rpm, above .* 246 C"):
-        running(one, loads, SPEED, lubrication(design, Constant(0.05), Cooling(15.0, 20.0)))
+        running(one, SPEED, lubrication(design, Constant(0.05), Cooling(15.0, 20.0)))
 
 
 def test_a_hat_takes_the_value_of_its_own_plane_or_the_nearest_of_its_line(loaded):
-    _, hats, found = loaded
-    planes = at_hats(found, hats, found.plane.astype(float))
-    assert np.median(np.abs(planes - hats.plane)) == 0
-    assert np.abs(planes - hats.plane).max() <= 2
-    stages = at_hats(found, hats, found.position + 10.0 * found.tooth)
-    assert stages == pytest.approx(hats.position + 10.0 * hats.tooth, abs=1e-12)
+    _, _, contacts = loaded
+    one = contacts[1000.0]
+    planes = one.at_hats(one.places.plane.astype(float))
+    assert np.median(np.abs(planes - one.hats.plane)) == 0
+    assert np.abs(planes - one.hats.plane).max() <= 2
+    stages = one.at_hats(one.places.position + 10.0 * one.places.tooth)
+    assert stages == pytest.approx(one.hats.position + 10.0 * one.hats.tooth, abs=1e-12)

@@ -1,0 +1,249 @@
+"""Config section `lubrication`: the oil, how it is supplied, roughness, friction and what the flanks bear."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import Field, field_validator, model_validator
+
+from facegear.config.base import Section, parse, refuse
+from facegear.config.oil_card import OIL_CARDS, OilCard, oil_of
+from facegear.config.tooth_pair import Pair
+from facegear.config.yaml_file import read_yaml
+from facegear.contact.hertz import contact_modulus
+from facegear.errors import ConfigErrors
+from facegear.lubrication import friction
+from facegear.lubrication.assessment import Limits
+from facegear.lubrication.flash import Heated
+from facegear.lubrication.heat import BorrowedBulk, Cooling, GivenBulk, Lubrication
+
+LARGEST_RA_UM = 4.0
+"""Roughest flank that the gear tests behind the friction models had."""
+
+RQ_PER_RA = 1.25
+"""Of a profile whose heights are spread normally."""
+
+SUPPLY_FACTORS = {"jet": 1.2, "dip": 1.0, "submerged": 0.2}
+"""X_S of ISO/TS 6336-20."""
+
+GEAR_TESTS = ("schlenk", "iso_6336_20", "iso_6336_22")
+"""Models with the lubricant factor X_L."""
+
+
+class Roughness(Section):
+    """Of a flank after running in."""
+
+    ra_um: float = Field(gt=0, le=LARGEST_RA_UM, description="arithmetic mean roughness Ra")
+    rq_um: float | None = Field(None, gt=0, le=10, description="root mean square; null: 1.25 Ra")
+
+
+class DoleschelConstants(Section):
+    """Constants of a twin disc test of the oil; the formula is in docs/friction.md."""
+
+    solid: float = Field(gt=0, le=1)
+    solid_pressure: float = Field(ge=-2, le=2)
+    solid_speed: float = Field(ge=-2, le=2)
+    fluid: float = Field(gt=0, le=1)
+    fluid_pressure: float = Field(ge=-2, le=2)
+    fluid_speed: float = Field(ge=-2, le=2)
+    fluid_viscosity: float = Field(ge=-2, le=2)
+
+
+class FrictionSection(Section):
+    """How the coefficient of friction follows from load, speed, oil and roughness."""
+
+    model: Literal[
+        "constant", "schlenk", "iso_6336_20", "iso_6336_22", "benedict_kelley", "xu", "doleschel"
+    ] = "schlenk"
+    coefficient: float | None = Field(None, ge=0, le=1, description="of the model constant")
+    lubricant_factor: float | None = Field(
+        None, gt=0, le=2, description="X_L of schlenk, iso_6336_20 and iso_6336_22; null: that of the oil"
+    )
+    constants: DoleschelConstants | None = Field(None, description="of the model doleschel")
+
+    @model_validator(mode="after")
+    def _complete(self) -> "FrictionSection":
+        for key, models in (
+            ("coefficient", ("constant",)),
+            ("constants", ("doleschel",)),
+            ("lubricant_factor", GEAR_TESTS),
+        ):
+            value, asked = getattr(self, key), self.model in models
+            if asked and value is None and key != "lubricant_factor":
+                refuse(key, None, f"given for the model {self.model}")
+            if not asked and value is not None:
+                refuse(key, value, f"left out for the model {self.model}")
+        return self
+
+
+class BulkSection(Section):
+    """Temperature of the teeth: given, from the heat that bodies give off, or a rule of cylindrical gears."""
+
+    source: Literal["given", "cooling", "iso_6336_20"]
+    temperature_c: float | None = Field(
+        None, ge=-60, le=600, description="of both gears where source is given"
+    )
+    pinion_w_per_k: float | None = Field(
+        None, gt=0, le=1e6, description="heat that a pinion gives off a kelvin above the oil, for cooling"
+    )
+    face_gear_w_per_k: float | None = Field(None, gt=0, le=1e6, description="the same of a face gear")
+
+    @model_validator(mode="after")
+    def _complete(self) -> "BulkSection":
+        asked = {"given": ("temperature_c",), "cooling": ("pinion_w_per_k", "face_gear_w_per_k")}
+        for source in asked:
+            for key in asked[source]:
+                value = getattr(self, key)
+                if self.source == source and value is None:
+                    refuse(key, None, f"given where source is {source}")
+                if self.source != source and value is not None:
+                    refuse(key, value, f"left out where source is {self.source}")
+        return self
+
+
+class SteelSection(Section):
+    """What heat finds in a flank; the values of ISO/TR 15144-1."""
+
+    conductivity_w_per_m_k: float = Field(45.0, gt=0, le=1000)
+    density_kg_per_m3: float = Field(7800.0, gt=0, le=30000)
+    heat_capacity_j_per_kg_k: float = Field(440.0, gt=0, le=10000)
+
+
+class Scuffing(Section):
+    """What the contact temperature is compared with."""
+
+    temperature_c: float | None = Field(
+        None, gt=0, le=1000, description="contact temperature allowed; null: of the oil, or of fzg_stage"
+    )
+    fzg_stage: float | None = Field(
+        None, ge=1, le=14, description="failure load stage A/8.3/90; null: of the oil"
+    )
+    structure_factor: float = Field(
+        1.0,
+        ge=0.4,
+        le=1.5,
+        description="X_W of the steel: 1 case carburised, 0.45 austenitic, 1.25 phosphated",
+    )
+
+
+class LubricationSection(Section):
+    """Sliding, loss, heat, film, scuffing and micropitting of the meshes."""
+
+    oil: OilCard = Field(description="name of an oil of the package, a yaml file, or the card itself")
+    supply_temperature_c: float = Field(ge=-60, le=400, description="of the oil as it reaches the mesh")
+    supply: Literal["jet", "dip", "submerged"] = "jet"
+    pinion: Roughness
+    face_gear: Roughness
+    friction: FrictionSection = FrictionSection()
+    bulk: BulkSection
+    steel: SteelSection = SteelSection()
+    scuffing: Scuffing = Scuffing()
+    allowed_film_ratio: float | None = Field(
+        None,
+        gt=0,
+        le=10,
+        description="specific film of ISO/TS 6336-22 that a test of the oil allows; null: not judged",
+    )
+    map_speeds_rpm: tuple[float, ...] = Field(
+        (),
+        max_length=100,
+        description="of the efficiency map; none: 12 from a tenth of dynamics.speed_rpm to 1.25 times it",
+    )
+
+    @field_validator("oil", mode="before")
+    @classmethod
+    def _read(cls, oil: Any) -> Any:
+        """A card is read here, so that a fault in it is told with all others before any work."""
+        if not isinstance(oil, str | Mapping):
+            return oil
+        if isinstance(oil, str) and not Path(oil).suffix and not _file_of(oil).is_file():
+            refuse("", oil, f"one of {', '.join(sorted(path.stem for path in OIL_CARDS.glob('*.yaml')))}")
+        try:
+            return parse(OilCard, read_yaml(_file_of(oil)) if isinstance(oil, str) else oil, "the oil")
+        except ConfigErrors as error:
+            refuse("", oil if isinstance(oil, str) else oil.get("name"), " ".join(str(error).split()))
+
+    @field_validator("map_speeds_rpm")
+    @classmethod
+    def _rising(cls, speeds: tuple[float, ...]) -> tuple[float, ...]:
+        if any(not 0 < speed <= 1e6 for speed in speeds) or list(speeds) != sorted(set(speeds)):
+            refuse("", list(speeds), "rising speeds above 0")
+        return speeds
+
+    @model_validator(mode="after")
+    def _below_the_flash_point(self) -> "LubricationSection":
+        allowed = f"below the oil's flash point, {self.oil.flash_point_c:g}"
+        if self.supply_temperature_c >= self.oil.flash_point_c:
+            refuse("supply_temperature_c", self.supply_temperature_c, allowed)
+        bulk = self.bulk.temperature_c
+        if bulk is not None and bulk >= self.oil.flash_point_c:
+            refuse("bulk.temperature_c", bulk, allowed)
+        return self
+
+
+def _file_of(name: str) -> Path:
+    """A name without an ending is that of an oil of the package."""
+    path = Path(name)
+    return path if path.suffix else OIL_CARDS / f"{path.name}.yaml"
+
+
+def lubrication_request(section: LubricationSection, teeth: Pair) -> Lubrication:
+    """What the flanks run with, in SI units."""
+    oil, steel = oil_of(section.oil), section.steel
+    rough = section.pinion, section.face_gear
+    heated = Heated(steel.conductivity_w_per_m_k, steel.density_kg_per_m3, steel.heat_capacity_j_per_kg_k)
+    ra = [1e-6 * one.ra_um for one in rough]
+    rq = [1e-6 * (one.rq_um or RQ_PER_RA * one.ra_um) for one in rough]
+    return Lubrication(
+        oil=oil,
+        oil_temperature=section.supply_temperature_c,
+        friction=_model(section.friction, oil.lubricant_factor),
+        ra=(ra[0], ra[1]),
+        rq=(rq[0], rq[1]),
+        bulk=_bulk(section),
+        flanks=(heated, heated),
+        reduced_modulus=2 * contact_modulus(teeth.materials),
+        pitch_radius=teeth.design.pinion_pitch_radius,
+    )
+
+
+def limits_of(section: LubricationSection) -> Limits:
+    """What temperatures and films are compared with; None where neither section nor oil gives it."""
+    scuffing = section.scuffing
+    return Limits(
+        contact_temperature=scuffing.temperature_c or section.oil.scuffing_temperature_c,
+        fzg_stage=scuffing.fzg_stage or section.oil.fzg_stage,
+        structure_factor=scuffing.structure_factor,
+        lubricant_factor=section.friction.lubricant_factor or section.oil.lubricant_factor,
+        film_ratio=section.allowed_film_ratio,
+    )
+
+
+def map_speeds(section: LubricationSection, nominal_rpm: float) -> tuple[float, ...]:
+    """Pinion speeds (rpm) of the efficiency map."""
+    return section.map_speeds_rpm or tuple(nominal_rpm * (0.1 + 1.15 * step / 11) for step in range(12))
+
+
+def _bulk(section: LubricationSection) -> GivenBulk | Cooling | BorrowedBulk:
+    bulk = section.bulk
+    if bulk.temperature_c is not None:
+        return GivenBulk(bulk.temperature_c)
+    if bulk.pinion_w_per_k is not None and bulk.face_gear_w_per_k is not None:
+        return Cooling(bulk.pinion_w_per_k, bulk.face_gear_w_per_k)
+    return BorrowedBulk(SUPPLY_FACTORS[section.supply])
+
+
+def _model(section: FrictionSection, oil_factor: float) -> friction.FrictionModel:
+    factor = section.lubricant_factor or oil_factor
+    if section.coefficient is not None:
+        return friction.Constant(section.coefficient)
+    if section.constants is not None:
+        return friction.Doleschel(**section.constants.model_dump())
+    gear_tests: dict[str, Callable[[float], friction.FrictionModel]] = {
+        "schlenk": friction.Schlenk,
+        "iso_6336_20": friction.Iso633620,
+        "iso_6336_22": friction.Iso633622,
+    }
+    if section.model in gear_tests:
+        return gear_tests[section.model](factor)
+    return friction.Xu() if section.model == "xu" else friction.BenedictKelley()

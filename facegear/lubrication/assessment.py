@@ -1,0 +1,223 @@
+"""Tables of loss, heat, film, scuffing and micropitting of the pair, by torque, position and speed."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from facegear.lubrication.columns import (
+    BY_TORQUE_COLUMNS,
+    LIMIT_COLUMNS,
+    MAP_COLUMNS,
+    POSITION_COLUMNS,
+)
+from facegear.lubrication.heat import Lubrication, Running, TooHot, mean_flash, running
+from facegear.lubrication.loss import loss_factors
+from facegear.lubrication.machine_loss import LoadedPair
+from facegear.lubrication.oil import Oil
+from facegear.lubrication.places import LoadedContact, Places
+from facegear.lubrication.scuffing import (
+    allowed_flash_temperature,
+    allowed_integral_temperature,
+    integral_temperature,
+    temperature_safety,
+)
+
+RPM = pi / 30
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What is allowed; None where it is not known.
+
+    `contact_temperature` (C) of tests, else it follows from `fzg_stage` with the steel's `structure_factor`
+    and the oil's `lubricant_factor`. `film_ratio` of ISO/TS 6336-22.
+    """
+
+    contact_temperature: float | None
+    fzg_stage: float | None
+    structure_factor: float
+    lubricant_factor: float
+    film_ratio: float | None
+
+    def allowed_contact(self, oil: Oil, oil_temperature: float) -> float:
+        """Contact temperature (C); nan where nothing says it."""
+        if self.contact_temperature is not None:
+            return self.contact_temperature
+        if self.fzg_stage is None:
+            return np.nan
+        factor = self.lubricant_factor * (1e3 * float(oil.viscosity(oil_temperature))) ** -0.05
+        return allowed_flash_temperature(self.fzg_stage, self.structure_factor, factor)
+
+    def allowed_integral(self, oil: Oil) -> float:
+        """Integral temperature (C); nan without a load stage."""
+        if self.fzg_stage is None:
+            return np.nan
+        return allowed_integral_temperature(
+            self.fzg_stage, self.structure_factor, self.lubricant_factor, float(oil.kinematic_viscosity(40.0))
+        )
+
+    def micropitting_safety(self, ratio: float) -> float:
+        """Of a specific film; nan where nothing is allowed."""
+        return ratio / self.film_ratio if self.film_ratio is not None else np.nan
+
+
+def by_torque_table(
+    pair: LoadedPair, states: Sequence[Running], speed: float, limits: Limits
+) -> pd.DataFrame:
+    """One row a torque at the pinion's speed (rad/s), columns as BY_TORQUE_COLUMNS."""
+    rows = [
+        _torque_row(pair.known, contact, state, speed, limits)
+        for contact, state in zip(pair.contacts, states, strict=True)
+    ]
+    return pd.DataFrame(rows, columns=list(BY_TORQUE_COLUMNS))
+
+
+def _torque_row(
+    known: Lubrication, contact: LoadedContact, state: Running, speed: float, limits: Limits
+) -> dict[str, object]:
+    torque, places, hats = contact.torque, contact.places, contact.hats
+    on, factor, power = places.inside, loss_factors(hats), torque * speed
+    rise = np.where(on, state.flash, -1.0)
+    hottest, largest, mean = (
+        int(rise.argmax()),
+        state.flash[on].max(initial=0.0),
+        mean_flash(places, state.flash),
+    )
+    found, integral = state.mean_bulk + largest, float(integral_temperature(state.mean_bulk, mean))
+    allowed = limits.allowed_contact(known.oil, known.oil_temperature)
+    allowed_integral = limits.allowed_integral(known.oil)
+    ratio = _least(state.micropitting, on)
+    return {
+        "torque_n_m": torque,
+        "speed_rpm": speed / RPM,
+        "friction_model": known.friction.name,
+        "loss_factor": factor.mean[0],
+        "loss_factor_min": factor.at.min(),
+        "loss_factor_max": factor.at.max(),
+        "mean_friction": state.loss / (factor.mean[0] * power),
+        "loss_w": state.loss,
+        "efficiency": 1 - state.loss / power,
+        "pinion_heat_w": state.heat[0],
+        "face_gear_heat_w": state.heat[1],
+        "pinion_bulk_c": state.bulk[0],
+        "face_gear_bulk_c": state.bulk[1],
+        "largest_sliding_m_per_s": speed * hats.sliding.max(),
+        "largest_flash_k": largest,
+        "flash_position": places.position[hottest] if on.any() else np.nan,
+        "flash_pair": places.tooth[hottest] if on.any() else np.nan,
+        "flash_axial_mm": 1e3 * places.y[hottest] if on.any() else np.nan,
+        "contact_temperature_c": found,
+        "allowed_contact_temperature_c": allowed,
+        "scuffing_safety": float(temperature_safety(allowed, known.oil_temperature, found)),
+        "scuffing_margin_k": allowed - found,
+        "mean_flash_k": mean,
+        "integral_temperature_c": integral,
+        "allowed_integral_temperature_c": allowed_integral,
+        "integral_safety": float(temperature_safety(allowed_integral, known.oil_temperature, integral)),
+        "smallest_film_um": 1e6 * _least(state.film, on),
+        "smallest_short_film_um": 1e6 * _least(state.short_film, on),
+        "smallest_film_ratio": _least(state.film_ratio, on),
+        "smallest_micropitting_film_ratio": ratio,
+        "micropitting_safety": limits.micropitting_safety(ratio),
+    }
+
+
+def position_table(pair: LoadedPair, states: Sequence[Running]) -> pd.DataFrame:
+    """One row a torque and position, columns as POSITION_COLUMNS; nan where edges carry all."""
+    frames = [_positions(contact, state) for contact, state in zip(pair.contacts, states, strict=True)]
+    return pd.concat(frames, ignore_index=True)
+
+
+def _positions(contact: LoadedContact, state: Running) -> pd.DataFrame:
+    torque, places, hats = contact.torque, contact.places, contact.hats
+    factor = loss_factors(hats)
+    rows = np.searchsorted(factor.positions, hats.position)
+    loss = np.bincount(rows, weights=state.hat_loss, minlength=factor.positions.size)
+    column, on = np.searchsorted(factor.positions, places.position), places.inside
+    rise = np.zeros(factor.positions.size)
+    np.maximum.at(rise, column[on], state.flash[on])
+    films = []
+    for values in (1e6 * state.film, state.film_ratio):
+        least = np.full(factor.positions.size, np.inf)
+        np.minimum.at(least, column[on], values[on])
+        films.append(np.where(np.isfinite(least), least, np.nan))
+    columns = (torque, factor.positions, factor.at[0], loss, rise, *films)
+    return pd.DataFrame(dict(zip(POSITION_COLUMNS, columns, strict=True)))
+
+
+def limit_table(pair: LoadedPair, states: Sequence[Running]) -> pd.DataFrame:
+    """How much of the loss lies outside each limit of the friction model, columns as LIMIT_COLUMNS."""
+    model, rows = pair.known.friction, []
+    for contact, state in zip(pair.contacts, states, strict=True):
+        places = contact.places
+        heat = state.friction * places.line_load * places.length * places.sliding
+        for limit, within in model.within(state.rubbing).items():
+            outside = 100 * heat[~within].sum() / heat.sum() if heat.sum() > 0 else 0.0
+            rows.append((model.name, limit, contact.torque, outside))
+    return pd.DataFrame(rows, columns=list(LIMIT_COLUMNS))
+
+
+def map_table(pair: LoadedPair, speeds: Sequence[float]) -> pd.DataFrame:
+    """Loss and temperature at every torque and speed (rpm), columns as MAP_COLUMNS.
+
+    Empty where a body would pass the flash point of the oil. Raises NotConverged as `running` does.
+    """
+    rows = [_map_row(contact, speed, pair.known) for contact in pair.contacts for speed in speeds]
+    return pd.DataFrame(rows, columns=list(MAP_COLUMNS))
+
+
+def _map_row(contact: LoadedContact, speed: float, known: Lubrication) -> tuple[float, ...]:
+    place = contact.torque, speed
+    try:
+        state = running(contact, speed * RPM, known)
+    except TooHot:
+        return (*place, *(len(MAP_COLUMNS) - len(place)) * (np.nan,))
+    on, power = contact.places.inside, contact.torque * speed * RPM
+    rise = float(state.flash[on].max(initial=0.0))
+    told = state.loss, 1 - state.loss / power, rise, state.mean_bulk + rise
+    return (*place, *told, _least(state.film_ratio, on))
+
+
+def local_arrays(pair: LoadedPair, states: Sequence[Running], speed: float) -> dict[str, NDArray]:
+    """What holds at every loaded plane of a contact line at the speed (rad/s), as LOCAL_ARRAYS."""
+    rows = [
+        _local(contact.places, state, speed) for contact, state in zip(pair.contacts, states, strict=True)
+    ]
+    joined = {name: np.concatenate([row[name] for row in rows]) for name in rows[0]}
+    return {**joined, "speed_rad_per_s": np.array([speed])}
+
+
+def _local(places: Places, state: Running, speed: float) -> dict[str, NDArray]:
+    return {
+        "torque_n_m": places.torque,
+        "position": places.position,
+        "tooth": places.tooth,
+        "plane": places.plane,
+        "inside": places.inside.astype(np.int64),
+        "axial_m": places.y,
+        "roll_rad": places.roll,
+        "line_load_n_per_m": places.line_load,
+        "radius_m": places.radius,
+        "u1_m_per_s": speed * places.u1,
+        "u2_m_per_s": speed * places.u2,
+        "sliding_m_per_s": speed * places.sliding,
+        "sliding_across_m_per_s": speed * places.across,
+        "sliding_along_m_per_s": speed * places.along,
+        "entrained_along_m_per_s": speed * places.entrained,
+        "friction": state.friction,
+        "loss_w_per_m": state.friction * places.line_load * speed * places.sliding,
+        "flash_k": state.flash,
+        "pinion_share": state.share,
+        "film_m": state.film,
+        "shear_factor": state.sheared,
+        "film_ratio": state.film_ratio,
+        "micropitting_film_ratio": state.micropitting,
+    }
+
+
+def _least(values: NDArray[np.float64], on: NDArray[np.bool_]) -> float:
+    return float(values[on].min()) if on.any() else np.nan

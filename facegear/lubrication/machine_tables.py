@@ -1,0 +1,139 @@
+"""Tables of loss and heat of a machine: by mesh, by body and in all."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+import pandas as pd
+
+from facegear.lubrication.assessment import Limits
+from facegear.lubrication.columns import BODY_COLUMNS, MACHINE_COLUMNS, MESH_COLUMNS
+from facegear.lubrication.heat import BorrowedBulk, Cooling, GivenBulk, Lubrication
+from facegear.lubrication.machine_loss import MachineLoss, MeshLoads
+from facegear.lubrication.scuffing import temperature_safety
+
+
+@dataclass(frozen=True, eq=False)
+class MachineState:
+    """The loss of a machine in one state: bin 0 is the nominal load, `hours` nan there.
+
+    `meshes` and `flanks` name the loaded flanks, `bodies` all bodies; `speed_rpm` of the pinions.
+    """
+
+    bin: int
+    hours: float
+    speed_rpm: float
+    power_in: float
+    meshes: Sequence[str]
+    flanks: Sequence[str]
+    bodies: Sequence[str]
+    loads: MeshLoads
+    found: MachineLoss
+
+    @property
+    def power(self) -> np.ndarray:
+        """That every mesh carries, W."""
+        return self.loads.torque * self.speed_rpm * pi / 30
+
+
+def mesh_loss_table(states: Sequence[MachineState], known: Lubrication, limits: Limits) -> pd.DataFrame:
+    """One row a state and loaded flank, columns as MESH_COLUMNS."""
+    allowed = limits.allowed_contact(known.oil, known.oil_temperature)
+    frames = []
+    for state in states:
+        found = state.found
+        contact = found.contact_temperature
+        columns = {
+            "bin": state.bin,
+            "speed_rpm": state.speed_rpm,
+            "mesh": list(state.meshes),
+            "flank": list(state.flanks),
+            "pinion_torque_n_m": state.loads.torque,
+            "largest_torque_n_m": state.loads.peak,
+            "power_w": state.power,
+            "loss_w": found.loss,
+            "loss_percent": 100 * found.loss / state.power,
+            "pinion_heat_w": found.pinion_heat,
+            "face_gear_heat_w": found.loss - found.pinion_heat,
+            "pinion_bulk_c": found.bulk[:, 0],
+            "face_gear_bulk_c": found.bulk[:, 1],
+            "largest_flash_k": found.flash,
+            "contact_temperature_c": contact,
+            "scuffing_safety": temperature_safety(allowed, known.oil_temperature, contact),
+            "scuffing_margin_k": allowed - contact,
+            "smallest_film_ratio": found.film_ratio,
+            "smallest_micropitting_film_ratio": found.micropitting,
+            "micropitting_safety": [limits.micropitting_safety(float(ratio)) for ratio in found.micropitting],
+            "within_torques_solved": found.within,
+        }
+        frames.append(pd.DataFrame(columns))
+    return pd.concat(frames, ignore_index=True)[list(MESH_COLUMNS)]
+
+
+def body_heat_table(states: Sequence[MachineState], known: Lubrication) -> pd.DataFrame:
+    """One row a state and body: heat that friction brings, and the bulk temperature where it follows from it.
+
+    Columns as BODY_COLUMNS; nan where the bulk temperature is a rule's and differs from mesh to mesh.
+    """
+    rows = [
+        (state.bin, state.speed_rpm, name, heat, _bulk(known, heat, body < state.loads.pinions))
+        for state in states
+        for body, (name, heat) in enumerate(zip(state.bodies, state.found.heat.tolist(), strict=True))
+    ]
+    return pd.DataFrame(rows, columns=list(BODY_COLUMNS))
+
+
+def _bulk(known: Lubrication, heat: float, pinion: bool) -> float:
+    match known.bulk:
+        case GivenBulk(temperature):
+            return temperature
+        case Cooling(of_pinion, of_gear):
+            return known.oil_temperature + heat / (of_pinion if pinion else of_gear)
+        case BorrowedBulk():
+            return np.nan
+
+
+def machine_loss_table(states: Sequence[MachineState]) -> pd.DataFrame:
+    """One row a state, and with a duty cycle a last one of all its bins, columns as MACHINE_COLUMNS."""
+    rows = [_row(state) for state in states]
+    bins = [row for row, state in zip(rows, states, strict=True) if state.bin > 0]
+    if bins:
+        rows.append(_whole(pd.DataFrame(bins)))
+    return pd.DataFrame(rows, columns=list(MACHINE_COLUMNS))
+
+
+def _row(state: MachineState) -> dict[str, object]:
+    loss, power = state.found.total, state.power_in
+    return {
+        "bin": state.bin,
+        "hours": state.hours,
+        "speed_rpm": state.speed_rpm,
+        "power_in_w": power,
+        "power_through_meshes": float(state.power.sum()) / power if power > 0 else np.nan,
+        "loss_w": loss,
+        "loss_percent": 100 * loss / power if power > 0 else np.nan,
+        "efficiency": 1 - loss / power if power > 0 else np.nan,
+        "energy_lost_kwh": 1e-3 * loss * state.hours,
+        "within_torques_solved": bool(state.found.within.all()),
+    }
+
+
+def _whole(bins: pd.DataFrame) -> dict[str, object]:
+    """The whole duty cycle: means weighted with the hours."""
+    hours = bins["hours"].sum()
+    power = (bins["power_in_w"] * bins["hours"]).sum() / hours
+    loss = (bins["loss_w"] * bins["hours"]).sum() / hours
+    through = (bins["power_through_meshes"] * bins["power_in_w"] * bins["hours"]).sum() / hours
+    return {
+        "bin": -1,
+        "hours": hours,
+        "speed_rpm": (bins["speed_rpm"] * bins["hours"]).sum() / hours,
+        "power_in_w": power,
+        "power_through_meshes": through / power if power > 0 else np.nan,
+        "loss_w": loss,
+        "loss_percent": 100 * loss / power if power > 0 else np.nan,
+        "efficiency": 1 - loss / power if power > 0 else np.nan,
+        "energy_lost_kwh": bins["energy_lost_kwh"].sum(),
+        "within_torques_solved": bool(bins["within_torques_solved"].all()),
+    }
