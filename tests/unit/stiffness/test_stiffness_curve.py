@@ -3,13 +3,13 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from facegear.config.needs import stage_needs
 
 from facegear.config.base import parse
 from facegear.config.load import load_config
 from facegear.config.modal import modes_need_contact
 from facegear.config.stiffness import MeshStiffness, stiffness_request
 from facegear.errors import ConfigError, ConfigErrors
+from facegear.pipeline.needs import stage_needs
 from facegear.stages.modal import modal
 from facegear.stiffness.curve import load_table
 from facegear.stiffness.source import stiffness_from_contact, stiffness_given
