@@ -136,7 +136,10 @@ class Tolerances(Section):
         None, description="percentiles over torque and speed; null: at the machine's own load alone"
     )
     hunting_cycles: int = Field(
-        32, ge=1, le=100_000, description="mesh cycles taken from the hunting cycle, evenly spread"
+        32,
+        ge=1,
+        le=100_000,
+        description="mesh cycles taken from the hunting cycle, evenly spread, beside its hardest ones",
     )
 
     @model_validator(mode="after")

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 def sharing_coefficient(forces: NDArray[np.float64]) -> NDArray[np.float64]:
     """Largest over mean magnitude of the forces that share a load.
 
-    `forces` has shape (..., paths), N, elastic mesh forces of either flank; the result (...) lies in
+    `forces` has shape (..., paths), N, elastic mesh forces of either flank without those that are rounding
+    (`facegear.transmission.flanks.carried`); the result (...) lies in
     [1, paths]: 1 for equal loads, the number of paths where one carries all. Where all forces vanish the
     coefficient is undefined and NaN stands there. Equation (25) with two paths, (26) with three.
     """

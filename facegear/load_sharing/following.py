@@ -8,7 +8,10 @@ import pandas as pd
 from facegear.dynamics.following import Followed, follow
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model
-from facegear.load_sharing.hunting import HuntingCycle, LoadHistory
+from facegear.load_sharing.groups import LoadGroup
+from facegear.load_sharing.hunting import HuntingCycle, LoadHistory, largest
+from facegear.load_sharing.hunting_tables import mesh_table
+from facegear.transmission.flanks import carried
 from facegear.transmission.machine import Machine
 
 
@@ -30,27 +33,36 @@ def running(
         machine=machine,
         positions=positions,
         cycles=found.cycles,
-        flank_forces=found.flank_forces,
+        flank_forces=carried(found.flank_forces),
         speed_rpm=speed_rpm,
         lead=found.lead,
         memory=found.memory,
     )
 
 
-def running_table(moving: Running, still: HuntingCycle) -> pd.DataFrame:
-    """One row a group: path factor K_gamma while running, quasi-static over the same cycles and over all.
+def running_mesh_table(moving: Running) -> pd.DataFrame:
+    """As the table of the machine at rest, with the dynamic factor K_v of every mesh."""
+    table = mesh_table(moving)
+    table.insert(table.columns.get_loc("k_gamma") + 1, "k_v", moving.dynamic_factors)
+    return table
 
-    `still` is the whole hunting cycle. cut: what following a part of it only does to the quasi-static factor,
-    relative; sampling: what every second sample alone does to the running one. memory: difference between two
-    starts, over the largest flank force.
+
+def running_table(moving: Running, still: HuntingCycle) -> pd.DataFrame:
+    """One row a group: K_gamma while running, quasi-static over the same cycles and over all; K_v.
+
+    `still` is the whole hunting cycle. k_v: dynamic factor of the path whose K_gamma stands there. cut: what
+    following a part of it only does to the quasi-static K_gamma, relative; sampling: what every second sample
+    alone does to the running K_gamma K_v. memory: difference between two starts, over the largest flank
+    force. torque_n_m: largest torque on a pinion.
     """
     count = len(moving.cycles) // moving.positions
     part = replace(still, flank_forces=still.flank_forces[: count * still.positions])
-    coarse = replace(moving, flank_forces=moving.flank_forces[::2])
+    coarse = replace(moving, flank_forces=moving.flank_forces[::2], positions=moving.positions // 2)
     rows = []
     for group in moving.groups:
-        quasi, whole = (float(one.path_factors(group).max()) for one in (part, still))
-        coefficient, factor = moving.coefficients(group), float(moving.path_factors(group).max())
+        quasi, whole = (largest(one.path_factors(group)) for one in (part, still))
+        coefficient, factor = moving.coefficients(group), largest(moving.path_factors(group))
+        dynamic = _dynamic_factor(moving, group)
         rows.append(
             {
                 "group": group.name,
@@ -58,13 +70,26 @@ def running_table(moving: Running, still: HuntingCycle) -> pd.DataFrame:
                 "speed_rpm": moving.speed_rpm,
                 "mesh_cycles": count,
                 "mean": np.nanmean(coefficient) if np.isfinite(coefficient).any() else np.nan,
+                "torque_n_m": np.abs(moving.machine.torques[: len(moving.machine.layout.pinions)]).max(),
                 "k_gamma": factor,
+                "k_v": dynamic,
                 "k_gamma_static": quasi,
                 "k_gamma_static_whole": whole,
                 "cut": quasi / whole - 1.0,
-                "sampling": coarse.path_factors(group).max() / factor - 1.0,
+                "sampling": largest(coarse.path_factors(group))
+                * _dynamic_factor(coarse, group)
+                / (factor * dynamic)
+                - 1.0,
                 "lead_cycles": moving.lead,
                 "memory": moving.memory,
             }
         )
     return pd.DataFrame(rows)
+
+
+def _dynamic_factor(moving: LoadHistory, group: LoadGroup) -> float:
+    """K_v of the path with the largest K_gamma, nan where no path has one."""
+    factors = moving.path_factors(group)
+    if not np.isfinite(factors).any():
+        return float("nan")
+    return float(moving.dynamic_factors[group.meshes[int(np.nanargmax(factors))]])

@@ -1,13 +1,16 @@
 """Quasi-static load sharing until every tooth has met every other: the machine turned slowly under torque."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import lcm
 
 import numpy as np
 from numpy.typing import NDArray
 
 from facegear.load_sharing.coefficients import sharing_coefficient
+from facegear.load_sharing.even_shares import even_shares
 from facegear.load_sharing.groups import LoadGroup, load_groups
+from facegear.transmission.flanks import carried
 from facegear.transmission.machine import Machine
 from facegear.transmission.statics import Equilibria, bearing_forces, equilibria
 
@@ -17,7 +20,7 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True, eq=False)
 class LoadHistory:
     """K = mesh cycles x positions of a motion: cycles (K,) mesh cycles since the start; flank_forces (K, 2
-    meshes), N, drive flanks first.
+    meshes), N, drive flanks first, zero where rounding alone presses.
     """
 
     machine: Machine
@@ -40,11 +43,40 @@ class LoadHistory:
         """Largest load of a group over its mean (K,); nan where none carries any."""
         return sharing_coefficient(self.loads[:, list(group.meshes)])
 
+    @property
+    def cycle_means(self) -> Array:
+        """Mean load of each mesh in each mesh cycle (cycles, meshes), N."""
+        return self.loads.reshape(-1, self.positions, self.loads.shape[1]).mean(axis=1)
+
+    @cached_property
+    def mesh_load_factors(self) -> Array:
+        """K_gamma of each mesh (meshes,): its largest mean of a mesh cycle over its nominal even share.
+
+        ISO 6336-1 and AGMA 6123; what happens within a mesh cycle is K_v. nan without an even share.
+        """
+        return self.cycle_means.max(axis=0) / even_shares(self.machine)
+
+    @cached_property
+    def dynamic_factors(self) -> Array:
+        """K_v of each mesh (meshes,): its largest load over its largest mean of a mesh cycle; nan without."""
+        largest = self.cycle_means.max(axis=0)
+        return self.loads.max(axis=0) / np.where(largest > 0.0, largest, np.nan)
+
     def path_factors(self, group: LoadGroup) -> Array:
-        """K_gamma of each path (meshes of the group,): its largest load over an even share of the mean."""
+        """K_gamma of each path of a group (meshes of the group,)."""
+        return self.mesh_load_factors[list(group.meshes)]
+
+    def group_ratios(self, group: LoadGroup) -> Array:
+        """Largest load of each path over the mean of the group's own loads (meshes of the group,)."""
         loads = self.loads[:, list(group.meshes)]
         even = loads.mean()
         return loads.max(axis=0) / even if even > 0.0 else np.full(loads.shape[1], np.nan)
+
+
+def largest(values: Array) -> float:
+    """Largest of the defined values, nan where there is none."""
+    known = values[np.isfinite(values)]
+    return float(known.max()) if known.size else float("nan")
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,8 +100,12 @@ def hunting_cycle(machine: Machine, positions: int = 16, every: int = 1) -> Hunt
 
     The limit of slow running: damping and inertia vanish. Raises NotConverged.
     """
-    whole = np.arange(0, hunting_length(machine), every)
+    return at_cycles(machine, np.arange(0, hunting_length(machine), every), positions)
+
+
+def at_cycles(machine: Machine, whole: NDArray[np.int64], positions: int) -> HuntingCycle:
+    """Equilibrium at `positions` of each of some mesh cycles (n,). Raises NotConverged."""
     cycles = (whole[:, None] + np.arange(positions) / positions).ravel()
     found = equilibria(machine, cycles)
     bearings = bearing_forces(machine, found)
-    return HuntingCycle(machine, positions, cycles, found.flank_forces, found, bearings)
+    return HuntingCycle(machine, positions, cycles, carried(found.flank_forces), found, bearings)

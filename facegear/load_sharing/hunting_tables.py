@@ -4,7 +4,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from facegear.load_sharing.hunting import HuntingCycle, LoadHistory
+from facegear.load_sharing.even_shares import even_shares
+from facegear.load_sharing.hunting import HuntingCycle, LoadHistory, largest
 
 MESH_COLUMNS = (
     "mesh",
@@ -12,7 +13,10 @@ MESH_COLUMNS = (
     "mean_n",
     "least_n",
     "largest_n",
+    "even_share_n",
+    "torque_n_m",
     "k_gamma",
+    "group_ratio",
     "drive_share",
     "back_share",
     "open_share",
@@ -22,12 +26,16 @@ MESH_COLUMNS = (
 
 
 def mesh_table(run: LoadHistory) -> pd.DataFrame:
-    """One row a mesh: load, path factor K_gamma, shares of the time on each flank, open, wedged (both).
+    """One row a mesh: load, mesh load factor, shares of the time on each flank, open, wedged (both).
 
-    `first_open_cycle` is empty where the mesh never opens; `group` and `k_gamma` where it shares with nobody.
+    `even_share_n` and `torque_n_m` (on the pinion) are the nominal even share that K_gamma counts from, empty
+    with it where that is nothing. `group_ratio`: largest load over the mean of the group's own loads.
+    `first_open_cycle` is empty where the mesh never opens; `group` and `group_ratio` where it shares with
+    nobody.
     """
-    names = run.machine.layout.mesh_names
-    group, factor = _factors(run)
+    layout = run.machine.layout
+    names, even = layout.mesh_names, even_shares(run.machine)
+    group, ratio = _group_ratios(run)
     drive, back = (flank > 0.0 for flank in np.split(run.flank_forces, 2, axis=1))
     unloaded = ~drive & ~back
     rows = []
@@ -40,7 +48,10 @@ def mesh_table(run: LoadHistory) -> pd.DataFrame:
                 load.mean(),
                 load.min(),
                 load.max(),
-                factor[mesh],
+                even[mesh],
+                even[mesh] * layout.pinion_arm,
+                run.mesh_load_factors[mesh],
+                ratio[mesh],
                 drive[:, mesh].mean(),
                 back[:, mesh].mean(),
                 unloaded[:, mesh].mean(),
@@ -52,7 +63,10 @@ def mesh_table(run: LoadHistory) -> pd.DataFrame:
 
 
 def group_table(run: HuntingCycle) -> pd.DataFrame:
-    """One row a group: mean, least and largest coefficient, largest path factor, the torque it is for."""
+    """One row a group: mean, least and largest coefficient, largest K_gamma and group ratio of its paths.
+
+    `torque_n_m`: largest torque on a pinion, which all of it is for.
+    """
     rows = []
     for group in run.groups:
         coefficient = run.coefficients(group)
@@ -67,7 +81,8 @@ def group_table(run: HuntingCycle) -> pd.DataFrame:
                 "mean": mean,
                 "least": low,
                 "largest": high,
-                "k_gamma": run.path_factors(group).max(),
+                "k_gamma": largest(run.path_factors(group)),
+                "group_ratio": run.group_ratios(group).max(),
                 "undefined_share": np.isnan(coefficient).mean(),
                 "torque_n_m": np.abs(run.machine.torques[: len(run.machine.layout.pinions)]).max(),
                 "mesh_cycles": len(run.cycles) // run.positions,
@@ -100,11 +115,11 @@ def cycle_table(run: LoadHistory) -> pd.DataFrame:
     return frame
 
 
-def _factors(run: LoadHistory) -> tuple[list[str], NDArray[np.float64]]:
-    """Group and path factor of every mesh (meshes,)."""
+def _group_ratios(run: LoadHistory) -> tuple[list[str], NDArray[np.float64]]:
+    """Group of every mesh and its load's ratio to the group's own mean (meshes,)."""
     names = [""] * len(run.machine.layout.meshes)
-    factors = np.full(len(names), np.nan)
+    ratios = np.full(len(names), np.nan)
     for group in run.groups:
-        for mesh, factor in zip(group.meshes, run.path_factors(group), strict=True):
-            names[mesh], factors[mesh] = group.name, factor
-    return names, factors
+        for mesh, ratio in zip(group.meshes, run.group_ratios(group), strict=True):
+            names[mesh], ratios[mesh] = group.name, ratio
+    return names, ratios

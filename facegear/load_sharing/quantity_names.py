@@ -6,15 +6,18 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from facegear.transmission.layout import Layout
 
+K_GAMMA, K_V = "k_gamma", "k_v"
 PEAK, OPEN, REVERSED = "peak_mesh_force_n", "open_share", "reversed_share"
 BEARINGS = "bearing_mass"
 ERROR_RANGE, ERROR_HARMONIC, PRESSURE = "te_peak_to_peak_um", "te_first_harmonic_um", "pressure_mpa"
 ROOTS = {"pinion": "root_stress_pinion_mpa", "face_gear": "root_stress_face_gear_mpa"}
 CONTACT = (ERROR_RANGE, ERROR_HARMONIC, PRESSURE, *ROOTS.values())
 """What a contact analysis alone tells."""
+MISSED = "k_gamma_missed"
+"""What the mesh cycles taken from the hunting cycle miss of the largest K_gamma of any path, relative."""
 JUMP_MARGIN = "jump_margin_rpm"
 """What sweeps around the operating speed alone tell."""
-QUANTITIES = (PEAK, OPEN, REVERSED, BEARINGS, *CONTACT)
+QUANTITIES = (PEAK, OPEN, REVERSED, BEARINGS, MISSED, *CONTACT)
 """Columns of a sample that do not name a mesh or a group."""
 
 
@@ -23,8 +26,8 @@ def quantity_names(
 ) -> tuple[str, ...]:
     """Columns of a sample.
 
-    `k_gamma <mesh>`: largest quasi-static load of a path over an even share of its group's mean;
-    `k_gamma_k_v <mesh>`: the same of the motion, so the product of K_gamma and the dynamic factor;
+    `k_gamma <mesh>`: mesh load factor of a path, its largest mean of a mesh cycle over its nominal even share
+    (`facegear.load_sharing.even_shares`); of the motion with `k_v <mesh>`, the largest load over that mean;
     `coefficient <group>`: mean over time of the largest load over the mean (equations (25), (26));
     then the largest load of a mesh, the share of time in which some mesh that shares a load carries
     nothing, and in which some mesh is loaded on the flank that it does not work on; the mass of bearings for
@@ -37,8 +40,8 @@ def quantity_names(
     from facegear.load_sharing.groups import load_groups
 
     groups = load_groups(layout)
-    factor = "k_gamma_k_v" if dynamic else "k_gamma"
-    paths = [f"{factor} {layout.mesh_names[mesh]}" for group in groups for mesh in group.meshes]
+    shared = [layout.mesh_names[mesh] for group in groups for mesh in group.meshes]
+    paths = [f"{factor} {mesh}" for factor in (K_GAMMA, K_V)[: 1 + dynamic] for mesh in shared]
     names = [*paths, *(f"coefficient {group.name}" for group in groups), PEAK, OPEN, REVERSED, BEARINGS]
     names += [ERROR_RANGE, ERROR_HARMONIC, PRESSURE] if contact else []
     names += ROOTS.values() if contact and gauges else []

@@ -12,6 +12,7 @@ from facegear.load_sharing.groups import LoadGroup, load_groups
 from facegear.load_sharing.options import SharingOptions
 from facegear.load_sharing.sampling import densely_sampled, same_orbit
 from facegear.load_sharing.statistics import Average, average, defined_mean
+from facegear.transmission.flanks import carried
 from facegear.transmission.layout import DOF_PER_BODY
 from facegear.transmission.machine import Machine
 from facegear.transmission.matrices import mass_diagonal
@@ -115,7 +116,7 @@ def disturb(model: Model, start: State, spread: float, random: np.random.Generat
 
 def cycle_forces(response: SteadyState) -> NDArray[np.float64]:
     """Elastic mesh forces by cycle, shape (cycles, samples, meshes), N."""
-    return response.forces.reshape(response.periods, response.per_period, -1)
+    return carried(response.forces).reshape(response.periods, response.per_period, -1)
 
 
 def group_average(

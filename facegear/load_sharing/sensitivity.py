@@ -6,51 +6,88 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
-from facegear.load_sharing.hunting import HuntingCycle, hunting_cycle, hunting_length
+from facegear.load_sharing.even_shares import even_shares
+from facegear.load_sharing.hunting import (
+    HuntingCycle,
+    at_cycles,
+    hunting_cycle,
+    hunting_length,
+    largest,
+)
 from facegear.transmission.imperfections import Imperfections, Runout, perfect
 from facegear.transmission.layout import Layout, MeshKinematics, Role
 from facegear.transmission.machine import Machine, balanced_torques
 
-STEP = 0.5e-6
+STEP = 1e-10
+"""Of the differences, m: far above rounding, and so small that no other mesh cycle becomes the hardest."""
 POSITIONS = 8
 BEARINGS = np.geomspace(1e6, 1e11, 26)
 
 
 def worst_factor(run: HuntingCycle, kind: str | None = None) -> float:
     """Largest K_gamma of all paths, or of the groups of one kind; nan where there is none."""
-    factors = [run.path_factors(one).max() for one in run.groups if kind in (None, one.kind.value)]
-    return max(factors, default=float("nan"))
+    factors = [largest(run.path_factors(one)) for one in run.groups if kind in (None, one.kind.value)]
+    return largest(np.array(factors))
 
 
-def sensitivities(machine: Machine, every: int = 7) -> pd.DataFrame:
+def sensitivities(base: HuntingCycle) -> pd.DataFrame:
     """Change of K_gamma per um of each error, one row an error and group, largest first.
 
-    Columns error, group, per_um. Central differences of half a micrometre about the machine as it is; sizes
-    that cannot be negative count from where they are. Where something turns slowly one position is taken in
-    `every` mesh cycle of so many, which meets all places of pinion and gear as evenly as taking all. A group
-    whose paths carry nothing has no K_gamma and no row.
+    Columns error, group, per_um. `base` is the whole hunting cycle of the machine as it is. Central
+    differences about it; sizes that cannot be negative count from where they are. Both ends are taken at the
+    same positions, POSITIONS or more, of the same mesh cycles: of the longer of their hunting cycles those
+    that can be the hardest of a group. A group whose paths have no K_gamma has no row. Raises NotConverged.
     """
-    rows = []
+    base = _coarser(base)
+    machine, rows = base.machine, []
     for name, low, high, width in _changes(machine):
-        ends = [_coarse_cycle(replace(machine, imperfections=one), every) for one in (low, high)]
-        for group in ends[0].groups:
-            before, after = (run.path_factors(group).max() for run in ends)
+        changed = [replace(machine, imperfections=one) for one in (low, high)]
+        hardest = _hardest_cycles(base, max(map(hunting_length, changed)))
+        ends = [at_cycles(one, hardest, base.positions) for one in changed]
+        for group in base.groups:
+            before, after = (largest(run.path_factors(group)) for run in ends)
             rows.append((name, group.name, 1e-6 * (after - before) / width))
     frame = pd.DataFrame(rows, columns=["error", "group", "per_um"])
     return frame.dropna().sort_values("per_um", key=np.abs, ascending=False, ignore_index=True)
 
 
-def _coarse_cycle(machine: Machine, every: int) -> HuntingCycle:
-    slow = hunting_length(machine) > 1
-    return hunting_cycle(machine, 1 if slow else POSITIONS, every if slow else 1)
+def _coarser(base: HuntingCycle) -> HuntingCycle:
+    """The same at fewer positions of each mesh cycle, evenly spaced."""
+    every = base.positions // POSITIONS
+    if every < 2 or base.positions % every:
+        return base
+    loads = base.flank_forces[::every]
+    return replace(base, positions=base.positions // every, cycles=base.cycles[::every], flank_forces=loads)
+
+
+def _hardest_cycles(base: HuntingCycle, length: int) -> NDArray[np.int64]:
+    """Which of `length` mesh cycles may hold the largest K_gamma of some group after a change of STEP.
+
+    Forces of springs that only push change by no more than the stiffest of them times the change of all gaps
+    together: the base repeats itself through a longer hunting cycle.
+    """
+    machine, even = base.machine, even_shares(base.machine)
+    factors = base.cycle_means / even
+    factors = np.nan_to_num(np.tile(factors, (length // len(factors), 1)), nan=-np.inf)
+    bearings = max(max(pinion.body.bearing[:2]) for pinion in machine.layout.pinions)
+    meshes = machine.stiffness.amplitudes.sum() * machine.imperfections.stiffness.max()
+    stiffest = max(meshes, np.sqrt(meshes * bearings))
+    reach = 2.0 * STEP * stiffest * np.sqrt(base.flank_forces.shape[1])
+    hardest = np.zeros(length, dtype=bool)
+    for group in base.groups:
+        own = factors[:, list(group.meshes)]
+        lowest = own.max() - reach / np.nanmin(even) if np.isfinite(own).any() else np.inf
+        hardest |= (own >= lowest).any(axis=1)
+    return np.flatnonzero(hardest) if hardest.any() else np.array([0])
 
 
 def bearing_scan(machine: Machine) -> pd.DataFrame:
     """K_gamma of each kind of group against bearing stiffness of inputs or idlers, both kinematics.
 
     Columns kinematics, varied, stiffness_n_per_m, kind, k_gamma; over one mesh cycle, with constant errors of
-    meshes only. A kind whose paths carry nothing has no K_gamma and no row.
+    meshes only. A kind whose paths have no even share has no K_gamma and no row.
     """
     rows = []
     for kinematics in MeshKinematics:
@@ -71,8 +108,8 @@ def _changes(machine: Machine) -> Iterator[tuple[str, Imperfections, Imperfectio
     for mesh, name in enumerate(layout.mesh_names):
         low, high = _moved(own, "error", mesh)
         yield f"error {name}", low, high, 2 * STEP
-        low, high = _moved(own, "half_backlash", mesh)
-        yield f"backlash {name}", low, high, 4 * STEP
+        low, high = _moved(own, "half_backlash", mesh, down=own.half_backlash[mesh])
+        yield f"backlash {name}", low, high, 2 * float(high.half_backlash[mesh] - low.half_backlash[mesh])
     for i, pinion in enumerate(layout.pinions):
         for k, letter in enumerate("xy"):
             low, high = _moved(own, "position", (i, k))
@@ -92,14 +129,16 @@ def _changes(machine: Machine) -> Iterator[tuple[str, Imperfections, Imperfectio
 
 
 def _moved(
-    base: Imperfections, key: str, index: int | tuple[int, int]
+    base: Imperfections, key: str, index: int | tuple[int, int], down: float = STEP
 ) -> tuple[Imperfections, Imperfections]:
+    """A little smaller, by no more than `down`, and a little larger."""
+
     def moved(change: float) -> Imperfections:
         values = getattr(base, key).copy()
         values[index] += change
         return replace(base, **{key: values})
 
-    return moved(-STEP), moved(STEP)
+    return moved(-min(STEP, down)), moved(STEP)
 
 
 def _with_runout(base: Imperfections, key: str, body: int, amplitude: float) -> Imperfections:

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from facegear.transmission.flanks import carried
 from facegear.transmission.machine import Machine
 from facegear.transmission.statics import static_equilibrium
 
@@ -14,9 +15,9 @@ def static_forces(machine: Machine, positions: int) -> NDArray[np.float64]:
     stiffness, backlash and transmission error alone. Raises NotConverged naming the position.
     """
     cycles = np.arange(positions) / positions
-    return np.array([[static_equilibrium(machine, float(at)).forces for at in cycles]])
+    return carried(np.array([[static_equilibrium(machine, float(at)).forces for at in cycles]]))
 
 
 def mean_equilibrium_forces(machine: Machine) -> NDArray[np.float64]:
     """Elastic mesh forces at mean stiffness without transmission error, shape (1, 1, meshes), N."""
-    return static_equilibrium(machine).forces[None, None, :]
+    return carried(static_equilibrium(machine).forces[None, None, :])

@@ -625,6 +625,7 @@ ALL = (
             "shares": File("tolerances/shares.csv", ("share",)),
             "importance": File("tolerances/importance.csv", text=("quantity", "cause")),
             "indices": File("tolerances/indices.csv", may_be_empty=True, text=("quantity", "cause")),
+            "sampling": File("tolerances/sampling.csv", may_be_empty=True),
         },
         figures=Figures(
             draw="facegear.plots.tolerances:figures",

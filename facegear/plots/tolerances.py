@@ -24,7 +24,7 @@ DECIDED = ("pressure_mpa", "root_stress_face_gear_mpa", "te_peak_to_peak_um")
 BARS = 12
 WORDS = {
     "k_gamma": r"$K_\gamma$ of",
-    "k_gamma_k_v": r"$K_\gamma K_v$ of",
+    "k_v": "$K_v$ of",
     "coefficient": "Mean coefficient,",
     "peak_mesh_force_n": "Largest mesh force (N)",
     "open_share": "Share of time with an open mesh",

@@ -27,9 +27,10 @@ ROOT_STRESS = (
     "load. Radius: distance from the gear's axis; tangent: angle of the fillet to the tooth's middle line"
 )
 FOLLOWING = (
-    "The running machine followed while runouts turn, beside the machine at rest. k_gamma: running; static: "
-    "at rest over the same mesh cycles, and over the whole hunting cycle; cut: what leaving out the rest "
-    "does to the static one; sampling: what half of the samples do to the running one; memory: difference "
+    "The running machine followed while runouts turn, beside the machine at rest. k_gamma: largest mean of "
+    "a mesh cycle over the nominal even share, running; k_v: largest load over that mean; static: at rest "
+    "over the same mesh cycles, and over the whole hunting cycle; cut: what leaving out the rest does to "
+    "the static one; sampling: what half of the samples do to the running k_gamma k_v; memory: difference "
     "between two starts after the lead, over the largest force"
 )
 STUDY_COLUMNS = [
@@ -49,7 +50,7 @@ SAFETY = (
 RATING = "Every way to fail with its limits; stress: of the hardest load"
 DUTY_LOADS = (
     "Loads of the running machine in every bin of the duty cycle: the flank with the largest force. Mesh "
-    "load factor K_gamma: largest mean of a mesh cycle over the force of the bin's torque; dynamic factor "
+    "load factor K_gamma: largest mean of a mesh cycle over the mesh's nominal even share; dynamic factor "
     "K_v: largest force over that mean; followed: through the hunting cycle while runouts turn"
 )
 EVERY_LOAD = "Loads of every flank in every bin"

@@ -116,13 +116,13 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     (
         "Load sharing at rest",
         "Every position of the hunting cycle as one contact problem with gaps, clearances and all errors. "
-        "K_gamma is a path's largest load over an even share of the group's mean; it falls with torque.",
+        "K_gamma is the largest mean of a mesh cycle over the nominal even share; it falls with torque.",
         ("layout", "hunting", "bearing_stiffness", "sensitivity"),
     ),
     (
         "Tolerances",
         "The machine as a series of machines: causes with their distributions, sampled by scrambled Sobol "
-        "sequences. K_gamma is a path's largest load over an even share of the group's mean.",
+        "sequences. K_gamma is the largest mean of a mesh cycle over the mesh's nominal even share.",
         ("tolerance_distributions", "tolerance_importance", "tolerance_scatter", "tolerance_map"),
     ),
     (

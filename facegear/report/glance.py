@@ -58,7 +58,8 @@ def verdicts(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None)
     for row in tables.get("following_groups", pd.DataFrame()).itertuples():
         yield (
             f"K_gamma, {row.group}",
-            f"{row.k_gamma:.3f} at {row.speed_rpm:.0f} rpm, {row.k_gamma_static:.3f} at rest, over "
+            f"{row.k_gamma:.3f} (K_v {row.k_v:.3f}) at {row.speed_rpm:.0f} rpm and {row.torque_n_m:g} N m, "
+            f"{row.k_gamma_static:.3f} at rest, over "
             f"{row.mesh_cycles} mesh cycles while the runouts turn",
         )
     if "jumps" in tables:

@@ -18,19 +18,18 @@ from facegear.dynamics.following import FORGOTTEN, follow
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.errors import ConfigError
+from facegear.load_sharing.even_shares import even_shares
 from facegear.load_sharing.hunting import hunting_length
 from facegear.progress import Progress
 from facegear.stages.outcome import Outcome
 from facegear.strength.columns import DUTY_LOAD_COLUMNS, DUTY_SPECTRUM_COLUMNS
 from facegear.strength.passage_loads import classes, hardest_tooth, passage_forces
-from facegear.transmission.flanks import teeth_in_mesh
+from facegear.transmission.flanks import NO_LOAD, teeth_in_mesh
 from facegear.transmission.layout import Layout
 from facegear.transmission.machine import Machine
 
 POSITIONS = 64
 """Samples of a mesh cycle while runouts turn."""
-NONE = 1e-9
-"""Share of the largest force of all flanks that counts as none."""
 FLANKS = ("drive", "back")
 
 
@@ -38,10 +37,12 @@ FLANKS = ("drive", "back")
 class History:
     """Forces (cycles, positions, 2 meshes) on the flanks of a motion, drive flanks first, N.
 
+    even_shares (meshes,): nominal even share of each mesh, N.
     turning: the cycles are those of the hunting cycle, each with its own teeth.
     """
 
     layout: Layout
+    even_shares: NDArray[np.float64]
     forces: NDArray[np.float64]
     turning: bool
     motion: str
@@ -57,8 +58,8 @@ def duty_loads(
 ) -> Outcome:
     """`duty_loads` and `duty_spectrum` (tables) from the machine's motion in every bin.
 
-    K_gamma is the largest mean of a mesh cycle over the force of the bin's torque, K_v the largest force over
-    that mean. Raises ConfigError without section strength, NotConverged naming the speed.
+    K_gamma is the largest mean of a mesh cycle over the mesh's nominal even share of the bin's load, K_v the
+    largest force over that mean. Raises ConfigError without section strength, NotConverged naming the speed.
     """
     if strength is None:
         raise ConfigError("strength", None, "given for the loads of its duty cycle")
@@ -68,7 +69,7 @@ def duty_loads(
         machine = wired_machine(at_mesh_torque(transmission, one.torque_n_m), teeth, harmonics)
         history = _history(machine, one.speed_rpm, known)
         place = (number, one.torque_n_m, one.speed_rpm)
-        loads += [(*place, *row) for row in _load_rows(history, one.torque_n_m)]
+        loads += [(*place, *row) for row in _load_rows(history)]
         spectrum += [(number, *row) for row in _spectrum_rows(history)]
         progress.step()
     content = {
@@ -80,29 +81,29 @@ def duty_loads(
 
 def _history(machine: Machine, speed_rpm: float, known: Settings) -> History:
     """A machine whose runouts turn is followed through its hunting cycle, any other to its steady state."""
-    model, cycles = build_model(machine), hunting_length(machine)
+    model, cycles, even = build_model(machine), hunting_length(machine), even_shares(machine)
     layout, flanks = machine.layout, 2 * len(machine.layout.meshes)
     if layout.is_geometric and cycles > 1:
         run = follow(model, speed_rpm, 0, cycles, POSITIONS, known)
         kept = run.memory <= FORGOTTEN
         forces = run.flank_forces.reshape(-1, POSITIONS, flanks)
-        return History(layout, forces, True, "followed" if kept else "depends on its past", kept)
+        return History(layout, even, forces, True, "followed" if kept else "depends on its past", kept)
     found = simulate(model, speed_rpm, known)
     both = np.concatenate([np.maximum(found.forces, 0.0), np.maximum(-found.forces, 0.0)], axis=1)
     forces = both.reshape(found.periods, found.per_period, flanks)
-    return History(layout, forces, False, found.label, found.motion is not Motion.NOT_SETTLED)
+    return History(layout, even, forces, False, found.label, found.motion is not Motion.NOT_SETTLED)
 
 
-def _load_rows(history: History, torque: float) -> Iterator[tuple[Any, ...]]:
+def _load_rows(history: History) -> Iterator[tuple[Any, ...]]:
     layout, largest = history.layout, history.forces.max(axis=(0, 1))
-    means, nominal = history.forces.mean(axis=1), torque / layout.pinion_arm
-    for flank in np.flatnonzero(largest > NONE * largest.max()):
+    means = history.forces.mean(axis=1)
+    for flank in np.flatnonzero(largest > NO_LOAD * largest.max()):
         side, mesh = divmod(int(flank), len(layout.meshes))
         most = float(means[:, flank].max())
         yield (
             *(layout.mesh_names[mesh], FLANKS[side]),
             *(float(means[:, flank].mean()), float(largest[flank])),
-            *(most / nominal, float(largest[flank]) / most),
+            *(most / history.even_shares[mesh], float(largest[flank]) / most),
             *(history.motion, history.settled),
         )
 
@@ -110,7 +111,7 @@ def _load_rows(history: History, torque: float) -> Iterator[tuple[Any, ...]]:
 def _spectrum_rows(history: History) -> Iterator[tuple[Any, ...]]:
     """Body, gear, flank, mesh, share and force of every class of passages."""
     layout, passages = history.layout, passage_forces(history.forces)
-    pinions, floor = len(layout.pinions), NONE * passages.max()
+    pinions, floor = len(layout.pinions), NO_LOAD * passages.max()
     if history.turning:  # on to where the same two teeth meet again
         passages = np.tile(passages, (lcm(layout.pinion_teeth, layout.gear_teeth) // len(passages), 1))
     cycles = np.arange(len(passages), dtype=float)
@@ -129,9 +130,9 @@ def _spectrum_rows(history: History) -> Iterator[tuple[Any, ...]]:
 
 
 def _summary(table: pd.DataFrame) -> str:
-    most = table["mesh_load_factor"] * table["dynamic_factor"]
-    worst = table.loc[most.idxmax()]
-    where = f"{worst['mesh']} in bin {worst['bin']}"
-    told = f"largest force {most.max():.3f} times that of the bin's torque, {where}"
+    worst = table.loc[table["largest_force_n"].idxmax()]
+    where = f"{worst['mesh']} in bin {worst['bin']} of {worst['torque_n_m']:g} N m"
+    factors = f"K_gamma {worst['mesh_load_factor']:.3f}, K_v {worst['dynamic_factor']:.3f}"
+    told = f"largest force {worst['largest_force_n']:.0f} N, {where}: {factors}"
     loose = ", ".join(str(number) for number in table.loc[~table["settled"], "bin"].unique())
     return f"{told}; bins without a settled motion: {loose}" if loose else told

@@ -8,9 +8,8 @@ import pandas as pd
 from facegear.config.base import parse
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.machines import wired_machine
-from facegear.load_sharing.following import running, running_table
+from facegear.load_sharing.following import running, running_mesh_table, running_table
 from facegear.load_sharing.hunting import hunting_cycle, hunting_length
-from facegear.load_sharing.hunting_tables import mesh_table
 from facegear.stages.outcome import Outcome
 
 FINER = 4
@@ -36,9 +35,10 @@ def following(
     moving = running(machine, speed_rpm, part, FINER * positions, settings(parse(Accuracy, accuracy)))
     groups = running_table(moving, hunting_cycle(machine, positions))
     said = ", ".join(
-        f"{row.group} {row.k_gamma:.3f} (at rest {row.k_gamma_static:.3f})" for row in groups.itertuples()
+        f"{row.group} {row.k_gamma:.3f} (at rest {row.k_gamma_static:.3f}), K_v {row.k_v:.3f}"
+        for row in groups.itertuples()
     )
     return Outcome(
-        {"groups": groups, "meshes": mesh_table(moving)},
+        {"groups": groups, "meshes": running_mesh_table(moving)},
         f"K_gamma over {part} of {length} mesh cycles: {said}; two starts differ by {moving.memory:.0e}",
     )

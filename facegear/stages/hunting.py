@@ -24,8 +24,11 @@ def hunting(
         "bearings": bearing_table(found),
         "cycles": cycle_table(found),
         "scan": bearing_scan(machine),
-        "sensitivity": sensitivities(machine),
+        "sensitivity": sensitivities(found),
     }
-    worst = groups.loc[groups["k_gamma"].idxmax()]
-    told = f"K_gamma {worst['k_gamma']:.3f} ({worst['group']}) over {worst['mesh_cycles']:.0f} mesh cycles"
-    return Outcome(content, told)
+    known = groups.dropna(subset="k_gamma")
+    if known.empty:
+        return Outcome(content, "no path shares a load")
+    worst = known.loc[known["k_gamma"].idxmax()]
+    told = f"K_gamma {worst['k_gamma']:.3f} ({worst['group']}) at {worst['torque_n_m']:g} N m"
+    return Outcome(content, f"{told} over {worst['mesh_cycles']:.0f} mesh cycles")

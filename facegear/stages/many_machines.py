@@ -28,6 +28,9 @@ Judge = Callable[[Mapping[str, Any]], dict[str, float]]
 
 Raises the error that a config gets for a machine that cannot be built, NotConverged."""
 
+WHOLE = 2**31
+"""More mesh cycles than any hunting cycle has: all of them."""
+
 
 @dataclass(frozen=True)
 class Question:

@@ -1,8 +1,9 @@
 """One machine with its tolerances: its samples by number, and what each is judged by."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
+from math import nan
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -13,10 +14,11 @@ from facegear.config.base import parse
 from facegear.config.lumped_model import wired_layout
 from facegear.config.tolerances import Tolerances, population
 from facegear.config.variants import movable, moved, variable_part
+from facegear.load_sharing.quantity_names import K_GAMMA, columns_of
 from facegear.progress import Progress
 from facegear.scenarios.chunks import Evaluate, run_chunk
 from facegear.scenarios.sampling import Population, changes
-from facegear.stages.many_machines import Judge, Question, VariedMachine, judge
+from facegear.stages.many_machines import WHOLE, Judge, Question, VariedMachine, judge
 from facegear.stages.tooth_meshes import Values
 
 
@@ -58,14 +60,32 @@ class SampledMachine(VariedMachine):
         """The variable part of the config of a sample with these values of its causes."""
         return moved(self.start, changes(self.causes, values))
 
+    @cached_property
+    def whole_judge(self) -> Judge:
+        """The same over the whole hunting cycle."""
+        return judge(replace(self.question, cycles=WHOLE), self.meshes, "this sample")
+
+    def missed(self, values: Sequence[float], found: Mapping[str, float]) -> float:
+        """What a sample `found` misses of K_gamma beside the whole hunting cycle, relative, of any path."""
+        whole = self.whole_judge(self.sample(values))
+        paths = columns_of(f"{K_GAMMA} ", list(whole))
+        return max((whole[name] / found[name] - 1.0 for name in paths if found[name] > 0.0), default=nan)
+
     def run(
-        self, evaluate: Evaluate, numbers: range, told: str, partial: str | Path | None, *same: object
+        self,
+        evaluate: Evaluate,
+        numbers: range,
+        told: str,
+        partial: str | Path | None,
+        *same: object,
+        more: Sequence[str] = (),
     ) -> pd.DataFrame:
         """Rows of `run_chunk`, kept in `partial` for this machine and what else must be the `same`.
 
-        `told` names them to who waits; where `partial` is None nothing is kept.
+        `told` names them to who waits; where `partial` is None nothing is kept. `more`: further columns.
         """
-        names = self.columns(wired_layout(self.start["transmission"], self.teeth), self.question)
+        layout = wired_layout(self.start["transmission"], self.teeth)
+        names = [*self.columns(layout, self.question), *more]
         known, progress = self.identity(*same), Progress(told, len(numbers))
         with TemporaryDirectory() as folder:
             kept = Path(folder) / "partial" if partial is None else partial

@@ -9,10 +9,8 @@ import pandas as pd
 from facegear.config.variants import movable, nominal
 from facegear.scenarios.evolution import Task, front, hypervolumes
 from facegear.stages.designs import SearchedMachine, assessor, task
+from facegear.stages.many_machines import WHOLE
 from facegear.stages.outcome import Outcome
-
-WHOLE = 2**31
-"""More mesh cycles than any hunting cycle has: all of them."""
 
 
 def search(islands: Sequence[pd.DataFrame], **given: Any) -> Outcome:

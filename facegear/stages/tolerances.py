@@ -7,7 +7,8 @@ import pandas as pd
 
 from facegear.config.base import parse
 from facegear.config.tolerances import Tolerances
-from facegear.load_sharing.quantity_names import OPEN, REVERSED
+from facegear.load_sharing.quantity_names import MISSED, OPEN, REVERSED
+from facegear.scenarios.chunks import ERROR
 from facegear.scenarios.summary import (
     importance_table,
     index_table,
@@ -25,24 +26,50 @@ SHARES = {
 def tolerances(
     samples: Sequence[pd.DataFrame], indices: Sequence[pd.DataFrame], tolerances: Mapping[str, Any]
 ) -> Outcome:
-    """`samples`, `percentiles`, `shares`, `importance`, `indices` (tables) from both designs."""
+    """`samples`, `percentiles`, `shares`, `importance`, `indices`, `sampling` (tables) from both designs.
+
+    `sampling`: what the mesh cycles taken from the hunting cycle miss of the largest K_gamma, in the samples
+    that were computed over the whole of it.
+    """
     section = parse(Tolerances, tolerances)
     causes = [cause.name for cause in section.causes]
     every = pd.concat(samples, ignore_index=True)
+    found = every.drop(columns=MISSED, errors="ignore")
     design = pd.concat(indices, ignore_index=True) if indices else every.iloc[:0]
-    percentiles = percentile_table(every, causes, section.confidence)
+    percentiles = percentile_table(found, causes, section.confidence)
     shares = share_table(every, SHARES, section.confidence)
     top = percentiles[(percentiles["percentile"] == 99.0) & percentiles["quantity"].str.startswith("k_gamma")]
     worst = top.nlargest(1, "value")
     told = ", ".join(f"99 of 100 stay below {row.quantity} = {row.value:.3f}" for row in worst.itertuples())
-    failed = int((every["error"] != "").sum())
+    sampling = _sampling_table(every)
+    told = "; ".join([told or "no path shares a load", *_missed_in_words(sampling)])
+    failed = int((every[ERROR] != "").sum())
+    if failed == len(every):
+        told = f"the first by: {every[ERROR].iloc[0]}"
     return Outcome(
         {
             "samples": every,
             "percentiles": percentiles,
             "shares": shares,
-            "importance": importance_table(every, causes),
+            "importance": importance_table(found, causes),
             "indices": index_table(design, causes, section.confidence),
+            "sampling": sampling,
         },
-        f"{len(every)} samples, {failed} failed; {told or 'no path shares a load'}",
+        f"{len(every)} samples, {failed} failed; {told}",
     )
+
+
+def _sampling_table(samples: pd.DataFrame) -> pd.DataFrame:
+    """samples, median_missed, largest_missed: one row, none where nothing was computed twice."""
+    missed = samples[MISSED].dropna() if MISSED in samples else pd.Series(dtype=float)
+    columns = ["samples", "median_missed", "largest_missed"]
+    if missed.empty:
+        return pd.DataFrame(columns=columns)
+    return pd.DataFrame([(len(missed), missed.median(), missed.max())], columns=columns)
+
+
+def _missed_in_words(sampling: pd.DataFrame) -> list[str]:
+    return [
+        f"the mesh cycles taken miss at most {row.largest_missed:.1e} of K_gamma ({row.samples} samples)"
+        for row in sampling.itertuples()
+    ]

@@ -1,12 +1,17 @@
 """A chunk of samples of one machine with its tolerances."""
 
+from math import nan
 from pathlib import Path
 from typing import Any
 
 from facegear.config.tolerances import Design
+from facegear.load_sharing.quantity_names import MISSED
 from facegear.scenarios.sampling import index_samples, samples
 from facegear.stages.outcome import Outcome
 from facegear.stages.sampled_machine import SampledMachine
+
+CHECKED = 8
+"""So many of the first samples are computed over the whole hunting cycle as well."""
 
 
 def tolerances_chunk(
@@ -21,6 +26,7 @@ def tolerances_chunk(
 
     A sample that cannot be built or computed is a row with its error. `partial` is a file that keeps finished
     samples, so that a killed chunk goes on after its last one; it counts only for the same config and `code`.
+    Of the first CHECKED samples `k_gamma_missed` says what the mesh cycles taken miss of K_gamma; empty else.
     `given`: fields of SampledMachine.
     """
     return chunk_of(SampledMachine.of_stage(**given), design, first, last, partial, code)
@@ -38,11 +44,15 @@ def chunk_of(
     draw = samples if design == "samples" else index_samples
     judge, values = machine.judge, draw(machine.causes, first, last - first + 1)
 
-    def evaluate(number: int) -> dict[str, float]:
-        return judge(machine.sample(values[number - first]))
+    plain = design == "samples" and not machine.question.dynamic
 
-    told = f"{design} {first} to {last}"
-    frame = machine.run(evaluate, range(first, last + 1), told, partial, design, code)
+    def evaluate(number: int) -> dict[str, float]:
+        own = values[number - first]
+        found = judge(machine.sample(own))
+        return {**found, MISSED: machine.missed(own, found) if plain and number < CHECKED else nan}
+
+    told, more = f"{design} {first} to {last}", (MISSED,) if plain else ()
+    frame = machine.run(evaluate, range(first, last + 1), told, partial, design, code, more=more)
     for place, name in enumerate(machine.causes.names):
         frame.insert(1 + place, name, values[:, place])
     failed = int((frame["error"] != "").sum())

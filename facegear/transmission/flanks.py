@@ -17,6 +17,15 @@ from facegear.transmission.machine import Machine
 
 Array = NDArray[np.float64]
 
+NO_LOAD = 1e-9
+"""Part of the largest force of all meshes below which a force is rounding and counts as none."""
+
+
+def carried(forces: Array) -> Array:
+    """Forces of meshes or flanks without those that are rounding beside the largest of all."""
+    size = np.abs(forces)
+    return np.where(size > NO_LOAD * size.max(initial=0.0), forces, 0.0)
+
 
 def flank_gaps(machine: Machine) -> Array:
     """Half backlash b of every flank, shape (2 meshes,), m."""

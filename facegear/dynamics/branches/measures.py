@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.mesh_samples import mesh_response, mesh_shares
+from facegear.dynamics.steady_state.mesh_samples import each_deflection, mesh_forces, mesh_shares
 from facegear.dynamics.steady_state.window import run_window
 
 Array = NDArray[np.float64]
@@ -39,7 +39,8 @@ def measures(flow: PeriodMap, point: Point) -> Measures:
     wide[0, : packed.n], wide[1, : packed.n] = state.displacement, state.velocity / frequency
     settings = Settings(tolerance=flow.step_tolerance, samples=SAMPLES)
     window = run_window(packed, flow.work(packed), wide, flow.period, settings)
-    _, forces = mesh_response(system, window.samples, window.per_period)
+    each = each_deflection(system, window.samples, window.per_period)
+    forces = mesh_forces(system, each, window.per_period)
     found = window.averages.meshes(True)
     return Measures(
         ac_rms=found.ac_rms,
@@ -47,5 +48,5 @@ def measures(flow: PeriodMap, point: Point) -> Measures:
         least=found.least,
         most=found.most,
         peak_force=np.abs(forces).max(axis=0),
-        shares=mesh_shares(system, window.shares),
+        shares=mesh_shares(system, window.shares[:, : system.contacts], each),
     )

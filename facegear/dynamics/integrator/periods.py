@@ -25,9 +25,10 @@ class Log(NamedTuple):
 
     samples (periods * per_period, n): y at equally spaced phases from the start of each period.
     ends (periods, 2, n): y and dy/ds at the end of each period. shares (3, m): phase spent open, on the
-    drive and on the back flank, rad, added up with samples, sums or tangents. divergence (1,): integral
-    of the trace, added up with tangents. growth (periods,): logarithm of the first tangent's length in each
-    period, brought back to one after it. steps (1,): added up. sums: integrals and extremes.
+    drive and on the back flank, rad, added up with samples, sums or tangents; where the two flanks of a mesh
+    stand for themselves the third row holds, at its drive flank, how long both touch. divergence
+    (1,): integral of the trace, added up with tangents. growth (periods,): logarithm of the first tangent's
+    length in each period, brought back to one after it. steps (1,): added up. sums: integrals and extremes.
     """
 
     samples: Array
@@ -110,6 +111,9 @@ def run_periods(
             if per_period > 0 or batches > 0 or tangents.shape[0] > 0:
                 for m in range(packed.m):
                     log.shares[work.state[m], m] += length
+                for m in range(packed.pairs):
+                    if work.state[m] == 1 and work.state[m + packed.pairs] == 1:
+                        log.shares[2, m] += length
             while next_sample < per_period and TAU * next_sample / per_period < s + length:
                 ahead = TAU * next_sample / per_period - s
                 values(work.y, work.order, ahead, sample)

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.system import System
 from facegear.harmonics.series import stacked_values
+from facegear.transmission.flanks import NO_LOAD
 
 Array = NDArray[np.float64]
 
@@ -53,15 +54,30 @@ def mesh_forces(system: System, each: Array, per_period: int) -> Array:
     return drive - back
 
 
-def mesh_shares(system: System, shares: Array) -> Array:
+def mesh_shares(system: System, shares: Array, each: Array) -> Array:
     """Time open, on the drive and on the back flank (3, meshes) from that of each flank, where there are two.
 
-    Time with both flanks wedged counts on both, so that the three may add up to more than one.
+    Time with both flanks wedged counts on both, so that the three may add up to more than one. each (K,
+    contacts): each_deflection() of the samples, by which a flank that is never pressed by more than rounding
+    is open.
     """
+    lower, upper = system.lower[: system.contacts], system.upper[: system.contacts]
+    touching = shares[1] if system.two_flanks else 1.0 - shares[0]
+    depths = np.maximum(each - upper, lower - each)
+    never = (upper > lower) & _never_pressed(depths, touching)
     if not system.two_flanks:
-        return shares
-    drive, back = np.split(shares[1, : system.contacts], 2)
-    return np.stack([np.maximum(1.0 - drive - back, 0.0), drive, back])
+        return np.where(never, np.array([[1.0], [0.0], [0.0]]), shares)
+    drive, back = np.split(np.where(never, 0.0, touching), 2)
+    wedged = np.minimum(shares[2, : drive.size], np.minimum(drive, back))
+    return np.stack([1.0 - drive - back + wedged, drive, back])
+
+
+def _never_pressed(depths: Array, shares: Array) -> NDArray[np.bool_]:
+    """Which contacts touch for longer than a sample (shares (m,)) without ever being pressed by more than
+    rounding; depths (K, m) beyond the edge.
+    """
+    deepest = depths.max(axis=0)
+    return (deepest <= NO_LOAD * max(float(deepest.max()), 0.0)) & (shares * len(depths) > 1.0)
 
 
 def _stiffness(system: System, cycles: Array) -> Array:

@@ -160,13 +160,13 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
         periods_run += settled.periods_run
         if settled.period:
             window = run_window(packed, work, settled.state, settled.period, settings)
-            deflections = _deflections(system, window)
+            each = each_deflection(system, window.samples, window.per_period)
             exponent, motion = None, Motion.PERIODIC
             break
         exponent = largest_exponent(packed, work, settled.state, settings)
         window = exponent.window
-        deflections = _deflections(system, window)
-        motion = _class(packed, settled, exponent, window, deflections, settings)
+        each = each_deflection(system, window.samples, window.per_period)
+        motion = _class(packed, settled, exponent, window, by_mesh(system, each), settings)
         periods_run += len(exponent.ends)
         if motion is not Motion.NOT_SETTLED or exponent.growth is Growth.UNKNOWN:
             break
@@ -180,14 +180,14 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
         residual=settled.residual,
         periods=window.periods,
         per_period=window.per_period,
-        deflections=deflections,
+        deflections=by_mesh(system, each),
         coordinates=window.samples,
         averages=replace(
             window.averages,
             force=window.averages.force * frequency**2,
             pull=window.averages.pull * frequency**2,
         ),
-        shares=mesh_shares(system, window.shares),
+        shares=mesh_shares(system, window.shares[:, : system.contacts], each),
         multipliers=orbit.multipliers if orbit else None,
         liouville=orbit.liouville if orbit else None,
         exponent=(exponent.value, exponent.half_width) if exponent else None,
@@ -214,11 +214,6 @@ def _class(
     if escaping or converging or drifting or drifts(window.averages, by_period):
         return Motion.NOT_SETTLED
     return motion
-
-
-def _deflections(system: System, window: Window) -> Array:
-    """Deflections (K, meshes) of a window's samples."""
-    return by_mesh(system, each_deflection(system, window.samples, window.per_period))
 
 
 def by_phase(packed: Packed, state: State, frequency: float) -> Array:

@@ -14,8 +14,10 @@ from facegear.load_sharing.hunting_tables import bearing_table, cycle_table, gro
 from facegear.load_sharing.sensitivity import bearing_scan, sensitivities
 from facegear.transmission.imperfections import Runout, perfect
 from facegear.transmission.layout import MeshKinematics, Role
+from facegear.transmission.machine import balanced_torques
 
-LAYOUT = make_layout(kinematics=MeshKinematics.GEOMETRIC)
+GEOMETRIC = MeshKinematics.GEOMETRIC
+LAYOUT = make_layout(kinematics=GEOMETRIC)
 
 
 def machine_with(torque=1500.0, **errors):
@@ -39,15 +41,26 @@ def test_the_pattern_repeats_after_the_teeth_in_common():
     assert hunting_length(whole) == 3289
 
 
-def test_paths_that_carry_nothing_have_no_factor_in_tables(monkeypatch):
+def test_paths_that_carry_nothing_have_no_ratio_and_a_mesh_load_factor_of_zero():
     """At a small torque no idler's backlash closes: the run ended in figures that could not read this."""
     idle = make_machine(LAYOUT, 100.0, tail_share=0.0, error=0.0)
-    groups = group_table(hunting_cycle(idle, 2)).set_index("kind")
-    assert np.isnan(groups.loc["idlers", "k_gamma"])
+    found = hunting_cycle(idle, 2)
+    groups = group_table(found).set_index("kind")
+    assert groups.loc["idlers", "k_gamma"] == 0.0 and np.isnan(groups.loc["idlers", "group_ratio"])
+    meshes = mesh_table(found)
+    idlers = meshes[meshes["mesh"].str.contains("idler/")]
+    assert (idlers["open_share"] == 1.0).all() and (idlers["drive_share"] == 0.0).all()
+
+
+def test_meshes_without_an_even_share_have_no_mesh_load_factor_in_tables(monkeypatch):
+    """An engine that is out gives no torque to share: it works as an idler, of no nominal load."""
+    layout = make_layout((("out", Role.INPUT, 0.0), ("idler", Role.IDLER, 35.5)), kinematics=GEOMETRIC)
+    torques = balanced_torques(layout, np.zeros(2), -800.0)
+    machine = replace(make_machine(layout, 1.0, 0.0), torques=torques)
+    groups = group_table(hunting_cycle(machine, 2))
+    assert groups["k_gamma"].isna().all() and groups["group_ratio"].notna().all()
     monkeypatch.setattr(sensitivity, "BEARINGS", np.array([1e8]))
-    scan = bearing_scan(idle)
-    assert set(scan["kind"]) == {"inputs"}
-    assert scan["k_gamma"].notna().all()
+    assert bearing_scan(machine).empty
 
 
 def test_the_hunting_cycle_balances_every_torque_to_rounding():
@@ -146,7 +159,7 @@ def test_sharing_falls_with_torque_and_floats_only_with_true_signs():
 
 def test_a_sensitivity_is_the_closed_forms_slope():
     """Between held gears K = 1 + |F_u - F_l| / (F_u + F_l) and d(F_u - F_l)/dm = k / (1 + 2 k / k_in)."""
-    table = sensitivities(machine_with(6000.0)).set_index(["error", "group"])["per_um"]
+    table = sensitivities(hunting_cycle(machine_with(6000.0))).set_index(["error", "group"])["per_um"]
     own = abs(table["error right input/lower", "right input"])
     total = 6000.0 / LAYOUT.pinion_arm
     closed = 1e-6 * 4.1e8 / (1.0 + 2.0 * 4.1e8 / 6.5e7) / total

@@ -110,11 +110,15 @@ def test_the_first_screen_names_k_gamma_of_the_running_machine_beside_that_at_re
         "group": "idlers",
         "k_gamma": 1.4164,
         "k_gamma_static": 1.2684,
+        "k_v": 1.1,
+        "torque_n_m": 1328.0,
         "speed_rpm": 7500.0,
         "mesh_cycles": 99,
     }
     told = dict(verdicts({"following_groups": pd.DataFrame([row])}, None))
-    assert told["K_gamma, idlers"].startswith("1.416 at 7500 rpm, 1.268 at rest, over 99 mesh cycles")
+    assert told["K_gamma, idlers"].startswith(
+        "1.416 (K_v 1.100) at 7500 rpm and 1328 N m, 1.268 at rest, over 99 mesh cycles"
+    )
 
 
 def test_a_machine_whose_output_is_a_pinion_shows_its_torque_and_ratio(example):

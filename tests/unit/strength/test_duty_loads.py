@@ -1,6 +1,7 @@
 """Load factors of a duty cycle from the machine's own motion."""
 
 import numpy as np
+import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -9,6 +10,7 @@ import facegear
 from facegear.config.lumped_model import at_mesh_torque
 from facegear.config.machines import wired_machine
 from facegear.errors import ConfigError, ConfigErrors
+from facegear.load_sharing.even_shares import even_shares
 from facegear.pipeline.needs import stage_needs, stages_before
 from facegear.stages.duty_loads import duty_loads
 from facegear.strength.duty import DutyBin, machine_duty
@@ -36,7 +38,8 @@ def test_smooth_meshes_run_at_their_mean_force_on_the_flanks_of_the_statics():
         at_rest = mesh_table(machine, 0.0).set_index("mesh")
         running = loads[loads["bin"] == number].set_index("mesh")
         assert running["flank"].to_dict() == at_rest["flank"].to_dict()
-        expected = at_rest["pinion_torque_n_m"].abs() / torque
+        even = pd.Series(even_shares(machine), machine.layout.mesh_names)
+        expected = at_rest["pinion_torque_n_m"].abs() / machine.layout.pinion_arm / even
         np.testing.assert_allclose(running["mesh_load_factor"], expected[running.index], rtol=1e-3)
 
 
