@@ -263,7 +263,7 @@ def test_a_machine_none_of_whose_samples_can_be_built_has_empty_tables_and_figur
     far = cause("far", "transmission.backlash_um", None, shape="uniform", limits=[-900.0, -800.0])
     found = machine([far], samples=4, chunk_samples=4).tolerances()
     assert (found.samples()["error"] != "").all()
-    assert found.table().empty and "4 failed; the first by: transmission." in found.summary
+    assert found.table().empty and "4 failed; the first by: this sample: backlash_um" in found.summary
     assert len(found.summary.splitlines()) == 1
     shares = found.content["shares"].set_index("what")["share"]
     assert shares.to_dict() == {"cannot be built or computed": 1.0}
