@@ -5,7 +5,7 @@ from functools import cache
 from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
-from snakemake.persistence import PersistenceBase
+from snakemake.logging import logger
 
 ROOT = Path(workflow.basedir)
 sys.path.insert(0, str(ROOT))
@@ -25,11 +25,17 @@ from facegear.pipeline.table import MACHINE, STAGES
 from paper.reproduction import read_reproduction
 from facegear.provenance.fingerprint import fingerprint, recall, remember
 from facegear.provenance.rebuild import rebuild_command
+from workflow.process.engine import (
+    given_config,
+    given_directory,
+    is_run,
+    write_parameters_without_pandas,
+)
+from workflow.process.jobs import Jobs, settle
+from workflow.process.orphans import end_orphans
+from workflow.process.terminal import quieten, stop_at_once
 
-if hasattr(PersistenceBase, "_serialize_param_builtin"):
-    # Snakemake imports pandas, 0.5 s of every start, only to ask whether a parameter is a table; none is here.
-    PersistenceBase._serialize_param = PersistenceBase._serialize_param_builtin
-
+write_parameters_without_pandas()
 DEFAULT_CONFIGFILE = ROOT / "config" / "paper.yaml"
 CONFIGFILES = [Path(file) for file in workflow.configfiles] or [DEFAULT_CONFIGFILE]
 
@@ -41,7 +47,7 @@ def stop(message):
 
 
 try:
-    CONFIG = load_values(CONFIGFILES, workflow.config_settings.config)
+    CONFIG = load_values(CONFIGFILES, given_config(workflow))
     REPRODUCTION = read_reproduction(CONFIG["reproduction"]) if CONFIG["reproduction"] else None
     CASES = expand_cases(CONFIG)
     CASES[CONFIG["case"]]["reproduction"] = None  # read above; where its file lies decides nothing
@@ -52,8 +58,8 @@ CASE = CONFIG["case"]
 config["rebuild_command"] = rebuild_command(
     workflow.main_snakefile,
     workflow.configfiles,
-    workflow.config_settings.config,
-    workflow.overwrite_workdir,
+    given_config(workflow),
+    given_directory(workflow),
 )
 
 
@@ -61,13 +67,7 @@ wildcard_constraints:
     case="|".join(re.escape(case) for case in CASES),
 
 
-include: "functions/terminal.smk"
-include: "functions/jobs.smk"
-include: "functions/orphans.smk"
-
-
-if workflow.exec_mode.name == "DEFAULT":
-    quieten()
+QUIET = quieten(workflow, logger) if is_run(workflow) else None
 RUN_LOCKS = []  # held until this process ends
 
 
@@ -82,15 +82,20 @@ onstart:
     RUN_LOCKS.append(hold(".snakemake/facegear.lock"))
     if RUN_LOCKS[-1] is None:
         raise WorkflowError(f"another run is working in {os.getcwd()}; wait for it or stop it first")
-    orphans = end_orphans()
-    if settle() or orphans:  # what there is to do was found out before: begin again from the command line
+    try:
+        orphans = end_orphans()
+    except FacegearError as error:
+        raise WorkflowError(str(error))
+    if (
+        settle(workflow) or orphans
+    ):  # what there is to do was found out before: begin again from the command line
         os.execv(sys.executable, sys.orig_argv)
-    logger.addHandler(Jobs())
+    logger.addHandler(Jobs(workflow))
     if any(path.is_file() for path in Path(".snakemake/incomplete").rglob("*")):
         print("resuming a run that was stopped: its unfinished jobs are made again", file=sys.stderr)
     for note in notes(CONFIG):
         print(note, file=sys.stderr)
-    stop_at_once()
+    stop_at_once(QUIET)
 
 
 onsuccess:

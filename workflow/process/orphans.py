@@ -1,21 +1,27 @@
+"""What a killed run of this folder has left working, on this computer or in Slurm's queue."""
+
+import os
 import subprocess
+import sys
 import time
 from contextlib import suppress
 from pathlib import Path
 
 import psutil
 
+from facegear.errors import FacegearError
+
 PATIENCE = 60.0
 """Seconds that a scheduler may take to end jobs."""
-SLURM_LOGS = Path(".snakemake/slurm_logs").absolute()
-"""Where the output of this folder's jobs goes under Slurm."""
+SLURM_LOGS = Path(".snakemake/slurm_logs")
+"""Where the output of a folder's jobs goes under Slurm."""
 
 
-def end_orphans():
+def end_orphans() -> bool:
     """End what a killed run of this folder left working, so that no job is made by two at once.
 
-    Called with the run's lock held: whatever else works on jobs of this folder belongs to a run that is dead. Returns
-    whether there was anything.
+    Called with the run's lock held: whatever else works on jobs of this folder belongs to a run that is dead.
+    Returns whether there was anything. Raises FacegearError where something does not end.
     """
     processes = [process for process in psutil.process_iter() if _is_orphan(process)]
     for process in processes:
@@ -26,11 +32,11 @@ def end_orphans():
         print("ending jobs that a killed run has left working", file=sys.stderr)
         _cancel(jobs)
     if psutil.wait_procs(processes, timeout=PATIENCE)[1]:
-        raise WorkflowError("processes of a killed run do not end; stop them first")
+        raise FacegearError("processes of a killed run do not end; stop them first")
     return bool(processes or jobs)
 
 
-def _is_orphan(process):
+def _is_orphan(process: psutil.Process) -> bool:
     """Whether a process is a job of a local run, or its script."""
     try:
         if process.uids().real != os.getuid() or process.cwd() != os.getcwd():
@@ -42,26 +48,27 @@ def _is_orphan(process):
     return inner or any("/.snakemake/scripts/" in word for word in words[:3])
 
 
-def _cancel(jobs):
+def _cancel(jobs: list[str]) -> None:
     if jobs:
         subprocess.run(["scancel", *jobs], check=False)
     end = time.monotonic() + PATIENCE
     while jobs and _slurm_jobs():
         if time.monotonic() > end:
-            raise WorkflowError(f"jobs {', '.join(jobs)} of a killed run do not end; scancel them first")
+            raise FacegearError(f"jobs {', '.join(jobs)} of a killed run do not end; scancel them first")
         time.sleep(0.5)
 
 
-def _slurm_jobs():
+def _slurm_jobs() -> list[str]:
     """Numbers of the jobs in Slurm's queue that runs in this folder have submitted."""
-    if not SLURM_LOGS.exists():
+    logs = SLURM_LOGS.absolute()
+    if not logs.exists():
         return []
     command = ["squeue", "--me", "--noheader", "--Format", "JobArrayID:40,STDOUT:4000"]
-    told = subprocess.run(command, capture_output=True, text=True, check=False)
-    if told.returncode:
-        raise WorkflowError(
-            f"squeue does not answer, and a killed run may have left jobs working (if not, remove {SLURM_LOGS}): "
-            + told.stderr.strip()
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise FacegearError(
+            f"squeue does not answer, and a killed run may have left jobs working (if not, remove {logs}): "
+            + done.stderr.strip()
         )
-    rows = [line.split(maxsplit=1) for line in told.stdout.splitlines()]
-    return [row[0] for row in rows if len(row) == 2 and row[1].startswith(f"{SLURM_LOGS}/")]
+    rows = [line.split(maxsplit=1) for line in done.stdout.splitlines()]
+    return [row[0] for row in rows if len(row) == 2 and row[1].startswith(f"{logs}/")]

@@ -1,0 +1,1 @@
+"""Process control of a run: what it prints, how it ends, and what a killed one has left behind."""
