@@ -86,3 +86,10 @@ def test_runs_that_differ_by_rounding_agree_or_the_row_is_undecided():
     split = (own["held"] > 0) & (own["held"] < own["runs"])
     undecided = {one.id for one, verdict in zip(claims, verdicts[0], strict=True) if verdict == "undecided"}
     assert undecided == set(own.index[split])
+
+
+def test_stored_runs_from_rest_are_among_the_stored_runs_of_each_claim():
+    stored = pd.read_csv(STORED.runs)
+    at_rest = stored["at_rest"].astype(bool)
+    assert (stored.loc[at_rest, "held"] > 0).all()
+    assert (stored.loc[~at_rest, "held"] < stored.loc[~at_rest, "runs"]).all()
