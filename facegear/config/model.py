@@ -1,6 +1,7 @@
 """The whole config and the checks that reach across its sections."""
 
 from dataclasses import replace
+from math import isclose
 from pathlib import Path
 from typing import Any
 
@@ -36,8 +37,16 @@ from facegear.config.tolerances import Tolerances
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
 from facegear.config.transmission import Transmission
 from facegear.config.transmission_error import FROM_CONTACT
-from facegear.contact.resolution import check_fillet, check_memory, check_resolution
+from facegear.contact.resolution import (
+    check_fillet,
+    check_memory,
+    check_resolution,
+    node_spacing,
+    resolves,
+)
 from facegear.errors import ConfigError
+
+SAME_ELASTICITY = 1e-6
 
 
 class Config(Section):
@@ -106,8 +115,8 @@ class Config(Section):
         if self.mesh_stiffness.source != "harmonics" or self._root_stress:
             design = pair_design(pair)
             sizes = mesh_sizes(self.mesh_used, design.module)
-            plan = contact_plan(self.contact)
-            check_strain(pair, self.contact)
+            plan = contact_plan(self.contact_used)
+            check_strain(pair, self.contact_used)
             check_resolution(design, materials(pair), sizes, plan)
             check_fillet(design, sizes, replace(plan, root_stress=self._root_stress))
             check_memory(design, sizes, plan, memory_here())
@@ -119,16 +128,41 @@ class Config(Section):
         return self.mesh.model_copy(update={"thin_fillet": self._root_stress if asked is None else asked})
 
     @property
+    def contact_used(self) -> Contact:
+        """The contact analysis with the duty cycle's smallest and largest torque where they lie outside.
+
+        One so small that the mesh cannot resolve its contact is left out.
+        """
+        given = self.contact.torques_n_m
+        if self.strength is None or self.tooth_pair.pinion is None:
+            return self.contact
+        design, plan = pair_design(self.tooth_pair), contact_plan(self.contact)
+        spacing = node_spacing(mesh_sizes(self.mesh_used, design.module), plan)
+        needed = [
+            torque
+            for torque in self.strength.torques
+            if not given[0] <= torque <= given[-1]
+            and resolves(spacing, design, materials(self.tooth_pair), torque)
+        ]
+        return self.contact.model_copy(update={"torques_n_m": tuple(sorted({*given, *needed}))})
+
+    @property
     def _root_stress(self) -> bool:
         return self.contact.root_stress or self.strength is not None
 
     def _check_strength(self) -> None:
         if self.strength is None:
             return
-        solved, asked = self.contact.torques_n_m[-1], self.strength.largest_torque
-        if asked > solved:
-            allowed = f"at least {asked:g}, the duty cycle's largest torque with all factors of strength"
-            raise ConfigError("contact.torques_n_m", solved, allowed)
+        for body in ("pinion", "face_gear"):
+            card = getattr(self.strength, body).card
+            own = getattr(self.tooth_pair, body)
+            material = (own.material if own else None) or self.tooth_pair.material
+            for key in ("young_modulus_gpa", "poisson_ratio"):
+                taken = getattr(material, key)
+                if not isclose(taken, getattr(card, key), rel_tol=SAME_ELASTICITY):
+                    key = f"strength.{body}.card.{key}"
+                    allowed = f"{taken:g}, as contact and stress take it from tooth_pair"
+                    raise ConfigError(key, getattr(card, key.rsplit(".", 1)[1]), allowed)
         if self.contact.element != "hex27":
             raise ConfigError("contact.element", self.contact.element, "hex27, where strength is asked for")
 
@@ -182,8 +216,9 @@ def resolved(config: Config) -> dict[str, Any]:
     """Plain values of a config with what follows from other keys filled in.
 
     That is the mean stiffness where order 0 of the harmonics gives it, the torque at which k is taken, the
-    backlash of the dynamics, the gauges that a rating needs, the fillets that gauges need, and how often a
-    turn loads a tooth: an input pinion's once by every face gear, a face gear's once by every pinion.
+    backlash of the dynamics, the gauges and torques that a rating needs, the fillets that gauges need, and
+    how often a turn loads a tooth: an input pinion's once by every face gear, a face gear's once by every
+    pinion.
     """
     filled = config.model_dump(mode="json")
     given = config.strength is not None and config.strength.load_factors == "given"
@@ -192,6 +227,7 @@ def resolved(config: Config) -> dict[str, Any]:
             section = filled["strength"][body]
             section["cycles_per_turn"] = section["cycles_per_turn"] or len(meshes)
     filled["contact"]["root_stress"] = config.contact.root_stress or config.strength is not None
+    filled["contact"]["torques_n_m"] = list(config.contact_used.torques_n_m)
     filled["mesh"] = config.mesh_used.model_dump(mode="json")
     stiffness = filled["mesh_stiffness"]
     stiffness["mean_n_per_m"] = config.mesh_stiffness.mean

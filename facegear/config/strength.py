@@ -33,7 +33,9 @@ class BodyStrength(Section):
     """What the rating has to know of one gear."""
 
     card: Card = Field(description="name of a card of the package, a yaml file, or the card itself")
-    root_roughness_um: float = Field(gt=0, le=200, description="Rz of the fillet")
+    root_roughness_um: float = Field(
+        ge=0.1, le=40, description="Rz of the fillet, within the range of Y_R in ISO 6336-3"
+    )
     cycles_per_turn: int | None = Field(
         default=None,
         ge=1,
@@ -134,9 +136,10 @@ class Strength(Section):
                     refuse(f"{name}.{key}", value, "left out where load_factors is machine")
 
     @property
-    def largest_torque(self) -> float:
-        """Of the duty cycle with all factors, N m."""
-        return max(one.torque_n_m for one in self.duty) * self.factor
+    def torques(self) -> tuple[float, float]:
+        """Smallest and largest of the duty cycle with all factors, N m; bins without hours do not count."""
+        loads = [self.factor * one.torque_n_m for one in self.duty if one.hours > 0]
+        return min(loads), max(loads)
 
     @property
     def factor(self) -> float:

@@ -15,6 +15,8 @@ from facegear.geometry.design import Material
 
 Array = NDArray[np.float64]
 
+DENTED = 4.0e9
+"""Pressure (Pa) from which on hardened steel keeps a dent: the static limit of line contact in ISO 76."""
 STEPS = 8
 """Of the fixed point of pressure and half-width, each of which gains more than a digit."""
 

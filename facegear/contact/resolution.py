@@ -65,6 +65,16 @@ def _elements_along(design: PairDesign, sizes: MeshSizes) -> float:
     return (design.face_gear.outer_radius - design.face_gear.inner_radius) / sizes.width
 
 
+def node_spacing(sizes: MeshSizes, plan: ContactPlan) -> float:
+    """Distance (m) of the contact surface's nodes across the profile."""
+    return sizes.profile / plan.refinement.profile / 2
+
+
+def resolves(spacing: float, design: PairDesign, materials: tuple[Material, Material], torque: float) -> bool:
+    """Whether nodes so far apart (m) resolve the contact strip at a torque (N m)."""
+    return spacing <= COARSEST * half_width(design, materials, torque)
+
+
 def check_resolution(
     design: PairDesign, materials: tuple[Material, Material], sizes: MeshSizes, plan: ContactPlan
 ) -> None:
@@ -73,10 +83,9 @@ def check_resolution(
     Each torque is judged by itself, so that it makes no difference which others stand beside it. Raises
     ConfigError.
     """
-    spacing = sizes.profile / plan.refinement.profile / 2
-    torque = min(plan.torques)
+    spacing, torque = node_spacing(sizes, plan), min(plan.torques)
     strip = half_width(design, materials, torque)
-    if spacing > COARSEST * strip:
+    if not resolves(spacing, design, materials, torque):
         largest = 2e3 * COARSEST * strip * plan.refinement.profile
         enough = torque * (spacing / (COARSEST * strip)) ** 2
         raise ConfigError(

@@ -10,8 +10,8 @@ from facegear.errors import CorruptFile
 from facegear.io.atomic import atomic_path
 from facegear.io.checksums import verify
 
-NAMES = ("body", "mesh", "body_or_mesh", "pinion", "group", "study", "point", "label")
-"""Columns of names that a user has given."""
+NAMES = ("body", "mesh", "body_or_mesh", "pinion", "group", "study", "point", "label", "reason")
+"""Columns of names that a user has given, or of sentences that may be empty."""
 
 
 def write(path: str | Path, frame: pd.DataFrame) -> None:

@@ -6,6 +6,7 @@ from typing import Any
 
 import pandas as pd
 
+from facegear.contact.hertz import DENTED
 from facegear.report.machine import BALANCED, key_numbers, rated
 from facegear.report.page import Chapter, Picture, Table, scientific
 
@@ -50,7 +51,8 @@ def verdicts(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None)
         yield (
             f"{row.body.replace('_', ' ')}, {row.flank} flank, {row.failure} ({row.method})",
             f"{row.verdict}: safety {row.safety:.2f} where {row.required:g} is required"
-            f"{'' if row.within_torques_solved else '; beyond the torques of the contact analysis'}",
+            f"{'; ' + row.reason if row.reason else ''}"
+            f"{'' if row.within_torques_solved else '; outside the torques of the contact analysis'}",
         )
     for row in _nominal(tables).itertuples():
         width = f" ± {row.half_width:.2f}" if row.half_width > 0.005 else ""
@@ -189,6 +191,13 @@ def _contact_warnings(
             f"contact at {row.torque_n_m:g} N m",
             f"tips press into fillets and carry up to {100 * row.fillet_share:.1f} % of the torque there, "
             "which is kept out of pressure and root stress",
+        )
+    pressed = found.get("pressure_mpa", pd.Series(nan, found.index))
+    for row in found[1e6 * pressed > DENTED].itertuples():
+        yield (
+            f"contact at {row.torque_n_m:g} N m",
+            f"a pressure of {row.pressure_mpa:.0f} MPa: from {1e-6 * DENTED:.0f} MPa on even hardened steel "
+            "yields (ISO 76), and elastic contact does not hold",
         )
     change = 1.0 - found["ste_peak_to_peak_half_um"] / found["ste_peak_to_peak_um"]
     for row in found[change > POSITIONS_MATTER].itertuples():

@@ -38,15 +38,14 @@ def rating(
     roots = {body: root_from_arrays(stress, body) for body in request.bodies}
     pressure = contact_pressure(by_torque)
     found = rate(design, section_contact_ratio(design), roots, pressure, request)
-    solved = float(stress["torque_n_m"][-1])
     worst = min(found, key=lambda one: one.safety / one.required)
     where = f"{worst.duty.body.replace('_', ' ')}, {worst.duty.flank}"
     told = f"{where}, {worst.failure} ({worst.method})"
     return Outcome(
         {
             "safety": safety_table(found, pressure),
-            "rating": rating_table(found, pressure),
-            "damage": damage_table(found, duty_bins(section), solved),
+            "rating": rating_table(found, pressure, roots),
+            "damage": damage_table(found, duty_bins(section), pressure),
             "curves": curve_table(found),
         },
         f"nearest to its limit: {told}, safety {worst.safety:.2f} where {worst.required:g} is required",

@@ -47,6 +47,7 @@ SAFETY_COLUMNS = (
     "life_hours",
     "reliability",
     "nearest_limit",
+    "reason",
     "within_torques_solved",
 )
 RATED_FLANK = ("body", "gear", "flank", "failure", "method")
@@ -60,6 +61,7 @@ RATING_COLUMNS = (
     "safety",
     "required",
     "verdict",
+    "reason",
     "damage",
     "life_hours",
     "reliability",
@@ -96,13 +98,15 @@ DUTY_SPECTRUM_COLUMNS = ("bin", "body", "gear", "flank", "mesh", "share", "force
 """Of the table of forces that the hardest loaded tooth of a body meets in its passages through a mesh."""
 
 RATING_FINITE = tuple(
-    name for name in RATING_COLUMNS if name not in ("stress_error_mpa", "damage", "life_hours", "reliability")
+    name
+    for name in RATING_COLUMNS
+    if name not in ("stress_error_mpa", "reason", "damage", "life_hours", "reliability")
 )
 DAMAGE_FINITE = tuple(name for name in DAMAGE_COLUMNS if name != "damage")
 SAFETY_FINITE = tuple(
     name
     for name in SAFETY_COLUMNS
-    if name not in ("standard_bending_safety", "pitting_safety", "life_hours", "reliability")
+    if name not in ("standard_bending_safety", "pitting_safety", "life_hours", "reliability", "reason")
 )
 ROOT_STRESS_FINITE = tuple(name for name in ROOT_STRESS_COLUMNS if name != "at_30_deg_mpa")
 """Columns whose numbers are always finite: life may last for ever, 30 degrees lie beside the gauges, and

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from facegear.strength.between_torques import LARGEST, SMALLEST, scale
+
 if TYPE_CHECKING:
     import pandas as pd
 
@@ -32,17 +34,19 @@ class ContactPressure:
         return bool(np.isfinite(self.pressure).any())
 
     def at(self, torque: float) -> float:
-        """Pressure (Pa): of line contact, with the root of the torque beyond those solved.
+        """Pressure (Pa), nan where none is known.
 
-        Between them the load on a line contact, p squared, is linear. nan where none is known.
+        A power of the torque between those solved and below them; beyond its root, as of line contact.
         """
         if not self.known:
             return np.nan
         on = np.isfinite(self.pressure)
-        torques = np.concatenate([[0.0], self.torques[on]])
-        squares = np.concatenate([[0.0], self.pressure[on] ** 2])
-        within = float(np.interp(torque, torques, squares))
-        return float(np.sqrt(within * max(torque / torques[-1], 1.0)))
+        growth = scale(self.torques[on], self.pressure[on], SMALLEST, 0.5)
+        return float(growth.at(self.pressure[on], torque))
+
+    def within(self, torque: Array) -> NDArray[np.bool_]:
+        """Whether torques (n,) lie within those solved."""
+        return (torque >= self.torques[0]) & (torque <= self.torques[-1])
 
     def error_at(self, torque: float) -> float:
         """Error (Pa) of `at`: the relative one is linear between the torques solved."""
@@ -53,14 +57,12 @@ class ContactPressure:
     def edge_at(self, torque: float) -> tuple[float, float]:
         """Line load (N/m) on tip edges and the length (m) of them that carries any.
 
-        Both linear between the torques solved; beyond them the load goes on in proportion.
+        The load goes as a power of the torque between those solved and below them, and in proportion beyond;
+        the length is linear between them and constant beyond.
         """
-        beyond = max(torque / self.torques[-1], 1.0)
-        load, length = (
-            float(np.interp(torque, np.append(0.0, self.torques), np.append(0.0, values)))
-            for values in (self.edge_load, self.edge_length)
-        )
-        return beyond * load, length
+        growth = scale(self.torques, self.edge_load, LARGEST, 1.0)
+        load = float(growth.at(self.edge_load, torque)) if torque > 0.0 else 0.0
+        return load, float(np.interp(torque, np.append(0.0, self.torques), np.append(0.0, self.edge_length)))
 
 
 def contact_pressure(by_torque: "pd.DataFrame") -> ContactPressure:

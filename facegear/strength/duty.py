@@ -40,6 +40,11 @@ class FlankDuty:
     cycles: Array
     opposite: Array
 
+    @property
+    def largest(self) -> float:
+        """Torque (N m) of the largest load that occurs: a bin of the duty cycle may last no time."""
+        return float(self.torque.max(where=self.cycles > 0.0, initial=0.0))
+
 
 def given_duty(gear: str, duty: Sequence[DutyBin], turns: float, both_ways: bool) -> FlankDuty:
     """Every load of the duty cycle on the teeth of one gear, `turns` times a turn of the pinion."""

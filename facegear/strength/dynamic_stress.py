@@ -39,7 +39,8 @@ def dynamic_stress_table(
             bound = history[body].over_passage(base_radius * most)
             stresses += [tension[body](base_radius * mean), running, bound]
         stresses += [pressure(base_radius * value) for value in (mean, most)]
-        within = bool(torques.max() <= next(iter(roots.values())).torques[-1])
+        growth = next(iter(roots.values())).scale
+        within = growth.solved(base_radius * mean) and growth.solved(base_radius * most)
         factor = most / mean if mean > 0.0 else np.nan
         rows.append((mesh, mean, most, factor, *(1e-6 * stress for stress in stresses), within))
     return pd.DataFrame(rows, columns=list(DYNAMIC_STRESS_COLUMNS))
@@ -48,28 +49,27 @@ def dynamic_stress_table(
 class TensionHistory:
     """Largest tension of all teeth of a body in mesh, over torque and place in the mesh cycle.
 
-    Between the torques and the places solved the largest values are interpolated linearly, as are those of
-    each gauge in `RootStress.at_torque`: the result is no less than the largest of the interpolated gauges.
+    Over torque the largest values go as those of each gauge in `RootStress.at_torque`, between the places
+    solved linearly: the result is no less than the largest of the interpolated gauges.
     """
 
     def __init__(self, root: RootStress) -> None:
         within, where = np.unique(np.round(np.mod(root.passage, 1.0), 9), return_inverse=True)
         largest = np.array([down_the_fillet(one).max(axis=(1, 2, 3)) for one in root.stress])
         by_place = np.array([largest[:, where == place].max(axis=1) for place in range(within.size)]).T
-        self._torques = np.concatenate([[0.0], root.torques])
+        self._scale = root.scale
         self._places = np.append(within, within[0] + 1.0)
-        table = np.vstack([np.zeros(within.size), by_place])
-        self._table = np.hstack([table, table[:, :1]])
+        self._table = np.hstack([by_place, by_place[:, :1]])
 
     def __call__(self, torques: Array, places: Array) -> Array:
-        """Stress (n,) Pa at torques (n,) N m and places (n,) in [0, 1); proportional beyond those solved."""
-        over = np.maximum(torques / self._torques[-1], 1.0)
-        row, up = _cell(self._torques, torques / over)
+        """Stress (n,) Pa at torques (n,) N m and places (n,) in [0, 1)."""
         column, on = _cell(self._places, places)
+        row, own, above = self._scale.parts(torques)
         low, high = (
-            (1.0 - on) * self._table[at, column] + on * self._table[at, column + 1] for at in (row, row + 1)
+            (1.0 - on) * self._table[at, column] + on * self._table[at, column + 1]
+            for at in (row, np.minimum(row + 1, len(self._table) - 1))
         )
-        return over * ((1.0 - up) * low + up * high)
+        return own * low + above * high
 
     def over_passage(self, torque: float) -> float:
         """Largest stress (Pa) while a torque (N m) stays as it is all through the passage."""

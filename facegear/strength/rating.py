@@ -30,6 +30,8 @@ Array = NDArray[np.float64]
 Stress = Callable[[float], float]
 """Stress (Pa) at a torque (N m) on the pinion."""
 HALVINGS = 60
+EDGE = 1e3
+"""Line load (N/m) on tip edges that counts as none."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +69,8 @@ class Rated:
     `stress` (n,) Pa and `damage` (n,) of the loads in `duty`; `allowed` (Pa): stress that may be repeated for
     ever before life factors, which `limit` gives; `safety`: by how much all stresses may rise until Miner's
     sum is 1; `life`: of the duty cycle in seconds. `reliability` at the end of the duty cycle: nan where the
-    card has no Weibull shape, or where no load does damage.
+    card has no Weibull shape (`has_shape`), or where no load does damage. `edge_load` (N/m) on tip edges
+    under the largest load.
     """
 
     duty: FlankDuty
@@ -81,11 +84,25 @@ class Rated:
     required: float
     life: float
     reliability: float
+    has_shape: bool
+    edge_load: float
 
     @property
     def verdict(self) -> str:
-        """green: as safe as required; amber: lasts the duty cycle; red: does not."""
-        return "green" if self.safety >= self.required else "amber" if self.safety >= 1.0 else "red"
+        """green: as safe as required; amber: lasts the duty cycle; red: does not.
+
+        Pitting is never green where tip edges carry load.
+        """
+        if self.safety < 1.0:
+            return "red"
+        return "green" if self.safety >= self.required and not self.reason else "amber"
+
+    @property
+    def reason(self) -> str:
+        """Why it is not green although as safe as required, empty where nothing speaks against it."""
+        if self.failure == "bending" or self.edge_load < EDGE:
+            return ""
+        return f"tip edges carry {1e-3 * self.edge_load:.0f} N/mm, where pressure has no limit"
 
 
 def rate(
@@ -109,15 +126,16 @@ def rate(
         notch = form.notch_parameter if duty.gear == "pinion" else None
         ratio = reversal(roots[duty.gear], duty)
         allowed = permissible_bending(design, request.bodies[duty.gear], notch, ratio)
+        edge, _ = pressure.edge_at(duty.largest)
         ways = {"finite elements": tension[duty.gear]}
         if duty.gear == "pinion":
             ways["ISO 6336-3"] = standard_bending(design, form)
         for method, stress in ways.items():
-            found.append(_rated(request, duty, "bending", method, stress, allowed, bending_limits))
+            found.append(_rated(request, duty, "bending", method, stress, allowed, bending_limits, edge))
         ways = {"contact analysis": pressure.at} if pressure.known else {}
         allowed = pitting_limits.limit
         for method, stress in (ways | {"ISO 6336-2": pitting[duty.gear]}).items():
-            found.append(_rated(request, duty, "pitting", method, stress, allowed, pitting_limits))
+            found.append(_rated(request, duty, "pitting", method, stress, allowed, pitting_limits, edge))
     return found
 
 
@@ -129,6 +147,7 @@ def _rated(
     stress: Stress,
     allowed: float,
     limits: PittingLimits | BendingLimits,
+    edge_load: float,
 ) -> Rated:
     by_load = np.array([stress(torque) for torque in duty.torque])
     harm = damage(by_load, duty.cycles, allowed, limits.life)
@@ -145,6 +164,8 @@ def _rated(
         required=request.least_bending if failure == "bending" else request.least_pitting,
         life=request.time / total if total > 0.0 else np.inf,
         reliability=reliability(total, limits.weibull_shape),
+        has_shape=limits.weibull_shape is not None,
+        edge_load=edge_load,
     )
 
 

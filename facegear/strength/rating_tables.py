@@ -1,6 +1,6 @@
 """Tables of a rating: safety of every flank, a row a way to fail, and the damage of each bin."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import groupby
 
 import numpy as np
@@ -10,6 +10,7 @@ from facegear.strength.columns import CURVE_COLUMNS, DAMAGE_COLUMNS, RATING_COLU
 from facegear.strength.contact_pressure import ContactPressure
 from facegear.strength.duty import DutyBin
 from facegear.strength.rating import Rated
+from facegear.strength.root_stress import RootStress
 
 POINTS = 61
 """Of a curve of allowed stress."""
@@ -32,7 +33,7 @@ def safety_table(found: Sequence[Rated], pressure: ContactPressure) -> pd.DataFr
             for failure in ("bending", "pitting")
             if np.isfinite(some := [one.reliability for one in ways if one.failure == failure]).any()
         ]
-        edge_load, edge_length = pressure.edge_at(_largest_torque(ways[0]))
+        edge_load, edge_length = pressure.edge_at(ways[0].duty.largest)
         rows.append(
             (
                 *(body, flank, min((one.verdict for one in ways), key=WORST_FIRST.index)),
@@ -43,35 +44,52 @@ def safety_table(found: Sequence[Rated], pressure: ContactPressure) -> pd.DataFr
                 min(one.life for one in ways) / 3600.0,
                 float(np.prod(known)) if known else np.nan,
                 f"{nearest.failure} ({nearest.method})",
-                _within(nearest, pressure.torques[-1]).all(),
+                next((one.reason for one in ways if one.reason), ""),
+                all(bool(_within(one, pressure).all()) for one in ways),
             )
         )
-    return pd.DataFrame(rows, columns=list(SAFETY_COLUMNS))
+    return _stated(pd.DataFrame(rows, columns=list(SAFETY_COLUMNS)), found)
 
 
-def rating_table(found: Sequence[Rated], pressure: ContactPressure) -> pd.DataFrame:
+def rating_table(
+    found: Sequence[Rated], pressure: ContactPressure, roots: Mapping[str, RootStress]
+) -> pd.DataFrame:
     """Safety and life, columns as RATING_COLUMNS; stress is that of the hardest load of any cycle.
 
-    The error is that of the contact analysis' `pressure`; other methods tell none.
+    The error is that of the contact analysis' `pressure`, or of the mesh at the largest of `roots`; other
+    methods have none.
     """
     rows = [
         (
             *_subject(one),
             1e-6 * float(one.stress.max(where=one.duty.cycles > 0.0, initial=0.0)),
-            1e-6 * pressure.error_at(_largest_torque(one)) if one.method == "contact analysis" else np.nan,
+            1e-6 * _error(one, pressure, roots),
             1e-6 * one.allowed,
             float(one.duty.cycles.sum()),
             one.safety,
             one.required,
             one.verdict,
+            one.reason,
             float(one.damage.sum()),
             one.life / 3600.0,
             one.reliability,
-            _within(one, pressure.torques[-1]).all(),
+            bool(_within(one, pressure).all()),
         )
         for one in found
     ]
-    return pd.DataFrame(rows, columns=list(RATING_COLUMNS))
+    return _stated(pd.DataFrame(rows, columns=list(RATING_COLUMNS)), found)
+
+
+def _stated(table: pd.DataFrame, found: Sequence[Rated]) -> pd.DataFrame:
+    """The table without reliability where no card has the shape of its distribution of lives."""
+    return table if any(one.has_shape for one in found) else table.drop(columns="reliability")
+
+
+def _error(one: Rated, pressure: ContactPressure, roots: Mapping[str, RootStress]) -> float:
+    """Of the stress (Pa) under the hardest load, nan where it is not known."""
+    if one.method == "contact analysis":
+        return pressure.error_at(one.duty.largest)
+    return roots[one.duty.gear].error_at(one.duty.largest) if one.method == "finite elements" else np.nan
 
 
 def curve_table(found: Sequence[Rated]) -> pd.DataFrame:
@@ -84,14 +102,14 @@ def curve_table(found: Sequence[Rated]) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def damage_table(found: Sequence[Rated], duty: Sequence[DutyBin], solved: float) -> pd.DataFrame:
+def damage_table(found: Sequence[Rated], duty: Sequence[DutyBin], pressure: ContactPressure) -> pd.DataFrame:
     """Largest torque (with all load factors) and stress, cycles and damage of each bin that loads a flank.
 
     Columns as DAMAGE_COLUMNS.
     """
     rows = []
     for one in found:
-        within = _within(one, solved)
+        within = _within(one, pressure)
         for number in np.unique(one.duty.bins):
             here = one.duty.bins == number
             rows.append(
@@ -110,11 +128,6 @@ def _subject(one: Rated) -> tuple[str, ...]:
     return one.duty.body, one.duty.gear, one.duty.flank, one.failure, one.method
 
 
-def _largest_torque(one: Rated) -> float:
-    """Of the loads that occur: a bin of the duty cycle may last no time."""
-    return float(one.duty.torque.max(where=one.duty.cycles > 0.0, initial=0.0))
-
-
-def _within(one: Rated, solved: float) -> np.ndarray:
+def _within(one: Rated, pressure: ContactPressure) -> np.ndarray:
     """Whether each load lies within the torques of the contact analysis, (n,)."""
-    return (one.duty.torque <= solved) | (one.duty.cycles == 0.0)
+    return pressure.within(one.duty.torque) | (one.duty.cycles == 0.0)

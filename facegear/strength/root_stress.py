@@ -1,7 +1,8 @@
 """Root stress of a tooth on its way through the mesh, from readings of gauges and the loads on all teeth."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -9,11 +10,15 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from facegear.strength.between_torques import Scale, scale
+
 if TYPE_CHECKING:
     import scipy.sparse as sp
 
 Array = NDArray[np.float64]
 
+LONE = 0.5
+"""Exponent of stress over torque below a single torque solved: less than it is, so that stress is not."""
 FINER = 8
 """Points a gauge at which a maximum down the fillet is looked for."""
 
@@ -36,16 +41,20 @@ class RootStress:
     angle: Array
     error: Array
 
+    @cached_property
+    def scale(self) -> Scale:
+        """How stress grows with torque: as its largest value between those solved, in proportion beyond."""
+        largest = self.stress.reshape(len(self.torques), -1).max(axis=1)
+        return scale(self.torques, largest, LONE, 1.0)
+
     def at_torque(self, torque: float) -> Array:
-        """Stress (n, 2, a, b) at a torque, linear between those solved and proportional beyond them."""
-        if torque <= self.torques[0]:
-            return self.stress[0] * (torque / self.torques[0])
-        if torque >= self.torques[-1]:
-            return self.stress[-1] * (torque / self.torques[-1])
-        above = int(np.searchsorted(self.torques, torque))
-        low, high = self.torques[above - 1], self.torques[above]
-        part = (torque - low) / (high - low)
-        return (1.0 - part) * self.stress[above - 1] + part * self.stress[above]
+        """Stress (n, 2, a, b) at a torque, as `scale` has it."""
+        return self.scale.at(self.stress, torque)
+
+    def error_at(self, torque: float) -> float:
+        """Error (Pa) that the mesh makes of the largest stress at a torque, nan where it is not known."""
+        along_face = down_the_fillet(self.at_torque(torque)).max(axis=(0, 1, 2))
+        return float(along_face.max() * self.error[np.argmax(along_face)])
 
 
 def root_stress(
@@ -110,8 +119,8 @@ def largest_tension(root: RootStress) -> Callable[[float], float]:
     kept[places.argmax(axis=1)] = True
     for low, high in pairwise(places):
         kept |= _may_be_largest(low, high)
-    worst = replace(root, stress=places[:, kept])
-    return lambda torque: float(worst.at_torque(torque).max())
+    worst, growth = places[:, kept], root.scale
+    return lambda torque: float(growth.at(worst, torque).max())
 
 
 def _may_be_largest(low: Array, high: Array) -> NDArray[np.bool_]:

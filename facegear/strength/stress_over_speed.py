@@ -73,13 +73,13 @@ def stress_table(
     """
     torques = base_radius * forces["largest_force_n"].to_numpy()
     tension = {body: largest_tension(root) for body, root in roots.items()}
-    solved = min(root.torques[-1] for root in roots.values())
+    growth = next(iter(roots.values())).scale
     most = forces.groupby("speed_rpm")["largest_force_n"].transform("max")
     table = forces.assign(
         dynamic_factor=forces["largest_force_n"] / static_force if static_force > 0.0 else np.nan,
         **{f"{body}_mpa": [1e-6 * at(torque) for torque in torques] for body, at in tension.items()},
         pressure_mpa=[1e-6 * pressure(torque) for torque in torques],
-        within_torques_solved=torques <= solved,
+        within_torques_solved=[growth.solved(torque) for torque in torques],
         worst=forces["largest_force_n"] >= (1.0 - ALIKE) * most,
     )
     return table.sort_values(["speed_rpm", "motion"], kind="stable", ignore_index=True)[

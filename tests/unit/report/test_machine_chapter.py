@@ -66,6 +66,8 @@ def test_the_first_screen_warns_of_what_the_results_hide(example):
         "ste_peak_to_peak_um": 4.0,
         "ste_peak_to_peak_half_um": [3.99, 3.0],
         "fillet_share": [0.0, 0.0],
+        "pressure_mpa": [3900.0, 5800.0],
+        "pressure_error_mpa": 10.0,
     }
     edges = pd.DataFrame(
         {
@@ -82,11 +84,12 @@ def test_the_first_screen_warns_of_what_the_results_hide(example):
         "the bodies interfere",
         "from 600 N m on tip edges carry load, up to 412 N/mm over 7.3 mm",
         "contact at 600 N m peak-to-peak",
+        "contact at 600 N m a pressure of 5800 MPa: from 4000 MPa on even hardened steel yields",
         "solved up to 600 N m",
         "the dynamics take 100 um, the teeth as assembled have 60.0 um",
     ):
         assert any(words in one for one in told), words
-    assert len(told) == len(set(told))
+    assert len(told) == len(set(told)) and not any("3900 MPa" in one for one in told)
     pressed = pd.DataFrame(contact).assign(fillet_share=[0.0, 0.152], k_average_mean_n_per_m=[5e8, np.nan])
     told = [" ".join(row) for row in warnings(values, found | {"by_torque": pressed}, pair)]
     words = "contact at 600 N m tips press into fillets and carry up to 15.2 % of the torque there"
@@ -97,12 +100,31 @@ def test_the_first_screen_warns_of_what_the_results_hide(example):
     barely = found | {"by_torque": pd.DataFrame(contact).assign(torque_n_m=most * (1 - 1e-12))}
     assert not any("solved up to" in row[1] for row in warnings(values, barely, pair)), "rounding"
     clean = {"gap_um": 7.8} | gap
-    quiet = pd.DataFrame(contact).assign(ste_peak_to_peak_half_um=4.0, torque_n_m=2000.0)
+    quiet = pd.DataFrame(contact).assign(ste_peak_to_peak_half_um=4.0, torque_n_m=2000.0, pressure_mpa=1200.0)
     pair = {"interference": None, "smallest_gap": clean, "backlash_um": {"smallest": 100.0}}
     assert not [
         row for row in warnings(values, {**tables, "by_torque": quiet}, pair) if row[0] != "mesh stiffness"
     ]
     assert next(verdicts(found, pair))[1].startswith("free; smallest gap beside the contact 7.8 um")
+
+
+def test_a_green_rating_beside_loaded_tip_edges_is_amber_with_its_reason_on_the_first_screen():
+    row = {
+        "body": "pinion",
+        "gear": "pinion",
+        "flank": "drive",
+        "failure": "pitting",
+        "method": "contact analysis",
+        "safety": 1.2,
+        "required": 1.0,
+        "verdict": "amber",
+        "reason": "tip edges carry 327 N/mm, where pressure has no limit",
+        "within_torques_solved": False,
+    }
+    told = dict(verdicts({"rating": pd.DataFrame([row])}, None))
+    line = told["pinion, drive flank, pitting (contact analysis)"]
+    assert line.startswith("amber") and "327 N/mm" in line
+    assert line.endswith("outside the torques of the contact analysis")
 
 
 def test_the_first_screen_names_k_gamma_of_the_running_machine_beside_that_at_rest():

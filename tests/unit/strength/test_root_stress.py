@@ -62,11 +62,14 @@ def test_root_stress_is_linear_in_the_load_at_a_fixed_contact(factor):
     np.testing.assert_allclose(passing(many)[1].stress, factor * passing(one)[1].stress, rtol=1e-10)
 
 
-def test_between_the_torques_solved_stress_is_interpolated_and_beyond_them_proportional():
+def test_between_the_torques_solved_stress_is_a_power_of_the_torque_and_beyond_them_proportional():
     _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
-    np.testing.assert_allclose(found.at_torque(200.0), found.stress.mean(axis=0))
-    np.testing.assert_allclose(found.at_torque(50.0), 0.5 * found.stress[0])
+    growth = found.stress[1].max() / found.stress[0].max()
+    power = np.clip(np.log(growth) / np.log(3.0), 1 / 3, 1.0)
+    np.testing.assert_allclose(found.at_torque(50.0), 0.5**power * found.stress[0])
     np.testing.assert_allclose(found.at_torque(600.0), 2.0 * found.stress[1])
+    middle = 3.0 ** (power / 2) * found.stress[0] + 3.0 ** (-power / 2) * found.stress[1]
+    np.testing.assert_allclose(found.at_torque(100.0 * np.sqrt(3.0)), 0.5 * middle)
 
 
 def test_tables_name_the_largest_stress_and_where_it_is():
@@ -282,7 +285,7 @@ def test_stress_over_speed_takes_the_hardest_of_coexisting_motions():
     assert at_2000["dynamic_factor"].iloc[0] == pytest.approx(2000.0 / 750.0)
     expected = down_the_fillet(found.at_torque(200.0)).max()
     assert at_2000["pinion_mpa"].iloc[0] == pytest.approx(1e-6 * expected)
-    assert at_2000["pressure_mpa"].iloc[0] == pytest.approx(1e-6 * np.sqrt(0.5 * (25e16 + 81e16)))
+    assert at_2000["pressure_mpa"].iloc[0] == pytest.approx(500.0 * 2.0 ** (np.log(1.8) / np.log(3.0)))
     assert pressure(1200.0) == pytest.approx(2.0 * 9e8)
     unknown = ContactPressure(torques, np.full(2, np.nan), none, none, none)
     idle = stress_table(
