@@ -36,6 +36,21 @@ class RunoutSection(Section):
     )
 
 
+DIAMETRAL = (
+    "play from side to side, as catalogues give it (radial internal clearance, ISO 5753): twice clearance_um"
+)
+
+
+def _play(one_side: float | None, diametral: float | None) -> float | None:
+    """Play of a bearing to each side of its centre, um."""
+    return one_side if diametral is None else 0.5 * diametral
+
+
+def _refuse_both(one_side: float | None, diametral: float | None) -> None:
+    if one_side and diametral is not None:
+        refuse("clearance_diametral_um", diametral, f"left out where clearance_um = {one_side:g} is given")
+
+
 class PinionBody(Section):
     """Data shared by all pinions; x is tangential to the face gear, y along the face gear's axis."""
 
@@ -48,8 +63,21 @@ class PinionBody(Section):
         le=1e4,
         description="for mesh_kinematics printed; null: module * teeth / 2 * cos(pressure angle)",
     )
-    clearance_um: float = Field(0.0, ge=0, le=1e4, description="radial play of the bearings")
+    clearance_um: float = Field(
+        0.0, ge=0, le=1e4, description="play of the bearings to each side of their centre"
+    )
+    clearance_diametral_um: float | None = Field(None, ge=0, le=2e4, description=DIAMETRAL)
     runout: RunoutSection | None = None
+
+    @property
+    def play_um(self) -> float:
+        """Play of the bearings to each side of their centre."""
+        return _play(self.clearance_um, self.clearance_diametral_um) or 0.0
+
+    @model_validator(mode="after")
+    def _one_play(self) -> "PinionBody":
+        _refuse_both(self.clearance_um, self.clearance_diametral_um)
+        return self
 
 
 class TiltSection(Section):
@@ -103,11 +131,22 @@ class SinglePinion(Section):
     position_um: Position = Position()
     force_n: PinionForce = PinionForce()
     clearance_um: float | None = Field(None, ge=0, le=1e4)
+    clearance_diametral_um: float | None = Field(None, ge=0, le=2e4, description=DIAMETRAL)
     clocking_deg: float = Field(
         0.0, ge=-360, le=360, description="lower rim of a compound pinion ahead of its upper rim"
     )
     runout: RunoutSection | None = None
     cumulative_pitch_um: tuple[float, ...] = Field((), description="of every tooth, ahead as it turns")
+
+    @property
+    def play_um(self) -> float | None:
+        """Play of the bearings to each side of their centre; null: that of all pinions."""
+        return _play(self.clearance_um, self.clearance_diametral_um)
+
+    @model_validator(mode="after")
+    def _one_play(self) -> "SinglePinion":
+        _refuse_both(self.clearance_um, self.clearance_diametral_um)
+        return self
 
 
 class SingleGear(Section):

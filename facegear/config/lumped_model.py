@@ -133,7 +133,7 @@ def imperfections(section: Transmission, shape: Layout, unloaded: Harmonics | No
     meshes = [section.single_meshes.get(name, SingleMesh()) for name in shape.mesh_names]
     pinions = [section.single_pinions.get(pinion.name, SinglePinion()) for pinion in shape.pinions]
     gears = [section.single_gears.get(gear.side.value, SingleGear()) for gear in shape.gears]
-    play = [section.pinion.clearance_um if one.clearance_um is None else one.clearance_um for one in pinions]
+    play = [section.pinion.play_um if one.play_um is None else one.play_um for one in pinions]
     backlash = [np.nan if one.backlash_um is None else one.backlash_um for one in meshes]
     return Imperfections(
         error=1e-6 * np.array([one.error_um for one in meshes]),

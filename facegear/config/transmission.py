@@ -33,7 +33,12 @@ class DampingSection(Section):
     """Equation (21) and the mesh damping of equation (20)."""
 
     mesh_n_s_per_m: float = Field(ge=0, le=1e7)
-    mass_per_s: float = Field(ge=0, le=1e6)
+    mass_per_s: float = Field(
+        ge=0,
+        le=1e6,
+        description="lambda: resists the vibration of every body against the ground, lambda times its mass; "
+        "a stand-in for losses elsewhere",
+    )
     bearing_s: float = Field(ge=0, le=1e-2)
     open_flanks: Literal["always", "contact_only", "push_only"] = Field(
         "contact_only",
@@ -126,7 +131,7 @@ class Transmission(Section):
             if named := list(getattr(self, key)):
                 refuse(key, named, "none where mesh_kinematics is printed: it knows no errors of one part")
         for key, value in (
-            ("pinion.clearance_um", self.pinion.clearance_um or None),
+            ("pinion.clearance_um", self.pinion.play_um or None),
             ("pinion.runout", self.pinion.runout),
             ("face_gear.runout", self.face_gear.runout),
             ("face_gear.tilt", self.face_gear.tilt),
@@ -139,8 +144,8 @@ class Transmission(Section):
         for place in self.pinions:
             one = self.single_pinions.get(place.name, SinglePinion())
             bearing = one.bearing_stiffness_n_per_m or self.pinion.bearing_stiffness_n_per_m
-            own = one.clearance_um is not None
-            play = one.clearance_um if own else self.pinion.clearance_um
+            own = one.play_um is not None
+            play = one.play_um if own else self.pinion.play_um
             key = f"single_pinions.{place.name}.clearance_um" if own else "pinion.clearance_um"
             if play and (bearing.x <= 0.0 or bearing.x != bearing.y or bearing.xy != 0.0):
                 refuse(key, play, "0 unless the bearing is round: x = y above 0, without xy")

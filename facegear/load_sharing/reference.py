@@ -31,11 +31,14 @@ def reference_table(machine: Machine, settings: Settings, options: SharingOption
 
     `static`: equilibrium at every position of the mesh cycle; `quasi_static`: the same model run slowly,
     which tends to the static one; `equilibrium`: mean stiffness, no transmission error; `no_error` and
-    `no_error_no_backlash`: the static one with e(t) and backlash left out, of single meshes too. Runouts and
-    pitch deviations are in none of them. Raises NotConverged.
+    `no_error_no_backlash`: the static one without errors (e(t), constant ones of single meshes, pinions out
+    of place) and without backlash. Runouts and pitch deviations are in none of them. Raises NotConverged.
     """
     machine = replace(machine, imperfections=machine.imperfections.standing)
-    quiet = replace(machine.imperfections, series={})
+    given = machine.imperfections
+    quiet = replace(
+        given, series={}, error=np.zeros_like(given.error), position=np.zeros_like(given.position)
+    )
     silent = replace(machine, error=Harmonics(np.zeros(1), np.zeros(1)), imperfections=quiet)
     shut = replace(quiet, half_backlash=np.full(len(machine.layout.meshes), np.nan))
     tight = replace(silent, half_backlash=0.0, imperfections=shut)

@@ -162,9 +162,20 @@ def test_what_all_pinions_have_holds_where_one_has_none_of_its_own():
     np.testing.assert_allclose([one.amplitude for one in found.pinion_runout], 5e-6)
 
 
+def test_play_is_given_to_each_side_or_from_side_to_side_as_catalogues_do():
+    body = {**section()["pinion"], "clearance_diametral_um": 40}
+    single = {"one": {"clearance_diametral_um": 30}, "two": {"clearance_um": 0}}
+    found = built(pinion=body, single_pinions=single).imperfections
+    np.testing.assert_allclose(found.clearance, [15e-6, 0.0, 20e-6])
+
+
 @pytest.mark.parametrize(
     ("changes", "line"),
     [
+        (
+            {"single_pinions": {"one": {"clearance_um": 5, "clearance_diametral_um": 10}}},
+            r"clearance_diametral_um = 10\.0: must be left out where clearance_um = 5 is given",
+        ),
         (
             {"single_meshes": {"three/lower": {"error_um": 1}}},
             r"single_meshes\.three/lower.*one of one/lower",

@@ -61,6 +61,20 @@ def test_what_a_run_is_held_against_leaves_out_what_it_says_of_every_mesh():
     np.testing.assert_allclose(table.loc[tight, "mean"], exact.loc[tight, "mean"], rtol=1e-12)
 
 
+def test_without_errors_no_constant_error_and_no_pinion_out_of_place_is_left():
+    """`no_error` kept both."""
+    layout = make_layout(kinematics=MeshKinematics.GEOMETRIC)
+    flaws = replace(perfect(layout), error=np.linspace(-8e-6, 8e-6, 10), position=np.full((5, 2), 5e-6))
+    plain = make_machine(layout, 1500.0, 0.05, error=4e-6)
+    clean, flawed = (
+        reference_table(one, SETTINGS, replace(OPTIONS, slow_rpm=600.0)).set_index("quantity")["mean"]
+        for one in (plain, replace(plain, imperfections=flaws))
+    )
+    for quantity in ("no_error", "no_error_no_backlash"):
+        np.testing.assert_allclose(flawed[quantity], clean[quantity], rtol=1e-12)
+    assert not np.allclose(flawed["static"], clean["static"], rtol=1e-4)
+
+
 def test_left_and_right_inputs_share_alike_where_the_machine_is_symmetric(tight):
     sharing = load_sharing(tight, 3000.0, SETTINGS, OPTIONS)
     right, left = (group.average.mean for group in sharing.groups[:2])
