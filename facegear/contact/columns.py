@@ -53,6 +53,8 @@ PRESSURE_ARRAYS = {
 """Arrays of the pressure file, see `facegear.contact.tables.pressure_arrays`."""
 
 LOAD_ARRAYS = {
+    "variant": (None,),
+    "flank_variant": (2, 2),
     "torque_n_m": (None,),
     "position": (None,),
     **{
@@ -62,7 +64,11 @@ LOAD_ARRAYS = {
     },
     "nodes": (2,),
 }
-"""Arrays of the loads file: an entry a case, a row a loaded node of a body, and the numbers of nodes."""
+"""Arrays of the loads file: an entry a case, a row a loaded node of a body, and the numbers of nodes.
+
+`variant` numbers the assembly errors of a case, `flank_variant` those of each gear (upper, lower) and flank
+(drive, back), see `facegear.geometry.flank_errors`.
+"""
 
 EDGES = ("inside", "pinion tip", "gear tip", "end")
 """Where a loaded plane's strip of contact lies: `where` of the line loads numbers these."""

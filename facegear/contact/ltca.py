@@ -1,7 +1,7 @@
 """Loaded tooth contact analysis: every position of a pitch at every torque."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
@@ -16,7 +16,7 @@ from facegear.contact.options import ContactOptions
 from facegear.contact.path import pairs_to_try
 from facegear.contact.position import FIRST_GUESS, LoadedPosition, solve_position
 from facegear.contact.search import find_candidates
-from facegear.geometry.design import PairDesign
+from facegear.geometry.design import Assembly, PairDesign
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.progress import Progress
 
@@ -32,6 +32,13 @@ class ContactModel:
     @property
     def design(self) -> PairDesign:
         return self.flanks.design
+
+    def assembled(self, errors: Assembly) -> "ContactModel":
+        """The same bodies in another assembly, which moves no node of theirs."""
+        design = replace(self.design, assembly=errors)
+        pinion, gear = self.flanks.pinion, self.flanks.gear
+        flanks = FlankPair(replace(pinion, design=design), replace(gear, design=design))
+        return replace(self, flanks=flanks)
 
 
 def even_positions(count: int) -> list[float]:

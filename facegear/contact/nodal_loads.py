@@ -11,14 +11,20 @@ from facegear.contact.position import LoadedPosition
 BODIES = ("pinion", "face_gear")
 
 
-def load_arrays(results: Sequence[LoadedPosition]) -> dict[str, NDArray]:
-    """Contact forces as LOAD_ARRAYS: cases by torque and position, and loaded nodes by case and tooth.
+def load_arrays(
+    variants: Sequence[Sequence[LoadedPosition]], flank_variant: NDArray[np.int64]
+) -> dict[str, NDArray]:
+    """Contact forces as LOAD_ARRAYS: cases by variant, torque and position, loaded nodes by case and tooth.
 
+    `variants`: results under each of the assembly errors; `flank_variant` (gears, flanks) numbers them.
     Nodes count along each row of the contact surface's lattice before refinement; the force (N) acts against
     the surface's outward normal.
     """
-    cases = sorted(results, key=lambda result: (result.torque, result.position))
+    ordered = [sorted(one, key=lambda result: (result.torque, result.position)) for one in variants]
+    cases = [case for one in ordered for case in one]
     arrays = {
+        "variant": np.repeat(np.arange(len(ordered)), [len(one) for one in ordered]),
+        "flank_variant": np.asarray(flank_variant),
         "torque_n_m": np.array([case.torque for case in cases]),
         "position": np.array([case.position for case in cases]),
     }
@@ -36,14 +42,18 @@ def load_arrays(results: Sequence[LoadedPosition]) -> dict[str, NDArray]:
 
 
 def loads_by_tooth(
-    arrays: Mapping[str, NDArray], body: str, flank_nodes: int | None = None
+    arrays: Mapping[str, NDArray], body: str, flank_nodes: int | None = None, variant: int = 0
 ) -> dict[int, sp.csr_matrix]:
     """Forces (cases, nodes), N, on each loaded tooth of `pinion` or `face_gear`, from LOAD_ARRAYS.
 
+    The cases are those of one variant, torque by torque and position by position.
     With `flank_nodes` those on later nodes, which lie in the body's own fillet, are left out.
     """
-    shape = arrays["torque_n_m"].size, int(arrays["nodes"][BODIES.index(body)])
+    cases = np.flatnonzero(arrays["variant"] == variant)
+    shape = cases.size, int(arrays["nodes"][BODIES.index(body)])
     case, tooth, node, force = (arrays[f"{body}_{name}"] for name in ("case", "tooth", "node", "force_n"))
+    own = np.isin(case, cases)
+    case, tooth, node, force = case[own] - cases[0], tooth[own], node[own], force[own]
     force = force if flank_nodes is None else np.where(node < flank_nodes, force, 0.0)
     return {
         int(number): sp.csr_matrix((force[on], (case[on], node[on])), shape=shape)

@@ -1,10 +1,13 @@
 """What the contact table says of each torque: stiffness, peak-to-peak transmission error, pressure, path."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+
+from facegear.geometry.design import Assembly
+from facegear.geometry.flank_errors import FLANKS, GEARS
 
 COLUMNS = (
     "torque_n_m",
@@ -26,10 +29,38 @@ COLUMNS = (
     "interference_um",
 )
 
+BY_FLANK_COLUMNS = (
+    *("gear", "flank", "offset_um", "shaft_angle_error_deg", "axial_shift_um"),
+    *COLUMNS,
+    "path_radius_mm",
+)
+
 
 def by_torque(ltca: pd.DataFrame, pressure: Mapping[str, NDArray]) -> pd.DataFrame:
     """`contact_summary` and, as its last column, `path_radii`."""
     return contact_summary(ltca).merge(path_radii(pressure), on="torque_n_m", how="left")
+
+
+def by_flank(
+    variants: Sequence[pd.DataFrame], different: Sequence[Assembly], numbers: NDArray[np.int64]
+) -> pd.DataFrame:
+    """Tables of `by_torque` of all gears and flanks, columns as BY_FLANK_COLUMNS.
+
+    `variants`: those under each of the `different` errors that the flanks meet; `numbers` as
+    `distinct_errors` has them.
+    """
+    parts = []
+    for (row, column), number in np.ndenumerate(numbers):
+        met = different[int(number)]
+        known = {
+            "gear": GEARS[row],
+            "flank": FLANKS[column],
+            "offset_um": 1e6 * met.offset,
+            "shaft_angle_error_deg": np.degrees(met.shaft_angle_error),
+            "axial_shift_um": 1e6 * met.axial_shift,
+        }
+        parts.append(variants[int(number)].assign(**known))
+    return pd.concat(parts, ignore_index=True)[list(BY_FLANK_COLUMNS)]
 
 
 def contact_summary(ltca: pd.DataFrame) -> pd.DataFrame:

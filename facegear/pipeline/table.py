@@ -123,6 +123,7 @@ ALL = (
             "by_torque": File(
                 "contact/by_torque.csv", ("torque_n_m", "ste_peak_to_peak_um", "path_radius_mm")
             ),
+            "by_flank": File("contact/by_flank.csv", ("offset_um", "torque_n_m", "path_radius_mm")),
             "pressure": File("contact/pressure.npz", "facegear.contact.columns:PRESSURE_ARRAYS"),
             "loads": File("contact/loads.npz", "facegear.contact.columns:LOAD_ARRAYS"),
             "vtu": File(
@@ -148,6 +149,9 @@ ALL = (
             "summary": File("strength/root_stress.csv", "facegear.strength.columns:ROOT_STRESS_FINITE"),
             "passage": File("strength/passage.csv", "facegear.strength.columns:PASSAGE_COLUMNS"),
             "along_face": File("strength/along_face.csv", "facegear.strength.columns:ALONG_FACE_COLUMNS"),
+            "by_flank": File(
+                "strength/root_stress_by_flank.csv", "facegear.strength.columns:ROOT_STRESS_BY_FLANK_FINITE"
+            ),
             "stress": File("strength/root_stress.npz", "facegear.strength.columns:ROOT_STRESS_ARRAYS"),
             "vtu": File(
                 "strength/root_stress.vtu",

@@ -29,6 +29,13 @@ class ContactResult(Result):
         """
         return self.content["by_torque"].copy()
 
+    def by_flank(self) -> pd.DataFrame:
+        """`by_torque` for drive and back flank of the upper and the lower gear, with the errors of each.
+
+        They differ where `tooth_pair.assembly` gives errors, which hold for the upper gear's drive flank.
+        """
+        return self.content["by_flank"].copy()
+
     def pressures(self) -> "xr.Dataset":
         """Pressure (MPa) with its error, and line load (N/mm), over torque, position, pair and plane.
 

@@ -22,6 +22,13 @@ class RootStressResult(Result):
         """Peak of each fillet with its place, a row a torque, body and fillet (docs/strength.md)."""
         return self.content["summary"].copy()
 
+    def by_flank(self) -> pd.DataFrame:
+        """`table` for the drive and the back flank of the upper and the lower gear.
+
+        They differ where `tooth_pair.assembly` gives errors, which hold for the upper gear's drive flank.
+        """
+        return self.content["by_flank"].copy()
+
     def stress(self, body: str = "face_gear") -> "xr.DataArray":
         """Stress (MPa) of `pinion` or `face_gear` over torque, passage, fillet and the fillet's gauges."""
         import xarray as xr

@@ -40,7 +40,7 @@ def meshes_in_contact(pair: Values, flanks: Flanks) -> Meshes:
         section = parse(ToothPair, values, "this pair")
         added = geometric_backlash(section) - backlash
         both = bodies(values)
-        found = contact_of(*both, values, pair["contact"]).content
+        found = contact_of(*both, values, pair["contact"], every_flank=False).content
         table = stiffness(pair["mesh_stiffness"], found["ltca"]).content["harmonics"]
         numbers = numbers_of(values)
         return ToothMesh(

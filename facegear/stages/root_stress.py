@@ -11,41 +11,53 @@ from facegear.errors import ConfigError
 from facegear.stages.outcome import Outcome
 from facegear.strength import root_stress as superposed
 from facegear.strength.root_stress import RootStress
-from facegear.strength.root_tables import root_arrays, root_tables
+from facegear.strength.root_tables import root_arrays, root_by_flank, root_tables
 
 
 def root_stress(
     pinion: Mapping[str, NDArray], face_gear: Mapping[str, NDArray], loads: Mapping[str, NDArray]
 ) -> Outcome:
-    """`summary`, `passage`, `along_face` (tables) and `stress` (arrays).
+    """`summary`, `passage`, `along_face`, `by_flank` (tables) and `stress` (arrays).
 
     From the flanks of stage compliance and the loads of stage contact.
 
-    Raises ConfigError where the fillets carry no gauges.
+    The first three are those of the upper gear's drive flank. Raises ConfigError where the fillets carry no
+    gauges.
     """
     flanks = {"pinion": from_arrays(pinion), "face_gear": from_arrays(face_gear)}
-    found = {body: passing(body, flank, loads) for body, flank in flanks.items()}
+    numbers = loads["flank_variant"]
+    variants = [
+        {body: passing(body, flank, loads, variant) for body, flank in flanks.items()}
+        for variant in range(int(numbers.max()) + 1)
+    ]
     positions = {body: flank.gauges.position for body, flank in flanks.items() if flank.gauges}
-    tables = root_tables(found)
-    return Outcome({**tables, "stress": root_arrays(found, positions)}, _summary(tables["summary"]))
+    tables = root_tables(variants[0])
+    content = {
+        **tables,
+        "by_flank": root_by_flank(variants, numbers),
+        "stress": root_arrays(variants, numbers, positions),
+    }
+    return Outcome(content, _summary(content["by_flank"]))
 
 
-def passing(body: str, flank: GearFlank, loads: Mapping[str, NDArray]) -> RootStress:
-    """Root stress of one body under the loads of stage contact on its flank.
+def passing(body: str, flank: GearFlank, loads: Mapping[str, NDArray], variant: int = 0) -> RootStress:
+    """Root stress of one body under the loads of stage contact on its flank, of one of its variants.
 
     What presses on its fillet is left out: the gauges below would read the dent. Raises ConfigError where its
     fillets carry no gauges.
     """
     if flank.gauges is None:
         raise ConfigError("contact.root_stress", False, "true, for root stress")
+    loaded = loads[f"{body}_tooth"]
     return superposed.root_stress(
         flank.compliance.readings,
-        loads_by_tooth(loads, body, flank.side.flank_rows * flank.side.shape[1]),
+        loads_by_tooth(loads, body, flank.side.flank_rows * flank.side.shape[1], variant),
         np.unique(loads["torque_n_m"]),
         np.unique(loads["position"]),
         flank.gauges.along(body),
         flank.gauges.tangent_angle,
         flank.gauges.error,
+        np.arange(loaded.min() - 1, loaded.max() + 2),
     )
 
 

@@ -18,21 +18,28 @@ ROOT_STRESS_COLUMNS = (
 PASSAGE_COLUMNS = ("torque_n_m", "body", "fillet", "passage", "largest_mpa", "smallest_mpa")
 ALONG_FACE_COLUMNS = ("torque_n_m", "body", "fillet", "radius_mm", "largest_mpa", "smallest_mpa")
 
+ROOT_STRESS_BY_FLANK_COLUMNS = ("gear", "flank", *ROOT_STRESS_COLUMNS)
 ROOT_STRESS_ARRAYS = {
     "torque_n_m": (None,),
+    "flank_variant": (2, 2),
     **{
         f"{body}_{name}": shape
         for body in ("pinion", "face_gear")
         for name, shape in (
             ("passage", (None,)),
             ("stress_pa", (None, None, 2, None, None)),
+            ("other_stress_pa", (None, None, None, 2, None, None)),
             ("position_m", (2, None, None, 3)),
             ("tangent_rad", (2, None, None)),
             ("error", (None,)),
         )
     },
 }
-"""Stress over torque, place in the passage, fillet, gauges down the fillet and along the face."""
+"""Stress over torque, place in the passage, fillet, gauges down the fillet and along the face.
+
+`stress_pa` under the first of the assembly errors that flanks meet, `other_stress_pa` under the others;
+`flank_variant` numbers those of each gear (upper, lower) and flank (drive, back).
+"""
 
 SAFETY_COLUMNS = (
     "body",
@@ -108,6 +115,7 @@ SAFETY_FINITE = tuple(
     for name in SAFETY_COLUMNS
     if name not in ("standard_bending_safety", "pitting_safety", "life_hours", "reliability", "reason")
 )
+ROOT_STRESS_BY_FLANK_FINITE = tuple(name for name in ROOT_STRESS_BY_FLANK_COLUMNS if name != "at_30_deg_mpa")
 ROOT_STRESS_FINITE = tuple(name for name in ROOT_STRESS_COLUMNS if name != "at_30_deg_mpa")
 """Columns whose numbers are always finite: life may last for ever, 30 degrees lie beside the gauges, and
 edges may carry all load, where pressure has no limit."""

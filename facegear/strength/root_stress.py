@@ -65,14 +65,15 @@ def root_stress(
     along: Array,
     angle: Array,
     error: Array | None = None,
+    teeth: NDArray[np.int64] | None = None,
 ) -> RootStress:
     """Superpose the readings (2 d + 1, g, c) by the loads {tooth: (t p, c)} of t torques at p positions.
 
     Teeth further apart than d do not feel each other. `along` (b,), `angle` (2, a, b) and `error` (b,) of the
-    gauges as in `RootStress`.
+    gauges as in `RootStress`. `teeth`: those that are read, None for the loaded ones and their neighbours.
     """
     shape, count = angle.shape, len(positions)
-    teeth = np.arange(min(loads) - 1, max(loads) + 2)
+    teeth = np.arange(min(loads) - 1, max(loads) + 2) if teeth is None else teeth
     found = np.zeros((len(torques), len(teeth), count, readings.shape[1]))
     for place in range(count):
         here = {tooth: force[place::count] for tooth, force in loads.items()}

@@ -1,15 +1,17 @@
 """Tables of root stress: peaks with their places, histories over a passage, distributions along the face."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from facegear.geometry.flank_errors import FLANKS, GEARS
 from facegear.strength.columns import (
     ALONG_FACE_COLUMNS,
     FILLETS,
     PASSAGE_COLUMNS,
+    ROOT_STRESS_BY_FLANK_COLUMNS,
     ROOT_STRESS_COLUMNS,
 )
 from facegear.strength.root_stress import RootStress, down_the_fillet
@@ -68,27 +70,58 @@ def _at_angle(fine: NDArray[np.float64], angle: NDArray[np.float64], wanted: flo
     return float(np.nanmax(found)) if len(found) > 1 else np.nan
 
 
+def root_by_flank(
+    variants: Sequence[Mapping[str, RootStress]], flank_variant: NDArray[np.int64]
+) -> pd.DataFrame:
+    """`summary` for both flanks of both gears, columns as ROOT_STRESS_BY_FLANK_COLUMNS.
+
+    `variants`: root stress of each body under each of the errors that flanks meet; `flank_variant`
+    (gears, flanks) numbers them.
+    """
+    summaries = [root_tables(found)["summary"] for found in variants]
+    parts = [
+        summaries[int(number)].assign(gear=GEARS[row], flank=FLANKS[column])
+        for (row, column), number in np.ndenumerate(flank_variant)
+    ]
+    return pd.concat(parts, ignore_index=True)[list(ROOT_STRESS_BY_FLANK_COLUMNS)]
+
+
 def root_arrays(
-    found: Mapping[str, RootStress], positions: Mapping[str, NDArray[np.float64]]
+    variants: Sequence[Mapping[str, RootStress]],
+    flank_variant: NDArray[np.int64],
+    positions: Mapping[str, NDArray[np.float64]],
 ) -> dict[str, NDArray]:
-    """All of it as ROOT_STRESS_ARRAYS; `positions` (2, a, b, 3) of the gauges of each body, m."""
-    arrays: dict[str, NDArray] = {"torque_n_m": next(iter(found.values())).torques}
-    for body, root in found.items():
+    """All of it as ROOT_STRESS_ARRAYS; `positions` (2, a, b, 3) of the gauges of each body, m.
+
+    `variants` and `flank_variant` as in `root_by_flank`.
+    """
+    first, *others = variants
+    arrays: dict[str, NDArray] = {
+        "torque_n_m": next(iter(first.values())).torques,
+        "flank_variant": np.asarray(flank_variant),
+    }
+    for body, root in first.items():
         arrays[f"{body}_passage"] = root.passage
         arrays[f"{body}_stress_pa"] = root.stress
+        more = [other[body].stress for other in others]
+        arrays[f"{body}_other_stress_pa"] = np.reshape(more, (len(more), *root.stress.shape))
         arrays[f"{body}_position_m"] = positions[body]
         arrays[f"{body}_tangent_rad"] = root.angle
         arrays[f"{body}_error"] = root.error
     return arrays
 
 
-def root_from_arrays(arrays: Mapping[str, NDArray], body: str) -> RootStress:
-    """Root stress of a body from ROOT_STRESS_ARRAYS."""
+def root_from_arrays(
+    arrays: Mapping[str, NDArray], body: str, gear: str = "upper", flank: str = "drive"
+) -> RootStress:
+    """Root stress of a body by the loads of a gear's drive or back flank, from ROOT_STRESS_ARRAYS."""
     x, y, _ = np.moveaxis(arrays[f"{body}_position_m"], -1, 0)
+    variant = int(arrays["flank_variant"][GEARS.index(gear), FLANKS.index(flank)])
+    stress = arrays[f"{body}_stress_pa"] if variant == 0 else arrays[f"{body}_other_stress_pa"][variant - 1]
     return RootStress(
         torques=arrays["torque_n_m"],
         passage=arrays[f"{body}_passage"],
-        stress=arrays[f"{body}_stress_pa"],
+        stress=stress,
         along=(y if body == "pinion" else np.hypot(x, y)).mean(axis=(0, 1)),
         angle=arrays[f"{body}_tangent_rad"],
         error=arrays[f"{body}_error"],

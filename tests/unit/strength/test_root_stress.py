@@ -30,6 +30,8 @@ from facegear.transmission.flanks import flank_places, stiffness_series
 
 TORQUES, POSITIONS = np.array([100.0, 300.0]), np.array([0.0, 0.5])
 GRID = (2, 4, 3)
+ALIKE = np.zeros((2, 2), int)
+"""Flanks of both gears without assembly errors."""
 ERROR = np.array([0.02, 0.01, 0.03])
 
 
@@ -146,7 +148,7 @@ def test_the_file_for_paraview_holds_points_quadrilaterals_and_stress(tmp_path):
     _, root = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
     position = np.random.default_rng(2).normal(size=(*GRID, 3))
     both = {"pinion": root, "face_gear": root}
-    points, cells, told = stress_surface(root_arrays(both, dict.fromkeys(both, position)))
+    points, cells, told = stress_surface(root_arrays([both], ALIKE, dict.fromkeys(both, position)))
     write_vtu(tmp_path / "stress.vtu", points, cells, told)
     stored = vtu_arrays(tmp_path / "stress.vtu")
     np.testing.assert_array_equal(stored["Points"].reshape(-1, 3), points)
@@ -160,7 +162,8 @@ def test_the_file_for_paraview_holds_points_quadrilaterals_and_stress(tmp_path):
 def test_surface_for_paraview_shows_the_largest_and_smallest_stress_of_every_gauge():
     _, root = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
     position = np.random.default_rng(2).normal(size=(*GRID, 3))
-    arrays = root_arrays({"pinion": root, "face_gear": root}, {"pinion": position, "face_gear": 2 * position})
+    both = {"pinion": root, "face_gear": root}
+    arrays = root_arrays([both], ALIKE, {"pinion": position, "face_gear": 2 * position})
     points, cells, told = stress_surface(arrays)
     assert len(points) == 2 * np.prod(GRID)
     assert len(cells["quad"]) == 2 * 2 * (GRID[1] - 1) * (GRID[2] - 1)

@@ -1,0 +1,34 @@
+"""The assembly errors that each flank of each face gear meets, of a pinion displaced as the config says.
+
+The errors of a design are those that the upper gear's drive flank meets. The lower gear sees the same pinion
+turned half round its axis: its offset and its tilt change sign, while a shift of a gear leads away from the
+pinion on either side. The back flank is the drive flank of the pair in a mirror, whose offset changes sign.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.geometry.design import Assembly
+
+GEARS = ("upper", "lower")
+FLANKS = ("drive", "back")
+
+
+def errors_at(errors: Assembly, gear: str, flank: str) -> Assembly:
+    """Errors that `flank` (drive or back) of the upper or lower `gear` meets, as those of a drive flank."""
+    side = 1.0 if gear == "upper" else -1.0
+    mirror = 1.0 if flank == "drive" else -1.0
+    return replace(
+        errors,
+        offset=side * mirror * errors.offset,
+        shaft_angle_error=side * errors.shaft_angle_error,
+    )
+
+
+def distinct_errors(errors: Assembly) -> tuple[list[Assembly], NDArray[np.int64]]:
+    """The different ones of all flanks, those of the design first, and which (gears, flanks) each meets."""
+    met = [errors_at(errors, gear, flank) for gear in GEARS for flank in FLANKS]
+    different = list(dict.fromkeys(met))
+    return different, np.array([different.index(one) for one in met]).reshape(len(GEARS), len(FLANKS))
