@@ -10,15 +10,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.integrator.compiled import TAU, Packed, pack
-from facegear.dynamics.integrator.periods import make_log, run_periods
-from facegear.dynamics.integrator.work import make_work
+from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings, State
-from facegear.dynamics.steady_state.orbits import require
 from facegear.dynamics.steady_state.prepare import prepare
-from facegear.dynamics.steady_state.simulate import Model, by_phase, static_start
+from facegear.dynamics.steady_state.simulate import Model, static_start
 from facegear.harmonics.series import stacked, stacked_values
-from facegear.transmission.flanks import error_series, slow_errors, stiffness_series
+from facegear.transmission.flanks import error_series, slow_errors
 from facegear.transmission.machine import mesh_frequency
 
 Array = NDArray[np.float64]
@@ -64,21 +62,22 @@ def follow(
     prepare(model.system.ring_play.size > 0)
     settings = settings or Settings()
     frequency = TAU * mesh_frequency(model.machine.layout, speed_rpm)
-    packed = pack(model.system, frequency)
+    integrator = Integrator(model.system, frequency, settings.tolerance, settings.order)
     rest = static_start(model)
     lead, kept = LEAD, min(count, LEAD)
     while True:
-        states = [by_phase(packed, start, frequency) for start in (rest, _apart(model, rest))]
+        starts = [integrator.by_phase(start) for start in (rest, _apart(model, rest))]
         whole = np.arange(first - lead, first + kept)
-        runs = [_run(model, packed, state, whole, positions, settings) for state in states]
-        runs = [run[-kept * positions :] for run in runs]
+        both = [_run(model, integrator, start, whole, positions) for start in starts]
+        runs = [samples[-kept * positions :] for samples, _ in both]
         forces = [_flank_forces(model, run, whole[-kept:], positions) for run in runs]
         memory = float(np.abs(forces[1] - forces[0]).max() / max(forces[0].max(), 1e-300))
         if memory <= FORGOTTEN or lead >= MOST_LEAD:
             break
         lead *= 2
     rest_of_it = np.arange(first + kept, first + count)
-    coordinates = np.concatenate([runs[0], _run(model, packed, states[0], rest_of_it, positions, settings)])
+    later, _ = _run(model, integrator, both[0][1], rest_of_it, positions)
+    coordinates = np.concatenate([runs[0], later])
     whole = np.arange(first, first + count)
     return Followed(
         cycles=_instants(whole, positions),
@@ -99,30 +98,22 @@ def slow_polynomials(model: Model, cycles: NDArray[np.int64]) -> Array:
 
 
 def _run(
-    model: Model, packed: Packed, state: Array, cycles: NDArray[np.int64], positions: int, settings: Settings
-) -> Array:
-    """Samples (cycles * positions, n) of y; `state` (2, padded n) is moved along."""
-    work = make_work(packed, settings.taylor_order)
-    log = make_log(packed, 1, positions)
-    none = np.zeros((0, *state.shape))
-    drifts = np.zeros((cycles.size, NODES, packed.lower.size))
-    slow = slow_polynomials(model, cycles)
-    drifts[:, :, : slow.shape[2]] = slow
-    samples = np.zeros((cycles.size, positions, packed.n))
-    for kept, drift in zip(samples, drifts, strict=True):
-        now = packed._replace(drift=drift)
-        require(run_periods(now, work, state[0], state[1], none, 1, positions, settings.tolerance, log, TAU))
-        kept[:] = log.samples[:, : packed.n]
-    return samples.reshape(-1, packed.n)
+    model: Model, integrator: Integrator, state: Array, cycles: NDArray[np.int64], positions: int
+) -> tuple[Array, Array]:
+    """Samples (cycles * positions, n) of the coordinates from a state (2, n), and the state at the end."""
+    samples = np.zeros((cycles.size, positions, integrator.size))
+    for kept, drift in zip(samples, slow_polynomials(model, cycles), strict=True):
+        result = integrator.run(state, 1, samples=positions, drift=drift)
+        kept[:], state = result.samples, result.state
+    return samples.reshape(-1, integrator.size), state
 
 
 def _flank_forces(model: Model, coordinates: Array, cycles: NDArray[np.int64], positions: int) -> Array:
     machine, flanks = model.machine, model.system.contacts
     at = _instants(cycles, positions)
     error = stacked_values(stacked(error_series(machine)), at) + slow_errors(machine, at)
-    stiffness = stacked_values(stacked(stiffness_series(machine)), at)
     over = coordinates @ model.system.mesh_jacobian[:flanks].T - error - model.system.upper[:flanks]
-    return stiffness * np.maximum(over, 0.0)
+    return model.system.law.force(at, np.maximum(over, 0.0))
 
 
 def _instants(cycles: NDArray[np.int64], positions: int) -> Array:

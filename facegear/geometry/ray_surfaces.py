@@ -8,7 +8,7 @@ point and n a unit direction.
 from math import atan2, hypot, inf, isfinite, isnan, nan, pi, sqrt
 
 from facegear.geometry import closed_forms
-from facegear.machine_code import for_callers
+from facegear.machine_code.compiler import for_callers
 
 NEWTON_STEPS = 40
 LARGEST_STEP = 0.2

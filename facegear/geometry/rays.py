@@ -16,7 +16,7 @@ from facegear.geometry.ray_surfaces import (
     inlined,
     tip_angle,
 )
-from facegear.machine_code import compiler
+from facegear.machine_code.compiler import compiler
 
 NONE, FLANK, FILLET, TIP_LAND, ROOT_LAND = range(5)
 

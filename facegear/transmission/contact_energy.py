@@ -10,11 +10,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.machine_code import compiler
+from facegear import mesh_law
+from facegear.machine_code.compiler import compiler
+from facegear.mesh_law.law import Held
+from facegear.mesh_law.terms import held_force
 
 Array = NDArray[np.float64]
 
-kernel = compiler(Path(__file__).parent, nogil=True, fastmath={"contract"})
+SOURCES = (Path(__file__).parent, Path(str(mesh_law.__file__)).parent)
+kernel = compiler(*SOURCES, nogil=True, fastmath={"contract"})
 
 
 class Springs(NamedTuple):
@@ -70,8 +74,10 @@ def _bearing(springs: Springs, i: int, x: float, y: float) -> tuple[float, float
 
 
 @kernel
-def balance(springs: Springs, stiffness: Array, over: Array, place: Array, gradient: Array) -> float:
-    """Forces out of balance into gradient (n,); the largest single force is returned."""
+def balance(springs: Springs, held: Held, position: int, over: Array, place: Array, gradient: Array) -> float:
+    """Forces out of balance into gradient (n,) at a position of the law; the largest single force is
+    returned.
+    """
     pinions = springs.pinion_bearing.shape[0]
     first = 3 * pinions
     size = 0.0
@@ -90,7 +96,7 @@ def balance(springs: Springs, stiffness: Array, over: Array, place: Array, gradi
         gradient[x + 1] += springs.gear_coupling[g] * place[x]
     for f in range(over.size):
         if over[f] > 0.0:
-            force = stiffness[f] * over[f]
+            force, _ = held_force(held, position, f, over[f])
             size = max(size, force)
             p, g = springs.pinion[f], springs.gear[f] - 3
             for j in range(3):
@@ -103,7 +109,9 @@ def balance(springs: Springs, stiffness: Array, over: Array, place: Array, gradi
 @kernel
 def assemble(
     springs: Springs,
-    stiffness: Array,
+    held: Held,
+    position: int,
+    over: Array,
     closed: Array,
     place: Array,
     gradient: Array,
@@ -137,22 +145,30 @@ def assemble(
         core[x, x + 1] = springs.gear_coupling[g]
     for f in range(closed.size):
         if closed[f] > 0.0:
+            _, stiffness = held_force(held, position, f, max(over[f], 0.0))
             i, g = springs.pinion[f] // 3, springs.gear[f] - first - 3
             for r in range(3):
-                factor = stiffness[f] * springs.jacobian[f, r]
+                factor = stiffness * springs.jacobian[f, r]
                 for c in range(r, 3):
                     blocks[i, r, c] += factor * springs.jacobian[f, c]
                 for b in range(3, springs.jacobian.shape[1]):
                     blocks[i, r, g + 3 + b] += factor * springs.jacobian[f, b]
             for a in range(3, springs.jacobian.shape[1]):
-                factor = stiffness[f] * springs.jacobian[f, a]
+                factor = stiffness * springs.jacobian[f, a]
                 for b in range(a, springs.jacobian.shape[1]):
                     core[g + a, g + b] += factor * springs.jacobian[f, b]
 
 
 @kernel
 def slope_along(
-    springs: Springs, stiffness: Array, over: Array, rate: Array, place: Array, step: Array, share: float
+    springs: Springs,
+    held: Held,
+    position: int,
+    over: Array,
+    rate: Array,
+    place: Array,
+    step: Array,
+    share: float,
 ) -> tuple[float, float]:
     """First and second derivative of the energy along the step."""
     pinions = springs.pinion_bearing.shape[0]
@@ -184,6 +200,7 @@ def slope_along(
     for f in range(over.size):
         depth = over[f] + share * rate[f]
         if depth > 0.0:
-            slope += stiffness[f] * depth * rate[f]
-            curvature += stiffness[f] * rate[f] * rate[f]
+            force, stiffness = held_force(held, position, f, depth)
+            slope += force * rate[f]
+            curvature += stiffness * rate[f] * rate[f]
     return slope, curvature

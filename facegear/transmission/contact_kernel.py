@@ -1,9 +1,10 @@
 """Compiled: where all bodies stand when every flank, bearing and torque is in balance, position by position.
 
-The energy of one-sided flanks, bearings (with a ring of play or without) and torques is convex and, but for
-the rings, quadratic between changes of contact: a semismooth Newton method, each step an active set with its
-equations solved, with an exact line search that makes it global. Pinions touch each other through the gears
-only, so each is eliminated by itself (3 x 3) and the gears remain (4 or 6 unknowns each).
+The energy of one-sided flanks, bearings (with a ring of play or without) and torques is convex and, with a
+linear law and but for the rings, quadratic between changes of contact: a semismooth Newton method, each step
+an active set with its equations solved, with an exact line search that makes it global. Pinions touch each
+other through the gears only, so each is eliminated by itself (3 x 3) and the gears remain (4 or 6 unknowns
+each).
 
 A body that nothing holds may be stopped by a flank that only just closes, by less than its place can be told.
 Such a flank counts as closed in the next step, unless that would pull it open: the search would else stay
@@ -13,6 +14,8 @@ where it is.
 import numpy as np
 from numpy.typing import NDArray
 
+from facegear.mesh_law.law import Held
+from facegear.mesh_law.terms import held_force
 from facegear.transmission.contact_energy import (
     Springs,
     along,
@@ -33,12 +36,13 @@ JUST_CLOSED = 1e-9
 
 @kernel
 def settle_all(
-    springs: Springs, stiffness: Array, gap: Array, tolerance: float, place: Array
+    springs: Springs, held: Held, gap: Array, tolerance: float, place: Array
 ) -> tuple[Array, Array, Array]:
     """Places (K, n), flank forces (K, F), largest imbalance over the largest force (K,).
 
-    stiffness, gap (K, F): force = stiffness max(J q - gap, 0). `place` (n,) is where the first search starts;
-    each later one starts from the one before. A position that is not solved keeps its residual.
+    held: the law of the flanks at K phases; gap (K, F): flanks are pressed in by J q - gap. `place` (n,) is
+    where the first search starts; each later one starts from the one before. A position that is not solved
+    keeps its residual.
     """
     count, flanks = gap.shape
     n = place.size
@@ -51,12 +55,12 @@ def settle_all(
     blocks = np.zeros((springs.pinion_bearing.shape[0], 3, 4 + gears))
     core = np.zeros((gears, gears + 1))
     for k in range(count):
-        stiffest = stiffness[k].max()
+        stiffest = held.stiffness[k].max()
         tie = FIRST_TIE if k == 0 else TIE
         stops[:] = 0.0
         for _ in range(MOST_STEPS):
             penetrate(springs, gap[k], place, over)
-            size = balance(springs, stiffness[k], over, place, gradient)
+            size = balance(springs, held, k, over, place, gradient)
             worst = np.abs(gradient).max()
             residuals[k] = worst / size if size > 0.0 else 0.0
             if worst <= tolerance * size:
@@ -65,7 +69,7 @@ def settle_all(
                 for f in range(flanks):
                     closed[f] = 1.0 if over[f] > 0.0 else stops[f]
                 _newton_step(
-                    springs, stiffness[k], closed, place, gradient, tie * stiffest, blocks, core, step
+                    springs, held, k, over, closed, place, gradient, tie * stiffest, blocks, core, step
                 )
                 along(springs, step, rate)
                 if (stops * rate).min() >= 0.0:
@@ -74,14 +78,15 @@ def settle_all(
             tie = max(0.1 * tie, TIE)
             # Forces below the tolerance are no reason to go on: a free body would slide, the others with it.
             noise = tolerance * size * np.abs(step).sum()
-            share = _line_minimum(springs, stiffness[k], over, rate, place, step, noise)
+            share = _line_minimum(springs, held, k, over, rate, place, step, noise)
             for f in range(flanks):
                 near = over[f] + share * rate[f] >= -JUST_CLOSED * rate[f]
                 stops[f] = 1.0 if over[f] <= 0.0 and rate[f] > 0.0 and near else 0.0
             for j in range(n):
                 place[j] += share * step[j]
         for f in range(flanks):
-            forces[k, f] = stiffness[k, f] * max(over[f], 0.0)
+            if over[f] > 0.0:
+                forces[k, f], _ = held_force(held, k, f, over[f])
         places[k] = place
     return places, forces, residuals
 
@@ -89,7 +94,9 @@ def settle_all(
 @kernel
 def _newton_step(
     springs: Springs,
-    stiffness: Array,
+    held: Held,
+    position: int,
+    over: Array,
     closed: Array,
     place: Array,
     gradient: Array,
@@ -102,7 +109,7 @@ def _newton_step(
 
     blocks (P, 3, 4 + gears) holds each pinion's 3 x 3, its coupling to the gears and its right side.
     """
-    assemble(springs, stiffness, closed, place, gradient, tie, blocks, core)
+    assemble(springs, held, position, over, closed, place, gradient, tie, blocks, core)
     gears = core.shape[0]
     wide = blocks.shape[2]
     for i in range(blocks.shape[0]):
@@ -159,7 +166,8 @@ def _solve_core(core: Array, out: Array) -> None:
 @kernel
 def _line_minimum(
     springs: Springs,
-    stiffness: Array,
+    held: Held,
+    position: int,
     over: Array,
     rate: Array,
     place: Array,
@@ -167,8 +175,8 @@ def _line_minimum(
     noise: float,
 ) -> float:
     """Where the energy is least along the step: 1 as long as no contact changes."""
-    start, _ = slope_along(springs, stiffness, over, rate, place, step, 0.0)
-    slope, curvature = slope_along(springs, stiffness, over, rate, place, step, 1.0)
+    start, _ = slope_along(springs, held, position, over, rate, place, step, 0.0)
+    slope, curvature = slope_along(springs, held, position, over, rate, place, step, 1.0)
     close = 1e-9 * abs(start) + noise
     if start >= 0.0 or abs(slope) <= close:
         return 1.0
@@ -176,14 +184,14 @@ def _line_minimum(
     while slope < 0.0 and high < 1e30:
         low, high = high, 2.0 * high
         share = high
-        slope, curvature = slope_along(springs, stiffness, over, rate, place, step, share)
+        slope, curvature = slope_along(springs, held, position, over, rate, place, step, share)
     for _ in range(200):
         if abs(slope) <= close or high - low <= 1e-15 * high:
             break
         share = share - slope / curvature if curvature > 0.0 else low
         if not low < share < high:
             share = 0.5 * (low + high)
-        slope, curvature = slope_along(springs, stiffness, over, rate, place, step, share)
+        slope, curvature = slope_along(springs, held, position, over, rate, place, step, share)
         if slope < 0.0:
             low = share
         else:

@@ -1,6 +1,6 @@
-"""Gap, stiffness and error of every flank: all drive flanks, then all back flanks.
+"""Gap, force law and error of every flank: all drive flanks, then all back flanks.
 
-    drive: d = t + s - e_t - e_s,   back: d = -t + s + e_t - e_s,   force k max(d - b, 0)
+    drive: d = t + s - e_t - e_s,   back: d = -t + s + e_t - e_s,   force law(phase, max(d - b, 0))
 
 A pinion or tooth out of place moves both flanks by the same tangential and separating parts as a motion
 would. A tooth's own error and stiffness are the drive flank's mirror image on the back flank: f_back(p) =
@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.harmonics.series import Harmonics
+from facegear.mesh_law.law import MeshLaw
+from facegear.mesh_law.linear import linear_law
 from facegear.transmission.assembly import assembly
 from facegear.transmission.layout import Layout, Side
 from facegear.transmission.machine import Machine
@@ -36,6 +38,26 @@ def stiffness_series(machine: Machine) -> list[Harmonics]:
     """k of every flank over the reference's mesh cycle, N/m."""
     factors = machine.imperfections.stiffness
     return _both([machine.stiffness.scaled(float(factor)) for factor in factors], machine.phases)
+
+
+def contact_law(machine: Machine) -> MeshLaw:
+    """The law of every contact: of all drive flanks, then all back flanks, or of the meshes whose two flanks
+    share one line of action.
+    """
+    return flank_law(machine) if machine.layout.is_geometric else line_law(machine)
+
+
+def flank_law(machine: Machine) -> MeshLaw:
+    """The law of all drive flanks, then all back flanks: the machine's own, or else its mesh stiffness."""
+    return linear_law(stiffness_series(machine)) if machine.law is None else machine.law
+
+
+def line_law(machine: Machine) -> MeshLaw:
+    """The law of meshes whose two flanks share one line of action, as equation (13) is printed."""
+    if machine.law is not None:
+        return machine.law
+    lags = np.round(machine.phases, 12) % 1.0
+    return linear_law([machine.stiffness.shifted(float(lag)) for lag in lags])
 
 
 def error_series(machine: Machine) -> list[Harmonics]:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
+from facegear.mesh_law.law import MeshLaw
 from facegear.transmission.imperfections import Imperfections, perfect
 from facegear.transmission.layout import DOF_PER_BODY, Layout, Role, Side
 from facegear.transmission.phases import PhaseConvention, mesh_phases
@@ -43,7 +44,9 @@ class Machine:
 
     `error` is a Fourier series in m on the reference mesh; each mesh lags by its `error_lags` (meshes,), in
     mesh periods, or by its stiffness phase if there are none. `imperfections` default to none. `forces`
-    (bodies, 3): external ones on the bodies along x, y, z, N, none by default.
+    (bodies, 3): external ones on the bodies along x, y, z, N, none by default. `law`: of all contacts, see
+    facegear.transmission.flanks.contact_law; without one their force is the stiffness times how far they are
+    pressed in, and with one `stiffness` is only the scale of it.
     """
 
     layout: Layout
@@ -56,6 +59,7 @@ class Machine:
     error_lags: NDArray[np.float64] | None = None
     imperfections: Imperfections = None  # type: ignore[assignment]
     forces: NDArray[np.float64] = None  # type: ignore[assignment]
+    law: MeshLaw | None = None
 
     def __post_init__(self) -> None:
         if self.imperfections is None:

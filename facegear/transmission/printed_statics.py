@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from facegear.mesh_law.law import MeshLaw
+from facegear.transmission.flanks import line_law
 from facegear.transmission.machine import Machine
 from facegear.transmission.matrices import bearing_matrix, mesh_directions
 
@@ -18,11 +20,20 @@ FIRST_SPRING, LAST_SPRING, ROUNDS = 1e-2, 1e-12, 41
 MORE_ROUNDS = 20
 FARTHEST = 2.0**60
 """How many steps ahead a line is looked along."""
+STRAIGHT = 1e-10
+"""A slope is zero to this fraction of what it is at the start."""
+NO_PHASE = np.zeros(1)
+"""The phase at which a law is asked that depends on none."""
 
 
-def dead_zone(deflections: NDArray[np.float64], half_width: float) -> NDArray[np.float64]:
+def _beyond(deflections: NDArray[np.float64], half_width: float) -> NDArray[np.float64]:
     """f(d) of equation (19), any shape."""
-    return np.sign(deflections) * np.maximum(np.abs(deflections) - half_width, 0.0)
+    return np.asarray(deflections - np.minimum(np.maximum(deflections, -half_width), half_width))
+
+
+def _forces(law: MeshLaw, deflections: NDArray[np.float64], half_width: float) -> NDArray[np.float64]:
+    """Forces of deflections (..., meshes), with a law that depends on no phase."""
+    return law.force(NO_PHASE, _beyond(deflections, half_width)[..., None, :])[..., 0, :]
 
 
 def printed_equilibrium(
@@ -33,11 +44,12 @@ def printed_equilibrium(
     Minimises the elastic energy less the work of the torques (convex: the dead zone only flattens it).
     """
     directions = mesh_directions(machine.layout)
+    law = line_law(machine)
     if cycles is None:
-        stiffness = np.full(len(directions), machine.stiffness.mean)
+        law = law.mean()
         error = np.zeros(len(directions))
     else:
-        stiffness = machine.stiffness(cycles - machine.phases)
+        law = law.at_phase(cycles)
         error = machine.error(cycles - machine.error_phases)
     bearing = bearing_matrix(machine.layout)
     applied = machine.applied
@@ -46,22 +58,24 @@ def printed_equilibrium(
     scale[machine.layout.spins] = 1.0 / machine.layout.pinion_radius
     scaled = _Springs(
         directions * scale,
-        stiffness,
+        law,
         error,
         bearing * np.outer(scale, scale),
         applied * scale,
         machine.half_backlash,
     )
     solution = _minimise(scaled)
-    return scale * solution, scaled.deflections(solution), scaled.forces(solution), stiffness
+    return scale * solution, scaled.deflections(solution), scaled.forces(solution), law.steepest
 
 
 @dataclass(frozen=True, eq=False)
 class _Springs:
-    """Meshes and bearings in scaled displacements: directions (meshes, q), bearing (q, q), others by one."""
+    """Meshes and bearings in scaled displacements: directions (meshes, q), bearing (q, q), others by one. The
+    law does not depend on the phase.
+    """
 
     directions: NDArray[np.float64]
-    stiffness: NDArray[np.float64]
+    law: MeshLaw
     error: NDArray[np.float64]
     bearing: NDArray[np.float64]
     applied: NDArray[np.float64]
@@ -71,14 +85,14 @@ class _Springs:
         return self.directions @ q - self.error
 
     def forces(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
-        return self.stiffness * dead_zone(self.deflections(q), self.half_width)
+        return _forces(self.law, self.deflections(q), self.half_width)
 
     def balance(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
         return self.bearing @ q + self.directions.T @ self.forces(q) - self.applied
 
     def curvature(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
-        active = np.where(np.abs(self.deflections(q)) > self.half_width, self.stiffness, 0.0)
-        return self.bearing + (self.directions.T * active) @ self.directions
+        slope = self.law.slope(NO_PHASE, _beyond(self.deflections(q), self.half_width)[None])[0]
+        return self.bearing + (self.directions.T * slope) @ self.directions
 
     def along(
         self, q: NDArray[np.float64], step: NDArray[np.float64], tie: float, anchor: NDArray[np.float64]
@@ -90,33 +104,34 @@ class _Springs:
             rise=float((self.bearing @ step + tie * step) @ step),
             deflections=self.deflections(q),
             rates=self.directions @ step,
-            stiffness=self.stiffness,
+            law=self.law,
             half_width=self.half_width,
         )
 
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """Slope of the energy along a line: constant + rise s + sum of rates k f(deflections + s rates)."""
+    """Slope of the energy along a line: constant + rise s + sum of rates F(deflections + s rates)."""
 
     constant: float
     rise: float
     deflections: NDArray[np.float64]
     rates: NDArray[np.float64]
-    stiffness: NDArray[np.float64]
+    law: MeshLaw
     half_width: float
 
     def slopes(self, s: NDArray[np.float64]) -> NDArray[np.float64]:
         """The slope at some places (K,)."""
-        forces = self.stiffness * dead_zone(self.deflections + s[:, None] * self.rates, self.half_width)
+        forces = _forces(self.law, self.deflections + s[:, None] * self.rates, self.half_width)
         return np.asarray(self.constant + self.rise * s + forces @ self.rates)
 
     def corners(self) -> NDArray[np.float64]:
-        """Where a mesh meets or leaves an edge ahead, in order, with the two ends of the line: between two
-        of them the slope is straight.
+        """Where a mesh passes a level of its law ahead, in order, with the two ends of the line: between two
+        of them the slope is smooth, and straight if the law is linear.
         """
         moving = self.rates != 0.0
-        edges = np.array([[self.half_width], [-self.half_width]])
+        levels = self.half_width + self.law.levels[:, moving]
+        edges = np.concatenate([levels, -levels])
         with np.errstate(over="ignore"):  # an edge that is met at infinity is not ahead
             at = ((edges - self.deflections[moving]) / self.rates[moving]).ravel()
         inside = np.sort(at[(at > 0.0) & (at < FARTHEST)])
@@ -131,8 +146,34 @@ class Line:
         if slopes[-1] <= 0.0:
             return FARTHEST
         after = int(np.argmax(slopes > 0.0))
-        low, high = slopes[after - 1 : after + 1]
-        return float(at[after - 1] + (at[after] - at[after - 1]) * (low / (low - high)))
+        close = STRAIGHT * abs(float(slopes[0]))
+        return self._zero(at[after - 1], at[after], slopes[after - 1], slopes[after], close)
+
+    def _zero(self, low: float, high: float, below: float, above: float, close: float) -> float:
+        """The zero between two corners, by one step where the slope is straight there, else by the Illinois
+        method (Dowell and Jarratt 1971).
+        """
+        side = 0
+        for _ in range(MAX_ITERATIONS):
+            s = float(low + (high - low) * (below / (below - above)))
+            if self.law.straight:
+                break
+            value = float(self.slopes(np.array([s]))[0])
+            if abs(value) <= close + self._noise(s) or not low < s < high:
+                break
+            if value < 0.0:
+                low, below, above = s, value, 0.5 * above if side < 0 else above
+                side = -1
+            else:
+                high, above, below = s, value, 0.5 * below if side > 0 else below
+                side = 1
+        return s
+
+    def _noise(self, s: float) -> float:
+        """What rounding makes of the slope at a point."""
+        forces = _forces(self.law, self.deflections + s * self.rates, self.half_width)
+        size = abs(self.constant) + abs(self.rise * s) + np.abs(forces * self.rates).sum()
+        return 100.0 * float(np.finfo(float).eps * size)
 
 
 def _minimise(springs: _Springs) -> NDArray[np.float64]:
@@ -142,7 +183,7 @@ def _minimise(springs: _Springs) -> NDArray[np.float64]:
     the force in the springs goes to zero as the rounds settle.
     """
     size = np.abs(springs.applied).max()
-    stiffest = max(springs.stiffness.max(), springs.bearing.max())
+    stiffest = max(springs.law.steepest.max(), springs.bearing.max())
     place = np.zeros(springs.applied.size)
     for tie in stiffest * np.geomspace(FIRST_SPRING, LAST_SPRING, ROUNDS):
         last = place

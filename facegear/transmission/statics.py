@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.harmonics.series import stacked, stacked_values
+from facegear.mesh_law.law import Held
 from facegear.transmission.balance import balance, bearing_loads
 from facegear.transmission.contact_energy import Springs
 from facegear.transmission.contact_kernel import settle_all
@@ -18,8 +19,8 @@ from facegear.transmission.flanks import (
     constant_errors,
     error_series,
     flank_gaps,
+    flank_law,
     slow_errors,
-    stiffness_series,
 )
 from facegear.transmission.layout import DOF_PER_BODY, Layout
 from facegear.transmission.machine import Machine
@@ -87,28 +88,27 @@ def equilibria(machine: Machine, cycles: Array) -> Equilibria:
     errors = constant_errors(machine) + stacked_values(stacked(error_series(machine)), cycles)
     if machine.imperfections.any_slow:
         errors += slow_errors(machine, cycles)
-    stiffness = stacked_values(stacked(stiffness_series(machine)), cycles)
-    return settle(machine, stiffness, errors, [f"mesh position {at:.4f}" for at in cycles])
+    held = flank_law(machine).held(cycles)
+    return settle(machine, held, errors, [f"mesh position {at:.4f}" for at in cycles])
 
 
 def mean_equilibrium(machine: Machine) -> Equilibria:
-    """Equilibrium with mean stiffness and constant errors alone. Raises NotConverged."""
-    factors = np.tile(machine.imperfections.stiffness, 2)
-    errors = constant_errors(machine)
-    return settle(machine, machine.stiffness.mean * factors[None], errors[None], ["mean stiffness"])
+    """Equilibrium with the mean law and constant errors alone. Raises NotConverged."""
+    held = flank_law(machine).mean().held(np.zeros(1))
+    return settle(machine, held, constant_errors(machine)[None], ["mean stiffness"])
 
 
-def settle(machine: Machine, stiffness: Array, errors: Array, names: list[str]) -> Equilibria:
-    """Equilibrium for stiffness and errors of every flank, each (K, 2 meshes). Raises NotConverged."""
+def settle(machine: Machine, held: Held, errors: Array, names: list[str]) -> Equilibria:
+    """Equilibrium for the law of the flanks held at K phases, see facegear.mesh_law.law.MeshLaw.held, and
+    errors (K, 2 meshes) of theirs. Raises NotConverged.
+    """
     springs, kept, scale = static_springs(machine)
     gaps = errors + flank_gaps(machine)
     start = np.zeros(kept.size)
-    places, forces, _ = settle_all(
-        springs, np.ascontiguousarray(stiffness), np.ascontiguousarray(gaps), TOLERANCE, start
-    )
+    places, forces, _ = settle_all(springs, held, np.ascontiguousarray(gaps), TOLERANCE, start)
     displacements = np.zeros((len(gaps), machine.layout.dof))
     np.add.at(displacements.T, kept, (places * scale).T)
-    checked = balance(machine, displacements, forces, stiffness, gaps)
+    checked = balance(machine, displacements, forces, held.stiffness, gaps)
     checked.require(ACCEPTED, names)
     drive, back = np.split(displacements @ flank_directions(machine.layout).T - errors, 2, axis=1)
     return Equilibria(displacements, 0.5 * (drive - back), forces, checked.residual)

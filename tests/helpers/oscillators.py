@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from facegear.dynamics.integrator.system import Piecewise, System
+from facegear.dynamics.integrator.system import System
+from facegear.mesh_law.linear import LinearLaw, Piecewise
 
 
 def one_degree(
@@ -22,15 +23,13 @@ def one_degree(
         mesh_damping=np.array([contact_damping]),
         lower=np.array([lower]),
         upper=np.array([upper]),
-        stiffness=np.array([stiffness], dtype=float),
-        stiffness_kind=np.zeros(1, dtype=int),
+        law=LinearLaw(np.array([stiffness], dtype=float), np.zeros(1, dtype=int), pieces),
         error=np.zeros((1, 2, 1)),
         error_kind=np.zeros(1, dtype=int),
         load=np.array([load], dtype=float),
         damping_when_open=contact_damping == 0.0,
         push_only=push_only,
         scale=1.0,
-        pieces=pieces,
     )
 
 
@@ -75,14 +74,12 @@ def two_coordinates() -> System:
         mesh_damping=np.zeros(1),
         lower=np.zeros(1),
         upper=np.zeros(1),
-        stiffness=np.zeros((1, 2, 1)),
-        stiffness_kind=np.zeros(1, dtype=int),
+        law=LinearLaw(np.zeros((1, 2, 1)), np.zeros(1, dtype=int), (square_wave(0.4),)),
         error=np.zeros((1, 2, 1)),
         error_kind=np.zeros(1, dtype=int),
         load=load,
         damping_when_open=True,
         scale=1.0,
-        pieces=(square_wave(0.4),),
     )
 
 

@@ -18,8 +18,9 @@ MAY_IMPORT = {
     "mesh": {"geometry"},
     "contact": {"geometry", "mesh", "harmonics"},
     "stiffness": {"harmonics"},
-    "transmission": {"harmonics"},
-    "dynamics": {"transmission", "harmonics"},
+    "mesh_law": {"harmonics"},
+    "transmission": {"harmonics", "mesh_law"},
+    "dynamics": {"transmission", "harmonics", "mesh_law"},
     "load_sharing": {"dynamics", "transmission", "harmonics"},
     "config": {
         *("geometry", "mesh", "contact", "harmonics", "stiffness", "transmission", "dynamics"),

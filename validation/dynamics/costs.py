@@ -9,11 +9,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from facegear.dynamics.integrator.compiled import TAU, pack
-from facegear.dynamics.integrator.periods import make_log, run_periods
-from facegear.dynamics.integrator.work import make_work
+from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.orbits import require
 from facegear.dynamics.steady_state.simulate import Model, build_model, simulate, static_start
 from facegear.dynamics.sweeps.plan import SweepPlan
 from facegear.dynamics.sweeps.sweep import Piece, collect, run_speeds
@@ -116,21 +114,15 @@ def scaling_costs(machine: Machine, speed_rpm: float) -> pd.DataFrame:
 def _period_cost(model: Model, frequency: float) -> tuple[float, float]:
     """CPU seconds and steps of a mesh period at the sweep's tolerance, once the start is forgotten."""
     settings = Settings(tolerance=3e-5)
-    packed = pack(model.system, frequency)
-    work = make_work(packed, settings.taylor_order)
-    start = static_start(model)
-    displacement, velocity = np.zeros((2, packed.omega_squared.size))
-    displacement[: packed.n] = start.displacement
-    none = np.zeros((0, 2, displacement.size))
+    integrator = Integrator(model.system, frequency, settings.tolerance)
+    state = integrator.by_phase(static_start(model))
     times = []
     for periods in (100, COST_PERIODS, COST_PERIODS, COST_PERIODS):
-        log = make_log(packed, periods)
         begin = time.process_time()
-        require(
-            run_periods(packed, work, displacement, velocity, none, periods, 0, settings.tolerance, log, TAU)
-        )
+        result = integrator.run(state, periods)
         times.append((time.process_time() - begin) / periods)
-    return min(times[1:]), float(log.steps[0]) / COST_PERIODS
+        state = result.state
+    return min(times[1:]), result.steps / COST_PERIODS
 
 
 def resized(machine: Machine, count: int, harmonics: int) -> Machine:

@@ -18,6 +18,7 @@ from facegear.dynamics.integrator.compiled import LEAST_CLEARANCE, TAU
 from facegear.dynamics.integrator.kernel import kernel
 from facegear.dynamics.integrator.system import System
 from validation.dynamics.problems import SAMPLES, Problem
+from validation.dynamics.right_side import linear
 
 Array = NDArray[np.float64]
 EDGE = 1e-13
@@ -46,7 +47,7 @@ class Scaled:
 
 def scaled(system: System) -> Scaled:
     """Scale a system. Raises ValueError for what the comparison has no use for."""
-    if system.pieces or not system.damping_when_open:
+    if linear(system).pieces or not system.damping_when_open:
         raise ValueError("neither stiffness in pieces nor damping in contact only is set up here")
     unit = system.scale / np.abs(system.mesh_jacobian).max(axis=0)
     kept = np.where(
@@ -79,7 +80,8 @@ def expressions(heyoka: Any, problem: Problem, units: Scaled) -> Expressions:
     meshes, n = units.jacobian.shape
     places = [heyoka.make_vars(f"u{k}") for k in range(n)]
     rates = [heyoka.make_vars(f"v{k}") for k in range(n)]
-    stiffness = [_series(heyoka, row / w**2) for row in system.stiffness]
+    law = linear(system)
+    stiffness = [_series(heyoka, row / w**2) for row in law.fourier]
     deflections, forces = [], []
     for m in range(meshes):
         error = _series(heyoka, -units.error[m])
@@ -89,7 +91,7 @@ def expressions(heyoka: Any, problem: Problem, units: Scaled) -> Expressions:
         if units.lower[m] < units.upper[m]:
             beyond = heyoka.par[2 * m] * deflections[m] - heyoka.par[2 * m + 1]
         rate = _weighted(heyoka, units.jacobian[m], rates, error_rate)
-        forces.append(stiffness[system.stiffness_kind[m]] * beyond + system.mesh_damping[m] / w * rate)
+        forces.append(stiffness[law.kind[m]] * beyond + system.mesh_damping[m] / w * rate)
     equations = list(zip(places, rates, strict=True))
     for k in range(n):
         own = _series(heyoka, system.load[k] / (w**2 * units.unit[k]))

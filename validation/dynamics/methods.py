@@ -13,11 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from facegear.dynamics.integrator.compiled import TAU, Packed, pack
-from facegear.dynamics.integrator.periods import make_log, run_periods
-from facegear.dynamics.integrator.work import make_work
-from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.orbits import monodromy, require
+from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.steady_state.orbits import monodromy
 from validation.dynamics import heyoka_peer
 from validation.dynamics.problems import SAMPLES, Compared, Problem
 from validation.dynamics.right_side import compiled_right_side, fixed_rk4, plain_right_side
@@ -43,13 +41,10 @@ class Method:
     together: int = 1
 
 
-def start_of(packed: Packed, problem: Problem) -> Array:
-    """Padded start (2, width): coordinates, and rates by phase."""
-    n = problem.system.size
-    z = np.zeros((2, packed.omega_squared.size))
-    z[0, :n] = problem.start.displacement
-    z[1, :n] = problem.start.velocity / problem.frequency
-    return z
+def prepared(problem: Problem, tolerance: float = 1e-2, order: int | None = None) -> tuple[Integrator, Array]:
+    """Our integrator and the start (2, n): coordinates, and rates by phase."""
+    integrator = Integrator(problem.system, problem.frequency, tolerance, order)
+    return integrator, integrator.by_phase(problem.start)
 
 
 def limited(derivative: Callable[[float, Array], Array], problem: Problem) -> Callable[[float, Array], Array]:
@@ -72,39 +67,30 @@ def ours(problem: Problem, tolerance: float) -> Array:
 
 def prepare_ours(problem: Problem, tolerance: float) -> Run:
     """Taylor steps with located contact switches."""
-    packed = pack(problem.system, problem.frequency)
-    start = start_of(packed, problem)
-    log = make_log(packed, problem.periods, SAMPLES)
-    work = make_work(packed, Settings(tolerance=tolerance).taylor_order)
-    none = np.zeros((0, *start.shape))
+    integrator, start = prepared(problem, tolerance)
 
     def run() -> Array:
-        place, rate = start.copy()
-        status = run_periods(packed, work, place, rate, none, problem.periods, SAMPLES, tolerance, log, TAU)
-        require(status)
-        return log.samples[:, : packed.n]
+        return integrator.run(start, problem.periods, samples=SAMPLES).samples
 
     return run
 
 
 def our_tangents(problem: Problem, tolerance: float) -> Run:
     """Our tangents: derivatives (2 n, 2 n) of coordinates and rates after the periods by the first ones."""
-    packed = pack(problem.system, problem.frequency)
-    start = start_of(packed, problem)
-    work = make_work(packed, Settings(tolerance=tolerance).taylor_order)
+    integrator, start = prepared(problem, tolerance)
 
     def run() -> Array:
-        return monodromy(packed, work, start[0], start[1], problem.periods, tolerance)[2]
+        return monodromy(integrator, start, problem.periods)[0]
 
     return run
 
 
 def rk4(problem: Problem, steps: float) -> Run:
     """Fixed steps, all compiled, no event location."""
-    packed = pack(problem.system, problem.frequency)
-    start = start_of(packed, problem).ravel()
+    integrator, state = prepared(problem, order=2)
+    packed, work, start = integrator.packed, integrator.work, integrator.padded(state).ravel()
     out = np.empty((problem.periods * SAMPLES, start.size))
-    work, stages = make_work(packed, 2), np.empty((5, start.size))
+    stages = np.empty((5, start.size))
     per_sample = round(steps) // SAMPLES
 
     def run() -> Array:
@@ -118,9 +104,9 @@ def scipy_method(name: str, plain: bool = False) -> Prepare:
     """SciPy's solve_ivp on the compiled right-hand side, or on plain NumPy."""
 
     def prepare(problem: Problem, tolerance: float) -> Run:
-        packed = pack(problem.system, problem.frequency)
-        start = start_of(packed, problem).ravel()
-        derivative = compiled_right_side(packed)
+        integrator, state = prepared(problem, order=2)
+        start = integrator.padded(state).ravel()
+        derivative = compiled_right_side(integrator)
         if plain:
             derivative = plain_right_side(problem.system, problem.frequency, start.size // 2)
         times = TAU * np.arange(problem.periods * SAMPLES) / SAMPLES
@@ -149,9 +135,9 @@ def cvode(method: str) -> Prepare:
     from sksundae.cvode import CVODE
 
     def prepare(problem: Problem, tolerance: float) -> Run:
-        packed = pack(problem.system, problem.frequency)
-        start = start_of(packed, problem).ravel()
-        compiled = compiled_right_side(packed)
+        integrator, state = prepared(problem, order=2)
+        start = integrator.padded(state).ravel()
+        compiled = compiled_right_side(integrator)
         times = TAU * np.arange(problem.periods * SAMPLES) / SAMPLES
 
         def run() -> Array:

@@ -13,13 +13,11 @@ import pandas as pd
 from numba import njit
 from numpy.typing import NDArray
 
-from facegear.dynamics.integrator.compiled import TAU, pack
-from facegear.dynamics.integrator.periods import make_log, run_periods
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.system import System
-from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Motion, Settings, State
-from facegear.dynamics.steady_state.orbits import require
 from facegear.dynamics.steady_state.simulate import SteadyState, steady_state
+from facegear.mesh_law.linear import LinearLaw
 
 Array = NDArray[np.float64]
 FURTHER = 20_000
@@ -55,8 +53,7 @@ class Oscillator:
             mesh_damping=np.zeros(1),
             lower=np.array([-1.0]),
             upper=np.array([1.0]),
-            stiffness=np.array([[[0.0], [1.0]]]),
-            stiffness_kind=np.zeros(1, dtype=np.int64),
+            law=LinearLaw(np.array([[[0.0], [1.0]]]), np.zeros(1, dtype=np.int64)),
             error=np.zeros((1, 2, 1)),
             error_kind=np.zeros(1, dtype=np.int64),
             load=load,
@@ -147,14 +144,9 @@ def _passes(states: Array, state: State) -> bool:
 
 def plain_run(oscillator: Oscillator, start: State, periods: int, tolerance: float) -> Array:
     """States (periods, 2) by time at the ends of the periods, by our integrator and nothing else."""
-    packed = pack(oscillator.system, oscillator.speed)
-    work = make_work(packed, Settings(tolerance=tolerance).taylor_order)
-    state = np.zeros((2, packed.omega_squared.size))
-    state[0, 0], state[1, 0] = start.displacement[0], start.velocity[0] / oscillator.speed
-    log = make_log(packed, periods)
-    none = np.zeros((0, 2, state.shape[1]))
-    require(run_periods(packed, work, state[0], state[1], none, periods, 0, tolerance, log, TAU))
-    return log.ends[:, :, 0] * np.array([1.0, oscillator.speed])
+    integrator = Integrator(oscillator.system, oscillator.speed, tolerance)
+    ends = integrator.run(integrator.by_phase(start), periods).ends
+    return ends[:, :, 0] * np.array([1.0, oscillator.speed])
 
 
 def closed_form_run(oscillator: Oscillator, periods: int) -> Array:

@@ -7,17 +7,19 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.excitation import excitation
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.kernel import kernel
-from facegear.dynamics.integrator.lanes import LANES, load, multiply, multiply_add, splat, store
 from facegear.dynamics.integrator.system import System
-from facegear.dynamics.integrator.work import Work, make_work
+from facegear.dynamics.integrator.work import Work
+from facegear.machine_code.lanes import LANES, load, multiply, multiply_add, splat, store
+from facegear.mesh_law.linear import LinearLaw
 
 Array = NDArray[np.float64]
 
 
 @kernel
 def right_side(packed: Packed, work: Work, s: float, z: Array, out: Array) -> None:
-    """Derivative by s of z (2 n,) into out; work must be of order 1 or more."""
+    """Derivative by s of z (2 n,) into out, for a linear law; work must be of order 1 or more."""
     n, wide = packed.mesh_jacobian.shape
     excitation(packed, work, s, 0, 2)
     minus = splat(-1.0)
@@ -36,7 +38,7 @@ def right_side(packed: Packed, work: Work, s: float, z: Array, out: Array) -> No
         if packed.lower[m] >= packed.upper[m]:
             beyond, touching = d - packed.upper[m], True
         acting = packed.mesh_damping[m] if touching else 0.0
-        push = work.stiffness[0, m] * beyond + acting * work.deflection[1, m]
+        push = work.law.slope[0, m] * beyond + acting * work.deflection[1, m]
         pulls = packed.push_only and packed.lower[m] < packed.upper[m] and push * beyond < 0.0
         work.force[m] = 0.0 if pulls else push
     for c in range(0, n, LANES):
@@ -75,9 +77,9 @@ def fixed_rk4(
             s += width
 
 
-def compiled_right_side(packed: Packed) -> Callable[[float, Array], Array]:
-    """f(s, z) for SciPy, on the compiled code."""
-    work = make_work(packed, 2)
+def compiled_right_side(integrator: Integrator) -> Callable[[float, Array], Array]:
+    """f(s, z) for SciPy, on the compiled code of an integrator of order 1 or more."""
+    packed, work = integrator.packed, integrator.work
 
     def derivative(s: float, z: Array) -> Array:
         out = np.empty(z.size)
@@ -87,11 +89,19 @@ def compiled_right_side(packed: Packed) -> Callable[[float, Array], Array]:
     return derivative
 
 
+def linear(system: System) -> LinearLaw:
+    """The law of a system. Raises ValueError for any but the linear one."""
+    if not isinstance(system.law, LinearLaw):
+        raise ValueError("only the linear law is set up here")
+    return system.law
+
+
 def plain_right_side(system: System, frequency: float, width: int) -> Callable[[float, Array], Array]:
     """f(s, z) in NumPy as people write it, z padded to 2 * width."""
     n = system.size
-    order_k, order_e = np.arange(system.stiffness.shape[2]), np.arange(system.error.shape[2])
-    stiffness, error = system.stiffness[system.stiffness_kind], system.error[system.error_kind]
+    order_k, order_e = np.arange(linear(system).fourier.shape[2]), np.arange(system.error.shape[2])
+    law = linear(system)
+    stiffness, error = law.fourier[law.kind], system.error[system.error_kind]
     load = system.load
 
     def derivative(s: float, z: Array) -> Array:

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 from lumped_machines import make_machine
 
-from facegear.dynamics.integrator.compiled import pack
+from facegear.dynamics.integrator.integrator import Integrator
 from validation.dynamics.heyoka_peer import batch, scaled, trajectory
 from validation.dynamics.methods import all_methods, ours, rk4, tangent_methods
 from validation.dynamics.problems import (
@@ -34,12 +34,11 @@ def problems():
 
 def test_compiled_and_plain_right_hand_sides_agree(problems):
     for problem in (problems[1], problems[3]):
-        packed = pack(problem.system, problem.frequency)
-        width, n = packed.omega_squared.size, problem.system.size
-        rng = np.random.default_rng(0)
-        z = np.zeros(2 * width)
-        z[:n], z[width : width + n] = problem.system.scale * rng.normal(size=(2, n))
-        first = compiled_right_side(packed)(1.3, z)
+        integrator = Integrator(problem.system, problem.frequency, order=2)
+        state = problem.system.scale * np.random.default_rng(0).normal(size=(2, integrator.size))
+        wide = integrator.padded(state)
+        width, z = wide.shape[1], wide.ravel()
+        first = compiled_right_side(integrator)(1.3, z)
         second = plain_right_side(problem.system, problem.frequency, width)(1.3, z)
         np.testing.assert_allclose(first, second, rtol=1e-12, atol=1e-13 * np.abs(second).max())
 

@@ -76,7 +76,7 @@ def explore(
 
 def box(flow: PeriodMap, value: float, centre: Array, half: Array, count: int, seed: int) -> Array:
     """Weighted states (count, 2 n) spread evenly over centre +- half, each (2 n,)."""
-    size = flow.packed(float(np.log(value))).n
+    size = flow.integrator(float(np.log(value))).size
     random = np.random.default_rng(seed)
     return centre + half * random.uniform(-1.0, 1.0, size=(count, 2 * size))
 

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point
-from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.mesh_samples import each_deflection, mesh_forces, mesh_shares
 from facegear.dynamics.steady_state.window import run_window
 
@@ -32,13 +31,10 @@ class Measures:
 
 def measures(flow: PeriodMap, point: Point) -> Measures:
     """Measures of an orbit, by the same sums as those of a sweep."""
-    packed = flow.packed(point.u)
-    system, frequency = flow.family.at(point.value)
-    state = flow.state(point.z, point.u)
-    wide = np.zeros((2, packed.omega_squared.size))
-    wide[0, : packed.n], wide[1, : packed.n] = state.displacement, state.velocity / frequency
-    settings = Settings(tolerance=flow.step_tolerance, samples=SAMPLES)
-    window = run_window(packed, flow.work(packed), wide, flow.period, settings)
+    integrator = flow.integrator(point.u)
+    system = integrator.system
+    state = integrator.by_phase(flow.state(point.z, point.u))
+    window = run_window(integrator, state, flow.period, SAMPLES)
     each = each_deflection(system, window.samples, window.per_period)
     forces = mesh_forces(system, each, window.per_period)
     found = window.averages.meshes(True)

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.advance import advance, after, move
 from facegear.dynamics.integrator.compiled import TAU, Packed
+from facegear.dynamics.integrator.integrator import Integrator, require
 from facegear.dynamics.integrator.kernel import kernel
 from facegear.dynamics.integrator.periods import DONE, MOST_STEPS, TOO_MANY_STEPS
 from facegear.dynamics.integrator.roots import refine_root
@@ -17,8 +18,30 @@ PARTS = 4
 """A step is looked through in this many parts, each for one change of direction."""
 
 
+def turning_points(integrator: Integrator, state: Array, periods: int) -> Array:
+    """Maxima and minima (m, 2, most) of each deflection over a run from a state (2, n), each falling, and
+    minus infinity where there are fewer. Raises NotConverged where a step fails.
+    """
+    wide, rows = integrator.padded(state), integrator.rows
+    values = np.full((rows, 2, MOST * periods), -np.inf)
+    counts = np.zeros((rows, 2), dtype=np.int64)
+    status = _find(
+        integrator.packed,
+        integrator.work,
+        wide[0],
+        wide[1],
+        periods,
+        integrator.tolerance,
+        integrator.longest_step(),
+        values,
+        counts,
+    )
+    require(status)
+    return -np.sort(-values[:, :, : min(counts.max(), values.shape[2])])
+
+
 @kernel
-def turning_points(
+def _find(
     packed: Packed,
     work: Work,
     displacement: Array,

@@ -6,7 +6,12 @@ from numpy.typing import NDArray
 from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.excitation import excitation
 from facegear.dynamics.integrator.kernel import inlined
-from facegear.dynamics.integrator.lanes import (
+from facegear.dynamics.integrator.parting import correct_parting, find_parting, parting_time
+from facegear.dynamics.integrator.rings import ring_row
+from facegear.dynamics.integrator.roots import first_root, refine_root, root_after
+from facegear.dynamics.integrator.taylor import deflect, evaluate, recurrence, step_length
+from facegear.dynamics.integrator.work import Work
+from facegear.machine_code.lanes import (
     LANES,
     larger,
     load,
@@ -17,11 +22,7 @@ from facegear.dynamics.integrator.lanes import (
     spread,
     store,
 )
-from facegear.dynamics.integrator.parting import correct_parting, find_parting, parting_time
-from facegear.dynamics.integrator.rings import ring_row
-from facegear.dynamics.integrator.roots import first_root, refine_root, root_after
-from facegear.dynamics.integrator.taylor import deflect, evaluate, recurrence, step_length
-from facegear.dynamics.integrator.work import Work
+from facegear.mesh_law.terms import force_terms, is_curved, piece_ends, piece_of
 
 Array = NDArray[np.float64]
 EDGE = 2e-14
@@ -38,6 +39,7 @@ ROUNDING = 1e-13
 """A step that ends this close to the end of a period (rad) ends there."""
 MOST_GUESSES = 4
 OPEN, DRIVE, BACK = 0, 1, -1
+"""Rows of a log's shares, and the first piece of the law on each flank."""
 
 
 @inlined
@@ -72,6 +74,10 @@ def advance(
             changed = correct_parting(packed, work, SHORTEST) or changed
         if not changed:
             break
+    if is_curved(packed.law):
+        for i in range(work.order - 1, work.order + 1):
+            for c in range(0, packed.contacts, LANES):
+                force_terms(packed.law, work.law, work.state, work.deflection, i, c)
     longest = stop - s
     length = step_length(packed, work, tolerance)
     if length >= longest:
@@ -82,45 +88,87 @@ def advance(
 
 
 @inlined
+def flank_of(state: int) -> int:
+    """Drive flank, back flank or open, whatever the piece of the law."""
+    return DRIVE if state > 0 else BACK if state < 0 else OPEN
+
+
+@inlined
 def set_state(packed: Packed, work: Work, m: int, state: int) -> None:
-    """Give mesh m a contact state and what follows from it; row 0 of its deflection counts from the edge."""
+    """Give mesh m a contact state and what follows from it; row 0 of its deflection counts from the level at
+    which the piece of the law begins.
+    """
     work.state[m] = state
-    work.side[m] = float(state)
+    work.side[m] = float(flank_of(state))
     work.active[m] = 0.0 if state == OPEN else 1.0
     work.acting[m] = 0.0 if state == OPEN and not packed.damping_when_open else packed.mesh_damping[m]
-    edge = packed.upper[m] if state == DRIVE else packed.lower[m] if state == BACK else 0.0
+    edge = 0.0
+    if state > 0:
+        edge = packed.upper[m] + _ends(packed, m, state)[0]
+    elif state < 0:
+        edge = packed.lower[m] - _ends(packed, m, -state)[0]
     work.deflection[0, m] += work.edge[m] - edge
     work.edge[m] = edge
 
 
 @inlined
+def _ends(packed: Packed, m: int, piece: int) -> tuple[float, float]:
+    """Where a piece of the law of mesh m begins and ends; rows of rings have one."""
+    if m >= packed.contacts:
+        return 0.0, np.inf
+    return piece_ends(packed.law, m, piece)
+
+
+@inlined
+def _level_near(packed: Packed, m: int, amount: float, margin: float) -> tuple[int, int]:
+    """The piece that holds an amount beyond the edge, and the piece at whose beginning it stands, if any."""
+    if m >= packed.contacts:
+        return 1, 0
+    piece = piece_of(packed.law, m, amount)
+    begin, end = piece_ends(packed.law, m, piece)
+    if piece > 1 and amount - begin <= margin:
+        return piece, piece
+    return piece, piece + 1 if end - amount <= margin else 0
+
+
+@inlined
 def _find_state(packed: Packed, work: Work) -> None:
-    """Contact state of every mesh from deflection and, on an edge, its direction of motion."""
+    """Contact state of every mesh from deflection and, on a level of the law, its direction of motion."""
     for m in range(packed.m):
-        work.at_edge[m] = 0
+        work.at_level[m] = 0
         work.edge[m] = 0.0
         lower, upper = packed.lower[m], packed.upper[m]
         deflection, rate = work.deflection[0, m], work.deflection[1, m]
         margin = EDGE * packed.scale + BRIEFEST * abs(rate)
-        state = OPEN
+        state, level = OPEN, 0
         if lower >= upper:
             state = DRIVE
         elif abs(deflection - upper) <= margin:
-            work.at_edge[m] = 1
-            state = DRIVE if rate > 0.0 else OPEN
+            level = DRIVE
         elif abs(deflection - lower) <= margin:
-            work.at_edge[m] = -1
-            state = BACK if rate < 0.0 else OPEN
+            level = BACK
         elif deflection > upper:
-            state = DRIVE
+            state, level = _level_near(packed, m, deflection - upper, margin)
         elif deflection < lower:
-            state = BACK
+            state, level = _level_near(packed, m, lower - deflection, margin)
+            state, level = -state, -level
+        if level != 0:
+            work.at_level[m] = level
+            state = _beside(level, rate)
         set_state(packed, work, m, state)
 
 
 @inlined
+def _beside(level: int, direction: float) -> int:
+    """State of a mesh that stands where piece `level` begins and moves in a direction."""
+    if level > 0:
+        return level if direction > 0.0 else level - 1
+    return level if direction < 0.0 else level + 1
+
+
+@inlined
 def _correct_state(packed: Packed, work: Work) -> bool:
-    """Where a mesh stands on an edge with hardly any speed, its place a little later decides; True if one
+    """Where a mesh stands on a level with hardly any speed, its place a little later decides; True if one
     changed.
 
     After SHORTEST, or later where rounding would decide: a body at rest that is just being touched starts
@@ -128,14 +176,14 @@ def _correct_state(packed: Packed, work: Work) -> bool:
     """
     changed = False
     for m in range(packed.m):
-        if work.at_edge[m] == 0:
+        if work.at_level[m] == 0:
             continue
         ahead = SHORTEST
         soon = _rise(work, m, ahead)
         while ahead < LATEST and abs(soon) <= STILL * packed.scale:
             ahead *= 1e2
             soon = _rise(work, m, ahead)
-        wanted = (DRIVE if soon > 0.0 else OPEN) if work.at_edge[m] == 1 else BACK if soon < 0.0 else OPEN
+        wanted = _beside(work.at_level[m], soon)
         if wanted != work.state[m]:
             set_state(packed, work, m, wanted)
             changed = True
@@ -158,18 +206,27 @@ def _until_switch(packed: Packed, work: Work, length: float) -> float:
         lower, upper = packed.lower[m], packed.upper[m]
         if lower >= upper:
             continue
-        closed = work.state[m] != OPEN
-        for side in range(1 if closed else 2):
-            level, edge = 0.0, work.at_edge[m]
-            if not closed:
-                # Open, a mesh may reach either edge, and stand on one of them.
-                level = upper if side == 0 else lower
-                edge = edge if (edge == 1) == (side == 0) else 0
+        state, standing = work.state[m], work.at_level[m]
+        for end in range(2):
+            # Open, a mesh may reach either edge; in contact, both ends of the piece of the law.
+            if state == OPEN:
+                level, number = (upper, DRIVE) if end == 0 else (lower, BACK)
+            else:
+                level, number = _end_of_piece(packed, m, state, end)
             if work.least[m] <= level <= work.most[m]:
-                first = _crossing(work, m, level, edge != 0, length, first)
-        if packed.push_only and closed and m < packed.contacts:
+                first = _crossing(work, m, level, standing == number, length, first)
+        if packed.push_only and state != OPEN and m < packed.contacts:
             first = min(first, parting_time(packed, work, m, length, SHORTEST))
     return first * length
+
+
+@inlined
+def _end_of_piece(packed: Packed, m: int, state: int, end: int) -> tuple[float, int]:
+    """The level at which a piece begins (end 0) or ends, counted from its beginning, and the piece beyond."""
+    if end == 0:
+        return 0.0, state
+    begin, finish = _ends(packed, m, abs(state))
+    return (finish - begin, state + 1) if state > 0 else (begin - finish, state - 1)
 
 
 @inlined

@@ -1,13 +1,14 @@
 """A system at one speed, packed for the compiled kernels, with time counted as mesh phase s in rad."""
 
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.integrator.lanes import LANES, aligned
 from facegear.dynamics.integrator.system import System
+from facegear.machine_code.memory import aligned, divided, padded, whole_lanes
+from facegear.mesh_law.linear import fourier_columns
 
 Array = NDArray[np.float64]
 TAU = 2.0 * np.pi
@@ -43,14 +44,14 @@ class Packed(NamedTuple):
 
     n, m count the real ones. mesh_jacobian (n, m) and transposed (m, n); touched and touching are the same
     without zeros and padding, by mesh and by coordinate. Derivatives are by s = w t:
-    omega_squared, stiffness and load are over w^2, damping and mesh_damping over w. Fourier series are
-    (harmonics + 1, 2, width), sine part first. pieces (pieces, degree + 1, m) add to the stiffness
-    from one of `breaks` (rad) to the next; stiffness and error have one column for each of the kinds that
-    stiffness_kind and error_kind (m,) name. drift (terms, m): polynomial in s added to the error of this
-    period, or none. leverage (m,): sum of squares of a row of mesh_jacobian. pairs: meshes whose two flanks
-    stand at j and j + pairs; 0 where every mesh stands for itself. contacts: rows of the m that are meshes or
-    flanks; the others belong to the rings of bearings with play. Without any, `rings` is None, and the
-    kernels are compiled without them: another type is another machine code.
+    omega_squared, the law and load are over w^2, damping and mesh_damping over w. law: the contacts' law as
+    facegear.mesh_law.terms takes it, smooth in s from one of `breaks` (rad) to the next. Fourier series are
+    (harmonics + 1, 2, width), sine part first; the error has one column for each of the kinds that error_kind
+    (m,) names. drift (terms, m): polynomial in s added to the error of this period, or none. leverage (m,):
+    sum of squares of a row of mesh_jacobian. pairs: meshes whose two flanks stand at j and j + pairs; 0 where
+    every mesh stands for itself. contacts: rows of the m that are meshes or flanks; the others belong to the
+    rings of bearings with play. Without any, `rings` is None, and the kernels are compiled without them:
+    another type, of rings or of the law, is another machine code.
     """
 
     n: int
@@ -64,14 +65,12 @@ class Packed(NamedTuple):
     mesh_damping: Array
     lower: Array
     upper: Array
-    stiffness: Array
-    stiffness_kind: NDArray[np.int64]
+    law: Any
     error: Array
     error_kind: NDArray[np.int64]
     drift: Array
     load: Array
     breaks: Array
-    pieces: Array
     weights: Array
     leverage: Array
     fastest: float
@@ -88,12 +87,11 @@ def pack(system: System, frequency: float) -> Packed:
     one, square = _packed(system), frequency**2
     natural, harmonics = _fastest(system)
     return one._replace(
-        omega_squared=_over(one.omega_squared, square),
-        damping=_over(one.damping, frequency),
-        mesh_damping=_over(one.mesh_damping, frequency),
-        stiffness=_over(one.stiffness, square),
-        load=_over(one.load, square),
-        pieces=one.pieces / square,
+        omega_squared=divided(one.omega_squared, square),
+        damping=divided(one.damping, frequency),
+        mesh_damping=divided(one.mesh_damping, frequency),
+        law=system.law.terms(frequency, len(one.mesh_damping)),
+        load=divided(one.load, square),
         fastest=natural / frequency + harmonics,
         rings=_rings(system, frequency),
     )
@@ -101,14 +99,13 @@ def pack(system: System, frequency: float) -> Packed:
 
 @lru_cache(maxsize=16)
 def _packed(system: System) -> Packed:
-    """What pack() gives at 1 rad/s, without rings; its arrays are shared and only read."""
+    """What pack() gives at 1 rad/s, without law and rings; its arrays are shared and only read."""
     m, n = system.mesh_jacobian.shape
-    wide_n, wide_m = _whole(n), _whole(m)
+    wide_n, wide_m = whole_lanes(n), whole_lanes(m)
     transposed = aligned(wide_m, wide_n)
     transposed[:m, :n] = system.mesh_jacobian
     mesh_jacobian = aligned(wide_n, wide_m)
     mesh_jacobian[:] = transposed.T
-    breaks, pieces = _pieces(system, wide_m)
     # A clearance within rounding of the deflections is none: its edges could not be told apart.
     closed = system.upper - system.lower <= LEAST_CLEARANCE * system.scale
     lower = np.where(closed, system.upper, system.lower)
@@ -119,20 +116,18 @@ def _packed(system: System) -> Packed:
         transposed=transposed,
         touched=_sparse(system.mesh_jacobian),
         touching=_sparse(system.mesh_jacobian.T),
-        omega_squared=_padded(system.omega_squared, wide_n),
-        damping=_padded(system.damping, wide_n),
-        mesh_damping=_padded(system.mesh_damping, wide_m),
-        lower=_padded(lower, wide_m),
-        upper=_padded(system.upper, wide_m),
-        stiffness=_series(system.stiffness),
-        stiffness_kind=system.stiffness_kind,
-        error=_series(system.error),
+        omega_squared=padded(system.omega_squared, wide_n),
+        damping=padded(system.damping, wide_n),
+        mesh_damping=padded(system.mesh_damping, wide_m),
+        lower=padded(lower, wide_m),
+        upper=padded(system.upper, wide_m),
+        law=None,
+        error=fourier_columns(system.error),
         error_kind=system.error_kind,
         drift=np.zeros((0, wide_m)),
-        load=_series(system.load),
-        breaks=breaks,
-        pieces=pieces,
-        weights=_padded(np.abs(transposed).max(axis=0), wide_n),
+        load=fourier_columns(system.load),
+        breaks=system.law.breaks * TAU,
+        weights=padded(np.abs(transposed).max(axis=0), wide_n),
         leverage=(transposed**2).sum(axis=1),
         fastest=sum(_fastest(system)),
         damping_when_open=system.damping_when_open,
@@ -157,23 +152,20 @@ def _rings(system: System, frequency: float) -> Rings | None:
     return Rings(
         number=count,
         first=system.contacts,
-        stiffness=_over(_padded(system.ring_stiffness, _whole(count)), frequency**2),
-        play=_padded(system.ring_play, _whole(count)),
+        stiffness=divided(padded(system.ring_stiffness, whole_lanes(count)), frequency**2),
+        play=padded(system.ring_play, whole_lanes(count)),
         lag=system.ring_lag * frequency,
     )
 
 
 @lru_cache(maxsize=16)
 def _fastest(system: System) -> tuple[float, float]:
-    """Stiffest natural frequency with all meshes in contact plus damping, 1/s, and the harmonics of k that
-    matter, in multiples of the mesh frequency.
+    """Highest natural frequency with all meshes in contact plus damping, 1/s, and the harmonics of the law
+    that matter, in multiples of the mesh frequency.
     """
-    amplitudes = np.hypot(system.stiffness[:, 0], system.stiffness[:, 1])
-    highest = amplitudes.sum(axis=1) + np.array(
-        [np.abs(p.coefficients).sum() for p in system.pieces] or [0.0]
-    )
-    mesh = highest[system.stiffness_kind]
     contacts = system.contacts
+    mesh = np.zeros(len(system.mesh_jacobian))
+    mesh[:contacts] = system.law.steepest
     mesh[contacts::3] = mesh[contacts + 1 :: 3] = system.ring_stiffness
     mesh_jacobian = system.mesh_jacobian
     stiffness = np.diag(system.omega_squared) + (mesh_jacobian.T * mesh) @ mesh_jacobian
@@ -181,45 +173,6 @@ def _fastest(system: System) -> tuple[float, float]:
     dampers[contacts::3] = dampers[contacts + 1 :: 3] = system.ring_lag * system.ring_stiffness
     damping = np.diag(system.damping) + (mesh_jacobian.T * dampers) @ mesh_jacobian
     natural = np.sqrt(max(np.linalg.eigvalsh(stiffness)[-1], 0.0)) + np.linalg.eigvalsh(damping)[-1]
-    share = (amplitudes / np.maximum(highest, 1e-300)[:, None]).max(axis=0)
-    harmonics = (np.arange(share.size) * share ** (1.0 / 8.0)).max()
+    fractions = system.law.harmonic_fractions
+    harmonics = (np.arange(fractions.size) * fractions ** (1.0 / 8.0)).max()
     return float(natural), float(harmonics)
-
-
-def _whole(length: int) -> int:
-    return -(-length // LANES) * LANES
-
-
-def _padded(values: Array, length: int) -> Array:
-    wide = aligned(length, *values.shape[1:])
-    wide[: len(values)] = values
-    return wide
-
-
-def _over(values: Array, divisor: float) -> Array:
-    return np.divide(values, divisor, out=aligned(*values.shape))
-
-
-def _series(rows: Array) -> Array:
-    """Fourier rows (width, 2, harmonics + 1) in the order that the kernels read."""
-    width = _whole(len(rows))
-    series = aligned(*rows.shape[:0:-1], width)
-    series[..., : len(rows)] = rows.transpose(2, 1, 0)
-    return series
-
-
-def _pieces(system: System, width: int) -> tuple[Array, Array]:
-    """Common breaks of all meshes in rad, and the coefficients of each mesh in powers of rad."""
-    if not system.pieces:
-        return np.zeros(0), np.zeros((0, 0, width))
-    breaks = np.unique(np.concatenate([piece.breaks for piece in system.pieces]))
-    degree = max(piece.coefficients.shape[1] for piece in system.pieces)
-    table = np.zeros((breaks.size - 1, degree, width))
-    for mesh, kind in enumerate(system.stiffness_kind):
-        piece = system.pieces[kind]
-        for row, start in zip(table, breaks[:-1], strict=True):
-            source = int(np.searchsorted(piece.breaks, start, side="right")) - 1
-            ahead = np.polynomial.Polynomial([start - piece.breaks[source], 1.0])
-            shifted = np.asarray(np.polynomial.Polynomial(piece.coefficients[source])(ahead).coef, float)
-            row[: shifted.size, mesh] = shifted / TAU ** np.arange(shifted.size)
-    return breaks * TAU, table

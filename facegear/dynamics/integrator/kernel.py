@@ -2,15 +2,19 @@
 
 from pathlib import Path
 
-from facegear.machine_code import compiler, for_callers
+from facegear import machine_code, mesh_law
+from facegear.machine_code.compiler import FAST, compiler, for_callers
 
-_OPTIONS = {"nogil": True, "fastmath": {"contract"}, "_nrt": False}
+SOURCES = (
+    Path(__file__).parent,
+    *(Path(str(package.__file__)).parent for package in (machine_code, mesh_law)),
+)
+"""Folders whose text the machine code of the kernels depends on."""
 
-kernel = compiler(Path(__file__).parent, **_OPTIONS)
-"""Compiled without reference counts: kernels allocate nothing, and counting every array of a Packed or Work
-at every use would cost more than the arithmetic."""
+kernel = compiler(*SOURCES, **FAST)
+"""Compiled, and called from Python."""
 
-inlined = for_callers(**_OPTIONS)
+inlined = for_callers(**FAST)
 """The same for functions of a Packed and a Work: handing over these hundreds of words would cost more than
 most of the functions do. They are compiled as part of the kernels that call them.
 """

@@ -1,10 +1,10 @@
 """Contacts that only push: spring and damper together are cut at zero where flanks are about to part.
 
-    F = max(k x + c x', 0) while flanks overlap by x > 0; on the back flank with all signs reversed
+    F = max(law(x) + c x', 0) while flanks overlap by x > 0; on the back flank with all signs reversed
 
 (Hunt and Crossley, Journal of Applied Mechanics 42, 1975, on dampers that pull at the end of a contact). The
-cut adds one edge to a contact, k x + c x' = 0. The force is continuous there, so tangents pass it unchanged;
-it jumps only where flanks meet, by c x'.
+cut adds one edge to a contact, law(x) + c x' = 0. The force is continuous there, so tangents pass it
+unchanged; it jumps only where flanks meet, by c x'.
 """
 
 import numpy as np
@@ -14,6 +14,7 @@ from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.kernel import inlined
 from facegear.dynamics.integrator.roots import first_root, root_after
 from facegear.dynamics.integrator.work import Work
+from facegear.mesh_law.terms import force_of
 
 Array = NDArray[np.float64]
 NO_FORCE = 1e-10
@@ -26,9 +27,9 @@ def find_parting(packed: Packed, work: Work) -> None:
     """Cut the force of every contact whose damper pulls more than its spring pushes."""
     for m in range(packed.contacts):
         work.at_parting[m] = 0
-        if work.side[m] == 0.0 or work.at_edge[m] != 0 or packed.lower[m] >= packed.upper[m]:
+        if work.side[m] == 0.0 or abs(work.at_level[m]) == 1 or packed.lower[m] >= packed.upper[m]:
             continue
-        spring = work.side[m] * work.stiffness[0, m] * work.deflection[0, m]
+        spring = work.side[m] * force_of(packed.law, work.law, work.state, work.deflection, 0, m)
         damper = work.side[m] * packed.mesh_damping[m] * work.deflection[1, m]
         if abs(spring + damper) <= NO_FORCE * (abs(spring) + abs(damper)):
             work.at_parting[m] = 1
@@ -59,7 +60,7 @@ def parting_time(packed: Packed, work: Work, m: int, length: float, shortest: fl
         power *= length
     root = first_root(work.polynomial, work.order - 1, work.conversion_less, work.subdivision)
     # Flanks that just met or parted: what follows at once was decided by the rates already.
-    if (first > 0 or work.at_edge[m] != 0) and root * length < shortest:
+    if (first > 0 or abs(work.at_level[m]) == 1) and root * length < shortest:
         root = root_after(work.polynomial, work.order - 1, root, work.conversion_less, work.subdivision)
     return root
 
@@ -73,10 +74,8 @@ def shearing_damping(packed: Packed, work: Work, m: int) -> float:
 @inlined
 def _push(packed: Packed, work: Work, m: int, i: int) -> float:
     """Taylor coefficient i of what spring and damper of contact m push together."""
-    total = packed.mesh_damping[m] * (i + 1) * work.deflection[i + 1, m]
-    for j in range(i + 1):
-        total += work.stiffness[j, m] * work.deflection[i - j, m]
-    return work.side[m] * total
+    spring = force_of(packed.law, work.law, work.state, work.deflection, i, m)
+    return work.side[m] * (packed.mesh_damping[m] * (i + 1) * work.deflection[i + 1, m] + spring)
 
 
 @inlined

@@ -5,15 +5,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.integrator.advance import advance, after, move
+from facegear.dynamics.integrator.advance import advance, after, flank_of, move
 from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.kernel import inlined, kernel
 from facegear.dynamics.integrator.parting import shearing_damping
 from facegear.dynamics.integrator.rings import ring_slopes, ring_trace
-from facegear.dynamics.integrator.sums import Sums, add_step, make_sums, start_sums
-from facegear.dynamics.integrator.tangents import move_tangents, switch_tangents
+from facegear.dynamics.integrator.sums import Sums, add_step, start_sums
+from facegear.dynamics.integrator.tangents import move_tangents, switch_tangents, tangent_step
 from facegear.dynamics.integrator.taylor import values
 from facegear.dynamics.integrator.work import Work
+from facegear.mesh_law.terms import slope_terms
 
 Array = NDArray[np.float64]
 MOST_STEPS = 2_000_000
@@ -40,30 +41,6 @@ class Log(NamedTuple):
     sums: Sums
 
 
-def make_log(
-    packed: Packed,
-    periods: int,
-    per_period: int = 0,
-    growth: bool = False,
-    batches: int = 0,
-    ends: Array | None = None,
-) -> Log:
-    """Allocate a log; with `growth` one tangent must be run, of length one. `batches`: of the sums.
-
-    ends (periods, 2, n): room for them where there is some already.
-    """
-    n = packed.omega_squared.size
-    return Log(
-        samples=np.zeros((periods * per_period, n)),
-        ends=np.zeros((periods, 2, n)) if ends is None else ends,
-        shares=np.zeros((3, packed.lower.size)),
-        divergence=np.zeros(1),
-        growth=np.zeros(periods if growth else 0),
-        steps=np.zeros(1, dtype=np.int64),
-        sums=make_sums(packed, batches),
-    )
-
-
 @kernel
 def run_periods(
     packed: Packed,
@@ -79,8 +56,8 @@ def run_periods(
 ) -> int:
     """Move displacement and velocity (n,) and the tangents (columns, 2, n) over whole periods.
 
-    Returns a status. The step is chosen for the motion, but not above `longest`: a motion at rest says
-    nothing about what its disturbances need, which is disturbance_step().
+    Returns a status. The step is chosen for the motion alone where `longest` is infinite. Tangents need
+    disturbance_step() there, since a motion at rest says nothing about what its disturbances need.
     """
     n = packed.omega_squared.size
     sample, acting = work.sample, work.was_acting
@@ -92,6 +69,9 @@ def run_periods(
         first = period == 0
         while s < TAU:
             length = advance(packed, work, s, min(TAU, s + longest), displacement, velocity, tolerance)
+            if longest < np.inf:
+                slope_terms(packed.law, work.law, work.state, work.deflection, work.order)
+                length = tangent_step(packed, work, length, tolerance)
             if tangents.shape[0] > 0:
                 if not first:
                     switch_tangents(packed, work, acting, tangents)
@@ -110,9 +90,9 @@ def run_periods(
             first = False
             if per_period > 0 or batches > 0 or tangents.shape[0] > 0:
                 for m in range(packed.m):
-                    log.shares[work.state[m], m] += length
+                    log.shares[flank_of(work.state[m]), m] += length
                 for m in range(packed.pairs):
-                    if work.state[m] == 1 and work.state[m + packed.pairs] == 1:
+                    if work.state[m] > 0 and work.state[m + packed.pairs] > 0:
                         log.shares[2, m] += length
             while next_sample < per_period and TAU * next_sample / per_period < s + length:
                 ahead = TAU * next_sample / per_period - s

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.compiled import Packed, Rings
 from facegear.dynamics.integrator.kernel import inlined
-from facegear.dynamics.integrator.lanes import (
+from facegear.dynamics.integrator.work import RingSeries, Work
+from facegear.machine_code.lanes import (
     LANES,
     add,
     load,
@@ -23,7 +24,6 @@ from facegear.dynamics.integrator.lanes import (
     splat,
     store,
 )
-from facegear.dynamics.integrator.work import RingSeries, Work
 
 Array = NDArray[np.float64]
 ROWS = 3

@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.kernel import inlined
-from facegear.dynamics.integrator.lanes import (
+from facegear.dynamics.integrator.taylor import values
+from facegear.dynamics.integrator.work import Work
+from facegear.machine_code.lanes import (
     LANES,
     add,
-    aligned,
     load,
     magnitude,
     multiply,
@@ -27,8 +28,8 @@ from facegear.dynamics.integrator.lanes import (
     spread,
     store,
 )
-from facegear.dynamics.integrator.taylor import values
-from facegear.dynamics.integrator.work import Work
+from facegear.machine_code.memory import aligned
+from facegear.mesh_law.terms import force_ahead
 
 Array = NDArray[np.float64]
 LOOKS = 8
@@ -169,13 +170,13 @@ def _add_meshes(packed: Packed, work: Work, ahead: float, weight: float, sums: S
     step, heavy, minus = splat(ahead), splat(weight), splat(-1.0)
     value, force = work.scaled[0], work.force
     for c in range(0, wide, LANES):
-        deflection, rate, stiffness = splat(0.0), splat(0.0), splat(0.0)
+        deflection, rate = splat(0.0), splat(0.0)
         for i in range(work.order, -1, -1):
             rate = multiply_add(rate, step, deflection)
             deflection = multiply_add(deflection, step, load(work.deflection, i * wide + c))
-            stiffness = multiply_add(stiffness, step, load(work.stiffness, i * wide + c))
         store(value, c, add(deflection, load(work.edge, c)))
-        side, elastic = load(work.side, c), multiply(stiffness, deflection)
+        elastic = force_ahead(packed.law, work.law, deflection, work.order, step, c)
+        side = load(work.side, c)
         store(force, c, multiply(magnitude(side), elastic))
         push = multiply_add(load(work.acting, c), rate, multiply(load(work.active, c), elastic))
         store(sums.pull, c, smaller(load(sums.pull, c), multiply(side, push)))

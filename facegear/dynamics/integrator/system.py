@@ -1,10 +1,10 @@
 """What the compiled integrator sees: unit-mass oscillators coupled by meshes with clearance.
 
-    y'' + damping y' + omega_squared y + G^T F = load(t),   F = k(t) f(d) + c d',   d = G y - e(t),
+    y'' + damping y' + omega_squared y + G^T F = load(t),   F = law(s, x) + c d',   d = G y - e(t),
 
-f(d) = d - upper above `upper`, d - lower below `lower`, zero between. k, e and load are Fourier series in the
-mesh phase s = 2 pi t / T, k plus an optional piecewise polynomial. Bearings with play are rings (rings.py).
-One degree of freedom is a case like any other.
+x = d - upper above `upper`, d - lower below `lower`, zero between. e and load are Fourier series in the mesh
+phase s = 2 pi t / T, the law is any of facegear.mesh_law. Bearings with play are rings (rings.py). One degree
+of freedom is a case like any other.
 """
 
 from dataclasses import dataclass, field
@@ -13,30 +13,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.reduction import Reduced
-from facegear.harmonics.series import Harmonics, stacked
-from facegear.transmission.flanks import constant_errors, error_series, flank_gaps, stiffness_series
+from facegear.harmonics.series import Harmonics
+from facegear.mesh_law.law import MeshLaw
+from facegear.mesh_law.linear import different
+from facegear.transmission.flanks import constant_errors, contact_law, error_series, flank_gaps
 from facegear.transmission.machine import Machine, OpenFlanks
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Piecewise:
-    """Stiffness added to the Fourier part: cubic pieces of the phase, in mesh periods since each break.
-
-    breaks (pieces + 1,) from 0 to 1; coefficients (pieces, degree + 1), ascending powers.
-    """
-
-    breaks: Array
-    coefficients: Array
-
-
-@dataclass(frozen=True, eq=False)
 class System:
     """n coordinates, m meshes. Fourier series are (rows, 2, harmonics + 1): sine part, cosine part.
 
-    mesh_jacobian (m, n); omega_squared, damping (n,); mesh_damping, lower, upper (m,); stiffness and error
-    of the kinds of mesh that differ in phase, stiffness_kind and error_kind (m,) say which; load
+    mesh_jacobian (m, n); omega_squared, damping (n,); mesh_damping, lower, upper (m,); law: of the meshes,
+    without those of rings; error of the kinds of mesh that differ in phase, error_kind (m,) says which; load
     (n, 2, harmonics + 1). A mesh with lower >= upper never opens. `scale`: the length that tolerances mean.
     `two_flanks`: the m are one-sided flanks, all drive flanks, then the back flanks of the same meshes.
     `push_only`: spring and damper of a contact together never pull, F >= 0, damping acts in contact only. The
@@ -50,8 +41,7 @@ class System:
     mesh_damping: Array
     lower: Array
     upper: Array
-    stiffness: Array
-    stiffness_kind: NDArray[np.int64]
+    law: MeshLaw
     error: Array
     error_kind: NDArray[np.int64]
     load: Array
@@ -62,7 +52,6 @@ class System:
     ring_stiffness: Array = field(default_factory=lambda: np.zeros(0))
     ring_play: Array = field(default_factory=lambda: np.zeros(0))
     ring_lag: float = 0.0
-    pieces: tuple[Piecewise, ...] = field(default=())
 
     @property
     def size(self) -> int:
@@ -85,8 +74,8 @@ def machine_system(machine: Machine, reduced: Reduced) -> System:
     if machine.layout.is_geometric:
         return _flank_system(machine, reduced)
     meshes = len(machine.layout.meshes)
-    stiffness, stiffness_kind = _kinds(machine.stiffness, machine.phases)
-    error, error_kind = _kinds(machine.error, machine.error_phases)
+    phases = np.round(machine.error_phases, 12) % 1.0
+    error, error_kind = different([machine.error.shifted(float(phase)) for phase in phases])
     load = np.zeros((reduced.omega_squared.size, 2, 1))
     load[:, 1, 0] = reduced.load
     return System(
@@ -97,8 +86,7 @@ def machine_system(machine: Machine, reduced: Reduced) -> System:
         mesh_damping=np.full(meshes, machine.damping.mesh),
         lower=np.full(meshes, -machine.half_backlash),
         upper=np.full(meshes, machine.half_backlash),
-        stiffness=stiffness,
-        stiffness_kind=stiffness_kind,
+        law=contact_law(machine),
         error=error,
         error_kind=error_kind,
         load=load,
@@ -115,8 +103,7 @@ def _flank_system(machine: Machine, reduced: Reduced) -> System:
     play = machine.imperfections.clearance
     rings = np.flatnonzero(play > 0.0)
     none = 3 * rings.size * [Harmonics(np.zeros(1), np.zeros(1))]
-    stiffness, stiffness_kind = _different([*stiffness_series(machine), *none])
-    error, error_kind = _different([*error_series(machine), *none])
+    error, error_kind = different([*error_series(machine), *none])
     load = np.zeros((reduced.omega_squared.size, 2, 1))
     load[:, 1, 0] = reduced.load
     flanks = 2 * len(machine.layout.meshes)
@@ -129,8 +116,7 @@ def _flank_system(machine: Machine, reduced: Reduced) -> System:
         mesh_damping=np.append(np.full(flanks, machine.damping.mesh * (0.5 if always else 1.0)), nothing),
         lower=np.append(np.full(flanks, -np.inf), np.tile([0.0, 0.0, -np.inf], rings.size)),
         upper=np.append(flank_gaps(machine) + constant_errors(machine), nothing),
-        stiffness=stiffness,
-        stiffness_kind=stiffness_kind,
+        law=contact_law(machine),
         error=error,
         error_kind=error_kind,
         load=load,
@@ -144,23 +130,9 @@ def _flank_system(machine: Machine, reduced: Reduced) -> System:
     )
 
 
-def _different(series: list[Harmonics]) -> tuple[Array, NDArray[np.int64]]:
-    """The different ones among Fourier series, and which one each is."""
-    rows = stacked(series)
-    different, kind = np.unique(rows.reshape(len(rows), -1), axis=0, return_inverse=True)
-    return different.reshape(-1, *rows.shape[1:]), kind.ravel().astype(np.int64)
-
-
 def length_scale(machine: Machine) -> float:
     """Largest of the mesh deflection under the torques, the half backlash and the error's amplitude, m."""
     layout = machine.layout
     forces = np.abs(machine.torques[: len(layout.pinions)]) / layout.pinion_arm
     loaded = float(forces.max()) / machine.stiffness.mean
     return max(loaded, float(machine.half_backlashes.max()), float(machine.error.amplitudes[1:].sum()), 1e-12)
-
-
-def _kinds(series: Harmonics, phases: Array) -> tuple[Array, NDArray[np.int64]]:
-    """Shifted copies of a series, one for each phase that occurs, and which one each mesh takes."""
-    rounded = np.round(phases, 12) % 1.0
-    different, kind = np.unique(rounded, return_inverse=True)
-    return stacked([series.shifted(float(phase)) for phase in different]), kind.astype(np.int64)

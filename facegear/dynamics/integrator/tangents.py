@@ -1,4 +1,4 @@
-"""Disturbances of the motion: moved over a step by the same recurrence without forcing.
+"""Disturbances of the motion: moved over a step by the same recurrence, with the slopes of the forces.
 
 A single tangent goes coordinate by coordinate, in the vectors that the motion itself uses. Many go in blocks
 of ABREAST, side by side in the innermost place: then every entry of G is read once for all of them, and those
@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.compiled import Packed, Sparse
 from facegear.dynamics.integrator.kernel import inlined
-from facegear.dynamics.integrator.lanes import LANES, load, multiply, multiply_add, splat, spread, store, take
 from facegear.dynamics.integrator.parting import shearing_damping
 from facegear.dynamics.integrator.rings import ring_switches
 from facegear.dynamics.integrator.taylor import deflect, evaluate, recurrence
 from facegear.dynamics.integrator.work import ABREAST, Work
+from facegear.machine_code.lanes import LANES, load, multiply, multiply_add, splat, spread, store, take
+from facegear.mesh_law.terms import is_curved
 
 Array = NDArray[np.float64]
 
@@ -23,8 +24,9 @@ Array = NDArray[np.float64]
 def switch_tangents(packed: Packed, work: Work, acting: Array, tangents: Array) -> None:
     """Saltation: where the mesh damping starts or stops the velocity part shears by G^T (c- - c+) G.
 
-    Stiffness alone gives none, since the force is continuous at the edge. Neither do flanks that part where
-    a contact only pushes: their force was zero before.
+    The law alone gives none, since its force is continuous at every level (Leine and Nijmeijer, Dynamics and
+    Bifurcations of Non-Smooth Mechanical Systems, 2004). Neither do flanks that part where a contact only
+    pushes: their force was zero before.
     """
     ring_switches(packed.rings, packed, work, acting, tangents)
     for m in range(packed.contacts):
@@ -40,9 +42,25 @@ def switch_tangents(packed: Packed, work: Work, acting: Array, tangents: Array) 
 
 
 @inlined
+def tangent_step(packed: Packed, work: Work, length: float, tolerance: float) -> float:
+    """The step, or so much less of it that the last terms of a curved law's slopes turn a disturbance by no
+    more than the tolerance. The motion alone says nothing of them where its force is small.
+    """
+    if is_curved(packed.law):
+        for m in range(packed.contacts):
+            if work.active[m] == 0.0:
+                continue
+            for i in range(work.order - 1, work.order + 1):
+                size = packed.leverage[m] * abs(work.law.slope[i, m]) / ((i + 1) * (i + 2))
+                if size > 0.0:
+                    length = min(length, np.exp(np.log(tolerance / size) / (i + 2)))
+    return length
+
+
+@inlined
 def move_tangents(packed: Packed, work: Work, length: float, tangents: Array, tolerance: float) -> None:
     """Move tangents (columns, 2, n) over the step whose polynomials `work` holds."""
-    order = _order_needed(packed, work.order, length, tolerance)
+    order = work.order if is_curved(packed.law) else _order_needed(packed, work.order, length, tolerance)
     if packed.rings is None:
         if tangents.shape[0] > 1:
             for first in range(0, tangents.shape[0], ABREAST):
@@ -123,7 +141,8 @@ def _products(matrix: Sparse, factors: Array, at: int, out: Array, to: int) -> N
 def _push_block(packed: Packed, work: Work, i: int) -> None:
     """Coefficient i of every mesh's force on each tangent, with the factor of the coordinates' next one."""
     deflection, force = work.block_deflection, work.block_force
-    wide, meshes = deflection.shape[1], work.stiffness.shape[1]
+    slope = work.law.slope
+    wide, meshes = deflection.shape[1], slope.shape[1]
     pushed = splat(-1.0 / ((i + 1) * (i + 2)))
     for m in range(packed.m):
         damping, place = splat(work.acting[m] * (i + 1)), m * ABREAST
@@ -133,7 +152,7 @@ def _push_block(packed: Packed, work: Work, i: int) -> None:
         three = multiply(damping, load(deflection, at + 2 * LANES))
         if work.active[m] != 0.0:
             for j in range(i, -1, -1):
-                value, at = spread(work.stiffness, j * meshes + m), (i - j) * wide + place
+                value, at = spread(slope, j * meshes + m), (i - j) * wide + place
                 one = multiply_add(value, load(deflection, at), one)
                 two = multiply_add(value, load(deflection, at + LANES), two)
                 three = multiply_add(value, load(deflection, at + 2 * LANES), three)

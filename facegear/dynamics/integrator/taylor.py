@@ -1,7 +1,8 @@
 """Taylor coefficients of the motion between two contact switches.
 
-Between switches the equations are linear with analytic coefficients, so the coefficients of y follow from
-each other by a recurrence that costs one product with G and one with its transpose for each order. Sums are
+Between switches the forces are analytic, and coefficient i of the forces needs no more than those up to i of
+the deflections: so the coefficients of y follow from each other by a recurrence that costs one product with
+G, one with its transpose and what the law asks for each order. Sums are
 kept in several parts side by side, as a processor adds many numbers at once but one number slowly.
 """
 
@@ -10,7 +11,9 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.kernel import inlined
-from facegear.dynamics.integrator.lanes import (
+from facegear.dynamics.integrator.rings import ring_push, ring_row, ring_tangent_row
+from facegear.dynamics.integrator.work import Work
+from facegear.machine_code.lanes import (
     LANES,
     add,
     load,
@@ -21,8 +24,8 @@ from facegear.dynamics.integrator.lanes import (
     spread,
     store,
 )
-from facegear.dynamics.integrator.rings import ring_push, ring_row, ring_tangent_row
-from facegear.dynamics.integrator.work import Work
+from facegear.mesh_law.linear_terms import product_terms
+from facegear.mesh_law.terms import force_terms
 
 Array = NDArray[np.float64]
 
@@ -84,10 +87,11 @@ def recurrence(
     """Fill rows 2 .. order of y and of deflection from rows 0 and 1 of both.
 
     Row 0 of deflection has the edge of the contact subtracted. work.active (m,) masks meshes in contact,
-    work.acting (m,) holds the mesh damping that acts. A `tangent` needs the slopes of the rings' forces.
+    work.acting (m,) holds the mesh damping that acts. A `tangent` is moved by the slopes of the forces along
+    the motion, which must be known.
     """
     n, wide = packed.mesh_jacobian.shape
-    force, stiffness = work.force, work.stiffness
+    force = work.force
     minus = splat(-1.0)
     for i in range(2):
         _ring(packed, work, i, deflection, tangent)
@@ -96,12 +100,10 @@ def recurrence(
         # Forces push back; they carry the factor of the next coefficient already.
         pushed = splat(-1.0 / ((i + 1) * (i + 2)))
         for c in range(0, wide, LANES):
-            # The newest rows come last: the others do not wait for them.
-            total = splat(0.0)
-            for j in range(i, -1, -1):
-                total = multiply_add(
-                    load(stiffness, j * wide + c), load(deflection, (i - j) * wide + c), total
-                )
+            if tangent:
+                total = product_terms(work.law.slope, deflection, i, c)
+            else:
+                total = force_terms(packed.law, work.law, work.state, deflection, i, c)
             total = multiply(load(work.active, c), total)
             damping = multiply(load(work.acting, c), rate)
             total = multiply_add(damping, load(deflection, (i + 1) * wide + c), total)

@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.advance import advance, after, move
-from facegear.dynamics.integrator.compiled import TAU, Packed, pack
+from facegear.dynamics.integrator.compiled import TAU, Packed
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.kernel import kernel
 from facegear.dynamics.integrator.system import System
-from facegear.dynamics.integrator.work import Work, make_work
+from facegear.dynamics.integrator.work import Work
 from facegear.dynamics.motion import Settings, State
 from facegear.errors import NotConverged
 
@@ -35,7 +36,8 @@ class Trajectory:
     """Polynomials of S steps in the mesh phase s (rad), which runs on over the periods.
 
     starts, lengths (S,); coordinates (S, order + 1, n) and deflections (S, order + 1, meshes), ascending
-    powers of the phase since the start of the step; states (S, meshes): 0 open, 1 drive flank, -1 back flank.
+    powers of the phase since the start of the step; states (S, meshes): 0 open, p in piece p of
+    the law on the drive flank, -p on the back flank.
     """
 
     frequency: float
@@ -77,9 +79,9 @@ def record(
 ) -> Trajectory:
     """Run whole mesh periods from a state and keep every step. Raises NotConverged if a step fails."""
     settings = settings or Settings()
-    packed = pack(system, frequency)
-    work = make_work(packed, settings.taylor_order)
-    displacement, velocity = _wide(packed, state.displacement), _wide(packed, state.velocity / frequency)
+    integrator = Integrator(system, frequency, settings.tolerance, settings.order)
+    packed, work = integrator.packed, integrator.work
+    displacement, velocity = integrator.padded(integrator.by_phase(state))
     starts, lengths, coordinates, deflections, states = [], [], [], [], []
     for period in range(periods):
         s = 0.0
@@ -102,9 +104,3 @@ def record(
         np.array(deflections),
         np.array(states),
     )
-
-
-def _wide(packed: Packed, values: Array) -> Array:
-    wide = np.zeros(packed.omega_squared.size)
-    wide[: packed.n] = values
-    return wide

@@ -1,14 +1,16 @@
 """Scratch space of the kernels."""
 
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.compiled import Packed
-from facegear.dynamics.integrator.lanes import LANES, aligned
 from facegear.dynamics.integrator.roots import MAX_DEPTH, bernstein_matrix
+from facegear.dynamics.integrator.system import System
+from facegear.machine_code.fourier import FourierScratch, fourier_scratch
+from facegear.machine_code.memory import LANES, aligned
 
 Array = NDArray[np.float64]
 ABREAST = 3 * LANES
@@ -39,20 +41,20 @@ class RingSeries(NamedTuple):
 class Work(NamedTuple):
     """Scratch space for one thread and one order p: coefficient tables have one row for each power of s.
 
-    edge, active, acting, state, side, at_edge, at_parting describe the contact of each mesh during the step:
-    side is the state as a number for vectors, active and acting are zero where a contact that may only push
-    transmits nothing, at_parting says where its force is zero at the start of the step. powers (rows,
-    harmonics) holds the Taylor coefficients of cos(j s) (even rows) and sin(j s) (odd rows) at 0; parts and
-    kinds are used by Fourier series. bernstein holds the deflections' Bernstein coefficients over the step,
-    least and most their bounds. block, block_deflection (rows, coordinates or meshes times ABREAST) and
-    block_force: of tangents side by side. nodes: of the rule that integrates products of polynomials. rings:
-    None without play. Tables that hang on sizes alone (powers, conversion, nodes) are shared and only read.
+    edge, active, acting, state, side, at_level, at_parting describe the contact of each mesh during the step.
+    edge is the deflection from which it is counted, state the piece of the law as facegear.mesh_law.terms
+    counts it, side its sign as a number for vectors; active and acting are zero where a contact that may only
+    push transmits nothing. at_level is 0 but for a mesh that stands where piece p (-p on the back flank)
+    begins, at_parting says where the force is zero at the start of the step. law: the law's own series;
+    fourier and kinds are used by Fourier series. bernstein holds the deflections' Bernstein coefficients over
+    the step, least and most their bounds. block, block_deflection (rows, coordinates or meshes times ABREAST)
+    and block_force: of tangents side by side. nodes: of the rule that integrates products of polynomials.
+    rings: None without play. Tables that hang on sizes alone (conversion, nodes) are shared and only read.
     """
 
     order: int
     y: Array
     deflection: Array
-    stiffness: Array
     error: Array
     load: Array
     force: Array
@@ -60,11 +62,11 @@ class Work(NamedTuple):
     active: Array
     acting: Array
     state: NDArray[np.int64]
-    at_edge: NDArray[np.int64]
+    at_level: NDArray[np.int64]
     side: Array
     at_parting: NDArray[np.int64]
-    powers: Array
-    parts: Array
+    law: Any
+    fourier: FourierScratch
     kinds: Array
     polynomial: Array
     scaled: Array
@@ -87,17 +89,15 @@ class Work(NamedTuple):
     rings: RingSeries | None
 
 
-def make_work(packed: Packed, order: int) -> Work:
+def make_work(system: System, packed: Packed, order: int) -> Work:
     """Allocate scratch space."""
     n, m = packed.mesh_jacobian.shape
     rows = order + 1
-    harmonics = max(len(packed.stiffness), len(packed.error), len(packed.load))
-    widest = max(packed.stiffness.shape[2], packed.error.shape[2])
+    harmonics = max(system.law.harmonic_fractions.size, len(packed.error), len(packed.load))
     return Work(
         order=order,
         y=aligned(rows, n),
         deflection=aligned(rows, m),
-        stiffness=aligned(rows, m),
         error=aligned(rows, m),
         load=aligned(rows, n),
         force=aligned(m),
@@ -105,12 +105,12 @@ def make_work(packed: Packed, order: int) -> Work:
         active=aligned(m),
         acting=aligned(m),
         state=np.zeros(m, dtype=np.int64),
-        at_edge=np.zeros(m, dtype=np.int64),
+        at_level=np.zeros(m, dtype=np.int64),
         side=aligned(m),
         at_parting=np.zeros(m, dtype=np.int64),
-        powers=_powers(harmonics, rows),
-        parts=aligned(2, harmonics, LANES),
-        kinds=aligned(rows * widest),
+        law=system.law.series(rows, m),
+        fourier=fourier_scratch(harmonics, rows),
+        kinds=aligned(rows * packed.error.shape[2]),
         polynomial=aligned(rows),
         scaled=aligned(rows, m),
         bernstein=aligned(rows, m),
@@ -143,13 +143,3 @@ def _gauss(count: int) -> Array:
     """Nodes and weights of Gauss's rule on [0, 1], shape (2, count)."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
     return np.array([0.5 + 0.5 * nodes, 0.5 * weights])
-
-
-@cache
-def _powers(harmonics: int, rows: int) -> Array:
-    """j^i / i! with the signs of the cosine's and the sine's series, shape (rows, harmonics)."""
-    table = np.ones((rows, harmonics))
-    j = np.arange(harmonics)
-    for i in range(1, rows):
-        table[i] = table[i - 1] * j / i * (-1.0 if i % 2 == 0 else 1.0)
-    return table

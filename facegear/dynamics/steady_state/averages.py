@@ -7,7 +7,8 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from facegear.dynamics.integrator.compiled import TAU, Packed
+from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.sums import Sums
 
 Array = NDArray[np.float64]
@@ -93,9 +94,9 @@ class Averages:
         return np.tensordot(self.weight / self.weight.sum(), batches, 1)
 
 
-def averages(packed: Packed, sums: Sums, periods: int) -> Averages:
+def averages(integrator: Integrator, sums: Sums, periods: int) -> Averages:
     """Means from the integrals over a run of `periods` mesh periods."""
-    n, m = packed.n, packed.pairs or packed.m
+    n, m = integrator.size, integrator.meshes
     batches = len(sums.coordinates)
     weight = np.bincount(np.arange(periods) * batches // periods, minlength=batches).astype(float)
     phase = TAU * weight[:, None]
@@ -109,7 +110,7 @@ def averages(packed: Packed, sums: Sums, periods: int) -> Averages:
         lowest=sums.lowest[:m],
         highest=sums.highest[:m],
         force=sums.forces[:, :m] / (TAU * periods),
-        pull=-sums.pull[: packed.contacts].reshape(-1, m).min(axis=0),
+        pull=-sums.pull[: integrator.contacts].reshape(-1, m).min(axis=0),
         origin=sums.origin[:n],
         centre=sums.coordinates[:, :n] / phase,
         products=products / phase[:, None],

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.integrator.compiled import Packed
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.orbits import changes, largest
 
@@ -49,26 +49,26 @@ class Closing:
         return np.log(goal / self.residual) / np.log(self.rate) if 0.0 < self.trend < 1.0 else np.inf
 
 
-def closing(packed: Packed, ends: Array, settings: Settings) -> Closing:
+def closing(integrator: Integrator, ends: Array, settings: Settings) -> Closing:
     """The period with the smallest change at the end of a run; a shorter one wins if nearly as good."""
     best_period, best = 1, np.inf
-    for index, last in enumerate(changes(packed, ends, settings.longest_period).tolist()):
+    for index, last in enumerate(changes(integrator, ends, settings.longest_period).tolist()):
         if last < 0.2 * best and not best <= settings.periodic_residual:
             best_period, best = index + 1, last
-    return Closing(best_period, best, trend(packed, ends, best_period))
+    return Closing(best_period, best, trend(integrator, ends, best_period))
 
 
-def trend(packed: Packed, ends: Array, period: int) -> float:
+def trend(integrator: Integrator, ends: Array, period: int) -> float:
     """Largest change over a period at the last TREND periods, over that at the TREND before."""
     if len(ends) < 2 * TREND + period:
         return np.nan
     kept = ends[-2 * TREND - period :]
-    gaps = largest(packed, kept[period:] - kept[:-period])
+    gaps = largest(integrator, kept[period:] - kept[:-period])
     early, late = gaps[:TREND].max(), gaps[TREND:].max()
     return float(late / early) if early > 0.0 else 0.0
 
 
-def closed(packed: Packed, ends: Array, near: Closing, settings: Settings) -> int:
+def closed(integrator: Integrator, ends: Array, near: Closing, settings: Settings) -> int:
     """The period that a run has closed on by itself, 0 if it has not.
 
     A small change is not enough: a run that creeps past the place where an orbit has just vanished, or off an
@@ -79,11 +79,11 @@ def closed(packed: Packed, ends: Array, near: Closing, settings: Settings) -> in
     goal = settings.periodic_residual
     if not _at_rest(near, goal):
         return 0
-    returns = changes(packed, ends, near.period)
+    returns = changes(integrator, ends, near.period)
     for part in range(1, near.period):
         if near.period % part:
             continue
-        short = Closing(part, float(returns[part - 1]), trend(packed, ends, part))
+        short = Closing(part, float(returns[part - 1]), trend(integrator, ends, part))
         if short.residual <= NO_DIFFERENCE * goal:
             return part
         if short.residual <= SPLIT * goal and short.trend < 0.5 * (1.0 + near.trend):
@@ -91,7 +91,7 @@ def closed(packed: Packed, ends: Array, near: Closing, settings: Settings) -> in
     return near.period
 
 
-def wanders(packed: Packed, ends: Array, period: int) -> bool:
+def wanders(integrator: Integrator, ends: Array, period: int) -> bool:
     """Whether what changes over a period adds up instead of coming round: a drift, and no torus.
 
     Nothing is known of a window of one period or less.
@@ -99,8 +99,8 @@ def wanders(packed: Packed, ends: Array, period: int) -> bool:
     gaps = ends[period:] - ends[:-period] if period else ends[:0]
     if not len(gaps):
         return False
-    steady = (packed.weights * np.abs(gaps.mean(axis=0))).max()
-    return bool(steady > 0.5 * (packed.weights * np.abs(gaps)).max())
+    steady = (integrator.weights * np.abs(gaps.mean(axis=0))).max()
+    return bool(steady > 0.5 * (integrator.weights * np.abs(gaps)).max())
 
 
 def _at_rest(near: Closing, goal: float) -> bool:

@@ -6,11 +6,10 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.integrator.compiled import Packed
-from facegear.dynamics.integrator.work import Work
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.averages import BATCHES, mean_interval
-from facegear.dynamics.steady_state.window import Window, run_disturbed, run_window
+from facegear.dynamics.steady_state.window import Window, run_window
 
 Array = NDArray[np.float64]
 ALIGN, LEAST_ALIGN = 2, 32
@@ -45,24 +44,25 @@ class Exponent:
     window: Window
 
 
-def largest_exponent(packed: Packed, work: Work, state: Array, settings: Settings) -> Exponent:
+def largest_exponent(integrator: Integrator, state: Array, settings: Settings) -> Exponent:
     """Largest exponent from a state (2, n) by phase, by one tangent vector over the settings' window.
 
     While it cannot be told from zero the run is doubled, window by window, up to `extensions` times.
     """
-    tangent = np.zeros((1, *state.shape))
-    tangent[0, :, : packed.n] = np.random.default_rng(0).normal(size=(2, packed.n))
-    tangent /= np.sqrt(((packed.weights * tangent) ** 2).sum())
+    tangent = np.random.default_rng(0).normal(size=(1, *state.shape))
+    tangent /= np.sqrt(((integrator.weights * tangent) ** 2).sum())
     # The vector first turns into the direction of fastest growth.
     align = max(ALIGN * settings.window // BATCHES, LEAST_ALIGN)
-    ends, _ = run_disturbed(packed, work, state, tangent, align, settings)
-    rates = np.zeros(0)
+    run = integrator.run(state, align, tangent, growth=True)
+    ends, rates, tangent = run.ends, np.zeros(0), run.tangents
     if settings.window < LEAST_WINDOW:
         missing = LEAST_WINDOW - settings.window
-        more, rates = run_disturbed(packed, work, ends[-1], tangent, missing, settings)
-        ends = np.concatenate([ends, more])
+        run = integrator.run(ends[-1], missing, tangent, growth=True)
+        rates, tangent = run.growth, run.tangents
+        ends = np.concatenate([ends, run.ends])
     for windows in range(1, 2**settings.extensions + 1):
-        window = run_window(packed, work, ends[-1], settings.window, settings, tangent)
+        window = run_window(integrator, ends[-1], settings.window, settings.samples, tangent)
+        tangent = window.tangent
         ends, rates = np.concatenate([ends, window.ends]), np.concatenate([rates, window.growth])
         if windows.bit_count() > 1:
             continue

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.system import System
 from facegear.harmonics.series import stacked_values
+from facegear.mesh_law.law import beyond_edges
 from facegear.transmission.flanks import NO_LOAD
 
 Array = NDArray[np.float64]
@@ -40,14 +41,11 @@ def by_mesh(system: System, each: Array) -> Array:
 
 
 def mesh_forces(system: System, each: Array, per_period: int) -> Array:
-    """Elastic forces k f(d) (K, meshes), N, from each_deflection(); with two flanks what both transmit."""
-    # Without clearance everything counts from the upper edge.
-    lower, upper = system.lower[: system.contacts], system.upper[: system.contacts]
-    lower = np.where(lower >= upper, upper, lower)
-    forces = np.clip(each, lower, upper)
-    np.subtract(each, forces, out=forces)
+    """Elastic forces (K, meshes), N, from each_deflection(); with two flanks what both transmit."""
+    contacts = system.contacts
+    beyond = beyond_edges(each, system.lower[:contacts], system.upper[:contacts])
     cycles = np.arange(per_period) / per_period
-    forces = (forces.reshape(-1, per_period, len(upper)) * _stiffness(system, cycles)).reshape(each.shape)
+    forces = system.law.force(cycles, beyond.reshape(-1, per_period, contacts)).reshape(each.shape)
     if not system.two_flanks:
         return forces
     drive, back = np.split(forces, 2, axis=1)
@@ -78,14 +76,3 @@ def _never_pressed(depths: Array, shares: Array) -> NDArray[np.bool_]:
     """
     deepest = depths.max(axis=0)
     return (deepest <= NO_LOAD * max(float(deepest.max()), 0.0)) & (shares * len(depths) > 1.0)
-
-
-def _stiffness(system: System, cycles: Array) -> Array:
-    """Stiffness (times, m) at times in mesh periods."""
-    stiffness = stacked_values(system.stiffness, cycles)
-    for kind, piece in enumerate(system.pieces):
-        index = np.searchsorted(piece.breaks, cycles, side="right") - 1
-        ahead = cycles - piece.breaks[index]
-        powers = np.vander(ahead, piece.coefficients.shape[1], True)
-        stiffness[:, kind] += (piece.coefficients[index] * powers).sum(1)
-    return stiffness[:, system.stiffness_kind[: system.contacts]]

@@ -5,19 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.integrator.compiled import Packed
-from facegear.dynamics.integrator.periods import (
-    DONE,
-    MOST_STEPS,
-    NOT_FINITE,
-    TOO_MANY_STEPS,
-    Log,
-    disturbance_step,
-    make_log,
-    run_periods,
-)
-from facegear.dynamics.integrator.work import Work
-from facegear.errors import NotConverged
+from facegear.dynamics.integrator.integrator import Integrator, RunResult
 
 Array = NDArray[np.float64]
 NEWTON_STEPS, MATRICES = 12, 3
@@ -34,7 +22,7 @@ ROUNDING = 1e-11
 
 @dataclass(frozen=True, eq=False)
 class Orbit:
-    """A periodic orbit of `period` mesh periods through a displacement and a velocity by phase (padded n,).
+    """A periodic orbit of `period` mesh periods through a state (2, n) by phase.
 
     residual: change over the period over the length scale, also an error estimate once Newton has settled.
     multipliers (2 n,) complex, largest first, vectors (2 n, 2 n) their directions, by column. liouville: log
@@ -42,8 +30,7 @@ class Orbit:
     where the matrix is singular to rounding).
     """
 
-    displacement: Array
-    velocity: Array
+    state: Array
     period: int
     residual: float
     multipliers: NDArray[np.complex128]
@@ -60,93 +47,63 @@ class Orbit:
         """By which factor a period brings the slowest disturbance back, those of bodies afloat left out."""
         return float(np.abs(self.multipliers[self.moving]).max(initial=0.0))
 
-    def parts(self, packed: Packed, off: Array) -> NDArray[np.complex128]:
-        """Components (..., 2 n) of states (..., 2, padded n) off the orbit along its own directions."""
-        flat = off[..., : packed.n].reshape(*off.shape[:-2], -1)
+    def parts(self, off: Array) -> NDArray[np.complex128]:
+        """Components (..., 2 n) of states (..., 2, n) off the orbit along its own directions."""
+        flat = off.reshape(*off.shape[:-2], -1)
         found = np.linalg.lstsq(self.vectors, np.atleast_2d(flat).T.astype(complex), rcond=None)[0]
         return np.reshape(found.T, flat.shape)
 
-    def distance(self, packed: Packed, state: Array, rates: float = 1.0) -> float:
-        """How far a state (2, padded n) is off, as a change(), wherever bodies afloat may be.
+    def distance(self, integrator: Integrator, state: Array, rates: float = 1.0) -> float:
+        """How far a state (2, n) is off, as a change(), wherever bodies afloat may be.
 
         rates: by which velocities are divided.
         """
-        off = state - np.array([self.displacement, self.velocity])
+        off = state - self.state
         afloat = ~self.moving
         if afloat.any():
-            shifted = self.vectors[:, afloat] @ self.parts(packed, off)[afloat]
-            off[:, : packed.n] -= shifted.real.reshape(2, -1)
+            shifted = self.vectors[:, afloat] @ self.parts(off)[afloat]
+            off -= shifted.real.reshape(2, -1)
         off[1] /= rates
-        return change(packed, off, 0.0 * off)
+        return change(integrator, off, 0.0 * off)
 
-    def leaving(self, packed: Packed, off: Array) -> Array:
-        """A state (2, padded n) of change() one along the leading direction, to the side of `off`."""
-        side = self.parts(packed, off)[0]
-        along = self.vectors[:, 0] * (side / abs(side) if abs(side) > ROUNDING * packed.scale else 1.0)
-        leading = np.zeros_like(off)
-        leading[:, : packed.n] = along.real.reshape(2, -1)
-        return leading / change(packed, leading, 0.0 * leading)
+    def leaving(self, integrator: Integrator, off: Array) -> Array:
+        """A state (2, n) of change() one along the leading direction, to the side of `off`."""
+        side = self.parts(off)[0]
+        known = abs(side) > ROUNDING * integrator.scale
+        along = self.vectors[:, 0] * (side / abs(side) if known else 1.0)
+        leading = along.real.reshape(2, -1)
+        return leading / change(integrator, leading, 0.0 * leading)
 
 
-def change(packed: Packed, first: Array, second: Array) -> float:
+def change(integrator: Integrator, first: Array, second: Array) -> float:
     """Largest difference of two states (2, n) as mesh deflections and their rates, over the length scale."""
-    return float(largest(packed, (first - second)[None])[0])
+    return float(largest(integrator, (first - second)[None])[0])
 
 
-def largest(packed: Packed, gaps: Array) -> Array:
+def largest(integrator: Integrator, gaps: Array) -> Array:
     """Largest component of each of some differences of states (K, 2, n), counted as in change()."""
     np.abs(gaps, out=gaps)
-    gaps *= packed.weights / packed.scale
+    gaps *= integrator.weights / integrator.scale
     return np.asarray(gaps.reshape(len(gaps), gaps.shape[1] * gaps.shape[2]).max(axis=1))
 
 
-def changes(packed: Packed, ends: Array, longest: int) -> Array:
+def changes(integrator: Integrator, ends: Array, longest: int) -> Array:
     """change() of the last of `ends` (periods, 2, n) from those 1 .. longest periods before it."""
-    return largest(packed, ends[-1] - ends[-2 : -2 - min(longest, len(ends) - 1) : -1])
+    return largest(integrator, ends[-1] - ends[-2 : -2 - min(longest, len(ends) - 1) : -1])
 
 
-def monodromy(
-    packed: Packed, work: Work, displacement: Array, velocity: Array, period: int, tolerance: float
-) -> tuple[Array, Array, Array, Log]:
-    """Run `period` mesh periods with all tangents: end displacement, end velocity, matrix (2 n, 2 n), log.
+def monodromy(integrator: Integrator, state: Array, period: int) -> tuple[Array, RunResult]:
+    """The matrix (2 n, 2 n) of the map over `period` mesh periods at a state (2, n), and the run.
 
-    Raises NotConverged where the step fails.
+    Raises NotConverged where a step fails.
     """
-    n, wide = packed.n, packed.omega_squared.size
-    tangents = np.zeros((2 * n, 2, wide))
+    n = integrator.size
+    tangents = np.zeros((2 * n, 2, n))
     rows = np.arange(n)
     tangents[rows, 0, rows] = 1.0
     tangents[n + rows, 1, rows] = 1.0
-    displacement, velocity, log = _moved(packed, work, displacement, velocity, tangents, period, tolerance)
-    matrix = tangents[:, :, :n].reshape(2 * n, 2 * n).T
-    return displacement, velocity, matrix, log
-
-
-def _moved(
-    packed: Packed,
-    work: Work,
-    displacement: Array,
-    velocity: Array,
-    tangents: Array,
-    period: int,
-    tolerance: float,
-) -> tuple[Array, Array, Log]:
-    """A state moved over mesh periods in the steps that tangents need, with or without any."""
-    displacement, velocity = displacement.copy(), velocity.copy()
-    log = make_log(packed, period)
-    longest = disturbance_step(packed, work.order, tolerance)
-    require(run_periods(packed, work, displacement, velocity, tangents, period, 0, tolerance, log, longest))
-    return displacement, velocity, log
-
-
-def require(status: int) -> None:
-    """Raise NotConverged unless the status of a run is good."""
-    reported = {
-        TOO_MANY_STEPS: f"a mesh period took more than {MOST_STEPS} steps",
-        NOT_FINITE: "the motion grew beyond all bounds",
-    }
-    if status != DONE:
-        raise NotConverged("dynamics", "time integration", reported[status])
+    result = integrator.run(state, period, tangents)
+    return result.tangents.reshape(2 * n, 2 * n).T, result
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +114,7 @@ class _Tangent:
     matrix: Array
     multipliers: NDArray[np.complex128]
     directions: NDArray[np.complex128]
-    log: Log
+    divergence: float
 
     @property
     def slowness(self) -> float:
@@ -180,14 +137,7 @@ class _Tangent:
 
 
 def shoot(
-    packed: Packed,
-    work: Work,
-    displacement: Array,
-    velocity: Array,
-    period: int,
-    tolerance: float,
-    goal: float,
-    matrices: int = MATRICES,
+    integrator: Integrator, state: Array, period: int, goal: float, matrices: int = MATRICES
 ) -> Orbit | None:
     """Newton's method on the change over `period` mesh periods; None if it does not settle near the start.
 
@@ -195,73 +145,61 @@ def shoot(
     steps' errors of where it was taken; there may be `matrices` of them on the way. An orbit is accepted when
     the change is so small that the orbit is known to the goal.
     """
-    n = packed.n
-    displacement, velocity = displacement.copy(), velocity.copy()
-    none = np.zeros((0, 2, displacement.size))
+    here, tolerance = state.copy(), integrator.tolerance
     best, gained = np.inf, 0.0
     tangent: _Tangent | None = None
     for _ in range(NEWTON_STEPS):
-        here = np.array([displacement, velocity])
         if gained < 0.1 and tangent is not None:
-            end_displacement, end_velocity, log = _moved(
-                packed, work, displacement, velocity, none, period, tolerance
-            )
-            there = np.array([end_displacement, end_velocity])
+            result = integrator.run(here, period, fine=True)
         elif matrices > 0:
-            there, tangent = _linearised(packed, work, here, period, tolerance)
-            log, matrices = tangent.log, matrices - 1
+            result, tangent = _linearised(integrator, here, period)
+            matrices -= 1
         else:
             return None
-        residual = change(packed, here, there)
+        residual = change(integrator, here, result.state)
         if not residual < 4.0 * best:
             return None
-        least = least_period(packed, here, log.ends, max(residual, goal))
+        least = least_period(integrator, here, result.ends, max(residual, goal))
         if residual <= goal and least < period:
-            return shoot(packed, work, displacement, velocity, least, tolerance, goal)
+            return shoot(integrator, here, least, goal)
         # Newton's method cannot do better than the steps and their rounding.
         stalled = residual > 0.5 * best and residual <= max(tolerance * tangent.slowness, ROUNDING)
         if residual <= goal * min(1.0, tangent.slowness) or stalled:
-            if change(packed, here, tangent.state) > 10.0 * tolerance:
-                _, tangent = _linearised(packed, work, here, period, tolerance)
-            return _orbit(packed, here, period, residual, tangent)
+            if change(integrator, here, tangent.state) > 10.0 * tolerance:
+                _, tangent = _linearised(integrator, here, period)
+            return _orbit(here, period, residual, tangent)
         gained = residual / best if np.isfinite(best) else 0.0
         best = min(best, residual)
-        gap = (there - here)[:, :n].ravel()
-        correction = tangent.correction(gap)
-        displacement[:n] += correction[:n]
-        velocity[:n] += correction[n:]
+        correction = tangent.correction((result.state - here).ravel())
+        here = here + correction.reshape(2, -1)
     return None
 
 
-def _linearised(
-    packed: Packed, work: Work, state: Array, period: int, tolerance: float
-) -> tuple[Array, _Tangent]:
-    """Where a state (2, n) comes to over the period, and the map near it."""
-    displacement, velocity, matrix, log = monodromy(packed, work, state[0], state[1], period, tolerance)
+def _linearised(integrator: Integrator, state: Array, period: int) -> tuple[RunResult, _Tangent]:
+    """The run from a state (2, n) over the period, and the map near it."""
+    matrix, result = monodromy(integrator, state, period)
     multipliers, directions = np.linalg.eig(matrix)
     order = np.argsort(-np.abs(multipliers))
-    there = np.array([displacement, velocity])
-    return there, _Tangent(state, matrix, multipliers[order], directions[:, order], log)
+    return result, _Tangent(state, matrix, multipliers[order], directions[:, order], result.divergence)
 
 
-def least_period(packed: Packed, start: Array, ends: Array, residual: float) -> int:
+def least_period(integrator: Integrator, start: Array, ends: Array, residual: float) -> int:
     """Smallest number of mesh periods after which an orbit has closed already, to ten times its residual."""
     for period in range(1, len(ends)):
-        if len(ends) % period == 0 and change(packed, start, ends[period - 1]) <= 10.0 * residual:
+        if len(ends) % period == 0 and change(integrator, start, ends[period - 1]) <= 10.0 * residual:
             return period
     return len(ends)
 
 
-def _orbit(packed: Packed, state: Array, period: int, residual: float, tangent: _Tangent) -> Orbit:
+def _orbit(state: Array, period: int, residual: float, tangent: _Tangent) -> Orbit:
     multipliers = tangent.multipliers
     sign, volume = np.linalg.slogdet(tangent.matrix)
     condition_lost = np.log(np.finfo(float).eps) * 0.9 > np.log(
         max(abs(multipliers[-1]), 1e-300) / max(abs(multipliers[0]), 1e-300)
     )
-    liouville = np.nan if condition_lost or sign <= 0 else float(volume - tangent.log.divergence[0])
+    liouville = np.nan if condition_lost or sign <= 0 else float(volume - tangent.divergence)
     return Orbit(
-        displacement=state[0],
-        velocity=state[1],
+        state=state,
         period=period,
         residual=residual,
         multipliers=multipliers,
@@ -270,7 +208,7 @@ def _orbit(packed: Packed, state: Array, period: int, residual: float, tangent: 
     )
 
 
-def drawn_in(packed: Packed, orbit: Orbit, ends: Array, since: int, tolerance: float) -> bool:
+def drawn_in(integrator: Integrator, orbit: Orbit, ends: Array, since: int) -> bool:
     """Whether nothing can lead a run away from a stable orbit any more.
 
     ends (periods, 2, n) of the run, the last of them `since` periods after one that belongs to the orbit's
@@ -281,11 +219,11 @@ def drawn_in(packed: Packed, orbit: Orbit, ends: Array, since: int, tolerance: f
     back = ends[len(ends) - 1 - since :: -orbit.period][: RETURNS + 1][::-1]
     if len(back) < RETURNS + 1:
         return False
-    off = back - np.array([orbit.displacement, orbit.velocity])
+    off = back - orbit.state
     moving, slow = orbit.moving, 1.0 - orbit.holding
-    distance = (packed.weights * np.abs(off[-1])).max() / packed.scale
-    if distance <= min(10.0 * tolerance / slow, 0.1 * slow):
+    distance = (integrator.weights * np.abs(off[-1])).max() / integrator.scale
+    if distance <= min(10.0 * integrator.tolerance / slow, 0.1 * slow):
         return True
-    parts = orbit.parts(packed, off)[:, moving]
+    parts = orbit.parts(off)[:, moving]
     missed = np.linalg.norm(parts[1:] - orbit.multipliers[moving] * parts[:-1], axis=1)
     return bool((missed < 0.5 * slow * np.linalg.norm(parts[:-1], axis=1)).all())

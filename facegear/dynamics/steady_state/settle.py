@@ -5,12 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.integrator.compiled import TAU, Packed
-from facegear.dynamics.integrator.periods import make_log, run_periods
-from facegear.dynamics.integrator.work import Work
+from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.closing import TREND, VERY_SMALL, Closing, closed, closing
-from facegear.dynamics.steady_state.orbits import AFLOAT, MATRICES, Orbit, changes, drawn_in, require, shoot
+from facegear.dynamics.steady_state.orbits import AFLOAT, MATRICES, Orbit, changes, drawn_in, shoot
 
 Array = NDArray[np.float64]
 NEWTON_COST = 20
@@ -48,16 +47,14 @@ class Settled:
     ends: Array
 
 
-def settle(
-    packed: Packed, work: Work, state: Array, settings: Settings, ends: Array | None = None
-) -> Settled:
+def settle(integrator: Integrator, state: Array, settings: Settings, ends: Array | None = None) -> Settled:
     """Run until the state repeats after 1 .. longest_period periods, or patience ends without a sign of it.
 
     With `refine` the orbit that the run tends to is found by Newton's method as soon as that pays, and is
     taken only once the run is drawn in by it. An unstable orbit, on which exact symmetry may hold a run, is
     left by a kick. `ends`: states that the run passed through before, oldest first.
     """
-    return Run(packed, work, state, settings, ends).settled()
+    return Run(integrator, state, settings, ends).settled()
 
 
 class Passed:
@@ -94,10 +91,8 @@ class Run:
     Newton's method, whose cost is counted in mesh periods, may take as long as the run itself.
     """
 
-    def __init__(
-        self, packed: Packed, work: Work, state: Array, settings: Settings, ends: Array | None
-    ) -> None:
-        self.packed, self.work, self.settings = packed, work, settings
+    def __init__(self, integrator: Integrator, state: Array, settings: Settings, ends: Array | None) -> None:
+        self.integrator, self.settings = integrator, settings
         self.state = state.copy()
         self.passed = Passed(4 * settings.longest_period + 2 * TREND + LONG_BLOCK, state.shape)
         if ends is not None:
@@ -107,7 +102,7 @@ class Run:
         self.found: Orbit | None = None
         self.found_at = 0
         self.tried: dict[int, float] = {}
-        self.block, self.dwell = _blocks(packed, settings)
+        self.block, self.dwell = _blocks(integrator, settings)
 
     @property
     def ends(self) -> Array:
@@ -121,7 +116,7 @@ class Run:
             if self.periods_run < self.dwell and not self.known:
                 continue
             last = self.periods_run >= self.settings.settle
-            near = closing(self.packed, self.ends, self.settings)
+            near = closing(self.integrator, self.ends, self.settings)
             result = self._refined(near, last) if self.settings.refine else None
             if result is None and len(self.ends):
                 result = self._by_itself(near, last)
@@ -140,13 +135,9 @@ class Run:
             block = max(block, self.dwell - self.periods_run)
         if self.periods_run < settings.settle:
             block = min(block, settings.settle - self.periods_run)
-        log = make_log(self.packed, block, ends=self.passed.room_for(block))
-        none = np.zeros((0, *self.state.shape))
-        displacement, velocity = self.state
-        status = run_periods(
-            self.packed, self.work, displacement, velocity, none, block, 0, settings.tolerance, log, TAU
-        )
-        require(status)
+        run = self.integrator.run(self.state, block)
+        self.state = run.state
+        self.passed.room_for(block)[:] = run.ends
         self.periods_run += block
 
     def _refined(self, near: Closing, last: bool) -> Settled | None:
@@ -163,7 +154,7 @@ class Run:
             return None
         since = (self.periods_run - self.found_at) % self.found.period
         at_rest = since == 0 and self._stands_on(self.found, near)
-        if at_rest or drawn_in(self.packed, self.found, self.ends, since, self.settings.tolerance):
+        if at_rest or drawn_in(self.integrator, self.found, self.ends, since):
             return self._result(self.found.period, self.found.residual, self.found)
         return None
 
@@ -179,25 +170,14 @@ class Run:
         return worth
 
     def _shot(self, period: int, matrices: int = MATRICES) -> Orbit | None:
-        settings = self.settings
-        displacement, velocity = self.state
-        return shoot(
-            self.packed,
-            self.work,
-            displacement,
-            velocity,
-            period,
-            settings.tolerance,
-            settings.periodic_residual,
-            matrices,
-        )
+        return shoot(self.integrator, self.state, period, self.settings.periodic_residual, matrices)
 
     def _by_itself(self, near: Closing, last: bool) -> Settled | None:
         """The motion that the run has closed on without help, with its multipliers if they are wanted.
 
         What only creeps by is told by Newton's method, which finds no orbit there: then the run goes on.
         """
-        period = closed(self.packed, self.ends, near, self.settings)
+        period = closed(self.integrator, self.ends, near, self.settings)
         if not period:
             return None
         orbit = self._shot(period) if self.settings.refine else None
@@ -217,18 +197,18 @@ class Run:
     def _in_noise(self, near: Closing) -> Settled | None:
         """The motion of the shortest period about which nothing but the choice of steps moves the run."""
         noise = NOISE * self.settings.tolerance
-        close = np.flatnonzero(changes(self.packed, self.ends, self.settings.longest_period) < noise)
+        close = np.flatnonzero(changes(self.integrator, self.ends, self.settings.longest_period) < noise)
         orbit = self._shot(int(close[0]) + 1, matrices=1) if close.size else None
         if orbit is None or orbit.holding > DRAWN:
             return None
         # Tolerances are those of places: the fastest motion may err in its velocity by so much more.
-        if orbit.distance(self.packed, self.state, max(self.packed.fastest, 1.0)) > noise:
+        if orbit.distance(self.integrator, self.state, max(self.integrator.fastest, 1.0)) > noise:
             return None
         return self._result(orbit.period, near.residual, orbit if self.settings.refine else None)
 
     def _is_here(self, orbit: Orbit) -> bool:
         """Whether an orbit is the one that the run stands on: what is left to decay, and errors of steps."""
-        moved = orbit.distance(self.packed, self.state)
+        moved = orbit.distance(self.integrator, self.state)
         settings, slow = self.settings, max(1.0 - abs(orbit.multipliers[0]), 1e-3)
         return moved <= max(20.0 * settings.periodic_residual, 10.0 * settings.tolerance) / slow
 
@@ -249,24 +229,24 @@ class Run:
         if not held or self.kicks >= MOST_KICKS:
             return
         self.kicks += 1
-        off = self.state - np.array([orbit.displacement, orbit.velocity])
-        self.state += KICK * orbit.leaving(self.packed, off)
+        off = self.state - orbit.state
+        self.state = self.state + KICK * orbit.leaving(self.integrator, off)
         self.passed.forget()
         self.found, self.tried = None, {}
         self.known = 0
 
     def _result(self, period: int, residual: float, orbit: Orbit | None) -> Settled:
-        state = self.state if orbit is None else np.array([orbit.displacement, orbit.velocity])
+        state = self.state if orbit is None else orbit.state
         residual = residual if orbit is None else orbit.residual
         return Settled(state, period, residual, orbit, self.periods_run, self.ends)
 
 
-def _blocks(packed: Packed, settings: Settings) -> tuple[int, int]:
+def _blocks(integrator: Integrator, settings: Settings) -> tuple[int, int]:
     """Periods in a block, and those to run before anything is judged.
 
     Slow speeds forget within fewer periods: 30 time constants of the least damped coordinate are plenty.
     """
-    rate = 0.5 * TAU * packed.damping[: packed.n].min()
+    rate = 0.5 * TAU * integrator.damping.min()
     forgotten = int(np.ceil(30.0 / rate)) if rate > 0.0 else settings.dwell
     block = max(min(BLOCK, forgotten), 2)
     return block, min(settings.dwell, max(block, forgotten))

@@ -8,10 +8,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.integrator.compiled import TAU, Packed, pack
+from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.reduction import Reduced, reduce
 from facegear.dynamics.integrator.system import System, machine_system
-from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.averages import Averages, Moments
 from facegear.dynamics.steady_state.closing import FALLING, SMALL, closing, wanders
@@ -151,27 +151,26 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
     measured on, which is also a second watch. Where the two do not agree it is watched for longer.
     """
     prepare(system.ring_play.size > 0)
-    packed = pack(system, frequency)
-    work = make_work(packed, settings.taylor_order)
-    state, ends = by_phase(packed, start, frequency), None
+    integrator = Integrator(system, frequency, settings.tolerance, settings.order)
+    state, ends = integrator.by_phase(start), None
     periods_run = 0
     for _ in range(settings.extensions + 1):
-        settled = settle(packed, work, state, settings, ends)
+        settled = settle(integrator, state, settings, ends)
         periods_run += settled.periods_run
         if settled.period:
-            window = run_window(packed, work, settled.state, settled.period, settings)
+            window = run_window(integrator, settled.state, settled.period, settings.samples)
             each = each_deflection(system, window.samples, window.per_period)
             exponent, motion = None, Motion.PERIODIC
             break
-        exponent = largest_exponent(packed, work, settled.state, settings)
+        exponent = largest_exponent(integrator, settled.state, settings)
         window = exponent.window
         each = each_deflection(system, window.samples, window.per_period)
-        motion = _class(packed, settled, exponent, window, by_mesh(system, each), settings)
+        motion = _class(integrator, settled, exponent, window, by_mesh(system, each), settings)
         periods_run += len(exponent.ends)
         if motion is not Motion.NOT_SETTLED or exponent.growth is Growth.UNKNOWN:
             break
         state, ends = window.ends[-1], exponent.ends
-    orbit, end = settled.orbit, window.ends[-1][:, : packed.n]
+    orbit = settled.orbit
     return SteadyState(
         system=system,
         motion=motion,
@@ -192,12 +191,12 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
         liouville=orbit.liouville if orbit else None,
         exponent=(exponent.value, exponent.half_width) if exponent else None,
         periods_run=periods_run,
-        state=State(end[0].copy(), end[1] * frequency),
+        state=integrator.by_time(window.ends[-1]),
     )
 
 
 def _class(
-    packed: Packed,
+    integrator: Integrator,
     settled: Settled,
     exponent: Exponent,
     window: Window,
@@ -206,19 +205,11 @@ def _class(
 ) -> Motion:
     """Class of a motion that was watched without closing, by its exponent and the window after it."""
     motion = CLASSES.get(exponent.growth, Motion.NOT_SETTLED)
-    near = closing(packed, window.ends, settings)
+    near = closing(integrator, window.ends, settings)
     escaping = motion is Motion.CHAOTIC and min(settled.residual, near.residual) < ESCAPING
     by_period = deflections.reshape(window.periods, window.per_period, -1).std(axis=1)
     converging = near.residual < SMALL and near.trend < FALLING
-    drifting = motion is Motion.QUASI_PERIODIC and wanders(packed, window.ends, near.period)
+    drifting = motion is Motion.QUASI_PERIODIC and wanders(integrator, window.ends, near.period)
     if escaping or converging or drifting or drifts(window.averages, by_period):
         return Motion.NOT_SETTLED
     return motion
-
-
-def by_phase(packed: Packed, state: State, frequency: float) -> Array:
-    """A state as the kernels count it, (2, padded n), velocity by phase."""
-    wide = np.zeros((2, packed.omega_squared.size))
-    wide[0, : packed.n] = state.displacement
-    wide[1, : packed.n] = state.velocity / frequency
-    return wide

@@ -6,13 +6,12 @@ from lumped_machines import make_layout, make_machine
 from oscillators import one_degree
 from scipy.integrate import solve_ivp
 
-from facegear.dynamics.integrator.compiled import TAU, pack
+from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.trajectory import record
-from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import build_model, simulate, steady_state
-from facegear.harmonics.series import stacked_values
 from facegear.transmission.layout import MeshKinematics
 from facegear.transmission.machine import OpenFlanks
 
@@ -96,11 +95,9 @@ def simulate_system(system, settings, start):
 def test_disturbances_pass_the_cut_unchanged_and_shear_where_flanks_meet(start):
     """The matrix of three periods against differences of runs, its determinant against Liouville."""
     system = oscillator(True)
-    packed = pack(system, SPEED)
-    state = np.zeros((2, packed.omega_squared.size))
-    state[:, 0] = start[0], start[1] / SPEED
-    *_, matrix, log = monodromy(packed, make_work(packed, 20), state[0], state[1], 3, 1e-14)
-    assert np.log(np.linalg.det(matrix)) == pytest.approx(log.divergence[0], abs=1e-9)
+    state = np.array([[start[0]], [start[1] / SPEED]])
+    matrix, result = monodromy(Integrator(system, SPEED, 1e-14, 20), state, 3)
+    assert np.log(np.linalg.det(matrix)) == pytest.approx(result.divergence, abs=1e-9)
     for column in range(2):
         ends = []
         for sign in (-1.0, 1.0):
@@ -127,14 +124,11 @@ def contact_forces(model, response, periods=2):
         slope = np.arange(1, run.deflections.shape[1]) * ahead[:, :-1]
         d = np.einsum("sp,spm->sm", ahead, run.deflections)[:, : system.contacts]
         rate = omega * np.einsum("sp,spm->sm", slope, run.deflections[:, 1:])[:, : system.contacts]
-        k = stacked_values(system.stiffness, (run.starts + share * run.lengths) / TAU)
+        cycles = (run.starts + share * run.lengths) / TAU
         side = run.states[step][:, : system.contacts]
         lower = np.where(np.isfinite(system.lower), system.lower, 0.0)[: system.contacts]
         beyond = d - np.where(side > 0, system.upper[: system.contacts], lower)
-        push = (
-            k[:, system.stiffness_kind[: system.contacts]] * beyond
-            + system.mesh_damping[: system.contacts] * rate
-        )
+        push = system.law.force(cycles, beyond) + system.mesh_damping[: system.contacts] * rate
         forces.append(side * push)
     return np.concatenate(forces)
 

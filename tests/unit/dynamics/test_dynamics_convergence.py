@@ -6,9 +6,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_machine
 
-from facegear.dynamics.integrator.compiled import TAU, pack
+from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.roots import MAX_DEPTH, bernstein_matrix, first_root
-from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import build_model, simulate
@@ -25,16 +25,12 @@ def errors(order, backlash):
     speed = 9000.0
     state = simulate(model, speed, FINE).state
     omega = TAU * mesh_frequency(model.machine.layout, speed)
-    packed = pack(model.system, omega)
 
     def end(p, tolerance):
-        displacement, velocity = np.zeros((2, packed.omega_squared.size))
-        displacement[: packed.n], velocity[: packed.n] = state.displacement, state.velocity / omega
-        displacement, velocity, matrix, log = monodromy(
-            packed, make_work(packed, p), displacement, velocity, 1, tolerance
-        )
+        integrator = Integrator(model.system, omega, tolerance, p)
+        matrix, run = monodromy(integrator, integrator.by_phase(state), 1)
         largest = np.sort(np.abs(np.linalg.eigvals(matrix)))[::-1][:6]
-        return packed.transposed @ displacement / packed.scale, largest, int(log.steps[0]), log.shares
+        return integrator.mesh_jacobian @ run.state[0] / integrator.scale, largest, run.steps, run.fractions
 
     exact, multipliers, _, shares = end(20, 1e-15)
     rows = []

@@ -3,10 +3,16 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
+import numba
+import numpy as np
 import pytest
+from oscillators import backlash_oscillator
 
-from facegear.machine_code import for_callers
+from facegear.dynamics.integrator.integrator import Integrator
+from facegear.machine_code.compiler import for_callers
+from facegear.machine_code.versions import KNOWN, is_known
 
 CALLED = (
     "from own import inlined, kernel\n\n"
@@ -15,7 +21,7 @@ CALLED = (
 )
 FILES = {
     "own.py": (
-        "from pathlib import Path\nfrom facegear.machine_code import compiler, for_callers\n"
+        "from pathlib import Path\nfrom facegear.machine_code.compiler import compiler, for_callers\n"
         "kernel = compiler(Path(__file__).parent)\ninlined = for_callers()\n"
     ),
     "called.py": CALLED.format(added=1.0),
@@ -70,3 +76,41 @@ def test_importing_the_kernels_leaves_numba_as_it_was():
         "assert numba.config.CACHE_DIR == before"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_numba_is_one_of_the_versions_whose_private_parts_are_known():
+    """Another version runs as well, but slowly: try it with this suite before it is added."""
+    assert is_known(numba.__version__), KNOWN
+    assert KNOWN == ("0.68",)
+    assert [is_known(version) for version in ("0.68.0", "0.68.12", "0.69.0", "0.6", "1.68.1")] == [
+        *(True, True),
+        *(False, False, False),
+    ]
+
+
+MOTION = """
+import sys
+import numpy as np
+from oscillators import backlash_oscillator
+from facegear.dynamics.integrator.integrator import Integrator
+from facegear.machine_code import versions
+assert not versions.NUMBA_IS_KNOWN
+run = Integrator(backlash_oscillator(0.75), 0.75, 1e-4).run(np.array([[0.9], [0.2]]), 1, np.ones((1, 2, 1)))
+print(*run.state.ravel().tolist(), *run.tangents.ravel().tolist(), run.steps)
+"""
+
+
+def test_without_numbas_private_parts_the_motion_is_the_same():
+    """The plain functions are run by Python itself here: compiling them takes minutes."""
+    folder = Path(__file__).parents[2] / "helpers"
+    path = os.pathsep.join([str(folder), *sys.path])
+    environment = {**os.environ, "PYTHONPATH": path, "NUMBA_DISABLE_JIT": "1"}
+    done = subprocess.run(
+        [sys.executable, "-c", MOTION], env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    integrator = Integrator(backlash_oscillator(0.75), 0.75, 1e-4)
+    run = integrator.run(np.array([[0.9], [0.2]]), 1, np.ones((1, 2, 1)))
+    expected = [*run.state.ravel(), *run.tangents.ravel(), run.steps]
+    assert 0.0 < run.fractions[0, 0] < 1.0
+    np.testing.assert_allclose(np.array(done.stdout.split(), float), expected, rtol=1e-11)

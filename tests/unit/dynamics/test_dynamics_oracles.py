@@ -6,9 +6,8 @@ from oscillators import backlash_oscillator, mathieu, meissner
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
-from facegear.dynamics.integrator.compiled import pack
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.trajectory import record
-from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import steady_state
@@ -121,10 +120,7 @@ def test_jump_speeds_of_oracle_b(approach, first, last, speed):
 
 
 def matrix_of(system, speed, tolerance=1e-15):
-    packed = pack(system, speed)
-    work = make_work(packed, 20)
-    zero = np.zeros(packed.omega_squared.size)
-    return monodromy(packed, work, zero, zero, 1, tolerance)[2]
+    return monodromy(Integrator(system, speed, tolerance, 20), np.zeros((2, system.size)), 1)[0]
 
 
 def test_determinant_of_the_monodromy_matrix_is_the_damping_alone():

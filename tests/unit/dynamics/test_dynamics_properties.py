@@ -8,10 +8,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 
-from facegear.dynamics.integrator.compiled import TAU, pack
+from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.integrator.trajectory import Trajectory, record
-from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import Model, build_model, simulate, static_start
@@ -259,17 +259,13 @@ def test_in_a_mirror_drive_and_back_flanks_change_places(machine, speed):
 @given(machine=machines(), speed=st.floats(8000, 20_000))
 def test_liouville_across_contact_switches(machine, speed):
     model = build_model(machine)
-    packed = pack(model.system, frequency(model, speed))
-    start = kicked(model)
-    displacement, velocity = np.zeros(packed.omega_squared.size), np.zeros(packed.omega_squared.size)
-    displacement[: packed.n] = start.displacement
-    velocity[: packed.n] = start.velocity / frequency(model, speed)
-    *_, matrix, log = monodromy(packed, make_work(packed, 20), displacement, velocity, 1, 1e-14)
+    integrator = Integrator(model.system, frequency(model, speed), 1e-14, 20)
+    matrix, run = monodromy(integrator, integrator.by_phase(kicked(model)), 1)
     sign, volume = np.linalg.slogdet(matrix)
     assert sign > 0
     # The determinant is known to the rounding of its smallest factor.
     accuracy = 1e-13 * np.linalg.cond(matrix)
-    assert abs(volume - log.divergence[0]) < 1e-9 + accuracy
+    assert abs(volume - run.divergence) < 1e-9 + accuracy
 
 
 @settings(max_examples=12, deadline=None)
@@ -449,9 +445,8 @@ def test_without_backlash_the_response_is_hills(machine, speed):
     if response.period == 1:
         assert np.abs(response.coordinates - exact).max() * reach < close
     else:  # only a parametric resonance keeps a motion with this damping from settling
-        packed = pack(system, omega)
-        rest = np.zeros(packed.omega_squared.size)
-        *_, matrix, _ = monodromy(packed, make_work(packed, 20), rest, rest, 1, 1e-14)
+        rest = np.zeros((2, system.size))
+        matrix, _ = monodromy(Integrator(system, omega, 1e-14, 20), rest, 1)
         assert np.abs(np.linalg.eigvals(matrix)).max() > 0.97
 
 

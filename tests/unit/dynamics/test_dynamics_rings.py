@@ -7,9 +7,9 @@ import pytest
 from lumped_machines import make_layout, make_machine
 from scipy.integrate import solve_ivp
 
-from facegear.dynamics.integrator.compiled import TAU, pack
+from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.trajectory import record
-from facegear.dynamics.integrator.work import make_work
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
@@ -42,7 +42,6 @@ def slope(model, omega):
     errors = system.error[system.error_kind[:flanks]]
     orders = np.arange(errors.shape[2])
     rates = np.stack([-orders * errors[:, 1], orders * errors[:, 0]], axis=1) * omega
-    springs = system.stiffness[system.stiffness_kind[:flanks]]
     rows = system.mesh_jacobian[flanks:].reshape(-1, 3, system.size)
 
     def right(t, z):
@@ -51,9 +50,10 @@ def slope(model, omega):
         d = system.mesh_jacobian[:flanks] @ y - stacked_values(errors, cycles)[0]
         d_rate = system.mesh_jacobian[:flanks] @ v - stacked_values(rates, cycles)[0]
         over = d - system.upper[:flanks]
-        k = stacked_values(springs, cycles)[0]
         acts = system.mesh_damping[:flanks] * ((over > 0.0) | system.damping_when_open)
-        push = system.mesh_jacobian[:flanks].T @ (k * np.maximum(over, 0.0) + acts * d_rate)
+        push = system.mesh_jacobian[:flanks].T @ (
+            system.law.force(cycles, np.maximum(over, 0.0)[None])[0] + acts * d_rate
+        )
         for row, spring, play in zip(rows, system.ring_stiffness, system.ring_play, strict=True):
             q, q_rate = row[:2] @ y, row[:2] @ v
             r = np.hypot(*q)
@@ -95,27 +95,26 @@ def test_a_bearing_with_play_moves_as_scipy_says_through_touching_and_leaving(pl
 def test_liouville_holds_while_bearings_touch_and_leave_their_rings():
     model = build_model(machine_with(40e-6, ONE, torque=20.0, backlash=20e-6))
     omega = TAU * 1500.0
-    packed = pack(model.system, omega)
-    start = kicked(model, 0.15)
-    state = np.zeros((2, packed.omega_squared.size))
-    state[:, : packed.n] = start.displacement, start.velocity / omega
-    *_, matrix, log = monodromy(packed, make_work(packed, 20), state[0], state[1], 1, 1e-14)
-    rim = log.shares[1, model.system.contacts + 2 : packed.m : 3]
-    assert ((rim > 0.0) & (rim < TAU)).any()
+    integrator = Integrator(model.system, omega, 1e-14, 20)
+    start, n = kicked(model, 0.15), integrator.size
+    state = integrator.by_phase(start)
+    matrix, run = monodromy(integrator, state, 1)
+    rim = run.fractions[1, model.system.contacts + 2 :: 3]
+    assert ((rim > 0.0) & (rim < 1.0)).any()
     sign, volume = np.linalg.slogdet(matrix)
     assert sign > 0
-    assert volume == pytest.approx(log.divergence[0], abs=1e-8)
+    assert volume == pytest.approx(run.divergence, abs=1e-8)
     # The matrix itself, against differences of neighbouring runs.
-    for column in range(0, 2 * packed.n, 5):
+    for column in range(0, 2 * n, 5):
         moved = []
         for sign in (-1.0, 1.0):
-            change = np.zeros((2, packed.n))
-            change[divmod(column, packed.n)] = sign * 1e-9
-            near = State(state[0, : packed.n] + change[0], (state[1, : packed.n] + change[1]) * omega)
+            change = np.zeros((2, n))
+            change[divmod(column, n)] = sign * 1e-9
+            near = State(state[0] + change[0], (state[1] + change[1]) * omega)
             run = record(model.system, omega, near, 1, Settings(tolerance=1e-14))
             moved.append(run.at(np.array([TAU]))[0][0])
         slope_ = (moved[1] - moved[0]) / 2e-9
-        np.testing.assert_allclose(matrix[: packed.n, column], slope_, atol=2e-4 * np.abs(matrix).max())
+        np.testing.assert_allclose(matrix[:n, column], slope_, atol=2e-4 * np.abs(matrix).max())
 
 
 def test_without_play_the_ring_is_the_bearing():

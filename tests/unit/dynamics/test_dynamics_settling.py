@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from oscillators import backlash_oscillator, one_degree
 
-from facegear.dynamics.integrator.compiled import pack
-from facegear.dynamics.integrator.work import make_work
+from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.exponent import smooth_mean
 from facegear.dynamics.steady_state.orbits import shoot
@@ -22,12 +21,9 @@ SPEED = 0.75
 def unstable_orbit():
     """The orbit of oracle (a) between its two stable ones, by Newton's method from many places."""
     system = backlash_oscillator(SPEED)
-    packed = pack(system, SPEED)
-    work = make_work(packed, 16)
+    integrator = Integrator(system, SPEED, 1e-12, 16)
     for first, rate in itertools.product(np.linspace(0.9, 1.3, 9), np.linspace(-0.3, 0.3, 9)):
-        displacement, velocity = np.zeros((2, packed.omega_squared.size))
-        displacement[0], velocity[0] = first, rate
-        orbit = shoot(packed, work, displacement, velocity, 1, 1e-12, 1e-11)
+        orbit = shoot(integrator, np.array([[first], [rate]]), 1, 1e-11)
         if orbit is not None and abs(orbit.multipliers[0]) > 1.0:
             return system, orbit
     raise AssertionError("no unstable orbit found")
@@ -35,7 +31,7 @@ def unstable_orbit():
 
 def test_a_run_started_on_an_unstable_orbit_ends_on_a_stable_one():
     system, orbit = unstable_orbit()
-    start = State(orbit.displacement[:1], SPEED * orbit.velocity[:1])
+    start = State(orbit.state[0], SPEED * orbit.state[1])
     response = steady_state(system, SPEED, Settings(tolerance=1e-10, periodic_residual=1e-9), start)
     assert response.label == "period-1"
     assert abs(response.multipliers[0]) < 1.0
@@ -46,10 +42,8 @@ def test_a_run_started_on_an_unstable_orbit_ends_on_a_stable_one():
 
 def test_a_run_that_rests_on_an_unstable_orbit_it_knows_is_moved_off_it():
     system, orbit = unstable_orbit()
-    packed = pack(system, SPEED)
-    state = np.array([orbit.displacement, orbit.velocity])
     patient = Settings(tolerance=1e-12, periodic_residual=1e-5, dwell=16)
-    run = Run(packed, make_work(packed, 16), state, patient, None)
+    run = Run(Integrator(system, SPEED, 1e-12, 16), orbit.state, patient, None)
     run.found = orbit
     settled = run.settled()
     assert run.kicks == 1
@@ -59,10 +53,8 @@ def test_a_run_that_rests_on_an_unstable_orbit_it_knows_is_moved_off_it():
 def test_a_run_that_comes_back_to_an_unstable_orbit_is_not_called_periodic():
     """At 18 164 rpm down a run was named by a period-26 orbit of multiplier 1.14 that it kept coming to."""
     system, orbit = unstable_orbit()
-    packed = pack(system, SPEED)
-    state = np.array([orbit.displacement, orbit.velocity])
     patient = Settings(tolerance=1e-12, periodic_residual=1e-5, dwell=16, settle=24)
-    run = Run(packed, make_work(packed, 16), state, patient, None)
+    run = Run(Integrator(system, SPEED, 1e-12, 16), orbit.state, patient, None)
     run.kicks = MOST_KICKS
     settled = run.settled()
     assert run.found is not None and abs(run.found.multipliers[0]) > 1.0
@@ -72,12 +64,11 @@ def test_a_run_that_comes_back_to_an_unstable_orbit_is_not_called_periodic():
 def test_what_newtons_method_does_not_confirm_must_close_a_hundred_times_nearer(monkeypatch):
     """At 8041 rpm a run that crept towards an orbit (multiplier 0.98) was taken for it, RMS off by 2e-3."""
     monkeypatch.setattr("facegear.dynamics.steady_state.settle.shoot", lambda *args: None)
-    packed = pack(backlash_oscillator(SPEED, damping_ratio=0.005), SPEED)
-    state = np.zeros((2, packed.omega_squared.size))
-    state[0, 0] = 1.2
+    integrator = Integrator(backlash_oscillator(SPEED, damping_ratio=0.005), SPEED, 1e-10, 14)
+    state = np.array([[1.2], [0.0]])
     settings = Settings(tolerance=1e-10, periodic_residual=1e-4)
-    alone = Run(packed, make_work(packed, 14), state, replace(settings, refine=False), None).settled()
-    asked = Run(packed, make_work(packed, 14), state, settings, None).settled()
+    alone = Run(integrator, state, replace(settings, refine=False), None).settled()
+    asked = Run(integrator, state, settings, None).settled()
     assert (alone.period, asked.period) == (1, 1)
     assert 1e-6 < alone.residual <= 1e-4
     assert asked.residual <= 1e-6 and asked.periods_run > alone.periods_run

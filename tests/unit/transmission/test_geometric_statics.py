@@ -11,6 +11,7 @@ from lumped_machines import make_layout, make_machine
 
 from facegear.errors import NotConverged
 from facegear.harmonics.series import Harmonics
+from facegear.mesh_law.linear import linear_law
 from facegear.transmission.contact_energy import Springs
 from facegear.transmission.contact_kernel import settle_all
 from facegear.transmission.imperfections import Runout, perfect
@@ -56,7 +57,8 @@ def held_forces(machine):
     from facegear.transmission.flanks import constant_errors, flank_gaps
 
     gaps = (constant_errors(machine) + flank_gaps(machine))[None]
-    _, forces, residual = settle_all(springs, np.full_like(gaps, K), gaps, TOLERANCE, np.zeros(kept.size))
+    law = linear_law(gaps.size * [FLAT])
+    _, forces, residual = settle_all(springs, law.held(np.zeros(1)), gaps, TOLERANCE, np.zeros(kept.size))
     assert residual[0] < 1e-12
     drive, back = np.split(forces[0], 2)
     return drive - back

@@ -14,6 +14,7 @@ from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.special import Kind
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
+from facegear.mesh_law.linear import LinearLaw
 
 EXACT = [0.828463984388, 0.820631087712, 0.708031618722, 1.407088466023]
 """Two folds and two grazes of oracle (a)."""
@@ -45,8 +46,7 @@ def mirrored(speed):
     return replace(
         one,
         mesh_jacobian=np.array([[1.0], [-1.0]]),
-        stiffness=0.5 * one.stiffness,
-        stiffness_kind=np.zeros(2, dtype=int),
+        law=LinearLaw(0.5 * one.law.fourier, np.zeros(2, dtype=int)),
         error_kind=np.zeros(2, dtype=int),
         mesh_damping=np.zeros(2),
         lower=np.full(2, -1.0),
@@ -76,7 +76,7 @@ def afloat(speed):
         mesh_damping=np.zeros(2),
         lower=np.array([-1.0, -50.0]),
         upper=np.array([1.0, 50.0]),
-        stiffness_kind=np.zeros(2, dtype=int),
+        law=LinearLaw(one.law.fourier, np.zeros(2, dtype=int)),
         error_kind=np.zeros(2, dtype=int),
         load=np.concatenate([one.load, np.zeros_like(one.load)]),
     )

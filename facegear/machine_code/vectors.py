@@ -1,30 +1,19 @@
-"""Four doubles at a time inside compiled kernels.
+"""Vectors of four doubles inside compiled functions, made of numba's code generator and LLVM.
 
 LLVM leaves loops as short as these (10 meshes, 17 coordinates) scalar; with explicit vectors an order of the
 Taylor recurrence costs a third. Vectors of four are plain LLVM and run on any processor.
 """
 
-import math
 from typing import Any
 
-import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic, models, register_model
-from numpy.typing import NDArray
 
-LANES = 4
-_LINE = 64
+from facegear.machine_code.memory import LANES
+
 _VECTOR = ir.VectorType(ir.DoubleType(), LANES)
-
-
-def aligned(*shape: int) -> NDArray[np.float64]:
-    """Zeros that start on a line of the processor's cache: a vector that lies across two is read twice."""
-    size, width = math.prod(shape), _LINE // 8
-    room = np.zeros(size + width)
-    start = -room.__array_interface__["data"][0] % _LINE // 8
-    return room[start : start + size].reshape(shape)
 
 
 class LanesType(types.Type):

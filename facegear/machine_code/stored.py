@@ -1,13 +1,16 @@
-"""Compiled functions, their machine code stored and found again only while its sources are the same."""
+"""Compiled functions, their machine code stored and found again only while its sources are the same.
 
-import hashlib
+Made of numba's private parts: `compiler.py` lets only known versions of numba come here.
+"""
+
+import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, TextIO
 
-from numba import njit
+from numba import njit, types
 from numba.core.caching import FunctionCache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
@@ -15,23 +18,26 @@ from numba.core.compiler_machinery import register_pass
 from numba.core.typed_passes import NativeLowering
 
 from facegear.io.run_lock import hold
+from facegear.machine_code.compiler import text_of
 
 PATIENCE = 300.0
 """How long (s) another process may compile a function before this one compiles it as well."""
 
 
-def text_of(sources: Path) -> str:
-    """Hash of the text of all Python files in a folder."""
-    digest = hashlib.sha256()
-    for path in sorted(sources.glob("*.py")):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()
+def _records(kind: Any) -> Iterator[type]:
+    """All classes of NamedTuples that a numba type consists of."""
+    if isinstance(kind, types.NamedTuple):
+        yield kind.instance_class
+    for part in kind.types if isinstance(kind, types.BaseTuple) else ():
+        yield from _records(part)
 
 
 class SourcesCache(FunctionCache):
-    """Machine code of a function, found again only while the text of all files in a folder is the same.
+    """Machine code of a function, found again only while the text of all files in its sources is the same.
 
-    Numba notices a change of the file a kernel stands in, but not of the kernels it calls in other files.
+    Numba notices a change of the file a kernel stands in, but not of the kernels it calls in other files, nor
+    of the files of the NamedTuples that choose between implementations: these count as well. The index holds
+    text alone, so that a process reads it that cannot import what another one had compiled a function for.
     Of processes that miss the same function one compiles it, and the others wait for what it stores.
     """
 
@@ -70,12 +76,17 @@ class SourcesCache(FunctionCache):
             self._lock = None
 
     def _index_key(self, sig: Any, codegen: Any) -> tuple[Any, ...]:
-        return (*super()._index_key(sig, codegen), self._text)
+        records = {record for kind in sig for record in _records(kind)}
+        files = {sys.modules[record.__module__].__file__ for record in records}
+        names = sorted(f"{record.__module__}.{record.__qualname__}" for record in records)
+        text = text_of(*sorted(Path(file) for file in files if file is not None))
+        _, *rest = super()._index_key(sig, codegen)
+        return (str(sig), *names, *rest, text, self._text)
 
 
-def compiler(sources: Path, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+def stored(*sources: Path, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """Decorator that compiles a function and stores its machine code by the text of all of `sources`."""
-    text = text_of(sources)
+    text = text_of(*sources)
 
     def compiled(function: Callable[..., Any]) -> Any:
         dispatcher = njit(**options)(function)
@@ -119,14 +130,14 @@ class _ForCallers(Compiler):
         pipelines = super().define_pipelines()
         for pipeline in pipelines:
             pipeline.passes = [
-                (_LowerForCallers, told) if step is NativeLowering else (step, told)
-                for step, told in pipeline.passes
+                (_LowerForCallers, name) if step is NativeLowering else (step, name)
+                for step, name in pipeline.passes
             ]
             pipeline.finalize()
         return pipelines
 
 
-def for_callers(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+def inlined(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     """Decorator for functions that are inlined into compiled callers and have no machine code of their own.
 
     Numba optimises and compiles every function that another one calls, with all that it calls in turn, and

@@ -1,0 +1,219 @@
+"""A system at one mesh frequency, ready to be run: what the kernels need stays inside."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.dynamics.integrator.compiled import TAU, Packed, pack
+from facegear.dynamics.integrator.periods import (
+    DONE,
+    MOST_STEPS,
+    NOT_FINITE,
+    TOO_MANY_STEPS,
+    Log,
+    disturbance_step,
+    run_periods,
+)
+from facegear.dynamics.integrator.sums import Sums, make_sums
+from facegear.dynamics.integrator.system import System
+from facegear.dynamics.integrator.work import Work, make_work
+from facegear.dynamics.motion import Settings, State
+from facegear.errors import NotConverged
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class RunResult:
+    """What a run over whole mesh periods has left. n coordinates, m rows of meshes, flanks and rings.
+
+    - state (2, n): at the end; ends (periods, 2, n): at the end of each period.
+    - tangents (columns, 2, n): disturbances at the end.
+    - samples (periods * samples, n): coordinates at evenly spaced phases, from the start of each period.
+    - fractions (3, m): of time open, on the drive and on the back flank; only with samples, batches or
+      tangents.
+    - divergence: integral of the trace of the equations' matrix; only with tangents.
+    - growth (periods,): logarithm of the growth of the one tangent in each period, if it was asked for.
+    - steps: their number. sums: integrals and extremes over batches of periods.
+    """
+
+    state: Array
+    ends: Array
+    tangents: Array
+    samples: Array
+    fractions: Array
+    divergence: float
+    growth: Array
+    steps: int
+    sums: Sums
+
+
+class Integrator:
+    """Runs a system at an angular mesh frequency (rad/s) from states (2, n): coordinates and their
+    derivatives by mesh phase, in rad.
+
+    tolerance: local error of a step over the length scale; order: of the steps, None: from the tolerance.
+    `like`: an integrator of a system of the same sizes, whose scratch space is used. Of two integrators that
+    share theirs only one may run at a time.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        frequency: float,
+        tolerance: float = Settings.tolerance,
+        order: int | None = None,
+        like: "Integrator | None" = None,
+    ) -> None:
+        self.system, self.frequency, self.tolerance = system, frequency, tolerance
+        self.packed: Packed = pack(system, frequency)
+        if order is None:
+            order = Settings(tolerance=tolerance).taylor_order
+        self.work: Work = make_work(system, self.packed, order) if like is None else like.work
+        self._empty = np.zeros((0, 2, self.packed.omega_squared.size))
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates n."""
+        return self.packed.n
+
+    @property
+    def rows(self) -> int:
+        """Number m of meshes or flanks, and three for each bearing with play."""
+        return self.packed.m
+
+    @property
+    def contacts(self) -> int:
+        """Number of meshes or flanks."""
+        return self.packed.contacts
+
+    @property
+    def meshes(self) -> int:
+        """Number of meshes; of all rows where a mesh is one contact."""
+        return self.packed.pairs or self.packed.m
+
+    @property
+    def order(self) -> int:
+        """Order of the steps."""
+        return self.work.order
+
+    @property
+    def scale(self) -> float:
+        """Length that the tolerance means, m."""
+        return self.packed.scale
+
+    @property
+    def weights(self) -> Array:
+        """Largest deflection that one unit of each coordinate makes, (n,)."""
+        return self.packed.weights[: self.packed.n]
+
+    @property
+    def damping(self) -> Array:
+        """Damping of each coordinate per rad, (n,)."""
+        return self.packed.damping[: self.packed.n]
+
+    @property
+    def omega_squared(self) -> Array:
+        """Square of the bearing frequency of each coordinate over that of the mesh frequency, (n,)."""
+        return self.packed.omega_squared[: self.packed.n]
+
+    @property
+    def mesh_jacobian(self) -> Array:
+        """Deflections by coordinates, (m, n)."""
+        return self.packed.transposed[: self.packed.m, : self.packed.n]
+
+    @property
+    def edges(self) -> tuple[Array, Array]:
+        """Lower and upper edge of each row, (m,), m; of a mesh that never opens lower >= upper."""
+        return self.packed.lower[: self.packed.m], self.packed.upper[: self.packed.m]
+
+    @property
+    def fastest(self) -> float:
+        """Frequency of the fastest motion that the system answers with, over the mesh frequency."""
+        return self.packed.fastest
+
+    def by_phase(self, state: State) -> Array:
+        """A state (2, n) by phase."""
+        return np.array([state.displacement, state.velocity / self.frequency])
+
+    def by_time(self, state: Array) -> State:
+        """A state by time."""
+        return State(state[0].copy(), state[1] * self.frequency)
+
+    def longest_step(self) -> float:
+        """Longest step, rad, that disturbances of the motion may be moved over, whatever the motion does."""
+        return float(disturbance_step(self.packed, self.order, self.tolerance))
+
+    def padded(self, states: Array) -> Array:
+        """States (..., n) as the kernels hold them; a copy."""
+        wide = np.zeros((*states.shape[:-1], self.packed.omega_squared.size))
+        wide[..., : self.packed.n] = states
+        return wide
+
+    def run(
+        self,
+        state: Array,
+        periods: int,
+        tangents: Array | None = None,
+        samples: int = 0,
+        batches: int = 0,
+        growth: bool = False,
+        fine: bool = False,
+        drift: Array | None = None,
+    ) -> RunResult:
+        """Run whole mesh periods from a state (2, n), which is left alone. Raises NotConverged.
+
+        tangents (columns, 2, n): disturbances to be moved along; with `growth` the one is brought back to
+        length one after every period. samples: of the coordinates in each period; batches: of the sums.
+        fine: steps as short as tangents need, which they are with any. drift (terms, m): what is added to the
+        error in every period, by powers of the phase.
+        """
+        moved = self._empty if tangents is None else self.padded(tangents)
+        log = self._log(periods, samples, growth, batches)
+        wide = self.padded(state)
+        packed = self.packed if drift is None else self.packed._replace(drift=self._drift(drift))
+        longest = self.longest_step() if fine or len(moved) else np.inf
+        status = run_periods(
+            packed, self.work, wide[0], wide[1], moved, periods, samples, self.tolerance, log, longest
+        )
+        require(status)
+        n, m = self.packed.n, self.packed.m
+        return RunResult(
+            state=wide[:, :n],
+            ends=log.ends[:, :, :n],
+            tangents=moved[:, :, :n],
+            samples=log.samples[:, :n],
+            fractions=log.shares[:, :m] / (TAU * periods),
+            divergence=float(log.divergence[0]),
+            growth=log.growth,
+            steps=int(log.steps[0]),
+            sums=log.sums,
+        )
+
+    def _log(self, periods: int, samples: int, growth: bool, batches: int) -> Log:
+        n = self.packed.omega_squared.size
+        return Log(
+            samples=np.zeros((periods * samples, n)),
+            ends=np.zeros((periods, 2, n)),
+            shares=np.zeros((3, self.packed.lower.size)),
+            divergence=np.zeros(1),
+            growth=np.zeros(periods if growth else 0),
+            steps=np.zeros(1, dtype=np.int64),
+            sums=make_sums(self.packed, batches),
+        )
+
+    def _drift(self, drift: Array) -> Array:
+        wide = np.zeros((len(drift), self.packed.lower.size))
+        wide[:, : drift.shape[1]] = drift
+        return wide
+
+
+def require(status: int) -> None:
+    """Raise NotConverged unless the status of a run is good."""
+    reported = {
+        TOO_MANY_STEPS: f"a mesh period took more than {MOST_STEPS} steps",
+        NOT_FINITE: "the motion grew beyond all bounds",
+    }
+    if status != DONE:
+        raise NotConverged("dynamics", "time integration", reported[status])

@@ -1,0 +1,99 @@
+"""Decorators for compiled functions; the plain `njit` where the version of numba is not known."""
+
+import hashlib
+from collections.abc import Callable
+from functools import wraps
+from pathlib import Path
+from typing import Any, Protocol
+
+from numba import njit
+from numba.extending import overload
+
+from facegear.machine_code.versions import NUMBA_IS_KNOWN, warn_once
+
+PRIVATE_OPTIONS = ("_nrt",)
+FAST = {"nogil": True, "fastmath": {"contract"}, "_nrt": False}
+"""For functions that allocate nothing: counting references to every array of a NamedTuple at every use would
+cost more than their arithmetic. Without the interpreter's lock; products and sums may be fused."""
+Decorator = Callable[[Callable[..., Any]], Any]
+
+
+class ByType(Protocol):
+    """A function that has another implementation for every type of its first argument, a NamedTuple."""
+
+    def __call__(self, first: Any, *rest: Any) -> Any:
+        """Call the implementation from Python; compiled callers choose it while they are compiled."""
+
+    def of(self, kind: type) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+        """Decorator that makes a function the implementation for a NamedTuple."""
+
+
+def compiler(*sources: Path, **options: Any) -> Decorator:
+    """Decorator that compiles a function, and stores its machine code as long as no file of the folders
+    `sources` changes.
+    """
+    if NUMBA_IS_KNOWN:
+        from facegear.machine_code.stored import stored
+
+        return stored(*sources, **options)
+    warn_once()
+    return njit(**_public(options))
+
+
+def for_callers(**options: Any) -> Decorator:
+    """Decorator for functions that are compiled as a part of their compiled callers only."""
+    if NUMBA_IS_KNOWN:
+        from facegear.machine_code.stored import inlined
+
+        return inlined(**options)
+    return njit(**_public(options))
+
+
+def by_type(**options: Any) -> Callable[[Callable[..., Any]], ByType]:
+    """Decorator for a function whose first argument, a NamedTuple, says which implementation is meant.
+
+    The function's own body is never run. Each caller is compiled for each type anew, and what is chosen is
+    inlined into it, so that a choice costs nothing at run time.
+    """
+    known = {"forceinline": True, **options} if NUMBA_IS_KNOWN else _public(options)
+
+    def generic(stub: Callable[..., Any]) -> ByType:
+        implementations: dict[type, Callable[..., Any]] = {}
+
+        @wraps(stub)
+        def call(first: Any, *rest: Any) -> Any:
+            return implementations[type(first)](first, *rest)
+
+        def typed(first: Any, *rest: Any) -> Callable[..., Any] | None:
+            return implementations.get(getattr(first, "instance_class", None))  # type: ignore[arg-type]
+
+        def of(kind: type) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+            def register(function: Callable[..., Any]) -> Callable[..., Any]:
+                implementations[kind] = function
+                return function
+
+            return register
+
+        overload(call, jit_options=known, strict=False)(typed)
+        call.of = of  # type: ignore[attr-defined]
+        return call  # type: ignore[return-value]
+
+    return generic
+
+
+def stored_in(function: Any) -> Path | None:
+    """Folder that keeps a function's machine code; None where none is kept."""
+    return Path(function._cache.cache_path) if NUMBA_IS_KNOWN else None
+
+
+def text_of(*sources: Path) -> str:
+    """Hash of the text of all Python files in some folders, or of files."""
+    digest = hashlib.sha256()
+    for source in sources:
+        for path in sorted(source.glob("*.py")) if source.is_dir() else [source]:
+            digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def _public(options: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in options.items() if name not in PRIVATE_OPTIONS}

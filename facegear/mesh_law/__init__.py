@@ -1,0 +1,5 @@
+"""The force of a contact as an object: what it is at a phase and a deflection, and how a motion expands it.
+
+`law.py` says what a law offers, `terms.py` what the compiled functions ask of it, `linear.py` and
+`linear_terms.py` are the first law: stiffness times deflection.
+"""

@@ -1,0 +1,91 @@
+"""What the force of a contact offers to statics, dynamics, tangents and load sharing."""
+
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+Held = Any
+"""A NamedTuple of any law, held at K phases."""
+
+
+class MeshLaw(Protocol):
+    """Elastic forces of M contacts.
+
+    A force depends on the phase in the mesh period and on how far the contact is pressed in beyond its edge;
+    it is zero, and begins with slope zero or more, at the edge. Where the two flanks of a mesh share one line
+    of action they are one contact, which is pressed in by a negative amount on its back flank: the law is odd
+    there. The arguments of the methods:
+
+    - cycles (K,): mesh periods since the start;
+    - beyond (..., K, M): how far each contact is pressed in, m; forces in N, slopes in N/m.
+    """
+
+    @property
+    def contacts(self) -> int:
+        """The number M of contacts."""
+
+    @property
+    def breaks(self) -> Array:
+        """Phases from 0 to 1, in mesh periods, between which the law is smooth in the phase; (0,) where it is
+        smooth throughout.
+        """
+
+    @property
+    def levels(self) -> Array:
+        """Amounts (L, M) at which the pieces of the law begin, m, rising. The first row is zero, the edge."""
+
+    @property
+    def straight(self) -> bool:
+        """Whether the force is linear in the amount between two levels."""
+
+    @property
+    def steepest(self) -> Array:
+        """Bound (M,) of the slope over phase and amount, N/m."""
+
+    @property
+    def harmonic_fractions(self) -> Array:
+        """Largest fraction (H + 1,) of the slope's bound that each harmonic of the phase makes up."""
+
+    def force(self, cycles: Array, beyond: Array) -> Array:
+        """Forces (..., K, M), N."""
+
+    def slope(self, cycles: Array, beyond: Array) -> Array:
+        """Derivatives (..., K, M) of the forces by the amounts, N/m; zero where nothing is pressed in."""
+
+    def mean(self) -> "MeshLaw":
+        """The law averaged over the mesh period at fixed amounts."""
+
+    def at_phase(self, cycle: float) -> "MeshLaw":
+        """The law at one phase, whatever the phase."""
+
+    def held(self, cycles: Array) -> Held:
+        """The law at K phases for `terms.held_force`, with a field `stiffness` (K, M): bounds of the slopes,
+        N/m.
+        """
+
+    def terms(self, frequency: float, width: int) -> NamedTuple:
+        """The law for the functions of `terms.py`, with time counted as mesh phase in rad.
+
+        Forces are over the squared mesh frequency (rad/s); arrays are padded to `width` contacts.
+        """
+
+    def series(self, rows: int, width: int) -> NamedTuple:
+        """Scratch space for Taylor series of `rows` coefficients of the contacts, padded to `width`.
+
+        It has a field `slope` (rows, width): the series of the slope along the motion.
+        """
+
+
+def beyond_edges(deflections: Array, lower: Array, upper: Array) -> Array:
+    """How far contacts (..., M) are pressed in: above `upper`, or below `lower` as a negative amount.
+
+    A contact with lower >= upper is never open; both directions count from `upper`.
+    """
+    lower = np.where(lower >= upper, upper, lower)
+    inside = np.maximum(deflections, lower)
+    np.minimum(inside, upper, out=inside)
+    return np.subtract(deflections, inside, out=inside)

@@ -1,0 +1,195 @@
+"""The linear law: a stiffness that depends on the phase, times the amount pressed in."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.harmonics.series import Harmonics, stacked, stacked_values
+from facegear.machine_code.memory import aligned, divided, whole_lanes
+from facegear.mesh_law.law import Held
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Piecewise:
+    """Stiffness added to the Fourier part: cubic pieces of the phase, in mesh periods since each break.
+
+    breaks (pieces + 1,) from 0 to 1; coefficients (pieces, degree + 1), ascending powers.
+    """
+
+    breaks: Array
+    coefficients: Array
+
+    def __call__(self, cycles: Array) -> Array:
+        """Stiffness (K,) at phases (K,) in [0, 1)."""
+        index = np.searchsorted(self.breaks, cycles, side="right") - 1
+        powers = np.vander(cycles - self.breaks[index], self.coefficients.shape[1], True)
+        return np.asarray((self.coefficients[index] * powers).sum(1))
+
+    @property
+    def mean(self) -> float:
+        """Mean stiffness over the mesh period."""
+        widths = np.diff(self.breaks)[:, None] ** np.arange(1, self.coefficients.shape[1] + 1)
+        return float((self.coefficients * widths / np.arange(1, widths.shape[1] + 1)).sum())
+
+
+@dataclass(frozen=True, eq=False)
+class LinearLaw:
+    """k(phase) times the amount pressed in, of contacts of a few kinds, which differ in phase or size.
+
+    fourier (kinds, 2, harmonics + 1): series of k, sine part first, N/m; kind (M,) of each contact; pieces:
+    what is added to the series of each kind, or nothing.
+    """
+
+    fourier: Array
+    kind: NDArray[np.int64]
+    pieces: tuple[Piecewise, ...] = field(default=())
+
+    @property
+    def contacts(self) -> int:
+        """The number M of contacts."""
+        return self.kind.size
+
+    @property
+    def breaks(self) -> Array:
+        """Phases at which pieces of the stiffness begin and end."""
+        if not self.pieces:
+            return np.zeros(0)
+        return np.unique(np.concatenate([piece.breaks for piece in self.pieces]))
+
+    @cached_property
+    def levels(self) -> Array:
+        """The edge alone."""
+        return np.zeros((1, self.contacts))
+
+    @property
+    def straight(self) -> bool:
+        """The force is linear in the amount."""
+        return True
+
+    @property
+    def steepest(self) -> Array:
+        """Sum of the amplitudes of k, (M,)."""
+        return self._bounds[self.kind]
+
+    @property
+    def harmonic_fractions(self) -> Array:
+        """Largest fraction of the bound of k that each harmonic makes up, (H + 1,)."""
+        bounds = np.maximum(self._bounds, 1e-300)
+        return np.asarray((self._amplitudes / bounds[:, None]).max(axis=0))
+
+    @property
+    def _amplitudes(self) -> Array:
+        return np.hypot(self.fourier[:, 0], self.fourier[:, 1])
+
+    @property
+    def _bounds(self) -> Array:
+        pieces = np.array([np.abs(piece.coefficients).sum() for piece in self.pieces] or [0.0])
+        return np.asarray(self._amplitudes.sum(axis=1) + pieces)
+
+    @cached_property
+    def _constant(self) -> Array | None:
+        """k (M,) where it does not depend on the phase."""
+        alone = self.fourier.shape[2] == 1 and not self.pieces
+        return self.fourier[self.kind, 1, 0] if alone else None
+
+    def stiffness(self, cycles: Array) -> Array:
+        """k (K, M) at phases (K,) in mesh periods."""
+        if self._constant is not None:
+            return np.repeat(self._constant[None], cycles.size, axis=0)
+        values = stacked_values(self.fourier, cycles)
+        for kind, piece in enumerate(self.pieces):
+            values[:, kind] += piece(np.mod(cycles, 1.0))
+        return values[:, self.kind]
+
+    def force(self, cycles: Array, beyond: Array) -> Array:
+        """k times the amounts, (..., K, M)."""
+        return beyond * (self.stiffness(cycles) if self._constant is None else self._constant)
+
+    def slope(self, cycles: Array, beyond: Array) -> Array:
+        """k where a contact is pressed in, (..., K, M)."""
+        stiffness = self.stiffness(cycles) if self._constant is None else self._constant
+        return np.where(beyond != 0.0, stiffness, 0.0)
+
+    def mean(self) -> "LinearLaw":
+        """Mean stiffness."""
+        fourier = self.fourier[:, :, :1].copy()
+        if self.pieces:
+            fourier[:, 1, 0] += [piece.mean for piece in self.pieces]
+        return LinearLaw(fourier, self.kind)
+
+    def at_phase(self, cycle: float) -> "LinearLaw":
+        """k at a phase."""
+        fourier = np.zeros((self.contacts, 2, 1))
+        fourier[:, 1, 0] = self.stiffness(np.array([cycle]))[0]
+        return LinearLaw(fourier, np.arange(self.contacts))
+
+    def held(self, cycles: Array) -> Held:
+        """k at some phases."""
+        from facegear.mesh_law.linear_terms import LinearHeld  # compiled; modes do without
+
+        return LinearHeld(np.ascontiguousarray(self.stiffness(cycles)))
+
+    def terms(self, frequency: float, width: int) -> NamedTuple:
+        """k over the squared mesh frequency."""
+        one, square = _terms(self, width), frequency**2
+        return one._replace(fourier=divided(one.fourier, square), pieces=one.pieces / square)
+
+    def series(self, rows: int, width: int) -> NamedTuple:
+        """Scratch space; the slope is the series of k."""
+        from facegear.mesh_law.linear_terms import LinearSeries
+
+        return LinearSeries(
+            aligned(rows, width), aligned(rows * whole_lanes(len(self.fourier))), aligned(rows)
+        )
+
+
+def linear_law(series: Sequence[Harmonics]) -> LinearLaw:
+    """The linear law of contacts with a stiffness series each; series that are alike make one kind."""
+    fourier, kind = different(series)
+    return LinearLaw(fourier, kind)
+
+
+def different(series: Sequence[Harmonics]) -> tuple[Array, NDArray[np.int64]]:
+    """The different ones among Fourier series, (kinds, 2, harmonics + 1), and the kind of each."""
+    rows = stacked(series)
+    kinds, kind = np.unique(rows.reshape(len(rows), -1), axis=0, return_inverse=True)
+    return kinds.reshape(-1, *rows.shape[1:]), kind.ravel().astype(np.int64)
+
+
+def fourier_columns(rows: Array) -> Array:
+    """Fourier rows (kinds, 2, harmonics + 1) in the order that compiled functions read, padded."""
+    width = whole_lanes(len(rows))
+    series = aligned(*rows.shape[:0:-1], width)
+    series[..., : len(rows)] = rows.transpose(2, 1, 0)
+    return series
+
+
+@lru_cache(maxsize=16)
+def _terms(law: LinearLaw, width: int) -> Any:
+    """The terms at 1 rad/s; their arrays are shared and only read."""
+    from facegear.mesh_law.linear_terms import LinearTerms
+
+    return LinearTerms(fourier_columns(law.fourier), law.kind.astype(np.int64), _pieces(law, width))
+
+
+def _pieces(law: LinearLaw, width: int) -> Array:
+    """Coefficients (pieces, degree + 1, width) of each contact between common breaks, in powers of rad."""
+    if not law.pieces:
+        return np.zeros((0, 0, width))
+    breaks = law.breaks
+    degree = max(piece.coefficients.shape[1] for piece in law.pieces)
+    table = np.zeros((breaks.size - 1, degree, width))
+    for contact, kind in enumerate(law.kind):
+        piece = law.pieces[kind]
+        for row, start in zip(table, breaks[:-1], strict=True):
+            source = int(np.searchsorted(piece.breaks, start, side="right")) - 1
+            ahead = np.polynomial.Polynomial([start - piece.breaks[source], 1.0])
+            shifted = np.asarray(np.polynomial.Polynomial(piece.coefficients[source])(ahead).coef, float)
+            row[: shifted.size, contact] = shifted / (2.0 * np.pi) ** np.arange(shifted.size)
+    return table

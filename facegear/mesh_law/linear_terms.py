@@ -1,0 +1,133 @@
+"""Compiled: the linear law in the steps of a motion and in statics."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.machine_code.compiler import FAST, for_callers
+from facegear.machine_code.fourier import FourierScratch, fourier_terms, give, shifted
+from facegear.machine_code.lanes import load, multiply, multiply_add, splat
+from facegear.mesh_law import terms
+
+Array = NDArray[np.float64]
+inlined = for_callers(**FAST)
+
+
+class LinearHeld(NamedTuple):
+    """Stiffness (K, M) of the contacts at K phases."""
+
+    stiffness: Array
+
+
+class LinearTerms(NamedTuple):
+    """fourier (harmonics + 1, 2, width): the stiffness of each kind, sine part first; kind (M,) of each
+    contact. pieces (pieces, degree + 1, width) add a polynomial of the phase since the last break.
+    """
+
+    fourier: Array
+    kind: NDArray[np.int64]
+    pieces: Array
+
+
+class LinearSeries(NamedTuple):
+    """slope (rows, width); kinds and polynomial: scratch space."""
+
+    slope: Array
+    kinds: Array
+    polynomial: Array
+
+
+@inlined
+def product_terms(first: Array, second: Array, i: int, c: int) -> terms.Lanes:
+    """Coefficient i of the product of two series (rows, width) of the contacts from number c on."""
+    width = first.shape[1]
+    # The newest rows come last: the others do not wait for them.
+    total = splat(0.0)
+    for j in range(i, -1, -1):
+        total = multiply_add(load(first, j * width + c), load(second, (i - j) * width + c), total)
+    return total
+
+
+@terms.phase_terms.of(LinearTerms)
+def phase_terms(
+    law: LinearTerms,
+    series: LinearSeries,
+    scratch: FourierScratch,
+    s: float,
+    ahead: float,
+    piece: int,
+    rows: int,
+) -> None:
+    """The series of k."""
+    fourier_terms(scratch, law.fourier, s, rows, series.kinds)
+    give(series.kinds, law.fourier.shape[2], law.kind, rows, series.slope)
+    if law.pieces.shape[0] > 0:
+        degrees = law.pieces.shape[1]
+        for m in range(law.kind.size):
+            shifted(law.pieces[piece], m, degrees, ahead, series.polynomial)
+            for i in range(degrees):
+                series.slope[i, m] += series.polynomial[i]
+
+
+@terms.force_terms.of(LinearTerms)
+def force_terms(
+    law: LinearTerms, series: LinearSeries, state: NDArray[np.int64], deflection: Array, i: int, c: int
+) -> terms.Lanes:
+    """k times the deflection."""
+    return product_terms(series.slope, deflection, i, c)
+
+
+@terms.force_of.of(LinearTerms)
+def force_of(
+    law: LinearTerms, series: LinearSeries, state: NDArray[np.int64], deflection: Array, i: int, m: int
+) -> float:
+    """k times the deflection."""
+    total = 0.0
+    for j in range(i + 1):
+        total += series.slope[j, m] * deflection[i - j, m]
+    return total
+
+
+@terms.slope_terms.of(LinearTerms)
+def slope_terms(
+    law: LinearTerms, series: LinearSeries, state: NDArray[np.int64], deflection: Array, order: int
+) -> None:
+    """The series of k stands there already."""
+
+
+@terms.is_curved.of(LinearTerms)
+def is_curved(law: LinearTerms) -> bool:
+    """The slope is k, whatever the amount."""
+    return False
+
+
+@terms.force_ahead.of(LinearTerms)
+def force_ahead(
+    law: LinearTerms, series: LinearSeries, deflection: terms.Lanes, order: int, step: terms.Lanes, c: int
+) -> terms.Lanes:
+    """k ahead times the deflection."""
+    width = series.slope.shape[1]
+    stiffness = splat(0.0)
+    for i in range(order, -1, -1):
+        stiffness = multiply_add(stiffness, step, load(series.slope, i * width + c))
+    return multiply(stiffness, deflection)
+
+
+@terms.piece_of.of(LinearTerms)
+def piece_of(law: LinearTerms, m: int, amount: float) -> int:
+    """There is one piece."""
+    return 1
+
+
+@terms.piece_ends.of(LinearTerms)
+def piece_ends(law: LinearTerms, m: int, piece: int) -> tuple[float, float]:
+    """From the edge on."""
+    return 0.0, np.inf
+
+
+@terms.held_force.of(LinearHeld)
+def held_force(held: LinearHeld, k: int, m: int, amount: float) -> tuple[float, float]:
+    """k times the amount, and k."""
+    stiffness = held.stiffness[k, m]
+    return stiffness * amount, stiffness
