@@ -151,6 +151,12 @@ def without_loads(case: Case) -> Any:
     return {key: value for key, value in case.values["contact"].items() if key not in LOADING}
 
 
+def gears_met(case: Case) -> list[str]:
+    """The face gears of the machine, as `geometry.flank_errors` names them: one alone is the upper."""
+    machine: Any = case.values["transmission"]
+    return ["upper"] if machine is None or len(machine["face_gears"]) == 1 else ["upper", "lower"]
+
+
 def sampled_contact(case: Case) -> bool:
     """Whether samples have a contact analysis of their own: asked for, or a cause moves the tooth pair."""
     section = case.values["tolerances"]

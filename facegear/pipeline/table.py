@@ -543,10 +543,15 @@ ALL = (
     Stage(
         name="rating",
         title="Safety and life of the tooth pair",
-        needs={**PAIR, "strength": "strength"},
+        needs={
+            **PAIR,
+            "strength": "strength",
+            "gears": Computed(asked.gears_met, ("transmission",)),
+        },
         section="strength",
         upstream={
-            **STRESS,
+            "stress": STRESS["stress"],
+            "by_flank": From("contact", "by_flank"),
             "duty_spectrum": From("duty_loads", "duty_spectrum", when=asked.machine_loads),
         },
         files={

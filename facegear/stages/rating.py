@@ -1,6 +1,7 @@
 """Safety and life of the tooth pair under its duty cycle."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import pandas as pd
@@ -12,41 +13,49 @@ from facegear.config.tooth_pair import pair
 from facegear.errors import ConfigError
 from facegear.geometry.analysis import section_contact_ratio
 from facegear.stages.outcome import Outcome
-from facegear.strength.contact_pressure import contact_pressure
-from facegear.strength.rating import rate
+from facegear.strength.met_flanks import met_by, worst_pressure, worst_root
+from facegear.strength.rating import Rated, rate
 from facegear.strength.rating_tables import curve_table, damage_table, rating_table, safety_table
-from facegear.strength.root_tables import root_from_arrays
 
 
 def rating(
     stress: Mapping[str, NDArray],
-    by_torque: pd.DataFrame,
+    by_flank: pd.DataFrame,
     duty_spectrum: pd.DataFrame | None = None,
     *,
     tooth_pair: Mapping[str, Any],
     strength: Mapping[str, Any] | None,
+    gears: Sequence[str],
 ) -> Outcome:
     """`safety`, `rating`, `damage` and `curves` (tables) from the root stress of stage root_stress.
 
-    `by_torque`: table of stage contact. `duty_spectrum`: table of stage duty_loads, where the loads are the
-    machine's. Raises ConfigError without section strength.
+    `by_flank`: table of stage contact; every flank is judged by the contacts that it has with the `gears` of
+    the machine. `duty_spectrum`: table of stage duty_loads, where the loads are the machine's. Raises
+    ConfigError without section strength.
     """
     if strength is None:
         raise ConfigError("strength", None, "given for safety and life")
     section, design = parse(Strength, strength), pair(tooth_pair).design
-    request = rating_request(section, design, duty_spectrum)
-    roots = {body: root_from_arrays(stress, body) for body in request.bodies}
-    pressure = contact_pressure(by_torque)
-    found = rate(design, section_contact_ratio(design), roots, pressure, request)
+    request, bins = rating_request(section, design, duty_spectrum), duty_bins(section)
+    found: list[Rated] = []
+    tables: dict[str, list[pd.DataFrame]] = {}
+    for duty in request.duty:
+        contacts = met_by(duty, gears)
+        roots, pressure = {duty.gear: worst_root(stress, duty, contacts)}, worst_pressure(by_flank, contacts)
+        alone = replace(request, duty=(duty,))
+        ways = rate(design, section_contact_ratio(design), roots, pressure, alone)
+        found += ways
+        for name, table in {
+            "safety": safety_table(ways, pressure),
+            "rating": rating_table(ways, pressure, roots),
+            "damage": damage_table(ways, bins, pressure),
+            "curves": curve_table(ways),
+        }.items():
+            tables.setdefault(name, []).append(table)
     worst = min(found, key=lambda one: one.safety / one.required)
     where = f"{worst.duty.body.replace('_', ' ')}, {worst.duty.flank}"
     told = f"{where}, {worst.failure} ({worst.method})"
     return Outcome(
-        {
-            "safety": safety_table(found, pressure),
-            "rating": rating_table(found, pressure, roots),
-            "damage": damage_table(found, duty_bins(section), pressure),
-            "curves": curve_table(found),
-        },
+        {name: pd.concat(parts, ignore_index=True) for name, parts in tables.items()},
         f"nearest to its limit: {told}, safety {worst.safety:.2f} where {worst.required:g} is required",
     )
