@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.strength.between_torques import LARGEST, SMALLEST, scale
+from facegear.strength.between_torques import SMALLEST, scale
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -60,7 +60,7 @@ class ContactPressure:
         The load goes as a power of the torque between those solved and below them, and in proportion beyond;
         the length is linear between them and constant beyond.
         """
-        growth = scale(self.torques, self.edge_load, LARGEST, 1.0)
+        growth = scale(self.torques, self.edge_load, 0.5, 1.0)
         load = float(growth.at(self.edge_load, torque)) if torque > 0.0 else 0.0
         return load, float(np.interp(torque, np.append(0.0, self.torques), np.append(0.0, self.edge_length)))
 

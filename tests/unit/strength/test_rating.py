@@ -302,7 +302,7 @@ def test_stress_at_no_torque_is_taken_for_less_than_it_is(exponent, solved, torq
     found = largest_tension(power_law(solved, exponent))(torque)
     assert found >= true * (1 - 1e-9)
     if len(solved) > 1 and torque <= solved[-1]:
-        assert found == pytest.approx(true)
+        assert found <= true * max(solved[0] / torque, 1.0) ** 0.11 * (1 + 1e-9)
 
 
 def test_a_load_below_the_torques_solved_gives_no_false_green():
