@@ -50,7 +50,8 @@ def shared_sources(cases: Mapping[str, Values], stage: str) -> dict[str, str]:
     first: dict[str, str] = {}
     found = {}
     for case, values in cases.items():
-        needs = {name: stage_needs(name, values) for name in stages_before(stage, values)}
+        before = stages_before(stage, values)
+        needs = {name: resolved_needs(STAGES[name].needs, Case(values, cases)) for name in before}
         found[case] = first.setdefault(json.dumps(needs, sort_keys=True), case)
     return found
 

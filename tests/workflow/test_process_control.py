@@ -1,6 +1,7 @@
 """Process control without Snakemake: what is kept of a killed run, what is ended, what a newer one lacks."""
 
 import logging
+import os
 import subprocess
 import sys
 import time
@@ -146,6 +147,21 @@ def test_ended_jobs_leave_no_file_half_written(tmp_path):
     whole.touch()
     end_jobs(tmp_path)
     assert not psutil.pid_exists(child.pid) and not half.exists() and whole.exists()
+
+
+def test_no_process_survives_that_begins_while_its_job_is_ended(tmp_path):
+    """A shell killed between two commands left the second working, for nobody knew whose it was."""
+    mark = f"60.{os.getpid()}"
+    shell = subprocess.Popen(["sh", "-c", f"for i in $(seq 300); do sleep {mark} & done; wait"])
+    while not working(mark):
+        assert shell.poll() is None
+    end_jobs(tmp_path)
+    assert not psutil.pid_exists(shell.pid) and not working(mark)
+
+
+def working(mark):
+    """Processes whose command line holds a mark."""
+    return [one for one in psutil.process_iter(["cmdline"]) if mark in (one.info["cmdline"] or [])]
 
 
 def test_a_script_that_a_killed_run_left_working_here_is_ended_and_no_other(tmp_path, monkeypatch):

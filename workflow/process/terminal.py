@@ -85,12 +85,23 @@ def _end_after(wait: Callable[[], object], quiet: Quiet, results: Path) -> None:
 def end_jobs(results: Path) -> None:
     """Kill all processes that this one has started, and remove the files that they had begun."""
     for _ in range(3):  # a job may have begun while others were ended
-        jobs = psutil.Process().children(recursive=True)
+        jobs = halted_jobs()
         for job in jobs:
             with suppress(psutil.NoSuchProcess):
                 job.kill()
         psutil.wait_procs(jobs, timeout=2)
         remove_begun(results, [job.pid for job in jobs])
+
+
+def halted_jobs() -> list[psutil.Process]:
+    """All processes started by this one, stopped: one killed while it starts another leaves that behind."""
+    known: dict[int, psutil.Process] = {}
+    while begun := [job for job in psutil.Process().children(recursive=True) if job.pid not in known]:
+        for job in begun:
+            with suppress(psutil.NoSuchProcess):
+                job.suspend()
+            known[job.pid] = job
+    return list(known.values())
 
 
 def remove_begun(results: Path, processes: list[int]) -> None:
