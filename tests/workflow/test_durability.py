@@ -184,7 +184,10 @@ def test_a_config_mistake_stops_before_any_work_in_one_line(tmp_path, old, new, 
     text = (ROOT / "config" / "paper.yaml").read_text()
     assert old in text
     config = tmp_path / "bad.yaml"
-    config.write_text(text.replace(old, new, 1))
+    known = text.replace(
+        "reproduction: reproduction/paper.yaml", f"reproduction: {ROOT}/config/reproduction/paper.yaml"
+    )
+    config.write_text(known.replace(old, new, 1))
     project = Project(tmp_path / "run")
     done = project.run("--configfile", str(config), check=False)
     assert done.returncode != 0
