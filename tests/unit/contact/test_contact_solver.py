@@ -94,9 +94,43 @@ def test_without_gaps_rotation_grows_in_proportion_to_torque():
     assert many == pytest.approx(1000.0 * one, rel=1e-12)
 
 
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 10**6), size=st.integers(2, 60))
+def test_the_points_that_touch_as_a_start_leave_one_step_to_do(seed, size):
+    problem = random_problem(seed, size)
+    cold = solve_contact(*problem, 1.0)
+    assert cold.steps < solver.NEWTON_STEPS
+    assert solve_contact(*problem, 1.0, cold.active).steps == 1
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 10**6), size=st.integers(2, 60), torque=st.floats(1e-3, 1e3))
+def test_forces_that_the_exchange_starts_from_push_and_carry_the_torque(seed, size, torque):
+    _, gap, lever_arm = random_problem(seed, size)
+    lever_arm[0] = -0.5
+    force = np.random.default_rng(seed).uniform(-3.0, 0.5, size)
+    for given_forces in (force, -np.ones(size)):
+        start = solver._feasible(gap, lever_arm, torque, given_forces)
+        assert start.min() >= 0.0
+        assert lever_arm @ start == pytest.approx(torque, rel=1e-12)
+
+
+def test_force_that_pulls_and_a_gap_that_closes_too_far_count_as_violations():
+    compliance, gap, lever_arm = np.eye(3), np.array([0.0, 0.0, 5.0]), np.ones(3)
+    good = solve_contact(compliance, gap, lever_arm, 2.0)
+    assert np.allclose(good.force, [1.0, 1.0, 0.0])
+    assert kkt_residual(compliance, gap, lever_arm, 2.0, good.force, good.rotation) < 1e-12
+    through = np.array([0.0, 0.0, 0.5])  # the third point would lie 0.5 inside the other body
+    assert kkt_residual(compliance, through, lever_arm, 2.0, good.force, good.rotation) == pytest.approx(0.5)
+    pulled = np.array([3.0, -1.0, 0.0])
+    assert kkt_residual(compliance, gap, lever_arm, 2.0, pulled, 3.0) > 0.3
+
+
 def test_no_point_that_can_carry_the_torque_is_told_with_its_place():
     with pytest.raises(NotConverged, match=r"position 0\.25, torque 600 N m"):
         solve_contact(np.eye(3), np.zeros(3), -np.ones(3), 600.0, where="position 0.25, torque 600 N m")
+    with pytest.raises(NotConverged, match="no candidate point can carry the torque"):
+        solve_contact(np.eye(3), np.zeros(3), -0.05 * np.ones(3), 600.0)
 
 
 def test_torque_that_does_not_drive_is_refused():
