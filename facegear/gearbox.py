@@ -20,8 +20,10 @@ if TYPE_CHECKING:
     from facegear.results.branches import BranchesResult
     from facegear.results.contact import ContactResult
     from facegear.results.dynamic_stress import DynamicStressResult
+    from facegear.results.friction import FrictionResult
     from facegear.results.geometry import GeometryResult
     from facegear.results.load_sharing import LoadSharingResult
+    from facegear.results.machine_loss import MachineLossResult
     from facegear.results.modal import ModesResult
     from facegear.results.rating import RatingResult
     from facegear.results.response import ResponseResult
@@ -166,6 +168,34 @@ class Gearbox:
         from facegear.results.rating import RatingResult
 
         return self._chain.result(RatingResult)
+
+    def friction(self, speed_rpm: float | None = None) -> "FrictionResult":
+        """Sliding, loss, temperatures and film of one mesh at a pinion speed, the config's unless given.
+
+        Raises ConfigError without section `lubrication`, and what `contact` raises.
+
+        >>> import facegear
+        >>> oil = {"oil": "polyol_ester_5_cst", "supply_temperature_c": 80, "pinion": {"ra_um": 0.3}}
+        >>> oil |= {"face_gear": {"ra_um": 0.3}, "bulk": {"source": "given", "temperature_c": 100}}
+        >>> table = facegear.example().with_values({"lubrication": oil}).friction().table()
+        >>> bool(table["efficiency"].between(0.99, 1).all())
+        True
+        """
+        from facegear.results.friction import FrictionResult
+
+        changed = self._changed("friction", _given({"dynamics.speed_rpm": speed_rpm}))
+        return changed._chain.result(FrictionResult)
+
+    def losses(self, speed_rpm: float | None = None) -> "MachineLossResult":
+        """Loss of every mesh and heat of every body at a pinion speed, the config's unless given.
+
+        Over the duty cycle as well, where `strength.load_factors` is `machine`. Raises what `friction` and
+        `modes` raise.
+        """
+        from facegear.results.machine_loss import MachineLossResult
+
+        changed = self._changed("losses", _given({"dynamics.speed_rpm": speed_rpm}))
+        return changed._chain.result(MachineLossResult)
 
     def dynamic_stress(self, speed_rpm: float | None = None) -> "DynamicStressResult":
         """Root stress of every mesh while the machine runs at a pinion speed, the config's unless given.

@@ -16,6 +16,7 @@ FILE_KEYS = (
     ("strength", "duty_csv"),
     ("strength", "pinion", "card"),
     ("strength", "face_gear", "card"),
+    ("lubrication", "oil"),
 )
 """Keys whose value is the name of a file; it counts from the folder of the config file that sets it."""
 

@@ -8,14 +8,10 @@ from pydantic import Field, field_validator, model_validator
 
 from facegear.config.base import Section, parse, refuse
 from facegear.config.oil_card import OIL_CARDS, OilCard, oil_of
-from facegear.config.tooth_pair import Pair
 from facegear.config.yaml_file import read_yaml
-from facegear.contact.hertz import contact_modulus
 from facegear.errors import ConfigErrors
 from facegear.lubrication import friction
-from facegear.lubrication.assessment import Limits
-from facegear.lubrication.flash import Heated
-from facegear.lubrication.heat import BorrowedBulk, Cooling, GivenBulk, Lubrication
+from facegear.lubrication.request import BorrowedBulk, Cooling, GivenBulk, Heated, Limits, Lubrication
 
 LARGEST_RA_UM = 4.0
 """Roughest flank that the gear tests behind the friction models had."""
@@ -187,8 +183,8 @@ def _file_of(name: str) -> Path:
     return path if path.suffix else OIL_CARDS / f"{path.name}.yaml"
 
 
-def lubrication_request(section: LubricationSection, teeth: Pair) -> Lubrication:
-    """What the flanks run with, in SI units."""
+def lubrication_request(section: LubricationSection, modulus: float, pitch_radius: float) -> Lubrication:
+    """What the flanks run with, in SI units; `modulus` E* (Pa), the pinion's `pitch_radius` (m)."""
     oil, steel = oil_of(section.oil), section.steel
     rough = section.pinion, section.face_gear
     heated = Heated(steel.conductivity_w_per_m_k, steel.density_kg_per_m3, steel.heat_capacity_j_per_kg_k)
@@ -202,8 +198,8 @@ def lubrication_request(section: LubricationSection, teeth: Pair) -> Lubrication
         rq=(rq[0], rq[1]),
         bulk=_bulk(section),
         flanks=(heated, heated),
-        reduced_modulus=2 * contact_modulus(teeth.materials),
-        pitch_radius=teeth.design.pinion_pitch_radius,
+        reduced_modulus=2 * modulus,
+        pitch_radius=pitch_radius,
     )
 
 

@@ -27,6 +27,7 @@ from facegear.config.checks import (
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.dynamics import Dynamics
 from facegear.config.load_sharing import LoadSharing
+from facegear.config.lubrication import LubricationSection
 from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.modal import Modal
 from facegear.config.search import Search
@@ -58,6 +59,9 @@ class Config(Section):
     contact: Contact = Contact()
     mesh_stiffness: MeshStiffness = MeshStiffness()
     strength: Strength | None = Field(None, description="safety and life of the pair; null: not rated")
+    lubrication: LubricationSection | None = Field(
+        None, description="friction, loss, heat and film of the meshes; null: without friction"
+    )
     transmission: Transmission | None = Field(
         None, description="null: geometry, contact and stiffness only; modes, dynamics, load sharing need it"
     )
@@ -109,10 +113,12 @@ class Config(Section):
             raise ConfigError(
                 "tooth_pair.pinion", None, "given, as required by contact.root_stress and strength"
             )
+        elif self.lubrication is not None:
+            raise ConfigError("tooth_pair.pinion", None, "given, as required by lubrication")
         elif self.mesh_stiffness.source != "harmonics":
             allowed = "given, as mesh_stiffness.source is not harmonics"
             raise ConfigError("tooth_pair.pinion", None, allowed)
-        if self.mesh_stiffness.source != "harmonics" or self._root_stress:
+        if self.mesh_stiffness.source != "harmonics" or self._root_stress or self.lubrication is not None:
             design = pair_design(pair)
             sizes = mesh_sizes(self.mesh_used, design.module)
             plan = contact_plan(self.contact_used)

@@ -1,7 +1,6 @@
 """Tables of loss, heat, film, scuffing and micropitting of the pair, by torque, position and speed."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import pi
 
 import numpy as np
@@ -14,55 +13,14 @@ from facegear.lubrication.columns import (
     MAP_COLUMNS,
     POSITION_COLUMNS,
 )
-from facegear.lubrication.heat import Lubrication, Running, TooHot, mean_flash, running
+from facegear.lubrication.heat import Running, TooHot, mean_flash, running
 from facegear.lubrication.loss import loss_factors
 from facegear.lubrication.machine_loss import LoadedPair
-from facegear.lubrication.oil import Oil
 from facegear.lubrication.places import LoadedContact, Places
-from facegear.lubrication.scuffing import (
-    allowed_flash_temperature,
-    allowed_integral_temperature,
-    integral_temperature,
-    temperature_safety,
-)
+from facegear.lubrication.request import Limits, Lubrication
+from facegear.lubrication.scuffing import integral_temperature, temperature_safety
 
 RPM = pi / 30
-
-
-@dataclass(frozen=True)
-class Limits:
-    """What is allowed; None where it is not known.
-
-    `contact_temperature` (C) of tests, else it follows from `fzg_stage` with the steel's `structure_factor`
-    and the oil's `lubricant_factor`. `film_ratio` of ISO/TS 6336-22.
-    """
-
-    contact_temperature: float | None
-    fzg_stage: float | None
-    structure_factor: float
-    lubricant_factor: float
-    film_ratio: float | None
-
-    def allowed_contact(self, oil: Oil, oil_temperature: float) -> float:
-        """Contact temperature (C); nan where nothing says it."""
-        if self.contact_temperature is not None:
-            return self.contact_temperature
-        if self.fzg_stage is None:
-            return np.nan
-        factor = self.lubricant_factor * (1e3 * float(oil.viscosity(oil_temperature))) ** -0.05
-        return allowed_flash_temperature(self.fzg_stage, self.structure_factor, factor)
-
-    def allowed_integral(self, oil: Oil) -> float:
-        """Integral temperature (C); nan without a load stage."""
-        if self.fzg_stage is None:
-            return np.nan
-        return allowed_integral_temperature(
-            self.fzg_stage, self.structure_factor, self.lubricant_factor, float(oil.kinematic_viscosity(40.0))
-        )
-
-    def micropitting_safety(self, ratio: float) -> float:
-        """Of a specific film; nan where nothing is allowed."""
-        return ratio / self.film_ratio if self.film_ratio is not None else np.nan
 
 
 def by_torque_table(

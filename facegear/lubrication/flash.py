@@ -5,7 +5,6 @@ match at every point, and each takes a share of the heat as its B sqrt(u) says (
 is slow its half space answers as Jaeger's integral says, and the largest temperatures of both match.
 """
 
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -13,6 +12,8 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 from scipy.special import kve
+
+from facegear.lubrication.request import Heated
 
 Array = NDArray[np.float64]
 Numbers = float | Array
@@ -25,29 +26,6 @@ EVEN = 1.1283791670955126
 
 POINTS = 120
 SLOWEST, FASTEST = 1e-3, 1e3
-
-
-@dataclass(frozen=True)
-class Heated:
-    """Material of a flank: conductivity W/(m K), density kg/m3, heat capacity J/(kg K)."""
-
-    conductivity: float
-    density: float
-    heat_capacity: float
-
-    @property
-    def diffusivity(self) -> float:
-        """m2/s."""
-        return self.conductivity / (self.density * self.heat_capacity)
-
-    @property
-    def contact_coefficient(self) -> float:
-        """B = sqrt(k rho c), W s^0.5/(m2 K)."""
-        return float(np.sqrt(self.conductivity * self.density * self.heat_capacity))
-
-
-STEEL = Heated(45.0, 7800.0, 440.0)
-"""As in ISO/TR 15144-1."""
 
 
 def flash(

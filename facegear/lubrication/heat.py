@@ -7,11 +7,12 @@ from numpy.typing import NDArray
 
 from facegear.errors import FacegearError, NotConverged
 from facegear.lubrication.film import elliptic_film, line_film, shear_heating
-from facegear.lubrication.flash import Heated, flash_at_any_speed
-from facegear.lubrication.friction import FrictionModel, Rubbing
+from facegear.lubrication.flash import flash_at_any_speed
+from facegear.lubrication.friction import Rubbing
 from facegear.lubrication.micropitting import local_film, sliding_factor
 from facegear.lubrication.oil import Oil
 from facegear.lubrication.places import LoadedContact, Places
+from facegear.lubrication.request import BorrowedBulk, Cooling, GivenBulk, Lubrication
 
 Array = NDArray[np.float64]
 
@@ -29,60 +30,6 @@ class TooHot(FacegearError):
             f"lubrication.bulk: a body reaches {reached:.0f} C at {at}, above the oil's flash point of "
             f"{allowed:g} C"
         )
-
-
-@dataclass(frozen=True)
-class GivenBulk:
-    """Bulk temperature (C) of both flanks, whatever the loss."""
-
-    temperature: float
-
-
-@dataclass(frozen=True)
-class Cooling:
-    """Heat (W/K) that pinion and face gear give off to the oil; bulk temperatures follow from the loss."""
-
-    pinion: float
-    face_gear: float
-
-
-@dataclass(frozen=True)
-class BorrowedBulk:
-    """Bulk temperature of ISO/TR 13989-1: the oil's and 0.47 X_S times the mean flash along the path.
-
-    The rule is that of cylindrical gears, borrowed. `supply_factor` X_S: 1.2 jet, 1 dip, 0.2 submerged.
-    """
-
-    supply_factor: float
-
-
-@dataclass(frozen=True, eq=False)
-class Lubrication:
-    """What the flanks run with.
-
-    `oil_temperature` (C) as supplied; `ra` and `rq` (m) of pinion and gear; `reduced_modulus` E_r = 2 E*
-    (Pa); `pitch_radius` (m) of the pinion.
-    """
-
-    oil: Oil
-    oil_temperature: float
-    friction: FrictionModel
-    ra: tuple[float, float]
-    rq: tuple[float, float]
-    bulk: GivenBulk | Cooling | BorrowedBulk
-    flanks: tuple[Heated, Heated]
-    reduced_modulus: float
-    pitch_radius: float
-
-    @property
-    def mean_ra(self) -> float:
-        """Mean of both flanks' Ra, m."""
-        return 0.5 * sum(self.ra)
-
-    @property
-    def composite_rq(self) -> float:
-        """Root of the sum of the squares of Rq, m."""
-        return float(np.hypot(*self.rq))
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,8 +14,6 @@ from numpy.typing import NDArray
 from facegear.errors import NotConverged
 from facegear.lubrication.heat import (
     STEPS,
-    Cooling,
-    Lubrication,
     Running,
     require_cool,
     running,
@@ -26,6 +24,7 @@ from facegear.lubrication.heat import (
 )
 from facegear.lubrication.loss import OverTorque
 from facegear.lubrication.places import LoadedContact
+from facegear.lubrication.request import Cooling, Lubrication
 
 Array = NDArray[np.float64]
 

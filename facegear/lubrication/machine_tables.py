@@ -7,10 +7,9 @@ from math import pi
 import numpy as np
 import pandas as pd
 
-from facegear.lubrication.assessment import Limits
 from facegear.lubrication.columns import BODY_COLUMNS, MACHINE_COLUMNS, MESH_COLUMNS
-from facegear.lubrication.heat import BorrowedBulk, Cooling, GivenBulk, Lubrication
 from facegear.lubrication.machine_loss import MachineLoss, MeshLoads
+from facegear.lubrication.request import BorrowedBulk, Cooling, GivenBulk, Limits, Lubrication
 from facegear.lubrication.scuffing import temperature_safety
 
 

@@ -30,8 +30,8 @@ def always(case: Case) -> bool:
 
 
 def contact(case: Case) -> bool:
-    """Whether a contact analysis gives the stiffness, or root stress is asked for."""
-    return case.values["mesh_stiffness"]["source"] != "harmonics" or root_stress(case)
+    """Whether a contact analysis gives the stiffness, or root stress or friction is asked for."""
+    return computed_stiffness(case) or root_stress(case) or friction(case)
 
 
 def computed_stiffness(case: Case) -> bool:
@@ -47,6 +47,16 @@ def modes_from_contact(case: Case) -> bool:
 def root_stress(case: Case) -> bool:
     """Whether `contact.root_stress` asks for it."""
     return bool(case.values["contact"]["root_stress"])
+
+
+def friction(case: Case) -> bool:
+    """Whether section lubrication is given."""
+    return case.values["lubrication"] is not None
+
+
+def machine_friction(case: Case) -> bool:
+    """Whether sections lubrication and transmission are given."""
+    return friction(case) and machine(case)
 
 
 def machine(case: Case) -> bool:

@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from facegear.report.contents import CHAPTERS, STUDIED_CONTACT, caption_of
+from facegear.report.contents import CHAPTERS, FRICTION, STUDIED_CONTACT, caption_of
 from facegear.report.glance import glance_chapter
 from facegear.report.machine import machine_chapter
 from facegear.report.page import Chapter, Picture, Table, View, render
@@ -148,6 +148,8 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
         return [Table(BY_TORQUE, tables["by_torque"], 4)]
     if title == "Root stress" and "root_stress" in tables:
         return [Table(ROOT_STRESS, tables["root_stress"], 4)]
+    if title == FRICTION and "friction" in tables:
+        return _friction(tables)
     if title == STUDIED_CONTACT and "studies" in tables:
         return [Table("Every case and torque", tables["studies"][STUDY_COLUMNS], 4)]
     if title == "Strength" and "root_stress" in tables:
@@ -195,6 +197,25 @@ def _rated(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
         hardest = loads.loc[loads.groupby("bin")["largest_force_n"].idxmax()]
         found += [Table(DUTY_LOADS, hardest, 4), Table(EVERY_LOAD, loads, 4, folded=True)]
     return found
+
+
+def _friction(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
+    shown = tables["friction"].dropna(axis="columns", how="all")
+    found = [Table("One mesh at the nominal speed, by torque", shown, 4)]
+    if "machine_loss" in tables:
+        whole = tables["machine_loss"].dropna(axis="columns", how="all")
+        meshes = tables["mesh_losses"].dropna(axis="columns", how="all")
+        found = [
+            Table("The machine: bin 0 at the nominal load, -1 the whole duty cycle", whole, 4),
+            *found,
+            Table("Every loaded flank", meshes, 4, folded=True),
+            Table("Heat of every body", tables["body_heat"], 4, folded=True),
+        ]
+    limits = tables["limits"]
+    return [
+        *found,
+        Table("Part of the loss outside the limits of the friction model", limits, 3, folded=True),
+    ]
 
 
 def _over_speed(tables: Mapping[str, pd.DataFrame], speed_rpm: float) -> list[Table]:

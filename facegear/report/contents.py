@@ -14,6 +14,10 @@ CAPTIONS = {
     "damage": "Damage of every bin of the duty cycle to the same flanks; a sum of 1 is the end of life.",
     "stress_over_speed": "Largest root stress, pressure and dynamic factor of all meshes over speed; dots: "
     "stable motions that were followed; shaded: beyond the torques of the contact analysis.",
+    "friction_path": "Sliding, flash temperature and film along the path of contact; beside edges no "
+    "temperature is known.",
+    "friction_flank": "Friction loss and flash temperature over the pinion's flank at the largest torque.",
+    "efficiency_map": "Friction loss of a mesh and its contact temperature over torque and speed.",
     "root_stress_passage": "Root stress of a tooth on its way through the mesh: largest tension below the "
     "loaded flank, largest compression below the other.",
     "root_stress_along_face": "Root stress along the face, the largest over a passage.",
@@ -70,6 +74,7 @@ def caption_of(name: str, values: Mapping[str, Any]) -> str:
     return words if number is None or not values["reproduction"] else f"Figure {number} of the paper: {words}"
 
 
+FRICTION = "Friction and heat"
 STUDIED_CONTACT = "Studies of the contact"
 CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     (
@@ -90,6 +95,14 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "contacts of the tooth and its neighbours. Passage: 0 to 1 while the tooth belongs to the pair in "
         "the middle of the mesh.",
         ("root_stress_passage", "root_stress_along_face", "life", "damage", "stress_over_speed"),
+    ),
+    (
+        FRICTION,
+        "Friction of the loaded contact to first order: sliding velocities of the exact flanks, a "
+        "coefficient by the model that stands beside each number, flash temperature after Blok and Jaeger, "
+        "film after Dowson and Higginson. Windage, churning, squeezing of oil, bearings and seals are left "
+        "out.",
+        ("friction_path", "friction_flank", "efficiency_map"),
     ),
     (
         STUDIED_CONTACT,

@@ -37,7 +37,7 @@ MAY_IMPORT = {
     "lubrication": {"geometry", "contact", "harmonics"},
     "stages": {
         *("config", "geometry", "mesh", "contact", "stiffness", "harmonics"),
-        *("transmission", "dynamics", "load_sharing", "scenarios", "strength"),
+        *("transmission", "dynamics", "load_sharing", "scenarios", "strength", "lubrication"),
     },
     "pipeline": {"config", "load_sharing", "report", "stages"},
     "results": {

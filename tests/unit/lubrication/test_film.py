@@ -10,10 +10,10 @@ from spur_path import c40
 from facegear.config.oil_card import OIL_CARDS, oil_card
 from facegear.contact.hertz import contact_modulus, line_half_width
 from facegear.lubrication.film import elliptic_film, line_film, shear_heating
-from facegear.lubrication.flash import STEEL as HEATED
 from facegear.lubrication.flash import flash
 from facegear.lubrication.kinematics import slip
 from facegear.lubrication.micropitting import local_film, sliding_factor
+from facegear.lubrication.request import STEEL as HEATED
 
 MODULUS = contact_modulus((STEEL, STEEL))
 REDUCED = 2 * MODULUS

@@ -10,14 +10,13 @@ from scipy.sparse.linalg import splu
 from facegear.lubrication.flash import (
     EVEN,
     HERTZ,
-    STEEL,
-    Heated,
     flash,
     flash_at_any_speed,
     moving_heat,
     moving_temperature,
     slow_factor,
 )
+from facegear.lubrication.request import STEEL, Heated
 
 
 def transient_rise(number: float, step: float = 0.04) -> float:

@@ -26,6 +26,8 @@ REPORTED = {
     "root_stress": ["summary"],
     "contact_studies": ["table"],
     "tolerances": ["percentiles", "shares"],
+    "lubrication": ["by_torque", "limits"],
+    "machine_loss": ["machine", "meshes", "bodies"],
     "rating": ["safety", "rating"],
     "dynamic_root_stress": ["dynamic_stress"],
     "stress_over_speed": ["stress_over_speed"],

@@ -1,0 +1,122 @@
+"""What the flanks run with, and what they are allowed: the request of the friction chain, SI units."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from facegear.lubrication.friction import FrictionModel
+from facegear.lubrication.oil import Oil
+from facegear.lubrication.scuffing import allowed_flash_temperature, allowed_integral_temperature
+
+
+@dataclass(frozen=True)
+class Heated:
+    """Material of a flank: conductivity W/(m K), density kg/m3, heat capacity J/(kg K)."""
+
+    conductivity: float
+    density: float
+    heat_capacity: float
+
+    @property
+    def diffusivity(self) -> float:
+        """m2/s."""
+        return self.conductivity / (self.density * self.heat_capacity)
+
+    @property
+    def contact_coefficient(self) -> float:
+        """B = sqrt(k rho c), W s^0.5/(m2 K)."""
+        return float(np.sqrt(self.conductivity * self.density * self.heat_capacity))
+
+
+STEEL = Heated(45.0, 7800.0, 440.0)
+"""As in ISO/TR 15144-1."""
+
+
+@dataclass(frozen=True)
+class GivenBulk:
+    """Bulk temperature (C) of both flanks, whatever the loss."""
+
+    temperature: float
+
+
+@dataclass(frozen=True)
+class Cooling:
+    """Heat (W/K) that pinion and face gear give off to the oil; bulk temperatures follow from the loss."""
+
+    pinion: float
+    face_gear: float
+
+
+@dataclass(frozen=True)
+class BorrowedBulk:
+    """Bulk temperature of ISO/TR 13989-1: the oil's and 0.47 X_S times the mean flash along the path.
+
+    The rule is that of cylindrical gears, borrowed. `supply_factor` X_S: 1.2 jet, 1 dip, 0.2 submerged.
+    """
+
+    supply_factor: float
+
+
+@dataclass(frozen=True, eq=False)
+class Lubrication:
+    """What the flanks run with.
+
+    `oil_temperature` (C) as supplied; `ra` and `rq` (m) of pinion and gear; `reduced_modulus` E_r = 2 E*
+    (Pa); `pitch_radius` (m) of the pinion.
+    """
+
+    oil: Oil
+    oil_temperature: float
+    friction: FrictionModel
+    ra: tuple[float, float]
+    rq: tuple[float, float]
+    bulk: GivenBulk | Cooling | BorrowedBulk
+    flanks: tuple[Heated, Heated]
+    reduced_modulus: float
+    pitch_radius: float
+
+    @property
+    def mean_ra(self) -> float:
+        """Mean of both flanks' Ra, m."""
+        return 0.5 * sum(self.ra)
+
+    @property
+    def composite_rq(self) -> float:
+        """Root of the sum of the squares of Rq, m."""
+        return float(np.hypot(*self.rq))
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What is allowed; None where it is not known.
+
+    `contact_temperature` (C) of tests, else it follows from `fzg_stage` with the steel's `structure_factor`
+    and the oil's `lubricant_factor`. `film_ratio` of ISO/TS 6336-22.
+    """
+
+    contact_temperature: float | None
+    fzg_stage: float | None
+    structure_factor: float
+    lubricant_factor: float
+    film_ratio: float | None
+
+    def allowed_contact(self, oil: Oil, oil_temperature: float) -> float:
+        """Contact temperature (C); nan where nothing says it."""
+        if self.contact_temperature is not None:
+            return self.contact_temperature
+        if self.fzg_stage is None:
+            return np.nan
+        factor = self.lubricant_factor * (1e3 * float(oil.viscosity(oil_temperature))) ** -0.05
+        return allowed_flash_temperature(self.fzg_stage, self.structure_factor, factor)
+
+    def allowed_integral(self, oil: Oil) -> float:
+        """Integral temperature (C); nan without a load stage."""
+        if self.fzg_stage is None:
+            return np.nan
+        return allowed_integral_temperature(
+            self.fzg_stage, self.structure_factor, self.lubricant_factor, float(oil.kinematic_viscosity(40.0))
+        )
+
+    def micropitting_safety(self, ratio: float) -> float:
+        """Of a specific film; nan where nothing is allowed."""
+        return ratio / self.film_ratio if self.film_ratio is not None else np.nan

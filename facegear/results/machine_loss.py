@@ -1,0 +1,34 @@
+"""Loss and heat of the machine."""
+
+from typing import TYPE_CHECKING, ClassVar
+
+import pandas as pd
+
+from facegear.results.base import Result
+
+if TYPE_CHECKING:
+    from facegear.plots.style import Figure
+
+
+class MachineLossResult(Result):
+    """Loss of every mesh and heat of every body, at the nominal load and over the duty cycle."""
+
+    STAGE: ClassVar = "machine_loss"
+
+    def table(self) -> pd.DataFrame:
+        """A row a bin, 0 being the nominal load at rest and -1 the whole duty cycle: loss and efficiency."""
+        return self.content["machine"].copy()
+
+    def meshes(self) -> pd.DataFrame:
+        """A row a bin and loaded flank: power, loss, temperatures, safety, film."""
+        return self.content["meshes"].copy()
+
+    def bodies(self) -> pd.DataFrame:
+        """A row a bin and body: heat and bulk temperature."""
+        return self.content["bodies"].copy()
+
+    def plot(self) -> "Figure":
+        """Where loss arises and heat goes at the nominal load."""
+        from facegear.plots.friction import machine_heat
+
+        return machine_heat(self.content["meshes"], self.content["bodies"])

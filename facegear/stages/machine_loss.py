@@ -1,0 +1,127 @@
+"""Loss and heat of the machine's meshes and bodies, at its nominal load and over its duty cycle."""
+
+from collections.abc import Iterator, Mapping
+from math import pi
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from facegear.config.base import parse
+from facegear.config.lubrication import limits_of
+from facegear.config.lumped_model import at_mesh_torque
+from facegear.config.machines import wired_machine
+from facegear.config.strength import Strength
+from facegear.lubrication import machine_loss as losses
+from facegear.lubrication.machine_loss import LoadedPair, MeshLoads
+from facegear.lubrication.machine_tables import (
+    MachineState,
+    body_heat_table,
+    machine_loss_table,
+    mesh_loss_table,
+)
+from facegear.stages.lubrication import loaded_pair, lubrication_section
+from facegear.stages.outcome import Outcome
+from facegear.transmission.machine import Machine
+from facegear.transmission.ratings import mesh_table, rated
+
+
+def machine_loss(
+    ltca: pd.DataFrame,
+    pressure: Mapping[str, NDArray],
+    harmonics: pd.DataFrame,
+    duty_loads: pd.DataFrame | None = None,
+    *,
+    tooth_pair: Mapping[str, Any],
+    lubrication: Mapping[str, Any] | None,
+    transmission: Mapping[str, Any],
+    teeth: Mapping[str, Any],
+    strength: Mapping[str, Any] | None,
+    speed_rpm: float,
+) -> Outcome:
+    """`meshes`, `bodies`, `machine` (tables): at the nominal load at rest and in every bin of a duty cycle.
+
+    ltca, pressure: of stage contact; harmonics: table of stage stiffness; duty_loads: table of that stage,
+    where the loads of the duty cycle are the machine's. Raises ConfigError without section lubrication,
+    TooHot where a body passes the oil's flash point, NotConverged where bulk temperatures do not settle.
+    """
+    section = lubrication_section(lubrication)
+    loaded = loaded_pair(ltca, pressure, section, tooth_pair)
+    found = list(_states(loaded, harmonics, duty_loads, transmission, teeth, strength, speed_rpm))
+    content = {
+        "meshes": mesh_loss_table(found, loaded.known, limits_of(section)),
+        "bodies": body_heat_table(found, loaded.known),
+        "machine": machine_loss_table(found),
+    }
+    whole, hottest = content["machine"].iloc[0], content["meshes"]["contact_temperature_c"].max()
+    beyond = content["meshes"].loc[~content["meshes"]["within_torques_solved"], "bin"].unique()
+    told = (
+        f"the machine loses {whole['loss_w']:.0f} W, {whole['loss_percent']:.3f} % of its power; "
+        f"contact up to {hottest:.0f} C"
+    )
+    if beyond.size:
+        bins = ", ".join(str(number) for number in beyond)
+        told = f"{told}; bins with loads outside the torques of the contact analysis: {bins}"
+    return Outcome(content, told)
+
+
+def _states(
+    loaded: LoadedPair,
+    harmonics: pd.DataFrame,
+    duty_loads: pd.DataFrame | None,
+    transmission: Mapping[str, Any],
+    teeth: Mapping[str, Any],
+    strength: Mapping[str, Any] | None,
+    speed_rpm: float,
+) -> Iterator[MachineState]:
+    """The machine at its nominal load at rest, then in every bin of its duty cycle."""
+    machine = wired_machine(transmission, teeth, harmonics)
+    table = mesh_table(machine, speed_rpm)
+    table = table[table["flank"] != "open"]
+    torque = table["pinion_torque_n_m"].abs().to_numpy()
+    names = table["mesh"].tolist(), table["flank"].tolist()
+    yield _state(loaded, machine, (0, np.nan, speed_rpm), names, torque, torque)
+    if duty_loads is None or strength is None:
+        return
+    section = parse(Strength, strength)
+    for number, one in enumerate(section.duty, start=1):
+        rows = duty_loads[duty_loads["bin"] == number]
+        machine = wired_machine(at_mesh_torque(transmission, one.torque_n_m), teeth, harmonics)
+        arm = machine.layout.pinion_arm
+        mean = arm * rows["mean_force_n"].to_numpy()
+        peak = arm * section.application_factor * rows["largest_force_n"].to_numpy()
+        names = rows["mesh"].tolist(), rows["flank"].tolist()
+        yield _state(loaded, machine, (number, one.hours, one.speed_rpm), names, mean, peak)
+
+
+def _state(
+    loaded: LoadedPair,
+    machine: Machine,
+    place: tuple[int, float, float],
+    names: tuple[list[str], list[str]],
+    torque: NDArray[np.float64],
+    peak: NDArray[np.float64],
+) -> MachineState:
+    layout = machine.layout
+    number, hours, speed_rpm = place
+    of = [layout.meshes[layout.mesh_names.index(name)] for name in names[0]]
+    loads = MeshLoads(
+        pinion=np.array([i for i, _ in of]),
+        gear=np.array([g for _, g in of]),
+        torque=torque,
+        peak=np.maximum(peak, torque),
+        pinions=len(layout.pinions),
+        bodies=len(layout.bodies),
+    )
+    return MachineState(
+        bin=number,
+        hours=hours,
+        speed_rpm=speed_rpm,
+        power_in=rated(machine, speed_rpm).power_in,
+        meshes=names[0],
+        flanks=names[1],
+        bodies=layout.body_names,
+        loads=loads,
+        found=losses.machine_loss(loaded, loads, speed_rpm * pi / 30),
+    )
