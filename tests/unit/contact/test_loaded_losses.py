@@ -171,8 +171,11 @@ def test_a_hat_takes_the_value_of_its_own_plane_or_the_nearest_of_its_line(loade
     one = contacts[1000.0]
     near = one.nearest >= 0
     assert near.mean() > 0.99
-    planes = one.at_hats(one.places.plane.astype(float))[near]
-    away = np.abs(planes - one.hats.plane[near])
-    assert (away == 0).mean() > 0.9 and np.quantile(away, 0.999) <= 3
     stages = one.at_hats(one.places.position + 10.0 * one.places.tooth)[near]
     assert stages == pytest.approx((one.hats.position + 10.0 * one.hats.tooth)[near], abs=1e-12)
+    planes = one.at_hats(one.places.plane.astype(float))[near]
+    keys = set(zip(one.places.position, one.places.tooth, one.places.plane, strict=True))
+    own = zip(one.hats.position[near], one.hats.tooth[near], one.hats.plane[near], strict=True)
+    known = np.array([key in keys for key in own])
+    assert known.mean() > 0.9
+    assert (planes == one.hats.plane[near])[known].all()
