@@ -26,7 +26,7 @@ def gearbox():
 
 
 def test_the_concentric_machine_loses_what_the_power_of_its_meshes_loses():
-    """Torques of its ten meshes at rest, loss factors of its pair (friction.md of the references): 19 123 W."""
+    """Its ten torques at rest and the loss factors of its pair, both from the reference: 19 123 W."""
     torques = [304.946, 238.714, 383.252, 408.464, 248.056, 214.642, 238.714, 944.748, 919.536, 248.056]
     factors = OverTorque(
         np.array([100.0, 300.0, 550.0, 1000.0]), np.array([0.104676, 0.112617, 0.117747, 0.124134])
