@@ -1,7 +1,7 @@
 """How Sphinx builds the documentation: `make docs`."""
 
+import importlib.metadata
 import sys
-from importlib.metadata import version
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
@@ -9,7 +9,7 @@ sys.path.insert(0, str(ROOT))
 
 project = "facegear"
 author = "the facegear authors"
-release = version("facegear")
+release = importlib.metadata.version("facegear")
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.apidoc"]
 exclude_patterns = ["build", "joss"]
 default_role = "literal"  # docstrings write names in single backticks
