@@ -61,7 +61,7 @@ def shear_heating(
 ) -> Array:
     """What heating by shear in the inlet leaves of the film (Gupta, Cheng, Zhu, Forster, Schrand 1992).
 
-    (1 - 13.2 p/E_r L^0.42)/(1 + 0.213 (1 + 2.23 |SR|^0.83) L^0.64) with L = eta beta u_e^2/k; p the largest
+    `(1 - 13.2 p/E_r L^0.42)/(1 + 0.213 (1 + 2.23 |SR|^0.83) L^0.64)` with L = eta beta u_e^2/k; p the largest
     pressure Pa, beta = -d ln nu/dT 1/K, k of the oil W/(m K).
     """
     speed = 0.5 * (np.asarray(u1, float) + u2)

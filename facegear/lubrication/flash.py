@@ -39,7 +39,7 @@ def flash(
 ) -> tuple[Array, Array]:
     """Largest temperature rise (K) of the contact and the first flank's share of the heat (Blok).
 
-    C mu w |v_s| / ((B1 sqrt u1 + B2 sqrt u2) sqrt(2b)); line_load N/m, sliding and speeds across the line
+    `C mu w |v_s| / ((B1 sqrt u1 + B2 sqrt u2) sqrt(2b))`; line_load N/m, sliding and speeds across the line
     m/s, half_width b m, coefficients B1 and B2.
     """
     first, second = (
@@ -100,7 +100,7 @@ def moving_heat(number: float) -> float:
 def moving_temperature(at: float, number: float) -> float:
     """The same at a place `at` (in b, against the motion of the material before 0, with it behind).
 
-    1/pi times the integral over the strip of sqrt(1 - s^2) e^(Pe (at - s)) K0(Pe |at - s|).
+    1/pi times the integral over the strip of `sqrt(1 - s^2) e^(Pe (at - s)) K0(Pe |at - s|)`.
     """
     half, weights = _gauss()
     total = 0.0

@@ -255,7 +255,7 @@ def benedict_kelley(
 
 
 def xu(pressure: Numbers, radius: Numbers, u1: Numbers, u2: Numbers, viscosity: Numbers, rq: float) -> Array:
-    """e^f p^b2 |SR|^b3 u_e^b6 eta^b7 R^b8, f = b1 + b4 A + b5 e^-A + b9 e^S, A = |SR| p log10 eta.
+    """`e^f p^b2 |SR|^b3 u_e^b6 eta^b7 R^b8`, `f = b1 + b4 A + b5 e^-A + b9 e^S`, `A = |SR| p log10 eta`.
 
     p GPa, u_e = (u1 + u2)/2, SR = (u1 - u2)/u_e, R m, S um.
     """

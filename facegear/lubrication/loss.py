@@ -93,7 +93,7 @@ class LossFactors:
 
 
 def loss_factors(hats: HatSlip, friction: Numbers = 1.0) -> LossFactors:
-    """sum friction f |v| / (T w) of every contact: H_V for friction 1, the part of the power lost otherwise.
+    """Sum of `friction f |v| / (T w)` of every contact: H_V for friction 1, else the part of the power lost.
 
     friction: a coefficient, or one of each hat (m,).
     """
