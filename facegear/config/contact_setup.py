@@ -9,6 +9,7 @@ from facegear.config.contact import Contact, contact_plan
 from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.tooth_pair import Pair, pair
 from facegear.contact.options import ContactPlan
+from facegear.contact.resolution import along_the_ellipse
 from facegear.mesh.sizes import MeshSizes
 
 
@@ -24,7 +25,11 @@ class ContactSetup:
 def contact_setup(
     tooth_pair: Mapping[str, Any], mesh: Mapping[str, Any], contact: Mapping[str, Any]
 ) -> ContactSetup:
-    """Raises ConfigError for a pair without bodies."""
+    """With as many cuts along the face as the contact ellipse of a crowned pinion asks for.
+
+    Raises ConfigError for a pair without bodies, and for an ellipse that no cuts resolve.
+    """
     teeth = pair(tooth_pair)
     sizes = mesh_sizes(parse(Mesh, mesh), teeth.design.module)
-    return ContactSetup(teeth, sizes, contact_plan(parse(Contact, contact)))
+    plan = along_the_ellipse(teeth.design, teeth.materials, sizes, contact_plan(parse(Contact, contact)))
+    return ContactSetup(teeth, sizes, plan)

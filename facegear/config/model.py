@@ -39,6 +39,7 @@ from facegear.config.tooth_pair import ToothPair, materials, pair_design
 from facegear.config.transmission import Transmission
 from facegear.config.transmission_error import FROM_CONTACT
 from facegear.contact.resolution import (
+    along_the_ellipse,
     check_fillet,
     check_memory,
     check_resolution,
@@ -122,6 +123,7 @@ class Config(Section):
             design = pair_design(pair)
             sizes = mesh_sizes(self.mesh_used, design.module)
             plan = contact_plan(self.contact_used)
+            plan = along_the_ellipse(design, materials(pair), sizes, plan)
             check_strain(pair, self.contact_used)
             check_resolution(design, materials(pair), sizes, plan)
             check_fillet(design, sizes, replace(plan, root_stress=self._root_stress))

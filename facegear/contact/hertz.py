@@ -17,6 +17,11 @@ Array = NDArray[np.float64]
 
 DENTED = 4.0e9
 """Pressure (Pa) from which on hardened steel keeps a dent: the static limit of line contact in ISO 76."""
+SLENDEREST, ROUNDEST = 1e-6, 1.0 - 1e-6
+"""Ratios of semi-axes between which that of an ellipse is sought."""
+
+HALVINGS = 60
+
 STEPS = 8
 """Of the fixed point of pressure and half-width, each of which gains more than a digit."""
 
@@ -29,6 +34,28 @@ def contact_modulus(materials: tuple[Material, Material]) -> float:
 def line_half_width(line_load: ArrayLike, curvature: ArrayLike, modulus: float) -> Array:
     """Half-width (m) of a long strip under a load (N/m), relative curvature (1/m) across it."""
     return np.sqrt(4 * np.asarray(line_load) / (pi * modulus * np.asarray(curvature)))
+
+
+def longer_semi_axis(force: float, across: float, along: float, modulus: float) -> float:
+    """Semi-axis (m) of the ellipse under a force (N), along the smaller of two curvatures (1/m) `along`.
+
+    Of bodies curved alike both ways it is that of a sphere. Source: Johnson, chapter 4.
+    """
+
+    def parts(ratio: float) -> tuple[float, float]:
+        square = ratio**2
+        first, second = float(ellipkm1(square)), float(ellipe(1.0 - square))
+        return first - second, second / square - first
+
+    low, high = np.log(SLENDEREST), np.log(ROUNDEST)
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        own, other = parts(float(np.exp(middle)))
+        low, high = (middle, high) if own / other < along / across else (low, middle)
+    ratio = float(np.exp(0.5 * (low + high)))
+    _, other = parts(ratio)
+    cubed = 3.0 * force * other / (pi * across * modulus * (1.0 - ratio**2))
+    return float(cubed ** (1 / 3))
 
 
 def strip_pressure(

@@ -36,6 +36,11 @@ KERNEL = np.array([1.0, 2.0, 1.0]) / 4
 WIDER = np.array([1.0, 2.0, 2.0, 2.0, 1.0]) / 8
 """The same over two elements; the difference shows what the planes' distance leaves open."""
 
+SHORT = 11
+"""Loaded planes up to which a contact counts as a short ellipse."""
+LEAST_SPREAD = 0.02
+"""Variance of a load along the face, in squares of the planes' distance, below which it is not told."""
+
 NEIGHBOURHOOD = 5
 """Planes among which the largest difference is taken, as it may vanish at one by chance."""
 
@@ -147,7 +152,10 @@ def _along(force: Array, lines: ContactLines, row: int, modulus: float) -> LineL
     cut = owner[loaded] != loaded
     where = _where(lines, row, loaded, width / np.cos(slope), cut)
     inside = where == INSIDE
+    peak = _peak_if_short(force, lines.y)
     apart = maximum_filter1d(np.abs(wider - load)[loaded], NEIGHBOURHOOD, mode="nearest")
+    # in a short ellipse both averages are too low: load and length say by how much, and p goes with the root
+    low = max(0.5 * (peak / load[loaded].max() - 1.0), 0.0) if loaded.size else 0.0
     return LineLoads(
         line=np.full(loaded.size, row),
         plane=loaded,
@@ -155,9 +163,22 @@ def _along(force: Array, lines: ContactLines, row: int, modulus: float) -> LineL
         line_load=line_load,
         where=where,
         pressure=np.where(inside, pressure, np.nan),
-        error=np.where(inside, 0.5 * apart / load[loaded] * pressure, np.nan),
+        error=np.where(inside, np.hypot(0.5 * apart / load[loaded], low) * pressure, np.nan),
         half_width=width,
     )
+
+
+def _peak_if_short(force: Array, y: Array) -> float:
+    """Largest load per width (N/m) of a parabola with the load and length of forces (n,) on few planes.
+
+    That is how a Hertz ellipse spreads its load along its length. 0 for more than SHORT loaded planes.
+    """
+    total, step = force.sum(), y[1] - y[0]
+    if total == 0.0 or np.count_nonzero(force) > SHORT:
+        return 0.0
+    middle = force @ y / total
+    spread = force @ (y - middle) ** 2 / total - step**2 / 6.0
+    return float(0.75 * total / np.sqrt(5.0 * max(spread, LEAST_SPREAD * step**2)))
 
 
 def _owners(face: Array, step: float) -> NDArray[np.int64]:

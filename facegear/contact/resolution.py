@@ -1,6 +1,7 @@
 """Whether the contact surface's nodes can see the contact strip at all, and whether they fit into memory."""
 
-from math import pi, sin, sqrt
+from dataclasses import replace
+from math import ceil, inf, pi, sin, sqrt
 
 from facegear.contact.options import ContactPlan
 from facegear.errors import ConfigError
@@ -10,6 +11,11 @@ from facegear.mesh.sizes import MeshSizes
 
 COARSEST = 1.5
 """Node distance over the strip's half-width that is still let through: one or two nodes in contact."""
+PLANES = 4.0
+"""Planes of nodes in the half-length of a contact ellipse, with which its pressure errs by some 3 %."""
+MOST_CUTS = 16
+"""Along the face, of the elements under the flank."""
+ROUNDING = 1e-9
 DEEPEST = 2.0
 """Depth of the first row below a fillet over its smallest radius, with which root stress errs by some 6 %."""
 MEMORY_ERROR = 1.2
@@ -73,6 +79,45 @@ def node_spacing(sizes: MeshSizes, plan: ContactPlan) -> float:
 def resolves(spacing: float, design: PairDesign, materials: tuple[Material, Material], torque: float) -> bool:
     """Whether nodes so far apart (m) resolve the contact strip at a torque (N m)."""
     return spacing <= COARSEST * half_width(design, materials, torque)
+
+
+def ellipse_half_length(design: PairDesign, materials: tuple[Material, Material], torque: float) -> float:
+    """Half-length (m) along the face of a crowned pinion's contact ellipse at a torque (N m).
+
+    inf without crowning. Two pairs share the torque evenly; each touches the nearly flat gear flank at the
+    pitch point.
+    """
+    crowning = design.pinion.lead_crowning
+    if crowning.amount <= 0.0 or crowning.length <= 0.0:
+        return inf
+    from facegear.contact.hertz import contact_modulus, longer_semi_axis
+
+    along = 2.0 * crowning.amount / crowning.length**2
+    across = 1.0 / (design.pinion_pitch_radius * sin(design.pressure_angle))
+    force = torque / design.pinion_base_radius / 2.0
+    return crowning.start + longer_semi_axis(force, across, along, contact_modulus(materials))
+
+
+def along_the_ellipse(
+    design: PairDesign, materials: tuple[Material, Material], sizes: MeshSizes, plan: ContactPlan
+) -> ContactPlan:
+    """The plan with as many cuts along the face as the contact ellipse of a crowned pinion asks for.
+
+    At the smallest torque its half-length holds PLANES planes of nodes. Raises ConfigError where that takes
+    more than MOST_CUTS cuts.
+    """
+    torque = min(plan.torques)
+    half = ellipse_half_length(design, materials, torque)
+    cuts = max(plan.refinement.width, ceil(PLANES * sizes.width / 2.0 / half - ROUNDING))
+    if cuts > MOST_CUTS:
+        needed = 2e3 * MOST_CUTS * half / PLANES
+        raise ConfigError(
+            "mesh.resolution",
+            f"{1e3 * sizes.width:.3g} mm along the face",
+            f"must be at most {needed:.3g} mm: at {torque:g} N m the crowned pinion.s contact ellipse is "
+            f"{2e3 * half:.3g} mm long",
+        )
+    return replace(plan, refinement=replace(plan.refinement, width=cuts))
 
 
 def check_resolution(

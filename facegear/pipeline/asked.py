@@ -157,8 +157,18 @@ def without_gaps(case: Case) -> Any:
 
 
 def without_loads(case: Case) -> Any:
-    """Section contact without LOADING, so that cases that differ in loads share their compliance."""
-    return {key: value for key, value in case.values["contact"].items() if key not in LOADING}
+    """Section contact without LOADING, so that cases that differ in loads share their compliance.
+
+    Its cuts along the face are those that the contact ellipse of a crowned pinion asks for.
+    """
+    section = {key: value for key, value in case.values["contact"].items() if key not in LOADING}
+    pinion = case.values["tooth_pair"]["pinion"]
+    if pinion is None or not pinion["lead_crowning"]["amount_um"]:
+        return section
+    from facegear.config.contact_setup import contact_setup
+
+    plan = contact_setup(*(case.values[name] for name in ("tooth_pair", "mesh", "contact"))).plan
+    return {**section, "refinement": {**section["refinement"], "width": plan.refinement.width}}
 
 
 def gears_met(case: Case) -> list[str]:

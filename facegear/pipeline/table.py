@@ -106,7 +106,7 @@ ALL = (
         needs={
             "tooth_pair": Computed(asked.without_gaps, ("tooth_pair",)),
             "mesh": "mesh",
-            "contact": Computed(asked.without_loads, ("contact",)),
+            "contact": Computed(asked.without_loads, ("tooth_pair", "mesh", "contact")),
         },
         files={"arrays": File("compliance/{body}.npz", "facegear.contact.gear_flank:STORED")},
         wildcards=BODY,

@@ -5,14 +5,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import facegear
 from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
 from facegear.contact.pair import gear_flank
-from facegear.contact.resolution import check_fillet, check_resolution, half_width
+from facegear.contact.resolution import (
+    PLANES,
+    along_the_ellipse,
+    check_fillet,
+    check_resolution,
+    ellipse_half_length,
+    half_width,
+)
 from facegear.errors import ConfigError, ConfigErrors
-from facegear.geometry.design import FaceGear, Material, PairDesign, Pinion, Shaper
+from facegear.geometry.design import FaceGear, Material, PairDesign, Pinion, Relief, Shaper
 from facegear.mesh.sizes import MeshSizes, named_sizes, thin_fillet
+from facegear.pipeline.needs import stage_needs
 
 STEEL = Material(206e9, 0.3)
 M = 3.75e-3
@@ -92,3 +101,32 @@ def test_sector_larger_than_the_gear_is_refused():
         gear_flank(
             DESIGN, "pinion", MeshSizes(1.5e-3, 6e-3, 3e-3), STEEL, plan(sector=Sector(pinion_teeth=25))
         )
+
+
+@given(amount=st.floats(0.0, 180.0), length=st.floats(12.0, 20.0), torque=st.floats(100.0, 2000.0))
+def test_cuts_along_the_face_follow_the_contact_ellipse_of_a_crowned_pinion(amount, length, torque):
+    """However heavy the crowning and light the load, its half-length holds four planes of nodes."""
+    crowned = replace(DESIGN.pinion, lead_crowning=Relief(1e-6 * amount, 0.0, 1e-3 * length))
+    design, sizes = replace(DESIGN, pinion=crowned), named_sizes("coarse", M)
+    made = along_the_ellipse(design, (STEEL, STEEL), sizes, plan(torque))
+    apart = sizes.width / 2 / made.refinement.width
+    half = ellipse_half_length(design, (STEEL, STEEL), torque)
+    assert apart <= half / PLANES * (1 + 1e-6)
+    assert made.refinement.width == 1 or 2 * apart > half / PLANES * (1 - 1e-6)
+
+
+def test_an_ellipse_too_short_for_any_cuts_is_refused_with_the_mesh_that_holds_it():
+    crowned = replace(DESIGN.pinion, lead_crowning=Relief(180e-6, 0.0, 15e-3))
+    design, sizes = replace(DESIGN, pinion=crowned), MeshSizes(0.75e-3, 6e-3, 3e-3)
+    with pytest.raises(ConfigError, match=r"mm along the face.* must be at most .* mm: at 0\.01 N m"):
+        along_the_ellipse(design, (STEEL, STEEL), sizes, plan(0.01))
+
+
+def test_a_crowned_pair_is_cut_along_its_face_and_a_plain_one_keeps_its_compliance():
+    machine = facegear.example().with_values({"mesh.resolution": "coarse"})
+    crowning = {"amount_um": 150, "start_mm": 0, "length_mm": 15}
+    crowned = machine.with_values({"tooth_pair.pinion.lead_crowning": crowning})
+    widths = [
+        stage_needs("compliance", one.values)["contact"]["refinement"]["width"] for one in (machine, crowned)
+    ]
+    assert widths[0] == 1 < widths[1]

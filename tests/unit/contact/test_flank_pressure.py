@@ -18,9 +18,10 @@ from facegear.contact.options import ContactOptions, Refinement
 from facegear.contact.pattern import pattern
 from facegear.contact.position import Spot
 from facegear.contact.pressure import INSIDE, flank_pressure, line_loads
+from facegear.contact.resolution import PLANES, ellipse_half_length
 from facegear.contact.tables import ltca_table, pressure_arrays
 from facegear.geometry.analysis import path_curvatures
-from facegear.geometry.design import Assembly
+from facegear.geometry.design import Assembly, Relief
 from facegear.geometry.pinion_surface import flank_points
 from facegear.geometry.separation import separation
 from facegear.geometry.unloaded import PAIRS, unloaded_contact
@@ -81,6 +82,55 @@ def flat_lines(y, curvature, slope=0.0):
         to_end=far,
         face=step * far,
     )
+
+
+def ellipse_on_planes(planes, shift):
+    """Pressure and error over that of a Hertz ellipse ten times longer than wide.
+
+    `planes` fill its half-length, the middle lies `shift` planes beside one.
+    """
+    b, ratio, across = 2e-4, 0.1, 1 / 0.018
+    square = 1 - ratio**2
+    first, second = ellipk(square), ellipe(square)
+    peak = 0.5 * across * PLANE * square * b / ratio**2 / (second / ratio**2 - first)
+    a = b / ratio
+    step = a / planes
+    y = np.arange(-planes - 3, planes + 4) * step
+    at, width = np.linspace(-a, a, 20001, retstep=True)
+    line = 0.5 * np.pi * peak * b * (1 - (at / a) ** 2)
+    hats = np.maximum(1 - np.abs(at - shift * step - y[:, None]) / step, 0.0)
+    force = hats @ line * width
+    on = np.flatnonzero(force)
+    loads = line_loads([spot_of(on, force[on])], [0], flat_lines(y, across), PLANE)
+    pressure, error = loads.largest()
+    return pressure / peak, error / peak
+
+
+@given(planes=st.integers(1, 5), shift=st.floats(0.0, 0.5))
+def test_the_error_of_a_short_ellipse_covers_what_few_planes_miss_of_its_pressure(planes, shift):
+    """27 % were missing where 14 % were given, for a contact as long as two planes are apart."""
+    pressure, error = ellipse_on_planes(planes, shift)
+    assert abs(pressure - 1.0) < error
+    if planes >= PLANES:
+        assert pressure == pytest.approx(1.0, abs=0.035)
+
+
+@pytest.mark.parametrize("ratio", [0.003, 0.02, 0.15])
+def test_the_length_of_a_crowned_pinion_s_contact_is_that_of_hertz(ratio):
+    """Semi-axes belong to curvatures and force by construction: 7 to 330 times longer than wide."""
+    design = pair_design()
+    square, across = 1 - ratio**2, 1.0 / (design.pinion_pitch_radius * np.sin(design.pressure_angle))
+    first, second = ellipk(square), ellipe(square)
+    along = across * (first - second) / (second / ratio**2 - first)
+    b = 1.5e-4
+    modulus = contact_modulus((STEEL, STEEL))
+    peak = 0.5 * across * modulus * square * b / ratio**2 / (second / ratio**2 - first)
+    force = 2 / 3 * np.pi * peak * b * (b / ratio)
+    crowned = replace(design.pinion, lead_crowning=Relief(0.5 * along * 0.01**2, 0.0, 0.01))
+    found = ellipse_half_length(
+        replace(design, pinion=crowned), (STEEL, STEEL), 2 * force * design.pinion_base_radius
+    )
+    assert found == pytest.approx(b / ratio, rel=1e-6)
 
 
 def test_sphere_pressed_on_finite_elements_has_hertz_pressure_within_a_percent():

@@ -22,7 +22,7 @@ GAPS = {
     "tooth_pair.assembly": {"offset_um": 20, "shaft_angle_error_deg": 0.01, "axial_shift_um": 30},
     "tooth_pair.pinion.tip_relief": RELIEF,
     "tooth_pair.pinion.root_relief": RELIEF,
-    "tooth_pair.pinion.lead_crowning": {**RELIEF, "length_mm": 10},
+    "tooth_pair.pinion.lead_crowning": {**RELIEF, "length_mm": 20},
 }
 
 
