@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from facegear.config.base import Section, refuse
+from facegear.config.base import Section, refuse, require_all
 from facegear.config.dynamics import SWEPT, SWEPT_TOLD, Accuracy, settings
 from facegear.dynamics.sweeps.plan import JumpRange
 from facegear.load_sharing.quantity_names import JUMP_MARGIN, QUANTITIES, of_jumps
@@ -143,7 +143,11 @@ class Search(Section):
         return any(one.percentile is not None for one in (*self.objectives, *self.constraints))
 
     @model_validator(mode="after")
-    def _told_apart(self) -> "Search":
+    def _different(self) -> "Search":
+        require_all(self._check_names, self._check_keys, self._check_seeds)
+        return self
+
+    def _check_names(self) -> None:
         goals = [one.name for one in (*self.objectives, *self.constraints)]
         names = [*(one.name for one in self.variables), *goals]
         for number, name in enumerate(names):
@@ -151,12 +155,15 @@ class Search(Section):
                 refuse("name", name, f"another one: {', '.join(TAKEN)} are columns of their own")
             if name in names[:number]:
                 refuse("name", name, "one of its own for each variable, objective and constraint")
+
+    def _check_keys(self) -> None:
         keys = [key for variable in self.variables for key in variable.sets]
         if len(set(keys)) < len(keys):
             refuse("variables.sets", keys, "each key once")
+
+    def _check_seeds(self) -> None:
         if len(set(self.seeds)) < len(self.seeds) or min(self.seeds) < 0:
             refuse("seeds", list(self.seeds), "different numbers from 0 on")
-        return self
 
 
 def jump_range(section: Jumps) -> JumpRange:

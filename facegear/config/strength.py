@@ -1,12 +1,13 @@
 """Config section `strength`: materials, duty cycle and factors of the rating of a tooth pair."""
 
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from facegear.config.base import Section, parse, refuse
+from facegear.config.base import Section, parse, refuse, require_all
 from facegear.config.csv_file import CsvFault, read_numbers
 from facegear.config.material_card import CARDS, Card, limits_of
 from facegear.config.yaml_file import read_yaml
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 BIN_COLUMNS = ("torque_n_m", "speed_rpm", "hours")
+BODIES = ("pinion", "face_gear")
 
 
 class DutySection(Section):
@@ -109,31 +111,39 @@ class Strength(Section):
 
     @model_validator(mode="after")
     def _complete(self) -> "Strength":
+        cards = (partial(self._check_card, name) for name in BODIES)
+        require_all(self._check_factors, self._check_counted, self._check_duty, *cards)
+        return self
+
+    def _check_factors(self) -> None:
+        """Load factors are either given or taken from the machine."""
         for key in ("dynamic_factor", "mesh_load_factor"):
             if self.load_factors == "machine" and getattr(self, key) != 1.0:
                 refuse(key, getattr(self, key), "left out where load_factors is machine")
-        self._check_counted()
-        if not any(one.hours > 0 for one in self.duty):
-            refuse("duty", [], "at least one bin with hours, here or in duty_csv")
-        for name in ("pinion", "face_gear"):
-            card = getattr(self, name).card
-            for part in ("pitting", "bending"):
-                if getattr(card, part) is None:
-                    refuse(f"{name}.card", card.name, f"a card with {part}, which the rating needs")
-            if card.bending.slip_layer_mm is None:
-                refuse(f"{name}.card", card.name, "a card with bending.slip_layer_mm, which the rating needs")
-            both = getattr(self, name).both_ways or self.load_factors == "machine"
-            if both and card.bending.mean_stress is None:
-                allowed = "a card with bending.mean_stress, which teeth bent both ways need"
-                refuse(f"{name}.card", card.name, allowed)
-        return self
 
     def _check_counted(self) -> None:
         """How flanks are loaded is either given or counted in the machine."""
-        for name in ("pinion", "face_gear"):
+        for name in BODIES:
             for key in ("cycles_per_turn", "both_ways"):
                 if self.load_factors == "machine" and (value := getattr(getattr(self, name), key)):
                     refuse(f"{name}.{key}", value, "left out where load_factors is machine")
+
+    def _check_duty(self) -> None:
+        if not any(one.hours > 0 for one in self.duty):
+            refuse("duty", [], "at least one bin with hours, here or in duty_csv")
+
+    def _check_card(self, name: str) -> None:
+        """The card of a body holds what the rating needs."""
+        card = getattr(self, name).card
+        for part in ("pitting", "bending"):
+            if getattr(card, part) is None:
+                refuse(f"{name}.card", card.name, f"a card with {part}, which the rating needs")
+        if card.bending.slip_layer_mm is None:
+            refuse(f"{name}.card", card.name, "a card with bending.slip_layer_mm, which the rating needs")
+        both = getattr(self, name).both_ways or self.load_factors == "machine"
+        if both and card.bending.mean_stress is None:
+            allowed = "a card with bending.mean_stress, which teeth bent both ways need"
+            refuse(f"{name}.card", card.name, allowed)
 
     @property
     def torques(self) -> tuple[float, float]:

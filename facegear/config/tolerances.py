@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from facegear.config.base import Section, refuse
+from facegear.config.base import Section, refuse, require_all
 from facegear.load_sharing.quantity_names import QUANTITIES
 
 if TYPE_CHECKING:
@@ -143,7 +143,17 @@ class Tolerances(Section):
     )
 
     @model_validator(mode="after")
-    def _told_apart(self) -> "Tolerances":
+    def _possible(self) -> "Tolerances":
+        require_all(
+            self._check_causes,
+            self._check_map,
+            self._check_samples,
+            self._check_indices,
+            self._check_chunks,
+        )
+        return self
+
+    def _check_causes(self) -> None:
         names = [cause.name for cause in self.causes]
         if not names:
             refuse("causes", [], "at least one")
@@ -162,28 +172,27 @@ class Tolerances(Section):
         if matrix is not None and np.linalg.eigvalsh(matrix)[0] <= 0.0:
             told = [[*pair.between, pair.coefficient] for pair in self.correlations]
             refuse("correlations", told, "numbers that can hold together: the matrix is not positive")
-        return self
 
-    @model_validator(mode="after")
-    def _mapped(self) -> "Tolerances":
+    def _check_map(self) -> None:
         if self.load_map is not None and self.load_map.speeds_rpm and self.model == "quasi_static":
             refuse("load_map.speeds_rpm", list(self.load_map.speeds_rpm), "none where model is quasi_static")
-        return self
 
-    @model_validator(mode="after")
-    def _cut(self) -> "Tolerances":
+    def _check_samples(self) -> None:
         if self.samples % self.chunk_samples:
             below = max(self.samples // self.chunk_samples, 1) * self.chunk_samples
             refuse("samples", self.samples, f"a multiple of chunk_samples, such as {below}")
+
+    def _check_indices(self) -> None:
         if self.index_blocks & (self.index_blocks - 1):
             refuse("index_blocks", self.index_blocks, "a power of two, or 0")
         if self.index_blocks and self.correlations:
             refuse("index_blocks", self.index_blocks, "0 where causes are correlated: indices are undefined")
+
+    def _check_chunks(self) -> None:
         count = len(chunks(self, "samples")) + len(chunks(self, "indices"))
         if count > MOST_CHUNKS:
             least = -(-self.chunk_samples * count // MOST_CHUNKS)
             refuse("chunk_samples", self.chunk_samples, f"at least {least}, for at most {MOST_CHUNKS} jobs")
-        return self
 
 
 Design = Literal["samples", "indices"]

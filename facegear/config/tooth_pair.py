@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import Field, model_validator
 
-from facegear.config.base import Section, parse, refuse
+from facegear.config.base import Section, parse, refuse, require_all
 from facegear.errors import ConfigError, GeometryError, NotConverged
 from facegear.geometry.design import (
     Assembly,
@@ -104,12 +104,18 @@ class ToothPair(Section):
 
     @model_validator(mode="after")
     def _possible(self) -> "ToothPair":
+        require_all(self._check_teeth, self._check_bodies)
+        return self
+
+    def _check_teeth(self) -> None:
         if self.face_gear_teeth <= self.pinion_teeth:
             refuse("face_gear_teeth", self.face_gear_teeth, f"more than the pinion's {self.pinion_teeth}")
+
+    def _check_bodies(self) -> None:
         bodies = {name: getattr(self, name) for name in ("pinion", "face_gear", "shaper")}
         missing = [name for name, body in bodies.items() if body is None]
-        if len(missing) == len(bodies):
-            return self
+        if len(missing) == len(bodies) or self.face_gear_teeth <= self.pinion_teeth:
+            return
         if missing:
             refuse(missing[0], None, "given: pinion, face_gear and shaper go together")
         try:
@@ -118,7 +124,6 @@ class ToothPair(Section):
             refuse(error.key, error.value, error.allowed)
         except NotConverged as error:
             refuse("face_gear", self.face_gear_teeth, f"other teeth or radii: {error}")
-        return self
 
 
 def pair_design(section: ToothPair) -> PairDesign:

@@ -14,6 +14,9 @@ from facegear.config.cases import expand_cases
 from facegear.config.load import load_values
 from facegear.config.model import Config
 from facegear.config.notes import notes
+from facegear.config.search import Search
+from facegear.config.strength import Strength
+from facegear.config.tolerances import Tolerances
 from facegear.errors import ConfigErrors
 
 CONFIG = Path(__file__).parents[3] / "config"
@@ -182,3 +185,46 @@ def test_a_misspelt_key_of_with_values_and_of_a_study_is_told_with_what_was_mean
     with pytest.raises(ConfigErrors, match=r"studies\.one\.1: ") as refused:
         expand_cases({**gearbox.values, "studies": [study]})
     assert hint in refused.value.lines[0]
+
+
+GOAL = {"name": "x", "largest_of": ["k_gamma right input/upper"]}
+CARD = {"card": "case_carburised_din3990_11", "root_roughness_um": 16.0}
+
+
+@pytest.mark.parametrize(
+    ("section", "values", "keys"),
+    [
+        (
+            Tolerances,
+            {"causes": [CAUSE, CAUSE], "samples": 300, "chunk_samples": 256, "index_blocks": 3},
+            ["causes[1].name", "samples", "index_blocks"],
+        ),
+        (
+            Search,
+            {
+                "variables": [
+                    {"name": "x", "sets": ["transmission.backlash_um"], "limits": [1.0, 2.0]},
+                    {"name": "y", "sets": ["transmission.backlash_um"], "limits": [1.0, 2.0]},
+                ],
+                "objectives": [GOAL],
+                "seeds": [1, 1],
+            },
+            ["name", "variables.sets", "seeds"],
+        ),
+        (
+            Strength,
+            {
+                "pinion": {**CARD, "both_ways": True},
+                "face_gear": CARD,
+                "duty": [{"torque_n_m": 1.0, "speed_rpm": 1.0, "hours": 0.0}],
+                "load_factors": "machine",
+                "dynamic_factor": 1.1,
+            },
+            ["dynamic_factor", "pinion.both_ways", "duty"],
+        ),
+    ],
+)
+def test_what_does_not_fit_together_inside_a_section_is_told_all_at_once(section, values, keys):
+    with pytest.raises(ConfigErrors) as refused:
+        parse(section, values)
+    assert [line.split(" = ")[0] for line in refused.value.lines] == keys
