@@ -36,9 +36,10 @@ SEARCHED: Needs = {
 
 BODY = {"body": "pinion|face_gear"}
 FLANKS = {name: From("compliance", "arrays", where={"body": name}) for name in asked.BODIES}
-LTCA, BY_TORQUE = From("contact", "ltca"), From("contact", "by_torque")
+LTCA = From("contact", "ltca")
 PRESSED = {"ltca": LTCA, "pressure": From("contact", "pressure")}
-STRESS = {"stress": From("root_stress", "stress"), "by_torque": BY_TORQUE}
+STRESS = {"stress": From("root_stress", "stress"), "by_flank": From("contact", "by_flank")}
+GEARS = {"gears": Computed(asked.gears_met, ("transmission",))}
 HARMONICS = {"harmonics": From("stiffness", "harmonics")}
 SAMPLED_FROM = {
     **HARMONICS,
@@ -593,12 +594,11 @@ ALL = (
         needs={
             **PAIR,
             "strength": "strength",
-            "gears": Computed(asked.gears_met, ("transmission",)),
+            **GEARS,
         },
         section="strength",
         upstream={
-            "stress": STRESS["stress"],
-            "by_flank": From("contact", "by_flank"),
+            **STRESS,
             "duty_spectrum": From("duty_loads", "duty_spectrum", when=asked.machine_loads),
         },
         files={
@@ -618,7 +618,7 @@ ALL = (
     Stage(
         name="dynamic_root_stress",
         title="Root stress of the running machine",
-        needs={**PAIR, "transmission": "transmission"},
+        needs={**PAIR, "transmission": "transmission", **GEARS},
         upstream={"response": From("dynamics_response", "response"), **STRESS},
         files={
             "dynamic_stress": File(
@@ -630,7 +630,7 @@ ALL = (
     Stage(
         name="stress_over_speed",
         title="Root stress and pressure over the speed range",
-        needs={**MACHINE, **PAIR},
+        needs={**MACHINE, **PAIR, **GEARS},
         upstream={
             "sweep": From("dynamics_sweep", "sweep"),
             "branches": From("branches", "branches", when=asked.branches),

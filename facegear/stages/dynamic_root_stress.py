@@ -1,6 +1,6 @@
 """Root stress of every mesh of the running machine at its nominal speed."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,22 +10,22 @@ from numpy.typing import NDArray
 from facegear.config.lumped_model import stiffness_phases
 from facegear.config.tooth_pair import pair
 from facegear.stages.outcome import Outcome
-from facegear.strength.contact_pressure import contact_pressure
 from facegear.strength.dynamic_stress import dynamic_stress_table
-from facegear.strength.root_tables import root_from_arrays
+from facegear.strength.flank_contacts import contacts_of, flank_contacts
 from facegear.transmission.flanks import flank_places
 
 
 def dynamic_root_stress(
     response: pd.DataFrame,
     stress: Mapping[str, NDArray],
-    by_torque: pd.DataFrame,
+    by_flank: pd.DataFrame,
     tooth_pair: Mapping[str, Any],
     transmission: Mapping[str, Any],
+    gears: Sequence[str],
 ) -> Outcome:
     """`dynamic_stress` (table) from stage dynamics_response's history and root_stress's arrays.
 
-    by_torque: table of stage contact.
+    by_flank: table of stage contact; every mesh has the stress of its own gear and flank, of `gears`.
     """
     phases = stiffness_phases(transmission, tooth_pair)
     forces, places = {}, {}
@@ -33,9 +33,9 @@ def dynamic_root_stress(
         force = rows["elastic_force_n"].to_numpy()
         drive, back = flank_places(phases[[number]], rows["mesh_cycle"].to_numpy()).T
         forces[str(mesh)], places[str(mesh)] = force, np.where(force < 0.0, back, drive)
-    roots = {body: root_from_arrays(stress, body) for body in ("pinion", "face_gear")}
-    radius, pressure = pair(tooth_pair).design.pinion_base_radius, contact_pressure(by_torque).at
-    table = dynamic_stress_table(forces, places, radius, roots, pressure)
+    contacts = flank_contacts(stress, by_flank)
+    own = {mesh: contacts_of(mesh, contacts, alone=len(gears) == 1) for mesh in forces}
+    table = dynamic_stress_table(forces, places, pair(tooth_pair).design.pinion_base_radius, own)
     worst = table.loc[table["face_gear_running_mpa"].idxmax()]
     told = f"{worst['mesh']}: face gear {worst['face_gear_running_mpa']:.0f} MPa"
     return Outcome({"dynamic_stress": table}, f"{told}, pinion {worst['pinion_running_mpa']:.0f} MPa")

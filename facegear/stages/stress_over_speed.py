@@ -1,6 +1,6 @@
 """Root stress and pressure over the speed range, and the worst of all motions known at a speed."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from facegear.config.machines import wired_machine
 from facegear.config.tooth_pair import pair
 from facegear.stages.outcome import Outcome
-from facegear.strength.contact_pressure import contact_pressure
-from facegear.strength.root_tables import root_from_arrays
+from facegear.strength.flank_contacts import contacts_of, flank_contacts
 from facegear.strength.stress_over_speed import branch_forces, stress_table, swept_forces
 from facegear.transmission.statics import static_equilibrium
 
@@ -19,16 +18,18 @@ from facegear.transmission.statics import static_equilibrium
 def stress_over_speed(
     sweep: pd.DataFrame,
     stress: Mapping[str, NDArray],
-    by_torque: pd.DataFrame,
+    by_flank: pd.DataFrame,
     harmonics: pd.DataFrame,
     transmission: Mapping[str, Any],
     teeth: Mapping[str, Any],
     tooth_pair: Mapping[str, Any],
+    gears: Sequence[str],
     branches: pd.DataFrame | None = None,
 ) -> Outcome:
     """`stress_over_speed` (table) from the sweep and, where there are any, the branches.
 
-    stress: arrays of stage root_stress; by_torque: table of stage contact. Raises NotConverged.
+    stress: arrays of stage root_stress; by_flank: table of stage contact; every mesh has
+    the stress of its own gear, of `gears`, on the flank where it is more. Raises NotConverged.
     """
     machine = wired_machine(transmission, teeth, harmonics)
     at_rest = float(np.abs(static_equilibrium(machine).forces).max())
@@ -36,10 +37,10 @@ def stress_over_speed(
     if branches is not None:
         followed = branch_forces(branches, np.unique(forces["speed_rpm"]))
         forces = pd.concat([forces, followed], ignore_index=True)
-    pressure = contact_pressure(by_torque).at
-    roots = {body: root_from_arrays(stress, body) for body in ("pinion", "face_gear")}
+    contacts = flank_contacts(stress, by_flank)
+    own = {mesh: contacts_of(mesh, contacts, len(gears) == 1).values() for mesh in forces["mesh"].unique()}
     radius = pair(tooth_pair).design.pinion_base_radius
-    table = stress_table(forces, at_rest, radius, roots, pressure)
+    table = stress_table(forces, at_rest, radius, own)
     worst = table.loc[table["largest_force_n"].idxmax()]
     where = f"{worst['speed_rpm']:.0f} rpm ({worst['motion']}, {worst['class']})"
     stresses = f"face gear {worst['face_gear_mpa']:.0f} MPa, pinion {worst['pinion_mpa']:.0f} MPa"

@@ -1,13 +1,13 @@
 """Root stress and pressure over speed under the largest mesh force of every motion known there."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Collection, Mapping
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from facegear.strength.columns import STRESS_OVER_SPEED_COLUMNS
-from facegear.strength.root_stress import RootStress, largest_tension
+from facegear.strength.flank_contacts import BODIES, FlankContact
 
 Array = NDArray[np.float64]
 ALIKE = 1e-3
@@ -62,24 +62,25 @@ def stress_table(
     forces: pd.DataFrame,
     static_force: float,
     base_radius: float,
-    roots: Mapping[str, RootStress],
-    pressure: Callable[[float], float],
+    contacts: Mapping[str, Collection[FlankContact]],
 ) -> pd.DataFrame:
     """Stress under each of `forces` (FORCE_COLUMNS), columns as STRESS_OVER_SPEED_COLUMNS.
 
-    The force is taken to act all through the passage. static_force (N): the largest of all meshes at rest, 0
-    without load; base_radius (m) of the pinion; pressure (Pa) at a torque (N m). `worst`: the hardest of all
-    motions known at that speed, and those as hard.
+    The force is taken to act all through the passage, on the flank where it does more. static_force (N): the
+    largest of all meshes at rest, 0 without load; base_radius (m) of the pinion; contacts of each mesh, one a
+    flank. `worst`: the hardest of all motions known at that speed, and those as hard.
     """
     torques = base_radius * forces["largest_force_n"].to_numpy()
-    tension = {body: largest_tension(root) for body, root in roots.items()}
-    growth = next(iter(roots.values())).scale
+    loads = list(zip([set(contacts[mesh]) for mesh in forces["mesh"]], torques, strict=True))
     most = forces.groupby("speed_rpm")["largest_force_n"].transform("max")
     table = forces.assign(
         dynamic_factor=forces["largest_force_n"] / static_force if static_force > 0.0 else np.nan,
-        **{f"{body}_mpa": [1e-6 * at(torque) for torque in torques] for body, at in tension.items()},
-        pressure_mpa=[1e-6 * pressure(torque) for torque in torques],
-        within_torques_solved=[growth.solved(torque) for torque in torques],
+        **{
+            f"{body}_mpa": [1e-6 * max(one.tension[body](torque) for one in near) for near, torque in loads]
+            for body in BODIES
+        },
+        pressure_mpa=[1e-6 * max(one.pressure(torque) for one in near) for near, torque in loads],
+        within_torques_solved=[next(iter(near)).solved(torque) for near, torque in loads],
         worst=forces["largest_force_n"] >= (1.0 - ALIKE) * most,
     )
     return table.sort_values(["speed_rpm", "motion"], kind="stable", ignore_index=True)[

@@ -58,7 +58,7 @@ def test_impossible_designs_name_the_key(pair, change, key):
 
 
 @settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(amount=st.floats(1e-6, 180e-6), start=st.floats(0.0, 0.014), length=st.floats(1e-4, 0.02))
+@given(amount=st.floats(1e-6, 180e-6), start=st.floats(0.0, 0.0124), length=st.floats(1e-4, 0.02))
 def test_an_accepted_crowning_takes_no_more_off_the_ends_of_the_face_than_the_largest_relief(
     pair, amount, start, length
 ):

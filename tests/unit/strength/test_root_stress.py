@@ -16,16 +16,19 @@ from spur_gears import fzg_c, root_tension, slab_design
 
 import facegear
 from facegear.config.machines import case_machine
+from facegear.geometry.flank_errors import FLANKS
 from facegear.harmonics.series import Harmonics
 from facegear.io.meshes import write_vtu
 from facegear.strength.contact_pressure import ContactPressure
-from facegear.strength.dynamic_stress import TensionHistory, dynamic_stress_table
+from facegear.strength.dynamic_stress import dynamic_stress_table
 from facegear.strength.fillet_surface import stress_surface
+from facegear.strength.flank_contacts import BODIES, FlankContact
 from facegear.strength.root_form import root_form
 from facegear.strength.root_stress import down_the_fillet, root_stress
 from facegear.strength.root_tables import root_arrays, root_tables
 from facegear.strength.spur import SpurGear
-from facegear.strength.stress_over_speed import branch_forces, stress_table, swept_forces
+from facegear.strength.stress_over_speed import FORCE_COLUMNS, branch_forces, stress_table, swept_forces
+from facegear.strength.tension_history import TensionHistory
 from facegear.transmission.flanks import flank_places, stiffness_series
 
 TORQUES, POSITIONS = np.array([100.0, 300.0]), np.array([0.0, 0.5])
@@ -184,7 +187,8 @@ def test_running_machine_is_judged_by_the_magnitude_of_each_mesh_force():
     }
     places = dict.fromkeys([*forces, "high"], np.array([0.0, 0.5]))
     roots = {"pinion": found, "face_gear": found}
-    table = dynamic_stress_table(forces, places, 0.1, roots, np.sqrt).set_index("mesh")
+    contacts = dict.fromkeys(places, dict.fromkeys(FLANKS, FlankContact(roots, np.sqrt)))
+    table = dynamic_stress_table(forces, places, 0.1, contacts).set_index("mesh")
     assert table["dynamic_factor"].iloc[:2].tolist() == pytest.approx([1.5, 1.0])
     assert np.isnan(table.loc["open", "dynamic_factor"])
     assert table.loc["pulsing", "pinion_mean_mpa"] == pytest.approx(table.loc["back", "pinion_bound_mpa"])
@@ -194,7 +198,7 @@ def test_running_machine_is_judged_by_the_magnitude_of_each_mesh_force():
     assert table["within_torques_solved"].all()
     assert table.loc["pulsing", "pressure_bound_mpa"] == pytest.approx(1e-6 * np.sqrt(300.0))
     assert table.loc["pulsing", "pressure_mean_mpa"] == pytest.approx(1e-6 * np.sqrt(200.0))
-    beyond = dynamic_stress_table({"high": np.array([4000.0, 0.0])}, places, 0.1, roots, np.sqrt)
+    beyond = dynamic_stress_table({"high": np.array([4000.0, 0.0])}, places, 0.1, contacts)
     assert not beyond["within_torques_solved"].any()
 
 
@@ -212,13 +216,37 @@ def test_stress_in_motion_is_that_of_the_force_and_the_place_of_the_moment():
     np.testing.assert_allclose(history(torques, places + 1e-12), history(torques, places), rtol=1e-9)
 
 
+def test_each_flank_of_each_gear_in_motion_has_the_stress_of_its_own_contact():
+    """Assembly errors part the flanks; every flank was read as the drive flank."""
+    _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
+    drive, back = (
+        FlankContact(dict.fromkeys(BODIES, replace(found, stress=factor * found.stress)), press)
+        for factor, press in ((1.0, np.sqrt), (2.0, np.square))
+    )
+    force = np.array([1000.0, 3000.0])
+    forces = {"a/upper": force, "a/lower": -force, "b/lower": np.array([3000.0, -1000.0])}
+    places = dict.fromkeys(forces, np.array([0.0, 0.5]))
+    contacts = {key: {"drive": drive, "back": back} for key in forces}
+    table = dynamic_stress_table(forces, places, 0.1, contacts).set_index("mesh")
+    for column in ("pinion_mean_mpa", "pinion_running_mpa", "face_gear_bound_mpa"):
+        assert table.loc["a/lower", column] == pytest.approx(2.0 * table.loc["a/upper", column])
+    assert table.loc["a/lower", "pressure_bound_mpa"] == pytest.approx(1e-6 * 300.0**2)
+    both = table.loc["b/lower", "face_gear_bound_mpa"]
+    alone = [contact.history["face_gear"].over_passage(at) for contact, at in ((drive, 300.0), (back, 100.0))]
+    assert both == pytest.approx(1e-6 * max(alone))
+    swept = pd.DataFrame([("sweep up", "period-1", 1000.0, "a/lower", 3000.0)], columns=list(FORCE_COLUMNS))
+    over = stress_table(swept, 1.0, 0.1, {"a/lower": [drive, back]})
+    assert over["pinion_mpa"].iloc[0] == pytest.approx(1e-6 * back.tension["pinion"](300.0))
+
+
 def test_stress_in_motion_stays_below_its_bound_where_another_gauge_leads_at_each_torque():
     _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
     rough = replace(found, stress=np.random.default_rng(0).normal(size=found.stress.shape))
     roots = {"pinion": rough, "face_gear": rough}
     forces = {str(force): np.full(16, force) for force in (500.0, 1500.0, 1700.0, 2500.0, 5000.0)}
     places = dict.fromkeys(forces, np.arange(16) / 16)
-    table = dynamic_stress_table(forces, places, 0.1, roots, np.sqrt)
+    contacts = dict.fromkeys(forces, dict.fromkeys(FLANKS, FlankContact(roots, np.sqrt)))
+    table = dynamic_stress_table(forces, places, 0.1, contacts)
     assert (table["pinion_bound_mpa"] >= table["pinion_running_mpa"]).all()
 
 
@@ -275,9 +303,9 @@ def test_stress_over_speed_takes_the_hardest_of_coexisting_motions():
     forces = pd.concat([swept_forces(SWEPT), branch_forces(branches, np.array([1000.0, 2000.0]))])
     torques, none = np.array([100.0, 300.0]), np.zeros(2)
     pressure = ContactPressure(torques, np.array([5e8, 9e8]), none, none, none).at
-    table = stress_table(
-        forces.reset_index(drop=True), 750.0, 0.1, {"pinion": found, "face_gear": found}, pressure
-    )
+    roots = {"pinion": found, "face_gear": found}
+    contacts = {key: [FlankContact(roots, pressure)] for key in forces["mesh"]}
+    table = stress_table(forces.reset_index(drop=True), 750.0, 0.1, contacts)
     at_1000 = table[table["speed_rpm"] == 1000.0].set_index("motion")
     assert at_1000.loc["sweep up", "mesh"] == "b/upper"
     assert at_1000.loc["branch 3", "largest_force_n"] == pytest.approx(1500.0)
@@ -291,7 +319,6 @@ def test_stress_over_speed_takes_the_hardest_of_coexisting_motions():
     assert at_2000["pressure_mpa"].iloc[0] == pytest.approx(500.0 * 2.0 ** (np.log(1.8) / np.log(3.0)))
     assert pressure(1200.0) == pytest.approx(2.0 * 9e8)
     unknown = ContactPressure(torques, np.full(2, np.nan), none, none, none)
-    idle = stress_table(
-        forces.reset_index(drop=True), 0.0, 0.1, {"pinion": found, "face_gear": found}, unknown.at
-    )
+    nowhere = {key: [FlankContact(roots, unknown.at)] for key in forces["mesh"]}
+    idle = stress_table(forces.reset_index(drop=True), 0.0, 0.1, nowhere)
     assert idle["pressure_mpa"].isna().all() and idle["dynamic_factor"].isna().all()

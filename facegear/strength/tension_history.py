@@ -1,0 +1,45 @@
+"""Largest tension in the fillets of a body over torque and place in the mesh cycle."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.strength.root_stress import RootStress, down_the_fillet
+
+Array = NDArray[np.float64]
+
+
+class TensionHistory:
+    """Largest tension of all teeth of a body in mesh, over torque and place in the mesh cycle.
+
+    Over torque the largest values go as those of each gauge in `RootStress.at_torque`, between the places
+    solved linearly: the result is no less than the largest of the interpolated gauges.
+    """
+
+    def __init__(self, root: RootStress) -> None:
+        within, where = np.unique(np.round(np.mod(root.passage, 1.0), 9), return_inverse=True)
+        largest = np.array([down_the_fillet(one).max(axis=(1, 2, 3)) for one in root.stress])
+        by_place = np.array([largest[:, where == place].max(axis=1) for place in range(within.size)]).T
+        self._scale = root.scale
+        self._places = np.append(within, within[0] + 1.0)
+        self._table = np.hstack([by_place, by_place[:, :1]])
+
+    def __call__(self, torques: Array, places: Array) -> Array:
+        """Stress (n,) Pa at torques (n,) N m and places (n,) in [0, 1)."""
+        column, on = _cell(self._places, places)
+        row, own, above = self._scale.parts(torques)
+        low, high = (
+            (1.0 - on) * self._table[at, column] + on * self._table[at, column + 1]
+            for at in (row, np.minimum(row + 1, len(self._table) - 1))
+        )
+        return own * low + above * high
+
+    def over_passage(self, torque: float) -> float:
+        """Largest stress (Pa) while a torque (N m) stays as it is all through the passage."""
+        places = self._places[:-1]
+        return float(self(np.full(places.size, torque), places).max())
+
+
+def _cell(edges: Array, values: Array) -> tuple[NDArray[np.int64], Array]:
+    """Cell (n,) between rising edges in which each value lies, and how far into it, 0 to 1."""
+    cell = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
+    return cell, np.clip((values - edges[cell]) / (edges[cell + 1] - edges[cell]), 0.0, 1.0)
