@@ -148,5 +148,5 @@ def resized(machine: Machine, count: int, harmonics: int) -> Machine:
         stiffness=series,
         error_lags=None if machine.error_lags is None else np.zeros(len(layout.meshes)),
         imperfections=perfect(layout),
-        forces=None,
+        forces=np.zeros((len(layout.bodies), 3)),
     )
