@@ -7,7 +7,7 @@ name of its model.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,50 +89,44 @@ class Constant:
 
 
 @dataclass(frozen=True)
-class Schlenk:
-    """ISO/TR 14179-2, taken at every place; X_L is 1 for mineral oil, 0.8 for PAO (the standard).
+class GearTested:
+    """A mean coefficient from gear tests, taken at every place: FORMULAS by name."""
+
+    lubricant_factor: float = 1.0
+    name: ClassVar[str]
+
+    def coefficient(self, at: Rubbing) -> Array:
+        """mu (m,)."""
+        formula = FORMULAS[self.name]
+        return formula(at.line_load, at.rolled, at.radius, at.oil_viscosity, at.ra, self.lubricant_factor)
+
+    def within(self, at: Rubbing) -> Mapping[str, Mask]:
+        """Line load and speed of the gear tests."""
+        return {
+            "line load at least 150 N/mm": at.line_load >= LEAST_LINE_LOAD,
+            "pitch line velocity at most 50 m/s": _slow(at),
+        }
+
+
+class Schlenk(GearTested):
+    """ISO/TR 14179-2; X_L is 1 for mineral oil, 0.8 for PAO (the standard).
 
     0.65 was measured on an ester and a PAO (GEARpie).
     """
 
-    lubricant_factor: float = 1.0
-    name: str = "schlenk"
-
-    def coefficient(self, at: Rubbing) -> Array:
-        """mu (m,)."""
-        return schlenk(at.line_load, at.rolled, at.radius, at.oil_viscosity, at.ra, self.lubricant_factor)
-
-    def within(self, at: Rubbing) -> Mapping[str, Mask]:
-        """Line load and speed of the gear tests."""
-        return _gear_tests(at)
+    name = "schlenk"
 
 
-@dataclass(frozen=True)
-class Iso633622:
-    """ISO/TS 6336-21 and -22 (ISO/TR 13989-2, 15144-1), taken at every place."""
+class Iso633622(GearTested):
+    """ISO/TS 6336-21 and -22 (ISO/TR 13989-2, 15144-1)."""
 
-    lubricant_factor: float = 1.0
-    name: str = "iso_6336_22"
-
-    def coefficient(self, at: Rubbing) -> Array:
-        """mu (m,)."""
-        return iso_6336_22(at.line_load, at.rolled, at.radius, at.oil_viscosity, at.ra, self.lubricant_factor)
-
-    def within(self, at: Rubbing) -> Mapping[str, Mask]:
-        """Line load and speed of the gear tests."""
-        return _gear_tests(at)
+    name = "iso_6336_22"
 
 
-@dataclass(frozen=True)
-class Iso633620:
-    """ISO/TS 6336-20 (ISO/TR 13989-1), taken at every place."""
+class Iso633620(GearTested):
+    """ISO/TS 6336-20 (ISO/TR 13989-1)."""
 
-    lubricant_factor: float = 1.0
-    name: str = "iso_6336_20"
-
-    def coefficient(self, at: Rubbing) -> Array:
-        """mu (m,)."""
-        return iso_6336_20(at.line_load, at.rolled, at.radius, at.oil_viscosity, at.ra, self.lubricant_factor)
+    name = "iso_6336_20"
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
         """The speed of the gear tests."""
@@ -287,8 +281,5 @@ def _slow(at: Rubbing) -> Mask:
     return np.full(at.line_load.shape, at.pitch_speed <= LARGEST_SPEED)
 
 
-def _gear_tests(at: Rubbing) -> Mapping[str, Mask]:
-    return {
-        "line load at least 150 N/mm": at.line_load >= LEAST_LINE_LOAD,
-        "pitch line velocity at most 50 m/s": _slow(at),
-    }
+FORMULAS = {"schlenk": schlenk, "iso_6336_22": iso_6336_22, "iso_6336_20": iso_6336_20}
+"""Mean coefficients from gear tests."""
