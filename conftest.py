@@ -7,12 +7,22 @@ import os
 
 import pytest
 from hypothesis import settings
+from hypothesis.internal.conjecture import providers
 from lumped_machines import make_layout, make_machine
 
 os.environ.setdefault("MPLBACKEND", "Agg")
 settings.register_profile("fixed", derandomize=True)
 settings.register_profile("random", derandomize=False, print_blob=True)
 settings.load_profile("fixed")
+
+
+def pytest_configure(config):
+    """Keep Hypothesis from trying numbers of whatever modules of the project a worker has imported so far.
+
+    They would make the examples depend on which tests ran before in the same process.
+    """
+    if config.getoption("--hypothesis-profile") != "random":
+        providers._get_local_constants = providers.Constants
 
 
 @pytest.fixture
