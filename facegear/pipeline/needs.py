@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from facegear.errors import ConfigError
-from facegear.pipeline.stage import Case, Computed, Need, Values
+from facegear.pipeline.stage import Case, Computed, Need, Needs, Values
 from facegear.pipeline.table import STAGES
 
 
@@ -18,7 +18,7 @@ def stage_needs(name: str, values: Values) -> dict[str, Any]:
     return resolved_needs(STAGES[name].needs, Case(values))
 
 
-def resolved_needs(needs: Mapping[str, Need], case: Case) -> dict[str, Any]:
+def resolved_needs(needs: Needs, case: Case) -> dict[str, Any]:
     """Values of needs. Raises ConfigError where they name a machine that is not there."""
     if "transmission" in needs and case.values["transmission"] is None:
         raise ConfigError("transmission", None, "given for modes, dynamics and load sharing")

@@ -43,6 +43,8 @@ class Computed:
 
 Need = str | tuple[str, ...] | Computed
 """A dotted key of the config, several of them as a section of their own, or what follows from sections."""
+Needs = Mapping[str, Need]
+"""Arguments from the config by name."""
 
 
 def load(reference: str) -> Any:
@@ -112,6 +114,11 @@ class From:
         return [self.where] if self.each is None else self.each(case)
 
 
+def from_stage(stage: str, *files: str) -> dict[str, From]:
+    """Arguments that are files of an earlier stage, under the names that these have there."""
+    return {file: From(stage, file) for file in files}
+
+
 @dataclass(frozen=True, kw_only=True)
 class Figures:
     """Figures drawn from stored files alone.
@@ -124,7 +131,7 @@ class Figures:
     names: Sequence[str] | Callable[[Case], Sequence[str]]
     chapter: str
     upstream: Mapping[str, From]
-    needs: Mapping[str, Need] = field(default_factory=dict)
+    needs: Needs = field(default_factory=dict)
     memory_mb: int | None = None
 
     def named(self, case: Case) -> Sequence[str]:
@@ -149,7 +156,7 @@ class Stage:
 
     name: str
     title: str
-    needs: Mapping[str, Need] = field(default_factory=dict)
+    needs: Needs = field(default_factory=dict)
     upstream: Mapping[str, From] = field(default_factory=dict)
     files: Mapping[str, File] = field(default_factory=dict)
     figures: Figures | None = None

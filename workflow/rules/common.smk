@@ -20,8 +20,9 @@ from facegear.config.notes import notes
 from facegear.errors import FacegearError
 from facegear.io.run_lock import hold
 from facegear.pipeline.needs import require_section, resolved_needs, shared_sources
+from facegear.pipeline.rows.shared import MACHINE
 from facegear.pipeline.stage import Case, From
-from facegear.pipeline.table import MACHINE, STAGES
+from facegear.pipeline.table import STAGES
 from paper.reproduction import read_reproduction
 from facegear.provenance.fingerprint import fingerprint, recall, remember
 from facegear.provenance.rebuild import rebuild_command

@@ -1,0 +1,1 @@
+"""The rows of the table of stages, chapter by chapter, and what rows have in common."""

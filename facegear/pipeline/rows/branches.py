@@ -1,0 +1,95 @@
+"""Branches of periodic motions."""
+
+from facegear.pipeline import asked
+from facegear.pipeline.rows.shared import HARMONICS, MACHINE, SPEED, SWEEP
+from facegear.pipeline.stage import NUMBER, Figures, File, From, Needs, Stage, from_stage
+
+BRANCHES: Needs = {**MACHINE, **SPEED, "branches": "branches"}
+
+ROWS = (
+    Stage(
+        name="branches_starts",
+        title="Where random starts end at one speed",
+        needs=BRANCHES,
+        section="branches",
+        upstream=HARMONICS,
+        files={"found": File("branches/starts/{number}.npz", "facegear.dynamics.branches.stored:SHAPES")},
+        wildcards={"number": NUMBER},
+        minutes=30,
+        priority=50,
+    ),
+    Stage(
+        name="branches",
+        title="Branches of periodic motions",
+        needs={**BRANCHES, **SWEEP},
+        section="branches",
+        upstream={
+            **HARMONICS,
+            "starts": From("branches_starts", "found", each=asked.random_starts),
+            "chunks": From("dynamics_sweep_chunk", "chunk", each=asked.sweep_chunks),
+            "jumps": From("dynamics_sweep", "jumps"),
+        },
+        files={
+            "branches": File("branches/branches.csv", "facegear.dynamics.branches.columns:BRANCH_FINITE"),
+            "ends": File("branches/ends.csv", ("branch", "period", "points"), text=("tried",)),
+            "unfollowed": File("branches/unfollowed.csv", ("period", "origin"), may_be_empty=True),
+            "multipliers": File("branches/multipliers.csv", ("branch", "speed_rpm", "real", "imaginary")),
+            "special": File(
+                "branches/special_points.csv",
+                ("branch", "period", "kind", "speed_rpm", "arc"),
+                may_be_empty=True,
+                text=("meshes", "edge", "proof"),
+            ),
+            "coexistence": File(
+                "branches/coexistence.csv", ("speed_rpm", "share", "error"), text=("branch", "motion")
+            ),
+            "ranges": File(
+                "branches/ranges.csv", ("from_rpm", "to_rpm"), may_be_empty=True, text=("branches",)
+            ),
+            "margins": File("branches/margins.csv", ("branch", "parameter", "margin"), may_be_empty=True),
+            "swept": File(
+                "branches/swept.csv", ("direction", "period"), may_be_empty=True, text=("branch", "note")
+            ),
+            "jumps": File(
+                "branches/jumps.csv",
+                ("direction", "speed_before_rpm", "speed_after_rpm"),
+                may_be_empty=True,
+                text=("class_before", "branch", "kind", "note"),
+            ),
+            "orbits": File("branches/special_points.npz", "facegear.dynamics.branches.stored:SPECIAL_SHAPES"),
+        },
+        asked=asked.branches,
+        memory_mb=1300,
+        minutes=60,
+        priority=50,
+    ),
+    Stage(
+        name="branches_loci",
+        title="Loci of folds and period doublings",
+        needs=BRANCHES,
+        section="branches",
+        upstream={**HARMONICS, "orbits": From("branches", "orbits")},
+        files={
+            "loci": File(
+                "branches/loci.csv",
+                ("locus", "kind", "factor", "speed_rpm"),
+                may_be_empty=True,
+                text=("corner",),
+            )
+        },
+        figures=Figures(
+            draw="facegear.plots.branches:figures",
+            names=("branches", "branch_loci", "branch_shares", "branch_multipliers"),
+            chapter="branches",
+            upstream={
+                **from_stage("branches", "branches", "special", "coexistence"),
+                "circle": From("branches", "multipliers"),
+                "curves": From("branches_loci", "loci"),
+                "sweep": From("dynamics_sweep", "sweep"),
+            },
+            needs={**SPEED, "pinions": "transmission.pinions"},
+        ),
+        asked=asked.branches,
+        minutes=60,
+    ),
+)

@@ -1,0 +1,83 @@
+"""The machine in motion: response at one speed, and the speed sweep."""
+
+from facegear.pipeline import asked
+from facegear.pipeline.rows.shared import ACCURACY, HARMONICS, MACHINE, SPEED, SWEEP
+from facegear.pipeline.stage import NUMBER, Figures, File, From, Stage, from_stage
+
+ROWS = (
+    Stage(
+        name="machine_code",
+        title="Machine code of the time integration",
+        folder="dynamics",
+        asked=asked.machine,
+        priority=100,
+    ),
+    Stage(
+        name="dynamics_response",
+        title="Response at the nominal speed",
+        needs={**MACHINE, **ACCURACY, **SPEED},
+        upstream=HARMONICS,
+        files={
+            "response": File(
+                "dynamics/response.csv", ("mesh_cycle", "mesh", "deflection_um", "elastic_force_n")
+            ),
+            "spectrum": File("dynamics/spectrum.csv", ("mesh", "order", "amplitude_um")),
+            "summary": File("dynamics/summary.csv"),
+            "multipliers": File("dynamics/multipliers.csv", may_be_empty=True),
+            "bearings": File("dynamics/bearings.csv", ("body", "direction", "static_n", "mean_n", "peak_n")),
+        },
+        asked=asked.machine,
+    ),
+    Stage(
+        name="dynamics_sweep_chunk",
+        title="Speed sweep, one chunk",
+        needs={**MACHINE, **SWEEP},
+        upstream=HARMONICS,
+        files={
+            "chunk": File(
+                "dynamics/chunks/{direction}_{number}.npz", "facegear.dynamics.sweeps.stored:SHAPES"
+            )
+        },
+        wildcards={"direction": "up|down", "number": NUMBER},
+        minutes=60,
+        priority=60,
+    ),
+    Stage(
+        name="dynamics_sweep",
+        title="Jumps and resonances",
+        needs={**MACHINE, **SWEEP},
+        upstream={**HARMONICS, "chunks": From("dynamics_sweep_chunk", "chunk", each=asked.sweep_chunks)},
+        files={
+            "sweep": File(
+                "dynamics/sweep.csv",
+                ("direction", "speed_rpm", "quantity", "body_or_mesh", "value", "class"),
+            ),
+            "jumps": File(
+                "dynamics/jumps.csv",
+                ("direction", "speed_before_rpm", "speed_after_rpm", "class_before", "order"),
+                may_be_empty=True,
+            ),
+            "resonances": File(
+                "dynamics/resonances.csv", ("speed_rpm", "resonance", "order"), may_be_empty=True
+            ),
+            "seams": File("dynamics/seams.csv", may_be_empty=True),
+            "waterfall": File("dynamics/waterfall.npz", {"orders": (None,)}),
+        },
+        figures=Figures(
+            draw="facegear.plots.dynamics:figures",
+            names=("mesh_deflections", "pinion_sweep", "gear_sweep", "mesh_sweep", "campbell", "waterfall"),
+            chapter="dynamics",
+            upstream={
+                **from_stage("dynamics_response", "response", "spectrum"),
+                **from_stage("dynamics_sweep", "sweep", "jumps", "resonances", "waterfall"),
+                "frequencies": From("modal", "frequencies"),
+            },
+            needs={"transmission": "transmission", "pinion_teeth": "tooth_pair.pinion_teeth", **SPEED},
+            memory_mb=1300,
+        ),
+        asked=asked.machine,
+        memory_mb=1300,
+        minutes=60,
+        priority=60,
+    ),
+)

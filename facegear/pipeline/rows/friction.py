@@ -1,0 +1,56 @@
+"""Friction, heat and film."""
+
+from facegear.pipeline import asked
+from facegear.pipeline.rows.shared import HARMONICS, MACHINE, PAIR, SPEED
+from facegear.pipeline.stage import Figures, File, From, Stage, from_stage
+
+PRESSED = from_stage("contact", "ltca", "pressure")
+
+ROWS = (
+    Stage(
+        name="lubrication",
+        title="Sliding, friction, heat and film of the pair",
+        needs={**PAIR, **SPEED, "lubrication": "lubrication"},
+        section="lubrication",
+        upstream=PRESSED,
+        files={
+            "by_torque": File("lubrication/friction.csv", "facegear.lubrication.columns:BY_TORQUE_FINITE"),
+            "positions": File("lubrication/positions.csv", "facegear.lubrication.columns:POSITION_FINITE"),
+            "limits": File(
+                "lubrication/limits.csv", "facegear.lubrication.columns:LIMIT_COLUMNS", may_be_empty=True
+            ),
+            "map": File("lubrication/map.csv", "facegear.lubrication.columns:MAP_FINITE"),
+            "local": File("lubrication/local.npz", "facegear.lubrication.columns:LOCAL_ARRAYS"),
+        },
+        figures=Figures(
+            draw="facegear.plots.friction:figures",
+            names=("friction_path", "friction_flank", "efficiency_map"),
+            chapter="friction",
+            upstream={
+                "local": From("lubrication", "local"),
+                "pressure": From("contact", "pressure"),
+                "map_table": From("lubrication", "map"),
+            },
+        ),
+        asked=asked.friction,
+        local=True,
+    ),
+    Stage(
+        name="machine_loss",
+        title="Loss and heat of the machine",
+        needs={**PAIR, **MACHINE, **SPEED, "lubrication": "lubrication", "strength": "strength"},
+        section="lubrication",
+        upstream={
+            **PRESSED,
+            **HARMONICS,
+            "duty_loads": From("duty_loads", "duty_loads", when=asked.machine_loads),
+        },
+        files={
+            "meshes": File("lubrication/mesh_losses.csv", "facegear.lubrication.columns:MESH_FINITE"),
+            "bodies": File("lubrication/body_heat.csv", ("bin", "speed_rpm", "heat_w"), text=("body",)),
+            "machine": File("lubrication/machine_loss.csv", ("bin", "speed_rpm", "power_in_w", "loss_w")),
+        },
+        asked=asked.machine_friction,
+        local=True,
+    ),
+)

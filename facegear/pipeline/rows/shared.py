@@ -1,0 +1,15 @@
+"""What stages of several chapters take: slices of the config, and files of earlier stages."""
+
+from facegear.config.lumped_model import TEETH
+from facegear.pipeline import asked
+from facegear.pipeline.stage import From, Needs, from_stage
+
+PAIR: Needs = {"tooth_pair": "tooth_pair"}
+MACHINE: Needs = {"transmission": "transmission", "teeth": tuple(f"tooth_pair.{key}" for key in TEETH)}
+SPEED: Needs = {"speed_rpm": "dynamics.speed_rpm"}
+ACCURACY: Needs = {"accuracy": "dynamics.accuracy"}
+SWEEP: Needs = {"sweep": "dynamics.sweep"}
+SHARING: Needs = {**MACHINE, **ACCURACY, **SPEED, "options": "load_sharing"}
+
+FLANKS = {name: From("compliance", "arrays", where={"body": name}) for name in asked.BODIES}
+HARMONICS = from_stage("stiffness", "harmonics")

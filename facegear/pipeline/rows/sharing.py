@@ -1,0 +1,117 @@
+"""How meshes share the load."""
+
+from facegear.pipeline import asked, studies
+from facegear.pipeline.rows.shared import ACCURACY, HARMONICS, MACHINE, SHARING, SPEED
+from facegear.pipeline.stage import Computed, Figures, File, From, Stage, from_stage
+
+CASE_COLUMNS = ("study", "point", "label")
+
+ROWS = (
+    Stage(
+        name="load_sharing",
+        title="Load sharing at the nominal speed",
+        needs=SHARING,
+        upstream=HARMONICS,
+        files={
+            "curve": File("load_sharing/nominal.csv", ("cycle_fraction",), may_be_empty=True),
+            "summary": File("load_sharing/nominal_summary.csv", ("group", "kind"), may_be_empty=True),
+        },
+        asked=asked.shares_load,
+    ),
+    Stage(
+        name="load_sharing_summary",
+        title="Load sharing of all studies",
+        needs={"points": Computed(studies.points, ("studies",))},
+        upstream={
+            "summaries": From("load_sharing", "summary", each=studies.nominal_and_every_point),
+            "curves": From("load_sharing", "curve", each=studies.every_point),
+        },
+        files={
+            "summary": File("load_sharing/summary.csv", ("group", "kind"), text=CASE_COLUMNS),
+            "studies": File(
+                "load_sharing/{each}.csv", ("cycle_fraction",), text=CASE_COLUMNS, each=studies.names
+            ),
+        },
+        figures=Figures(
+            draw="facegear.plots.load_sharing:figures",
+            names=studies.sharing_figures,
+            chapter="load_sharing",
+            upstream=from_stage("load_sharing_summary", "studies", "summary"),
+            needs={
+                "titles": Computed(studies.titles, ("studies",)),
+                "captions": Computed(
+                    studies.captions, ("studies", "tooth_pair", "transmission", "mesh_stiffness")
+                ),
+                "kinds": Computed(studies.kinds, ("transmission", "tooth_pair")),
+            },
+        ),
+        asked=asked.shares_load,
+        local=True,
+    ),
+    Stage(
+        name="load_sharing_reference",
+        title="Load sharing at rest, running slowly and over a range of speeds",
+        needs={
+            **MACHINE,
+            **ACCURACY,
+            "range_accuracy": "dynamics.sweep.accuracy",
+            "options": "load_sharing",
+        },
+        upstream=HARMONICS,
+        files={
+            "reference": File("load_sharing/reference.csv"),
+            "speeds": File("load_sharing/speed_range.csv"),
+        },
+        asked=asked.shares_load,
+        minutes=15,
+    ),
+    Stage(
+        name="hunting",
+        title="Quasi-static load sharing over the hunting cycle",
+        needs={**MACHINE, "positions": "load_sharing.hunting_positions"},
+        upstream=HARMONICS,
+        files={
+            "meshes": File(
+                "load_sharing/hunting_meshes.csv",
+                ("mean_n", "drive_share", "back_share"),
+                text=("mesh", "group"),
+            ),
+            "groups": File("load_sharing/hunting_groups.csv", ("torque_n_m",), text=("group", "kind")),
+            "bearings": File(
+                "load_sharing/bearings.csv", ("body", "mean_x_n", "mean_y_n", "mean_z_n"), text=("body",)
+            ),
+            "cycles": File("load_sharing/hunting_cycles.csv", ("cycle",)),
+            "scan": File(
+                "load_sharing/bearing_stiffness.csv",
+                ("stiffness_n_per_m", "k_gamma"),
+                text=("kinematics", "varied", "kind"),
+            ),
+            "sensitivity": File("load_sharing/sensitivity.csv", ("per_um",), text=("error", "group")),
+        },
+        figures=Figures(
+            draw="facegear.plots.hunting:figures",
+            names=("layout", "hunting", "bearing_stiffness", "sensitivity"),
+            chapter="load_sharing",
+            upstream=from_stage("hunting", "meshes", "groups", "bearings", "cycles", "scan", "sensitivity"),
+            needs=MACHINE,
+        ),
+        asked=asked.hunting,
+    ),
+    Stage(
+        name="following",
+        title="Load sharing of the running machine while its runouts turn",
+        needs={
+            **MACHINE,
+            **ACCURACY,
+            **SPEED,
+            "positions": "load_sharing.hunting_positions",
+            "cycles": "load_sharing.followed_cycles",
+        },
+        upstream=HARMONICS,
+        files={
+            "groups": File("load_sharing/following_groups.csv"),
+            "meshes": File("load_sharing/following_meshes.csv"),
+        },
+        asked=asked.following,
+    ),
+)

@@ -1,0 +1,109 @@
+"""Root stress, and safety and life under a duty cycle."""
+
+from facegear.pipeline import asked
+from facegear.pipeline.rows.shared import ACCURACY, FLANKS, HARMONICS, MACHINE, PAIR, SPEED
+from facegear.pipeline.stage import Computed, Figures, File, From, Stage, from_stage
+
+GEARS = {"gears": Computed(asked.gears_met, ("transmission",))}
+STRESS = {"stress": From("root_stress", "stress"), "by_flank": From("contact", "by_flank")}
+
+ROWS = (
+    Stage(
+        name="root_stress",
+        title="Root stress of both gears",
+        upstream={**FLANKS, "loads": From("contact", "loads")},
+        files={
+            "summary": File("strength/root_stress.csv", "facegear.strength.columns:ROOT_STRESS_FINITE"),
+            "passage": File("strength/passage.csv", "facegear.strength.columns:PASSAGE_COLUMNS"),
+            "along_face": File("strength/along_face.csv", "facegear.strength.columns:ALONG_FACE_COLUMNS"),
+            "by_flank": File(
+                "strength/root_stress_by_flank.csv", "facegear.strength.columns:ROOT_STRESS_BY_FLANK_FINITE"
+            ),
+            "stress": File("strength/root_stress.npz", "facegear.strength.columns:ROOT_STRESS_ARRAYS"),
+            "vtu": File(
+                "strength/root_stress.vtu",
+                view="facegear.strength.fillet_surface:stress_surface",
+                of="stress",
+            ),
+        },
+        figures=Figures(
+            draw="facegear.plots.strength:root_figures",
+            names=("root_stress_passage", "root_stress_along_face"),
+            chapter="strength",
+            upstream=from_stage("root_stress", "passage", "along_face"),
+        ),
+        asked=asked.root_stress,
+    ),
+    Stage(
+        name="duty_loads",
+        title="Loads of the running machine in every bin of the duty cycle",
+        needs={**MACHINE, **ACCURACY, "strength": "strength"},
+        section="strength",
+        upstream=HARMONICS,
+        files={
+            "duty_loads": File("strength/duty_loads.csv"),
+            "duty_spectrum": File(
+                "strength/duty_spectrum.csv", "facegear.strength.columns:DUTY_SPECTRUM_COLUMNS"
+            ),
+        },
+    ),
+    Stage(
+        name="rating",
+        title="Safety and life of the tooth pair",
+        needs={**PAIR, "strength": "strength", **GEARS},
+        section="strength",
+        upstream={
+            **STRESS,
+            "duty_spectrum": From("duty_loads", "duty_spectrum", when=asked.machine_loads),
+        },
+        files={
+            "safety": File("strength/safety.csv", "facegear.strength.columns:SAFETY_FINITE"),
+            "rating": File("strength/rating.csv", "facegear.strength.columns:RATING_FINITE"),
+            "damage": File("strength/damage.csv", "facegear.strength.columns:DAMAGE_FINITE"),
+            "curves": File("strength/curves.csv", "facegear.strength.columns:CURVE_COLUMNS"),
+        },
+        figures=Figures(
+            draw="facegear.plots.strength:rating_figures",
+            names=("life", "damage"),
+            chapter="strength",
+            upstream=from_stage("rating", "rating", "damage", "curves"),
+        ),
+        asked=asked.strength,
+    ),
+    Stage(
+        name="dynamic_root_stress",
+        title="Root stress of the running machine",
+        needs={**PAIR, "transmission": "transmission", **GEARS},
+        upstream={"response": From("dynamics_response", "response"), **STRESS},
+        files={
+            "dynamic_stress": File(
+                "strength/dynamic_stress.csv", "facegear.strength.columns:DYNAMIC_STRESS_FINITE"
+            )
+        },
+        asked=asked.machine_stress,
+    ),
+    Stage(
+        name="stress_over_speed",
+        title="Root stress and pressure over the speed range",
+        needs={**MACHINE, **PAIR, **GEARS},
+        upstream={
+            "sweep": From("dynamics_sweep", "sweep"),
+            "branches": From("branches", "branches", when=asked.branches),
+            **STRESS,
+            **HARMONICS,
+        },
+        files={
+            "stress_over_speed": File(
+                "strength/stress_over_speed.csv", "facegear.strength.columns:STRESS_OVER_SPEED_FINITE"
+            )
+        },
+        figures=Figures(
+            draw="facegear.plots.stress_over_speed:figures",
+            names=("stress_over_speed",),
+            chapter="strength",
+            upstream={"table": From("stress_over_speed", "stress_over_speed")},
+            needs=SPEED,
+        ),
+        asked=asked.machine_stress,
+    ),
+)

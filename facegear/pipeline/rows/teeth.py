@@ -1,0 +1,156 @@
+"""Tooth pair: geometry, meshes, compliance, contact, stiffness."""
+
+from facegear.pipeline import asked, studies
+from facegear.pipeline.rows.shared import FLANKS, PAIR
+from facegear.pipeline.stage import Computed, Figures, File, From, Needs, Stage, from_stage
+
+MESH: Needs = {**PAIR, "mesh": "mesh"}
+BODY = {"body": "pinion|face_gear"}
+CONTACT_POINTS = Computed(studies.contact_points, ("studies",))
+STUDIED_CONTACT = {
+    "pair": From("geometry", "pair", each=studies.contact_cases),
+    **{kind: From("contact", kind, each=studies.contact_cases) for kind in ("ltca", "by_torque", "pressure")},
+}
+
+ROWS = (
+    Stage(
+        name="geometry",
+        title="Tooth geometry",
+        needs=PAIR,
+        files={
+            "pair": File(
+                "geometry/pair.json",
+                ("design_si", "radii_mm", "limits_mm", "smallest_gap", "unloaded", "backlash_um"),
+            ),
+            "flanks": File(
+                "geometry/flanks.npz", {"pinion_section": (None, 2), "gear_flank": (None, None, 3)}
+            ),
+            "contact": File("geometry/contact.npz", {"contour_gap": (None, None), "path_roll": (None,)}),
+        },
+        figures=Figures(
+            draw="facegear.plots.tooth_pair:figures",
+            names=("tooth_pair", "tooth_sections", "separation"),
+            chapter="teeth",
+            upstream=from_stage("geometry", "pair", "flanks", "contact"),
+        ),
+        asked=asked.contact,
+    ),
+    Stage(
+        name="mesh",
+        title="Meshes of both bodies",
+        needs=MESH,
+        files={
+            **{
+                f"{body}_{kind}": File(f"mesh/{body}.{kind}")
+                for body in asked.BODIES
+                for kind in ("msh", "vtu", "inp")
+            },
+            "quality": File("mesh/quality.csv"),
+        },
+        asked=asked.contact,
+        memory_mb=2000,
+    ),
+    Stage(
+        name="cad",
+        title="Exact teeth for CAD",
+        needs=MESH,
+        files={"step": File("cad/{body}.step"), "stl": File("cad/{body}.stl")},
+        wildcards=BODY,
+    ),
+    Stage(
+        name="compliance",
+        title="Flank compliance",
+        needs={
+            "tooth_pair": Computed(asked.without_gaps, ("tooth_pair",)),
+            "mesh": "mesh",
+            "contact": Computed(asked.without_loads, ("tooth_pair", "mesh", "contact")),
+        },
+        files={"arrays": File("compliance/{body}.npz", "facegear.contact.gear_flank:STORED")},
+        wildcards=BODY,
+        memory_mb=4000,
+        minutes=30,
+        priority=90,
+    ),
+    Stage(
+        name="contact",
+        title="Loaded tooth contact",
+        needs={**PAIR, "contact": "contact"},
+        upstream=FLANKS,
+        files={
+            "ltca": File("contact/ltca.csv", "facegear.contact.columns:LTCA_FINITE"),
+            "by_torque": File(
+                "contact/by_torque.csv", ("torque_n_m", "ste_peak_to_peak_um", "path_radius_mm")
+            ),
+            "by_flank": File("contact/by_flank.csv", ("offset_um", "torque_n_m", "path_radius_mm")),
+            "pressure": File("contact/pressure.npz", "facegear.contact.columns:PRESSURE_ARRAYS"),
+            "loads": File("contact/loads.npz", "facegear.contact.columns:LOAD_ARRAYS"),
+            "vtu": File(
+                "contact/pressure.vtu", view="facegear.contact.pattern:pressure_surface", of="pressure"
+            ),
+        },
+        figures=Figures(
+            draw="facegear.plots.contact:figures",
+            names=("contact_curves", "contact_pattern"),
+            chapter="contact",
+            upstream=from_stage("contact", "ltca", "pressure"),
+        ),
+        asked=asked.contact,
+        memory_mb=4000,
+        minutes=30,
+        priority=80,
+    ),
+    Stage(
+        name="stiffness",
+        title="Mesh stiffness",
+        needs={"mesh_stiffness": "mesh_stiffness"},
+        upstream={"ltca": From("contact", "ltca", when=asked.computed_stiffness)},
+        files={
+            "tvms": File("stiffness/tvms.csv", ("position", "k_n_per_m", "k_series_n_per_m")),
+            "harmonics": File("stiffness/harmonics.csv", "facegear.stiffness.tables:HARMONICS_COLUMNS"),
+            "spectrum": File("stiffness/spectrum.csv", ("order", "amplitude_n_per_m")),
+        },
+        figures=Figures(
+            draw="facegear.plots.stiffness:figures",
+            names=("mesh_stiffness", "stiffness_harmonics"),
+            chapter="mesh_stiffness",
+            upstream=from_stage("stiffness", "tvms", "spectrum"),
+        ),
+        asked=asked.always,
+        local=True,
+        priority=75,
+    ),
+    Stage(
+        name="load_dependence",
+        title="Stiffness against load",
+        upstream=from_stage("contact", "ltca"),
+        files={"table": File("stiffness/load_dependence.csv", ("definition", "torque_n_m", "mean_n_per_m"))},
+        figures=Figures(
+            draw="facegear.plots.stiffness:load_figures",
+            names=("stiffness_load",),
+            chapter="mesh_stiffness",
+            upstream=from_stage("load_dependence", "table"),
+        ),
+        asked=asked.contact,
+        local=True,
+    ),
+    Stage(
+        name="contact_studies",
+        title="Contact of the studies' cases side by side",
+        needs={"points": CONTACT_POINTS},
+        upstream=STUDIED_CONTACT,
+        files={"table": File("contact/studies.csv")},
+        figures=Figures(
+            draw="facegear.plots.contact_study:figures",
+            names=studies.contact_figures,
+            chapter="contact",
+            upstream=STUDIED_CONTACT,
+            needs={
+                "points": CONTACT_POINTS,
+                "titles": Computed(studies.contact_titles, ("studies",)),
+                "torque": Computed(studies.contact_torque, ("contact", "mesh_stiffness")),
+            },
+        ),
+        asked=studies.contact_studied,
+        local=True,
+    ),
+)

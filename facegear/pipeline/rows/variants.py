@@ -1,0 +1,132 @@
+"""Machines with their tolerances, and designs that are searched."""
+
+from facegear.pipeline import asked
+from facegear.pipeline.rows.shared import ACCURACY, HARMONICS, PAIR, SHARING, SPEED
+from facegear.pipeline.stage import NUMBER, Computed, Figures, File, From, Needs, Stage, from_stage
+
+CAUSES = tuple(f"tolerances.{key}" for key in ("causes", "correlations", "model", "seed", "hunting_cycles"))
+SAMPLED: Needs = {
+    **SHARING,
+    "tolerances": CAUSES,
+    "pair": Computed(asked.pair_where(asked.sampled_contact), asked.PAIR_SECTIONS),
+}
+SAMPLED_FROM = {
+    **HARMONICS,
+    "flanks": From("compliance", "arrays", each=asked.both_bodies, when=asked.sampled_contact),
+}
+SEARCHED: Needs = {
+    **PAIR,
+    **ACCURACY,
+    **SPEED,
+    "transmission": "transmission",
+    "options": "load_sharing",
+    "search": "search",
+    "tolerances": "tolerances",
+    "pair": Computed(asked.pair_where(asked.searched_contact), asked.PAIR_SECTIONS),
+}
+SEARCHED_FROM = {
+    **HARMONICS,
+    "flanks": From("compliance", "arrays", each=asked.both_bodies, when=asked.searched_contact),
+}
+
+ROWS = (
+    Stage(
+        name="tolerances_chunk",
+        title="Samples of the machine with its tolerances",
+        needs=SAMPLED,
+        section="tolerances",
+        upstream=SAMPLED_FROM,
+        files={"chunk": File("tolerances/chunks/{design}_{first}_{last}.parquet")},
+        wildcards={"design": "samples|indices", "first": NUMBER, "last": NUMBER},
+        resumable="chunk",
+    ),
+    Stage(
+        name="tolerances",
+        title="Percentiles, shares and Sobol indices",
+        needs={"tolerances": "tolerances"},
+        section="tolerances",
+        upstream={
+            design: From("tolerances_chunk", "chunk", each=asked.tolerance_chunks(design))
+            for design in ("samples", "indices")
+        },
+        files={
+            "samples": File("tolerances/samples.parquet", ("sample", "error")),
+            "percentiles": File(
+                "tolerances/percentiles.csv",
+                ("percentile", "value"),
+                may_be_empty=True,
+                text=("quantity",),
+            ),
+            "shares": File("tolerances/shares.csv", ("share",)),
+            "importance": File("tolerances/importance.csv", text=("quantity", "cause")),
+            "indices": File("tolerances/indices.csv", may_be_empty=True, text=("quantity", "cause")),
+            "sampling": File("tolerances/sampling.csv", may_be_empty=True),
+        },
+        figures=Figures(
+            draw="facegear.plots.tolerances:figures",
+            names=("tolerance_distributions", "tolerance_importance", "tolerance_scatter"),
+            chapter="tolerances",
+            upstream=from_stage("tolerances", "samples", "percentiles", "importance", "indices"),
+        ),
+        asked=asked.tolerances,
+        local=True,
+    ),
+    Stage(
+        name="tolerances_map",
+        title="Percentiles over torque and speed",
+        needs={**SAMPLED, "tolerances": (*CAUSES, "tolerances.confidence", "tolerances.load_map")},
+        section="tolerances",
+        upstream=SAMPLED_FROM,
+        files={
+            "load_map": File(
+                "tolerances/load_map.csv",
+                ("torque_factor", "speed_rpm", "percentile", "value"),
+                may_be_empty=True,
+                text=("quantity",),
+            ),
+            "load_shares": File("tolerances/load_shares.csv", ("torque_factor", "speed_rpm", "share")),
+        },
+        figures=Figures(
+            draw="facegear.plots.tolerances:map_figures",
+            names=("tolerance_map",),
+            chapter="tolerances",
+            upstream=from_stage("tolerances_map", "load_map"),
+        ),
+        asked=asked.load_map,
+        resumable="load_map",
+        minutes=240,
+    ),
+    Stage(
+        name="search_island",
+        title="Evolution of designs from one seed",
+        needs=SEARCHED,
+        section="search",
+        upstream=SEARCHED_FROM,
+        files={"designs": File("search/islands/{seed}.parquet")},
+        wildcards={"seed": NUMBER},
+        resumable="designs",
+        minutes=240,
+    ),
+    Stage(
+        name="search",
+        title="Front of all islands, and its winners at full accuracy",
+        needs=SEARCHED,
+        section="search",
+        upstream={**SEARCHED_FROM, "islands": From("search_island", "designs", each=asked.islands)},
+        files={
+            "designs": File("search/designs.parquet", ("generation", "seed", "error")),
+            "front": File("search/front.csv", may_be_empty=True),
+            "hypervolume": File("search/hypervolume.csv", ("hypervolume",), may_be_empty=True),
+            "winners": File("search/winners.csv", ("design",), text=("design",)),
+        },
+        figures=Figures(
+            draw="facegear.plots.search:figures",
+            names=("search_front", "search_hypervolume"),
+            chapter="search",
+            upstream=from_stage("search", "designs", "front", "hypervolume", "winners"),
+            needs={"objectives": "search.objectives"},
+        ),
+        asked=asked.search,
+        minutes=60,
+    ),
+)
