@@ -11,7 +11,6 @@ if TYPE_CHECKING:
     from facegear.plots.style import Figure
 
 FIGURES = ("amplitudes", "shares", "multipliers")
-PLACE = ("branch", "period", "kind", "speed_rpm", "arc")
 
 
 class BranchesResult(Result):

@@ -10,8 +10,6 @@ from facegear.results.base import Result
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
 
-HARMONICS = ("order", "a_n_per_m", "b_n_per_m", "amplitude_n_per_m")
-
 
 class StiffnessResult(Result):
     """k(t) that the lumped model uses."""

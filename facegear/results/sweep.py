@@ -12,8 +12,6 @@ if TYPE_CHECKING:
 
     from facegear.plots.style import Figure
 
-SWEEP = ("direction", "speed_rpm", "quantity", "body_or_mesh", "value", "class")
-
 
 class SweepResult(Result):
     """Steady states over speed, up and down, with jumps and resonances."""
