@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from facegear.contact.gear_flank import GearFlank, from_arrays
@@ -19,10 +20,8 @@ def root_stress(
 ) -> Outcome:
     """`summary`, `passage`, `along_face`, `by_flank` (tables) and `stress` (arrays).
 
-    From the flanks of stage compliance and the loads of stage contact.
-
-    The first three are those of the upper gear's drive flank. Raises ConfigError where the fillets carry no
-    gauges.
+    pinion, face_gear: arrays of stage compliance; loads: arrays of stage contact. The first three tables
+    are those of the upper gear's drive flank. Raises ConfigError where the fillets carry no gauges.
     """
     flanks = {"pinion": from_arrays(pinion), "face_gear": from_arrays(face_gear)}
     numbers = loads["flank_variant"]
@@ -61,7 +60,7 @@ def passing(body: str, flank: GearFlank, loads: Mapping[str, NDArray], variant: 
     )
 
 
-def _summary(table) -> str:  # type: ignore[no-untyped-def]
+def _summary(table: pd.DataFrame) -> str:
     worst = table[table["torque_n_m"] == table["torque_n_m"].max()]
     peaks = worst.groupby("body", sort=False)["largest_mpa"].max()
     told = ", ".join(f"{body.replace('_', ' ')} {peak:.0f} MPa" for body, peak in peaks.items())
