@@ -26,7 +26,12 @@ def line(level=logging.INFO, text="rule contact:"):
 
 
 def running(**names):
-    given = {"executor_plugin": object(), "dryrun": False, "output_settings": SimpleNamespace(verbose=False)}
+    given = {
+        "exec_mode": SimpleNamespace(name="DEFAULT"),
+        "executor_plugin": object(),
+        "dryrun": False,
+        "output_settings": SimpleNamespace(verbose=False),
+    }
     return SimpleNamespace(**{**given, **names})
 
 
@@ -76,6 +81,15 @@ def test_only_what_goes_to_the_terminal_is_held_back():
     handlers[0].name = "DefaultStreamHandler"
     quiet = quieten(running(), SimpleNamespace(handlers=handlers))
     assert quiet in handlers[0].filters and quiet not in handlers[1].filters
+
+
+def test_a_job_of_a_run_holds_nothing_back_and_can_be_stopped_as_a_run_can():
+    """A run that a newer Snakemake does not call one had nothing to stop by, and ended in a traceback."""
+    for workflow in (NOTHING, running(exec_mode=SimpleNamespace(name="SUBPROCESS"))):
+        handler = logging.StreamHandler()
+        handler.name = "DefaultStreamHandler"
+        assert not quieten(workflow, SimpleNamespace(handlers=[handler])).stopping
+        assert handler.filters == []
 
 
 @pytest.fixture

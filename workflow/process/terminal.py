@@ -13,7 +13,7 @@ from typing import Any
 
 import psutil
 
-from workflow.process.engine import shows_all, terminal_handlers
+from workflow.process.engine import is_run, shows_all, terminal_handlers
 
 
 class Quiet(logging.Filter):
@@ -33,9 +33,9 @@ class Quiet(logging.Filter):
 
 
 def quieten(workflow: Any, logger: logging.Logger) -> Quiet:
-    """Hold back what Snakemake prints to the terminal; its log file keeps all of it."""
+    """Hold back what Snakemake prints to the terminal of a run; its log file keeps all of it."""
     quiet = Quiet(workflow)
-    for handler in terminal_handlers(logger):
+    for handler in terminal_handlers(logger) if is_run(workflow) else ():
         handler.addFilter(quiet)
     return quiet
 

@@ -29,7 +29,6 @@ from facegear.provenance.rebuild import rebuild_command
 from workflow.process.engine import (
     given_config,
     given_directory,
-    is_run,
     write_parameters_without_pandas,
 )
 from workflow.process.jobs import Jobs, settle
@@ -68,7 +67,7 @@ wildcard_constraints:
     case="|".join(re.escape(case) for case in CASES),
 
 
-QUIET = quieten(workflow, logger) if is_run(workflow) else None
+QUIET = quieten(workflow, logger)
 RUN_LOCKS = []  # held until this process ends
 
 
@@ -87,9 +86,8 @@ onstart:
         orphans = end_orphans()
     except FacegearError as error:
         raise WorkflowError(str(error))
-    if (
-        settle(workflow) or orphans
-    ):  # what there is to do was found out before: begin again from the command line
+    # What there is to do was found out before: begin again from the command line.
+    if settle(workflow) or orphans:
         os.execv(sys.executable, sys.orig_argv)
     logger.addHandler(Jobs(workflow))
     if any(path.is_file() for path in Path(".snakemake/incomplete").rglob("*")):
