@@ -19,7 +19,7 @@ from facegear.config.load import load_values
 from facegear.config.notes import notes
 from facegear.errors import FacegearError
 from facegear.io.run_lock import hold
-from facegear.pipeline.needs import require_section, resolved_needs, shared_sources
+from facegear.pipeline.needs import require_section, resolved_needs, shared_sources, value_at
 from facegear.pipeline.rows.shared import MACHINE
 from facegear.pipeline.stage import Case, From
 from facegear.pipeline.table import STAGES
@@ -163,7 +163,7 @@ def needed(needs, reader=None):
 
 def value_of(key):
     """Function of the wildcards giving a value of a case's config; a dotted key reaches inside."""
-    return lambda wildcards: resolved_needs({"value": key}, case_of(wildcards.case))["value"]
+    return lambda wildcards: value_at(CASES[wildcards.case], key)
 
 
 def values_of(*keys, **renamed):

@@ -6,9 +6,9 @@ rule report:
     input:
         tables=report_tables,
         pictures=report_pictures,
-        pair=report_pair,
-        loads=report_loads,
-        stress=report_stress,
+        pair=where_made("geometry", "pair"),
+        loads=where_made("contact", "pressure"),
+        stress=where_made("root_stress", "stress"),
     output:
         html="results/{case}/report.html",
         manifest="results/{case}/report.provenance.json",

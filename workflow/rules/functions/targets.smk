@@ -38,8 +38,8 @@ REPORTED = {
 def report_tables(wildcards):
     """Tables that the report of a case reads."""
     case = case_of(wildcards.case)
-    made = [name for name in REPORTED if STAGES[name].asked(case)]
-    tables = [shared(name, file)(wildcards) for name in made for file in REPORTED[name]]
+    wanted = [(name, file) for name, files in REPORTED.items() for file in files]
+    tables = [path for one in wanted for path in where_made(*one)(wildcards)]
     tables += [shared("duty_loads", "duty_loads")(wildcards)] if asked.machine_loads(case) else []
     return tables + (files_of(rules.scorecard, wildcards.case)[:1] if REPRODUCTION else [])
 
@@ -50,19 +50,14 @@ def report_values(wildcards):
     return {**CASES[case], "reproduction": case == CASE and REPRODUCTION is not None}
 
 
-def report_pair(wildcards):
-    """Record of the tooth geometry, where a case computes it."""
-    return [shared("geometry", "pair")(wildcards)] if asked.contact(case_of(wildcards.case)) else []
+def where_made(stage, file):
+    """Function of the wildcards giving a file of a stage, none where a case does not ask for it."""
 
+    def files(wildcards):
+        made = STAGES[stage].asked(case_of(wildcards.case))
+        return [shared(stage, file)(wildcards)] if made else []
 
-def report_loads(wildcards):
-    """What each contact carries, where a case computes it."""
-    return [shared("contact", "pressure")(wildcards)] if asked.contact(case_of(wildcards.case)) else []
-
-
-def report_stress(wildcards):
-    """Root stress of every tooth, where a case computes it."""
-    return [shared("root_stress", "stress")(wildcards)] if asked.root_stress(case_of(wildcards.case)) else []
+    return files
 
 
 def report_pictures(wildcards):
