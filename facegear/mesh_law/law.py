@@ -76,7 +76,8 @@ class MeshLaw(Protocol):
     def series(self, rows: int, width: int) -> NamedTuple:
         """Scratch space for Taylor series of `rows` coefficients of the contacts, padded to `width`.
 
-        It has a field `slope` (rows, width): the series of the slope along the motion.
+        It has a field `slope` (rows, width): the series of the slope along the motion. Laws of one type share
+        it, so that its size depends on `rows` and `width` alone.
         """
 
 

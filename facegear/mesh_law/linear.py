@@ -144,9 +144,7 @@ class LinearLaw:
         """Scratch space; the slope is the series of k."""
         from facegear.mesh_law.linear_terms import LinearSeries
 
-        return LinearSeries(
-            aligned(rows, width), aligned(rows * whole_lanes(len(self.fourier))), aligned(rows)
-        )
+        return LinearSeries(aligned(rows, width), aligned(rows * width), aligned(rows))
 
 
 def linear_law(series: Sequence[Harmonics]) -> LinearLaw:
