@@ -52,16 +52,20 @@ def for_callers(**options: Any) -> Decorator:
 def by_type(**options: Any) -> Callable[[Callable[..., Any]], ByType]:
     """Decorator for a function whose first argument, a NamedTuple, says which implementation is meant.
 
-    The function's own body is never run. Each caller is compiled for each type anew, and what is chosen is
-    inlined into it, so that a choice costs nothing at run time.
+    The function itself is a signature with a docstring. Each caller is compiled for each type anew, and what
+    is chosen is inlined into it, so that a choice costs nothing at run time. Python gets a TypeError for a
+    type without an implementation, a compiled caller numba's TypingError.
     """
     known = {"forceinline": True, **options} if NUMBA_IS_KNOWN else _public(options)
 
-    def generic(stub: Callable[..., Any]) -> ByType:
+    def generic(signature: Callable[..., Any]) -> ByType:
         implementations: dict[type, Callable[..., Any]] = {}
 
-        @wraps(stub)
+        @wraps(signature)
         def call(first: Any, *rest: Any) -> Any:
+            if type(first) not in implementations:
+                name = signature.__qualname__
+                raise TypeError(f"{name} has no implementation for {type(first).__qualname__}")
             return implementations[type(first)](first, *rest)
 
         def typed(first: Any, *rest: Any) -> Callable[..., Any] | None:

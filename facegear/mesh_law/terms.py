@@ -26,7 +26,6 @@ def phase_terms(
 
     piece: number of the stretch between two breaks of the law; ahead: phase since the first of them.
     """
-    raise NotImplementedError
 
 
 @by_type(**FAST)
@@ -34,46 +33,38 @@ def force_terms(law: Any, series: Any, state: NDArray[np.int64], deflection: Arr
     """Coefficient i of the forces, from those up to i of the deflections. Open contacts may have any finite
     one.
     """
-    raise NotImplementedError
 
 
 @by_type(**FAST)
 def force_of(law: Any, series: Any, state: NDArray[np.int64], deflection: Array, i: int, m: int) -> float:
     """Coefficient i of the force of contact m alone, those before it known."""
-    raise NotImplementedError
 
 
 @by_type(**FAST)
 def slope_terms(law: Any, series: Any, state: NDArray[np.int64], deflection: Array, order: int) -> None:
     """Fill series.slope once the motion's coefficients and forces are known up to `order`."""
-    raise NotImplementedError
 
 
 @by_type(**FAST)
 def is_curved(law: Any) -> bool:
     """Whether the slope depends on the amount, so that its series changes with the motion."""
-    raise NotImplementedError
 
 
 @by_type(**FAST)
 def force_ahead(law: Any, series: Any, deflection: Lanes, order: int, step: Lanes, c: int) -> Lanes:
     """The forces at a step ahead, where the deflections (lanes) are given."""
-    raise NotImplementedError
 
 
 @by_type(**FAST)
 def piece_of(law: Any, m: int, amount: float) -> int:
     """The number, from 1, of the piece that holds an amount > 0 of contact m."""
-    raise NotImplementedError
 
 
 @by_type(**FAST)
 def piece_ends(law: Any, m: int, piece: int) -> tuple[float, float]:
     """The amounts at which a piece of contact m begins and ends; the last one ends at infinity."""
-    raise NotImplementedError
 
 
 @by_type(nogil=True, fastmath={"contract"})
 def held_force(held: Any, k: int, m: int, amount: float) -> tuple[float, float]:
     """Force and slope of contact m at an amount > 0 and phase number k of `MeshLaw.held`."""
-    raise NotImplementedError

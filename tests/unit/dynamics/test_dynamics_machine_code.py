@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import numba
 import numpy as np
@@ -13,6 +14,7 @@ from oscillators import backlash_oscillator
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.machine_code.compiler import for_callers
 from facegear.machine_code.versions import KNOWN, is_known
+from facegear.mesh_law.terms import held_force
 
 CALLED = (
     "from own import inlined, kernel\n\n"
@@ -57,6 +59,14 @@ def test_a_function_for_compiled_callers_says_so_when_python_calls_it():
 
     with pytest.raises(TypeError, match=r"twice is only for compiled callers"):
         for_callers()(twice)(1.0)
+
+
+def test_a_law_without_an_implementation_is_named_in_one_line_with_the_function_that_misses_it():
+    class Rubber(NamedTuple):
+        size: float
+
+    with pytest.raises(TypeError, match=r"^held_force has no implementation for \S*Rubber$"):
+        held_force(Rubber(1.0), 0, 0, 1e-6)
 
 
 def test_of_two_processes_that_start_together_one_compiles(tmp_path):
