@@ -1,51 +1,29 @@
 """Four doubles at a time inside compiled functions: vectors where numba is known, else tuples."""
 
-from facegear.machine_code.memory import LANES
+from types import ModuleType
+
+from facegear.machine_code.memory import LANES as LANES
 from facegear.machine_code.versions import NUMBA_IS_KNOWN
 
+_four: ModuleType
 if NUMBA_IS_KNOWN:
-    from facegear.machine_code.vectors import (
-        add,
-        larger,
-        load,
-        magnitude,
-        multiply,
-        multiply_add,
-        put,
-        smaller,
-        splat,
-        spread,
-        store,
-        take,
-    )
-else:
-    from facegear.machine_code.tuples import (
-        add,
-        larger,
-        load,
-        magnitude,
-        multiply,
-        multiply_add,
-        put,
-        smaller,
-        splat,
-        spread,
-        store,
-        take,
-    )
+    from facegear.machine_code import vectors
 
-__all__ = [
-    "LANES",
-    "add",
-    "larger",
-    "load",
-    "magnitude",
-    "multiply",
-    "multiply_add",
-    "put",
-    "smaller",
-    "splat",
-    "spread",
-    "store",
-    "take",
-]
+    _four = vectors
+else:
+    from facegear.machine_code import tuples
+
+    _four = tuples
+
+add = _four.add
+larger = _four.larger
+load = _four.load
+magnitude = _four.magnitude
+multiply = _four.multiply
+multiply_add = _four.multiply_add
+put = _four.put
+smaller = _four.smaller
+splat = _four.splat
+spread = _four.spread
+store = _four.store
+take = _four.take
