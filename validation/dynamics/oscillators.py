@@ -7,6 +7,7 @@ start by closed-form pieces that share nothing with it.
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -151,58 +152,51 @@ def plain_run(oscillator: Oscillator, start: State, periods: int, tolerance: flo
 
 def closed_form_run(oscillator: Oscillator, periods: int) -> Array:
     """The same by the closed form of each stretch between two switches, which bisection locates."""
+    force = oscillator.amplitude * oscillator.speed**2
+    terms = _Terms(oscillator.damping, oscillator.mean, force, oscillator.speed)
     states = np.empty((periods, 2))
-    _closed_form(
-        oscillator.damping,
-        oscillator.mean,
-        oscillator.amplitude * oscillator.speed**2,
-        oscillator.speed,
-        oscillator.displacement,
-        oscillator.velocity,
-        states,
-    )
+    _closed_form(terms, oscillator.displacement, oscillator.velocity, states)
     return states
 
 
+class _Terms(NamedTuple):
+    """Damping ratio, mean force, alternating force and speed of the equation."""
+
+    damping: float
+    mean: float
+    force: float
+    speed: float
+
+
 @njit(cache=True)
-def _closed_form(
-    damping: float, mean: float, force: float, speed: float, x: float, v: float, states: Array
-) -> None:
-    part = 2.0 * np.pi / speed / PARTS
+def _closed_form(terms: _Terms, x: float, v: float, states: Array) -> None:
+    part = 2.0 * np.pi / terms.speed / PARTS
     for period in range(states.shape[0]):
         for look in range(PARTS):
             now, stop = look * part, (look + 1) * part
             while now < stop:
                 side = 1.0 if x > 1.0 or (x == 1.0 and v > 0.0) else 0.0
                 side = -1.0 if x < -1.0 or (x == -1.0 and v < 0.0) else side
-                x, v, now = _until(damping, mean, force, speed, x, v, side, now, stop)
+                x, v, now = _until(terms, x, v, side, now, stop)
         states[period, 0], states[period, 1] = x, v
 
 
 @njit(cache=True)
 def _until(
-    damping: float,
-    mean: float,
-    force: float,
-    speed: float,
-    x: float,
-    v: float,
-    side: float,
-    now: float,
-    stop: float,
+    terms: _Terms, x: float, v: float, side: float, now: float, stop: float
 ) -> tuple[float, float, float]:
     """State and time at the next switch, or at `stop` if there is none before."""
-    end, rate = _moved(damping, mean, force, speed, x, v, side, now, stop - now)
+    end, rate = _moved(terms, x, v, side, now, stop - now)
     if _inside(end, side):
         return end, rate, stop
     low, high = 0.0, stop - now
     for _ in range(60):
         middle = 0.5 * (low + high)
-        if _inside(_moved(damping, mean, force, speed, x, v, side, now, middle)[0], side):
+        if _inside(_moved(terms, x, v, side, now, middle)[0], side):
             low = middle
         else:
             high = middle
-    end, rate = _moved(damping, mean, force, speed, x, v, side, now, high)
+    end, rate = _moved(terms, x, v, side, now, high)
     edge = 1.0 if end > 0.0 else -1.0
     return edge, rate, now + high
 
@@ -213,18 +207,9 @@ def _inside(x: float, side: float) -> bool:
 
 
 @njit(cache=True)
-def _moved(
-    damping: float,
-    mean: float,
-    force: float,
-    speed: float,
-    x: float,
-    v: float,
-    side: float,
-    now: float,
-    ahead: float,
-) -> tuple[float, float]:
+def _moved(terms: _Terms, x: float, v: float, side: float, now: float, ahead: float) -> tuple[float, float]:
     """The linear equation of one stretch: x'' + 2 z x' + k (x - side) = mean + force cos W t, k = 1 or 0."""
+    damping, mean, force, speed = terms
     stiffness = 1.0 if side != 0.0 else 0.0
     gap, lag = stiffness - speed**2, 2.0 * damping * speed
     size = force / (gap**2 + lag**2)
