@@ -7,8 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from facegear.config.base import Section, parse, refuse
-from facegear.config.yaml_file import read_yaml
+from facegear.config.base import Section, refuse
 from facegear.lubrication.oil import FixedCoefficient, Oil, PolyolEster, PowerOfViscosity
 
 OIL_CARDS = Path(str(files("facegear") / "lubrication" / "cards"))
@@ -74,16 +73,10 @@ class OilCard(Section):
         return self
 
 
-def oil_card(path: str | Path) -> Oil:
-    """Read an oil card in SI units. Raises ConfigErrors with one line for every mistake."""
-    return oil_of(parse(OilCard, read_yaml(path), source=str(path)))
-
-
 def oil_of(card: OilCard) -> Oil:
     """An oil card in SI units."""
     return Oil(
         name=card.name,
-        source=card.source,
         temperatures=card.temperatures_c,
         viscosities=(1e-6 * card.viscosities_mm2_s[0], 1e-6 * card.viscosities_mm2_s[1]),
         density=card.density_15_c_kg_m3,
@@ -93,8 +86,6 @@ def oil_of(card: OilCard) -> Oil:
         conductivity_slope=card.conductivity.falls_per_k,
         flash_point=card.flash_point_c,
         lubricant_factor=card.lubricant_factor,
-        scuffing_temperature=card.scuffing_temperature_c,
-        fzg_stage=card.fzg_stage,
     )
 
 

@@ -61,13 +61,11 @@ class Oil:
     """An oil by kinematic `viscosities` (m2/s) at two `temperatures` (C), and its density (kg/m3) at 15 C.
 
     `conductivity` (W/(m K)) at `conductivity_at` (C), falling by `conductivity_slope` a degree.
-    `flash_point` (C). `lubricant_factor` X_L of Schlenk's friction. `scuffing_temperature` (C), the mean of
-    tests, and `fzg_stage`, the failure load stage S_FZG, where a source gives one. Raises FacegearError
-    unless the viscosity falls with temperature.
+    `flash_point` (C). `lubricant_factor` X_L of Schlenk's friction. Raises FacegearError unless the viscosity
+    falls with temperature.
     """
 
     name: str
-    source: str
     temperatures: tuple[float, float]
     viscosities: tuple[float, float]
     density: float
@@ -77,8 +75,6 @@ class Oil:
     conductivity_slope: float
     flash_point: float
     lubricant_factor: float
-    scuffing_temperature: float | None = None
-    fzg_stage: float | None = None
 
     def __post_init__(self) -> None:
         (low, high), (thick, thin) = self.temperatures, self.viscosities

@@ -5,8 +5,8 @@ from math import pi
 import numpy as np
 import pytest
 from contact_bodies import STEEL
+from oils import oil
 
-from facegear.config.oil_card import OIL_CARDS, oil_card
 from facegear.contact.hertz import contact_modulus
 from facegear.contact.ltca import even_positions, loaded_contact
 from facegear.contact.pressure import flank_pressure
@@ -44,7 +44,7 @@ def loaded(model_of):
 
 def lubrication(design, friction, bulk=None):
     return Lubrication(
-        oil=oil_card(OIL_CARDS / "polyol_ester_5_cst.yaml"),
+        oil=oil(),
         oil_temperature=100.0,
         friction=friction,
         ra=(0.3e-6, 0.3e-6),

@@ -1,14 +1,14 @@
 """Film thickness against worked numbers and an open gear code."""
 
-from math import pi, sqrt
+from math import pi
 
 import numpy as np
 import pytest
 from contact_bodies import STEEL
+from oils import oil
 from spur_path import c40
 
-from facegear.config.oil_card import OIL_CARDS, oil_card
-from facegear.contact.hertz import contact_modulus, line_half_width
+from facegear.contact.hertz import contact_modulus, strip_pressure
 from facegear.lubrication.film import elliptic_film, line_film, shear_heating
 from facegear.lubrication.flash import flash
 from facegear.lubrication.kinematics import slip
@@ -17,7 +17,7 @@ from facegear.lubrication.request import STEEL as HEATED
 
 MODULUS = contact_modulus((STEEL, STEEL))
 REDUCED = 2 * MODULUS
-ESTER = oil_card(OIL_CARDS / "polyol_ester_5_cst.yaml")
+ESTER = oil()
 TORQUE, WIDTH, SPEED = 215.5, 0.040, 1800 * pi / 30
 
 
@@ -29,8 +29,8 @@ def worked_point():
     load = 0.5 * TORQUE / path.base[0] / WIDTH
     u1, u2 = SPEED * radii * np.array([1.0, path.base[0] / path.base[1]])
     velocity, _ = slip(*path.spins(SPEED), *path.points(g))
-    half = float(line_half_width(load, 1 / radius, MODULUS))
-    return load, radius, u1, u2, sqrt(load * MODULUS / (pi * radius)), half, float(np.linalg.norm(velocity))
+    pressure, half = (float(one) for one in strip_pressure(load, 1 / radius, MODULUS))
+    return load, radius, u1, u2, pressure, half, float(np.linalg.norm(velocity))
 
 
 def test_worked_point_of_a_spur_gear_has_the_reference_s_speeds_and_pressure():

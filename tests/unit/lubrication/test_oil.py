@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from oils import NAMES, oil
 
-from facegear.config.oil_card import OIL_CARDS, oil_card
 from facegear.errors import FacegearError
 
-NAMES = sorted(path.stem for path in OIL_CARDS.glob("*.yaml"))
-ESTER = oil_card(OIL_CARDS / "polyol_ester_5_cst.yaml")
+ESTER = oil()
 
 
 def test_ester_turbine_oil_has_the_viscosities_of_astm_d341():
@@ -29,12 +28,12 @@ def test_ester_turbine_oil_has_the_pressure_coefficient_of_its_source():
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_oil_of_the_package_thins_as_it_warms_and_stiffens_less_under_pressure(name):
-    oil = oil_card(OIL_CARDS / f"{name}.yaml")
-    warm = np.linspace(0.0, oil.flash_point, 30)
-    for values in (oil.viscosity(warm), oil.density_at(warm), oil.pressure_coefficient_at(warm)):
+    known = oil(name)
+    warm = np.linspace(0.0, known.flash_point, 30)
+    for values in (known.viscosity(warm), known.density_at(warm), known.pressure_coefficient_at(warm)):
         assert (np.diff(values) < 0).all()
-    assert (oil.conductivity_of(warm) > 0.08).all()
-    assert oil.kinematic_viscosity(oil.temperatures) == pytest.approx(oil.viscosities, rel=1e-12)
+    assert (known.conductivity_of(warm) > 0.08).all()
+    assert known.kinematic_viscosity(known.temperatures) == pytest.approx(known.viscosities, rel=1e-12)
 
 
 @given(st.floats(20.0, 180.0))
