@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 
 DENTED = 4.0e9
 """Pressure (Pa) from which on hardened steel keeps a dent: the static limit of line contact in ISO 76."""
+
 SLENDEREST, ROUNDEST = 1e-6, 1.0 - 1e-6
 """Ratios of semi-axes between which that of an ellipse is sought."""
 
@@ -29,11 +30,6 @@ STEPS = 8
 def contact_modulus(materials: tuple[Material, Material]) -> float:
     """E* (Pa) with 1/E* = sum of (1 - nu^2)/E."""
     return 1.0 / sum((1 - m.poisson_ratio**2) / m.young_modulus for m in materials)
-
-
-def line_half_width(line_load: ArrayLike, curvature: ArrayLike, modulus: float) -> Array:
-    """Half-width (m) of a long strip under a load (N/m), relative curvature (1/m) across it."""
-    return np.sqrt(4 * np.asarray(line_load) / (pi * modulus * np.asarray(curvature)))
 
 
 def longer_semi_axis(force: float, across: float, along: float, modulus: float) -> float:

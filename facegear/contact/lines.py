@@ -3,6 +3,7 @@
 They do not depend on load: a tooth bends by less than 1 mrad, which moves its contact line by some 0.01 mm.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,7 @@ from facegear.geometry import face_gear, pinion
 from facegear.geometry.curvature import opposite_curvatures
 from facegear.geometry.design import PairDesign
 from facegear.geometry.pinion_surface import SurfacePoints, flank_points
-from facegear.geometry.placement import to_left_flank
+from facegear.geometry.placement import conjugate_angle, pinion_angle, to_left_flank
 from facegear.geometry.separation import FLANK, separation
 
 Array = NDArray[np.float64]
@@ -81,6 +82,20 @@ def contact_lines(design: PairDesign, phi1: Array, phi2: Array, tooth: ArrayLike
         to_end=np.minimum(ends, half - np.abs(y - design.mean_radius)),
         face=_covered(design, y, radius),
     )
+
+
+def unloaded_lines(
+    design: PairDesign, position: Array, tooth: ArrayLike, unloaded: Mapping[float, float], y: Array
+) -> ContactLines:
+    """Lines of the pairs `tooth` (p,) at positions (p,) of a pitch, placed as without load.
+
+    unloaded: transmission error (m) by position, positive where the pinion is ahead. Raises NotConverged as
+    `separation` does.
+    """
+    phi1 = pinion_angle(design, position)
+    error = -np.array([unloaded[at] for at in position.tolist()])
+    phi2 = conjugate_angle(design, phi1) + error / design.gear_base_radius
+    return contact_lines(design, phi1, phi2, tooth, y)
 
 
 def _lowest_roll(design: PairDesign) -> float:

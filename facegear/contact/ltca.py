@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +16,7 @@ from facegear.contact.path import pairs_to_try
 from facegear.contact.position import FIRST_GUESS, LoadedPosition, solve_position
 from facegear.contact.search import find_candidates
 from facegear.geometry.design import Assembly, PairDesign
+from facegear.geometry.placement import pinion_angle
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.progress import Progress
 
@@ -58,7 +58,7 @@ def loaded_contact(
     another take several times the work. Raises NotConverged naming the position and the torque.
     """
     options = options or ContactOptions()
-    phi1 = (np.asarray(positions, dtype=float) - 0.5) * 2 * pi / model.design.pinion.teeth
+    phi1 = pinion_angle(model.design, positions)
     unloaded = unloaded_contact(model.design, phi1)
     guess = first = FIRST_GUESS / model.design.pinion_base_radius
     progress = Progress("loaded contact", len(phi1))

@@ -29,12 +29,16 @@ class Pattern:
         return max((float(np.nanmax(p, initial=0.0)) for p in self.pressure.values()), default=0.0)
 
 
+def passage(position: NDArray[np.float64], tooth: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Where a tooth is in its passage (pitches): pair j at position x is where pair 0 is at x + j."""
+    return np.round(position + tooth, 9)
+
+
 def pattern(arrays: Mapping[str, NDArray]) -> Pattern:
-    """Of arrays as PRESSURE_ARRAYS: pair j at position x is where pair 0 is at position x + j."""
-    stage = np.round(arrays["contact_position"] + arrays["contact_tooth"], 9)
-    stages, first = np.unique(stage, return_index=True)
+    """Of arrays as PRESSURE_ARRAYS."""
+    stages, first = np.unique(passage(arrays["contact_position"], arrays["contact_tooth"]), return_index=True)
     points = arrays["contact_point_m"][first]
-    at = np.searchsorted(stages, np.round(arrays["line_position"] + arrays["line_tooth"], 9))
+    at = np.searchsorted(stages, passage(arrays["line_position"], arrays["line_tooth"]))
     shape = points.shape[:2]
     pressure, where, line_load = {}, {}, {}
     for torque in np.unique(arrays["line_torque_n_m"]):

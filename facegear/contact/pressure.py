@@ -9,7 +9,6 @@ is left out.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,11 +18,10 @@ from facegear.contact.columns import EDGES
 from facegear.contact.fillet_contact import line_rows, on_flank
 from facegear.contact.flanks import FlankPair
 from facegear.contact.hertz import contact_modulus, strip_pressure
-from facegear.contact.lines import ContactLines, contact_lines
+from facegear.contact.lines import ContactLines, unloaded_lines
 from facegear.contact.position import LoadedPosition, Spot
 from facegear.geometry.design import Material
 from facegear.geometry.pinion_surface import flank_points
-from facegear.geometry.placement import conjugate_angle
 from facegear.geometry.unloaded import PAIRS
 
 Array = NDArray[np.float64]
@@ -101,10 +99,7 @@ def flank_pressure(
     design = flanks.design
     unloaded = {result.position: result.unloaded for result in results}
     position, tooth = np.repeat(sorted(unloaded), PAIRS.size), np.tile(PAIRS, len(unloaded))
-    error = np.repeat([-unloaded[at] for at in sorted(unloaded)], PAIRS.size)
-    phi1 = (position - 0.5) * 2 * pi / design.pinion.teeth
-    phi2 = conjugate_angle(design, phi1) + error / design.gear_base_radius
-    lines = contact_lines(design, phi1, phi2, tooth, flanks.pinion.planes)
+    lines = unloaded_lines(design, position, tooth, unloaded, flanks.pinion.planes)
     row = {key: i for i, key in enumerate(zip(position.tolist(), tooth.tolist(), strict=True))}
     modulus = contact_modulus(materials)
     places = line_rows(lines.to_pinion_tip, flanks.pinion)

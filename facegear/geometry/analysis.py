@@ -11,7 +11,7 @@ from facegear.geometry.clearance import Gap, smallest_gaps
 from facegear.geometry.curvature import relative_curvatures
 from facegear.geometry.design import PairDesign
 from facegear.geometry.limits import RadiusLimits
-from facegear.geometry.placement import conjugate_angle, mirrored
+from facegear.geometry.placement import conjugate_angle, mirrored, pinion_angle
 from facegear.geometry.unloaded import UnloadedContact, unloaded_contact
 from facegear.geometry.validate import check
 
@@ -46,7 +46,7 @@ def analyse(design: PairDesign, positions: int = 32, tolerance: float = 1e-7) ->
     Raises GeometryError for a design that cannot exist, NotConverged where contact is not found.
     """
     limits = check(design)
-    phi1 = ((np.arange(positions) + 0.5) / positions - 0.5) * 2 * pi / design.pinion.teeth
+    phi1 = pinion_angle(design, (np.arange(positions) + 0.5) / positions)
     drive = unloaded_contact(design, phi1)
     back = drive if design.assembly.offset == 0 else unloaded_contact(mirrored(design), phi1)
     # the back side of phi1 is the mirrored pair at -phi1: positions are symmetric, so it is the reversed list

@@ -1,12 +1,11 @@
 """Backlash of a pair as assembled, before anything is meshed."""
 
 from functools import lru_cache
-from math import pi
 
 import numpy as np
 
 from facegear.geometry.design import Assembly, PairDesign
-from facegear.geometry.placement import mirrored
+from facegear.geometry.placement import mirrored, pinion_angle
 
 POSITIONS = 4
 
@@ -23,7 +22,7 @@ def normal_backlash(design: PairDesign) -> float:
     # Imported here: a start reads configs, most of them without the errors that need compiled geometry.
     from facegear.geometry.unloaded import unloaded_contact
 
-    phi1 = ((np.arange(POSITIONS) + 0.5) / POSITIONS - 0.5) * 2 * pi / design.pinion.teeth
+    phi1 = pinion_angle(design, (np.arange(POSITIONS) + 0.5) / POSITIONS)
     drive = unloaded_contact(design, phi1)
     back = drive if design.assembly.offset == 0 else unloaded_contact(mirrored(design), phi1)
     return float(((-back.phi2[::-1] - drive.phi2) * design.gear_base_radius).min())

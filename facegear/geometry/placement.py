@@ -54,6 +54,11 @@ class RigidMotion:
         return RigidMotion(matrix @ self.matrix, np.einsum("...ij,...j->...i", matrix, self.shift))
 
 
+def pinion_angle(design: PairDesign, position: ArrayLike) -> Array:
+    """Pinion angle (rad) at a position 0..1 of a pitch, 0 in its middle."""
+    return (np.asarray(position, float) - 0.5) * 2 * pi / design.pinion.teeth
+
+
 def conjugate_angle(design: PairDesign, phi1: ArrayLike) -> Array:
     """Gear angle (rad) of the exact ratio."""
     return np.asarray(phi1, float) * design.pinion.teeth / design.face_gear.teeth

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from facegear.contact.pattern import passage
 from facegear.errors import FacegearError, NotConverged
 from facegear.lubrication.film import elliptic_film, line_film, shear_heating
 from facegear.lubrication.flash import flash_at_any_speed
@@ -103,7 +104,7 @@ def mean_flash(found: Places, rise: Array) -> float:
 
     found: places of one torque. The path runs through all positions of all pairs; 0 without any.
     """
-    stage = np.round(found.position + found.tooth, 9)[found.inside]
+    stage = passage(found.position, found.tooth)[found.inside]
     if stage.size == 0:
         return 0.0
     _, row = np.unique(stage, return_inverse=True)

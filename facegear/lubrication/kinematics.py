@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from facegear.contact.lines import ContactLines
 from facegear.geometry import pinion
 from facegear.geometry.design import PairDesign
-from facegear.geometry.pinion_surface import SurfacePoints, flank_points
-from facegear.geometry.placement import AXIS, RigidMotion, pinion_to_gear
+from facegear.geometry.pinion_surface import flank_points
+from facegear.geometry.placement import AXIS, RigidMotion, pinion_angle, pinion_to_gear
 
 Array = NDArray[np.float64]
 
@@ -64,11 +64,6 @@ def standing(design: PairDesign, phi1: ArrayLike, tooth: ArrayLike) -> RigidMoti
     return pinion_to_gear(design, turned, np.zeros_like(turned), np.zeros_like(turned))
 
 
-def pinion_angle(design: PairDesign, position: ArrayLike) -> Array:
-    """phi1 (rad) at a position 0..1 of a pitch."""
-    return (np.asarray(position, float) - 0.5) * 2 * pi / design.pinion.teeth
-
-
 def surface_normals(design: PairDesign, points: Array) -> Array:
     """Outward unit normals (n, 3) of points (n, 3) m on the pinion's right flank or fillet, body frame.
 
@@ -97,7 +92,7 @@ class LineKinematics:
     `sliding` the magnitude of the sliding velocity, `across` and `along` its parts across the line and along
     it (pinion over gear). `u1` and `u2` the rolling velocities of pinion and gear across the line,
     `entrained` half the sum of both along the line, relative to a point of the line in a plane that stands.
-    `point` (p, n, 3) in the mesh frame. nan where the line's slope is not known.
+    nan where the line's slope is not known.
     """
 
     sliding: Array
@@ -106,7 +101,6 @@ class LineKinematics:
     u1: Array
     u2: Array
     entrained: Array
-    point: Array
 
 
 def line_kinematics(design: PairDesign, lines: ContactLines, position: Array, tooth: Array) -> LineKinematics:
@@ -117,8 +111,8 @@ def line_kinematics(design: PairDesign, lines: ContactLines, position: Array, to
     """
     surface = flank_points(design, lines.roll, lines.y)
     stands = standing(design, pinion_angle(design, position), tooth)
-    placed = SurfacePoints(stands.points(surface.position), stands.directions(surface.normal))
-    sliding, _ = slip(*spins(design), placed.position, placed.normal)
+    points, normals = stands.points(surface.position), stands.directions(surface.normal)
+    sliding, _ = slip(*spins(design), points, normals)
     nx, nz = surface.normal[..., 0], surface.normal[..., 2]
     profile = stands.directions(np.stack([-nz, np.zeros_like(nx), nx], axis=-1))
     axial = stands.directions(np.broadcast_to([0.0, 1.0, 0.0], surface.normal.shape))
@@ -134,5 +128,4 @@ def line_kinematics(design: PairDesign, lines: ContactLines, position: Array, to
         u1=u1,
         u2=u1 - across,
         entrained=rho * sine - 0.5 * along,
-        point=placed.position,
     )

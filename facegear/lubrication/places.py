@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.contact.columns import EDGES
-from facegear.contact.lines import ContactLines, contact_lines
+from facegear.contact.hertz import strip_pressure
+from facegear.contact.lines import ContactLines, unloaded_lines
 from facegear.geometry.design import PairDesign
-from facegear.geometry.placement import conjugate_angle
 from facegear.geometry.unloaded import PAIRS
-from facegear.lubrication.kinematics import line_kinematics, pinion_angle
+from facegear.lubrication.kinematics import line_kinematics
 from facegear.lubrication.loss import HatSlip
 
 Array = NDArray[np.float64]
@@ -64,13 +64,8 @@ def stored_lines(
 
     Raises NotConverged as `facegear.geometry.separation` does.
     """
-    position, tooth = arrays["contact_position"], arrays["contact_tooth"]
-    phi1 = pinion_angle(design, position)
-    # the pinion ahead is positive, as in `facegear.contact.pressure.flank_pressure`
-    behind = -np.array([unloaded[at] for at in position.tolist()])
-    phi2 = conjugate_angle(design, phi1) + behind / design.gear_base_radius
     planes = arrays["point_m"].reshape(*arrays["shape"], 3)[0, :, 1]
-    return contact_lines(design, phi1, phi2, tooth, planes)
+    return unloaded_lines(design, arrays["contact_position"], arrays["contact_tooth"], unloaded, planes)
 
 
 def places(design: PairDesign, arrays: Mapping[str, NDArray], lines: ContactLines, modulus: float) -> Places:
@@ -86,8 +81,7 @@ def places(design: PairDesign, arrays: Mapping[str, NDArray], lines: ContactLine
     at = row, arrays["line_plane"]
     load, curvature = arrays["line_load_n_per_m"], filled.curvature[at]
     inside = arrays["line_where"] == INSIDE
-    long = np.sqrt(load * modulus * curvature / np.pi)
-    wide = np.sqrt(4 * load / (np.pi * modulus * curvature))
+    long, wide = strip_pressure(load, curvature, modulus)
     whole = Places(
         torque=arrays["line_torque_n_m"],
         position=arrays["line_position"],
@@ -160,8 +154,7 @@ def _contact(torque: float, found: Places, hats: HatSlip) -> LoadedContact:
 
 
 def _filled(lines: ContactLines) -> ContactLines:
-    known = {name: getattr(lines, name) for name in lines.__dataclass_fields__}
-    return ContactLines(**{**known, "curvature": _nearest(lines.curvature), "slope": _nearest(lines.slope)})
+    return replace(lines, curvature=_nearest(lines.curvature), slope=_nearest(lines.slope))
 
 
 def _nearest(values: Array) -> Array:

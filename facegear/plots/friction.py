@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from facegear.contact.pattern import pattern
+from facegear.contact.pattern import passage, pattern
 from facegear.plots.style import NARROW, legend_above, styled
 
 FLANK_COLOURS = {"drive": "tab:blue", "back": "tab:orange"}
@@ -29,7 +29,7 @@ def along_path(local: Mapping[str, NDArray]) -> Figure:
     """
     torques = np.unique(local["torque_n_m"])
     colours = plt.get_cmap("viridis")(np.linspace(0.0, 0.85, torques.size))
-    stage, inside = np.round(local["position"] + local["tooth"], 9), local["inside"] > 0
+    stage, inside = passage(local["position"], local["tooth"]), local["inside"] > 0
     with styled():
         figure, axes = plt.subplots(3, 1, figsize=(NARROW, 7.4), sharex=True)
         for torque, colour in zip(torques, colours, strict=True):
@@ -52,8 +52,8 @@ def over_flank(local: Mapping[str, NDArray], pressure: Mapping[str, NDArray]) ->
     torque = local["torque_n_m"].max()
     on = local["torque_n_m"] == torque
     width, radius = 1e3 * seen.points[..., 1], 1e3 * np.hypot(seen.points[..., 0], seen.points[..., 2])
-    stage = np.round(pressure["contact_position"] + pressure["contact_tooth"], 9)
-    row = np.searchsorted(np.unique(stage), np.round(local["position"] + local["tooth"], 9)[on])
+    stages = np.unique(passage(pressure["contact_position"], pressure["contact_tooth"]))
+    row = np.searchsorted(stages, passage(local["position"], local["tooth"])[on])
     cells = row, local["plane"][on].astype(int)
     nodes = 1e3 * pressure["point_m"]
     height = np.hypot(nodes[:, 0], nodes[:, 2])
