@@ -21,9 +21,6 @@ Numbers = float | Array
 HERTZ = 1.1115483781
 """C for heat spread as Hertz's pressure over the width; hottest 0.65223 b behind its middle."""
 
-EVEN = 1.1283791670955126
-"""C for heat spread evenly, 2/sqrt(pi)."""
-
 POINTS = 120
 SLOWEST, FASTEST = 1e-3, 1e3
 
@@ -35,7 +32,6 @@ def flash(
     speeds: tuple[Numbers, Numbers],
     half_width: Numbers,
     coefficients: tuple[Numbers, Numbers],
-    constant: float = HERTZ,
 ) -> tuple[Array, Array]:
     """Largest temperature rise (K) of the contact and the first flank's share of the heat (Blok).
 
@@ -47,7 +43,7 @@ def flash(
         for coefficient, speed in zip(coefficients, speeds, strict=True)
     )
     heat = np.asarray(friction, float) * line_load * sliding
-    rise = constant * heat / ((first + second) * np.sqrt(2 * np.asarray(half_width, float)))
+    rise = HERTZ * heat / ((first + second) * np.sqrt(2 * np.asarray(half_width, float)))
     return rise, first / (first + second)
 
 

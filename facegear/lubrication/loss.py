@@ -2,20 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import acos, pi, sin, sqrt, tan
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from facegear.geometry.design import PairDesign
-from facegear.lubrication.kinematics import (
-    pinion_angle,
-    slip,
-    spins,
-    standing,
-    surface_normals,
-)
+from facegear.geometry.placement import pinion_angle
+from facegear.lubrication.kinematics import slip, spins, standing, surface_normals
 
 Array = NDArray[np.float64]
 Numbers = float | Array
@@ -55,7 +49,6 @@ def hat_slip(design: PairDesign, arrays: Mapping[str, NDArray]) -> HatSlip:
     node, tooth, position = arrays["node"], arrays["tooth"], arrays["position"]
     nodes = arrays["point_m"]
     normals = surface_normals(design, nodes)
-    point, normal = np.empty((node.size, 3)), np.empty((node.size, 3))
     stages, of = np.unique(np.stack([position, tooth], axis=1), axis=0, return_inverse=True)
     motions = standing(design, pinion_angle(design, stages[:, 0]), stages[:, 1])
     matrix, shift = motions.matrix[of.ravel()], motions.shift[of.ravel()]
@@ -77,10 +70,7 @@ def hat_slip(design: PairDesign, arrays: Mapping[str, NDArray]) -> HatSlip:
 
 @dataclass(frozen=True, eq=False)
 class LossFactors:
-    """H_V at t torques (N m) and p positions of a pitch, `at` (t, p): loss over mu T w.
-
-    With a coefficient that varies it is the loss over T w itself, see `loss_factors`.
-    """
+    """H_V at t torques (N m) and p positions of a pitch, `at` (t, p): loss over mu T w."""
 
     torques: Array
     positions: Array
@@ -92,15 +82,12 @@ class LossFactors:
         return self.at.mean(axis=1)
 
 
-def loss_factors(hats: HatSlip, friction: Numbers = 1.0) -> LossFactors:
-    """Sum of `friction f |v| / (T w)` of every contact: H_V for friction 1, else the part of the power lost.
-
-    friction: a coefficient, or one of each hat (m,).
-    """
+def loss_factors(hats: HatSlip) -> LossFactors:
+    """Sum of `f |v| / (T w)` of every contact."""
     torques, row = np.unique(hats.torque, return_inverse=True)
     positions, column = np.unique(hats.position, return_inverse=True)
     summed = np.zeros((torques.size, positions.size))
-    np.add.at(summed, (row, column), friction * hats.force * hats.sliding)
+    np.add.at(summed, (row, column), hats.force * hats.sliding)
     return LossFactors(torques, positions, summed / torques[:, None])
 
 
@@ -125,27 +112,3 @@ class OverTorque:
         """Whether torques of any shape lie between the smallest and the largest."""
         asked = np.abs(np.asarray(torque, float))
         return (asked >= self.torques[0] * (1 - 1e-12)) & (asked <= self.torques[-1] * (1 + 1e-12))
-
-
-def section_loss_factor(design: PairDesign, radius: float) -> float:
-    """H_V of the plane at a radius (m) of the face gear, load shared equally in double contact.
-
-    The form of Ohlendorf for a rack, and the part of sliding along the pinion's axis: exact for N_s = N1 and
-    no assembly errors, contact ratios between 1 and 2 and both parts of the path below a pitch.
-    """
-    ratio = design.pinion.teeth / design.face_gear.teeth
-    cosine = design.pinion_base_radius / (ratio * radius)
-    angle = acos(cosine)
-    pitch = 2 * pi * design.pinion_base_radius / design.pinion.teeth
-    recess = (design.pinion_tip_roll - tan(angle)) * design.pinion_base_radius / pitch
-    approach = (design.gear_tip_plane + ratio * radius) / (sin(angle) * pitch)
-    whole = recess + approach
-    factor = 1 - whole + recess**2 + approach**2
-    return sqrt(1 + (ratio * cosine) ** 2) * pi / design.pinion.teeth * factor
-
-
-def spur_loss_factor(teeth: tuple[int, int], recess: float, approach: float) -> float:
-    """H_V of Ohlendorf for a spur pair: contact ratios of the pinion's tip (recess) and of the wheel's."""
-    ratio = teeth[1] / teeth[0]
-    whole = recess + approach
-    return pi * (ratio + 1) / (teeth[0] * ratio) * (1 - whole + recess**2 + approach**2)

@@ -5,18 +5,14 @@ from math import pi, radians, sqrt
 
 import numpy as np
 import pytest
+from closed_losses import section_loss_factor, spur_loss_factor
 from contact_bodies import STEEL, pair_design
 from hypothesis import given
 from hypothesis import strategies as st
 from spur_path import SpurPath, c40
 
 from facegear.contact.hertz import contact_modulus
-from facegear.lubrication.loss import (
-    OverTorque,
-    loss_factors,
-    section_loss_factor,
-    spur_loss_factor,
-)
+from facegear.lubrication.loss import OverTorque, loss_factors
 
 TORQUE, WIDTH, SPEED = 215.5, 0.040, 1800 * pi / 30
 
