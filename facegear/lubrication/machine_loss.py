@@ -61,9 +61,8 @@ class MeshCurves:
     micropitting: OverTorque
 
 
-def mesh_curves(pair: LoadedPair, speed: float, bulk: tuple[float, float] | None = None) -> MeshCurves:
-    """Curves over the torques of the pair; arguments as of `LoadedPair.states`."""
-    states = pair.states(speed, bulk)
+def _mesh_curves(pair: LoadedPair, states: Sequence[Running], speed: float) -> MeshCurves:
+    """Curves over the torques of the pair in its `states` at a speed (rad/s)."""
     inside = [contact.places.inside for contact in pair.contacts]
     rows = [
         (
@@ -126,9 +125,9 @@ def machine_loss(pair: LoadedPair, loads: MeshLoads, speed: float) -> MachineLos
     """
     known = pair.known
     if not isinstance(known.bulk, Cooling):
-        return _evaluated(
-            loads, [mesh_curves(pair, speed)] * loads.torque.size, speed, _own_bulk(pair, loads, speed)
-        )
+        states = pair.states(speed)
+        same = [_mesh_curves(pair, states, speed)] * loads.torque.size
+        return _evaluated(loads, same, speed, _own_bulk(pair, states, loads.torque))
     bulk = np.tile(starting_bulk(known), (loads.torque.size, 1))
     for _ in range(STEPS):
         curves = _curves_at(pair, speed, bulk)
@@ -147,17 +146,14 @@ def _curves_at(pair: LoadedPair, speed: float, bulk: Array) -> list[MeshCurves]:
     known: dict[tuple[float, float], MeshCurves] = {}
     for low, high in bulk.tolist():
         if (low, high) not in known:
-            known[low, high] = mesh_curves(pair, speed, (low, high))
+            known[low, high] = _mesh_curves(pair, pair.states(speed, (low, high)), speed)
     return [known[low, high] for low, high in bulk.tolist()]
 
 
-def _own_bulk(pair: LoadedPair, loads: MeshLoads, speed: float) -> Array:
-    """Bulk temperatures (n, 2) of meshes that do not feel each other's heat."""
-    over = [
-        OverTorque(pair.torques, np.array(side))
-        for side in zip(*(one.bulk for one in pair.states(speed)), strict=True)
-    ]
-    return np.stack([one.at(loads.torque) for one in over], axis=1)
+def _own_bulk(pair: LoadedPair, states: Sequence[Running], torque: Array) -> Array:
+    """Bulk temperatures (n, 2) of meshes under torques (n,) that do not feel each other's heat."""
+    sides = zip(*(state.bulk for state in states), strict=True)
+    return np.stack([OverTorque(pair.torques, np.array(side)).at(torque) for side in sides], axis=1)
 
 
 def _evaluated(loads: MeshLoads, curves: Sequence[MeshCurves], speed: float, bulk: Array) -> MachineLoss:

@@ -103,16 +103,12 @@ def machine_loss_table(states: Sequence[MachineState]) -> pd.DataFrame:
 
 
 def _row(state: MachineState) -> dict[str, object]:
-    loss, power = state.found.total, state.power_in
+    loss = state.found.total
     return {
         "bin": state.bin,
         "hours": state.hours,
         "speed_rpm": state.speed_rpm,
-        "power_in_w": power,
-        "power_through_meshes": float(state.power.sum()) / power if power > 0 else np.nan,
-        "loss_w": loss,
-        "loss_percent": 100 * loss / power if power > 0 else np.nan,
-        "efficiency": 1 - loss / power if power > 0 else np.nan,
+        **_powers(state.power_in, float(state.power.sum()), loss),
         "energy_lost_kwh": 1e-3 * loss * state.hours,
         "within_torques_solved": bool(state.found.within.all()),
     }
@@ -121,18 +117,28 @@ def _row(state: MachineState) -> dict[str, object]:
 def _whole(bins: pd.DataFrame) -> dict[str, object]:
     """The whole duty cycle: means weighted with the hours."""
     hours = bins["hours"].sum()
-    power = (bins["power_in_w"] * bins["hours"]).sum() / hours
-    loss = (bins["loss_w"] * bins["hours"]).sum() / hours
-    through = (bins["power_through_meshes"] * bins["power_in_w"] * bins["hours"]).sum() / hours
+
+    def mean(values: pd.Series) -> float:
+        return float((values * bins["hours"]).sum() / hours)
+
+    through = mean(bins["power_through_meshes"] * bins["power_in_w"])
     return {
         "bin": -1,
         "hours": hours,
-        "speed_rpm": (bins["speed_rpm"] * bins["hours"]).sum() / hours,
-        "power_in_w": power,
-        "power_through_meshes": through / power if power > 0 else np.nan,
-        "loss_w": loss,
-        "loss_percent": 100 * loss / power if power > 0 else np.nan,
-        "efficiency": 1 - loss / power if power > 0 else np.nan,
+        "speed_rpm": mean(bins["speed_rpm"]),
+        **_powers(mean(bins["power_in_w"]), through, mean(bins["loss_w"])),
         "energy_lost_kwh": bins["energy_lost_kwh"].sum(),
         "within_torques_solved": bool(bins["within_torques_solved"].all()),
+    }
+
+
+def _powers(power_in: float, through: float, loss: float) -> dict[str, float]:
+    """Power (W) in, what passes through meshes over it, and the loss; nan over a power of 0."""
+    over = power_in if power_in > 0 else np.nan
+    return {
+        "power_in_w": power_in,
+        "power_through_meshes": through / over,
+        "loss_w": loss,
+        "loss_percent": 100 * loss / over,
+        "efficiency": 1 - loss / over,
     }
