@@ -19,6 +19,8 @@ SHARED = {"single_pinions": "pinion", "single_gears": "face_gear", "single_meshe
 """Sections of single parts, and the section that holds what all parts of the kind have."""
 START = {"position_um": {"x": 0.0, "y": 0.0}, "runout": {"eccentricity_um": 0.0, "phase_deg": 0.0}}
 """What a part without an entry of its own has where the shared section says nothing."""
+ONE_SIDE, DIAMETRAL = "clearance_um", "clearance_diametral_um"
+"""Two ways in which a config gives the clearance of pinions; the second number is twice the first."""
 PLAIN = {"error_um": 0.0, "stiffness_factor": 1.0, "clocking_deg": 0.0}
 
 
@@ -55,10 +57,13 @@ def movable(
 ) -> dict[str, Any]:
     """Values as of `variable_part` with an entry for every single part that one of the keys names.
 
-    What such an entry leaves open is filled with what all parts have. Raises ConfigError for `told`, naming
-    the first key that begins with none of the texts `allowed`, or is no number.
+    What such an entry leaves open is filled with what all parts have. Where a key is a clearance to each
+    side, clearances given from side to side become clearances to each side. Raises ConfigError for `told`,
+    naming the first key that begins with none of the texts `allowed`, or is no number.
     """
-    complete = deepcopy(dict(values))
+    complete, keys = deepcopy(dict(values)), tuple(keys)
+    if any(key.endswith(f".{ONE_SIDE}") for key in keys):
+        _to_each_side(complete["transmission"])
     for key in keys:
         if not key.startswith(tuple(allowed)):
             names = ", ".join(text.removesuffix(".") for text in allowed)
@@ -98,6 +103,12 @@ def placed(values: Mapping[str, Any], numbers: Mapping[str, float]) -> dict[str,
         inside, last = _holder(changed, key.split("."))
         inside[last] = round(number) if str(last).endswith("teeth") else number
     return changed
+
+
+def _to_each_side(transmission: Mapping[str, Any]) -> None:
+    for part in (transmission["pinion"], *transmission["single_pinions"].values()):
+        if part.get(DIAMETRAL) is not None:
+            part |= {ONE_SIDE: 0.5 * part[DIAMETRAL], DIAMETRAL: None}
 
 
 def _enter(section: dict[str, Any], parts: list[str]) -> None:

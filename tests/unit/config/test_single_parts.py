@@ -12,6 +12,7 @@ from facegear.config.buildable import require_buildable, require_room
 from facegear.config.lumped_model import machine, tooth_numbers
 from facegear.config.notes import notes
 from facegear.config.transmission import Transmission
+from facegear.config.variants import movable, moved
 from facegear.errors import ConfigError, ConfigErrors
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.statics import mean_equilibrium, static_equilibrium
@@ -167,6 +168,24 @@ def test_play_is_given_to_each_side_or_from_side_to_side_as_catalogues_do():
     single = {"one": {"clearance_diametral_um": 30}, "two": {"clearance_um": 0}}
     found = built(pinion=body, single_pinions=single).imperfections
     np.testing.assert_allclose(found.clearance, [15e-6, 0.0, 20e-6])
+
+
+@pytest.mark.parametrize(
+    ("key", "clearance_um"),
+    [
+        ("pinion.clearance_um", [15, 25, 25]),
+        ("single_pinions.one.clearance_um", [20, 20, 20]),
+        ("single_pinions.two.clearance_um", [15, 25, 20]),
+    ],
+)
+def test_a_tolerance_adds_to_a_play_that_is_given_from_side_to_side(key, clearance_um):
+    """It was refused in every sample, or the pinion named lost the play that all pinions have."""
+    body, key = {**section()["pinion"], "clearance_diametral_um": 40}, f"transmission.{key}"
+    given = section(pinion=body, single_pinions={"one": {"clearance_diametral_um": 30}})
+    start = movable({"transmission": parse(Transmission, given).model_dump(mode="json")}, [key])
+    sample = parse(Transmission, moved(start, {key: 5.0})["transmission"])
+    found = machine(sample, TEETH, STIFFNESS).imperfections.clearance
+    np.testing.assert_allclose(found, 1e-6 * np.array(clearance_um))
 
 
 @pytest.mark.parametrize(
