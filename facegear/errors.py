@@ -1,6 +1,5 @@
 """Errors a user may meet. Each one's text is one clear line."""
 
-import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,16 +9,11 @@ class FacegearError(Exception):
     """Base of all errors whose text is meant for the user."""
 
 
-def must_be(allowed: str) -> str:
-    """What is allowed as a demand."""
-    return allowed if re.search(r"(^|, )must be ", allowed) else f"must be {allowed}"
-
-
 class ConfigError(FacegearError):
     """A config value that cannot be used: names the key, the value and what it must be."""
 
     def __init__(self, key: str, value: object, allowed: str) -> None:
-        super().__init__(f"{key} = {value!r}: {must_be(allowed)}")
+        super().__init__(f"{key} = {value!r}: must be {allowed}")
         self.key, self.value, self.allowed = key, value, allowed
 
 

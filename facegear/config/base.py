@@ -8,7 +8,7 @@ from typing import Any, NoReturn, TypeVar, get_args
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
 
-from facegear.errors import ConfigError, ConfigErrors, must_be
+from facegear.errors import ConfigError, ConfigErrors
 
 
 class Section(BaseModel):
@@ -87,7 +87,7 @@ def _told(model: type[Section], details: ErrorDetails, location: list[int | str]
     if kind == "refused":
         where = _dotted(location)
         return [
-            f"{'.'.join([where, key]).strip('.')} = {json.dumps(value, default=str)}: {must_be(allowed)}"
+            f"{'.'.join([where, key]).strip('.')} = {json.dumps(value, default=str)}: must be {allowed}"
             for key, value, allowed in details["ctx"]["refused"]
         ]
     key = _dotted(location) or "(the whole file)"

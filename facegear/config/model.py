@@ -122,9 +122,9 @@ class Config(Section):
         if self.mesh_stiffness.source != "harmonics" or self._root_stress or self.lubrication is not None:
             design = pair_design(pair)
             sizes = mesh_sizes(self.mesh_used, design.module)
-            plan = contact_plan(self.contact_used)
-            plan = along_the_ellipse(design, materials(pair), sizes, plan)
-            check_strain(pair, self.contact_used)
+            contact = self.contact_used
+            plan = along_the_ellipse(design, materials(pair), sizes, contact_plan(contact))
+            check_strain(pair, contact)
             check_resolution(design, materials(pair), sizes, plan)
             check_fillet(design, sizes, replace(plan, root_stress=self._root_stress))
             check_memory(design, sizes, plan, memory_here())
@@ -166,11 +166,10 @@ class Config(Section):
             own = getattr(self.tooth_pair, body)
             material = (own.material if own else None) or self.tooth_pair.material
             for key in ("young_modulus_gpa", "poisson_ratio"):
-                taken = getattr(material, key)
-                if not isclose(taken, getattr(card, key), rel_tol=SAME_ELASTICITY):
-                    key = f"strength.{body}.card.{key}"
+                taken, rated = getattr(material, key), getattr(card, key)
+                if not isclose(taken, rated, rel_tol=SAME_ELASTICITY):
                     allowed = f"{taken:g}, as contact and stress take it from tooth_pair"
-                    raise ConfigError(key, getattr(card, key.rsplit(".", 1)[1]), allowed)
+                    raise ConfigError(f"strength.{body}.card.{key}", rated, allowed)
         if self.contact.element != "hex27":
             raise ConfigError("contact.element", self.contact.element, "hex27, where strength is asked for")
 

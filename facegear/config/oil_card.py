@@ -1,7 +1,6 @@
 """Oil cards: what the friction chain needs of an oil, with its source, read from yaml files."""
 
 from importlib.resources import files
-from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -66,10 +65,10 @@ class OilCard(Section):
 
     @model_validator(mode="after")
     def _thinning(self) -> "OilCard":
-        for key, falls in (("temperatures_c", False), ("viscosities_mm2_s", True)):
-            values = getattr(self, key)
-            if any((low > high) != falls or low == high for low, high in pairwise(values)):
-                refuse(key, values, f"must {'fall with temperature' if falls else 'rise'}")
+        if self.temperatures_c[0] >= self.temperatures_c[1]:
+            refuse("temperatures_c", self.temperatures_c, "two temperatures, the lower first")
+        if self.viscosities_mm2_s[0] <= self.viscosities_mm2_s[1]:
+            refuse("viscosities_mm2_s", self.viscosities_mm2_s, "two viscosities, the larger first")
         return self
 
 

@@ -114,7 +114,7 @@ def along_the_ellipse(
         raise ConfigError(
             "mesh.resolution",
             f"{1e3 * sizes.width:.3g} mm along the face",
-            f"must be at most {needed:.3g} mm: at {torque:g} N m the crowned pinion.s contact ellipse is "
+            f"at most {needed:.3g} mm: at {torque:g} N m the crowned pinion's contact ellipse is "
             f"{2e3 * half:.3g} mm long",
         )
     return replace(plan, refinement=replace(plan.refinement, width=cuts))
@@ -136,9 +136,8 @@ def check_resolution(
         raise ConfigError(
             "mesh.resolution",
             f"{1e3 * sizes.profile:.3g} mm across the profile",
-            f"too coarse to resolve contact at {torque:g} N m, must be at most {largest:.3g} mm with "
-            f"contact.refinement.profile = {plan.refinement.profile}, or contact.torques_n_m at least "
-            f"{enough:.4g}",
+            f"at most {largest:.3g} mm with contact.refinement.profile = {plan.refinement.profile}, or "
+            f"contact.torques_n_m at least {enough:.4g}: it is too coarse for contact at {torque:g} N m",
         )
 
 
@@ -151,7 +150,7 @@ def check_fillet(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) -> Non
     depth = sizes.fillet_depth or sizes.profile
     if plan.root_stress and depth > DEEPEST * radius:
         allowed = (
-            f"too coarse to resolve the fillets' stress: at most {1e3 * DEEPEST * radius:.3g} mm, "
-            f"{DEEPEST:g} times their smallest radius"
+            f"at most {1e3 * DEEPEST * radius:.3g} mm, {DEEPEST:g} times the smallest radius of the fillets: "
+            "it is too coarse to resolve their stress"
         )
         raise ConfigError("mesh.resolution", f"{1e3 * depth:.3g} mm below the fillets", allowed)

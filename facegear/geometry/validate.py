@@ -107,7 +107,7 @@ def _check_crowning_at_end(crowning: Relief, half_width: float, most: float) -> 
     if at_end > most:
         least = beyond * sqrt(crowning.amount / most)
         allowed = (
-            f"must be at least {1e3 * least:.4g}: the parabola would take {1e6 * at_end:.0f} um off the ends "
+            f"at least {1e3 * least:.4g}: the parabola would take {1e6 * at_end:.0f} um off the ends "
             f"of the pinion's face, and at most {1e6 * most:.1f}, {MOST_RELIEF:g} modules, may come off"
         )
         _refuse("pinion.lead_crowning.length_mm", 1e3 * crowning.length, allowed)

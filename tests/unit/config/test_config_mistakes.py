@@ -25,7 +25,7 @@ class Machine(Section):
     @model_validator(mode="after")
     def _ordered(self):
         if self.inner_mm >= self.outer_mm:
-            refuse("outer_mm", self.outer_mm, f"must be greater than inner_mm = {self.inner_mm}")
+            refuse("outer_mm", self.outer_mm, f"greater than inner_mm = {self.inner_mm}")
         return self
 
 

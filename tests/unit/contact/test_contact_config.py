@@ -81,10 +81,10 @@ def test_a_torque_is_resolved_or_refused_whatever_others_stand_beside_it(torques
 
 
 def test_a_torque_that_is_too_small_for_the_mesh_is_named_with_the_smallest_that_is_not():
-    with pytest.raises(ConfigError, match=r"at 40 N m.* or contact\.torques_n_m at least ") as refused:
+    with pytest.raises(ConfigError, match=r"or contact\.torques_n_m at least .* at 40 N m") as refused:
         sizes = MeshSizes(1.5e-3, 6e-3, 4e-3)
         check_resolution(DESIGN, (STEEL, STEEL), sizes, replace(plan(), torques=(40.0, 1000.0)))
-    enough = float(refused.value.allowed.split("at least ")[1])
+    enough = float(refused.value.allowed.split("at least ")[1].split(":")[0])
     assert not accepted(0.99 * enough) and accepted(1.01 * enough)
 
 
@@ -92,7 +92,7 @@ def test_mesh_too_coarse_for_the_sharpest_fillet_is_refused_where_its_stress_is_
     sizes = named_sizes("coarse", M)
     check_fillet(DESIGN, sizes, plan())
     check_fillet(DESIGN, thin_fillet(sizes, "coarse"), replace(plan(), root_stress=True))
-    with pytest.raises(ConfigError, match=r"0.75 mm below the fillets.*at most 0.442 mm"):
+    with pytest.raises(ConfigError, match=r"0\.75 mm below the fillets': must be at most 0\.442 mm"):
         check_fillet(DESIGN, sizes, replace(plan(), root_stress=True))
 
 
