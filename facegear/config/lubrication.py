@@ -1,15 +1,13 @@
 """Config section `lubrication`: the oil, how it is supplied, roughness, friction and what the flanks bear."""
 
-from collections.abc import Callable, Mapping
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from facegear.config.base import Section, parse, refuse
+from facegear.config.base import Section, refuse
+from facegear.config.cards import read_card
 from facegear.config.oil_card import OIL_CARDS, OilCard, oil_of
-from facegear.config.yaml_file import read_yaml
-from facegear.errors import ConfigErrors
 from facegear.lubrication import friction
 from facegear.lubrication.request import BorrowedBulk, Cooling, GivenBulk, Heated, Limits, Lubrication
 
@@ -22,7 +20,11 @@ RQ_PER_RA = 1.25
 SUPPLY_FACTORS = {"jet": 1.2, "dip": 1.0, "submerged": 0.2}
 """X_S of ISO/TS 6336-20."""
 
-GEAR_TESTS = ("schlenk", "iso_6336_20", "iso_6336_22")
+GEAR_TESTS: dict[str, Callable[[float], friction.FrictionModel]] = {
+    "schlenk": friction.Schlenk,
+    "iso_6336_20": friction.Iso633620,
+    "iso_6336_22": friction.Iso633622,
+}
 """Models with the lubricant factor X_L."""
 
 
@@ -62,7 +64,7 @@ class FrictionSection(Section):
         for key, models in (
             ("coefficient", ("constant",)),
             ("constants", ("doleschel",)),
-            ("lubricant_factor", GEAR_TESTS),
+            ("lubricant_factor", tuple(GEAR_TESTS)),
         ):
             value, asked = getattr(self, key), self.model in models
             if asked and value is None and key != "lubricant_factor":
@@ -149,15 +151,7 @@ class LubricationSection(Section):
     @field_validator("oil", mode="before")
     @classmethod
     def _read(cls, oil: Any) -> Any:
-        """A card is read here, so that a fault in it is told with all others before any work."""
-        if not isinstance(oil, str | Mapping):
-            return oil
-        if isinstance(oil, str) and not Path(oil).suffix and not _file_of(oil).is_file():
-            refuse("", oil, f"one of {', '.join(sorted(path.stem for path in OIL_CARDS.glob('*.yaml')))}")
-        try:
-            return parse(OilCard, read_yaml(_file_of(oil)) if isinstance(oil, str) else oil, "the oil")
-        except ConfigErrors as error:
-            refuse("", oil if isinstance(oil, str) else oil.get("name"), " ".join(str(error).split()))
+        return read_card(OilCard, oil, OIL_CARDS)
 
     @field_validator("map_speeds_rpm")
     @classmethod
@@ -175,12 +169,6 @@ class LubricationSection(Section):
         if bulk is not None and bulk >= self.oil.flash_point_c:
             refuse("bulk.temperature_c", bulk, allowed)
         return self
-
-
-def _file_of(name: str) -> Path:
-    """A name without an ending is that of an oil of the package."""
-    path = Path(name)
-    return path if path.suffix else OIL_CARDS / f"{path.name}.yaml"
 
 
 def lubrication_request(section: LubricationSection, modulus: float, pitch_radius: float) -> Lubrication:
@@ -230,16 +218,10 @@ def _bulk(section: LubricationSection) -> GivenBulk | Cooling | BorrowedBulk:
 
 
 def _model(section: FrictionSection, oil_factor: float) -> friction.FrictionModel:
-    factor = section.lubricant_factor or oil_factor
     if section.coefficient is not None:
         return friction.Constant(section.coefficient)
     if section.constants is not None:
         return friction.Doleschel(**section.constants.model_dump())
-    gear_tests: dict[str, Callable[[float], friction.FrictionModel]] = {
-        "schlenk": friction.Schlenk,
-        "iso_6336_20": friction.Iso633620,
-        "iso_6336_22": friction.Iso633622,
-    }
-    if section.model in gear_tests:
-        return gear_tests[section.model](factor)
+    if section.model in GEAR_TESTS:
+        return GEAR_TESTS[section.model](section.lubricant_factor or oil_factor)
     return friction.Xu() if section.model == "xu" else friction.BenedictKelley()

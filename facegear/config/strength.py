@@ -2,16 +2,14 @@
 
 from collections.abc import Mapping
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from facegear.config.base import Section, parse, refuse, require_all
+from facegear.config.base import Section, refuse, require_all
+from facegear.config.cards import read_card
 from facegear.config.csv_file import CsvFault, read_numbers
 from facegear.config.material_card import CARDS, Card, limits_of
-from facegear.config.yaml_file import read_yaml
-from facegear.errors import ConfigErrors
 from facegear.geometry.design import PairDesign
 from facegear.strength.duty import DutyBin, given_duty, machine_duty
 from facegear.strength.rating import RatedBody, RatingRequest
@@ -53,23 +51,7 @@ class BodyStrength(Section):
     @field_validator("card", mode="before")
     @classmethod
     def _read(cls, card: Any) -> Any:
-        """A card is read here, so that a fault in it is told with all others before any work."""
-        if not isinstance(card, str | Mapping):
-            return card
-        try:
-            return parse(Card, read_yaml(_card_file(card)) if isinstance(card, str) else card, "the card")
-        except ConfigErrors as error:
-            refuse(
-                "",
-                card if isinstance(card, str) else card.get("name"),
-                f"a card without mistakes: {' '.join(str(error).split())}",
-            )
-
-
-def _card_file(name: str) -> Path:
-    """A name without an ending is that of a card of the package, wherever it was looked for."""
-    path = Path(name)
-    return path if path.suffix else CARDS / f"{path.name}.yaml"
+        return read_card(Card, card, CARDS)
 
 
 class Strength(Section):

@@ -52,8 +52,15 @@ def changed(**values):
             changed(bulk__temperature_c=300),
             "bulk.temperature_c = 300.0: must be below the oil's flash point, 246",
         ),
-        (changed(oil={**OIL, "viscosities_mm2_s": [6, 30]}), "must fall with temperature"),
-        (changed(oil={**OIL, "temperatures_c": [100, 40]}), "must rise"),
+        (
+            changed(oil={**OIL, "viscosities_mm2_s": [6, 30]}),
+            'oil = "own oil": must be a card without mistakes: the card: viscosities_mm2_s = [6.0, 30.0]: '
+            "must be two viscosities, the larger first",
+        ),
+        (
+            changed(oil={**OIL, "temperatures_c": [100, 40]}),
+            "temperatures_c = [100.0, 40.0]: must be two temperatures, the lower first",
+        ),
         (
             changed(oil={**OIL, "flash_point_c": 80}),
             "supply_temperature_c = 90.0: must be below the oil's flash",
