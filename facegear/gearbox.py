@@ -35,6 +35,9 @@ if TYPE_CHECKING:
     from facegear.results.tolerances import LoadMapResult, TolerancesResult
     from facegear.scenarios.inverse import Loosest
 
+HOLDS = {"tolerances": "causes and what is asked of them", "search": "variables and objectives"}
+"""Sections that a config may leave out, and what they say."""
+
 
 def load(config: str | Path, results: str | Path | None = "results") -> "Gearbox":
     """The gearbox of a config file.
@@ -362,14 +365,13 @@ class Gearbox:
     def tolerances(self, samples: int | None = None) -> "TolerancesResult":
         """Percentiles, shares and Sobol indices of the machine with its tolerances, in one process.
 
-        `samples`: as many instead of the config's, without Sobol indices. Raises ConfigErrors without a
+        `samples`: as many instead of the config's, without Sobol indices. Raises ConfigError without a
         section `tolerances`.
         """
         from facegear.results.tolerances import TolerancesResult
 
+        self._required("tolerances")
         changes = {} if samples is None else {"samples": samples, "chunk_samples": samples, "index_blocks": 0}
-        if self._values["tolerances"] is None:
-            raise ConfigError("tolerances", None, "a section of the config: causes and what is asked of them")
         given = {f"tolerances.{key}": value for key, value in changes.items()}
         return self._changed("tolerances", given)._chain.result(TolerancesResult)
 
@@ -382,15 +384,14 @@ class Gearbox:
         """Percentiles of the machine with its tolerances over torque and speed, the same machines everywhere.
 
         Torques in parts of the machine's, speeds for a dynamic model only; all as in section
-        `tolerances.load_map`, or its defaults, unless given. Raises ConfigErrors without a section
+        `tolerances.load_map`, or its defaults, unless given. Raises ConfigError without a section
         `tolerances`.
         """
         from facegear.results.tolerances import LoadMapResult
 
-        if self._values["tolerances"] is None:
-            raise ConfigError("tolerances", None, "a section of the config: causes and what is asked of them")
+        tolerances = self._required("tolerances")
         given = {"torque_factors": torque_factors, "speeds_rpm": speeds_rpm, "samples": samples}
-        section = {**(self._values["tolerances"]["load_map"] or {}), **_given(given)}
+        section = {**(tolerances["load_map"] or {}), **_given(given)}
         return self._changed("load_map", {"tolerances.load_map": section})._chain.result(LoadMapResult)
 
     def loosest_tolerances(
@@ -405,15 +406,13 @@ class Gearbox:
         """By how much the deviations of all causes, or of those named, may grow until a percentile of a
         quantity exceeds a limit; `quantity` is a column of the samples.
 
-        Twelve times `samples` machines are computed. Raises ConfigErrors without a section `tolerances`,
+        Twelve times `samples` machines are computed. Raises ConfigError without a section `tolerances`,
         FacegearError for names that do not exist, or a limit exceeded without any deviation.
         """
         from facegear.errors import chosen
         from facegear.scenarios.inverse import loosest
 
-        if self._values["tolerances"] is None:
-            raise ConfigError("tolerances", None, "a section of the config: causes and what is asked of them")
-        given = self._values["tolerances"]["causes"]
+        given = self._required("tolerances")["causes"]
         names = [cause["name"] for cause in given]
         named = [chosen(name, names, "causes") for name in (names if causes is None else causes)]
 
@@ -432,13 +431,12 @@ class Gearbox:
     def search(self, generations: int | None = None, seeds: Sequence[int] | None = None) -> "SearchResult":
         """Designs that no other beats in every objective of the config's section `search`, in one process.
 
-        `generations` and `seeds` as in the config unless given. Raises ConfigErrors without a section
+        `generations` and `seeds` as in the config unless given. Raises ConfigError without a section
         `search`, and FacegearError naming the extra where pymoo is not installed.
         """
         from facegear.results.search import SearchResult
 
-        if self._values["search"] is None:
-            raise ConfigError("search", None, "a section of the config: variables and objectives")
+        self._required("search")
         given = _given({"search.generations": generations, "search.seeds": seeds})
         return self._changed("search", given)._chain.result(SearchResult)
 
@@ -449,6 +447,13 @@ class Gearbox:
             f"Gearbox({self.config.case}: pinions {pinions} x {pair.pinion_teeth} teeth, "
             f"face gears {gears} x {pair.face_gear_teeth} teeth)"
         )
+
+    def _required(self, section: str) -> Mapping[str, Any]:
+        """A section of HOLDS. Raises ConfigError where the config leaves it out."""
+        found: Mapping[str, Any] | None = self._values[section]
+        if found is None:
+            raise ConfigError(section, None, f"a section of the config: {HOLDS[section]}")
+        return found
 
     def _with_branches(self, changes: Mapping[str, Any]) -> "Gearbox":
         """A copy with a section `branches`, in which some values differ from the config's."""
