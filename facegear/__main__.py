@@ -101,13 +101,14 @@ def _compare(given: argparse.Namespace) -> int:
 
     with opened(given.old) as old, opened(given.new) as new:
         comparison = compare(old, new)
+        reasons = causes_table(comparison, old, new)
         print(verdict(comparison))
         if len(comparison.rows):
             print(by_table(comparison).to_string(index=False, na_rep=""))
-            for cause in causes_table(comparison, old, new).itertuples(index=False):
-                print(f"{cause.cause}  [{cause.table}]")
+            for reason in reasons.itertuples(index=False):
+                print(f"{reason.cause}  [{reason.table}]")
         if given.page:
-            write_page(given.page, comparison, old, new)
+            write_page(given.page, comparison, reasons, old, new)
     return 0 if comparison.equal else 1
 
 

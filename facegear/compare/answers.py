@@ -8,14 +8,14 @@ from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from facegear.compare.judge import answer_tables
+from facegear.compare.judge import NOT_STORED, answer_tables
 from facegear.errors import chosen
 from facegear.io import documents
 from facegear.io.atomic import atomic_path
 from facegear.io.checksums import MANIFEST_SUFFIX
 
 MOST_BYTES = 60_000
-"""A table larger than this is a history or a chunk, and not stored with a release."""
+"""A table larger than this is a history, and not stored with a release."""
 SAME_DATE = (2000, 1, 1, 0, 0, 0)
 
 
@@ -36,12 +36,15 @@ def stored() -> list[str]:
 def store(folder: Path, path: Path) -> None:
     """Write the small tables of a folder of results, with their manifests, as one file.
 
-    Two equal folders give the same bytes. What was on the machine that made them is left out.
+    The file names the larger tables too, so that nothing is compared with them. Two equal folders give the
+    same bytes. What was on the machine that made them is left out.
     """
-    names = [name for name in sorted(answer_tables(folder)) if (folder / name).stat().st_size <= MOST_BYTES]
+    found = sorted(answer_tables(folder))
+    names = [name for name in found if (folder / name).stat().st_size <= MOST_BYTES]
     manifests = {near for name in names for near in (folder / name).parent.glob(f"*{MANIFEST_SUFFIX}")}
     texts = {name: (folder / name).read_text(encoding="utf-8") for name in names}
-    texts |= {manifest.relative_to(folder).as_posix(): _short(manifest) for manifest in sorted(manifests)}
+    texts |= {manifest.relative_to(folder).as_posix(): _short(manifest) for manifest in manifests}
+    texts[NOT_STORED] = json.dumps({"tables": [name for name in found if name not in names]})
     with atomic_path(path) as temporary, zipfile.ZipFile(temporary, "w") as archive:
         for name, text in sorted(texts.items()):
             archive.writestr(zipfile.ZipInfo(name, SAME_DATE), text, zipfile.ZIP_DEFLATED)

@@ -26,21 +26,30 @@ def causes(name: str, old: Path, new: Path) -> list[str]:
 
 def _history(path: Path) -> dict[str, Manifest]:
     """Manifests of a table's stage and of all before it that the folder still holds, by rule."""
-    manifest = _manifest(path)
-    if manifest is None:
-        return {}
-    history = {str(manifest["rule"]): manifest}
-    for near in manifest.get("inputs", {}):
-        history = {**_history(Path(os.path.normpath(path.parent / near))), **history}
+    folders: dict[Path, dict[str, tuple[Path, Manifest]]] = {}
+    history: dict[str, Manifest] = {}
+    seen, waiting = set(), [path]
+    while waiting:
+        near = waiting.pop()
+        if near.parent not in folders:
+            folders[near.parent] = _manifests(near.parent)
+        source, manifest = folders[near.parent].get(near.name, (None, {}))
+        if source is None or source in seen:
+            continue
+        seen.add(source)
+        history.setdefault(str(manifest["rule"]), manifest)
+        before = [Path(os.path.normpath(near.parent / name)) for name in manifest.get("inputs", {})]
+        waiting += reversed(before)
     return history
 
 
-def _manifest(path: Path) -> Manifest | None:
-    for candidate in sorted(path.parent.glob(f"*{MANIFEST_SUFFIX}")):
-        manifest = documents.read(candidate, ("rule", "files", "params"))
-        if path.name in manifest["files"]:
-            return manifest
-    return None
+def _manifests(folder: Path) -> dict[str, tuple[Path, Manifest]]:
+    """Path and content of the manifest behind each file of a folder."""
+    found: dict[str, tuple[Path, Manifest]] = {}
+    for path in sorted(folder.glob(f"*{MANIFEST_SUFFIX}")):
+        manifest = documents.read(path, ("rule", "files", "params"))
+        found = {**dict.fromkeys(manifest["files"], (path, manifest)), **found}
+    return found
 
 
 def _config(before: Mapping[str, Manifest], after: Mapping[str, Manifest]) -> Iterator[str]:

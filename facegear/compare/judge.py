@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from facegear.compare.quantities import REGULAR, TABLES, Table
+from facegear.compare.quantities import REGULAR, TABLES, Table, declared
 from facegear.errors import FacegearError
-from facegear.io import tables
+from facegear.io import documents, tables
 
 REPEATABLE = 1e-10
 """What two runs of the same code on the same input may differ by, relative to the largest of the column."""
@@ -17,6 +17,8 @@ LEFT_OUT = ("logs", "benchmarks", "figures", "chunks")
 """Folders that hold no answers."""
 UNDETERMINED = ("shapes.csv",)
 """Tables whose numbers are known up to a sign, or to a choice among equals: mode shapes."""
+NOT_STORED = "not_stored.json"
+"""Record inside a stored answer: the tables that were too large for it."""
 COLUMNS = ("file", "row", "quantity", "old", "new", "relative_change", "numerical_error", "verdict")
 
 
@@ -60,15 +62,16 @@ class Comparison:
 
 
 def compare(old: Path, new: Path) -> Comparison:
-    """Compare all tables of two folders of results.
+    """Compare all tables of two folders of results, but for those that a stored answer leaves out.
 
     Raises FacegearError for a folder without tables, CorruptFile for a table that was altered since its stage
     wrote it.
     """
     names = {side: answer_tables(side) for side in (old, new)}
+    left_out = _not_stored(old) | _not_stored(new)
     judged = [
         _judge_file(name, old if name in names[old] else None, new if name in names[new] else None)
-        for name in sorted(names[old] | names[new])
+        for name in sorted((names[old] | names[new]) - left_out)
     ]
     rows = pd.concat(judged, ignore_index=True)
     counts = {verdict: int((rows["verdict"] == verdict).sum()) for verdict in Verdict}
@@ -84,11 +87,16 @@ def answer_tables(folder: Path) -> set[str]:
     return kept
 
 
+def _not_stored(folder: Path) -> set[str]:
+    path = folder / NOT_STORED
+    return set(documents.read(path, ("tables",))["tables"]) if path.is_file() else set()
+
+
 def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
     if old is None or new is None:
         return _one_sided(name, ["whole table"], Verdict.ADDED if old is None else Verdict.GONE)
     before, after = (tables.read(folder / name, allow_empty=True) for folder in (old, new))
-    table = declared(name)
+    table = declared(TABLES, name) or Table()
     before, after = (_by_row(frame, table) for frame in (before, after))
     shared = before.index.intersection(after.index, sort=False)
     columns = [column for column in before.columns if column in after.columns]
@@ -99,12 +107,6 @@ def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
             _one_sided(name, [*one.index.difference(other.index, sort=False).astype(str), *lost], verdict)
         )
     return pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
-
-
-def declared(name: str) -> Table:
-    """How a table is compared; that of a study's point is compared as the machine's own."""
-    known = [path for path in TABLES if name == path or name.endswith(f"/{path}")]
-    return TABLES[known[0]] if known else Table()
 
 
 def _by_row(frame: pd.DataFrame, table: Table) -> pd.DataFrame:

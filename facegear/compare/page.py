@@ -7,13 +7,13 @@ from tempfile import TemporaryDirectory
 import pandas as pd
 
 from facegear.compare.causes import causes
-from facegear.compare.judge import Comparison, Verdict
-from facegear.compare.quantities import CURVES, Curve
+from facegear.compare.judge import CHANGES, Comparison, Verdict
+from facegear.compare.quantities import CURVES, Curve, declared
 from facegear.io import tables
 from facegear.io.atomic import atomic_path
 from facegear.plots.compare import curves_compared
 from facegear.plots.style import save
-from facegear.report.page import Chapter, Picture, Table, render
+from facegear.report.page import Chapter, Picture, Table, render, words
 
 SHOWN = 8
 """Most rows of one table that the page lists."""
@@ -22,8 +22,8 @@ NAMED = 3
 """Most tables that are named behind one cause."""
 
 
-def write_page(path: Path, comparison: Comparison, old: Path, new: Path) -> None:
-    """Write the page; `old` and `new` are the folders that were compared."""
+def write_page(path: Path, comparison: Comparison, reasons: pd.DataFrame, old: Path, new: Path) -> None:
+    """Write the page; `reasons` of `causes_table`, `old` and `new` are the folders that were compared."""
     with TemporaryDirectory() as folder:
         pictures = list(_pictures(comparison, old, new, Path(folder)))
         chapters = [
@@ -38,7 +38,7 @@ def write_page(path: Path, comparison: Comparison, old: Path, new: Path) -> None
             Chapter(
                 "Why it may have moved",
                 "One line for each difference behind a table.",
-                tables=[Table("Config, code and versions", causes_table(comparison, old, new))],
+                tables=[Table("Config, code and versions", reasons)],
             ),
             Chapter("Curves over each other", "The series of each table that moved most.", pictures=pictures),
             Chapter(
@@ -58,23 +58,15 @@ def verdict(comparison: Comparison) -> str:
         within = comparison.counts[Verdict.WITHIN_ERROR] + comparison.counts[Verdict.IRREGULAR]
         more = f" {within} numbers moved within their numerical error." if within else ""
         return f"Both folders say the same.{more}"
-    files = comparison.rows.loc[~comparison.rows["verdict"].isin(_HARMLESS), "file"].nunique()
+    files = comparison.rows.loc[comparison.rows["verdict"].isin(CHANGES), "file"].nunique()
     return f"The folders differ in {files} table{'s' * (files > 1)}."
-
-
-_HARMLESS = (Verdict.WITHIN_ERROR, Verdict.IRREGULAR)
 
 
 def largest(comparison: Comparison) -> pd.DataFrame:
     """The largest changes of every table, those beyond their error first."""
-    rows = comparison.rows.assign(harmless=comparison.rows["verdict"].isin(_HARMLESS))
-    order = rows.sort_values(["harmless", "relative_change"], ascending=[True, False], kind="stable")
-    return (
-        order.groupby("file", sort=True)
-        .head(SHOWN)
-        .sort_values("file", kind="stable")
-        .drop(columns="harmless")
-    )
+    rows = comparison.rows.assign(counts=comparison.rows["verdict"].isin(CHANGES))
+    order = rows.sort_values(["counts", "relative_change"], ascending=False, kind="stable")
+    return order.groupby("file").head(SHOWN).sort_values("file", kind="stable").drop(columns="counts")
 
 
 def causes_table(comparison: Comparison, old: Path, new: Path) -> pd.DataFrame:
@@ -105,11 +97,14 @@ def _counts(comparison: Comparison) -> pd.DataFrame:
 
 def _pictures(comparison: Comparison, old: Path, new: Path, folder: Path) -> Iterator[Picture]:
     for name in comparison.rows["file"].unique():
-        known = [path for path in CURVES if name == path or name.endswith(f"/{path}")]
-        if known and (old / name).exists() and (new / name).exists():
-            before, after, title = _worst_series(name, CURVES[known[0]], old, new)
+        curve = declared(CURVES, name)
+        if curve and (old / name).exists() and (new / name).exists():
+            before, after, title = _worst_series(name, curve, old, new)
             path = folder / f"{name.replace('/', '_')}.png"
-            save(curves_compared(before, after, CURVES[known[0]].x, CURVES[known[0]].y, title), path)
+            save(
+                curves_compared(before, after, curve.x, curve.y, (words(curve.x), words(curve.y)), title),
+                path,
+            )
             yield Picture(path, f"{name}{f': {title}' if title else ''}")
 
 

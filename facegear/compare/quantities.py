@@ -7,6 +7,9 @@ README.md and of the page that stands beside each.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TypeVar
+
+Declared = TypeVar("Declared")
 
 MOTION_COLUMNS = ("class", "motion", "class_before", "class_after")
 """Columns that name a class of motion."""
@@ -109,3 +112,8 @@ CURVES: Mapping[str, Curve] = {
     "load_sharing/nominal.csv": Curve("cycle_fraction", "coefficient", ("group",)),
     "load_sharing/speed_range.csv": Curve("speed_rpm", "mean", ("group",)),
 }
+
+
+def declared(known: Mapping[str, Declared], name: str) -> Declared | None:
+    """What is known of a table; of that of a study's point the same as of the machine's own."""
+    return next((known[path] for path in known if name == path or name.endswith(f"/{path}")), None)

@@ -68,16 +68,7 @@ class Table:
 
     def header(self) -> list[str]:
         """Column names as words, with their units as they are written."""
-        return [self._words(str(name)) for name in self.frame.columns]
-
-    @staticmethod
-    def _words(name: str) -> str:
-        ending = _unit(name)
-        return (
-            (f"{name} ".replace(f"_{ending} ", f" ({UNITS[ending]}) ") if ending else name)
-            .replace("_", " ")
-            .strip()
-        )
+        return [words(str(name)) for name in self.frame.columns]
 
     def rows(self) -> list[list[str]]:
         """Cells as text."""
@@ -132,6 +123,16 @@ def render(title: str, lead: str, chapters: Sequence[Chapter]) -> str:
     """The page as HTML text that needs no other file."""
     viewer = VIEWER.read_text(encoding="utf-8") if any(chapter.view for chapter in chapters) else ""
     return pages.render(TEMPLATE, title=title, lead=lead, chapters=chapters, viewer=viewer)
+
+
+def words(name: str) -> str:
+    """A column's name as words, with its unit as it is written."""
+    ending = _unit(name)
+    return (
+        (f"{name} ".replace(f"_{ending} ", f" ({UNITS[ending]}) ") if ending else name)
+        .replace("_", " ")
+        .strip()
+    )
 
 
 def _unit(name: str) -> str:

@@ -10,8 +10,9 @@ import pytest
 import facegear
 from facegear.__main__ import main
 from facegear.compare import answers
-from facegear.compare.judge import Verdict, compare
+from facegear.compare.judge import Verdict, answer_tables, compare
 from facegear.errors import CorruptFile, FacegearError
+from facegear.io.checksums import sha256
 
 CONFIG = Path(__file__).parents[3] / "config" / "harmonics_only.yaml"
 
@@ -115,11 +116,10 @@ def test_a_change_is_traced_to_config_code_and_versions_of_all_stages_before(tmp
     (tmp_path / "new/statics/force.csv").write_text("mesh,force_n\nright input/upper,1100.0\n")
     for manifest in tmp_path.rglob("*.json"):  # a table as its stage wrote it
         record = json.loads(manifest.read_text())
-        record["files"] = {}
-        for table in manifest.parent.glob("*.csv"):
-            from facegear.io.checksums import sha256
-
-            record["files"][table.name] = {"bytes": table.stat().st_size, "sha256": sha256(table)}
+        record["files"] = {
+            table.name: {"bytes": table.stat().st_size, "sha256": sha256(table)}
+            for table in manifest.parent.glob("*.csv")
+        }
         manifest.write_text(json.dumps(record))
     page = tmp_path / "page.html"
     assert main(["compare", str(tmp_path / "old"), str(tmp_path / "new"), "--page", str(page)]) == 1
@@ -137,12 +137,19 @@ def test_a_table_edited_by_hand_is_refused_and_not_compared(tmp_path, capsys):
 
 
 def test_stored_answers_are_small_the_same_bytes_each_time_and_compare_equal_to_their_source(
-    nominal, tmp_path
+    nominal, tmp_path, monkeypatch
 ):
+    """Tables too large to be stored counted as added, so that no stored answer was equal to its source."""
+    sizes = sorted((nominal / name).stat().st_size for name in answer_tables(nominal))
+    monkeypatch.setattr(answers, "MOST_BYTES", sizes[-2])
     for name in ("a.zip", "b.zip"):
         answers.store(nominal, tmp_path / name)
     assert (tmp_path / "a.zip").read_bytes() == (tmp_path / "b.zip").read_bytes()
     assert (tmp_path / "a.zip").stat().st_size < 100_000
+    shutil.unpack_archive(tmp_path / "a.zip", tmp_path / "stored")
+    assert len(answer_tables(tmp_path / "stored")) == len(sizes) - 1
+    for one, other in ((tmp_path / "stored", nominal), (nominal, tmp_path / "stored")):
+        assert compare(one, other).rows.empty
 
 
 @pytest.mark.parametrize("name", ["no/such", "0.0.0/paper", str(CONFIG)])
