@@ -75,7 +75,7 @@ def fingerprint(script: str | Path, root: str | Path, modules: Sequence[str] = (
     """
     root, script = Path(root), Path(script)
     own = _hash(_source(script, root).code, reached_modules(script, root), root)
-    return ".".join([own, *([stage_fingerprint(modules, root)] if modules else [])])
+    return f"{own}.{stage_fingerprint(modules, root)}" if modules else own
 
 
 def stage_fingerprint(modules: Sequence[str], root: str | Path) -> str:
