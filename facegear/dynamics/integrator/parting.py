@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.compiled import Packed
+from facegear.dynamics.integrator.contact_states import SHORTEST
 from facegear.dynamics.integrator.kernel import inlined
 from facegear.dynamics.integrator.roots import first_root, root_after
 from facegear.dynamics.integrator.work import Work
@@ -37,13 +38,13 @@ def find_parting(packed: Packed, work: Work) -> None:
 
 
 @inlined
-def correct_parting(packed: Packed, work: Work, soon: float) -> bool:
-    """Where a contact's force is zero, its value after the time `soon` decides; True if one changed."""
+def correct_parting(packed: Packed, work: Work) -> bool:
+    """Where a contact's force is zero, its value after SHORTEST decides; True if one changed."""
     changed = False
     for m in range(packed.contacts):
         if work.at_parting[m] == 0:
             continue
-        later = _push(packed, work, m, 1) + soon * _push(packed, work, m, 2)
+        later = _push(packed, work, m, 1) + SHORTEST * _push(packed, work, m, 2)
         if (later > 0.0) != (work.active[m] > 0.0):
             _act(packed, work, m, later > 0.0)
             changed = True
@@ -51,7 +52,7 @@ def correct_parting(packed: Packed, work: Work, soon: float) -> bool:
 
 
 @inlined
-def parting_time(packed: Packed, work: Work, m: int, length: float, shortest: float) -> float:
+def parting_time(packed: Packed, work: Work, m: int, length: float) -> float:
     """Share of the step at which the force of contact m passes zero; 2.0 if it does not."""
     first, power = work.at_parting[m], 1.0
     for i in range(work.order):
@@ -60,7 +61,7 @@ def parting_time(packed: Packed, work: Work, m: int, length: float, shortest: fl
         power *= length
     root = first_root(work.polynomial, work.order - 1, work.conversion_less, work.subdivision)
     # Flanks that just met or parted: what follows at once was decided by the rates already.
-    if (first > 0 or abs(work.at_level[m]) == 1) and root * length < shortest:
+    if (first > 0 or abs(work.at_level[m]) == 1) and root * length < SHORTEST:
         root = root_after(work.polynomial, work.order - 1, root, work.conversion_less, work.subdivision)
     return root
 

@@ -5,8 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.dynamics.integrator.advance import advance, after, flank_of, move
+from facegear.dynamics.integrator.advance import advance, after, move
 from facegear.dynamics.integrator.compiled import TAU, Packed
+from facegear.dynamics.integrator.contact_states import flank_of
 from facegear.dynamics.integrator.kernel import inlined, kernel
 from facegear.dynamics.integrator.parting import shearing_damping
 from facegear.dynamics.integrator.rings import ring_slopes, ring_trace
