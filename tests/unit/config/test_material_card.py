@@ -1,8 +1,10 @@
-"""Material cards name their source, and mistakes in them are told by key."""
+"""Material cards name their source, and mistakes in them are reported by key."""
 
 import pytest
 
+from facegear.config.base import parse
 from facegear.config.material_card import CARDS, material_card
+from facegear.config.strength import BodyStrength
 from facegear.errors import ConfigErrors
 
 
@@ -20,3 +22,10 @@ def test_life_factors_that_do_not_fall_are_refused_with_their_key(tmp_path):
     (tmp_path / "card.yaml").write_text(text)
     with pytest.raises(ConfigErrors, match=r"bending\.life"):
         material_card(tmp_path / "card.yaml")
+
+
+def test_an_unknown_material_is_refused_with_the_names_of_those_there_are():
+    """The file that there is none of was named, by the path of the installed package."""
+    names = ", ".join(sorted(path.stem for path in CARDS.glob("*.yaml")))
+    with pytest.raises(ConfigErrors, match=rf'card = "cheese": must be one of {names}$'):
+        parse(BodyStrength, {"card": "../config/cheese", "root_roughness_um": 16}, source="strength.pinion")
