@@ -53,7 +53,7 @@ def _manifests(folder: Path) -> dict[str, tuple[Path, Manifest]]:
 
 
 def _config(before: Mapping[str, Manifest], after: Mapping[str, Manifest]) -> Iterator[str]:
-    for rule in before.keys() & after.keys():
+    for rule in sorted(before.keys() & after.keys()):
         old, new = (dict(_leaves("", side[rule]["params"].get("needs") or {})) for side in (before, after))
         for key in sorted(old.keys() | new.keys()):
             if old.get(key) != new.get(key):
@@ -88,7 +88,7 @@ def _code(before: Mapping[str, Manifest], after: Mapping[str, Manifest]) -> Iter
 
 
 def _versions(before: Mapping[str, Manifest], after: Mapping[str, Manifest]) -> Iterator[str]:
-    for rule in before.keys() & after.keys():
+    for rule in sorted(before.keys() & after.keys()):
         old, new = before[rule].get("versions", {}), after[rule].get("versions", {})
         for library in sorted(old.keys() & new.keys()):
             if old[library] != new[library]:

@@ -10,6 +10,7 @@ import pytest
 import facegear
 from facegear.__main__ import main
 from facegear.compare import answers
+from facegear.compare.causes import causes
 from facegear.compare.judge import Verdict, answer_tables, compare
 from facegear.errors import CorruptFile, FacegearError
 from facegear.io.checksums import sha256
@@ -128,6 +129,17 @@ def test_a_change_is_traced_to_config_code_and_versions_of_all_stages_before(tmp
     assert "code of stage stiffness" in told and "numpy 2.3 -> 2.4" in told and "alike" not in told
     assert "The folders differ in 1 table." in told
     assert "410000000.0" in page.read_text()
+
+
+def test_what_may_have_moved_a_table_is_listed_in_the_same_order_in_every_run(tmp_path):
+    """The order was that of a set of texts, which differs from process to process."""
+    stages = [f"stage_{letter}" for letter in "abcdefgh"]
+    for side in ("old", "new"):
+        for stage, before in zip(stages, [None, *stages], strict=False):
+            inputs = [f"../{before}/k.csv"] if before else []
+            with_manifest(tmp_path / side, f"{stage}/k.csv", stage, {stage: side}, inputs=inputs)
+    lines = causes(f"{stages[-1]}/k.csv", tmp_path / "old", tmp_path / "new")
+    assert lines == [f"config {stage}: 'old' -> 'new'" for stage in stages]
 
 
 def test_a_table_edited_by_hand_is_refused_and_not_compared(tmp_path, capsys):
