@@ -131,8 +131,7 @@ def half_backlash(section: Transmission) -> float:
 def imperfections(section: Transmission, shape: Layout, unloaded: Harmonics | None = None) -> Imperfections:
     """Errors of single meshes and bodies, in m."""
     meshes = [section.single_meshes.get(name, SingleMesh()) for name in shape.mesh_names]
-    pinions = [section.single_pinions.get(pinion.name, SinglePinion()) for pinion in shape.pinions]
-    gears = [section.single_gears.get(gear.side.value, SingleGear()) for gear in shape.gears]
+    pinions, gears = _singles(section, shape)
     play = [section.pinion.play_um if one.play_um is None else one.play_um for one in pinions]
     backlash = [np.nan if one.backlash_um is None else one.backlash_um for one in meshes]
     return Imperfections(
@@ -156,8 +155,7 @@ def imperfections(section: Transmission, shape: Layout, unloaded: Harmonics | No
 
 def external_forces(section: Transmission, shape: Layout) -> NDArray[np.float64]:
     """External force on each body along its x, y, z, shape (bodies, 3), N."""
-    pinions = [section.single_pinions.get(pinion.name, SinglePinion()) for pinion in shape.pinions]
-    gears = [section.single_gears.get(gear.side.value, SingleGear()) for gear in shape.gears]
+    pinions, gears = _singles(section, shape)
     on_pinions = [(one.force_n.x, one.force_n.y, 0.0) for one in pinions]
     return np.array(on_pinions + [(one.force_n.x, one.force_n.y, one.force_n.z) for one in gears])
 
@@ -212,6 +210,14 @@ def error_lags(section: Transmission, shape: Layout) -> NDArray[np.float64] | No
 def other_gear_torque(section: Transmission) -> float:
     """Torque on the face gear that is not the output, N m."""
     return float(sum(gear.torque_n_m for gear in section.single_gears.values()))
+
+
+def _singles(section: Transmission, shape: Layout) -> tuple[list[SinglePinion], list[SingleGear]]:
+    """What each pinion and each face gear has of its own, in the order of the layout."""
+    return (
+        [section.single_pinions.get(pinion.name, SinglePinion()) for pinion in shape.pinions],
+        [section.single_gears.get(gear.side.value, SingleGear()) for gear in shape.gears],
+    )
 
 
 def _body(section: PinionBody | GearBody, own: SinglePinion | SingleGear | None) -> Body:
