@@ -18,6 +18,7 @@ from facegear.dynamics.following import FORGOTTEN, follow
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.errors import ConfigError
+from facegear.geometry.flank_errors import FLANKS
 from facegear.load_sharing.even_shares import even_shares
 from facegear.load_sharing.hunting import hunting_length
 from facegear.progress import Progress
@@ -30,7 +31,6 @@ from facegear.transmission.machine import Machine
 
 POSITIONS = 64
 """Samples of a mesh cycle while runouts turn."""
-FLANKS = ("drive", "back")
 
 
 @dataclass(frozen=True, eq=False)

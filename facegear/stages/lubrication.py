@@ -39,11 +39,8 @@ def lubrication(
     passes the oil's flash point, NotConverged where bulk temperatures do not settle.
     """
     section = lubrication_section(lubrication)
-    loaded, limits, speed = (
-        loaded_pair(ltca, pressure, section, tooth_pair),
-        limits_of(section),
-        speed_rpm * pi / 30,
-    )
+    loaded = loaded_pair(ltca, pressure, section, tooth_pair)
+    limits, speed = limits_of(section), speed_rpm * pi / 30
     states = loaded.states(speed)
     table = by_torque_table(loaded, states, speed, limits)
     content = {
