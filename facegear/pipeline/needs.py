@@ -12,8 +12,7 @@ from facegear.pipeline.table import STAGES
 def stage_needs(name: str, values: Values) -> dict[str, Any]:
     """The arguments that a stage takes from the plain values of a whole config.
 
-    Raises ConfigError for modes, dynamics and load
-    sharing of a config of tooth contact alone.
+    Raises ConfigError for modes, dynamics and load sharing of a config of tooth contact alone.
     """
     return resolved_needs(STAGES[name].needs, Case(values))
 
