@@ -34,7 +34,7 @@ def dynamic_root_stress(
         drive, back = flank_places(phases[[number]], rows["mesh_cycle"].to_numpy()).T
         forces[str(mesh)], places[str(mesh)] = force, np.where(force < 0.0, back, drive)
     contacts = flank_contacts(stress, by_flank)
-    own = {mesh: contacts_of(mesh, contacts, alone=len(gears) == 1) for mesh in forces}
+    own = {mesh: contacts_of(mesh, contacts, gears) for mesh in forces}
     table = dynamic_stress_table(forces, places, pair(tooth_pair).design.pinion_base_radius, own)
     worst = table.loc[table["face_gear_running_mpa"].idxmax()]
     told = f"{worst['mesh']}: face gear {worst['face_gear_running_mpa']:.0f} MPa"

@@ -13,6 +13,7 @@ from facegear.config.tooth_pair import pair
 from facegear.errors import ConfigError
 from facegear.geometry.analysis import section_contact_ratio
 from facegear.stages.outcome import Outcome
+from facegear.strength.flank_contacts import flank_contacts
 from facegear.strength.met_flanks import met_by, worst_pressure, worst_root
 from facegear.strength.rating import Rated, rate
 from facegear.strength.rating_tables import curve_table, damage_table, rating_table, safety_table
@@ -37,11 +38,12 @@ def rating(
         raise ConfigError("strength", None, "given for safety and life")
     section, design = parse(Strength, strength), pair(tooth_pair).design
     request, bins = rating_request(section, design, duty_spectrum), duty_bins(section)
+    contacts = flank_contacts(stress, by_flank)
     found: list[Rated] = []
     tables: dict[str, list[pd.DataFrame]] = {}
     for duty in request.duty:
-        contacts = met_by(duty, gears)
-        roots, pressure = {duty.gear: worst_root(stress, duty, contacts)}, worst_pressure(by_flank, contacts)
+        met = [contacts[one] for one in met_by(duty, gears)]
+        roots, pressure = {duty.gear: worst_root(duty, met)}, worst_pressure(met)
         alone = replace(request, duty=(duty,))
         ways = rate(design, section_contact_ratio(design), roots, pressure, alone)
         found += ways

@@ -28,8 +28,8 @@ def stress_over_speed(
 ) -> Outcome:
     """`stress_over_speed` (table) from the sweep and, where there are any, the branches.
 
-    stress: arrays of stage root_stress; by_flank: table of stage contact; every mesh has
-    the stress of its own gear, of `gears`, on the flank where it is more. Raises NotConverged.
+    stress: arrays of stage root_stress; by_flank: table of stage contact; every mesh has the
+    stress of its own gear, of `gears`, on the flank where it is more. Raises NotConverged.
     """
     machine = wired_machine(transmission, teeth, harmonics)
     at_rest = float(np.abs(static_equilibrium(machine).forces).max())
@@ -38,7 +38,7 @@ def stress_over_speed(
         followed = branch_forces(branches, np.unique(forces["speed_rpm"]))
         forces = pd.concat([forces, followed], ignore_index=True)
     contacts = flank_contacts(stress, by_flank)
-    own = {mesh: contacts_of(mesh, contacts, len(gears) == 1).values() for mesh in forces["mesh"].unique()}
+    own = {mesh: contacts_of(mesh, contacts, gears).values() for mesh in forces["mesh"].unique()}
     radius = pair(tooth_pair).design.pinion_base_radius
     table = stress_table(forces, at_rest, radius, own)
     worst = table.loc[table["largest_force_n"].idxmax()]

@@ -1,5 +1,6 @@
 """Columns of the tables of root stress, apart from what computes them."""
 
+BODIES = ("pinion", "face_gear")
 FILLETS = ("loaded", "other")
 """Below the flank that is loaded when the pinion drives, and below the other flank of the same tooth."""
 
@@ -24,7 +25,7 @@ ROOT_STRESS_ARRAYS = {
     "flank_variant": (2, 2),
     **{
         f"{body}_{name}": shape
-        for body in ("pinion", "face_gear")
+        for body in BODIES
         for name, shape in (
             ("passage", (None,)),
             ("stress_pa", (None, None, 2, None, None)),

@@ -1,4 +1,4 @@
-"""Pressure inside the flanks and load on their tip edges at any torque, from the contact analysis."""
+"""Pressure inside the flanks, load on tip edges and in fillets at any torque, from the contact analysis."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -19,7 +19,8 @@ class ContactPressure:
     """Largest values over a pitch at t torques (N m), all (t,).
 
     `pressure` and its `error` (Pa), away from edges; nan where edges carry all. `edge_load` (N/m) along tip
-    edges and `edge_length` (m) that carries any: pressure there has no limit.
+    edges and `edge_length` (m) that carries any: pressure there has no limit. `fillet_share` of the torque
+    that fillets carry, which is left out of pressure and root stress.
     """
 
     torques: Array
@@ -27,6 +28,7 @@ class ContactPressure:
     error: Array
     edge_load: Array
     edge_length: Array
+    fillet_share: Array
 
     @property
     def known(self) -> bool:
@@ -61,8 +63,12 @@ class ContactPressure:
         the length is linear between them and constant beyond.
         """
         growth = scale(self.torques, self.edge_load, 0.5, 1.0)
-        load = float(growth.at(self.edge_load, torque)) if torque > 0.0 else 0.0
-        return load, float(np.interp(torque, np.append(0.0, self.torques), np.append(0.0, self.edge_length)))
+        length = np.interp(torque, np.append(0.0, self.torques), np.append(0.0, self.edge_length))
+        return float(growth.at(self.edge_load, torque)), float(length)
+
+    def fillet_at(self, torque: Array) -> Array:
+        """Share of torques (n,) that fillets carry: linear between those solved, constant outside them."""
+        return np.interp(torque, self.torques, self.fillet_share)
 
 
 def contact_pressure(by_torque: "pd.DataFrame") -> ContactPressure:
@@ -73,5 +79,6 @@ def contact_pressure(by_torque: "pd.DataFrame") -> ContactPressure:
         "pressure_error_mpa": 1e6,
         "tip_line_load_n_per_mm": 1e3,
         "tip_length_mm": 1e-3,
+        "fillet_share": 1.0,
     }
     return ContactPressure(*(scale * by_torque[name].to_numpy(float) for name, scale in scales.items()))

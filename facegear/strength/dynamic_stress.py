@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from facegear.strength.columns import DYNAMIC_STRESS_COLUMNS
-from facegear.strength.flank_contacts import BODIES, FlankContact
+from facegear.strength.columns import BODIES, DYNAMIC_STRESS_COLUMNS
+from facegear.strength.flank_contacts import FlankContact, largest_pressure
 
 Array = NDArray[np.float64]
 
@@ -44,10 +44,8 @@ def _row(
         bounds = (contacts[at].history[body].over_passage(torque) for at, torque in most_of.items())
         largest = max(float(values.max()) for values in running)
         stresses += [steady.tension[body](base_radius * mean), largest, max(bounds)]
-    stresses.append(steady.pressure(base_radius * mean))
-    stresses.append(
-        max(contacts[at].pressure(base_radius * float(part.max())) for at, part in loaded.items())
-    )
+    stresses.append(steady.pressure.at(base_radius * mean))
+    stresses.append(largest_pressure((contacts[at], torque) for at, torque in most_of.items()))
     within = steady.solved(base_radius * mean) and steady.solved(base_radius * most)
     factor = most / mean if mean > 0.0 else np.nan
     return (mesh, mean, most, factor, *(1e-6 * stress for stress in stresses), within)

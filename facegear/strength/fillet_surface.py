@@ -5,9 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.strength.columns import FILLETS
-
-BODIES = ("pinion", "face_gear")
+from facegear.strength.columns import BODIES, FILLETS
 
 
 def stress_surface(

@@ -1,22 +1,22 @@
 """Root stress and pressure of each contact of a machine: a gear's drive or back flank with its pinions."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import numpy as np
 from numpy.typing import NDArray
 
 from facegear.geometry.flank_errors import FLANKS, GEARS
-from facegear.strength.contact_pressure import contact_pressure
+from facegear.strength.columns import BODIES
+from facegear.strength.contact_pressure import ContactPressure, contact_pressure
 from facegear.strength.root_stress import RootStress, largest_tension
 from facegear.strength.root_tables import root_from_arrays
 from facegear.strength.tension_history import TensionHistory
 
 if TYPE_CHECKING:
     import pandas as pd
-
-BODIES = ("pinion", "face_gear")
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,11 +28,11 @@ class FlankContact:
     roots
         Root stress of pinion and face gear, by body.
     pressure
-        Largest pressure (Pa) over the passage at a torque (N m).
+        Largest pressure and load on edges over the passage.
     """
 
     roots: Mapping[str, RootStress]
-    pressure: Callable[[float], float]
+    pressure: ContactPressure
 
     @cached_property
     def tension(self) -> dict[str, Callable[[float], float]]:
@@ -56,7 +56,7 @@ def flank_contacts(
 
     Contacts with the same assembly errors are the same object.
     """
-    table = by_flank.set_index(["gear", "flank"]).sort_index()
+    tables = dict(iter(by_flank.sort_values("torque_n_m").groupby(["gear", "flank"])))
     by_variant: dict[int, FlankContact] = {}
     contacts = {}
     for row, gear in enumerate(GEARS):
@@ -64,15 +64,22 @@ def flank_contacts(
             variant = int(stress["flank_variant"][row, column])
             if variant not in by_variant:
                 roots = {body: root_from_arrays(stress, body, gear, flank) for body in BODIES}
-                own = table.loc[[(gear, flank)]].sort_values("torque_n_m")
-                by_variant[variant] = FlankContact(roots, contact_pressure(own).at)
+                by_variant[variant] = FlankContact(roots, contact_pressure(tables[gear, flank]))
             contacts[gear, flank] = by_variant[variant]
     return contacts
 
 
 def contacts_of(
-    mesh: str, contacts: Mapping[tuple[str, str], FlankContact], alone: bool
+    mesh: str, contacts: Mapping[tuple[str, str], FlankContact], gears: Sequence[str]
 ) -> dict[str, FlankContact]:
-    """Contacts of a mesh, named `pinion/gear`, by flank. A gear that is `alone` is the upper one."""
-    gear = "upper" if alone else mesh.rsplit("/", 1)[1]
+    """Contacts by flank of a mesh, named `pinion/gear`, of a machine with these `gears`.
+
+    A gear alone is the upper one, whatever the machine calls it.
+    """
+    gear = gears[0] if len(gears) == 1 else mesh.rsplit("/", 1)[1]
     return {flank: contacts[gear, flank] for flank in FLANKS}
+
+
+def largest_pressure(loaded: Iterable[tuple[FlankContact, float]]) -> float:
+    """Largest pressure (Pa) of contacts at torques (N m), of those whose edges do not carry all; else nan."""
+    return float(np.fmax.reduce([contact.pressure.at(torque) for contact, torque in loaded]))

@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from facegear.strength.columns import STRESS_OVER_SPEED_COLUMNS
-from facegear.strength.flank_contacts import BODIES, FlankContact
+from facegear.strength.columns import BODIES, STRESS_OVER_SPEED_COLUMNS
+from facegear.strength.flank_contacts import FlankContact, largest_pressure
 
 Array = NDArray[np.float64]
 ALIKE = 1e-3
@@ -71,7 +71,7 @@ def stress_table(
     flank. `worst`: the hardest of all motions known at that speed, and those as hard.
     """
     torques = base_radius * forces["largest_force_n"].to_numpy()
-    loads = list(zip([set(contacts[mesh]) for mesh in forces["mesh"]], torques, strict=True))
+    loads = list(zip([dict.fromkeys(contacts[mesh]) for mesh in forces["mesh"]], torques, strict=True))
     most = forces.groupby("speed_rpm")["largest_force_n"].transform("max")
     table = forces.assign(
         dynamic_factor=forces["largest_force_n"] / static_force if static_force > 0.0 else np.nan,
@@ -79,7 +79,7 @@ def stress_table(
             f"{body}_mpa": [1e-6 * max(one.tension[body](torque) for one in near) for near, torque in loads]
             for body in BODIES
         },
-        pressure_mpa=[1e-6 * max(one.pressure(torque) for one in near) for near, torque in loads],
+        pressure_mpa=[1e-6 * largest_pressure((one, torque) for one in near) for near, torque in loads],
         within_torques_solved=[next(iter(near)).solved(torque) for near, torque in loads],
         worst=forces["largest_force_n"] >= (1.0 - ALIKE) * most,
     )

@@ -6,8 +6,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from facegear.geometry.flank_errors import FLANKS, GEARS
+from facegear.geometry.flank_errors import GEARS
 from facegear.strength.duty import FlankDuty
+from facegear.strength.flank_contacts import contacts_of, flank_contacts
 from facegear.strength.met_flanks import met_by, worst_pressure, worst_root
 from facegear.strength.root_stress import RootStress
 from facegear.strength.root_tables import root_arrays
@@ -15,7 +16,13 @@ from facegear.strength.root_tables import root_arrays
 ONE = np.ones(1)
 DUTY = FlankDuty("pinion", "pinion", "drive", np.zeros(1, int), 500.0 * ONE, 1e6 * ONE, 0 * ONE)
 NUMBERS = np.array([[0, 1], [2, 3]])
-PRESSURES = {("upper", "drive"): 900.0, ("upper", "back"): 950.0, ("lower", "drive"): 930.0}
+PRESSURES = {
+    ("upper", "drive"): 900.0,
+    ("upper", "back"): 950.0,
+    ("lower", "drive"): 930.0,
+    ("lower", "back"): 910.0,
+}
+SIZES = (1.0, 1.2, 1.1, 1.05)
 
 
 def root(size):
@@ -43,23 +50,34 @@ def test_a_gear_s_flank_meets_its_pinions_and_a_pinion_s_flank_both_gears(duty, 
     assert met_by(replace(DUTY, **duty), gears) == met
 
 
-def test_the_worst_of_all_contacts_of_a_flank_is_rated():
-    sizes = (1.0, 1.2, 1.1, 1.05)
-    variants = [{body: root(size) for body in ("pinion", "face_gear")} for size in sizes]
+def contacts(numbers):
+    variants = [{body: root(size) for body in ("pinion", "face_gear")} for size in SIZES]
     place = np.zeros((2, 4, 3, 3))
-    stress = root_arrays(variants, NUMBERS, {"pinion": place, "face_gear": place})
-    for (row, column), number in np.ndenumerate(NUMBERS):
-        alone = worst_root(stress, DUTY, [(GEARS[row], FLANKS[column])])
-        assert alone.stress.max() == pytest.approx(1000.0 * sizes[number])
-    found = worst_root(stress, DUTY, met_by(DUTY, GEARS))
-    assert found.stress.max() == pytest.approx(1100.0)
+    stress = root_arrays(variants, numbers, {"pinion": place, "face_gear": place})
     rows = [
-        (gear, flank, torque, size * torque, 10.0, 50.0 * size, 1.0)
+        (gear, flank, torque, size * torque, 10.0, 50.0 * size, 1.0, 1e-4 * size)
         for (gear, flank), size in PRESSURES.items()
         for torque in (300.0, 1000.0)
     ]
-    names = ("pressure_mpa", "pressure_error_mpa", "tip_line_load_n_per_mm", "tip_length_mm")
-    table = pd.DataFrame(rows, columns=["gear", "flank", "torque_n_m", *names])
-    pressure = worst_pressure(table, met_by(DUTY, GEARS))
+    values = ("pressure_mpa", "pressure_error_mpa", "tip_line_load_n_per_mm", "tip_length_mm", "fillet_share")
+    return flank_contacts(stress, pd.DataFrame(rows, columns=["gear", "flank", "torque_n_m", *values]))
+
+
+def test_the_worst_of_all_contacts_of_a_flank_is_rated():
+    found = contacts(NUMBERS)
+    for number, contact in enumerate(found.values()):
+        assert worst_root(DUTY, [contact]).stress.max() == pytest.approx(1000.0 * SIZES[number])
+    met = [found[one] for one in met_by(DUTY, GEARS)]
+    assert worst_root(DUTY, met).stress.max() == pytest.approx(1100.0)
+    pressure = worst_pressure(met)
     np.testing.assert_allclose(pressure.pressure, 1e6 * 930.0 * np.array([300.0, 1000.0]))
     np.testing.assert_allclose(pressure.edge_load, 1e3 * 50.0 * 930.0)
+    np.testing.assert_allclose(pressure.fillet_share, 0.093)
+
+
+def test_a_mesh_has_the_contacts_of_its_own_gear_and_a_gear_alone_those_of_the_upper():
+    found = contacts(NUMBERS)
+    assert contacts_of("a/lower", found, GEARS)["back"] is found["lower", "back"]
+    assert contacts_of("a/wheel", found, ("upper",))["drive"] is found["upper", "drive"]
+    alike = contacts(np.zeros((2, 2), int))
+    assert len(set(alike.values())) == 1  # flanks with the same errors share one contact

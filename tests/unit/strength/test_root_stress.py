@@ -19,10 +19,11 @@ from facegear.config.machines import case_machine
 from facegear.geometry.flank_errors import FLANKS
 from facegear.harmonics.series import Harmonics
 from facegear.io.meshes import write_vtu
+from facegear.strength.columns import BODIES
 from facegear.strength.contact_pressure import ContactPressure
 from facegear.strength.dynamic_stress import dynamic_stress_table
 from facegear.strength.fillet_surface import stress_surface
-from facegear.strength.flank_contacts import BODIES, FlankContact
+from facegear.strength.flank_contacts import FlankContact
 from facegear.strength.root_form import root_form
 from facegear.strength.root_stress import down_the_fillet, root_stress
 from facegear.strength.root_tables import root_arrays, root_tables
@@ -36,6 +37,8 @@ GRID = (2, 4, 3)
 ALIKE = np.zeros((2, 2), int)
 """Flanks of both gears without assembly errors."""
 ERROR = np.array([0.02, 0.01, 0.03])
+PRESSURE = ContactPressure(TORQUES, np.sqrt(TORQUES), *np.zeros((4, 2)))
+EDGES_ALONE = replace(PRESSURE, pressure=np.full(2, np.nan))
 
 
 def passing(loads):
@@ -187,7 +190,7 @@ def test_running_machine_is_judged_by_the_magnitude_of_each_mesh_force():
     }
     places = dict.fromkeys([*forces, "high"], np.array([0.0, 0.5]))
     roots = {"pinion": found, "face_gear": found}
-    contacts = dict.fromkeys(places, dict.fromkeys(FLANKS, FlankContact(roots, np.sqrt)))
+    contacts = dict.fromkeys(places, dict.fromkeys(FLANKS, FlankContact(roots, PRESSURE)))
     table = dynamic_stress_table(forces, places, 0.1, contacts).set_index("mesh")
     assert table["dynamic_factor"].iloc[:2].tolist() == pytest.approx([1.5, 1.0])
     assert np.isnan(table.loc["open", "dynamic_factor"])
@@ -221,7 +224,7 @@ def test_each_flank_of_each_gear_in_motion_has_the_stress_of_its_own_contact():
     _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
     drive, back = (
         FlankContact(dict.fromkeys(BODIES, replace(found, stress=factor * found.stress)), press)
-        for factor, press in ((1.0, np.sqrt), (2.0, np.square))
+        for factor, press in ((1.0, PRESSURE), (2.0, replace(PRESSURE, pressure=2.0 * PRESSURE.pressure)))
     )
     force = np.array([1000.0, 3000.0])
     forces = {"a/upper": force, "a/lower": -force, "b/lower": np.array([3000.0, -1000.0])}
@@ -230,7 +233,7 @@ def test_each_flank_of_each_gear_in_motion_has_the_stress_of_its_own_contact():
     table = dynamic_stress_table(forces, places, 0.1, contacts).set_index("mesh")
     for column in ("pinion_mean_mpa", "pinion_running_mpa", "face_gear_bound_mpa"):
         assert table.loc["a/lower", column] == pytest.approx(2.0 * table.loc["a/upper", column])
-    assert table.loc["a/lower", "pressure_bound_mpa"] == pytest.approx(1e-6 * 300.0**2)
+    assert table.loc["a/lower", "pressure_bound_mpa"] == pytest.approx(2e-6 * np.sqrt(300.0))
     both = table.loc["b/lower", "face_gear_bound_mpa"]
     alone = [contact.history["face_gear"].over_passage(at) for contact, at in ((drive, 300.0), (back, 100.0))]
     assert both == pytest.approx(1e-6 * max(alone))
@@ -239,13 +242,29 @@ def test_each_flank_of_each_gear_in_motion_has_the_stress_of_its_own_contact():
     assert over["pinion_mpa"].iloc[0] == pytest.approx(1e-6 * back.tension["pinion"](300.0))
 
 
+@pytest.mark.parametrize("edges_alone", FLANKS)
+def test_pressure_in_motion_is_known_where_edges_carry_all_on_one_of_two_loaded_flanks(edges_alone):
+    """It was empty or not by the order of the flanks."""
+    _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
+    roots = dict.fromkeys(BODIES, found)
+    contacts = {
+        flank: FlankContact(roots, EDGES_ALONE if flank == edges_alone else PRESSURE) for flank in FLANKS
+    }
+    forces, places = {"a/upper": np.array([3000.0, -3000.0])}, {"a/upper": np.array([0.0, 0.5])}
+    table = dynamic_stress_table(forces, places, 0.1, {"a/upper": contacts})
+    assert table["pressure_bound_mpa"].iloc[0] == pytest.approx(1e-6 * np.sqrt(300.0))
+    swept = pd.DataFrame([("sweep up", "period-1", 1000.0, "a/upper", 3000.0)], columns=list(FORCE_COLUMNS))
+    over = stress_table(swept, 1.0, 0.1, {"a/upper": list(contacts.values())})
+    assert over["pressure_mpa"].iloc[0] == pytest.approx(1e-6 * np.sqrt(300.0))
+
+
 def test_stress_in_motion_stays_below_its_bound_where_another_gauge_leads_at_each_torque():
     _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
     rough = replace(found, stress=np.random.default_rng(0).normal(size=found.stress.shape))
     roots = {"pinion": rough, "face_gear": rough}
     forces = {str(force): np.full(16, force) for force in (500.0, 1500.0, 1700.0, 2500.0, 5000.0)}
     places = dict.fromkeys(forces, np.arange(16) / 16)
-    contacts = dict.fromkeys(forces, dict.fromkeys(FLANKS, FlankContact(roots, np.sqrt)))
+    contacts = dict.fromkeys(forces, dict.fromkeys(FLANKS, FlankContact(roots, PRESSURE)))
     table = dynamic_stress_table(forces, places, 0.1, contacts)
     assert (table["pinion_bound_mpa"] >= table["pinion_running_mpa"]).all()
 
@@ -301,8 +320,7 @@ def test_stress_over_speed_takes_the_hardest_of_coexisting_motions():
         }
     )
     forces = pd.concat([swept_forces(SWEPT), branch_forces(branches, np.array([1000.0, 2000.0]))])
-    torques, none = np.array([100.0, 300.0]), np.zeros(2)
-    pressure = ContactPressure(torques, np.array([5e8, 9e8]), none, none, none).at
+    pressure = replace(PRESSURE, pressure=np.array([5e8, 9e8]))
     roots = {"pinion": found, "face_gear": found}
     contacts = {key: [FlankContact(roots, pressure)] for key in forces["mesh"]}
     table = stress_table(forces.reset_index(drop=True), 750.0, 0.1, contacts)
@@ -317,8 +335,7 @@ def test_stress_over_speed_takes_the_hardest_of_coexisting_motions():
     expected = down_the_fillet(found.at_torque(200.0)).max()
     assert at_2000["pinion_mpa"].iloc[0] == pytest.approx(1e-6 * expected)
     assert at_2000["pressure_mpa"].iloc[0] == pytest.approx(500.0 * 2.0 ** (np.log(1.8) / np.log(3.0)))
-    assert pressure(1200.0) == pytest.approx(2.0 * 9e8)
-    unknown = ContactPressure(torques, np.full(2, np.nan), none, none, none)
-    nowhere = {key: [FlankContact(roots, unknown.at)] for key in forces["mesh"]}
+    assert pressure.at(1200.0) == pytest.approx(2.0 * 9e8)
+    nowhere = {key: [FlankContact(roots, EDGES_ALONE)] for key in forces["mesh"]}
     idle = stress_table(forces.reset_index(drop=True), 0.0, 0.1, nowhere)
     assert idle["pressure_mpa"].isna().all() and idle["dynamic_factor"].isna().all()
