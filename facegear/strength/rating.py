@@ -32,6 +32,8 @@ Stress = Callable[[float], float]
 HALVINGS = 60
 EDGE = 1e3
 """Line load (N/m) on tip edges that counts as none."""
+FILLET = 1e-3
+"""Share of the torque in fillets that counts as none."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +72,7 @@ class Rated:
     ever before life factors, which `limit` gives; `safety`: by how much all stresses may rise until Miner's
     sum is 1; `life`: of the duty cycle in seconds. `reliability` at the end of the duty cycle: nan where the
     card has no Weibull shape (`has_shape`), or where no load does damage. `edge_load` (N/m) on tip edges
-    under the largest load.
+    under the largest load; `fillet_share`: the largest share of the torque that fillets carry under any load.
     """
 
     duty: FlankDuty
@@ -86,23 +88,28 @@ class Rated:
     reliability: float
     has_shape: bool
     edge_load: float
+    fillet_share: float
 
     @property
     def verdict(self) -> str:
         """green: as safe as required; amber: lasts the duty cycle; red: does not.
 
-        Pitting is never green where tip edges carry load.
+        Never green where there are `reasons`.
         """
         if self.safety < 1.0:
             return "red"
-        return "green" if self.safety >= self.required and not self.reason else "amber"
+        return "green" if self.safety >= self.required and not self.reasons else "amber"
 
     @property
-    def reason(self) -> str:
-        """Why it is not green although as safe as required, empty where nothing speaks against it."""
-        if self.failure == "bending" or self.edge_load < EDGE:
-            return ""
-        return f"tip edges carry {1e-3 * self.edge_load:.0f} N/mm, where pressure has no limit"
+    def reasons(self) -> tuple[str, ...]:
+        """Why it is not green although as safe as required: loads whose stress is not known."""
+        told = []
+        if self.failure == "pitting" and self.edge_load >= EDGE:
+            told.append(f"tip edges carry {1e-3 * self.edge_load:.0f} N/mm, where pressure has no limit")
+        if self.fillet_share >= FILLET:
+            share = f"fillets carry up to {100 * self.fillet_share:.2g} % of the torque"
+            told.append(f"{share}, kept out of pressure and root stress")
+        return tuple(told)
 
 
 def rate(
@@ -126,16 +133,15 @@ def rate(
         notch = form.notch_parameter if duty.gear == "pinion" else None
         ratio = reversal(roots[duty.gear], duty)
         allowed = permissible_bending(design, request.bodies[duty.gear], notch, ratio)
-        edge, _ = pressure.edge_at(duty.largest)
         ways = {"finite elements": tension[duty.gear]}
         if duty.gear == "pinion":
             ways["ISO 6336-3"] = standard_bending(design, form)
         for method, stress in ways.items():
-            found.append(_rated(request, duty, "bending", method, stress, allowed, bending_limits, edge))
+            found.append(_rated(request, duty, "bending", method, stress, allowed, bending_limits, pressure))
         ways = {"contact analysis": pressure.at} if pressure.known else {}
         allowed = pitting_limits.limit
         for method, stress in (ways | {"ISO 6336-2": pitting[duty.gear]}).items():
-            found.append(_rated(request, duty, "pitting", method, stress, allowed, pitting_limits, edge))
+            found.append(_rated(request, duty, "pitting", method, stress, allowed, pitting_limits, pressure))
     return found
 
 
@@ -147,11 +153,12 @@ def _rated(
     stress: Stress,
     allowed: float,
     limits: PittingLimits | BendingLimits,
-    edge_load: float,
+    pressure: ContactPressure,
 ) -> Rated:
     by_load = np.array([stress(torque) for torque in duty.torque])
     harm = damage(by_load, duty.cycles, allowed, limits.life)
     total = float(harm.sum())
+    loaded = duty.torque[(duty.cycles > 0.0) & (duty.torque > 0.0)]
     return Rated(
         duty=duty,
         failure=failure,
@@ -165,7 +172,8 @@ def _rated(
         life=request.time / total if total > 0.0 else np.inf,
         reliability=reliability(total, limits.weibull_shape),
         has_shape=limits.weibull_shape is not None,
-        edge_load=edge_load,
+        edge_load=pressure.edge_at(duty.largest)[0],
+        fillet_share=float(pressure.fillet_at(loaded).max(initial=0.0)),
     )
 
 

@@ -44,7 +44,7 @@ def safety_table(found: Sequence[Rated], pressure: ContactPressure) -> pd.DataFr
                 min(one.life for one in ways) / 3600.0,
                 float(np.prod(known)) if known else np.nan,
                 f"{nearest.failure} ({nearest.method})",
-                next((one.reason for one in ways if one.reason), ""),
+                "; ".join(dict.fromkeys(reason for one in ways for reason in one.reasons)),
                 all(bool(_within(one, pressure).all()) for one in ways),
             )
         )
@@ -69,7 +69,7 @@ def rating_table(
             one.safety,
             one.required,
             one.verdict,
-            one.reason,
+            "; ".join(one.reasons),
             float(one.damage.sum()),
             one.life / 3600.0,
             one.reliability,

@@ -59,6 +59,7 @@ PRESSURE = ContactPressure(
     error=np.array([8e6, 24e6]),
     edge_load=np.array([1e5, 3e5]),
     edge_length=np.array([2e-3, 4e-3]),
+    fillet_share=np.zeros(2),
 )
 
 
@@ -246,6 +247,7 @@ def test_beyond_the_torques_solved_pressure_rises_with_the_root_of_the_torque_an
             "pressure_error_mpa": [np.nan, 24.0],
             "tip_line_load_n_per_mm": [100.0, 300.0],
             "tip_length_mm": [2.0, 4.0],
+            "fillet_share": [0.0, 0.0],
         }
     )
     found = contact_pressure(table)
@@ -337,7 +339,7 @@ def test_pressure_at_no_torque_is_taken_for_less_than_it_is(exponent, torque):
     torques, none = np.array([300.0, 1000.0]), np.zeros(2)
     for solved in (torques, torques[1:]):
         pressure = 1e9 * (solved / 500.0) ** exponent
-        found = ContactPressure(solved, pressure, none[: solved.size], none, none).at(torque)
+        found = ContactPressure(solved, pressure, none[: solved.size], none, none, none).at(torque)
         assert found >= 1e9 * (torque / 500.0) ** exponent * (1 - 1e-9)
 
 
@@ -354,6 +356,24 @@ def test_flanks_whose_tip_edges_carry_load_are_amber_at_best_and_say_why():
         assert set(table["verdict"]) == {verdict}
         told = table["reason"].iloc[0]
         assert ("tip edges carry 100 N/mm" in told) if verdict == "amber" else told == ""
+
+
+@pytest.mark.parametrize(("share", "light"), [(0.0, 500.0), (9e-4, 500.0), (2e-3, 500.0), (0.15, 250.0)])
+def test_flanks_with_contact_in_fillets_under_any_load_are_amber_at_best_and_say_why(share, light):
+    """Interfering tips carry most of a small torque, so that the largest load does not tell of them."""
+    pressed = replace(
+        PRESSURE, edge_load=np.zeros(2), edge_length=np.zeros(2), fillet_share=np.array([share, 0.0])
+    )
+    design, duty = pair_design(), [DutyBin(light, 20.0, 36.0), DutyBin(1000.0, 20.0, 0.36)]
+    roots = {body: root(100e6) for body in ROOTS}
+    found = rate(design, section_contact_ratio(design), roots, pressed, request(*duty))
+    assert all(one.safety >= one.required for one in found)
+    verdict = "amber" if share >= 1e-3 else "green"
+    tables = safety_table(found, pressed), rating_table(found, pressed, roots)
+    for table in tables:
+        assert set(table["verdict"]) == {verdict}
+        told = f"fillets carry up to {100 * share:.2g} % of the torque" if verdict == "amber" else ""
+        assert table["reason"].str.startswith(told).all() and (told or not table["reason"].any())
 
 
 def test_no_reliability_is_stated_where_no_card_has_the_shape_of_its_distribution():
