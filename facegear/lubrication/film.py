@@ -35,19 +35,17 @@ def elliptic_film(
     viscosity: Numbers,
     pressure_coefficient: Numbers,
     reduced_modulus: float,
-) -> tuple[Array, Array]:
-    """Central and smallest film (m) of an elliptic contact rolled across its longer axis.
+) -> Array:
+    """Smallest film (m) of an elliptic contact rolled across its longer axis.
 
-    Hamrock and Dowson, 2.69 U^.67 G^.53 W^-.067 (1 - .61 e^-.73k) and 3.63 U^.68 G^.49 W^-.073 (1 - e^-.68k)
-    times R. force N, ellipticity k: the axis along the line over that across it.
+    Hamrock and Dowson, 3.63 R U^0.68 G^0.49 W^-0.073 (1 - e^-0.68k). force N, ellipticity k: the axis along
+    the line over that across it.
     """
     radius, k = np.asarray(radius, float), np.asarray(ellipticity, float)
     speed = np.asarray(viscosity, float) * entrained / (reduced_modulus * radius)
     stiff = np.asarray(pressure_coefficient, float) * reduced_modulus
     load = np.asarray(force, float) / (reduced_modulus * radius**2)
-    central = 2.69 * radius * speed**0.67 * stiff**0.53 * load**-0.067 * (1 - 0.61 * np.exp(-0.73 * k))
-    smallest = 3.63 * radius * speed**0.68 * stiff**0.49 * load**-0.073 * (1 - np.exp(-0.68 * k))
-    return central, smallest
+    return 3.63 * radius * speed**0.68 * stiff**0.49 * load**-0.073 * (1 - np.exp(-0.68 * k))
 
 
 def shear_heating(

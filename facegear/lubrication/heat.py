@@ -150,7 +150,7 @@ def running_at(
         known.reduced_modulus,
     )
     film = sheared * line_film(found.radius, entrained, found.line_load, *wet)
-    _, short = elliptic_film(
+    short = elliptic_film(
         found.radius, entrained, found.ellipse_force, found.half_length / found.half_width, *wet
     )
     rubbing = Rubbing(

@@ -67,9 +67,9 @@ def test_worked_point_has_the_specific_film_of_the_micropitting_standard():
     assert float(film) / 0.4e-6 == pytest.approx(0.2321661561, rel=1e-8)
 
 
-def test_elliptic_film_is_that_of_hamrock_and_dowson():
+def test_smallest_elliptic_film_is_that_of_hamrock_and_dowson():
     found = elliptic_film(9e-3, 12.0, 1200.0, 6.0, 4.8e-3, 11e-9, REDUCED)
-    assert np.array(found) == pytest.approx([0.2474022288e-6, 0.2010263022e-6], rel=1e-9)
+    assert float(found) == pytest.approx(0.2010263022e-6, rel=1e-9)
 
 
 def test_open_gear_code_has_the_same_least_film_along_the_path_of_c40_gears():
