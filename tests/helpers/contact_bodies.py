@@ -4,6 +4,7 @@ from dataclasses import replace
 from math import radians
 
 import numpy as np
+import pytest
 import scipy.sparse as sp
 from skfem import MeshHex1, MeshHex2
 
@@ -128,3 +129,18 @@ def pair_design(
     m = 3.75e-3
     pinion = Pinion(23, pinion_width, m, 1.25 * m, rack_tip_radius * m, 0.025)
     return PairDesign(m, radians(25), pinion, FaceGear(143, *radii, m, 0.012), Shaper(shaper_teeth, 1.25 * m))
+
+
+def sound(results):
+    """Loaded positions that meet the conditions of contact, balance the torque and have whole load shares.
+
+    Stiffness is positive; the average one may be unknown where fillets are in the way.
+    """
+    for result in results:
+        assert result.residual < 1e-12
+        assert result.share.sum() == pytest.approx(1.0, abs=1e-10)
+        assert (result.share >= 0).all()
+        assert result.k_average > 0 or (np.isnan(result.k_average) and result.overlap > 0)
+        assert result.k_local > 0
+        assert sum(spot.force.sum() for spot in result.spots) > 0
+    return results
