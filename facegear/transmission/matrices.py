@@ -74,10 +74,11 @@ def mesh_parts(layout: Layout) -> tuple[NDArray[np.float64], NDArray[np.float64]
     """
     cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
     tangential, separating = np.zeros((2, len(layout.meshes), layout.dof))
+    angles = layout.angles
     tilted = {g: DOF_PER_BODY * len(layout.bodies) + 2 * k for k, g in enumerate(layout.tilting)}
     for row, (i, g) in enumerate(layout.meshes):
         side = layout.gears[g].sign
-        along = np.array([np.cos(layout.angles[i]), np.sin(layout.angles[i])])
+        along = np.array([np.cos(angles[i]), np.sin(angles[i])])
         pinion, gear = DOF_PER_BODY * i, DOF_PER_BODY * (len(layout.pinions) + g)
         tangential[row, pinion] = side * cosine
         tangential[row, gear : gear + 2] = -side * cosine * along

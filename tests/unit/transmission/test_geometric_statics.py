@@ -1,4 +1,4 @@
-"""Static load sharing of geometric meshes against closed forms, enumeration and energy."""
+"""Static load sharing of geometric meshes against closed forms, enumeration and the balance of forces."""
 
 import itertools
 from dataclasses import replace
@@ -14,6 +14,7 @@ from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.linear import linear_law
 from facegear.transmission.contact_energy import Springs
 from facegear.transmission.contact_kernel import settle_all
+from facegear.transmission.flanks import constant_errors, flank_gaps
 from facegear.transmission.imperfections import Runout, perfect
 from facegear.transmission.layout import Body, MeshKinematics, Role, Side, Tilt
 from facegear.transmission.matrices import bearing_matrix, flank_directions, rigid_rotation
@@ -54,8 +55,6 @@ def held_forces(machine):
     """Mesh forces (meshes,) of flanks drive - back with both face gears held against turning."""
     springs, kept, _ = static_springs(machine)
     springs = springs._replace(gear_bearing=np.full(springs.gear_bearing.size, HELD))
-    from facegear.transmission.flanks import constant_errors, flank_gaps
-
     gaps = (constant_errors(machine) + flank_gaps(machine))[None]
     law = linear_law(gaps.size * [FLAT])
     _, forces, residual = settle_all(springs, law.held(np.zeros(1)), gaps, TOLERANCE, np.zeros(kept.size))
@@ -161,8 +160,6 @@ def random_machine(draw, most_pinions):
 @settings(max_examples=25, deadline=None)
 @given(st.data())
 def test_sharing_with_gaps_is_the_one_consistent_state_of_all_contact_states(data):
-    from facegear.transmission.flanks import constant_errors, flank_gaps
-
     machine = random_machine(data.draw, 2)
     layout = machine.layout
     directions, bearing = flank_directions(layout), bearing_matrix(layout)
