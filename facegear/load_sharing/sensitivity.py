@@ -41,10 +41,11 @@ def sensitivities(base: HuntingCycle) -> pd.DataFrame:
     that can be the hardest of a group. A group whose paths have no K_gamma has no row. Raises NotConverged.
     """
     base = _coarser(base)
-    machine, rows = base.machine, []
+    machine, rows, hard = base.machine, [], _may_be_hardest(base)
     for name, low, high, width in _changes(machine):
         changed = [replace(machine, imperfections=one) for one in (low, high)]
-        hardest = _hardest_cycles(base, max(map(hunting_length, changed)))
+        # The base repeats itself through a longer hunting cycle.
+        hardest = np.flatnonzero(np.tile(hard, max(map(hunting_length, changed)) // hard.size))
         ends = [at_cycles(one, hardest, base.positions) for one in changed]
         for group in base.groups:
             before, after = (largest(run.path_factors(group)) for run in ends)
@@ -62,25 +63,25 @@ def _coarser(base: HuntingCycle) -> HuntingCycle:
     return replace(base, positions=base.positions // every, cycles=base.cycles[::every], flank_forces=loads)
 
 
-def _hardest_cycles(base: HuntingCycle, length: int) -> NDArray[np.int64]:
-    """Which of `length` mesh cycles may hold the largest K_gamma of some group after a change of STEP.
+def _may_be_hardest(base: HuntingCycle) -> NDArray[np.bool_]:
+    """Whether each mesh cycle of the base may hold the largest K_gamma of some group after a change of STEP.
 
     Forces of springs that only push change by no more than the stiffest of them times the change of all gaps
-    together: the base repeats itself through a longer hunting cycle.
+    together. Where no group has a K_gamma the first cycle stands for all.
     """
     machine, even = base.machine, even_shares(base.machine)
-    factors = base.cycle_means / even
-    factors = np.nan_to_num(np.tile(factors, (length // len(factors), 1)), nan=-np.inf)
+    factors = np.nan_to_num(base.cycle_means / even, nan=-np.inf)
     bearings = max(max(pinion.body.bearing[:2]) for pinion in machine.layout.pinions)
     meshes = machine.stiffness.amplitudes.sum() * machine.imperfections.stiffness.max()
     stiffest = max(meshes, np.sqrt(meshes * bearings))
     reach = 2.0 * STEP * stiffest * np.sqrt(base.flank_forces.shape[1])
-    hardest = np.zeros(length, dtype=bool)
+    hard = np.zeros(len(factors), dtype=bool)
     for group in base.groups:
         own = factors[:, list(group.meshes)]
         lowest = own.max() - reach / np.nanmin(even) if np.isfinite(own).any() else np.inf
-        hardest |= (own >= lowest).any(axis=1)
-    return np.flatnonzero(hardest) if hardest.any() else np.array([0])
+        hard |= (own >= lowest).any(axis=1)
+    hard[0] |= not hard.any()
+    return hard
 
 
 def bearing_scan(machine: Machine) -> pd.DataFrame:
