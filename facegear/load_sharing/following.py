@@ -70,7 +70,7 @@ def running_table(moving: Running, still: HuntingCycle) -> pd.DataFrame:
                 "speed_rpm": moving.speed_rpm,
                 "mesh_cycles": count,
                 "mean": np.nanmean(coefficient) if np.isfinite(coefficient).any() else np.nan,
-                "torque_n_m": np.abs(moving.machine.torques[: len(moving.machine.layout.pinions)]).max(),
+                "torque_n_m": moving.largest_torque,
                 "k_gamma": factor,
                 "k_v": dynamic,
                 "k_gamma_static": quasi,

@@ -28,7 +28,7 @@ class LoadHistory:
     cycles: Array
     flank_forces: Array
 
-    @property
+    @cached_property
     def loads(self) -> Array:
         """Load of each mesh (K, meshes), N: its more heavily loaded flank."""
         drive, back = np.split(self.flank_forces, 2, axis=1)
@@ -44,6 +44,11 @@ class LoadHistory:
         return sharing_coefficient(self.loads[:, list(group.meshes)])
 
     @property
+    def largest_torque(self) -> float:
+        """Largest torque on a pinion, N m, which all K_gamma are for."""
+        return float(np.abs(self.machine.torques[: len(self.machine.layout.pinions)]).max())
+
+    @cached_property
     def cycle_means(self) -> Array:
         """Mean load of each mesh in each mesh cycle (cycles, meshes), N."""
         return self.loads.reshape(-1, self.positions, self.loads.shape[1]).mean(axis=1)
@@ -81,10 +86,14 @@ def largest(values: Array) -> float:
 
 @dataclass(frozen=True, eq=False)
 class HuntingCycle(LoadHistory):
-    """The quasi-static motion; bearings (K, bodies, 3): force of each body on its bearing, N."""
+    """The quasi-static motion."""
 
     found: Equilibria
-    bearings: Array
+
+    @cached_property
+    def bearings(self) -> Array:
+        """Force of each body on its bearing (K, bodies, 3), N."""
+        return bearing_forces(self.machine, self.found)
 
 
 def hunting_length(machine: Machine) -> int:
@@ -107,5 +116,4 @@ def at_cycles(machine: Machine, whole: NDArray[np.int64], positions: int) -> Hun
     """Equilibrium at `positions` of each of some mesh cycles (n,). Raises NotConverged."""
     cycles = (whole[:, None] + np.arange(positions) / positions).ravel()
     found = equilibria(machine, cycles)
-    bearings = bearing_forces(machine, found)
-    return HuntingCycle(machine, positions, cycles, carried(found.flank_forces), found, bearings)
+    return HuntingCycle(machine, positions, cycles, carried(found.flank_forces), found)

@@ -84,7 +84,7 @@ def group_table(run: HuntingCycle) -> pd.DataFrame:
                 "k_gamma": largest(run.path_factors(group)),
                 "group_ratio": run.group_ratios(group).max(),
                 "undefined_share": np.isnan(coefficient).mean(),
-                "torque_n_m": np.abs(run.machine.torques[: len(run.machine.layout.pinions)]).max(),
+                "torque_n_m": run.largest_torque,
                 "mesh_cycles": len(run.cycles) // run.positions,
                 "kkt_residual": run.found.residual.max(),
             }
@@ -109,8 +109,7 @@ def bearing_table(run: HuntingCycle) -> pd.DataFrame:
 
 def cycle_table(run: LoadHistory) -> pd.DataFrame:
     """Mean load of every mesh in each mesh cycle, one row a cycle: columns cycle, then one a mesh, N."""
-    loads = run.loads.reshape(-1, run.positions, len(run.machine.layout.meshes)).mean(axis=1)
-    frame = pd.DataFrame(loads, columns=[f"{name} (N)" for name in run.machine.layout.mesh_names])
+    frame = pd.DataFrame(run.cycle_means, columns=[f"{name} (N)" for name in run.machine.layout.mesh_names])
     frame.insert(0, "cycle", np.arange(len(frame)))
     return frame
 
