@@ -13,11 +13,12 @@ ERROR_RANGE, ERROR_HARMONIC, PRESSURE = "te_peak_to_peak_um", "te_first_harmonic
 ROOTS = {"pinion": "root_stress_pinion_mpa", "face_gear": "root_stress_face_gear_mpa"}
 CONTACT = (ERROR_RANGE, ERROR_HARMONIC, PRESSURE, *ROOTS.values())
 """What a contact analysis alone tells."""
-MISSED = "k_gamma_missed"
-"""What the mesh cycles taken from the hunting cycle miss of the largest K_gamma of any path, relative."""
+MISSED = {name: f"{name}_missed" for name in (K_GAMMA, OPEN, REVERSED)}
+"""What the mesh cycles taken from the hunting cycle miss: of the largest K_gamma of any path, relative; of a
+share of time, the difference."""
 JUMP_MARGIN = "jump_margin_rpm"
 """What sweeps around the operating speed alone tell."""
-QUANTITIES = (PEAK, OPEN, REVERSED, BEARINGS, MISSED, *CONTACT)
+QUANTITIES = (PEAK, OPEN, REVERSED, BEARINGS, *MISSED.values(), *CONTACT)
 """Columns of a sample that do not name a mesh or a group."""
 
 

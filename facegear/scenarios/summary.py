@@ -1,6 +1,6 @@
 """Tables of what many samples say of each quantity."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
@@ -59,6 +59,20 @@ def share_table(samples: pd.DataFrame, shares: dict[str, str], confidence: float
         [(told, one.value, one.low, one.high, size) for told, one, size in found],
         columns=["what", "share", "low", "high", "samples"],
     )
+
+
+def sampling_table(samples: pd.DataFrame, missed: Mapping[str, str]) -> pd.DataFrame:
+    """What samples miss that take a part of the hunting cycle, from those computed over the whole of it too.
+
+    `missed`: quantity -> column that holds it, nan in the other samples. Columns: quantity, samples,
+    median_missed, largest_missed (sizes); no row for a quantity that was not computed twice.
+    """
+    rows = []
+    for name, column in missed.items():
+        sizes = samples[column].dropna().abs() if column in samples else pd.Series(dtype=float)
+        if not sizes.empty:
+            rows.append((name, len(sizes), sizes.median(), sizes.max()))
+    return pd.DataFrame(rows, columns=["quantity", "samples", "median_missed", "largest_missed"])
 
 
 def importance_table(samples: pd.DataFrame, causes: Sequence[str]) -> pd.DataFrame:

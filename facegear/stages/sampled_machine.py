@@ -14,12 +14,15 @@ from facegear.config.base import parse
 from facegear.config.lumped_model import wired_layout
 from facegear.config.tolerances import Tolerances, population
 from facegear.config.variants import movable, moved, variable_part
-from facegear.load_sharing.quantity_names import K_GAMMA, columns_of
+from facegear.load_sharing.quantity_names import K_GAMMA, MISSED, OPEN, REVERSED, columns_of
 from facegear.progress import Progress
 from facegear.scenarios.chunks import Evaluate, run_chunk
 from facegear.scenarios.sampling import Population, changes
 from facegear.stages.many_machines import WHOLE, Judge, Question, VariedMachine, judge
 from facegear.stages.tooth_meshes import Values
+
+CHECKED = 8
+"""Number of samples that are computed over the whole hunting cycle as well."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -65,11 +68,20 @@ class SampledMachine(VariedMachine):
         """The same over the whole hunting cycle."""
         return judge(replace(self.question, cycles=WHOLE), self.meshes, "this sample")
 
-    def missed(self, values: Sequence[float], found: Mapping[str, float]) -> float:
-        """What a sample `found` misses of K_gamma beside the whole hunting cycle, relative, of any path."""
-        whole = self.whole_judge(self.sample(values))
+    def judged(self, sample: Mapping[str, Any], check: bool) -> dict[str, float]:
+        """What a sample is judged by, and in the columns MISSED what its mesh cycles miss.
+
+        The columns MISSED are nan unless `check` asks for the whole hunting cycle as well.
+        """
+        found = self.judge(sample)
+        if not check:
+            return found | dict.fromkeys(MISSED.values(), nan)
+        whole = self.whole_judge(sample)
         paths = columns_of(f"{K_GAMMA} ", list(whole))
-        return max((whole[name] / found[name] - 1.0 for name in paths if found[name] > 0.0), default=nan)
+        missed = {name: whole[name] - found[name] for name in (OPEN, REVERSED)}
+        ratios = (whole[name] / found[name] - 1.0 for name in paths if found[name] > 0.0)
+        missed[K_GAMMA] = max(ratios, default=nan)
+        return found | {MISSED[name]: value for name, value in missed.items()}
 
     def run(
         self,

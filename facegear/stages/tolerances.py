@@ -13,6 +13,7 @@ from facegear.scenarios.summary import (
     importance_table,
     index_table,
     percentile_table,
+    sampling_table,
     share_table,
 )
 from facegear.stages.outcome import Outcome
@@ -28,20 +29,20 @@ def tolerances(
 ) -> Outcome:
     """`samples`, `percentiles`, `shares`, `importance`, `indices`, `sampling` (tables) from both designs.
 
-    `sampling`: what the mesh cycles taken from the hunting cycle miss of the largest K_gamma, in the samples
-    that were computed over the whole of it.
+    `sampling`: what the mesh cycles taken from the hunting cycle miss, in the samples that were computed over
+    the whole of it.
     """
     section = parse(Tolerances, tolerances)
     causes = [cause.name for cause in section.causes]
     every = pd.concat(samples, ignore_index=True)
-    found = every.drop(columns=MISSED, errors="ignore")
+    found = every.drop(columns=list(MISSED.values()), errors="ignore")
     design = pd.concat(indices, ignore_index=True) if indices else every.iloc[:0]
     percentiles = percentile_table(found, causes, section.confidence)
     shares = share_table(every, SHARES, section.confidence)
     top = percentiles[(percentiles["percentile"] == 99.0) & percentiles["quantity"].str.startswith("k_gamma")]
     worst = top.nlargest(1, "value")
     told = ", ".join(f"99 of 100 stay below {row.quantity} = {row.value:.3f}" for row in worst.itertuples())
-    sampling = _sampling_table(every)
+    sampling = sampling_table(every, MISSED)
     told = "; ".join([told or "no path shares a load", *_missed_in_words(sampling)])
     failed = int((every[ERROR] != "").sum())
     if failed == len(every):
@@ -59,17 +60,7 @@ def tolerances(
     )
 
 
-def _sampling_table(samples: pd.DataFrame) -> pd.DataFrame:
-    """samples, median_missed, largest_missed: one row, none where nothing was computed twice."""
-    missed = samples[MISSED].dropna() if MISSED in samples else pd.Series(dtype=float)
-    columns = ["samples", "median_missed", "largest_missed"]
-    if missed.empty:
-        return pd.DataFrame(columns=columns)
-    return pd.DataFrame([(len(missed), missed.median(), missed.max())], columns=columns)
-
-
 def _missed_in_words(sampling: pd.DataFrame) -> list[str]:
-    return [
-        f"the mesh cycles taken miss at most {row.largest_missed:.1e} of K_gamma ({row.samples} samples)"
-        for row in sampling.itertuples()
-    ]
+    parts = [f"{row.quantity} {row.largest_missed:.1e}" for row in sampling.itertuples()]
+    most = sampling["samples"].max()
+    return [f"the mesh cycles taken miss at most {', '.join(parts)} ({most} samples)"] if parts else []

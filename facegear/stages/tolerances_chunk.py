@@ -1,6 +1,5 @@
 """A chunk of samples of one machine with its tolerances."""
 
-from math import nan
 from pathlib import Path
 from typing import Any
 
@@ -8,10 +7,7 @@ from facegear.config.tolerances import Design
 from facegear.load_sharing.quantity_names import MISSED
 from facegear.scenarios.sampling import index_samples, samples
 from facegear.stages.outcome import Outcome
-from facegear.stages.sampled_machine import SampledMachine
-
-CHECKED = 8
-"""So many of the first samples are computed over the whole hunting cycle as well."""
+from facegear.stages.sampled_machine import CHECKED, SampledMachine
 
 
 def tolerances_chunk(
@@ -26,7 +22,7 @@ def tolerances_chunk(
 
     A sample that cannot be built or computed is a row with its error. `partial` is a file that keeps finished
     samples, so that a killed chunk goes on after its last one; it counts only for the same config and `code`.
-    Of the first CHECKED samples `k_gamma_missed` says what the mesh cycles taken miss of K_gamma; empty else.
+    The columns MISSED say of the first CHECKED samples what the mesh cycles taken miss; empty else.
     `given`: fields of SampledMachine.
     """
     return chunk_of(SampledMachine.of_stage(**given), design, first, last, partial, code)
@@ -42,16 +38,13 @@ def chunk_of(
 ) -> Outcome:
     """`tolerances_chunk` of a machine in memory."""
     draw = samples if design == "samples" else index_samples
-    judge, values = machine.judge, draw(machine.causes, first, last - first + 1)
-
+    values = draw(machine.causes, first, last - first + 1)
     plain = design == "samples" and not machine.question.dynamic
 
     def evaluate(number: int) -> dict[str, float]:
-        own = values[number - first]
-        found = judge(machine.sample(own))
-        return {**found, MISSED: machine.missed(own, found) if plain and number < CHECKED else nan}
+        return machine.judged(machine.sample(values[number - first]), plain and number < CHECKED)
 
-    told, more = f"{design} {first} to {last}", (MISSED,) if plain else ()
+    told, more = f"{design} {first} to {last}", tuple(MISSED.values()) if plain else ()
     frame = machine.run(evaluate, range(first, last + 1), told, partial, design, code, more=more)
     for place, name in enumerate(machine.causes.names):
         frame.insert(1 + place, name, values[:, place])

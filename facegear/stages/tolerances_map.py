@@ -7,11 +7,12 @@ import pandas as pd
 
 from facegear.config.lumped_model import with_torques
 from facegear.config.tolerances import LoadMap
+from facegear.load_sharing.quantity_names import MISSED
 from facegear.scenarios.chunks import ERROR
 from facegear.scenarios.sampling import samples
-from facegear.scenarios.summary import percentile_table, share_table
+from facegear.scenarios.summary import percentile_table, sampling_table, share_table
 from facegear.stages.outcome import Outcome
-from facegear.stages.sampled_machine import SampledMachine
+from facegear.stages.sampled_machine import CHECKED, SampledMachine
 from facegear.stages.tolerances import SHARES
 
 COLUMNS = (
@@ -22,45 +23,55 @@ COLUMNS = (
 
 def tolerances_map(partial: str | Path | None = None, code: str = "", **given: Any) -> Outcome:
     """`load_map` (table): percentiles of every quantity at every torque and speed, COLUMNS; `load_shares`
-    (table): share of the machines that fail, open or change their flank there.
+    (table): share of the machines that fail, open or change their flank there; `load_sampling` (table): what
+    the mesh cycles taken miss there, from CHECKED samples at all loads together or one at each.
 
     The same machines at every load, so that differences between loads are no accident of the samples. The
     mesh stiffness stays that of mesh_stiffness.torque_n_m. `partial`, `code` and `given` as of
     `tolerances_chunk`.
     """
     machine = SampledMachine.of_stage(**given)
-    section, judge = machine.section, machine.judge
+    section = machine.section
     asked = section.load_map or LoadMap()
     values, loads = samples(machine.causes, 0, asked.samples), asked.loads(machine.speed_rpm)
-    count = asked.samples * len(loads)
+    count, checked = asked.samples * len(loads), 0
+    if not machine.question.dynamic:
+        checked = max(CHECKED // len(loads), 1)
 
     def evaluate(number: int) -> dict[str, float]:
         load, row = divmod(number, asked.samples)
         factor, speed = loads[load]
         changed = machine.sample(values[row])
         off = changed["dynamics"]["speed_rpm"] - machine.speed_rpm  # what a cause adds to it
-        return judge(
-            {
-                **changed,
-                "transmission": with_torques(changed["transmission"], factor),
-                "dynamics": {"speed_rpm": speed + off},
-            }
-        )
+        transmission = with_torques(changed["transmission"], factor)
+        loaded = {**changed, "transmission": transmission, "dynamics": {"speed_rpm": speed + off}}
+        return machine.judged(loaded, row < checked)
 
-    frame = machine.run(evaluate, range(count), "tolerances over torque and speed", partial, code)
-    tables, shares = [], []
+    told, more = "tolerances over torque and speed", tuple(MISSED.values())
+    frame = machine.run(evaluate, range(count), told, partial, code, more=more)
+    tables: list[pd.DataFrame] = []
+    shares: list[pd.DataFrame] = []
+    sampling: list[pd.DataFrame] = []
     for place, (factor, speed) in enumerate(loads):
         own = frame.iloc[place * asked.samples : (place + 1) * asked.samples]
-        found = percentile_table(own, (), section.confidence)
+        load = {"torque_factor": factor, "speed_rpm": speed}
+        found = percentile_table(own.drop(columns=list(MISSED.values())), (), section.confidence)
         failed = int((own[ERROR] != "").sum())
-        tables.append(found.assign(torque_factor=factor, speed_rpm=speed, failed=failed))
-        of_load = share_table(own, SHARES, section.confidence)
-        of_load.insert(0, "torque_factor", factor)
-        of_load.insert(1, "speed_rpm", speed)
-        shares.append(of_load)
+        tables.append(found.assign(**load, failed=failed))
+        shares.append(_at_load(load, share_table(own, SHARES, section.confidence)))
+        sampling.append(_at_load(load, sampling_table(own, MISSED)))
     table = pd.concat(tables, ignore_index=True)[list(COLUMNS)]
     failed = int((frame[ERROR] != "").sum())
     return Outcome(
-        {"load_map": table, "load_shares": pd.concat(shares, ignore_index=True)},
+        {
+            "load_map": table,
+            "load_shares": pd.concat(shares, ignore_index=True),
+            "load_sampling": pd.concat(sampling, ignore_index=True),
+        },
         f"{len(loads)} loads of {asked.samples} samples each, {failed} machines failed",
     )
+
+
+def _at_load(load: dict[str, float], table: pd.DataFrame) -> pd.DataFrame:
+    """A table with its load in front."""
+    return table.assign(**load)[[*load, *table.columns]]

@@ -85,6 +85,7 @@ ROWS = (
                 text=("quantity",),
             ),
             "load_shares": File("tolerances/load_shares.csv", ("torque_factor", "speed_rpm", "share")),
+            "load_sampling": File("tolerances/load_sampling.csv", may_be_empty=True),
         },
         figures=Figures(
             draw="facegear.plots.tolerances:map_figures",

@@ -149,8 +149,8 @@ def test_a_few_mesh_cycles_hold_the_largest_factor_of_the_whole_hunting_cycle():
     whole_means = hunting_cycle(wired(gearbox), 8).cycle_means
     assert (spread.cycle_means.max(axis=0) < 0.99 * whole_means.max(axis=0)).any()
     row = found.content["sampling"].iloc[0]
-    assert row["samples"] == 3 and 0.0 <= row["largest_missed"] < 1e-9
-    assert "miss at most" in found.summary
+    assert row["quantity"] == "k_gamma" and row["samples"] == 3 and row["largest_missed"] < 1e-9
+    assert "miss at most k_gamma" in found.summary and "open_share" in found.summary
 
 
 def test_what_the_cycles_taken_miss_is_measured(monkeypatch):
@@ -158,6 +158,27 @@ def test_what_the_cycles_taken_miss_is_measured(monkeypatch):
     gearbox = machine([RIGHT, Y], samples=2, chunk_samples=2, hunting_cycles=8).with_values(TURNING)
     row = gearbox.tolerances().content["sampling"].iloc[0]
     assert 0.005 < row["median_missed"] <= row["largest_missed"] < 0.2
+
+
+def test_a_load_map_measures_at_every_load_what_the_cycles_taken_miss():
+    """At a tenth of the torque teeth open in a part of the mesh cycles."""
+    turning = {"transmission.face_gear.runout": {"eccentricity_um": 15}}
+    gearbox = machine([RIGHT, Y], samples=2, chunk_samples=2, hunting_cycles=8).with_values(turning)
+    table = gearbox.load_map([0.1, 1.0], samples=2).content["load_sampling"]
+    assert (table["samples"] == 2).all()
+    missed = table.set_index(["torque_factor", "quantity"])["largest_missed"]
+    assert missed[1.0, "k_gamma"] < 1e-9
+    torque = gearbox.values["transmission"]["torque"]["per_input_n_m"]
+    light = gearbox.with_values({"transmission.torque.per_input_n_m": 0.1 * torque})
+    whole = light.with_values({"tolerances.hunting_cycles": 143}).tolerances().samples()
+    taken = light.tolerances().samples()
+    factors = [name for name in whole if name.startswith("k_gamma ")]
+    ratios = whole[factors] / taken[factors]
+    assert missed[0.1, "k_gamma"] == pytest.approx(ratios.to_numpy().max() - 1.0, abs=1e-12)
+    for name in ("open_share", "reversed_share"):
+        off = (whole[name] - taken[name]).abs().max()
+        assert missed[0.1, name] == pytest.approx(off, abs=1e-12)
+    assert missed[0.1].max() > 0.005
 
 
 def test_percentiles_and_indices_of_a_linear_machine_follow_from_its_gradient():
