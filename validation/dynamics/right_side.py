@@ -99,8 +99,8 @@ def linear(system: System) -> LinearLaw:
 def plain_right_side(system: System, frequency: float, width: int) -> Callable[[float, Array], Array]:
     """f(s, z) in NumPy as people write it, z padded to 2 * width."""
     n = system.size
-    order_k, order_e = np.arange(linear(system).fourier.shape[2]), np.arange(system.error.shape[2])
     law = linear(system)
+    order_k, order_e = np.arange(law.fourier.shape[2]), np.arange(system.error.shape[2])
     stiffness, error = law.fourier[law.kind], system.error[system.error_kind]
     load = system.load
 

@@ -46,8 +46,6 @@ SWEPT_COLUMNS = (
     "sweep_error",
     "note",
 )
-SWEEP_JUMPS = ("direction", "speed_before_rpm", "speed_after_rpm", "class_before")
-"""What is read of the sweep's jumps."""
 JUMP_COLUMNS = (
     "direction",
     "speed_before_rpm",

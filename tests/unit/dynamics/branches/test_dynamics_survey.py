@@ -8,7 +8,6 @@ import pytest
 from lumped_machines import make_machine
 from oscillators import backlash_oscillator
 
-from facegear.dynamics.branches.columns import SWEEP_JUMPS
 from facegear.dynamics.branches.continuation import End, Run, branch_at, follow, turned
 from facegear.dynamics.branches.explore import box, crossings, explore, lies_on
 from facegear.dynamics.branches.family import Family, machine_plane, speed_family
@@ -90,7 +89,8 @@ def test_a_jump_is_named_by_the_fold_in_its_bracket():
 def test_a_jump_from_a_motion_that_has_not_settled_is_named_by_the_sweeps_last_periodic_motion():
     """Beside a fold a motion settles too slowly for a sweep: what it was one step before is known."""
     branch = branch_at(oscillator(), np.array([1.1, 0.0]), 0.3, WIDE)
-    jumps = pd.DataFrame([("up", 0.828, 0.829, "not settled")], columns=list(SWEEP_JUMPS))
+    columns = ["direction", "speed_before_rpm", "speed_after_rpm", "class_before"]
+    jumps = pd.DataFrame([("up", 0.828, 0.829, "not settled")], columns=columns)
     last = Swept("up", 0.8275, "period-1", 1, None, np.nan)
     named = jump_table(jumps, [last], [branch], 1e-3, 1e-3)
     assert named["kind"][0] == "fold"
