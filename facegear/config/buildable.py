@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.config.bodies import SingleGear, SinglePinion
 from facegear.config.lumped_model import ToothNumbers, half_backlash, imperfections, layout
 from facegear.config.transmission import Transmission
@@ -47,7 +47,7 @@ def preloads(section: Transmission, teeth: ToothNumbers) -> list[str]:
     return [f"{key}: {amount}" for key, amount, _ in _pressed(section, teeth)]
 
 
-def _half_backlashes(section: Transmission, flaws: Imperfections) -> NDArray[np.float64]:
+def _half_backlashes(section: Transmission, flaws: Imperfections) -> Array:
     return np.where(np.isnan(flaws.half_backlash), half_backlash(section), flaws.half_backlash)
 
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.config.base import parse
 from facegear.config.bodies import GearBody, PinionBody, RunoutSection, SingleGear, SinglePinion
 from facegear.config.transmission import PinionPlace, SingleMesh, Transmission
@@ -111,7 +111,7 @@ def machine(
     )
 
 
-def stiffness_phases(transmission: Mapping[str, Any], teeth: Mapping[str, Any]) -> NDArray[np.float64]:
+def stiffness_phases(transmission: Mapping[str, Any], teeth: Mapping[str, Any]) -> Array:
     """Lag of each mesh in mesh periods, (meshes,), from section `transmission` and the tooth numbers."""
     section, numbers = lumped_sections(transmission, teeth)
     shape = layout(section, numbers)
@@ -153,14 +153,14 @@ def imperfections(section: Transmission, shape: Layout, unloaded: Harmonics | No
     )
 
 
-def external_forces(section: Transmission, shape: Layout) -> NDArray[np.float64]:
+def external_forces(section: Transmission, shape: Layout) -> Array:
     """External force on each body along its x, y, z, shape (bodies, 3), N."""
     pinions, gears = _singles(section, shape)
     on_pinions = [(one.force_n.x, one.force_n.y, 0.0) for one in pinions]
     return np.array(on_pinions + [(one.force_n.x, one.force_n.y, one.force_n.z) for one in gears])
 
 
-def given_torques(section: Transmission, shape: Layout) -> NDArray[np.float64]:
+def given_torques(section: Transmission, shape: Layout) -> Array:
     """Torque on each pinion by its role, or its own where it has one; shape (pinions,), N m."""
     by_role = pinion_torques(shape, section.torque.per_input_n_m, section.torque.tail_share)
     own = np.array([np.nan if place.torque_n_m is None else place.torque_n_m for place in section.pinions])
@@ -193,7 +193,7 @@ def with_torques(transmission: Mapping[str, Any], part: float) -> dict[str, Any]
     }
 
 
-def error_lags(section: Transmission, shape: Layout) -> NDArray[np.float64] | None:
+def error_lags(section: Transmission, shape: Layout) -> Array | None:
     """Lag of e(t) at each mesh in mesh periods, shape (meshes,); None where it is that of the stiffness.
 
     A mesh named itself keeps its own lag, then that of its pinion's role; one not named has none.
@@ -240,7 +240,7 @@ def _runout(section: RunoutSection | None) -> Runout:
     return Runout(1e-6 * section.eccentricity_um, float(np.radians(section.phase_deg)))
 
 
-def _pitch_curves(bodies: Sequence[SinglePinion | SingleGear]) -> dict[int, NDArray[np.float64]]:
+def _pitch_curves(bodies: Sequence[SinglePinion | SingleGear]) -> dict[int, Array]:
     return {
         body: 1e-6 * np.array(one.cumulative_pitch_um)
         for body, one in enumerate(bodies)

@@ -3,9 +3,9 @@
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from facegear.arrays import Array
 from facegear.config.base import Section, refuse, require_all
 from facegear.load_sharing.quantity_names import QUANTITIES
 
@@ -214,7 +214,7 @@ def chunk_ranges(size: int, step: int) -> list[tuple[int, int]]:
     return [(first, min(first + step, size) - 1) for first in range(0, size, step)]
 
 
-def correlation_matrix(section: Tolerances) -> NDArray[np.float64] | None:
+def correlation_matrix(section: Tolerances) -> Array | None:
     """Correlation of the normal scores (causes, causes); None where there is none."""
     if not section.correlations:
         return None

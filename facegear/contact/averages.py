@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 from numba import njit
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers, Mask
 from facegear.contact.bodies.surface import face_functions
 from facegear.contact.options import Refinement
 
@@ -21,23 +21,23 @@ class Rows:
     No row is empty, and the weights of a row sum to one.
     """
 
-    pointer: NDArray[np.int64]
-    index: NDArray[np.int64]
-    weight: NDArray[np.float64]
+    pointer: Integers
+    index: Integers
+    weight: Array
 
     def __len__(self) -> int:
         return len(self.pointer) - 1
 
-    def mean(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def mean(self, values: Array) -> Array:
         """Averages (m,) of values (q,)."""
         return np.add.reduceat(self.weight * values[self.index], self.pointer[:-1])
 
-    def heaviest(self) -> NDArray[np.int64]:
+    def heaviest(self) -> Integers:
         """The point (m,) with the largest weight of each row, the first of those alike to rounding."""
         row = np.repeat(np.arange(len(self)), np.diff(self.pointer))
         return self.index[np.lexsort((-np.round(self.weight, 12), row))[self.pointer[:-1]]]
 
-    def only(self, keep: NDArray[np.bool_]) -> "Rows":
+    def only(self, keep: Mask) -> "Rows":
         """The rows marked (m,)."""
         counts = np.diff(self.pointer)
         inside = np.repeat(keep, counts)
@@ -46,7 +46,7 @@ class Rows:
         return Rows(pointer, self.index[inside], self.weight[inside])
 
 
-def rows_of(matrix: sp.csr_matrix, keep: NDArray[np.bool_]) -> sp.csr_matrix:
+def rows_of(matrix: sp.csr_matrix, keep: Mask) -> sp.csr_matrix:
     """Rows marked (m,), as `matrix[keep]`, which takes ten times longer."""
     rows = Rows(matrix.indptr, matrix.indices, matrix.data).only(keep)
     return sp.csr_matrix((rows.weight, rows.index, rows.pointer), shape=(len(rows), matrix.shape[1]))
@@ -64,11 +64,11 @@ def stacked(parts: list[Rows], points: list[int]) -> Rows:
 
 
 def hat_averages(
-    hats: NDArray[np.int64],
-    values: NDArray[np.float64],
-    area: NDArray[np.float64],
-    least: NDArray[np.float64],
-) -> tuple[Rows, NDArray[np.int64]]:
+    hats: Integers,
+    values: Array,
+    area: Array,
+    least: Array,
+) -> tuple[Rows, Integers]:
     """Averages by area over hats, from points (q,) of known area.
 
     `hats`, `values` (q, h): the hats that a point lies under and their values there; `least` (n,): the area
@@ -101,9 +101,7 @@ def _hat_averages(hats, values, area, least):  # type: ignore[no-untyped-def]
     return pointer, index, weight, chosen
 
 
-def spread(
-    rows: Rows, coordinates: NDArray[np.float64], shape: tuple[int, int], linear: bool = False
-) -> sp.csr_matrix:
+def spread(rows: Rows, coordinates: Array, shape: tuple[int, int], linear: bool = False) -> sp.csr_matrix:
     """The rows times `surface.interpolation(coordinates, shape, linear)`, (m, nu nv), in one pass."""
     nodes, values, _ = face_functions(coordinates, shape, linear)
     count = shape[0] * shape[1]
@@ -131,16 +129,16 @@ class Lattice:
         return (nu - 1) * self.refinement.profile + 1, (nv - 1) * self.refinement.width + 1
 
     @property
-    def factors(self) -> NDArray[np.int64]:
+    def factors(self) -> Integers:
         """Refined nodes a coarse one, both ways."""
         return np.array([self.refinement.profile, self.refinement.width])
 
-    def in_fillet(self, at: NDArray[np.float64]) -> NDArray[np.bool_]:
+    def in_fillet(self, at: Array) -> Mask:
         """Which points at refined coordinates (q, 2) lie beyond the flank."""
         rows = self.coarse[0] if self.flank_rows is None else self.flank_rows
         return at[:, 0] > (rows - 1) * self.refinement.profile + ROUNDING
 
-    def loads(self, rows: Rows, at: NDArray[np.float64]) -> tuple[sp.csr_matrix, sp.csr_matrix]:
+    def loads(self, rows: Rows, at: Array) -> tuple[sp.csr_matrix, sp.csr_matrix]:
         """Nodal loads of unit forces, spread by `rows` over points at refined coordinates (q, 2).
 
         On the refined nodes (m, n) and on the coarse ones.

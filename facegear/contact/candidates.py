@@ -4,8 +4,8 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers, Mask
 from facegear.contact.averages import Lattice, rows_of, stacked
 from facegear.contact.loads import Loads
 
@@ -21,11 +21,11 @@ class Candidates:
     """
 
     tooth: int
-    hats: NDArray[np.int64]
-    column: NDArray[np.int64]
-    gap: NDArray[np.float64]
-    lever_arm: NDArray[np.float64]
-    fillet: NDArray[np.bool_]
+    hats: Integers
+    column: Integers
+    gap: Array
+    lever_arm: Array
+    fillet: Mask
     pinion: sp.csr_matrix
     gear: sp.csr_matrix
     pinion_coarse: sp.csr_matrix
@@ -37,7 +37,7 @@ class Candidates:
         forward = self.lever_arm > 0
         return float(np.max(-self.gap[forward] / self.lever_arm[forward], initial=0.0))
 
-    def only(self, keep: NDArray[np.bool_]) -> "Candidates":
+    def only(self, keep: Mask) -> "Candidates":
         """Those marked (m,)."""
         if keep.all():
             return self

@@ -8,13 +8,11 @@ limit as a mesh is refined.
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers, Mask
 from facegear.contact.flanks import PinionSurface
 from facegear.contact.position import Spot
 from facegear.geometry import pinion
-
-Array = NDArray[np.float64]
 
 APART = 2.0
 """Rows of the lattice between two loaded hats of a plane from which on they belong to two contacts."""
@@ -44,7 +42,7 @@ def on_flank(spot: Spot, line: Array, surface: PinionSurface) -> Spot:
     return replace(spot, hats=spot.hats[keep], force=spot.force[keep], fillet=spot.fillet[keep])
 
 
-def _of_the_line(row: NDArray[np.int64], fillet: NDArray[np.bool_], line: float) -> NDArray[np.bool_]:
+def _of_the_line(row: Integers, fillet: Mask, line: float) -> Mask:
     """Which loaded hats of a plane, in rows (m,), belong to no contact that lies in the fillet alone."""
     order = np.argsort(row, kind="stable")
     contact = np.zeros(row.size, np.int64)

@@ -5,9 +5,9 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from skfem import Basis
 
+from facegear.arrays import Array, Integers
 from facegear.contact.averages import Lattice
 from facegear.contact.bodies.surface import cell_areas, cell_points, edge_hats, hat_values, pressure_basis
 from facegear.contact.options import Refinement
@@ -36,18 +36,18 @@ class PinionSurface:
         """Refined lattice."""
         return self.lattice.shape
 
-    def exact(self, at: NDArray[np.float64]) -> SurfacePoints:
+    def exact(self, at: Array) -> SurfacePoints:
         """Points at refined lattice coordinates (n, 2)."""
         return pinion_points(self.design, self.side, self.lattice.refinement, at)
 
     @cached_property
-    def nodes(self) -> NDArray[np.float64]:
+    def nodes(self) -> Array:
         """Positions (n, 3) of the refined nodes, m."""
         at = np.stack(np.meshgrid(*map(np.arange, self.shape), indexing="ij"), axis=-1).reshape(-1, 2)
         return self.exact(at.astype(float)).position
 
     @cached_property
-    def planes(self) -> NDArray[np.float64]:
+    def planes(self) -> Array:
         """Positions (nv,) m along the pinion's axis of the lattice's planes."""
         return self.nodes.reshape(*self.shape, 3)[0, :, 1]
 
@@ -56,7 +56,7 @@ class PinionSurface:
         return pressure_basis(self.shape)
 
     @cached_property
-    def at(self) -> NDArray[np.float64]:
+    def at(self) -> Array:
         return cell_points(self.pressure)
 
     @cached_property
@@ -64,11 +64,11 @@ class PinionSurface:
         return self.exact(self.at)
 
     @cached_property
-    def area(self) -> NDArray[np.float64]:
+    def area(self) -> Array:
         return cell_areas(self.nodes.reshape(*self.shape, 3), self.pressure)
 
     @cached_property
-    def lever_arm(self) -> NDArray[np.float64]:
+    def lever_arm(self) -> Array:
         return self.points.lever_arm
 
     @cached_property
@@ -76,7 +76,7 @@ class PinionSurface:
         return hat_values(self.pressure)
 
     @cached_property
-    def full_area(self) -> NDArray[np.float64]:
+    def full_area(self) -> Array:
         """Area (n,) of each hat where nothing is cut off."""
         return self.hats.T @ self.area
 
@@ -86,19 +86,19 @@ class PinionSurface:
         return float(np.ptp(self.side.v[0]))
 
     @cached_property
-    def element(self) -> NDArray[np.int64]:
+    def element(self) -> Integers:
         row, column = np.floor(self.at / (2 * self.lattice.factors)).astype(np.int64).T
         return row * ((self.side.shape[1] - 1) // 2) + column
 
     @cached_property
-    def tip(self) -> tuple[NDArray[np.float64], SurfacePoints]:
+    def tip(self) -> tuple[Array, SurfacePoints]:
         """Lattice coordinates (q, 2) of points along the tip edge, and the points."""
         along, _, _ = edge_hats(self.shape[1])
         coordinates = np.stack([np.zeros(along.size), along], axis=1)
         return coordinates, self.exact(coordinates)
 
     @cached_property
-    def fillet_nodes(self) -> NDArray[np.float64]:
+    def fillet_nodes(self) -> Array:
         """Angles gamma (rad) of the fillet's rows before refinement, from the flank's last on."""
         return np.concatenate([self.side.junction[:1], self.side.u[self.side.flank_rows :, 0]])
 
@@ -109,7 +109,7 @@ class PinionSurface:
         return fillet_curve(self.design, ends[0], ends[-1]) if ends.size > 1 else None
 
     @cached_property
-    def probes(self) -> tuple[SurfacePoints, NDArray[np.int64]]:
+    def probes(self) -> tuple[SurfacePoints, Integers]:
         """Points of the lattice before refinement, and the nodes (elements, 9) of its elements."""
         nu, nv = self.side.shape
         nodes = np.arange(nu * nv).reshape(nu, nv)
@@ -118,9 +118,7 @@ class PinionSurface:
         corners = [nodes[a : nu - 2 + a : 2, b : nv - 2 + b : 2].ravel() for a in range(3) for b in range(3)]
         return points, np.stack(corners, axis=-1)
 
-    def coordinates(
-        self, flank: NDArray[np.float64], fillet: NDArray[np.float64], y: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def coordinates(self, flank: Array, fillet: Array, y: Array) -> Array:
         """Refined lattice coordinates (n, 2) of feet as in `EdgeFeet`, nan beside the pinion's ends."""
         rows, columns = self.side.flank_rows, self.shape[1] - 1
         gammas = self.fillet_nodes
@@ -139,7 +137,7 @@ class GearSurface:
     lattice: Lattice
 
     @cached_property
-    def tip(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def tip(self) -> tuple[Array, Array]:
         """Lattice coordinates (q, 2) of points of the left tip edge, and the points (q, 3) of tooth 0, m."""
         gear, columns = self.design.face_gear, self.lattice.shape[1]
         along, _, _ = edge_hats(columns)
@@ -148,14 +146,12 @@ class GearSurface:
         return np.stack([np.zeros(along.size), along], axis=1), points
 
     @cached_property
-    def _fillet_nodes(self) -> NDArray[np.float64]:
+    def _fillet_nodes(self) -> Array:
         """Shares of the fillet at its rows' nodes (the same on all planes), 0 at the flank."""
         first = self.side.v[-1, 0], self.side.u[self.side.flank_rows :, 0]
         return np.concatenate([[0.0], face_gear.fillet_share(self.design, *first)])
 
-    def coordinates(
-        self, hits: GearHits, fillet: bool, edge: float | NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def coordinates(self, hits: GearHits, fillet: bool, edge: float | Array) -> Array:
         """Lattice coordinates (p, n, 2), nan where nothing that can touch is hit.
 
         With `fillet`, the fillet and the tip land within `edge` (m) of the flank count too; the latter moves

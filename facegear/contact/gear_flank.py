@@ -1,11 +1,10 @@
 """The loaded flank of one gear as the contact analysis takes it: its surface and its compliance."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import AnyArray, Arrays
 from facegear.contact.bodies import compliance
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.root_gauges import RootGauges
@@ -40,7 +39,7 @@ STORED = {
 """Names and shapes of the arrays of a stored flank; u, v and junction as in `ContactSide`."""
 
 
-def to_arrays(flank: GearFlank) -> dict[str, NDArray]:
+def to_arrays(flank: GearFlank) -> dict[str, AnyArray]:
     """Named arrays from which `from_arrays` rebuilds the flank."""
     side, gauges = flank.side, flank.gauges
     none = np.zeros((0, 0, 0, 3))
@@ -57,7 +56,7 @@ def to_arrays(flank: GearFlank) -> dict[str, NDArray]:
     }
 
 
-def from_arrays(arrays: Mapping[str, NDArray]) -> GearFlank:
+def from_arrays(arrays: Arrays) -> GearFlank:
     """Inverse of `to_arrays`."""
     side = ContactSide(
         nodes=arrays["flank_nodes"],

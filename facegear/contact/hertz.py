@@ -8,12 +8,11 @@ met exactly.
 from math import pi
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.special import ellipe, ellipkm1
 
+from facegear.arrays import Array
 from facegear.geometry.design import Material
-
-Array = NDArray[np.float64]
 
 DENTED = 4.0e9
 """Pressure (Pa) from which on hardened steel keeps a dent: the static limit of line contact in ISO 76."""

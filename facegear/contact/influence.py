@@ -3,8 +3,8 @@
 import numpy as np
 import scipy.sparse as sp
 from numba import njit
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.candidates import Candidates
 
@@ -14,7 +14,7 @@ def influence_matrix(
     pinion: FlankCompliance,
     gear: FlankCompliance,
     coupled: bool = True,
-) -> NDArray[np.float64]:
+) -> Array:
     """Approach (m, m) of hat i by a unit force on hat j, m/N, hats of all pairs in order; symmetric.
 
     `coupled` False leaves out the coupling between neighbouring teeth, for comparison.
@@ -39,11 +39,11 @@ def influence_matrix(
 def displacement(
     seen: list[Candidates],
     pairs: list[Candidates],
-    forces: NDArray[np.float64],
+    forces: Array,
     pinion: FlankCompliance,
     gear: FlankCompliance,
     coupled: bool = True,
-) -> NDArray[np.float64]:
+) -> Array:
     """Approach (k, t) m at the hats of `seen` by forces (m, t) N on those of `pairs`, t load cases."""
     ends = np.cumsum([len(pair.hats) for pair in pairs])[:-1]
     loads = list(zip(pairs, np.split(forces, ends), strict=True))
@@ -65,10 +65,10 @@ def _approach(here, loads, pinion, gear, coupled):  # type: ignore[no-untyped-de
 
 def _response(
     seen: sp.csr_matrix,
-    compliance: NDArray[np.float64] | None,
+    compliance: Array | None,
     loads: sp.csr_matrix,
-    forces: NDArray[np.float64],
-) -> NDArray[np.float64]:
+    forces: Array,
+) -> Array:
     if compliance is None:
         return np.zeros((seen.shape[0], forces.shape[1]))
     touching = (seen.indptr, seen.indices, seen.data), (loads.indptr, loads.indices, loads.data)
@@ -87,9 +87,7 @@ def _sparse_response(seen, compliance, loads, forces):  # type: ignore[no-untype
     return _averaged(seen[0], slot[seen[1]], seen[2], _gathered(compliance, used, loaded) @ nodal)
 
 
-def product(
-    first: sp.csr_matrix, compliance: NDArray[np.float64] | None, second: sp.csr_matrix
-) -> NDArray[np.float64]:
+def product(first: sp.csr_matrix, compliance: Array | None, second: sp.csr_matrix) -> Array:
     """first @ compliance @ second.T, touching only what the two have entries for."""
     if compliance is None:
         return np.zeros((first.shape[0], second.shape[0]))

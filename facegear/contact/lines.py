@@ -7,16 +7,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from facegear.arrays import Array
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.curvature import opposite_curvatures
 from facegear.geometry.design import PairDesign
 from facegear.geometry.pinion_surface import SurfacePoints, flank_points
 from facegear.geometry.placement import conjugate_angle, pinion_angle, to_left_flank
 from facegear.geometry.separation import FLANK, separation
-
-Array = NDArray[np.float64]
 
 SAMPLES = 25
 """Points looked at along a profile before the parabola through the lowest and its neighbours."""

@@ -8,8 +8,8 @@ therefore carry loads of their own, hats along the edge with gaps taken on it.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.contact.averages import Rows, hat_averages
 from facegear.contact.bodies.surface import edge_hats
 from facegear.contact.flanks import FlankPair, PinionSurface
@@ -31,19 +31,19 @@ class Facing:
     refined lattice coordinates `pinion` and `gear` (q, 2) on both teeth.
     """
 
-    index: NDArray[np.int64]
-    gap: NDArray[np.float64]
-    lever_arm: NDArray[np.float64]
-    pinion: NDArray[np.float64]
-    gear: NDArray[np.float64]
+    index: Integers
+    gap: Array
+    lever_arm: Array
+    pinion: Array
+    gear: Array
 
 
 def facing(
-    gap: NDArray[np.float64],
-    lever_arm: NDArray[np.float64],
-    pinion: NDArray[np.float64],
-    gear: NDArray[np.float64],
-    index: NDArray[np.int64] | None = None,
+    gap: Array,
+    lever_arm: Array,
+    pinion: Array,
+    gear: Array,
+    index: Integers | None = None,
 ) -> Facing:
     """Those points (n,) with a finite gap that lie on both surfaces; `index` where not all are given."""
     on = np.flatnonzero(np.isfinite(gap) & np.isfinite(pinion).all(axis=1) & np.isfinite(gear).all(axis=1))
@@ -60,16 +60,16 @@ class Loads:
     """
 
     rows: Rows
-    hats: NDArray[np.int64]
-    gap: NDArray[np.float64]
-    lever_arm: NDArray[np.float64]
-    pinion: NDArray[np.float64]
-    gear: NDArray[np.float64]
+    hats: Integers
+    gap: Array
+    lever_arm: Array
+    pinion: Array
+    gear: Array
 
 
 def pair_loads(
     pair: FlankPair,
-    points: NDArray[np.int64],
+    points: Integers,
     hits: GearHits | None,
     feet: EdgeFeet,
     options: ContactOptions,
@@ -127,7 +127,7 @@ def edge_loads(surface: PinionSurface, points: Facing, columns: int) -> list[Loa
     return [_loads(rows, nearest[rows.heaviest()], points)]
 
 
-def _loads(rows: Rows, hats: NDArray[np.int64], points: Facing) -> Loads:
+def _loads(rows: Rows, hats: Integers, points: Facing) -> Loads:
     return Loads(
         rows=rows,
         hats=hats,

@@ -3,10 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from facegear.arrays import Array
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.candidates import Candidates
 from facegear.contact.flanks import FlankPair
@@ -98,12 +97,10 @@ class _PairAtPosition:
         teeth = pairs_to_try(self.model.design, self.placement[0], self.options)
         return find_candidates(self.model.flanks, self.placement, teeth, limit, self.options)
 
-    def influence(self, pairs: list[Candidates]) -> NDArray[np.float64]:
+    def influence(self, pairs: list[Candidates]) -> Array:
         return influence_matrix(pairs, self.model.pinion, self.model.gear, self.options.coupled)
 
-    def approach(
-        self, seen: list[Candidates], pairs: list[Candidates], forces: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def approach(self, seen: list[Candidates], pairs: list[Candidates], forces: Array) -> Array:
         return displacement(
             seen, pairs, forces, self.model.pinion, self.model.gear, coupled=self.options.coupled
         )

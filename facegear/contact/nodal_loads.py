@@ -1,19 +1,17 @@
 """The forces of all contacts on the nodes of both contact surfaces before refinement."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
+from facegear.arrays import AnyArray, Arrays, Integers
 from facegear.contact.position import LoadedPosition
 
 BODIES = ("pinion", "face_gear")
 
 
-def load_arrays(
-    variants: Sequence[Sequence[LoadedPosition]], flank_variant: NDArray[np.int64]
-) -> dict[str, NDArray]:
+def load_arrays(variants: Sequence[Sequence[LoadedPosition]], flank_variant: Integers) -> dict[str, AnyArray]:
     """Contact forces as LOAD_ARRAYS: cases by variant, torque and position, loaded nodes by case and tooth.
 
     `variants`: results under each of the assembly errors; `flank_variant` (gears, flanks) numbers them.
@@ -42,7 +40,7 @@ def load_arrays(
 
 
 def loads_by_tooth(
-    arrays: Mapping[str, NDArray], body: str, flank_nodes: int | None = None, variant: int = 0
+    arrays: Arrays, body: str, flank_nodes: int | None = None, variant: int = 0
 ) -> dict[int, sp.csr_matrix]:
     """Forces (cases, nodes), N, on each loaded tooth of `pinion` or `face_gear`, from LOAD_ARRAYS.
 

@@ -2,9 +2,7 @@
 
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
+from facegear.arrays import Integers
 from facegear.contact.options import ContactOptions
 from facegear.geometry.design import Assembly, PairDesign
 from facegear.geometry.unloaded import PAIRS, unloaded_contact
@@ -13,7 +11,7 @@ TOUCHING = 1e-9
 """Gap (m) of conjugate flanks below which they count as touching; off the path it grows by micrometres."""
 
 
-def pairs_to_try(design: PairDesign, phi1: float, options: ContactOptions) -> NDArray[np.int64]:
+def pairs_to_try(design: PairDesign, phi1: float, options: ContactOptions) -> Integers:
     """Pairs that may carry load at the pinion angle phi1 (rad): all, or with `path_only` those on the path.
 
     The path is that of the nominal assembly: between the tips of pinion and gear at the radius m N2 / 2.

@@ -1,11 +1,10 @@
 """The contact pattern: pressures of one tooth's passage on the surface that its contact lines sweep."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Arrays, Integers
 from facegear.contact.columns import EDGES
 
 
@@ -18,10 +17,10 @@ class Pattern:
     `line_load` (p, n) N/m.
     """
 
-    points: NDArray[np.float64]
-    pressure: dict[float, NDArray[np.float64]]
-    where: dict[float, NDArray[np.int64]]
-    line_load: dict[float, NDArray[np.float64]]
+    points: Array
+    pressure: dict[float, Array]
+    where: dict[float, Integers]
+    line_load: dict[float, Array]
 
     @property
     def largest(self) -> float:
@@ -29,12 +28,12 @@ class Pattern:
         return max((float(np.nanmax(p, initial=0.0)) for p in self.pressure.values()), default=0.0)
 
 
-def passage(position: NDArray[np.float64], tooth: NDArray[np.int64]) -> NDArray[np.float64]:
+def passage(position: Array, tooth: Integers) -> Array:
     """Where a tooth is in its passage (pitches): pair j at position x is where pair 0 is at x + j."""
     return np.round(position + tooth, 9)
 
 
-def pattern(arrays: Mapping[str, NDArray]) -> Pattern:
+def pattern(arrays: Arrays) -> Pattern:
     """Of arrays as PRESSURE_ARRAYS."""
     stages, first = np.unique(passage(arrays["contact_position"], arrays["contact_tooth"]), return_index=True)
     points = arrays["contact_point_m"][first]
@@ -53,8 +52,8 @@ def pattern(arrays: Mapping[str, NDArray]) -> Pattern:
 
 
 def pressure_surface(
-    arrays: Mapping[str, NDArray],
-) -> tuple[NDArray[np.float64], dict[str, NDArray[np.int64]], dict[str, NDArray[np.float64]]]:
+    arrays: Arrays,
+) -> tuple[Array, dict[str, Integers], dict[str, Array]]:
     """The pattern as quadrilaterals for ParaView: points, cells, and pressure (Pa) and line load (N/m) at
     each torque; a pressure of nan where none is known.
     """

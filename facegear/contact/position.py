@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers, Mask
 from facegear.contact.candidates import Candidates
 from facegear.contact.solver import ContactSolution
 from facegear.contact.strip import Bodies, solve_torques
@@ -52,11 +52,11 @@ class Spot:
     """
 
     tooth: int
-    hats: NDArray[np.int64]
-    force: NDArray[np.float64]
-    fillet: NDArray[np.bool_]
-    on_pinion: NDArray[np.float64]
-    on_gear: NDArray[np.float64]
+    hats: Integers
+    force: Array
+    fillet: Mask
+    on_pinion: Array
+    on_gear: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +76,7 @@ class LoadedPosition:
     unloaded: float
     k_average: float
     k_local: float
-    share: NDArray[np.float64]
+    share: Array
     fillet_share: float
     overlap: float
     residual: float

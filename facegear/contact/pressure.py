@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import binary_closing, maximum_filter1d
 
+from facegear.arrays import Array, Integers, Mask
 from facegear.contact.columns import EDGES
 from facegear.contact.fillet_contact import line_rows, on_flank
 from facegear.contact.flanks import FlankPair
@@ -23,8 +23,6 @@ from facegear.contact.position import LoadedPosition, Spot
 from facegear.geometry.design import Material
 from facegear.geometry.pinion_surface import flank_points
 from facegear.geometry.unloaded import PAIRS
-
-Array = NDArray[np.float64]
 
 INSIDE, PINION_TIP, GEAR_TIP, END = range(len(EDGES))
 
@@ -52,11 +50,11 @@ class LineLoads:
     and its `error` (Pa), nan unless inside; `half_width` (m) of the strip, nan off the flanks.
     """
 
-    line: NDArray[np.int64]
-    plane: NDArray[np.int64]
+    line: Integers
+    plane: Integers
     length: Array
     line_load: Array
-    where: NDArray[np.int64]
+    where: Integers
     pressure: Array
     error: Array
     half_width: Array
@@ -83,7 +81,7 @@ class FlankPressure:
     """
 
     position: Array
-    tooth: NDArray[np.int64]
+    tooth: Integers
     lines: ContactLines
     points: Array
     loads: tuple[LineLoads, ...]
@@ -176,7 +174,7 @@ def _peak_if_short(force: Array, y: Array) -> float:
     return float(0.75 * total / np.sqrt(5.0 * max(spread, LEAST_SPREAD * step**2)))
 
 
-def _owners(face: Array, step: float) -> NDArray[np.int64]:
+def _owners(face: Array, step: float) -> Integers:
     """The plane (n,) that each one's load is counted with: itself, or the nearest that no end cuts.
 
     How two planes share their load where an end cuts one is arbitrary: their hats almost coincide.
@@ -192,9 +190,7 @@ def _smoothed(force: Array, face: Array, weights: Array) -> Array:
     return carried / np.where(width > 0, width, 1.0)
 
 
-def _where(
-    lines: ContactLines, row: int, planes: NDArray[np.int64], width: Array, cut: NDArray[np.bool_]
-) -> NDArray[np.int64]:
+def _where(lines: ContactLines, row: int, planes: Integers, width: Array, cut: Mask) -> Integers:
     to_pinion, to_gear, to_end = (
         values[row, planes] for values in (lines.to_pinion_tip, lines.to_gear_tip, lines.to_end)
     )

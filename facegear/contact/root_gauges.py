@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.contact.bodies.gauges import Gauges, gauges_on
 from facegear.contact.section_error import SectionErrors
 from facegear.contact.teeth import LOADED_SIDE
@@ -23,17 +23,17 @@ class RootGauges:
     stress at each place along the face that the mesh is measured to make (`contact.section_error`).
     """
 
-    position: NDArray[np.float64]
-    across: NDArray[np.float64]
-    error: NDArray[np.float64]
+    position: Array
+    across: Array
+    error: Array
 
-    def along(self, body: str) -> NDArray[np.float64]:
+    def along(self, body: str) -> Array:
         """Where the gauges stand along the face (b,), m: gear radius, y along the pinion's axis."""
         x, y = self.position[..., 0], self.position[..., 1]
         return np.asarray((y if body == "pinion" else np.hypot(x, y)).mean(axis=(0, 1)))
 
     @property
-    def tangent_angle(self) -> NDArray[np.float64]:
+    def tangent_angle(self) -> Array:
         """Angle (rad), (2, a, b), between the fillet's tangent and the tooth's middle plane."""
         return np.arctan2(np.abs(self.across[..., 0]), np.abs(self.across[..., 2]))
 

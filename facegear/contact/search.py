@@ -1,8 +1,8 @@
 """Where the pairs of teeth can touch at a position."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Integers
 from facegear.contact.candidates import Candidates, candidates_of
 from facegear.contact.flanks import FlankPair
 from facegear.contact.loads import pair_loads
@@ -21,7 +21,7 @@ FARTHEST = 1e-3
 def find_candidates(
     pair: FlankPair,
     placement: tuple[float, float],
-    teeth: NDArray[np.int64],
+    teeth: Integers,
     limit: float,
     options: ContactOptions,
 ) -> list[Candidates]:
@@ -47,9 +47,7 @@ def find_candidates(
     return found
 
 
-def _near(
-    pair: FlankPair, placement: tuple[float, float], teeth: NDArray[np.int64], depth: float
-) -> list[NDArray[np.int64]]:
+def _near(pair: FlankPair, placement: tuple[float, float], teeth: Integers, depth: float) -> list[Integers]:
     """Integration points in those elements of each pinion tooth that a probe finds within `depth` (m)."""
     probes, elements = pair.pinion.probes
     seen = separation(pair.design, probes, *placement, teeth, FARTHEST)

@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from skfem import Basis, ElementQuad2, MeshQuad2
 
+from facegear.arrays import Array, Integers
 from facegear.contact.bodies.assembly import element_stiffness
 from facegear.contact.bodies.factor import solve_sparse
 from facegear.contact.bodies.gauges import gauge_coordinates
@@ -23,7 +23,6 @@ from facegear.geometry.fillets import smallest_radius
 from facegear.mesh.sizes import MeshSizes
 from facegear.mesh.tooth import ToothMesh
 
-Array = NDArray[np.float64]
 Builder = Callable[[PairDesign, MeshSizes], ToothMesh]
 
 HEIGHTS = (0.05, 0.25, 0.5, 0.75)
@@ -116,7 +115,7 @@ def _tensions(tooth: ToothMesh, plane: int, material: Material) -> Array:
     return np.array([_tension(one.reshape(nodes.shape)[fillet], nodes[fillet], material) for one in moved.T])
 
 
-def _merged(tooth: ToothMesh, count: int, teeth: int) -> NDArray[np.int64]:
+def _merged(tooth: ToothMesh, count: int, teeth: int) -> Integers:
     """Number of each node of the copies of a section, those on shared cuts once."""
     left, right = (cut[cut < count] for cut in (tooth.cut_left, tooth.cut_right))
     number = np.arange(teeth * count)
@@ -125,7 +124,7 @@ def _merged(tooth: ToothMesh, count: int, teeth: int) -> NDArray[np.int64]:
     return np.unique(number, return_inverse=True)[1].astype(np.int64)
 
 
-def _stiffness(nodes: Array, cells: NDArray[np.int64], material: Material) -> sp.csr_matrix:
+def _stiffness(nodes: Array, cells: Integers, material: Material) -> sp.csr_matrix:
     """Plane strain of quadrilaterals (m, 9) on nodes (n, 2); dof 2 k + i is displacement i of node k."""
     members = cells[:, QUAD]
     mesh = MeshQuad2(np.ascontiguousarray(nodes.T), np.ascontiguousarray(members.T))
@@ -142,7 +141,7 @@ def _lagrange(x: float) -> tuple[Array, Array]:
     return values, np.array([x - 0.5, -2.0 * x, x + 0.5])
 
 
-def _push(load: Array, nodes: Array, flank: NDArray[np.int64], height: float) -> None:
+def _push(load: Array, nodes: Array, flank: Integers, height: float) -> None:
     """Add a force of 1 N/m into the tooth, normal to its right flank, to `load` (n, 2)."""
     place = height * (flank.size - 1)
     first = min(2 * int(place // 2), flank.size - 3)

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg as sl
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers, Mask
 from facegear.errors import NotConverged
 
 NEWTON_STEPS = 40
@@ -28,24 +28,24 @@ class ContactSolution:
     """
 
     torque: float
-    force: NDArray[np.float64]
+    force: Array
     rotation: float
     slope: float
     residual: float
     steps: int
 
     @property
-    def active(self) -> NDArray[np.bool_]:
+    def active(self) -> Mask:
         """Points in contact (n,)."""
         return self.force > 0.0
 
 
 def solve_contact(
-    compliance: NDArray[np.float64],
-    gap: NDArray[np.float64],
-    lever_arm: NDArray[np.float64],
+    compliance: Array,
+    gap: Array,
+    lever_arm: Array,
     torque: float,
-    start: NDArray[np.bool_] | None = None,
+    start: Mask | None = None,
     where: str = "this position",
 ) -> ContactSolution:
     """Solve for compliance (n, n) in m/N, gaps (n,) in m, lever arms (n,) in m and a torque > 0 in N m.
@@ -78,7 +78,7 @@ def solve_contact(
     )
 
 
-def _first_guess(gap: NDArray[np.float64], lever_arm: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _first_guess(gap: Array, lever_arm: Array) -> Mask:
     turns = np.where(lever_arm > 0, gap / np.where(lever_arm > 0, lever_arm, 1.0), np.inf)
     return turns <= np.quantile(turns[np.isfinite(turns)], 0.25)
 
@@ -90,11 +90,11 @@ class _Bonded:
     `turning` (k,): their forces by a unit turn, N/rad.
     """
 
-    active: NDArray[np.int64]
-    compliance: NDArray[np.float64]
-    factor: tuple[NDArray[np.float64], bool]
-    turning: NDArray[np.float64]
-    force: NDArray[np.float64]
+    active: Integers
+    compliance: Array
+    factor: tuple[Array, bool]
+    turning: Array
+    force: Array
     rotation: float
     slope: float
 
@@ -147,11 +147,11 @@ def _checked(compliance, gap, lever_arm, torque, bonded, steps, where):  # type:
 
 
 def kkt_residual(
-    compliance: NDArray[np.float64],
-    gap: NDArray[np.float64],
-    lever_arm: NDArray[np.float64],
+    compliance: Array,
+    gap: Array,
+    lever_arm: Array,
     torque: float,
-    force: NDArray[np.float64],
+    force: Array,
     rotation: float,
 ) -> float:
     """Largest relative violation of balance, no tension, no penetration and complementarity."""

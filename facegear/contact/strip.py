@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Mask
 from facegear.contact.candidates import Candidates
 from facegear.contact.solver import TOLERANCE, ContactSolution, solve_contact
 
@@ -29,12 +29,10 @@ class Bodies(Protocol):
     @property
     def in_strip(self) -> bool: ...
 
-    def influence(self, pairs: list[Candidates]) -> NDArray[np.float64]:
+    def influence(self, pairs: list[Candidates]) -> Array:
         """Influence matrix (m, m) of candidates, m/N."""
 
-    def approach(
-        self, seen: list[Candidates], pairs: list[Candidates], forces: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def approach(self, seen: list[Candidates], pairs: list[Candidates], forces: Array) -> Array:
         """Approach (k, t) m at the k candidates `seen` by forces (m, t) N on those of `pairs`."""
 
 
@@ -42,10 +40,10 @@ class Bodies(Protocol):
 class _Turns:
     """Turn (n,) of the pinion that closes each candidate's gap, and the least (n,) in its column of hats."""
 
-    own: NDArray[np.float64]
-    least: NDArray[np.float64]
+    own: Array
+    least: Array
 
-    def within(self, lowest: float, band: float) -> NDArray[np.bool_]:
+    def within(self, lowest: float, band: float) -> Mask:
         return (self.own < self.least + band) & (self.least < lowest)
 
 
@@ -61,7 +59,7 @@ def _turns(pairs: list[Candidates]) -> _Turns:
     return _Turns(np.concatenate(own), np.concatenate(low))
 
 
-def only(pairs: list[Candidates], keep: NDArray[np.bool_]) -> list[Candidates]:
+def only(pairs: list[Candidates], keep: Mask) -> list[Candidates]:
     """Those marked (n,), pairs without any left out."""
     ends = np.cumsum([len(pair.hats) for pair in pairs])[:-1]
     parts = zip(pairs, np.split(keep, ends), strict=True)
@@ -114,7 +112,7 @@ def solve_torques(
         return [_whole(contact, keep, value) for contact, value in zip(contacts, worst, strict=True)]
 
 
-def _whole(contact: ContactSolution, keep: NDArray[np.bool_], worst: float) -> ContactSolution:
+def _whole(contact: ContactSolution, keep: Mask, worst: float) -> ContactSolution:
     force = np.zeros(len(keep))
     force[keep] = contact.force
     return replace(contact, force=force, residual=max(contact.residual, float(worst)))

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Arrays
 from facegear.contact.summary import path_by_position
 
 
@@ -24,7 +24,7 @@ class StudiedContact:
     pair: Mapping[str, Any]
     ltca: pd.DataFrame
     by_torque: pd.DataFrame
-    pressure: Mapping[str, NDArray]
+    pressure: Arrays
 
     @property
     def unloaded_path_mm(self) -> float:

@@ -1,11 +1,11 @@
 """What the contact table says of each torque: stiffness, peak-to-peak transmission error, pressure, path."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Arrays, Integers
 from facegear.geometry.design import Assembly
 from facegear.geometry.flank_errors import FLANKS, GEARS
 
@@ -36,13 +36,13 @@ BY_FLANK_COLUMNS = (
 )
 
 
-def by_torque(ltca: pd.DataFrame, pressure: Mapping[str, NDArray]) -> pd.DataFrame:
+def by_torque(ltca: pd.DataFrame, pressure: Arrays) -> pd.DataFrame:
     """`contact_summary` and, as its last column, `path_radii`."""
     return contact_summary(ltca).merge(path_radii(pressure), on="torque_n_m", how="left")
 
 
 def by_flank(
-    variants: Sequence[pd.DataFrame], different: Sequence[Assembly], numbers: NDArray[np.int64]
+    variants: Sequence[pd.DataFrame], different: Sequence[Assembly], numbers: Integers
 ) -> pd.DataFrame:
     """Tables of `by_torque` of all gears and flanks, columns as BY_FLANK_COLUMNS.
 
@@ -108,7 +108,7 @@ def _largest_pressure(found: pd.DataFrame) -> tuple[float, float]:
     return float(row["pressure_mpa"]), float(row["pressure_error_mpa"])
 
 
-def path_radii(pressure: Mapping[str, NDArray]) -> pd.DataFrame:
+def path_radii(pressure: Arrays) -> pd.DataFrame:
     """Columns torque_n_m and path_radius_mm: the centroid of all contact forces over a pitch.
 
     `pressure`: arrays as PRESSURE_ARRAYS. The radius is the distance along the pinion's axis from the axis of
@@ -117,12 +117,12 @@ def path_radii(pressure: Mapping[str, NDArray]) -> pd.DataFrame:
     return _centroids(pressure, ["torque_n_m"])
 
 
-def path_by_position(pressure: Mapping[str, NDArray]) -> pd.DataFrame:
+def path_by_position(pressure: Arrays) -> pd.DataFrame:
     """Columns torque_n_m, position and path_radius_mm: as `path_radii`, of the forces at each position."""
     return _centroids(pressure, ["torque_n_m", "position"])
 
 
-def _centroids(pressure: Mapping[str, NDArray], keys: list[str]) -> pd.DataFrame:
+def _centroids(pressure: Arrays, keys: list[str]) -> pd.DataFrame:
     force = pressure["force_n"]
     moment = force * 1e3 * pressure["point_m"][:, 1][pressure["node"]]
     frame = pd.DataFrame({key: pressure[key] for key in keys} | {"force": force, "moment": moment})

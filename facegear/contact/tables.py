@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import AnyArray
 from facegear.contact.columns import LTCA_COLUMNS
 from facegear.contact.flanks import PinionSurface
 from facegear.contact.position import LoadedPosition
@@ -48,7 +48,7 @@ def _pressures(loads: LineLoads) -> tuple[float, ...]:
 
 def pressure_arrays(
     results: Sequence[LoadedPosition], surface: PinionSurface, pressure: FlankPressure
-) -> dict[str, NDArray]:
+) -> dict[str, AnyArray]:
     """Loads and pressures, as PRESSURE_ARRAYS.
 
     First the forces of all loaded hats, one a row, whether they act in a fillet, and the lattice (`shape`,
@@ -57,7 +57,7 @@ def pressure_arrays(
     is known of the pressure there: 0 with an error of 0 unless inside. Last the contact lines: a pair's
     points on the pinion in all planes, whether loaded or not.
     """
-    lines: dict[str, list[NDArray]] = {}
+    lines: dict[str, list[AnyArray]] = {}
     for result, loads in zip(results, pressure.loads, strict=True):
         rows = {
             "line_torque_n_m": np.full(loads.line.size, result.torque),
@@ -84,7 +84,7 @@ def pressure_arrays(
     }
 
 
-def _forces(results: Sequence[LoadedPosition]) -> dict[str, NDArray]:
+def _forces(results: Sequence[LoadedPosition]) -> dict[str, AnyArray]:
     found = [(result, spot) for result in results for spot in result.spots]
     count = [spot.hats.size for _, spot in found]
     return {

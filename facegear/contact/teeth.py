@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.contact.bodies.body import ElasticBody
 from facegear.contact.bodies.surface import interpolation
 from facegear.contact.options import Refinement
@@ -30,11 +30,11 @@ class ContactSide:
     there is `junction` (nv,).
     """
 
-    nodes: NDArray[np.int64]
-    u: NDArray[np.float64]
-    v: NDArray[np.float64]
+    nodes: Integers
+    u: Array
+    v: Array
     flank_rows: int
-    junction: NDArray[np.float64]
+    junction: Array
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -97,7 +97,7 @@ def elastic_tooth(
 
 
 def pinion_points(
-    design: PairDesign, side: ContactSide, refinement: Refinement, lattice: NDArray[np.float64]
+    design: PairDesign, side: ContactSide, refinement: Refinement, lattice: Array
 ) -> SurfacePoints:
     """Exact points of the pinion's surface, modifications included, at refined lattice coordinates (n, 2)."""
     coarse = lattice / np.array([refinement.profile, refinement.width])

@@ -3,8 +3,8 @@
 import numpy as np
 import pandas as pd
 import scipy
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.steady_state.simulate import Model, SteadyState
 from facegear.dynamics.steady_state.statistics import moments
@@ -12,7 +12,6 @@ from facegear.transmission.layout import DOF_PER_BODY
 from facegear.transmission.matrices import bearing_matrix
 from facegear.transmission.statics import static_bearing_forces
 
-Array = NDArray[np.float64]
 DIRECTIONS = ("x", "y", "z", "radial")
 BEARING_COLUMNS = (
     "body",

@@ -8,8 +8,8 @@ following began: it is followed from two starts.
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings, State
@@ -19,7 +19,6 @@ from facegear.harmonics.series import stacked, stacked_values
 from facegear.transmission.flanks import error_series, slow_errors
 from facegear.transmission.machine import mesh_frequency
 
-Array = NDArray[np.float64]
 NODES = 6
 LEAD = 64
 """Mesh cycles before those that are kept."""
@@ -89,7 +88,7 @@ def follow(
     )
 
 
-def slow_polynomials(model: Model, cycles: NDArray[np.int64]) -> Array:
+def slow_polynomials(model: Model, cycles: Integers) -> Array:
     """The slow part of every flank's error in each mesh cycle, (cycles, NODES, flanks), by powers of s."""
     nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(NODES) / (NODES - 1))
     values = slow_errors(model.machine, (cycles[:, None] + nodes).ravel())
@@ -98,7 +97,7 @@ def slow_polynomials(model: Model, cycles: NDArray[np.int64]) -> Array:
 
 
 def _run(
-    model: Model, integrator: Integrator, state: Array, cycles: NDArray[np.int64], positions: int
+    model: Model, integrator: Integrator, state: Array, cycles: Integers, positions: int
 ) -> tuple[Array, Array]:
     """Samples (cycles * positions, n) of the coordinates from a state (2, n), and the state at the end."""
     samples = np.zeros((cycles.size, positions, integrator.size))
@@ -108,7 +107,7 @@ def _run(
     return samples.reshape(-1, integrator.size), state
 
 
-def _flank_forces(model: Model, coordinates: Array, cycles: NDArray[np.int64], positions: int) -> Array:
+def _flank_forces(model: Model, coordinates: Array, cycles: Integers, positions: int) -> Array:
     machine, flanks = model.machine, model.system.contacts
     at = _instants(cycles, positions)
     error = stacked_values(stacked(error_series(machine)), at) + slow_errors(machine, at)
@@ -116,7 +115,7 @@ def _flank_forces(model: Model, coordinates: Array, cycles: NDArray[np.int64], p
     return model.system.law.force(at, np.maximum(over, 0.0))
 
 
-def _instants(cycles: NDArray[np.int64], positions: int) -> Array:
+def _instants(cycles: Integers, positions: int) -> Array:
     return (cycles[:, None] + np.arange(positions) / positions).ravel()
 
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from math import pi, sin, tan
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.geometry import pinion
 from facegear.geometry.clearance import Gap, smallest_gaps
 from facegear.geometry.curvature import relative_curvatures
@@ -14,8 +14,6 @@ from facegear.geometry.limits import RadiusLimits
 from facegear.geometry.placement import conjugate_angle, mirrored, pinion_angle
 from facegear.geometry.unloaded import UnloadedContact, unloaded_contact
 from facegear.geometry.validate import check
-
-Array = NDArray[np.float64]
 
 TOUCHING = {("flank", "flank"), ("flank", "tip edge"), ("tip land", "flank")}
 """Pairs of parts (pinion, gear) that touch in regular contact: flanks, and flanks with tip edges."""

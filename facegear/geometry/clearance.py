@@ -8,14 +8,13 @@ from dataclasses import dataclass
 from math import copysign, inf, pi
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from facegear.arrays import Array
 from facegear.geometry import face_gear
 from facegear.geometry.design import PairDesign
 from facegear.geometry.outline import PINION_PARTS, pinion_outline, signed_distance
 from facegear.geometry.placement import mirrored, to_pinion_section
-
-Array = NDArray[np.float64]
 
 TOOTH_NUMBERS = np.arange(-2.0, 3.0)
 

@@ -3,15 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.curvature import relative_curvatures
 from facegear.geometry.design import PairDesign
 from facegear.geometry.pinion_surface import flank_points
 from facegear.geometry.separation import separation
-
-Array = NDArray[np.float64]
 
 PAIRS = np.arange(-2, 3)
 """Tooth numbers looked at: at phi1 within half a pitch of zero no other pair can touch."""

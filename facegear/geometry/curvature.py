@@ -1,12 +1,11 @@
 """Principal relative curvatures of pinion and face gear where they touch."""
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from facegear.arrays import Array
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign
-
-Array = NDArray[np.float64]
 
 
 def relative_curvatures(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> tuple[Array, Array, Array]:

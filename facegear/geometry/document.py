@@ -4,8 +4,8 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import AnyArray, Array
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.analysis import PairAnalysis, path_curvatures
 from facegear.geometry.clearance import Gap
@@ -78,7 +78,7 @@ def _gap(gap: Gap) -> dict[str, Any]:
     }
 
 
-def flank_arrays(design: PairDesign, profile: int = 33, width: int = 41) -> dict[str, NDArray[np.float64]]:
+def flank_arrays(design: PairDesign, profile: int = 33, width: int = 41) -> dict[str, Array]:
     """Point grids (profile, width, 3) in m of the right flanks and fillets, in the body frames."""
     half = design.pinion.width / 2
     y = np.linspace(design.mean_radius - half, design.mean_radius + half, width)[None, :]
@@ -97,9 +97,7 @@ def flank_arrays(design: PairDesign, profile: int = 33, width: int = 41) -> dict
     }
 
 
-def contact_arrays(
-    design: PairDesign, analysis: PairAnalysis, contours: EaseOff
-) -> dict[str, NDArray[np.generic]]:
+def contact_arrays(design: PairDesign, analysis: PairAnalysis, contours: EaseOff) -> dict[str, AnyArray]:
     """What the pictures need: the drive side's contact path and the separation contours (SI)."""
     roll, y = analysis.drive.path
     order = np.argsort(roll)

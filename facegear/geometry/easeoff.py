@@ -4,15 +4,13 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Mask
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign
 from facegear.geometry.pinion_surface import flank_points
 from facegear.geometry.placement import conjugate_angle
 from facegear.geometry.separation import FLANK, separation
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -27,7 +25,7 @@ class EaseOff:
     roll: Array
     y: Array
     gap: Array
-    facing: NDArray[np.bool_]
+    facing: Mask
     radius: Array
     height: Array
 

@@ -13,13 +13,12 @@ from functools import lru_cache
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from facegear.arrays import Array
 from facegear.errors import NotConverged
 from facegear.geometry import closed_forms
 from facegear.geometry.design import PairDesign
-
-Array = NDArray[np.float64]
 
 ROUNDING = 16 * np.finfo(float).eps
 

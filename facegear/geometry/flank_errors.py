@@ -8,8 +8,8 @@ pinion on either side. The back flank is the drive flank of the pair in a mirror
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Integers
 from facegear.geometry.design import Assembly
 
 GEARS = ("upper", "lower")
@@ -27,7 +27,7 @@ def errors_at(errors: Assembly, gear: str, flank: str) -> Assembly:
     )
 
 
-def distinct_errors(errors: Assembly) -> tuple[list[Assembly], NDArray[np.int64]]:
+def distinct_errors(errors: Assembly) -> tuple[list[Assembly], Integers]:
     """The different ones of all flanks, those of the design first, and which (gears, flanks) each meets."""
     met = [errors_at(errors, gear, flank) for gear in GEARS for flank in FLANKS]
     different = list(dict.fromkeys(met))

@@ -3,15 +3,14 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from facegear.arrays import Array, Integers
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign
 from facegear.geometry.pinion_surface import SurfacePoints, fillet_points
 from facegear.geometry.placement import to_pinion_section
 from facegear.geometry.separation import FILLET, FLANK, TIP_LAND, Separation, separation
-
-Array = NDArray[np.float64]
 
 FILLET_SAMPLES = 2000
 
@@ -99,7 +98,7 @@ def tip_edge_feet(
     design: PairDesign,
     points: Array,
     placement: tuple[float, float],
-    teeth: NDArray[np.int64],
+    teeth: Integers,
     fillet: FilletCurve | None,
     search_radius: float,
 ) -> list[EdgeFeet]:

@@ -4,13 +4,11 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from facegear.arrays import Array, Integers
 from facegear.geometry import pinion
 from facegear.geometry.design import PairDesign
-
-Array = NDArray[np.float64]
 
 PINION_PARTS = ("tip land", "chamfer", "flank", "fillet", "root land")
 _MODIFIED = [PINION_PARTS.index("flank"), PINION_PARTS.index("fillet")]
@@ -27,7 +25,7 @@ class PinionOutline:
     points: Array
     normals: Array
     other_normals: Array
-    part: NDArray[np.int64]
+    part: Integers
     roll: Array
     tree: cKDTree
 
@@ -88,7 +86,7 @@ def _chamfer(design: PairDesign, count: int) -> tuple[Array, Array, tuple[Array,
 
 def signed_distance(
     design: PairDesign, outline: PinionOutline, section: Array, search_radius: float
-) -> tuple[Array, NDArray[np.int64]]:
+) -> tuple[Array, Integers]:
     """Signed distance (m) of points (..., 3), x, -z, y of the tooth's frame, and the nearest vertex' index.
 
     Negative inside the tooth. inf beyond `search_radius` and beyond the ends of the face. Modifications are

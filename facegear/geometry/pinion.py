@@ -9,11 +9,10 @@ envelope of the rack's tip circle, whose normals pass through the pitch point.
 from math import cos, pi, sin, tan
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from facegear.arrays import Array
 from facegear.geometry.design import PairDesign, Relief
-
-Array = NDArray[np.float64]
 
 
 def involute_point(design: PairDesign, roll: ArrayLike) -> tuple[Array, Array]:

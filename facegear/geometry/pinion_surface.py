@@ -3,12 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from facegear.arrays import Array, Integers
 from facegear.geometry import pinion
 from facegear.geometry.design import PairDesign
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -22,7 +21,7 @@ class SurfacePoints:
         """The same points as (n, 3) arrays."""
         return SurfacePoints(self.position.reshape(-1, 3), self.normal.reshape(-1, 3))
 
-    def only(self, index: NDArray[np.int64]) -> "SurfacePoints":
+    def only(self, index: Integers) -> "SurfacePoints":
         """Those of n points at `index`."""
         return SurfacePoints(self.position[index], self.normal[index])
 

@@ -4,11 +4,10 @@ from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from facegear.arrays import Array
 from facegear.geometry.design import PairDesign
-
-Array = NDArray[np.float64]
 
 AXIS = {"pinion": np.array([0.0, -1.0, 0.0]), "face_gear": np.array([0.0, 0.0, -1.0])}
 """Axes about which a positive turn moves the teeth in mesh towards +x, see `design`."""

@@ -3,16 +3,14 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.geometry.analysis import PairAnalysis
 from facegear.geometry.clearance import TOOTH_NUMBERS, gear_points
 from facegear.geometry.design import PairDesign
 from facegear.geometry.outline import pinion_outline, signed_distance
 from facegear.geometry.placement import mirrored, to_pinion_section
 from facegear.geometry.unloaded import UnloadedContact
-
-Array = NDArray[np.float64]
 
 TURN = 1e-6
 """Turn of the gear (rad) that levers are taken over."""

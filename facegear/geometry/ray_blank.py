@@ -5,12 +5,10 @@ from math import pi
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Mask
 from facegear.geometry import face_gear
 from facegear.geometry.design import PairDesign
-
-Array = NDArray[np.float64]
 
 SAMPLES = 25
 """Points of the sampled flank each way."""
@@ -79,7 +77,7 @@ class FlankSample(NamedTuple):
     normals: Array
     rolls: Array
     psis: Array
-    inner: NDArray[np.bool_]
+    inner: Mask
     spacing: float
 
 

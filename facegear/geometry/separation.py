@@ -11,14 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from facegear.arrays import Array
 from facegear.errors import NotConverged
 from facegear.geometry.design import PairDesign
 from facegear.geometry.pinion_surface import SurfacePoints
 from facegear.geometry.placement import to_left_flank
 from facegear.geometry.ray_blank import gear_rays
 from facegear.geometry.rays import FILLET, FLANK, NONE, ROOT_LAND, TIP_LAND, cut
-
-Array = NDArray[np.float64]
 
 PARTS = ("none", "flank", "fillet", "tip land", "root land")
 """Names of the parts NONE, FLANK, FILLET, TIP_LAND, ROOT_LAND."""

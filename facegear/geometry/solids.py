@@ -13,14 +13,13 @@ from math import pi
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign, Relief
 from facegear.geometry.pinion_surface import fillet_points, flank_points
 from facegear.geometry.placement import body_rotation
 
-Array = NDArray[np.float64]
 Body = Literal["pinion", "face_gear"]
 BODIES: tuple[Body, ...] = ("pinion", "face_gear")
 

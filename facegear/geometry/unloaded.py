@@ -3,14 +3,13 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from facegear.arrays import Array, Integers
 from facegear.errors import NotConverged
 from facegear.geometry.closest import PAIRS, closest
 from facegear.geometry.design import PairDesign
 from facegear.geometry.placement import conjugate_angle
-
-Array = NDArray[np.float64]
 
 TOLERANCE = 1e-11
 """Largest gap (m) left where the flanks touch."""
@@ -30,7 +29,7 @@ class UnloadedContact:
     phi1: Array
     phi2: Array
     transmission_error: Array
-    tooth: NDArray[np.int64]
+    tooth: Integers
     gap: Array
     roll: Array
     y: Array

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.harmonics.series import Harmonics
 
 LEVELS = (0.001, 0.01, 0.05)
@@ -21,8 +21,8 @@ class Fit:
     """
 
     series: Harmonics
-    truncation: NDArray[np.float64]
-    sampling: NDArray[np.float64]
+    truncation: Array
+    sampling: Array
     peak_to_peak: float
 
     def orders_within(self, level: float) -> int | None:
@@ -31,7 +31,7 @@ class Fit:
         return int(enough[0]) if enough.size else None
 
 
-def fit_harmonics(samples: NDArray[np.float64]) -> Fit:
+def fit_harmonics(samples: Array) -> Fit:
     """Least squares fit (the discrete Fourier transform) to samples (n,) at 0, 1/n, 2/n ... of a period.
 
     Raises ValueError for fewer than four samples.
@@ -55,7 +55,7 @@ def fit_harmonics(samples: NDArray[np.float64]) -> Fit:
     return Fit(series, truncation, sampling, float(np.ptp(samples)))
 
 
-def _transform(samples: NDArray[np.float64]) -> Harmonics:
+def _transform(samples: Array) -> Harmonics:
     count = samples.size
     spectrum = np.fft.rfft(samples)[: (count - 1) // 2 + 1] / count
     spectrum[1:] *= 2.0

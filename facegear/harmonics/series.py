@@ -4,7 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from facegear.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -14,8 +16,8 @@ class Harmonics:
     `a` and `b` have shape (H+1,) and the unit N/m. a[0] is zero and b[0] is the mean.
     """
 
-    a: NDArray[np.float64]
-    b: NDArray[np.float64]
+    a: Array
+    b: Array
 
     def __post_init__(self) -> None:
         a = np.array(self.a, dtype=float)
@@ -50,11 +52,11 @@ class Harmonics:
         return float(np.fft.irfft(points * halves, points).min())
 
     @property
-    def amplitudes(self) -> NDArray[np.float64]:
+    def amplitudes(self) -> Array:
         """Amplitude of each order, shape (H+1,), N/m; the first entry is the mean."""
         return np.hypot(self.a, self.b)
 
-    def __call__(self, cycles: ArrayLike) -> NDArray[np.float64]:
+    def __call__(self, cycles: ArrayLike) -> Array:
         """Stiffness at `cycles` = w t / 2 pi (mesh periods since the start), any shape, N/m."""
         angle = 2.0 * np.pi * np.multiply.outer(np.asarray(cycles, dtype=float), np.arange(self.order + 1))
         return np.sin(angle) @ self.a + np.cos(angle) @ self.b
@@ -82,7 +84,7 @@ class Harmonics:
         return Harmonics(self.a * factor, b)
 
 
-def stacked(series: Sequence[Harmonics]) -> NDArray[np.float64]:
+def stacked(series: Sequence[Harmonics]) -> Array:
     """Fourier series as rows (series, 2, harmonics + 1), sine part first, padded to the longest."""
     rows = np.zeros((len(series), 2, max(one.order for one in series) + 1))
     for row, one in zip(rows, series, strict=True):
@@ -90,7 +92,7 @@ def stacked(series: Sequence[Harmonics]) -> NDArray[np.float64]:
     return rows
 
 
-def stacked_values(rows: NDArray[np.float64], cycles: NDArray[np.float64]) -> NDArray[np.float64]:
+def stacked_values(rows: Array, cycles: Array) -> Array:
     """Values of stacked Fourier series at `cycles` (K,) in mesh periods, shape (K, series)."""
     angle = 2.0 * np.pi * np.outer(cycles, np.arange(rows.shape[2]))
     return np.sin(angle) @ rows[:, 0].T + np.cos(angle) @ rows[:, 1].T

@@ -5,19 +5,17 @@ from pathlib import Path
 from typing import TextIO
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.io.atomic import atomic_path
-
-Indices = NDArray[np.int64]
 
 
 def write(
     path: str | Path,
     title: str,
-    nodes: NDArray[np.float64],
-    elements: Indices,
-    node_sets: Mapping[str, Indices],
+    nodes: Array,
+    elements: Integers,
+    node_sets: Mapping[str, Integers],
     surfaces: Mapping[str, Sequence[tuple[int, str]]],
 ) -> None:
     """Nodes (N, 3) in m, C3D20 elements (M, 20) of node indices, sets of node indices.
@@ -42,6 +40,6 @@ def write(
             stream.writelines(f"{element + 1}, {side}\n" for element, side in faces)
 
 
-def _list(stream: TextIO, labels: Indices) -> None:
+def _list(stream: TextIO, labels: Integers) -> None:
     for start in range(0, len(labels), 12):
         stream.write(", ".join(map(str, labels[start : start + 12].tolist())) + "\n")

@@ -7,9 +7,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
+from facegear.arrays import Array
 from facegear.errors import NotConverged, extras_named
 from facegear.io.atomic import atomic_path
 
@@ -17,7 +17,6 @@ with extras_named():
     import gmsh
     import meshio
 
-Array = NDArray[np.float64]
 DEGREE = 3
 NANOMETRES = 6
 """Decimals of a coordinate in mm that a triangle's corners are rounded to, so that equal ones are equal."""

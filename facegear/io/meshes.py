@@ -5,19 +5,17 @@ from pathlib import Path
 
 import meshio
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.errors import CorruptFile
 from facegear.io.atomic import atomic_path
 from facegear.io.checksums import verify
-
-Array = NDArray[np.float64]
 
 
 def write_vtu(
     path: str | Path,
     nodes: Array,
-    cells: Mapping[str, NDArray[np.int64]],
+    cells: Mapping[str, Integers],
     point_data: Mapping[str, Array] | None = None,
     cell_data: Mapping[str, list[Array]] | None = None,
 ) -> None:
@@ -27,7 +25,7 @@ def write_vtu(
         meshio.write(temporary, mesh, file_format="vtu", binary=True, compression=None)
 
 
-def read_msh(path: str | Path) -> tuple[Array, NDArray[np.int64], dict[str, NDArray[np.int64]]]:
+def read_msh(path: str | Path) -> tuple[Array, Integers, dict[str, Integers]]:
     """Nodes (N, 3), hexahedra (M, 27) in VTK's order, and the faces (F, 9) of every named group.
 
     Raises CorruptFile for a file that is altered, truncated or holds anything else.

@@ -1,7 +1,8 @@
 """What the bearings of a machine weigh for the loads that they carry."""
 
 import numpy as np
-from numpy.typing import NDArray
+
+from facegear.arrays import Array
 
 LIFE_EXPONENT = 10.0 / 3.0
 """Of roller bearings, ISO 281: life falls as this power of the load."""
@@ -14,7 +15,7 @@ REFERENCE = 1e4
 """Load (N) of the bearing whose mass is the unit."""
 
 
-def bearing_mass(forces: NDArray[np.float64]) -> float:
+def bearing_mass(forces: Array) -> float:
     """Mass of all bearings, in masses of one that carries REFERENCE for the same life.
 
     `forces` (K, bodies, 3), N, of every body on its bearing at K evenly spaced times. Each bearing is of one

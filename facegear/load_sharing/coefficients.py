@@ -1,10 +1,11 @@
 """Load-sharing coefficients, equations (25) and (26)."""
 
 import numpy as np
-from numpy.typing import NDArray
+
+from facegear.arrays import Array, Mask
 
 
-def sharing_coefficient(forces: NDArray[np.float64]) -> NDArray[np.float64]:
+def sharing_coefficient(forces: Array) -> Array:
     """Largest over mean magnitude of the forces that share a load.
 
     `forces` has shape (..., paths), N, elastic mesh forces of either flank without those that are rounding
@@ -19,11 +20,11 @@ def sharing_coefficient(forces: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.where(loaded, np.clip(ratio, 1.0, len(sizes)), np.nan)
 
 
-def lost_contact(forces: NDArray[np.float64]) -> NDArray[np.bool_]:
+def lost_contact(forces: Array) -> Mask:
     """Where at least one of the paths carries nothing, shape (...) for forces (..., paths)."""
     return (_path_by_path(forces) == 0.0).any(axis=0)
 
 
-def _path_by_path(forces: NDArray[np.float64]) -> NDArray[np.float64]:
+def _path_by_path(forces: Array) -> Array:
     """Forces (paths, ...), each path in one piece: sums over two or three neighbours in memory are slow."""
     return np.ascontiguousarray(np.moveaxis(np.asarray(forces, dtype=float), -1, 0))

@@ -1,14 +1,14 @@
 """What every mesh would carry if the branches of the machine shared its torques evenly."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.transmission.flanks import carried
 from facegear.transmission.layout import Layout, Role, Side
 from facegear.transmission.machine import Machine
 
 
-def even_shares(machine: Machine) -> NDArray[np.float64]:
+def even_shares(machine: Machine) -> Array:
     """Nominal even share of the load at each mesh (meshes,), N along the line of action; nan where none.
 
     With one face gear a mesh carries its own pinion's torque. Between two, an input gives half of its torque
@@ -22,9 +22,7 @@ def even_shares(machine: Machine) -> NDArray[np.float64]:
     return np.where(size > 0.0, size, np.nan)
 
 
-def _even_forces(
-    layout: Layout, own: NDArray[np.float64], on_gears: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _even_forces(layout: Layout, own: Array, on_gears: Array) -> Array:
     """Forces (meshes,), positive where the pinion drives; own (pinions,): what each torque asks for."""
     if len(layout.gears) == 1:
         return own

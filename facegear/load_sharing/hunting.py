@@ -5,16 +5,14 @@ from functools import cached_property
 from math import lcm
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.load_sharing.coefficients import sharing_coefficient
 from facegear.load_sharing.even_shares import even_shares
 from facegear.load_sharing.groups import LoadGroup, load_groups
 from facegear.transmission.flanks import carried
 from facegear.transmission.machine import Machine
 from facegear.transmission.statics import Equilibria, bearing_forces, equilibria
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +110,7 @@ def hunting_cycle(machine: Machine, positions: int = 16, every: int = 1) -> Hunt
     return at_cycles(machine, np.arange(0, hunting_length(machine), every), positions)
 
 
-def at_cycles(machine: Machine, whole: NDArray[np.int64], positions: int) -> HuntingCycle:
+def at_cycles(machine: Machine, whole: Integers, positions: int) -> HuntingCycle:
     """Equilibrium at `positions` of each of some mesh cycles (n,). Raises NotConverged."""
     cycles = (whole[:, None] + np.arange(positions) / positions).ravel()
     found = equilibria(machine, cycles)

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.load_sharing.even_shares import even_shares
 from facegear.load_sharing.hunting import HuntingCycle, LoadHistory, largest
 
@@ -114,7 +114,7 @@ def cycle_table(run: LoadHistory) -> pd.DataFrame:
     return frame
 
 
-def _group_ratios(run: LoadHistory) -> tuple[list[str], NDArray[np.float64]]:
+def _group_ratios(run: LoadHistory) -> tuple[list[str], Array]:
     """Group of every mesh and its load's ratio to the group's own mean (meshes,)."""
     names = [""] * len(run.machine.layout.meshes)
     ratios = np.full(len(names), np.nan)

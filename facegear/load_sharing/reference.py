@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.harmonics.series import Harmonics
@@ -53,7 +53,7 @@ def reference_table(machine: Machine, settings: Settings, options: SharingOption
     return pd.DataFrame(rows, columns=list(REFERENCE_COLUMNS))
 
 
-def slow_forces(machine: Machine, settings: Settings, speed_rpm: float) -> NDArray[np.float64]:
+def slow_forces(machine: Machine, settings: Settings, speed_rpm: float) -> Array:
     """Elastic mesh forces over one cycle at a low speed, shape (1, positions, meshes), N.
 
     A cycle lasts many decay times there, so a few cycles from equilibrium are settled.
@@ -97,7 +97,7 @@ def speed_range_table(machine: Machine, settings: Settings, options: SharingOpti
     return pd.DataFrame(rows, columns=list(SPEED_COLUMNS))
 
 
-def _rows(machine: Machine, quantity: str, forces: NDArray[np.float64]) -> list[dict[str, object]]:
+def _rows(machine: Machine, quantity: str, forces: Array) -> list[dict[str, object]]:
     rows: list[dict[str, object]] = []
     for group in load_groups(machine.layout):
         own = forces[..., group.meshes]

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Mask
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.simulate import Model, SteadyState, build_model, simulate, static_start
 from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
@@ -28,8 +28,8 @@ class GroupSharing:
     """One group: coefficient and lost contact (cycles, samples), average, range of the means over starts."""
 
     group: LoadGroup
-    coefficients: NDArray[np.float64]
-    lost: NDArray[np.bool_]
+    coefficients: Array
+    lost: Mask
     average: Average
     starts_low: float
     starts_high: float
@@ -114,14 +114,12 @@ def disturb(model: Model, start: State, spread: float, random: np.random.Generat
     )
 
 
-def cycle_forces(response: SteadyState) -> NDArray[np.float64]:
+def cycle_forces(response: SteadyState) -> Array:
     """Elastic mesh forces by cycle, shape (cycles, samples, meshes), N."""
     return carried(response.forces).reshape(response.periods, response.per_period, -1)
 
 
-def group_average(
-    response: SteadyState, group: LoadGroup, confidence: float
-) -> tuple[NDArray[np.float64], NDArray[np.bool_], Average]:
+def group_average(response: SteadyState, group: LoadGroup, confidence: float) -> tuple[Array, Mask, Average]:
     """Coefficient and lost contact of a group, each (cycles, samples), and their average."""
     forces = cycle_forces(response)[..., group.meshes]
     coefficients, lost = sharing_coefficient(forces), lost_contact(forces)

@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.motion import Motion
 from facegear.dynamics.steady_state.mesh_samples import by_mesh, each_deflection
 from facegear.dynamics.steady_state.simulate import SteadyState
@@ -31,7 +31,7 @@ def densely_sampled(response: SteadyState) -> SteadyState:
     return replace(response, coordinates=coordinates, deflections=deflections, per_period=per_period)
 
 
-def between(samples: NDArray[np.float64], factor: int) -> NDArray[np.float64]:
+def between(samples: Array, factor: int) -> Array:
     """Values (factor K, columns) of a periodic series given by K even samples (K, columns), from the same
     start.
     """

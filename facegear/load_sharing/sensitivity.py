@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Mask
 from facegear.load_sharing.even_shares import even_shares
 from facegear.load_sharing.hunting import (
     HuntingCycle,
@@ -63,7 +63,7 @@ def _coarser(base: HuntingCycle) -> HuntingCycle:
     return replace(base, positions=base.positions // every, cycles=base.cycles[::every], flank_forces=loads)
 
 
-def _may_be_hardest(base: HuntingCycle) -> NDArray[np.bool_]:
+def _may_be_hardest(base: HuntingCycle) -> Mask:
     """Whether each mesh cycle of the base may hold the largest K_gamma of some group after a change of STEP.
 
     Forces of springs that only push change by no more than the stiffest of them times the change of all gaps

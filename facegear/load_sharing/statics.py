@@ -1,14 +1,14 @@
 """Load sharing of the machine at rest: equilibrium at each position of the mesh cycle."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.transmission.flanks import carried
 from facegear.transmission.machine import Machine
 from facegear.transmission.statics import static_equilibrium
 
 
-def static_forces(machine: Machine, positions: int) -> NDArray[np.float64]:
+def static_forces(machine: Machine, positions: int) -> Array:
     """Elastic mesh forces with k and e frozen at evenly spaced positions, shape (1, positions, meshes), N.
 
     This is the limit of slow running: damping and inertia vanish, and who carries load follows from
@@ -18,6 +18,6 @@ def static_forces(machine: Machine, positions: int) -> NDArray[np.float64]:
     return carried(np.array([[static_equilibrium(machine, float(at)).forces for at in cycles]]))
 
 
-def mean_equilibrium_forces(machine: Machine) -> NDArray[np.float64]:
+def mean_equilibrium_forces(machine: Machine) -> Array:
     """Elastic mesh forces at mean stiffness without transmission error, shape (1, 1, meshes), N."""
     return carried(static_equilibrium(machine).forces[None, None, :])

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers, Mask
 from facegear.dynamics.steady_state.averages import mean_interval
 
 BATCHES = 10
@@ -32,8 +32,8 @@ class Average:
 
 
 def average(
-    coefficients: NDArray[np.float64],
-    lost: NDArray[np.bool_],
+    coefficients: Array,
+    lost: Mask,
     confidence: float = 0.95,
     periodic: bool = False,
 ) -> Average:
@@ -77,7 +77,7 @@ def average(
     )
 
 
-def defined_mean(coefficients: NDArray[np.float64]) -> float:
+def defined_mean(coefficients: Array) -> float:
     """Mean over all defined instants, NaN where there are none: that of `average` alone."""
     undefined = np.isnan(coefficients)
     if not undefined.any():
@@ -85,7 +85,7 @@ def defined_mean(coefficients: NDArray[np.float64]) -> float:
     return float("nan") if undefined.all() else float(coefficients[~undefined].mean())
 
 
-def _half_width(sums: NDArray[np.float64], counts: NDArray[np.int64], confidence: float) -> float:
+def _half_width(sums: Array, counts: Integers, confidence: float) -> float:
     """Half-width of the mean's confidence interval from batch means; sums and counts are (cycles,).
 
     Cycles follow each other and are not independent, batches of many cycles nearly are. NaN from one batch.

@@ -5,8 +5,8 @@ from math import pi
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import AnyArray, Array, Mask
 from facegear.lubrication.columns import (
     BY_TORQUE_COLUMNS,
     LIMIT_COLUMNS,
@@ -140,7 +140,7 @@ def _map_row(contact: LoadedContact, speed: float, known: Lubrication) -> tuple[
     return (*place, *told, _least(state.film_ratio, on))
 
 
-def local_arrays(pair: LoadedPair, states: Sequence[Running], speed: float) -> dict[str, NDArray]:
+def local_arrays(pair: LoadedPair, states: Sequence[Running], speed: float) -> dict[str, AnyArray]:
     """What holds at every loaded plane of a contact line at the speed (rad/s), as LOCAL_ARRAYS."""
     rows = [
         _local(contact.places, state, speed) for contact, state in zip(pair.contacts, states, strict=True)
@@ -149,7 +149,7 @@ def local_arrays(pair: LoadedPair, states: Sequence[Running], speed: float) -> d
     return {**joined, "speed_rad_per_s": np.array([speed])}
 
 
-def _local(places: Places, state: Running, speed: float) -> dict[str, NDArray]:
+def _local(places: Places, state: Running, speed: float) -> dict[str, AnyArray]:
     return {
         "torque_n_m": places.torque,
         "position": places.position,
@@ -177,5 +177,5 @@ def _local(places: Places, state: Running, speed: float) -> dict[str, NDArray]:
     }
 
 
-def _least(values: NDArray[np.float64], on: NDArray[np.bool_]) -> float:
+def _least(values: Array, on: Mask) -> float:
     return float(values[on].min()) if on.any() else np.nan

@@ -1,9 +1,9 @@
 """Thickness of the lubricant film between the flanks; E_r = 2 E* and viscosity at the bulk temperature."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from facegear.arrays import Array
+
 Numbers = float | Array
 
 

@@ -8,14 +8,13 @@ is slow its half space answers as Jaeger's integral says, and the largest temper
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 from scipy.special import kve
 
+from facegear.arrays import Array
 from facegear.lubrication.request import Heated
 
-Array = NDArray[np.float64]
 Numbers = float | Array
 
 HERTZ = 1.1115483781

@@ -10,11 +10,10 @@ from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from facegear.arrays import Array, Mask
+
 Numbers = float | Array
-Mask = NDArray[np.bool_]
 
 LEAST_LINE_LOAD = 150e3
 """N/m, of the gear tests behind Schlenk's formula and those of the standards."""

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.contact.pattern import passage
 from facegear.errors import FacegearError, NotConverged
 from facegear.lubrication.film import elliptic_film, line_film, shear_heating
@@ -14,8 +14,6 @@ from facegear.lubrication.micropitting import local_film, sliding_factor
 from facegear.lubrication.oil import Oil
 from facegear.lubrication.places import LoadedContact, Places
 from facegear.lubrication.request import BorrowedBulk, Cooling, GivenBulk, Lubrication
-
-Array = NDArray[np.float64]
 
 STEPS = 60
 SETTLED = 1e-6

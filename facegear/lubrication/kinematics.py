@@ -7,15 +7,14 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from facegear.arrays import Array
 from facegear.contact.lines import ContactLines
 from facegear.geometry import pinion
 from facegear.geometry.design import PairDesign
 from facegear.geometry.pinion_surface import flank_points
 from facegear.geometry.placement import AXIS, RigidMotion, pinion_angle, pinion_to_gear
-
-Array = NDArray[np.float64]
 
 FILLET_SAMPLES = 4001
 

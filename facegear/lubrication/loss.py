@@ -1,17 +1,15 @@
 """Loss in the mesh from the contact forces and the sliding velocities where they act."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
+from facegear.arrays import Array, Arrays, Integers, Mask
 from facegear.geometry.design import PairDesign
 from facegear.geometry.placement import pinion_angle
 from facegear.lubrication.kinematics import slip, spins, standing, surface_normals
 
-Array = NDArray[np.float64]
 Numbers = float | Array
 
 
@@ -27,8 +25,8 @@ class HatSlip:
 
     torque: Array
     position: Array
-    tooth: NDArray[np.int64]
-    plane: NDArray[np.int64]
+    tooth: Integers
+    plane: Integers
     force: Array
     point: Array
     normal: Array
@@ -41,7 +39,7 @@ class HatSlip:
         return np.linalg.norm(self.velocity, axis=-1)
 
 
-def hat_slip(design: PairDesign, arrays: Mapping[str, NDArray]) -> HatSlip:
+def hat_slip(design: PairDesign, arrays: Arrays) -> HatSlip:
     """Of the forces in arrays as PRESSURE_ARRAYS (see `facegear.contact.columns`).
 
     The forces carry the whole torque; the smoothed line loads carry 1 to 2 % less.
@@ -108,7 +106,7 @@ class OverTorque:
             return np.full(asked.shape, self.values[0])
         return PchipInterpolator(np.log(self.torques), self.values)(np.log(asked))
 
-    def within(self, torque: Numbers) -> NDArray[np.bool_]:
+    def within(self, torque: Numbers) -> Mask:
         """Whether torques of any shape lie between the smallest and the largest."""
         asked = np.abs(np.asarray(torque, float))
         return (asked >= self.torques[0] * (1 - 1e-12)) & (asked <= self.torques[-1] * (1 + 1e-12))

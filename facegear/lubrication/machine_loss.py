@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers, Mask
 from facegear.errors import NotConverged
 from facegear.lubrication.heat import (
     STEPS,
@@ -25,8 +25,6 @@ from facegear.lubrication.heat import (
 from facegear.lubrication.loss import OverTorque
 from facegear.lubrication.places import LoadedContact
 from facegear.lubrication.request import Cooling, Lubrication
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,8 +81,8 @@ class MeshLoads:
     either flank, and the largest, `peak`, for heat and film. `bodies` in all, the first `pinions` pinions.
     """
 
-    pinion: NDArray[np.int64]
-    gear: NDArray[np.int64]
+    pinion: Integers
+    gear: Integers
     torque: Array
     peak: Array
     pinions: int
@@ -104,7 +102,7 @@ class MachineLoss:
     flash: Array
     film_ratio: Array
     micropitting: Array
-    within: NDArray[np.bool_]
+    within: Mask
     heat: Array
 
     @property

@@ -3,9 +3,9 @@
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from facegear.arrays import Array
+
 Numbers = float | Array
 
 

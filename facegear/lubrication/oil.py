@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from math import log, log10
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from facegear.arrays import Array
 from facegear.errors import FacegearError
-
-Array = NDArray[np.float64]
 
 ZERO = 273.15
 SHIFT = 0.7

@@ -5,8 +5,8 @@ from dataclasses import dataclass, fields, replace
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Arrays, Integers, Mask
 from facegear.contact.columns import EDGES
 from facegear.contact.hertz import strip_pressure
 from facegear.contact.lines import ContactLines, unloaded_lines
@@ -14,8 +14,6 @@ from facegear.geometry.design import PairDesign
 from facegear.geometry.unloaded import PAIRS
 from facegear.lubrication.kinematics import line_kinematics
 from facegear.lubrication.loss import HatSlip
-
-Array = NDArray[np.float64]
 
 INSIDE = EDGES.index("inside")
 
@@ -33,9 +31,9 @@ class Places:
 
     torque: Array
     position: Array
-    tooth: NDArray[np.int64]
-    plane: NDArray[np.int64]
-    inside: NDArray[np.bool_]
+    tooth: Integers
+    plane: Integers
+    inside: Mask
     y: Array
     roll: Array
     line_load: Array
@@ -57,9 +55,7 @@ class Places:
         return 2 / 3 * np.pi * self.half_width * self.half_length * self.pressure
 
 
-def stored_lines(
-    design: PairDesign, arrays: Mapping[str, NDArray], unloaded: Mapping[float, float]
-) -> ContactLines:
+def stored_lines(design: PairDesign, arrays: Arrays, unloaded: Mapping[float, float]) -> ContactLines:
     """The contact lines of arrays as PRESSURE_ARRAYS; `unloaded` error (m) by position.
 
     Raises NotConverged as `facegear.geometry.separation` does.
@@ -68,7 +64,7 @@ def stored_lines(
     return unloaded_lines(design, arrays["contact_position"], arrays["contact_tooth"], unloaded, planes)
 
 
-def places(design: PairDesign, arrays: Mapping[str, NDArray], lines: ContactLines, modulus: float) -> Places:
+def places(design: PairDesign, arrays: Arrays, lines: ContactLines, modulus: float) -> Places:
     """Of the line loads in arrays as PRESSURE_ARRAYS, with their contact lines; `modulus` E* (Pa).
 
     Beside an edge the curvature and slope are those of the nearest plane that has any, and the pressure that
@@ -117,7 +113,7 @@ class LoadedContact:
     torque: float
     places: Places
     hats: HatSlip
-    nearest: NDArray[np.int64]
+    nearest: Integers
     positions: int
 
     def at_hats(self, values: Array) -> Array:
@@ -138,7 +134,7 @@ def loaded_contacts(found: Places, hats: HatSlip) -> tuple[LoadedContact, ...]:
 Loads = TypeVar("Loads", Places, HatSlip)
 
 
-def _of(loads: Loads, on: NDArray[np.bool_]) -> Loads:
+def _of(loads: Loads, on: Mask) -> Loads:
     return replace(loads, **{field.name: getattr(loads, field.name)[on] for field in fields(loads)})
 
 
@@ -169,7 +165,7 @@ def _nearest(values: Array) -> Array:
     return np.where(known.any(axis=1, keepdims=True), found, np.nan)
 
 
-def _rows(arrays: Mapping[str, NDArray]) -> NDArray[np.int64]:
+def _rows(arrays: Arrays) -> Integers:
     """Contact line (m,) of every loaded plane."""
     keys = zip(arrays["contact_position"].tolist(), arrays["contact_tooth"].tolist(), strict=True)
     row = {key: number for number, key in enumerate(keys)}
@@ -177,7 +173,7 @@ def _rows(arrays: Mapping[str, NDArray]) -> NDArray[np.int64]:
     return np.array([row[key] for key in asked], dtype=np.int64)
 
 
-def _half_lengths(arrays: Mapping[str, NDArray], row: NDArray[np.int64]) -> Array:
+def _half_lengths(arrays: Arrays, row: Integers) -> Array:
     """Half the loaded length (m,) of the line that each plane belongs to."""
     _, torque = np.unique(arrays["line_torque_n_m"], return_inverse=True)
     _, line = np.unique(torque * (row.max() + 1) + row, return_inverse=True)

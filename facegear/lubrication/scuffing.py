@@ -1,9 +1,9 @@
 """Scuffing: temperature of the contact against the temperature that a test of the oil allows."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from facegear.arrays import Array
+
 Numbers = float | Array
 
 MEAN_WEIGHT = 1.5

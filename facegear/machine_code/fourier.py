@@ -4,8 +4,8 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.machine_code.compiler import FAST, for_callers
 from facegear.machine_code.lanes import (
     LANES,
@@ -21,7 +21,6 @@ from facegear.machine_code.lanes import (
 )
 from facegear.machine_code.memory import aligned
 
-Array = NDArray[np.float64]
 inlined = for_callers(**FAST)
 
 
@@ -82,7 +81,7 @@ def fourier_terms(scratch: FourierScratch, series: Array, s: float, rows: int, o
 
 
 @inlined
-def give(kinds: Array, wide: int, kind: NDArray[np.int64], rows: int, out: Array) -> None:
+def give(kinds: Array, wide: int, kind: Integers, rows: int, out: Array) -> None:
     """Give every column of out (rows, columns) the coefficients of its kind."""
     columns = out.shape[1]
     for m in range(kind.size):

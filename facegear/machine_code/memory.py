@@ -3,14 +3,15 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
+
+from facegear.arrays import Array
 
 LANES = 4
 """Numbers that a vector holds."""
 _LINE = 64
 
 
-def aligned(*shape: int) -> NDArray[np.float64]:
+def aligned(*shape: int) -> Array:
     """Zeros that start on a line of the processor's cache: a vector that lies across two is read twice."""
     size, width = math.prod(shape), _LINE // 8
     room = np.zeros(size + width)
@@ -23,13 +24,13 @@ def whole_lanes(length: int) -> int:
     return -(-length // LANES) * LANES
 
 
-def padded(values: NDArray[np.float64], length: int) -> NDArray[np.float64]:
+def padded(values: Array, length: int) -> Array:
     """Values with zeros behind the last row up to a length."""
     wide = aligned(length, *values.shape[1:])
     wide[: len(values)] = values
     return wide
 
 
-def divided(values: NDArray[np.float64], divisor: float) -> NDArray[np.float64]:
+def divided(values: Array, divisor: float) -> Array:
     """Values over a divisor, in an aligned array."""
     return np.divide(values, divisor, out=aligned(*values.shape))

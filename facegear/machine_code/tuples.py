@@ -5,11 +5,10 @@ Slower by a factor of a few. Arrays are C-contiguous, indices are flat.
 
 from typing import Any
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from facegear.arrays import AnyArray, Array
+
 Four = tuple[float, float, float, float]
 
 
@@ -37,7 +36,7 @@ def splat(value: float) -> Four:
 
 
 @njit
-def take(array: NDArray[Any], index: int) -> Any:
+def take(array: AnyArray, index: int) -> Any:
     """One value."""
     return array.flat[index]
 

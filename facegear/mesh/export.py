@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.io import abaqus, meshes
 from facegear.io.atomic import atomic_path
 from facegear.mesh.gmsh_model import write_msh
@@ -40,9 +40,7 @@ def write_files(sector: SectorMesh, msh: Path, vtu: Path, inp: Path) -> pd.DataF
     return quality_table(sector, jacobian, condition)
 
 
-def quality_table(
-    sector: SectorMesh, jacobian: NDArray[np.float64], condition: NDArray[np.float64]
-) -> pd.DataFrame:
+def quality_table(sector: SectorMesh, jacobian: Array, condition: Array) -> pd.DataFrame:
     """Rows (body, quantity, statistic, value): counts and volume, and quality by quantile."""
     body, serendipity = sector.tooth.body, np.unique(sector.hexes[:, SERENDIPITY20])
     rows = [

@@ -8,6 +8,7 @@ import gmsh
 import numpy as np
 from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.mesh.orderings import GMSH27, QUAD9
 from facegear.mesh.sector import SectorMesh
 
@@ -44,7 +45,7 @@ def _fill(sector: SectorMesh) -> NDArray[np.uint64]:
     return elements
 
 
-def write_msh(sector: SectorMesh, path: Path) -> NDArray[np.float64]:
+def write_msh(sector: SectorMesh, path: Path) -> Array:
     """Write the sector as .msh 4.1 (binary) and return gmsh's minSICN of every hexahedron."""
     with gmsh_model(sector) as elements:
         quality = gmsh.model.mesh.getElementQualities(elements, "minSICN")

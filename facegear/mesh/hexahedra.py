@@ -3,8 +3,9 @@
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import Element, ElementHex2, FacetBasis, MeshHex2
+
+from facegear.arrays import Array, Integers
 
 TENSOR = (2 * ElementHex2.doflocs @ np.array([1, 3, 9])).astype(np.int64)
 """Index i + 3 j + 9 k in tensor order of each local node of scikit-fem's element."""
@@ -13,7 +14,7 @@ FOUND = 1e-7
 """Last step of Newton's method, in elements and summed over the points, at which a point counts as found."""
 
 
-def hex_mesh(nodes: NDArray[np.float64], hexes: NDArray[np.int64]) -> tuple[MeshHex2, NDArray[np.int64]]:
+def hex_mesh(nodes: Array, hexes: Integers) -> tuple[MeshHex2, Integers]:
     """Mesh of hexahedra (m, 27) in tensor order on nodes (n, 3), and the number (n,) of each node in it.
 
     Displacement i of a node with the number k has the dof 3 k + i of `ElementVector(ElementHex2())`. Nodes
@@ -26,7 +27,7 @@ def hex_mesh(nodes: NDArray[np.float64], hexes: NDArray[np.int64]) -> tuple[Mesh
     return mesh, numbers
 
 
-def facet_basis(mesh: MeshHex2, element: Element, facets: NDArray[np.int64], degree: int) -> FacetBasis:
+def facet_basis(mesh: MeshHex2, element: Element, facets: Integers, degree: int) -> FacetBasis:
     """Basis of `element` on facets, with a quadrature exact to `degree` in each direction.
 
     scikit-fem finds the facets' points in the elements by Newton's method to 1e-12 of an element. Rounding of

@@ -8,12 +8,10 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -3,22 +3,20 @@
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import ElementHex2, MeshHex2
 from skfem.quadrature import get_quadrature
 
+from facegear.arrays import Array, Integers
 from facegear.errors import ConfigError
 from facegear.mesh.hexahedra import hex_mesh
 from facegear.mesh.tooth import ToothMesh
-
-Array = NDArray[np.float64]
 
 ELEMENTS_AT_ONCE = 2000
 DEGREE = 7
 """Of the quadrature of volumes: the determinant of the 27-node geometry has at most the degree 5 each way."""
 
 
-def scaled_jacobians(nodes: Array, hexes: NDArray[np.int64]) -> Array:
+def scaled_jacobians(nodes: Array, hexes: Integers) -> Array:
     """Smallest scaled Jacobian of each element over its 27 nodes, -1..1, 1 for a box.
 
     The determinant is divided by the product of the lengths of the three edge directions.
@@ -40,13 +38,13 @@ def require_right_side_out(tooth: ToothMesh) -> None:
         raise ConfigError("mesh.resolution", told, "another one, or another fillet_depth_mm")
 
 
-def volume(nodes: Array, hexes: NDArray[np.int64]) -> float:
+def volume(nodes: Array, hexes: Integers) -> float:
     """Volume (m^3), exact for the 27-node geometry."""
     mesh, _ = hex_mesh(nodes, hexes)
     points, weights = get_quadrature(ElementHex2, DEGREE)
     return sum(float(np.sum(mesh.mapping().detDF(points, tind=batch) @ weights)) for batch in _batches(mesh))
 
 
-def _batches(mesh: MeshHex2) -> Iterator[NDArray[np.int64]]:
+def _batches(mesh: MeshHex2) -> Iterator[Integers]:
     for start in range(0, mesh.nelements, ELEMENTS_AT_ONCE):
         yield np.arange(start, min(start + ELEMENTS_AT_ONCE, mesh.nelements))

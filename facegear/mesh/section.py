@@ -4,14 +4,12 @@ from dataclasses import dataclass
 from math import ceil
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Mask
 from facegear.geometry.fillets import smallest_radius
 from facegear.mesh.outline import Outline
 from facegear.mesh.sizes import MeshSizes
 from facegear.mesh.strip import HalfSection, coarsening_levels, depth_rows, half_section
-
-Array = NDArray[np.float64]
 
 THINNED = 2
 """Rows of elements that are thinner below a fillet where stress is read."""
@@ -106,7 +104,7 @@ def _length(outline: Outline, segment: str, scale: float) -> float:
     return float(np.max(np.hypot(scale * np.diff(angle, axis=0), np.diff(height, axis=0)).sum(axis=0)))
 
 
-def segment_fractions(plan: SectionPlan, sigma: Array) -> dict[str, tuple[NDArray[np.bool_], Array]]:
+def segment_fractions(plan: SectionPlan, sigma: Array) -> dict[str, tuple[Mask, Array]]:
     """For each segment of the outline: which sigma lie on it (ends included) and their fractions 0..1.
 
     `sigma` must hold the segments' ends, which may differ by rounding.

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.errors import GeometryError
 from facegear.mesh.tooth import ToothMesh
 
@@ -19,13 +19,13 @@ class SectorMesh:
     """
 
     tooth: ToothMesh
-    nodes: NDArray[np.float64]
-    hexes: NDArray[np.int64]
-    tooth_nodes: NDArray[np.int64]
+    nodes: Array
+    hexes: Integers
+    tooth_nodes: Integers
     first: int
     closed: bool
 
-    def faces(self, name: str) -> NDArray[np.int64]:
+    def faces(self, name: str) -> Integers:
         """Faces (F, 9) of a group over all teeth; cut faces only where the sector ends.
 
         Raises KeyError for a group the tooth does not have.

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
+
+from facegear.arrays import Array, Integers
 
 
 @dataclass(frozen=True)
@@ -27,9 +28,9 @@ class Row:
 class HalfSection:
     """Quads of nine nodes in (sigma, t), lexicographic with sigma first; nodes unique."""
 
-    sigma: NDArray[np.float64]
-    t: NDArray[np.float64]
-    quads: NDArray[np.int64]
+    sigma: Array
+    t: Array
+    quads: Integers
     columns: tuple[int, int]
     """Coarse columns against the centre line, and against the floor."""
 
@@ -77,7 +78,7 @@ def half_section(
     column_levels: refinement of each coarse column at the surface; columns: how many stand against the centre
     line and against the floor. Columns of different levels conform, as no row's sides are divided.
     """
-    corners: list[NDArray[np.float64]] = []
+    corners: list[Array] = []
     for column, finest in enumerate(column_levels):
         for row in rows:
             corners.extend(_row_quads(column, min(row.level, finest), row, row.level <= finest))
@@ -88,11 +89,11 @@ def half_section(
     return _nine_nodes(np.array(corners), columns)
 
 
-def _rectangle(s0: float, s1: float, t0: float, t1: float) -> NDArray[np.float64]:
+def _rectangle(s0: float, s1: float, t0: float, t1: float) -> Array:
     return np.array([[s0, t0], [s1, t0], [s0, t1], [s1, t1]])
 
 
-def _row_quads(column: int, level: int, row: Row, active: bool) -> list[NDArray[np.float64]]:
+def _row_quads(column: int, level: int, row: Row, active: bool) -> list[Array]:
     """Corners (4, 2) ordered (0,0), (1,0), (0,1), (1,1) in local (sigma, t)."""
     divisions = 3**level
     if not (row.coarsens and active):
@@ -111,7 +112,7 @@ def _row_quads(column: int, level: int, row: Row, active: bool) -> list[NDArray[
     return quads
 
 
-def _nine_nodes(corners: NDArray[np.float64], columns: tuple[int, int]) -> HalfSection:
+def _nine_nodes(corners: Array, columns: tuple[int, int]) -> HalfSection:
     c00, c10, c01, c11 = (corners[:, i] for i in range(4))
     nine = np.stack(
         [

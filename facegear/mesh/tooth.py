@@ -4,16 +4,13 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers, Mask
 from facegear.geometry.design import PairDesign
 from facegear.geometry.placement import body_rotation
 from facegear.mesh.outline import Outline
 from facegear.mesh.section import SectionPlan, plan_section, section_nodes, segment_fractions
 from facegear.mesh.sizes import MeshSizes
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -25,7 +22,7 @@ class SurfaceGrid:
     gear fillet: psi (rad), gear radius (m). Every second node in each direction, from the first, is a corner.
     """
 
-    nodes: Indices
+    nodes: Integers
     u: Array
     v: Array
 
@@ -44,11 +41,11 @@ class ToothMesh:
     body: str
     teeth: int
     nodes: Array
-    hexes: Indices
-    faces: dict[str, Indices]
+    hexes: Integers
+    faces: dict[str, Integers]
     surfaces: dict[str, SurfaceGrid]
-    cut_left: Indices
-    cut_right: Indices
+    cut_left: Integers
+    cut_right: Integers
 
     @property
     def pitch(self) -> float:
@@ -120,28 +117,28 @@ def _tooth(design: PairDesign, body: str, sizes: MeshSizes, start: float, end: f
     )
 
 
-def _transposed(quads: Indices) -> Indices:
+def _transposed(quads: Integers) -> Integers:
     return quads.reshape(-1, 3, 3).transpose(0, 2, 1).reshape(-1, 9)
 
 
-def _extruded(quads: Indices, layers: int, count: int) -> Indices:
+def _extruded(quads: Integers, layers: int, count: int) -> Integers:
     offsets = count * (2 * np.arange(layers)[:, None] + np.arange(3))
     return (quads[None, :, None, :] + offsets[:, None, :, None]).reshape(-1, 27)
 
 
-def _extruded_edges(edges: Indices, layers: int, count: int) -> Indices:
+def _extruded_edges(edges: Integers, layers: int, count: int) -> Integers:
     offsets = count * (2 * np.arange(layers)[:, None] + np.arange(3))
     return (edges[None, :, None, :] + offsets[:, None, :, None]).reshape(-1, 9)
 
 
-def _boundary_edges(plan: SectionPlan, mirror: Indices, back: str) -> dict[str, Indices]:
+def _boundary_edges(plan: SectionPlan, mirror: Integers, back: str) -> dict[str, Integers]:
     """Edges of three nodes of the whole section by group."""
     half = plan.half
     sides = half.quads[:, [[0, 1, 2], [0, 3, 6], [6, 7, 8], [2, 5, 8]]].reshape(-1, 3)
     sigma, t = half.sigma[sides], half.t[sides]
     last = half.sigma.max()
 
-    def between(name: str) -> NDArray[np.bool_]:
+    def between(name: str) -> Mask:
         low, high = plan.breaks[name]
         return (t == 0).all(axis=1) & (sigma >= low - 1e-12).all(axis=1) & (sigma <= high + 1e-12).all(axis=1)
 
@@ -157,7 +154,7 @@ def _boundary_edges(plan: SectionPlan, mirror: Indices, back: str) -> dict[str, 
     return groups | {n: np.concatenate([sides[mask], mirror[sides[mask]]]) for n, mask in both.items()}
 
 
-def _outward(nodes: Array, faces: Indices, owner: Array | None, centre: Array, hexes: Indices) -> Indices:
+def _outward(nodes: Array, faces: Integers, owner: Array | None, centre: Array, hexes: Integers) -> Integers:
     """Faces with their normals pointing out of the element they belong to."""
     if owner is None:
         face_of = {int(node): i for i, node in enumerate(faces[:, 4])}
@@ -171,7 +168,7 @@ def _outward(nodes: Array, faces: Indices, owner: Array | None, centre: Array, h
 
 
 def _surfaces(
-    outline: Outline, plan: SectionPlan, mirror: Indices, planes: Indices
+    outline: Outline, plan: SectionPlan, mirror: Integers, planes: Integers
 ) -> dict[str, SurfaceGrid]:
     half = plan.half
     surface = np.flatnonzero(half.t == 0)

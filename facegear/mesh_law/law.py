@@ -3,10 +3,8 @@
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-
+from facegear.arrays import Array
 
 Held = Any
 """A NamedTuple of any law, held at K phases."""

@@ -6,13 +6,11 @@ from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.harmonics.series import Harmonics, stacked, stacked_values
 from facegear.machine_code.memory import aligned, divided, whole_lanes
 from facegear.mesh_law.law import Held
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +45,7 @@ class LinearLaw:
     """
 
     fourier: Array
-    kind: NDArray[np.int64]
+    kind: Integers
     pieces: tuple[Piecewise, ...] = field(default=())
 
     @property
@@ -153,7 +151,7 @@ def linear_law(series: Sequence[Harmonics]) -> LinearLaw:
     return LinearLaw(fourier, kind)
 
 
-def different(series: Sequence[Harmonics]) -> tuple[Array, NDArray[np.int64]]:
+def different(series: Sequence[Harmonics]) -> tuple[Array, Integers]:
     """The different ones among Fourier series, (kinds, 2, harmonics + 1), and the kind of each."""
     rows = stacked(series)
     kinds, kind = np.unique(rows.reshape(len(rows), -1), axis=0, return_inverse=True)

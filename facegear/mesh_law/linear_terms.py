@@ -3,14 +3,13 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.machine_code.compiler import FAST, for_callers
 from facegear.machine_code.fourier import FourierScratch, fourier_terms, give, shifted
 from facegear.machine_code.lanes import load, multiply, multiply_add, splat
 from facegear.mesh_law import terms
 
-Array = NDArray[np.float64]
 inlined = for_callers(**FAST)
 
 
@@ -26,7 +25,7 @@ class LinearTerms(NamedTuple):
     """
 
     fourier: Array
-    kind: NDArray[np.int64]
+    kind: Integers
     pieces: Array
 
 
@@ -72,7 +71,7 @@ def phase_terms(
 
 @terms.force_terms.of(LinearTerms)
 def force_terms(
-    law: LinearTerms, series: LinearSeries, state: NDArray[np.int64], deflection: Array, i: int, c: int
+    law: LinearTerms, series: LinearSeries, state: Integers, deflection: Array, i: int, c: int
 ) -> terms.Lanes:
     """k times the deflection."""
     return product_terms(series.slope, deflection, i, c)
@@ -80,7 +79,7 @@ def force_terms(
 
 @terms.force_of.of(LinearTerms)
 def force_of(
-    law: LinearTerms, series: LinearSeries, state: NDArray[np.int64], deflection: Array, i: int, m: int
+    law: LinearTerms, series: LinearSeries, state: Integers, deflection: Array, i: int, m: int
 ) -> float:
     """k times the deflection."""
     total = 0.0
@@ -91,7 +90,7 @@ def force_of(
 
 @terms.slope_terms.of(LinearTerms)
 def slope_terms(
-    law: LinearTerms, series: LinearSeries, state: NDArray[np.int64], deflection: Array, order: int
+    law: LinearTerms, series: LinearSeries, state: Integers, deflection: Array, order: int
 ) -> None:
     """The series of k stands there already."""
 

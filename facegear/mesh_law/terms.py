@@ -7,13 +7,10 @@ the deflections, counted from the level at which the piece begins; on a back fla
 
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from facegear.arrays import Array, Integers
 from facegear.machine_code.compiler import FAST, by_type
 from facegear.machine_code.fourier import FourierScratch
 
-Array = NDArray[np.float64]
 Lanes = Any
 """LANES values side by side: those of the contacts from number c on."""
 
@@ -29,19 +26,19 @@ def phase_terms(
 
 
 @by_type(**FAST)
-def force_terms(law: Any, series: Any, state: NDArray[np.int64], deflection: Array, i: int, c: int) -> Lanes:
+def force_terms(law: Any, series: Any, state: Integers, deflection: Array, i: int, c: int) -> Lanes:
     """Coefficient i of the forces, from those up to i of the deflections. Open contacts may have any finite
     one.
     """
 
 
 @by_type(**FAST)
-def force_of(law: Any, series: Any, state: NDArray[np.int64], deflection: Array, i: int, m: int) -> float:
+def force_of(law: Any, series: Any, state: Integers, deflection: Array, i: int, m: int) -> float:
     """Coefficient i of the force of contact m alone, those before it known."""
 
 
 @by_type(**FAST)
-def slope_terms(law: Any, series: Any, state: NDArray[np.int64], deflection: Array, order: int) -> None:
+def slope_terms(law: Any, series: Any, state: Integers, deflection: Array, order: int) -> None:
     """Fill series.slope once the motion's coefficients and forces are known up to `order`."""
 
 

@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.plots.style import NARROW, styled
 
 ORDER_LINES = (1.0, 2.0, 3.0)
@@ -62,7 +62,7 @@ def _mark(axis: Axes, rows: pd.DataFrame, speed: str, teeth: int, symbol: str, l
             axis.plot(unique[speed][chosen], frequency, symbol, color=colour, ms=4, label=told)
 
 
-def waterfall(spectra: Mapping[str, NDArray[np.float64]], mesh: int, mesh_name: str, teeth: int) -> Figure:
+def waterfall(spectra: Mapping[str, Array], mesh: int, mesh_name: str, teeth: int) -> Figure:
     """Spectra of one mesh deflection over speed, one panel for each direction; logarithmic colour."""
     directions = [name for name in ("up", "down") if f"{name}_speed_rpm" in spectra]
     orders = spectra["orders"]

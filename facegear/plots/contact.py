@@ -8,8 +8,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Arrays, Integers
 from facegear.contact.columns import EDGES, SHARES
 from facegear.contact.pattern import Pattern, pattern
 from facegear.plots.style import NARROW, legend_above, styled
@@ -62,13 +62,13 @@ def closed(rows: pd.DataFrame) -> pd.DataFrame:
     return pd.concat([rows, last], ignore_index=True)
 
 
-def contact_pattern(arrays: Mapping[str, NDArray]) -> Figure:
+def contact_pattern(arrays: Arrays) -> Figure:
     """Pressure each point of the pinion's flank sees as it passes through the mesh, one panel a torque."""
     torques = np.unique(arrays["line_torque_n_m"])
     return pattern_panels({_told(arrays, torque): (arrays, torque) for torque in torques})
 
 
-def pattern_panels(panels: Mapping[str, tuple[Mapping[str, NDArray], float]]) -> Figure:
+def pattern_panels(panels: Mapping[str, tuple[Arrays, float]]) -> Figure:
     """`contact_pattern` with panels by title: the arrays and the torque (N m) that each shows.
 
     All have one scale, which ends at their largest pressure; marks stand where only a line load is known.
@@ -110,7 +110,7 @@ def _panel(axis: Axes, seen: Pattern, torque: float, top: float) -> QuadMesh:
     return axis.pcolormesh(width, radius, field, vmin=0, vmax=top, **look)
 
 
-def _faded(field: NDArray[np.float64], where: NDArray[np.int64]) -> NDArray[np.float64]:
+def _faded(field: Array, where: Integers) -> Array:
     """The pressures, with zeros in unloaded planes next to them, where the loaded length ends."""
     known = np.isfinite(field)
     beside = np.zeros_like(known)
@@ -119,7 +119,7 @@ def _faded(field: NDArray[np.float64], where: NDArray[np.int64]) -> NDArray[np.f
     return np.where(beside & (where < 0), 0.0, field)
 
 
-def _told(arrays: Mapping[str, NDArray], torque: float) -> str:
+def _told(arrays: Arrays, torque: float) -> str:
     """Title of a panel: torque, largest pressure with its error, largest line load of a tip edge."""
     on = arrays["line_torque_n_m"] == torque
     at = np.argmax(arrays["line_pressure_pa"][on])
@@ -130,6 +130,6 @@ def _told(arrays: Mapping[str, NDArray], torque: float) -> str:
     return f"{torque:g} N m: {pressure:.0f} ± {error:.0f} MPa{edge}"
 
 
-def figures(ltca: pd.DataFrame, pressure: Mapping[str, NDArray]) -> tuple[Figure, ...]:
+def figures(ltca: pd.DataFrame, pressure: Arrays) -> tuple[Figure, ...]:
     """Curves over a pitch, and the contact pattern."""
     return contact_curves(ltca), contact_pattern(pressure)

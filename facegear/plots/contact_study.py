@@ -6,8 +6,8 @@ from typing import Any
 import matplotlib.pyplot as plt
 import pandas as pd
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from facegear.arrays import Arrays
 from facegear.contact.studies import StudiedContact
 from facegear.plots.contact import closed, pattern_panels
 from facegear.plots.style import NARROW, styled
@@ -56,7 +56,7 @@ def figures(
     pair: Sequence[Mapping[str, Any]],
     ltca: Sequence[pd.DataFrame],
     by_torque: Sequence[pd.DataFrame],
-    pressure: Sequence[Mapping[str, NDArray]],
+    pressure: Sequence[Arrays],
 ) -> list[Figure]:
     """Curves and patterns of each study beside those of the machine itself.
 

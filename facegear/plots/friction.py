@@ -1,28 +1,24 @@
 """Friction and heat: along the path of contact, over the flank, over torque and speed, in the machine."""
 
-from collections.abc import Mapping
-
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Arrays, Mask
 from facegear.contact.pattern import passage, pattern
 from facegear.plots.style import NARROW, legend_above, styled
 
 FLANK_COLOURS = {"drive": "tab:blue", "back": "tab:orange"}
 
 
-def figures(
-    local: Mapping[str, NDArray], pressure: Mapping[str, NDArray], map_table: pd.DataFrame
-) -> tuple[Figure, ...]:
+def figures(local: Arrays, pressure: Arrays, map_table: pd.DataFrame) -> tuple[Figure, ...]:
     """Along the path, over the flank, and the efficiency map."""
     return along_path(local), over_flank(local, pressure), efficiency_map(map_table)
 
 
-def along_path(local: Mapping[str, NDArray]) -> Figure:
+def along_path(local: Arrays) -> Figure:
     """At each place of a tooth's passage the largest sliding velocity and flash, and the thinnest film.
 
     Places beside an edge are left out of temperature and film, whose pressure there has no limit.
@@ -46,7 +42,7 @@ def along_path(local: Mapping[str, NDArray]) -> Figure:
     return figure
 
 
-def over_flank(local: Mapping[str, NDArray], pressure: Mapping[str, NDArray]) -> Figure:
+def over_flank(local: Arrays, pressure: Arrays) -> Figure:
     """Friction loss and flash temperature over the pinion's flank at the largest torque."""
     seen = pattern(pressure)
     torque = local["torque_n_m"].max()
@@ -125,9 +121,7 @@ def _lines(axis: Axes, table: pd.DataFrame, column: str, label: str) -> None:
     axis.set_ylabel(label)
 
 
-def _extreme(
-    stage: NDArray[np.float64], values: NDArray[np.float64], on: NDArray[np.bool_], sign: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _extreme(stage: Array, values: Array, on: Mask, sign: float) -> tuple[Array, Array]:
     """Places of the passage and the largest (sign 1) or smallest (-1) value at each."""
     places, row = np.unique(stage[on], return_inverse=True)
     found = np.full(places.size, -np.inf)

@@ -4,8 +4,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.plots.style import NARROW, styled
 
 COLOURS = {"pinion": "tab:blue", "face gear": "tab:orange", "pinion coupled face gear": "tab:green"}
@@ -25,7 +25,7 @@ def typical_modes(frequencies: pd.DataFrame) -> list[tuple[int, ...]]:
     return sorted(found)
 
 
-def amplitudes(shapes: pd.DataFrame, orders: tuple[int, ...]) -> NDArray[np.float64]:
+def amplitudes(shapes: pd.DataFrame, orders: tuple[int, ...]) -> Array:
     """Amplitudes of all DOF (m and rad alike) over the largest; of several modes their root sum of squares,
     which does not depend on the vectors that stand for them.
     """

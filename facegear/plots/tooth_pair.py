@@ -11,11 +11,9 @@ from matplotlib.colors import BoundaryNorm, LightSource, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.plots.style import NARROW, styled
-
-Array = NDArray[np.float64]
 
 PINION_COLOUR, GEAR_COLOUR = "#c98a3d", "#5b7fa6"
 LABEL_GAP = 0.1

@@ -1,13 +1,12 @@
 """The pair in mesh in three dimensions, for the report's viewer: teeth, and what they carry."""
 
 import base64
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import AnyArray, Array, Arrays, Mask
 from facegear.contact.columns import EDGES, SHARES
 from facegear.geometry.design import PairDesign
 from facegear.geometry.solids import BODIES, Body, solid, teeth_of
@@ -47,9 +46,9 @@ ROOT_STRESS = {
 
 def pair_view(
     design: PairDesign,
-    loads: Mapping[str, NDArray],
+    loads: Arrays,
     ltca: pd.DataFrame,
-    stress: Mapping[str, NDArray] | None = None,
+    stress: Arrays | None = None,
 ) -> View:
     """The pair at every solved position and torque.
 
@@ -80,7 +79,7 @@ def pair_view(
     )
 
 
-def _body(design: PairDesign, name: Body, stress: Mapping[str, NDArray] | None) -> dict[str, Any]:
+def _body(design: PairDesign, name: Body, stress: Arrays | None) -> dict[str, Any]:
     teeth = teeth_of(design, name)
     shown = teeth if name == "pinion" else min(teeth, SHOWN_GEAR_TEETH)
     return {
@@ -97,7 +96,7 @@ def _body(design: PairDesign, name: Body, stress: Mapping[str, NDArray] | None) 
     }
 
 
-def _fillets(stress: Mapping[str, NDArray], name: Body) -> dict[str, Any]:
+def _fillets(stress: Arrays, name: Body) -> dict[str, Any]:
     """Where the gauges of a tooth are, and the number of the first tooth of a passage."""
     place = stress[f"{name}_position_m"]
     return {
@@ -107,7 +106,7 @@ def _fillets(stress: Mapping[str, NDArray], name: Body) -> dict[str, Any]:
     }
 
 
-def _tension(torque: float, stress: Mapping[str, NDArray]) -> dict[str, NDArray[np.float64]]:
+def _tension(torque: float, stress: Arrays) -> dict[str, Array]:
     """Tension (MPa) at the gauges of both bodies over the passage."""
     row = int(np.flatnonzero(stress["torque_n_m"] == torque)[0])
     return {name: 1e-6 * np.maximum(stress[f"{name}_stress_pa"][row], 0.0) for name in BODIES}
@@ -115,10 +114,10 @@ def _tension(torque: float, stress: Mapping[str, NDArray]) -> dict[str, NDArray[
 
 def _torque(
     torque: float,
-    loads: Mapping[str, NDArray],
+    loads: Arrays,
     ltca: pd.DataFrame,
-    positions: NDArray,
-    stress: Mapping[str, NDArray] | None,
+    positions: AnyArray,
+    stress: Arrays | None,
 ) -> dict[str, Any]:
     on = loads["torque_n_m"] == torque
     row = np.searchsorted(positions, loads["position"][on])
@@ -142,7 +141,7 @@ def _torque(
     }
 
 
-def line_pressure(loads: Mapping[str, NDArray], on: NDArray[np.bool_]) -> NDArray[np.float64]:
+def line_pressure(loads: Arrays, on: Mask) -> Array:
     """Pressure (MPa) at each chosen node: that of the line of contact in its column, nan where an edge
     carries the load, and in a fillet.
     """
@@ -158,7 +157,7 @@ def line_pressure(loads: Mapping[str, NDArray], on: NDArray[np.bool_]) -> NDArra
     return np.where(loads["in_fillet"][on], np.nan, found)
 
 
-def line_load(loads: Mapping[str, NDArray], on: NDArray[np.bool_]) -> NDArray[np.float64]:
+def line_load(loads: Arrays, on: Mask) -> Array:
     """Load (N/mm) at each chosen node: all force on its column of the flank, at its position, over the
     column's width.
     """
@@ -172,10 +171,10 @@ def line_load(loads: Mapping[str, NDArray], on: NDArray[np.bool_]) -> NDArray[np
     return total / width[column]
 
 
-def _parts(values: NDArray, largest: float) -> str:
+def _parts(values: AnyArray, largest: float) -> str:
     """Values in 255ths of the largest, rounded up; 0 where there is none."""
     return _encoded(np.nan_to_num(np.ceil(255 * values / (largest or 1.0))), np.uint8)
 
 
-def _encoded(values: NDArray, kind: type) -> str:
+def _encoded(values: AnyArray, kind: type) -> str:
     return base64.b64encode(values.astype(np.dtype(kind).newbyteorder("<")).tobytes()).decode()

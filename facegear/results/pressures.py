@@ -1,15 +1,13 @@
 """Pressures along the contact lines as one labelled dataset."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
+from facegear.arrays import AnyArray, Arrays
 from facegear.contact.columns import EDGES
 
 
-def pressure_dataset(arrays: Mapping[str, NDArray]) -> xr.Dataset:
+def pressure_dataset(arrays: Arrays) -> xr.Dataset:
     """Over torque_n_m, position, pair and plane, from arrays as PRESSURE_ARRAYS.
 
     `pressure_mpa`, `pressure_error_mpa` and `half_width_mm`: nan unless inside; `line_load_n_per_mm`: zero
@@ -24,12 +22,12 @@ def pressure_dataset(arrays: Mapping[str, NDArray]) -> xr.Dataset:
     cells = (*rows, arrays["line_plane"])
     inside = arrays["line_where"] == EDGES.index("inside")
 
-    def spread(values: NDArray, rest: float | str) -> tuple[tuple[str, ...], NDArray]:
+    def spread(values: AnyArray, rest: float | str) -> tuple[tuple[str, ...], AnyArray]:
         array = np.full(shape, rest, dtype=object if isinstance(rest, str) else float)
         array[cells] = values
         return ("torque_n_m", "position", "pair", "plane"), array.astype(str) if rest == "" else array
 
-    def known(name: str, scale: float) -> tuple[tuple[str, ...], NDArray]:
+    def known(name: str, scale: float) -> tuple[tuple[str, ...], AnyArray]:
         return spread(np.where(inside, scale * arrays[name], np.nan), np.nan)
 
     lines = np.hypot(points[..., 0], points[..., 2]).reshape(*shape[1:])

@@ -5,9 +5,8 @@ from enum import StrEnum
 
 import numpy as np
 import scipy.stats
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from facegear.arrays import Array
 
 
 class Shape(StrEnum):

@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Mask
 from facegear.errors import FacegearError
 from facegear.io import journal
 
-Array = NDArray[np.float64]
 Evaluate = Callable[[tuple[float, ...]], Mapping[str, float]]
 """What is wanted of a design, by name, given the values of its variables. Raises FacegearError if none."""
 GENERATION, ERROR = "generation", "error"
@@ -112,7 +111,7 @@ def evolve(
     return pd.DataFrame(rows, columns=[GENERATION, *names, *task.goals, ERROR])
 
 
-def feasible(designs: pd.DataFrame, task: Task) -> NDArray[np.bool_]:
+def feasible(designs: pd.DataFrame, task: Task) -> Mask:
     """Which designs have results and hold every limit."""
     held = np.array(designs[ERROR] == "")
     for name, limit in task.limits:

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.errors import FacegearError
 from facegear.scenarios.statistics import Estimate, percentile
 
@@ -29,9 +29,7 @@ class Loosest:
     trials: pd.DataFrame
 
 
-def loosest(
-    sampled: Callable[[float], NDArray[np.float64]], at_most: float, level: float, most: float
-) -> Loosest:
+def loosest(sampled: Callable[[float], Array], at_most: float, level: float, most: float) -> Loosest:
     """The largest scale up to `most` at which the percentile `level` (0 to 1) does not exceed a limit.
 
     `sampled` gives the results of the same samples at a scale of their deviations, nan where one has none,

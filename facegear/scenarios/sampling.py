@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.special
-from numpy.typing import NDArray
 from scipy.stats import qmc
 
-from facegear.scenarios.distributions import Array, Distribution
+from facegear.arrays import Array
+from facegear.scenarios.distributions import Distribution
 
 SMALLEST = 2.0**-53
 """Probabilities keep this distance from 0 and 1, where a normal quantile is infinite."""
@@ -38,8 +38,8 @@ class Population:
 
     causes: tuple[Cause, ...]
     seed: int
-    correlation: NDArray[np.float64] | None = None
-    factor: NDArray[np.float64] | None = field(init=False)
+    correlation: Array | None = None
+    factor: Array | None = field(init=False)
 
     def __post_init__(self) -> None:
         factor = None if self.correlation is None else np.linalg.cholesky(self.correlation)

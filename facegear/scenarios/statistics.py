@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.stats
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from facegear.arrays import Array, Mask
+
 RESAMPLES = 499
 """Resamples of the bootstrap for the intervals of Sobol indices."""
 
@@ -37,7 +37,7 @@ def percentile(values: Array, probability: float, confidence: float = 0.95) -> E
     )
 
 
-def share(hits: NDArray[np.bool_], confidence: float = 0.95) -> Estimate:
+def share(hits: Mask, confidence: float = 0.95) -> Estimate:
     """Share of samples for which something holds, with Wilson's interval."""
     count, found = hits.size, int(hits.sum())
     interval = scipy.stats.binomtest(found, count).proportion_ci(confidence, method="wilson")

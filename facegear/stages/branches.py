@@ -4,8 +4,8 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Arrays
 from facegear.config.base import parse
 from facegear.config.branches import read_branch_plan
 from facegear.config.dynamics import Sweep, sweep_plan
@@ -22,8 +22,8 @@ from facegear.stages.outcome import Outcome
 
 
 def branches(
-    starts: Iterable[Mapping[str, NDArray]],
-    chunks: Iterable[Mapping[str, NDArray]],
+    starts: Iterable[Arrays],
+    chunks: Iterable[Arrays],
     jumps: pd.DataFrame,
     harmonics: pd.DataFrame,
     transmission: Mapping[str, Any],

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from typing import Any
 
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Arrays
 from facegear.config.branches import read_branch_plan
 from facegear.config.machines import wired_machine
 from facegear.dynamics.branches.machine import machine_flow, machine_loci
@@ -17,7 +17,7 @@ from facegear.stages.outcome import Outcome
 
 
 def branches_loci(
-    orbits: Mapping[str, NDArray],
+    orbits: Arrays,
     harmonics: pd.DataFrame,
     transmission: Mapping[str, Any],
     teeth: Mapping[str, Any],

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Arrays
 from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.tooth_pair import pair
@@ -28,8 +28,8 @@ WORTH_A_WORD = 0.005
 
 
 def contact(
-    pinion: Mapping[str, NDArray],
-    face_gear: Mapping[str, NDArray],
+    pinion: Arrays,
+    face_gear: Arrays,
     tooth_pair: Mapping[str, Any],
     contact: Mapping[str, Any],
 ) -> Outcome:

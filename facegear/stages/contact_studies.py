@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Arrays
 from facegear.contact.studies import StudiedContact, study_table
 from facegear.stages.outcome import Outcome
 
@@ -15,7 +15,7 @@ def contact_studies(
     pair: Sequence[Mapping[str, Any]],
     ltca: Sequence[pd.DataFrame],
     by_torque: Sequence[pd.DataFrame],
-    pressure: Sequence[Mapping[str, NDArray]],
+    pressure: Sequence[Arrays],
 ) -> Outcome:
     """`table`, a row a case and torque.
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.config.base import parse
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.lumped_model import at_mesh_torque
@@ -42,8 +42,8 @@ class History:
     """
 
     layout: Layout
-    even_shares: NDArray[np.float64]
-    forces: NDArray[np.float64]
+    even_shares: Array
+    forces: Array
     turning: bool
     motion: str
     settled: bool

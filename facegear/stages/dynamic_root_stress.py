@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Arrays
 from facegear.config.lumped_model import stiffness_phases
 from facegear.config.tooth_pair import pair
 from facegear.stages.outcome import Outcome
@@ -17,7 +17,7 @@ from facegear.transmission.flanks import flank_places
 
 def dynamic_root_stress(
     response: pd.DataFrame,
-    stress: Mapping[str, NDArray],
+    stress: Arrays,
     by_flank: pd.DataFrame,
     tooth_pair: Mapping[str, Any],
     transmission: Mapping[str, Any],

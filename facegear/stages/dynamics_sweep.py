@@ -4,8 +4,8 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import AnyArray, Arrays
 from facegear.config.base import parse
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.config.machines import wired_machine
@@ -20,7 +20,7 @@ from facegear.transmission.loaded_modes import loaded_modes
 
 
 def dynamics_sweep(
-    chunks: Iterable[Mapping[str, NDArray]],
+    chunks: Iterable[Arrays],
     harmonics: pd.DataFrame,
     transmission: Mapping[str, Any],
     teeth: Mapping[str, Any],
@@ -47,7 +47,7 @@ def dynamics_sweep(
     return Outcome(content, sweep_summary(found))
 
 
-def _waterfall(found: Mapping[str, Direction]) -> dict[str, NDArray]:
+def _waterfall(found: Mapping[str, Direction]) -> dict[str, AnyArray]:
     arrays = {"orders": ORDERS}
     for name, direction in found.items():
         arrays[f"{name}_speed_rpm"] = direction.piece.speeds

@@ -5,8 +5,8 @@ from math import pi
 from typing import Any
 
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Arrays
 from facegear.config.base import parse
 from facegear.config.lubrication import LubricationSection, limits_of, lubrication_request, map_speeds
 from facegear.config.tooth_pair import pair
@@ -28,7 +28,7 @@ from facegear.stages.outcome import Outcome
 
 def lubrication(
     ltca: pd.DataFrame,
-    pressure: Mapping[str, NDArray],
+    pressure: Arrays,
     tooth_pair: Mapping[str, Any],
     lubrication: Mapping[str, Any] | None,
     speed_rpm: float,
@@ -67,7 +67,7 @@ def lubrication_section(values: Mapping[str, Any] | None) -> LubricationSection:
 
 def loaded_pair(
     ltca: pd.DataFrame,
-    pressure: Mapping[str, NDArray],
+    pressure: Arrays,
     section: LubricationSection,
     tooth_pair: Mapping[str, Any],
 ) -> LoadedPair:

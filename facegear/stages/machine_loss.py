@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Arrays
 from facegear.config.base import parse
 from facegear.config.lubrication import limits_of
 from facegear.config.lumped_model import at_mesh_torque
@@ -29,7 +29,7 @@ from facegear.transmission.ratings import mesh_table, rated
 
 def machine_loss(
     ltca: pd.DataFrame,
-    pressure: Mapping[str, NDArray],
+    pressure: Arrays,
     harmonics: pd.DataFrame,
     duty_loads: pd.DataFrame | None = None,
     *,
@@ -100,8 +100,8 @@ def _state(
     machine: Machine,
     place: tuple[int, float, float],
     names: tuple[list[str], list[str]],
-    torque: NDArray[np.float64],
-    peak: NDArray[np.float64],
+    torque: Array,
+    peak: Array,
 ) -> MachineState:
     layout = machine.layout
     number, hours, speed_rpm = place

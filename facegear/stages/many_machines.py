@@ -6,8 +6,8 @@ from functools import cached_property
 from typing import Any, Self
 
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Arrays
 from facegear.config.base import parse
 from facegear.config.buildable import require_buildable, require_room
 from facegear.config.dynamics import Accuracy, settings
@@ -70,7 +70,7 @@ class VariedMachine:
     flanks: Flanks = field(default_factory=dict)
 
     @classmethod
-    def of_stage(cls, flanks: Sequence[Mapping[str, NDArray]] = (), **given: Any) -> Self:
+    def of_stage(cls, flanks: Sequence[Arrays] = (), **given: Any) -> Self:
         """From the arguments of a stage; `flanks`: arrays of both bodies from stage compliance, if any."""
         return cls(flanks=stored_flanks(flanks), **given)
 

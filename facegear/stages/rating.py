@@ -5,8 +5,8 @@ from dataclasses import replace
 from typing import Any
 
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Arrays
 from facegear.config.base import parse
 from facegear.config.strength import Strength, duty_bins, rating_request
 from facegear.config.tooth_pair import pair
@@ -20,7 +20,7 @@ from facegear.strength.rating_tables import curve_table, damage_table, rating_ta
 
 
 def rating(
-    stress: Mapping[str, NDArray],
+    stress: Arrays,
     by_flank: pd.DataFrame,
     duty_spectrum: pd.DataFrame | None = None,
     *,

@@ -1,11 +1,9 @@
 """Root stress of both gears on their way through the mesh."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Arrays
 from facegear.contact.gear_flank import GearFlank, from_arrays
 from facegear.contact.nodal_loads import loads_by_tooth
 from facegear.errors import ConfigError
@@ -15,9 +13,7 @@ from facegear.strength.root_stress import RootStress
 from facegear.strength.root_tables import root_arrays, root_by_flank, root_tables
 
 
-def root_stress(
-    pinion: Mapping[str, NDArray], face_gear: Mapping[str, NDArray], loads: Mapping[str, NDArray]
-) -> Outcome:
+def root_stress(pinion: Arrays, face_gear: Arrays, loads: Arrays) -> Outcome:
     """`summary`, `passage`, `along_face`, `by_flank` (tables) and `stress` (arrays).
 
     pinion, face_gear: arrays of stage compliance; loads: arrays of stage contact. The first three tables
@@ -39,7 +35,7 @@ def root_stress(
     return Outcome(content, _summary(content["by_flank"]))
 
 
-def passing(body: str, flank: GearFlank, loads: Mapping[str, NDArray], variant: int = 0) -> RootStress:
+def passing(body: str, flank: GearFlank, loads: Arrays, variant: int = 0) -> RootStress:
     """Root stress of one body under the loads of stage contact on its flank, of one of its variants.
 
     What presses on its fillet is left out: the gauges below would read the dent. Raises ConfigError where its

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Arrays
 from facegear.config.machines import wired_machine
 from facegear.config.tooth_pair import pair
 from facegear.stages.outcome import Outcome
@@ -17,7 +17,7 @@ from facegear.transmission.statics import static_equilibrium
 
 def stress_over_speed(
     sweep: pd.DataFrame,
-    stress: Mapping[str, NDArray],
+    stress: Arrays,
     by_flank: pd.DataFrame,
     harmonics: pd.DataFrame,
     transmission: Mapping[str, Any],

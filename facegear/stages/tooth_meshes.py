@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Arrays
 from facegear.config.lumped_model import TEETH, ToothNumbers, tooth_numbers
 from facegear.harmonics.series import Harmonics
 from facegear.load_sharing.quantity_names import ERROR_HARMONIC, ERROR_RANGE, PRESSURE, ROOTS
@@ -79,7 +79,7 @@ def tooth_meshes(harmonics: pd.DataFrame, pair: Values | None, flanks: Flanks) -
     return lambda values: ToothMesh(numbers_of(values), series, error)
 
 
-def stored_flanks(arrays: Sequence[Mapping[str, NDArray]]) -> Flanks:
+def stored_flanks(arrays: Sequence[Arrays]) -> Flanks:
     """From the arrays of the pinion and of the face gear, or from none where there is no contact."""
     if not arrays:
         return {}

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 import scipy
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.errors import ConfigError, FacegearError
 from facegear.stiffness.request import Definition
 
@@ -17,12 +17,12 @@ COLUMN = {"average": "k_average_n_per_m", "local": "k_local_n_per_m"}
 class LoadTable:
     """k(position, torque): torques (t,) N m, positions (p,) 0..1, `average` and `local` (t, p) N/m."""
 
-    torques: NDArray[np.float64]
-    positions: NDArray[np.float64]
-    average: NDArray[np.float64]
-    local: NDArray[np.float64]
+    torques: Array
+    positions: Array
+    average: Array
+    local: Array
 
-    def at(self, torque: float, definition: Definition) -> NDArray[np.float64]:
+    def at(self, torque: float, definition: Definition) -> Array:
         """Stiffness (p,) at a torque, monotone cubic in log torque at each position.
 
         Raises ConfigError outside the torques solved: the curve is never extrapolated.

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.errors import ConfigError
 from facegear.harmonics.fit import LEVELS, fit_harmonics
 from facegear.harmonics.series import Harmonics
@@ -86,7 +86,7 @@ def stiffness_given(request: StiffnessRequest) -> Stiffness:
     )
 
 
-def _varied(samples: NDArray[np.float64], factor: float) -> NDArray[np.float64]:
+def _varied(samples: Array, factor: float) -> Array:
     return samples + (factor - 1.0) * (samples - samples.mean())
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.harmonics.fit import LEVELS, Fit, fit_harmonics
 from facegear.harmonics.series import Harmonics
 from facegear.stiffness.curve import LoadTable
@@ -51,9 +51,7 @@ def unloaded_error(table: pd.DataFrame) -> Harmonics | None:
     return series_of(renamed).scaled(1e-6)
 
 
-def curve_table(
-    positions: NDArray[np.float64], samples: NDArray[np.float64], series: Harmonics
-) -> pd.DataFrame:
+def curve_table(positions: Array, samples: Array, series: Harmonics) -> pd.DataFrame:
     """The curve over a pitch and its cut series, N/m."""
     return pd.DataFrame({"position": positions, "k_n_per_m": samples, "k_series_n_per_m": series(positions)})
 

@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from facegear.arrays import Array, Integers
 
 SMALLEST, LARGEST = 1.0 / 3.0, 1.0
 """Exponents that a stress can have: pressure of a point contact, and a linear one."""
@@ -24,7 +23,7 @@ class Scale:
     torques: Array
     exponents: Array
 
-    def parts(self, torque: Array) -> tuple[NDArray[np.int64], Array, Array]:
+    def parts(self, torque: Array) -> tuple[Integers, Array, Array]:
         """Rows i (n,), and factors (n,) of rows i and i + 1 whose sum is the value at torques (n,).
 
         In proportion to a power of the torque from both rows, weighted by the logarithm of the torque: exact

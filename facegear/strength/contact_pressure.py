@@ -4,14 +4,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Mask
 from facegear.strength.between_torques import SMALLEST, scale
 
 if TYPE_CHECKING:
     import pandas as pd
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +44,7 @@ class ContactPressure:
         growth = scale(self.torques[on], self.pressure[on], SMALLEST, 0.5)
         return float(growth.at(self.pressure[on], torque))
 
-    def within(self, torque: Array) -> NDArray[np.bool_]:
+    def within(self, torque: Array) -> Mask:
         """Whether torques (n,) lie within those solved."""
         return (torque >= self.torques[0]) & (torque <= self.torques[-1])
 

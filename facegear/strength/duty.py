@@ -5,12 +5,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+
+from facegear.arrays import Array, Integers
 
 if TYPE_CHECKING:
     import pandas as pd
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -35,7 +34,7 @@ class FlankDuty:
     body: str
     gear: str
     flank: str
-    bins: NDArray[np.int64]
+    bins: Integers
     torque: Array
     cycles: Array
     opposite: Array

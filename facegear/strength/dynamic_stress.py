@@ -4,12 +4,10 @@ from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.strength.columns import BODIES, DYNAMIC_STRESS_COLUMNS
 from facegear.strength.flank_contacts import FlankContact, largest_pressure
-
-Array = NDArray[np.float64]
 
 
 def dynamic_stress_table(

@@ -3,17 +3,15 @@
 from math import log, nan
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.strength.materials import Life
 
 LIMIT_RELIABILITY = 0.99
 """Reliability for which the limits of the standard hold: one failure in a hundred."""
 
 
-def damage(
-    stress: NDArray[np.float64], cycles: NDArray[np.float64], allowed: float, life: Life
-) -> NDArray[np.float64]:
+def damage(stress: Array, cycles: Array, allowed: float, life: Life) -> Array:
     """Damage of each bin of a duty cycle, same shape: cycles over those allowed at its stress.
 
     stress (Pa) and cycles by bin; allowed: stress (Pa) that may be repeated for ever before life factors.

@@ -1,23 +1,21 @@
 """Root stress on the fillets as quadrilaterals between the gauges, for ParaView."""
 
-from collections.abc import Mapping
-
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Arrays, Integers
 from facegear.strength.columns import BODIES, FILLETS
 
 
 def stress_surface(
-    arrays: Mapping[str, NDArray],
-) -> tuple[NDArray[np.float64], dict[str, NDArray[np.int64]], dict[str, NDArray[np.float64]]]:
+    arrays: Arrays,
+) -> tuple[Array, dict[str, Integers], dict[str, Array]]:
     """Points (n, 3) m in their body frames, cells, and fields (n,) from ROOT_STRESS_ARRAYS.
 
     Largest and smallest stress (Pa) over the passage at each torque; `body` 0 pinion, 1 face gear; `fillet` 0
     below the loaded flank, 1 below the other.
     """
     points, cells, start = [], [], 0
-    told: dict[str, list[NDArray[np.float64]]] = {}
+    told: dict[str, list[Array]] = {}
     for number, body in enumerate(BODIES):
         position, stress = arrays[f"{body}_position_m"], arrays[f"{body}_stress_pa"]
         down, along = position.shape[1:3]

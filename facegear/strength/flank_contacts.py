@@ -6,8 +6,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Arrays
 from facegear.geometry.flank_errors import FLANKS, GEARS
 from facegear.strength.columns import BODIES
 from facegear.strength.contact_pressure import ContactPressure, contact_pressure
@@ -49,9 +49,7 @@ class FlankContact:
         return next(iter(self.roots.values())).scale.solved(torque)
 
 
-def flank_contacts(
-    stress: Mapping[str, NDArray], by_flank: "pd.DataFrame"
-) -> dict[tuple[str, str], FlankContact]:
+def flank_contacts(stress: Arrays, by_flank: "pd.DataFrame") -> dict[tuple[str, str], FlankContact]:
     """By gear and flank, from ROOT_STRESS_ARRAYS and the contact's table by flank.
 
     Contacts with the same assembly errors are the same object.

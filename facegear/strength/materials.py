@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from facegear.arrays import Array
 
 
 @dataclass(frozen=True)
@@ -16,12 +17,12 @@ class Life:
     cycles: tuple[float, ...]
     factors: tuple[float, ...]
 
-    def factor(self, cycles: NDArray[np.float64] | float) -> NDArray[np.float64]:
+    def factor(self, cycles: Array | float) -> Array:
         """Life factor at numbers of cycles, same shape."""
         at = np.log(np.maximum(np.asarray(cycles, dtype=float), self.cycles[0]))
         return np.exp(np.interp(at, np.log(self.cycles), np.log(self.factors)))
 
-    def allowed_cycles(self, factor: NDArray[np.float64] | float) -> NDArray[np.float64]:
+    def allowed_cycles(self, factor: Array | float) -> Array:
         """Cycles that a stress of `factor` times the limit may be repeated, same shape.
 
         0 above static strength; infinite at or below the factor of the last point.

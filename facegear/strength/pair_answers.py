@@ -4,12 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.strength.contact_pressure import ContactPressure
 from facegear.strength.root_stress import RootStress, down_the_fillet
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

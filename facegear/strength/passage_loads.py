@@ -3,9 +3,8 @@
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from facegear.arrays import Array, Integers
 
 CLASSES = 16
 """Classes of equal share into which the passages of a tooth through a mesh are sorted."""
@@ -23,7 +22,7 @@ def passage_forces(forces: Array) -> Array:
     return np.maximum(largest, np.roll(largest, -1, axis=0))
 
 
-def hardest_tooth(passages: Array, met: NDArray[np.int64]) -> list[Array]:
+def hardest_tooth(passages: Array, met: Integers) -> list[Array]:
     """Forces (n,) that the hardest loaded tooth of a body meets in each of its meshes.
 
     passages (cycles, meshes) on one flank, N; met (cycles, meshes): the tooth that is in mesh. The sum of

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from math import pi, sqrt, tan
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.errors import FacegearError
 from facegear.geometry.design import PairDesign
 from facegear.strength.contact_pressure import ContactPressure
@@ -26,7 +26,6 @@ from facegear.strength.root_form import RootForm, root_form
 from facegear.strength.root_stress import RootStress, down_the_fillet, largest_tension
 from facegear.strength.spur import SpurGear
 
-Array = NDArray[np.float64]
 Stress = Callable[[float], float]
 """Stress (Pa) at a torque (N m) on the pinion."""
 HALVINGS = 60

@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers, Mask
 from facegear.strength.between_torques import Scale, scale
 
 if TYPE_CHECKING:
     import scipy.sparse as sp
 
-Array = NDArray[np.float64]
 
 LONE = 0.5
 """Exponent of stress over torque below a single torque solved: less than it is, so that stress is not."""
@@ -65,7 +64,7 @@ def root_stress(
     along: Array,
     angle: Array,
     error: Array | None = None,
-    teeth: NDArray[np.int64] | None = None,
+    teeth: Integers | None = None,
 ) -> RootStress:
     """Superpose the readings (2 d + 1, g, c) by the loads {tooth: (t p, c)} of t torques at p positions.
 
@@ -89,7 +88,7 @@ def root_stress(
     )
 
 
-def _felt(readings: Array, loads: Mapping[int, "sp.csr_matrix"], teeth: NDArray[np.int64]) -> Array:
+def _felt(readings: Array, loads: Mapping[int, "sp.csr_matrix"], teeth: Integers) -> Array:
     """What the gauges of `teeth` (n,) read at one position under the loads {tooth: (t, c)}, (t, n, g).
 
     At one position the same nodes are loaded whatever the torque, so that one small dense product does.
@@ -124,7 +123,7 @@ def largest_tension(root: RootStress) -> Callable[[float], float]:
     return lambda torque: float(growth.at(worst, torque).max())
 
 
-def _may_be_largest(low: Array, high: Array) -> NDArray[np.bool_]:
+def _may_be_largest(low: Array, high: Array) -> Mask:
     """Which of the lines from `low` to `high` (n,) are anywhere above those that are largest at an end.
 
     Two lines bound the largest from below by a kinked line, so that it is enough to look at the kink.

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import AnyArray, Array, Arrays, Integers
 from facegear.geometry.flank_errors import FLANKS, GEARS
 from facegear.strength.columns import (
     ALONG_FACE_COLUMNS,
@@ -44,7 +44,7 @@ def root_tables(found: Mapping[str, RootStress]) -> dict[str, pd.DataFrame]:
     }
 
 
-def _peak(root: RootStress, row: int, side: int, fine: NDArray[np.float64]) -> tuple[float, ...]:
+def _peak(root: RootStress, row: int, side: int, fine: Array) -> tuple[float, ...]:
     """Columns from `largest_mpa` on."""
     when, down, column = np.unravel_index(np.argmax(fine), fine.shape)
     angle = down_the_fillet(root.angle[side])
@@ -59,7 +59,7 @@ def _peak(root: RootStress, row: int, side: int, fine: NDArray[np.float64]) -> t
     )
 
 
-def _at_angle(fine: NDArray[np.float64], angle: NDArray[np.float64], wanted: float) -> float:
+def _at_angle(fine: Array, angle: Array, wanted: float) -> float:
     """Largest of stress (n, m, b) where the angle (m, b) has a value; nan where no gauges enclose it."""
     found = [np.nan]
     for column in range(angle.shape[1]):
@@ -70,9 +70,7 @@ def _at_angle(fine: NDArray[np.float64], angle: NDArray[np.float64], wanted: flo
     return float(np.nanmax(found)) if len(found) > 1 else np.nan
 
 
-def root_by_flank(
-    variants: Sequence[Mapping[str, RootStress]], flank_variant: NDArray[np.int64]
-) -> pd.DataFrame:
+def root_by_flank(variants: Sequence[Mapping[str, RootStress]], flank_variant: Integers) -> pd.DataFrame:
     """`summary` for both flanks of both gears, columns as ROOT_STRESS_BY_FLANK_COLUMNS.
 
     `variants`: root stress of each body under each of the errors that flanks meet; `flank_variant`
@@ -88,15 +86,15 @@ def root_by_flank(
 
 def root_arrays(
     variants: Sequence[Mapping[str, RootStress]],
-    flank_variant: NDArray[np.int64],
-    positions: Mapping[str, NDArray[np.float64]],
-) -> dict[str, NDArray]:
+    flank_variant: Integers,
+    positions: Mapping[str, Array],
+) -> dict[str, AnyArray]:
     """All of it as ROOT_STRESS_ARRAYS; `positions` (2, a, b, 3) of the gauges of each body, m.
 
     `variants` and `flank_variant` as in `root_by_flank`.
     """
     first, *others = variants
-    arrays: dict[str, NDArray] = {
+    arrays: dict[str, AnyArray] = {
         "torque_n_m": next(iter(first.values())).torques,
         "flank_variant": np.asarray(flank_variant),
     }
@@ -111,9 +109,7 @@ def root_arrays(
     return arrays
 
 
-def root_from_arrays(
-    arrays: Mapping[str, NDArray], body: str, gear: str = "upper", flank: str = "drive"
-) -> RootStress:
+def root_from_arrays(arrays: Arrays, body: str, gear: str = "upper", flank: str = "drive") -> RootStress:
     """Root stress of a body by the loads of a gear's drive or back flank, from ROOT_STRESS_ARRAYS."""
     x, y, _ = np.moveaxis(arrays[f"{body}_position_m"], -1, 0)
     variant = int(arrays["flank_variant"][GEARS.index(gear), FLANKS.index(flank)])

@@ -4,12 +4,11 @@ from collections.abc import Collection, Mapping
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.strength.columns import BODIES, STRESS_OVER_SPEED_COLUMNS
 from facegear.strength.flank_contacts import FlankContact, largest_pressure
 
-Array = NDArray[np.float64]
 ALIKE = 1e-3
 """Motions whose largest forces differ by less, relative, are equally hard: most often they are one."""
 ROUNDING = 1e-12

@@ -1,11 +1,9 @@
 """Largest tension in the fillets of a body over torque and place in the mesh cycle."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.strength.root_stress import RootStress, down_the_fillet
-
-Array = NDArray[np.float64]
 
 
 class TensionHistory:
@@ -39,7 +37,7 @@ class TensionHistory:
         return float(self(np.full(places.size, torque), places).max())
 
 
-def _cell(edges: Array, values: Array) -> tuple[NDArray[np.int64], Array]:
+def _cell(edges: Array, values: Array) -> tuple[Integers, Array]:
     """Cell (n,) between rising edges in which each value lies, and how far into it, 0 to 1."""
     cell = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
     return cell, np.clip((values - edges[cell]) / (edges[cell + 1] - edges[cell]), 0.0, 1.0)

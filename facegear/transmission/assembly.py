@@ -8,8 +8,8 @@ misfit between the two meshes of a pinion, which the backlash of both takes up o
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Mask
 from facegear.transmission.imperfections import Imperfections
 from facegear.transmission.layout import Layout
 
@@ -27,17 +27,17 @@ class Assembly:
     below, above: the nearest angles that leave nothing over, in pitches.
     """
 
-    misfit: NDArray[np.float64]
-    room: NDArray[np.float64]
-    fits: NDArray[np.bool_]
-    below: NDArray[np.float64]
-    above: NDArray[np.float64]
+    misfit: Array
+    room: Array
+    fits: Mask
+    below: Array
+    above: Array
 
 
 def assembly(
     layout: Layout,
-    half_backlash: NDArray[np.float64],
-    clocking: NDArray[np.float64] | None = None,
+    half_backlash: Array,
+    clocking: Array | None = None,
     errors: Imperfections | None = None,
 ) -> Assembly:
     """Check all pinions; half_backlash (meshes,) in m, clocking (pinions,) of the lower rims in pitches.
@@ -70,9 +70,7 @@ def assembly(
     return Assembly((left - middle) * layout.base_pitch, room, fits, steps, steps + 0.5)
 
 
-def squeezed(
-    layout: Layout, half_backlash: NDArray[np.float64], errors: Imperfections
-) -> NDArray[np.float64]:
+def squeezed(layout: Layout, half_backlash: Array, errors: Imperfections) -> Array:
     """How much deeper a pinion stands in each mesh than backlash and play allow, shape (meshes,), m.
 
     Positive where both flanks of a tooth would be pressed with the machine at rest.
@@ -85,14 +83,12 @@ def squeezed(
     return squeeze
 
 
-def _wrapped(pitches: NDArray[np.float64]) -> NDArray[np.float64]:
+def _wrapped(pitches: Array) -> Array:
     """The nearest to zero of a number of pitches and whole pitches more or less."""
     return pitches - np.round(pitches)
 
 
-def _all_together(
-    left: NDArray[np.float64], reach: NDArray[np.float64], candidates: NDArray[np.bool_]
-) -> NDArray[np.bool_]:
+def _all_together(left: Array, reach: Array, candidates: Mask) -> Mask:
     """Which pinions share one place of the lower gear, from the candidates outwards (pinions,)."""
     fits = np.zeros(left.size, bool)
     low, high = -np.inf, np.inf

@@ -7,14 +7,13 @@ freedom included, so that nothing that a solver leaves out can hide.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.errors import NotConverged
 from facegear.transmission.layout import DOF_PER_BODY, Layout
 from facegear.transmission.machine import Machine
 from facegear.transmission.matrices import bearing_matrix, flank_directions, mesh_directions
 
-Array = NDArray[np.float64]
 EPSILON = float(np.finfo(float).eps)
 ROUNDED = 32.0
 """Roundings of the largest terms of a sum that its result may be off by."""

@@ -8,14 +8,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from facegear import mesh_law
+from facegear.arrays import Array, Integers
 from facegear.machine_code.compiler import compiler
 from facegear.mesh_law.law import Held
 from facegear.mesh_law.terms import held_force
-
-Array = NDArray[np.float64]
 
 SOURCES = (Path(__file__).parent, Path(str(mesh_law.__file__)).parent)
 kernel = compiler(*SOURCES, nogil=True, fastmath={"contract"})
@@ -30,8 +28,8 @@ class Springs(NamedTuple):
     """
 
     jacobian: Array
-    pinion: NDArray[np.int64]
-    gear: NDArray[np.int64]
+    pinion: Integers
+    gear: Integers
     pinion_bearing: Array
     clearance: Array
     gear_bearing: Array

@@ -12,8 +12,8 @@ where it is.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.mesh_law.law import Held
 from facegear.mesh_law.terms import held_force
 from facegear.transmission.contact_energy import (
@@ -26,7 +26,6 @@ from facegear.transmission.contact_energy import (
     slope_along,
 )
 
-Array = NDArray[np.float64]
 TIE, FIRST_TIE = 1e-10, 1e-1
 """Springs to ground in the matrix only (over the stiffest contact), which give free bodies a next place."""
 MOST_STEPS = 200

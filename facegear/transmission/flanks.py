@@ -8,16 +8,14 @@ f_drive(-p), p the place of the pinion's tooth past the pitch line.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.law import MeshLaw
 from facegear.mesh_law.linear import linear_law
 from facegear.transmission.assembly import assembly
 from facegear.transmission.layout import Layout, Side
 from facegear.transmission.machine import Machine
-
-Array = NDArray[np.float64]
 
 NO_LOAD = 1e-9
 """Part of the largest force of all meshes below which a force is rounding and counts as none."""

@@ -3,12 +3,10 @@
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.layout import Layout
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

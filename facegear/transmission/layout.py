@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.errors import ConfigError
 
 DOF_PER_BODY = 4
@@ -187,12 +187,12 @@ class Layout:
         return tuple(f"{self.pinions[i].name}/{self.gears[g].side.value}" for i, g in self.meshes)
 
     @property
-    def angles(self) -> NDArray[np.float64]:
+    def angles(self) -> Array:
         """Distribution angles, shape (pinions,), rad."""
         return 2.0 * np.pi * np.array([pinion.pitches for pinion in self.pinions]) / self.gear_teeth
 
     @property
-    def pitches_from_first(self) -> NDArray[np.float64]:
+    def pitches_from_first(self) -> Array:
         """Distribution angles counted from the first pinion, shape (pinions,), pitches of the face gear."""
         return np.array([pinion.pitches - self.pinions[0].pitches for pinion in self.pinions])
 

@@ -8,14 +8,13 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.transmission.flanks import constant_errors, flank_gaps
 from facegear.transmission.layout import DOF_PER_BODY
 from facegear.transmission.machine import Machine
 from facegear.transmission.matrices import bearing_matrix, flank_directions, mass_diagonal
 
-Array = NDArray[np.float64]
 NOTHING, LOADED = 1e-9, 1e-6
 RIGID = 1e-13
 """Share of the stiffest motion's stiffness below which a motion is free."""

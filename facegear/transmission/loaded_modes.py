@@ -3,15 +3,14 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Mask
 from facegear.transmission.layout import Layout
 from facegear.transmission.loaded_contacts import Contact, LoadedContacts, loaded_contacts
 from facegear.transmission.machine import Machine
 from facegear.transmission.matrices import flank_directions
 from facegear.transmission.modes import Modes, modes_of, natural_modes
 
-Array = NDArray[np.float64]
 SAME = 1e-6
 """Relative difference of a frequency, undecided contacts open or closed, that counts as none."""
 
@@ -25,7 +24,7 @@ class VibratingMachine:
 
     modes: Modes
     contacts: LoadedContacts | None
-    decided: NDArray[np.bool_]
+    decided: Mask
 
 
 def loaded_modes(machine: Machine) -> Modes:

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.law import MeshLaw
@@ -50,15 +50,15 @@ class Machine:
     """
 
     layout: Layout
-    torques: NDArray[np.float64]
+    torques: Array
     stiffness: Harmonics
     error: Harmonics
     half_backlash: float
     damping: Damping
     phase_convention: PhaseConvention = PhaseConvention.GEOMETRIC
-    error_lags: NDArray[np.float64] | None = None
+    error_lags: Array | None = None
     imperfections: Imperfections = None  # type: ignore[assignment]
-    forces: NDArray[np.float64] = None  # type: ignore[assignment]
+    forces: Array = None  # type: ignore[assignment]
     law: MeshLaw | None = None
 
     def __post_init__(self) -> None:
@@ -79,7 +79,7 @@ class Machine:
             raise ConfigError("mesh_stiffness", f"{lowest:.3g} N/m", "positive everywhere in the mesh cycle")
 
     @property
-    def applied(self) -> NDArray[np.float64]:
+    def applied(self) -> Array:
         """External forces and torques on all degrees of freedom, shape (dof,), N and N m."""
         loads = np.zeros(self.layout.dof)
         bodies = loads[: DOF_PER_BODY * len(self.layout.bodies)].reshape(-1, DOF_PER_BODY)
@@ -87,18 +87,18 @@ class Machine:
         return loads
 
     @property
-    def phases(self) -> NDArray[np.float64]:
+    def phases(self) -> Array:
         """Stiffness phase of each mesh in mesh periods, shape (meshes,)."""
         return mesh_phases(self.layout, self.phase_convention, self.imperfections.clocking)
 
     @property
-    def half_backlashes(self) -> NDArray[np.float64]:
+    def half_backlashes(self) -> Array:
         """Half backlash of each mesh, shape (meshes,), m."""
         own = self.imperfections.half_backlash
         return np.where(np.isnan(own), self.half_backlash, own)
 
     @property
-    def error_phases(self) -> NDArray[np.float64]:
+    def error_phases(self) -> Array:
         """Transmission error phase of each mesh in mesh periods, shape (meshes,)."""
         return self.phases if self.error_lags is None else self.error_lags
 
@@ -108,7 +108,7 @@ def mesh_frequency(layout: Layout, speed_rpm: float) -> float:
     return layout.pinion_teeth * speed_rpm / 60.0
 
 
-def pinion_torques(layout: Layout, per_input: float, tail_share: float) -> NDArray[np.float64]:
+def pinion_torques(layout: Layout, per_input: float, tail_share: float) -> Array:
     """Torque on each pinion: inputs drive, tail pinions take a share of the sum, idlers none; N m."""
     roles = [pinion.role for pinion in layout.pinions]
     inputs, tails = roles.count(Role.INPUT), roles.count(Role.TAIL)
@@ -117,9 +117,7 @@ def pinion_torques(layout: Layout, per_input: float, tail_share: float) -> NDArr
     return np.array([value[role] for role in roles])
 
 
-def balanced_torques(
-    layout: Layout, on_pinions: NDArray[np.float64], on_other_gear: float = 0.0
-) -> NDArray[np.float64]:
+def balanced_torques(layout: Layout, on_pinions: Array, on_other_gear: float = 0.0) -> Array:
     """Torques on all bodies with the output face gear (upper, else the only one) in static balance, N m.
 
     `on_other_gear`: torque on the one that is not the output, where there are two.
@@ -132,7 +130,7 @@ def balanced_torques(
     return np.concatenate([on_pinions, on_gears])
 
 
-def require_balance(layout: Layout, torques: NDArray[np.float64]) -> None:
+def require_balance(layout: Layout, torques: Array) -> None:
     """Raise ConfigError unless the torques hold the rigid rotation in balance."""
     pinions = len(layout.pinions)
     tangential = np.concatenate(

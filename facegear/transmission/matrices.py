@@ -1,24 +1,24 @@
 """Matrices of the lumped model: bodies, bearings, and meshes as they are or as equation (13) says."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.transmission.layout import DOF_PER_BODY, Layout, Tilt
 
 
-def mass_diagonal(layout: Layout) -> NDArray[np.float64]:
+def mass_diagonal(layout: Layout) -> Array:
     """Diagonal of M, shape (dof,): m, m, m, I for each body, then the tilts' inertias, kg and kg m2."""
     bodies = [value for body in layout.bodies for value in (*3 * (body.mass,), body.inertia)]
     return np.array(bodies + [value for tilt in _tilts(layout) for value in 2 * (tilt.inertia,)])
 
 
-def bearing_diagonal(layout: Layout) -> NDArray[np.float64]:
+def bearing_diagonal(layout: Layout) -> Array:
     """Diagonal of the bearing stiffness K, shape (dof,): k_x, k_y, k_z, 0 for each body, then tilts; N/m."""
     bodies = [value for body in layout.bodies for value in (*body.bearing, 0.0)]
     return np.array(bodies + [value for tilt in _tilts(layout) for value in 2 * (tilt.stiffness,)])
 
 
-def bearing_matrix(layout: Layout) -> NDArray[np.float64]:
+def bearing_matrix(layout: Layout) -> Array:
     """Bearing stiffness K, shape (dof, dof), with the cross-coupling of x and y, N/m."""
     matrix = np.diag(bearing_diagonal(layout))
     for k, body in enumerate(layout.bodies):
@@ -27,7 +27,7 @@ def bearing_matrix(layout: Layout) -> NDArray[np.float64]:
     return matrix
 
 
-def bearing_axes(layout: Layout) -> NDArray[np.float64]:
+def bearing_axes(layout: Layout) -> Array:
     """Orthogonal columns (dof, dof) along which each body's bearing acts by itself.
 
     The unit matrix, but for the x and y of a body whose bearing couples them.
@@ -41,7 +41,7 @@ def bearing_axes(layout: Layout) -> NDArray[np.float64]:
     return axes
 
 
-def mesh_directions(layout: Layout) -> NDArray[np.float64]:
+def mesh_directions(layout: Layout) -> Array:
     """Derivative of the drive flanks' deflections by the DOF, shape (meshes, dof).
 
     The deflection along the line of action is this times q, minus the transmission error. A pinion's x is
@@ -53,7 +53,7 @@ def mesh_directions(layout: Layout) -> NDArray[np.float64]:
     return _printed(layout)
 
 
-def flank_directions(layout: Layout) -> NDArray[np.float64]:
+def flank_directions(layout: Layout) -> Array:
     """The same for both flanks, shape (2 meshes, dof): all drive flanks, then all back flanks.
 
     The back flank's normal has the same separating part and the opposite tangential part; as printed it is
@@ -66,7 +66,7 @@ def flank_directions(layout: Layout) -> NDArray[np.float64]:
     return np.concatenate([printed, -printed])
 
 
-def mesh_parts(layout: Layout) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def mesh_parts(layout: Layout) -> tuple[Array, Array]:
     """Tangential and separating motion at the flanks by the DOF, each (meshes, dof), from the geometry.
 
     A pinion sees the lower gear as the upper one turned half round the pinion's own axis, so its x and y
@@ -90,7 +90,7 @@ def mesh_parts(layout: Layout) -> tuple[NDArray[np.float64], NDArray[np.float64]
     return tangential, separating
 
 
-def rigid_rotation(layout: Layout) -> NDArray[np.float64]:
+def rigid_rotation(layout: Layout) -> Array:
     """The motion of all bodies turning together without mesh deflection, shape (dof,)."""
     motion = np.zeros(layout.dof)
     pinions, bodies = len(layout.pinions), len(layout.bodies)
@@ -99,7 +99,7 @@ def rigid_rotation(layout: Layout) -> NDArray[np.float64]:
     return motion
 
 
-def _printed(layout: Layout) -> NDArray[np.float64]:
+def _printed(layout: Layout) -> Array:
     """Equation (13) to the letter, shape (meshes, dof)."""
     cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
     angles = layout.angles

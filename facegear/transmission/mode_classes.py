@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Mask
 from facegear.transmission.layout import DOF_PER_BODY, Layout, Role
 from facegear.transmission.matrices import mass_diagonal
 from facegear.transmission.modes import Modes
@@ -46,7 +46,7 @@ def name_modes(layout: Layout, modes: Modes) -> tuple[ModeName, ...]:
     return tuple(names)
 
 
-def _name(layout: Layout, frequency: float, shapes: NDArray[np.float64]) -> ModeName:
+def _name(layout: Layout, frequency: float, shapes: Array) -> ModeName:
     squares = (shapes**2).sum(axis=1)
     energy = mass_diagonal(layout) * squares
     first_gear = DOF_PER_BODY * len(layout.pinions)
@@ -62,7 +62,7 @@ def _name(layout: Layout, frequency: float, shapes: NDArray[np.float64]) -> Mode
     return ModeName(mode_class, _symbols(layout, squares), share)
 
 
-def _symbols(layout: Layout, squares: NDArray[np.float64]) -> str:
+def _symbols(layout: Layout, squares: Array) -> str:
     """Who moves and how, from the squared amplitudes of all DOF, shape (dof,)."""
     reach = np.ones_like(squares)
     pinions, last = len(layout.pinions), DOF_PER_BODY * len(layout.bodies)
@@ -83,7 +83,7 @@ def _symbols(layout: Layout, squares: NDArray[np.float64]) -> str:
     return "; ".join(f"{', '.join(who)} {motion.strip()}" for motion, who in parts.items())
 
 
-def _motion(moves: NDArray[np.bool_]) -> str:
+def _motion(moves: Mask) -> str:
     """`T-R-A` from which of x, y, z, theta move; a single direction of translation is named."""
     x, y, z, theta = moves
     letters = []

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.transmission.layout import Layout
 from facegear.transmission.matrices import bearing_matrix, mass_diagonal, mesh_directions
 
@@ -20,8 +20,8 @@ class Modes:
     `groups` holds runs of equal frequencies as (start, stop); shapes within a run are one basis of many.
     """
 
-    frequencies: NDArray[np.float64]
-    shapes: NDArray[np.float64]
+    frequencies: Array
+    shapes: Array
     groups: tuple[tuple[int, int], ...]
 
 
@@ -34,7 +34,7 @@ def natural_modes(layout: Layout, mesh_stiffness: float) -> Modes:
     return modes_of(layout, mesh_stiffness * directions.T @ directions)
 
 
-def modes_of(layout: Layout, meshes: NDArray[np.float64]) -> Modes:
+def modes_of(layout: Layout, meshes: Array) -> Modes:
     """All modes with the stiffness matrix (dof, dof) of the meshes, SI units."""
     mass = mass_diagonal(layout)
     stiffness = bearing_matrix(layout) + meshes
@@ -46,7 +46,7 @@ def modes_of(layout: Layout, meshes: NDArray[np.float64]) -> Modes:
     return Modes(frequencies, vectors / root[:, None], _equal_runs(frequencies))
 
 
-def _equal_runs(frequencies: NDArray[np.float64]) -> tuple[tuple[int, int], ...]:
+def _equal_runs(frequencies: Array) -> tuple[tuple[int, int], ...]:
     """Split ascending frequencies into runs that agree to rounding."""
     gaps = np.diff(frequencies) > EQUAL * frequencies[-1]
     edges = [0, *(np.flatnonzero(gaps) + 1).tolist(), frequencies.size]

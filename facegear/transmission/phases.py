@@ -3,8 +3,8 @@
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.transmission.layout import Layout, Side
 
 
@@ -15,9 +15,7 @@ class PhaseConvention(StrEnum):
     PRINTED = "printed"
 
 
-def mesh_phases(
-    layout: Layout, convention: PhaseConvention, clocking: NDArray[np.float64] | None = None
-) -> NDArray[np.float64]:
+def mesh_phases(layout: Layout, convention: PhaseConvention, clocking: Array | None = None) -> Array:
     """Lag of each mesh behind the reference, in mesh periods within [0, 1), shape (meshes,).
 
     The reference is the first pinion's mesh with the upper gear, or with the only gear. The upper gear's

@@ -7,8 +7,8 @@ deflection of either sign passes a dead zone.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.mesh_law.law import MeshLaw
 from facegear.transmission.flanks import line_law
 from facegear.transmission.machine import Machine
@@ -26,19 +26,17 @@ NO_PHASE = np.zeros(1)
 """The phase at which a law is asked that depends on none."""
 
 
-def _beyond(deflections: NDArray[np.float64], half_width: float) -> NDArray[np.float64]:
+def _beyond(deflections: Array, half_width: float) -> Array:
     """f(d) of equation (19), any shape."""
     return np.asarray(deflections - np.minimum(np.maximum(deflections, -half_width), half_width))
 
 
-def _forces(law: MeshLaw, deflections: NDArray[np.float64], half_width: float) -> NDArray[np.float64]:
+def _forces(law: MeshLaw, deflections: Array, half_width: float) -> Array:
     """Forces of deflections (..., meshes), with a law that depends on no phase."""
     return law.force(NO_PHASE, _beyond(deflections, half_width)[..., None, :])[..., 0, :]
 
 
-def printed_equilibrium(
-    machine: Machine, cycles: float | None
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def printed_equilibrium(machine: Machine, cycles: float | None) -> tuple[Array, Array, Array, Array]:
     """Displacements (dof,), deflections, elastic forces and stiffness (meshes,) where it is looked for.
 
     Minimises the elastic energy less the work of the torques (convex: the dead zone only flattens it).
@@ -74,29 +72,27 @@ class _Springs:
     law does not depend on the phase.
     """
 
-    directions: NDArray[np.float64]
+    directions: Array
     law: MeshLaw
-    error: NDArray[np.float64]
-    bearing: NDArray[np.float64]
-    applied: NDArray[np.float64]
+    error: Array
+    bearing: Array
+    applied: Array
     half_width: float
 
-    def deflections(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+    def deflections(self, q: Array) -> Array:
         return self.directions @ q - self.error
 
-    def forces(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+    def forces(self, q: Array) -> Array:
         return _forces(self.law, self.deflections(q), self.half_width)
 
-    def balance(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+    def balance(self, q: Array) -> Array:
         return self.bearing @ q + self.directions.T @ self.forces(q) - self.applied
 
-    def curvature(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+    def curvature(self, q: Array) -> Array:
         slope = self.law.slope(NO_PHASE, _beyond(self.deflections(q), self.half_width)[None])[0]
         return self.bearing + (self.directions.T * slope) @ self.directions
 
-    def along(
-        self, q: NDArray[np.float64], step: NDArray[np.float64], tie: float, anchor: NDArray[np.float64]
-    ) -> "Line":
+    def along(self, q: Array, step: Array, tie: float, anchor: Array) -> "Line":
         """The energy's slope along a step, with a spring `tie` to the anchor."""
         at_start = self.bearing @ q + tie * (q - anchor) - self.applied
         return Line(
@@ -115,17 +111,17 @@ class Line:
 
     constant: float
     rise: float
-    deflections: NDArray[np.float64]
-    rates: NDArray[np.float64]
+    deflections: Array
+    rates: Array
     law: MeshLaw
     half_width: float
 
-    def slopes(self, s: NDArray[np.float64]) -> NDArray[np.float64]:
+    def slopes(self, s: Array) -> Array:
         """The slope at some places (K,)."""
         forces = _forces(self.law, self.deflections + s[:, None] * self.rates, self.half_width)
         return np.asarray(self.constant + self.rise * s + forces @ self.rates)
 
-    def corners(self) -> NDArray[np.float64]:
+    def corners(self) -> Array:
         """Where a mesh passes a level of its law ahead, in order, with the two ends of the line: between two
         of them the slope is smooth, and straight if the law is linear.
         """
@@ -176,7 +172,7 @@ class Line:
         return 100.0 * float(np.finfo(float).eps * size)
 
 
-def _minimise(springs: _Springs) -> NDArray[np.float64]:
+def _minimise(springs: _Springs) -> Array:
     """Proximal point method: each round ties the body to its last place by a spring softer than before.
 
     The springs make every round strictly convex, so that bodies free inside their backlash have a place too;
@@ -194,9 +190,7 @@ def _minimise(springs: _Springs) -> NDArray[np.float64]:
     return _pushed_on(springs, float(tie), last, place)
 
 
-def _pushed_on(
-    springs: _Springs, tie: float, last: NDArray[np.float64], place: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _pushed_on(springs: _Springs, tie: float, last: Array, place: Array) -> Array:
     """A body that a force next to nothing has not yet moved through its backlash goes on as far as it can."""
     for _ in range(MORE_ROUNDS):
         size = max(np.abs(springs.applied).max(), np.abs(springs.forces(place)).max())
@@ -208,7 +202,7 @@ def _pushed_on(
     return place
 
 
-def _newton(springs: _Springs, tie: float, anchor: NDArray[np.float64]) -> NDArray[np.float64]:
+def _newton(springs: _Springs, tie: float, anchor: Array) -> Array:
     """Newton's method with an exact line search on the piecewise quadratic energy of one round."""
     place, ties = anchor, tie * np.eye(len(anchor))
     for _ in range(MAX_ITERATIONS):

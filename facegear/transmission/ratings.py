@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.transmission.layout import Layout
 from facegear.transmission.machine import Machine, mesh_frequency
 from facegear.transmission.statics import static_equilibrium
@@ -65,7 +65,7 @@ def number_table(found: Ratings) -> pd.DataFrame:
     return pd.DataFrame(list(rows.items()), columns=["quantity", "value"])
 
 
-def body_powers(machine: Machine, speed_rpm: float) -> NDArray[np.float64]:
+def body_powers(machine: Machine, speed_rpm: float) -> Array:
     """Power that each body's torque brings in (positive) or takes out, shape (bodies,), W.
 
     All bodies turn in step as their teeth say, whatever the lever arms of the model.
@@ -112,6 +112,6 @@ def mesh_table(machine: Machine, speed_rpm: float) -> pd.DataFrame:
     )
 
 
-def _body_speeds(layout: Layout, speed_rpm: float) -> NDArray[np.float64]:
+def _body_speeds(layout: Layout, speed_rpm: float) -> Array:
     gear = speed_rpm * layout.pinion_teeth / layout.gear_teeth
     return np.concatenate([np.full(len(layout.pinions), speed_rpm), np.full(len(layout.gears), gear)])

@@ -8,8 +8,8 @@ and moments on every body.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.harmonics.series import stacked, stacked_values
 from facegear.mesh_law.law import Held
 from facegear.transmission.balance import balance, bearing_loads
@@ -27,7 +27,6 @@ from facegear.transmission.machine import Machine
 from facegear.transmission.matrices import bearing_diagonal, bearing_matrix, flank_directions
 from facegear.transmission.printed_statics import RESIDUAL, printed_equilibrium
 
-Array = NDArray[np.float64]
 TOLERANCE = 1e-13
 ACCEPTED = 1e-12
 
@@ -114,7 +113,7 @@ def settle(machine: Machine, held: Held, errors: Array, names: list[str]) -> Equ
     return Equilibria(displacements, 0.5 * (drive - back), forces, checked.residual)
 
 
-def static_springs(machine: Machine) -> tuple[Springs, NDArray[np.int64], Array]:
+def static_springs(machine: Machine) -> tuple[Springs, Integers, Array]:
     """The compiled problem, which degrees of freedom it keeps (n,), and the m or rad of its unknowns (n,).
 
     Left out is the pinions' motion along their own axes, which no mesh feels.
@@ -163,7 +162,7 @@ def bearing_forces(machine: Machine, found: Equilibria) -> Array:
     return forces[:, :bodies].reshape(len(forces), -1, DOF_PER_BODY)[..., :3]
 
 
-def _unknowns(layout: Layout) -> tuple[NDArray[np.int64], Array]:
+def _unknowns(layout: Layout) -> tuple[Integers, Array]:
     """Kept degrees of freedom and their lengths: turns at the mesh, tilts at the mesh radius.
 
     If one gear may rock, another that may not is given tilts of no length.

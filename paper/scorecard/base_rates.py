@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.scenarios.statistics import share
 from paper.scorecard.claims import Claim
 
@@ -20,7 +20,7 @@ class Totals:
     """Of `claims` distinct claims, how many each random set of inputs holds, shape (samples,)."""
 
     claims: int
-    held: NDArray[np.float64]
+    held: Array
 
     @property
     def mean(self) -> float:

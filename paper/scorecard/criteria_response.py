@@ -2,8 +2,8 @@
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from paper.scorecard.outcome import Outcome, Tables, number, statement
 
 SIDES = ("lower", "upper")
@@ -115,7 +115,7 @@ def _strongest(tables: Tables, mesh: str, count: int) -> list[float]:
 
 def _correlation(tables: Tables, first: str, second: str) -> float:
     frame = tables["response"]
-    values: list[NDArray[np.float64]] = [
+    values: list[Array] = [
         frame.loc[frame["mesh"] == mesh, "deflection_um"].to_numpy(float) for mesh in (first, second)
     ]
     if not values[0].size or values[0].size != values[1].size:

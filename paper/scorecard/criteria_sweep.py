@@ -5,9 +5,9 @@ so that none of them dominates. It is judged on the upward sweep unless said oth
 """
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
+from facegear.arrays import Array, Integers, Mask
 from paper.scorecard.outcome import Outcome, Tables, nearest, number, statement
 
 PROMINENCE = 0.1
@@ -92,7 +92,7 @@ def mode_speed(tables: Tables, order: int, multiple: float, pinion_teeth: int = 
     return number(60.0 * multiple * values[order] / pinion_teeth)
 
 
-def _leaning(more: NDArray[np.int64], lean: str) -> Outcome:
+def _leaning(more: Integers, lean: str) -> Outcome:
     if not more.any():
         return statement(False, "up and down sweeps agree")
     found = "hardening" if more.sum() > 0 else "softening" if more.sum() < 0 else "neither"
@@ -108,7 +108,7 @@ def _meshes(tables: Tables) -> list[str]:
 
 def _level(
     tables: Tables, quantities: tuple[str, ...], parts: list[str], direction: str
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[Array, Array]:
     """Speeds (P,) rising, and mean level (P,) relative to each curve's largest value over both directions."""
     frame = tables["sweep"]
     rows = frame[frame["quantity"].isin(quantities) & frame["body_or_mesh"].isin(parts)]
@@ -120,7 +120,7 @@ def _level(
     return curve.index.to_numpy(float), curve.to_numpy(float)
 
 
-def _bistable(tables: Tables, meshes: list[str]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _bistable(tables: Tables, meshes: list[str]) -> tuple[Array, Integers]:
     """Speeds (P,), and +1, -1 or 0 where the upward level is higher, lower, or the same within 10 %."""
     speeds, up = _level(tables, DEFLECTION, meshes, "up")
     _, down = _level(tables, DEFLECTION, meshes, "down")
@@ -128,13 +128,13 @@ def _bistable(tables: Tables, meshes: list[str]) -> tuple[NDArray[np.float64], N
     return speeds, np.sign(np.where(np.abs(difference) > APART, difference, 0.0)).astype(int)
 
 
-def _regular(tables: Tables, speeds: NDArray[np.float64], direction: str) -> NDArray[np.bool_]:
+def _regular(tables: Tables, speeds: Array, direction: str) -> Mask:
     """Whether the motion at each speed (P,) of a sweep is periodic or quasi-periodic."""
     frame = tables["sweep"]
     rows = frame[frame["direction"] == direction].drop_duplicates("speed_rpm").set_index("speed_rpm")
     return ~rows.loc[speeds, "class"].isin(IRREGULAR).to_numpy(bool)
 
 
-def _peaks(level: NDArray[np.float64]) -> NDArray[np.int64]:
+def _peaks(level: Array) -> Integers:
     """Local maxima that stand PROMINENCE of the largest level above the higher of the valleys beside them."""
     return find_peaks(level, prominence=PROMINENCE * level.max())[0]

@@ -6,8 +6,9 @@ from pathlib import Path
 import pytest
 
 PACKAGE = Path(__file__).parents[2] / "facegear"
-FOUNDATION = {"errors", "progress", "io", "machine_code"}
+FOUNDATION = {"arrays", "errors", "progress", "io", "machine_code"}
 MAY_IMPORT = {
+    "arrays": set(),
     "errors": set(),
     "progress": set(),
     "machine_code": set(),
@@ -96,3 +97,11 @@ def test_matplotlib_is_only_known_to_the_plots():
     for module in MODULES:
         if "plots" not in module.relative_to(PACKAGE).parts:
             assert not any(name.split(".")[0] == "matplotlib" for name in imported(module)), module
+
+
+def test_array_types_have_their_names_from_one_module():
+    named = {"np.float64", "np.int64", "np.bool_", "np.complex128", "Any"}
+    for module in set(MODULES) - {PACKAGE / "arrays.py"}:
+        nodes = ast.walk(ast.parse(module.read_text()))
+        types = [ast.unparse(node) for node in nodes if isinstance(node, ast.Subscript)]
+        assert not {f"NDArray[{name}]" for name in named} & set(types), module

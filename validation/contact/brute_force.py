@@ -10,11 +10,11 @@ from collections.abc import Sequence
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 from skfem import ElementLineP2
 from skfem.quadrature import get_quadrature
 
+from facegear.arrays import Array, Integers
 from facegear.contact.bodies.factor import solve_sparse
 from facegear.errors import NotConverged
 from facegear.geometry import pinion
@@ -59,7 +59,7 @@ def gears_at(
 
 def loaded_rotations(
     gears: tuple[FlatGear, FlatGear], position: float, line_loads: Sequence[float]
-) -> list[tuple[float, NDArray[np.float64]]]:
+) -> list[tuple[float, Array]]:
     """Rotation (rad) of the pinion's bore under each load (N/m along the line of action), and the pairs'
     shares.
 
@@ -157,7 +157,7 @@ def _separation(designs, facets, at, phi1, tooth):  # type: ignore[no-untyped-de
 
 def _constraints(
     gears: tuple[FlatGear, FlatGear], phi1: float
-) -> tuple[sp.csr_matrix, NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
+) -> tuple[sp.csr_matrix, Array, Array, Integers]:
     """Rows that give the normal approach spent on elastic displacement, gaps, lengths and teeth of all
     points.
     """

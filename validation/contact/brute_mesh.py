@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from skfem import Basis, ElementTriP2, ElementVector, MeshQuad, MeshTri
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
+from facegear.arrays import Array, Integers, Mask
 from facegear.geometry.design import Material, PairDesign
 from facegear.mesh.sector import sector
 from facegear.mesh.sizes import MeshSizes
@@ -25,9 +25,9 @@ class Chain:
     root, the facets' `length` (n,) m, and the x and z dof (2 n + 1, 2) of ends and middles.
     """
 
-    ends: NDArray[np.float64]
-    length: NDArray[np.float64]
-    dofs: NDArray[np.int64]
+    ends: Array
+    length: Array
+    dofs: Integers
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +37,7 @@ class FlatMesh:
     design: PairDesign
     mesh: MeshTri
     bore_radius: float
-    flanks: dict[int, NDArray[np.float64]]
+    flanks: dict[int, Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class FlatGear:
 
     design: PairDesign
     stiffness: sp.csc_matrix
-    free: NDArray[np.bool_]
+    free: Mask
     chains: dict[int, Chain]
 
 
@@ -95,12 +95,12 @@ def flat_gear(flat: FlatMesh, mesh: MeshTri, material: Material, teeth: Sequence
     return FlatGear(flat.design, stiffness, free, chains)
 
 
-def _at(line: NDArray[np.float64], place: float) -> NDArray[np.float64]:
+def _at(line: Array, place: float) -> Array:
     facet = min(int(place), len(line) - 2)
     return line[facet] + (place - facet) * (line[facet + 1] - line[facet])
 
 
-def _chain(basis: Basis, boundary: NDArray[np.int64], line: NDArray[np.float64]) -> Chain:
+def _chain(basis: Basis, boundary: Integers, line: Array) -> Chain:
     """Boundary facets on a broken line (n + 1, 2), in its order."""
     ends = basis.mesh.facets[:, boundary]
     middle = basis.mesh.p[:, ends].mean(axis=1).T

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.contact.teeth import LOADED_SIDE
 from facegear.errors import FacegearError
 from facegear.geometry.design import Material, PairDesign
@@ -159,7 +159,7 @@ def run_program(path: Path, threads: int, timeout: float = 3600.0) -> Run:
 
 def _placed(
     design: PairDesign, bodies: dict[str, SectorMesh], angles: tuple[float, float]
-) -> dict[str, NDArray[np.float64]]:
+) -> dict[str, Array]:
     """Both bodies in the pinion's frame, whose y axis is the axis the bore turns about."""
     phi1, phi2 = (np.array([angle]) for angle in angles)
     section = to_pinion_section(design, phi1, phi2, np.zeros(1)).points(bodies["face_gear"].nodes)

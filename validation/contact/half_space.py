@@ -9,12 +9,10 @@ assumption about the strip. Solved by the conjugate gradients of Polonsky and Ke
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import irfft2, next_fast_len, rfft2
 
+from facegear.arrays import Array, ComplexArray, Mask
 from facegear.errors import NotConverged
-
-Array = NDArray[np.float64]
 
 STEPS = 3000
 
@@ -28,7 +26,7 @@ class HalfSpace:
 
     shape: tuple[int, int]
     padded: tuple[int, int]
-    kernel: NDArray[np.complex128]
+    kernel: ComplexArray
 
     def displaced(self, pressure: Array) -> Array:
         """Displacement (m) into both bodies together by pressures (Pa), of `shape`."""
@@ -78,6 +76,6 @@ def pressures(bodies: HalfSpace, gap: Array, load: Array) -> Array:
     raise NotConverged("half spaces", f"{gap.shape} cells", f"{STEPS} conjugate gradient steps")
 
 
-def _from_mean(values: Array, on: NDArray[np.bool_]) -> Array:
+def _from_mean(values: Array, on: Mask) -> Array:
     """Less the mean of each plane's cells in contact: the approach of a plane is free."""
     return values - np.sum(np.where(on, values, 0.0), axis=0) / np.maximum(on.sum(axis=0), 1)

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.bodies.surface import interpolation
 from facegear.contact.options import Ends, Refinement
@@ -14,8 +14,6 @@ from facegear.contact.teeth import ContactSide, elastic_tooth
 from facegear.geometry.design import Material, PairDesign
 from facegear.mesh.sizes import MeshSizes
 from facegear.mesh.tooth import ToothMesh
-
-Array = NDArray[np.float64]
 
 HEIGHT = 0.25
 """Where on the flank the line lies, 0 at its tip end to 1 at its root end, evenly in the mesh's rows."""

@@ -9,8 +9,8 @@ from itertools import product as pairs_of
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.contact.bodies.compliance import on_lattice
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.bodies.ring import plane_compliance
@@ -28,7 +28,7 @@ from facegear.geometry.unloaded import unloaded_contact
 from facegear.mesh.sizes import MeshSizes
 from facegear.mesh.tooth import ToothMesh
 
-Blocks = dict[tuple[int, int], NDArray[np.float64]]
+Blocks = dict[tuple[int, int], Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,12 +67,10 @@ class _SectorAtPosition:
         placement = angles_at(flanks.design, self.position)
         return find_candidates(flanks, placement, loaded, limit, ContactOptions())
 
-    def influence(self, pairs: list[Candidates]) -> NDArray[np.float64]:
+    def influence(self, pairs: list[Candidates]) -> Array:
         return _influence(pairs, self.sectors.pinion, self.sectors.gear)
 
-    def approach(
-        self, seen: list[Candidates], pairs: list[Candidates], forces: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def approach(self, seen: list[Candidates], pairs: list[Candidates], forces: Array) -> Array:
         return _approach(seen, pairs, self.sectors.pinion, self.sectors.gear) @ forces
 
 
@@ -129,14 +127,12 @@ def sector_blocks(
     }
 
 
-def _influence(pairs: list[Candidates], pinion: Blocks, gear: Blocks) -> NDArray[np.float64]:
+def _influence(pairs: list[Candidates], pinion: Blocks, gear: Blocks) -> Array:
     matrix = _approach(pairs, pairs, pinion, gear)
     return 0.5 * (matrix + matrix.T)
 
 
-def _approach(
-    seen: list[Candidates], pairs: list[Candidates], pinion: Blocks, gear: Blocks
-) -> NDArray[np.float64]:
+def _approach(seen: list[Candidates], pairs: list[Candidates], pinion: Blocks, gear: Blocks) -> Array:
     """Approach (k, m) at the first candidates by unit forces on the second, m/N."""
     return np.block(
         [

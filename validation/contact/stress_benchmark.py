@@ -8,8 +8,8 @@ from typing import TypeVar
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.contact.gear_flank import GearFlank
 from facegear.contact.options import ContactPlan
 from facegear.contact.pair import gear_flank
@@ -19,7 +19,6 @@ from facegear.strength.root_stress import down_the_fillet, root_stress
 from validation.contact.line_load import LoadedTooth, loaded_tooth
 from validation.contact.stress_levels import HALVED
 
-Array = NDArray[np.float64]
 Result = TypeVar("Result")
 
 TEETH = 3

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.contact.bodies.gauges import gauges_on
 from facegear.contact.root_gauges import fillet_sides
 from facegear.errors import FacegearError
@@ -25,8 +25,6 @@ from facegear.mesh.sizes import MeshSizes, named_sizes, thin_fillet
 from facegear.strength.root_stress import down_the_fillet
 from validation.contact.calculix import run_program
 from validation.contact.line_load import LoadedTooth, loaded_tooth
-
-Array = NDArray[np.float64]
 
 LEVELS = ("coarse", "medium")
 """Of the whole face."""
@@ -160,7 +158,7 @@ def along_the_face(tooth: LoadedTooth, results: Path, material: Material) -> tup
     return ours, theirs, np.interp(own[inside], at, down_the_fillet(nodal).max(axis=0))
 
 
-def _on_grid(values: Mapping[int, Array], labels: NDArray[np.int64]) -> Array:
+def _on_grid(values: Mapping[int, Array], labels: Integers) -> Array:
     """Displacements (nu, nv, 3) of a surface, in the middle of each face by the functions of its 8 nodes."""
     nothing = np.zeros(3)
     found = np.array([[values.get(label, nothing) for label in row] for row in labels])
@@ -170,7 +168,7 @@ def _on_grid(values: Mapping[int, Array], labels: NDArray[np.int64]) -> Array:
     return found
 
 
-def _down(stress: Mapping[int, Array], labels: NDArray[np.int64], points: Array) -> Array:
+def _down(stress: Mapping[int, Array], labels: Integers, points: Array) -> Array:
     """Normal stress (nu, nv) down a surface with `points` (nu, nv, 3)."""
     tensor = np.array([[stress[label] for label in row] for row in labels])
     tangent = np.gradient(points, axis=0)

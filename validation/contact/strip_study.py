@@ -3,16 +3,14 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.contact.pressure import INSIDE, FlankPressure
 from facegear.geometry.design import PairDesign
 from facegear.geometry.pinion_surface import SurfacePoints, flank_points
 from facegear.geometry.placement import conjugate_angle
 from facegear.geometry.separation import separation
 from validation.contact.half_space import half_space, pressures
-
-Array = NDArray[np.float64]
 
 ACROSS, ALONG = 12, 2
 """Cells in the strip's half-width across the line and along the axis."""

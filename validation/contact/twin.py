@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from math import acos, pi
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.contact.averages import Lattice
 from facegear.contact.bodies.compliance import FlankCompliance, flank_compliance
 from facegear.contact.candidates import Candidates, candidates_of
@@ -102,9 +102,7 @@ def slab_tooth(design: PairDesign, sizes: MeshSizes) -> ToothMesh:
     )
 
 
-def analyse_twin(
-    model: TwinModel, positions: NDArray[np.float64], line_loads: list[float]
-) -> list[LoadedPosition]:
+def analyse_twin(model: TwinModel, positions: Array, line_loads: list[float]) -> list[LoadedPosition]:
     """Solve all positions (0..1 of a pitch) at all loads (N/m along the line of action).
 
     The torques in the results are those of the slab. Raises NotConverged naming position and torque.
@@ -136,24 +134,22 @@ class _TwinAtPosition:
         phi1 = (self.position - 0.5) * 2 * pi / self.model.pinion.pinion.teeth
         return _candidates(self.model, phi1, limit)
 
-    def influence(self, pairs: list[Candidates]) -> NDArray[np.float64]:
+    def influence(self, pairs: list[Candidates]) -> Array:
         return influence_matrix(pairs, self.model.pinion_compliance, self.model.gear_compliance)
 
-    def approach(
-        self, seen: list[Candidates], pairs: list[Candidates], forces: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def approach(self, seen: list[Candidates], pairs: list[Candidates], forces: Array) -> Array:
         return displacement(seen, pairs, forces, self.model.pinion_compliance, self.model.gear_compliance)
 
 
 def involute_separation(
     model_pinion: PairDesign,
     model_gear: PairDesign,
-    points: NDArray[np.float64],
-    normals: NDArray[np.float64],
+    points: Array,
+    normals: Array,
     phi1: float,
     tooth: int,
     centre: float,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[Array, Array]:
     """Gap (n,) m along the normals of pinion points (n, 3), and the gear's roll there (nan: no flank)."""
     teeth, other = model_pinion.pinion.teeth, model_gear.pinion.teeth
     turn = phi1 + (tooth - 0.5) * 2 * pi / teeth
@@ -194,7 +190,7 @@ def _play(first: PairDesign, second: PairDesign, centre: float) -> float:
     return (base * space - other * (second.pinion_half_base_angle - lost)) / other
 
 
-def turned(vectors: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
+def turned(vectors: Array, angle: float) -> Array:
     """x and z of vectors (n, 2) turned as the pinion turns."""
     return vectors @ body_rotation("pinion", angle)[np.ix_([0, 2], [0, 2])].T
 

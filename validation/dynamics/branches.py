@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.branches.continuation import Branch, Run, follow, turned
 from facegear.dynamics.branches.explore import crossings
 from facegear.dynamics.branches.family import Family, speed_family
@@ -20,7 +20,6 @@ from facegear.dynamics.steady_state.simulate import Model, build_model, simulate
 from facegear.transmission.machine import Machine
 from validation.dynamics.oscillators import Oscillator
 
-Array = NDArray[np.float64]
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
 REFERENCE = 1e-13
 EXACT_POINTS = (

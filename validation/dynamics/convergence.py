@@ -5,14 +5,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.averages import Averages
 from facegear.dynamics.steady_state.simulate import Model, SteadyState
 from facegear.dynamics.sweeps.sweep import Piece, collect, joined, run_speeds, tighter
 
-Array = NDArray[np.float64]
 CONVERGED = 1e-3
 SAMPLES = 4096
 LONG = 8192

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
@@ -22,7 +22,6 @@ from facegear.transmission.machine import Machine, balanced_torques, mesh_freque
 from validation.dynamics.methods import scipy_method
 from validation.dynamics.problems import Compared, Problem
 
-Array = NDArray[np.float64]
 SPEEDS = 40
 TOLERANCES = (1e-3, 1e-4, 3e-5, 1e-6, 1e-8)
 DWELLS = (32, 128)

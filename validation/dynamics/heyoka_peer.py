@@ -12,15 +12,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import LEAST_CLEARANCE, TAU
 from facegear.dynamics.integrator.kernel import kernel
 from facegear.dynamics.integrator.system import System
 from validation.dynamics.problems import SAMPLES, Problem
 from validation.dynamics.right_side import linear
 
-Array = NDArray[np.float64]
 EDGE = 1e-13
 """A deflection this close to an edge, in length scales, stands on it, and its rate decides."""
 NEGLIGIBLE = 1e-13

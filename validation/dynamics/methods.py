@@ -10,9 +10,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.steady_state.orbits import monodromy
@@ -20,7 +20,6 @@ from validation.dynamics import heyoka_peer
 from validation.dynamics.problems import SAMPLES, Compared, Problem
 from validation.dynamics.right_side import compiled_right_side, fixed_rk4, plain_right_side
 
-Array = NDArray[np.float64]
 Run = Callable[[], Array]
 Prepare = Callable[[Problem, float], Run]
 TOLERANCES = tuple(10.0**-k for k in range(2, 13))

@@ -12,15 +12,14 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 from numba import njit
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.simulate import SteadyState, steady_state
 from facegear.mesh_law.linear import LinearLaw
 
-Array = NDArray[np.float64]
 FURTHER = 20_000
 LOOKED_AT = 2_048
 """Periods at the end of a plain run on which its class is read off."""

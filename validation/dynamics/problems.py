@@ -4,9 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
-import numpy as np
-from numpy.typing import NDArray
-
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Motion, Settings, State
@@ -14,7 +11,6 @@ from facegear.dynamics.steady_state.simulate import build_model, simulate, stati
 from facegear.transmission.machine import Machine, mesh_frequency
 from validation.dynamics.oscillators import Oscillator
 
-Array = NDArray[np.float64]
 SAMPLES = 16
 FACTORS = (1.0, 2.0, 1.5, 1.75, 2.5)
 PERIODS, IRREGULAR_PERIODS = 24, 400

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.excitation import excitation
 from facegear.dynamics.integrator.integrator import Integrator
@@ -13,8 +13,6 @@ from facegear.dynamics.integrator.system import System
 from facegear.dynamics.integrator.work import Work
 from facegear.machine_code.lanes import LANES, load, multiply, multiply_add, splat, store
 from facegear.mesh_law.linear import LinearLaw
-
-Array = NDArray[np.float64]
 
 
 @kernel

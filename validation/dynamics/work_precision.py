@@ -7,14 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.steady_state.mesh_samples import mesh_response
 from facegear.dynamics.steady_state.statistics import moments
 from validation.dynamics.methods import Method, our_tangents, ours, prepare_ours
 from validation.dynamics.problems import SAMPLES, Compared, Problem
 
-Array = NDArray[np.float64]
 REFERENCE = 1e-13
 REFERENCE_TOLERANCE = 1e-8
 REFERENCE_PERIODS = 16_000

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 from numba import njit
-from numpy.typing import NDArray
 from skfem import Basis, Mesh, MeshHex2
 from skfem.assembly import Dofs
 from skfem.models.elasticity import lame_parameters
 
+from facegear.arrays import Array, Integers
 from facegear.contact.bodies.elements import KINDS, mesh_of
 from facegear.contact.options import Element
 from facegear.geometry.design import Material
@@ -27,11 +27,11 @@ class Part:
     """Elements (m,) of a mesh, and the node of the whole system that each of the mesh's nodes is, (n,)."""
 
     mesh: MeshHex2
-    elements: NDArray[np.int64]
-    nodes: NDArray[np.int64]
+    elements: Integers
+    nodes: Integers
 
 
-def element_stiffness(basis: Basis, material: Material) -> NDArray[np.float64]:
+def element_stiffness(basis: Basis, material: Material) -> Array:
     """Stiffness (m, 3 a, 3 a) of a scalar basis' elements, each of their a functions taken for x, y and z.
 
     Dof 3 n + i is the displacement of local node n along axis i. Raises ValueError for an element that is
@@ -97,7 +97,7 @@ def stiffness_matrix(
     return sp.bsr_matrix((data, pattern.indices, pattern.indptr), shape=(3 * count, 3 * count))
 
 
-def _pieces(part: Part, element: Element) -> tuple[Mesh, NDArray[np.int64], NDArray[np.int64]]:
+def _pieces(part: Part, element: Element) -> tuple[Mesh, Integers, Integers]:
     """Mesh and elements of the wanted kind, and the nodes (m, a) of the system that each element has."""
     mesh = mesh_of(part.mesh, element)
     copies, whole = mesh.nelements // part.mesh.nelements, part.mesh.nelements

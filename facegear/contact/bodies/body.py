@@ -3,9 +3,9 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import MeshHex2
 
+from facegear.arrays import Array, Integers, Mask
 from facegear.geometry.design import Material
 
 
@@ -23,12 +23,12 @@ class ElasticBody:
 
     mesh: MeshHex2
     material: Material
-    flank: NDArray[np.int64]
-    normals: NDArray[np.float64]
-    held: NDArray[np.bool_]
-    left: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
-    right: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
-    turn: NDArray[np.float64] = field(default_factory=lambda: np.eye(3))
+    flank: Integers
+    normals: Array
+    held: Mask
+    left: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    right: Integers = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    turn: Array = field(default_factory=lambda: np.eye(3))
 
     def __post_init__(self) -> None:
         if self.flank.shape[0] % 2 == 0 or self.flank.shape[1] % 2 == 0:
@@ -39,6 +39,6 @@ class ElasticBody:
                 raise ValueError(f"the cut faces do not match after one pitch: {gap:.1e} m apart")
 
     @property
-    def points(self) -> NDArray[np.float64]:
+    def points(self) -> Array:
         """Positions (n, 3) of the nodes, m."""
         return self.mesh.doflocs.T

@@ -1,12 +1,11 @@
 """Flank compliance of a whole gear from one of its teeth."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
+from facegear.arrays import AnyArray, Array, Arrays
 from facegear.contact.bodies.body import ElasticBody
 from facegear.contact.bodies.layer import TiedSystem, tied_system
 from facegear.contact.bodies.ring import face_compliance, rest_stiffness
@@ -30,15 +29,15 @@ class FlankCompliance:
     of the lattice before refinement; empty without gauges.
     """
 
-    own: NDArray[np.float64]
-    others: NDArray[np.float64]
+    own: Array
+    others: Array
     shape: tuple[int, int]
     coarse_shape: tuple[int, int]
     refinement: Refinement
     linear: bool = False
-    readings: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0, 0)))
+    readings: Array = field(default_factory=lambda: np.zeros((0, 0, 0)))
 
-    def block(self, places: int) -> NDArray[np.float64] | None:
+    def block(self, places: int) -> Array | None:
         """Coarse block for a tooth `places` further than the loaded one; None beyond those computed."""
         reach = len(self.others) // 2
         return self.others[places + reach] if abs(places) <= reach else None
@@ -112,7 +111,7 @@ def coupled_compliance(
     )
 
 
-def on_lattice(spread: sp.csr_matrix, flank: NDArray[np.float64]) -> NDArray[np.float64]:
+def on_lattice(spread: sp.csr_matrix, flank: Array) -> Array:
     """Bring the masters' compliance (k, k) by `spread` (n, k) to the n lattice nodes, mostly masters."""
     if spread.nnz == spread.shape[0] and (spread.data == 1.0).all():
         return flank[np.ix_(spread.indices, spread.indices)]
@@ -120,7 +119,7 @@ def on_lattice(spread: sp.csr_matrix, flank: NDArray[np.float64]) -> NDArray[np.
     return np.ascontiguousarray((spread @ half.T).T)
 
 
-def to_arrays(compliance: FlankCompliance) -> dict[str, NDArray]:
+def to_arrays(compliance: FlankCompliance) -> dict[str, AnyArray]:
     """Named arrays from which `from_arrays` rebuilds the compliance."""
     cuts = compliance.refinement
     return {
@@ -146,7 +145,7 @@ STORED = {
 """Names and shapes of the arrays of a stored compliance."""
 
 
-def from_arrays(arrays: Mapping[str, NDArray]) -> FlankCompliance:
+def from_arrays(arrays: Arrays) -> FlankCompliance:
     """Inverse of `to_arrays`."""
     profile, width, depth, grading = arrays["refinement"]
     (rows, columns), (coarse_rows, coarse_columns) = arrays["shape"], arrays["coarse_shape"]

@@ -1,13 +1,13 @@
 """Dense symmetric positive definite matrices."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import lapack
 
+from facegear.arrays import Array
 from facegear.errors import FacegearError
 
 
-def cholesky(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+def cholesky(matrix: Array) -> Array:
     """Lower factor (n, n) of a symmetric matrix. Raises FacegearError if it is not positive definite."""
     lower, failed = lapack.dpotrf(matrix, lower=1, clean=1)
     if failed:
@@ -15,7 +15,7 @@ def cholesky(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
     return lower
 
 
-def inverse(factor: NDArray[np.float64]) -> NDArray[np.float64]:
+def inverse(factor: Array) -> Array:
     """Inverse (n, n) from a lower factor, at half the cost of solving for the unit matrix."""
     lower, _ = lapack.dpotri(factor, lower=1)
     result = np.tril(lower)

@@ -3,9 +3,9 @@
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import ElementHex1, ElementHex2, ElementTetP1, Mesh, MeshHex1, MeshHex2
 
+from facegear.arrays import Array
 from facegear.contact.options import Element
 
 KINDS = {"hex27": (ElementHex2, 5), "hex8": (ElementHex1, 3), "tet4": (ElementTetP1, 1)}
@@ -36,7 +36,7 @@ def _from_the_middle(cubes: MeshHex1) -> MeshHex1:
     return replace(cubes, t=np.ascontiguousarray(turned.reshape(8, -1)))
 
 
-def hex_values(local: NDArray[np.float64]) -> NDArray[np.float64]:
+def hex_values(local: Array) -> Array:
     """Values (n, 27) of the triquadratic functions at local positions (n, 3) in the unit cube."""
     element = ElementHex2()
     return np.stack([element.lbasis(local.T, i)[0] for i in range(len(element.doflocs))], axis=1)

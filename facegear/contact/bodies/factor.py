@@ -10,9 +10,9 @@ from importlib.metadata import PackageNotFoundError, files
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
 
+from facegear.arrays import Array, Integers
 from facegear.errors import FacegearError
 
 try:
@@ -25,7 +25,7 @@ POSITIVE_DEFINITE = 2
 COLUMNS_AT_ONCE = 128
 
 
-def schur_complement(matrix: sp.csr_matrix, kept: NDArray[np.int64]) -> NDArray[np.float64]:
+def schur_complement(matrix: sp.csr_matrix, kept: Integers) -> Array:
     """Dense A_kk - A_kr A_rr^-1 A_rk with k the `kept` dof and r the others, shape (k, k), ordered as `kept`.
 
     `matrix` (n, n) is symmetric and positive definite on r. Raises FacegearError if the factorisation fails,
@@ -46,7 +46,7 @@ def schur_complement(matrix: sp.csr_matrix, kept: NDArray[np.int64]) -> NDArray[
     return schur
 
 
-def solve_sparse(matrix: sp.csr_matrix, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
+def solve_sparse(matrix: sp.csr_matrix, rhs: Array) -> Array:
     """Solve a symmetric positive definite system for right-hand sides (n, m).
 
     Raises FacegearError if the factorisation fails.
@@ -81,7 +81,7 @@ def _mkl() -> str | None:
     return min((path for path in found if os.path.exists(path)), key=len, default=None)
 
 
-def _schur_pardiso(matrix: sp.csr_matrix, eliminated: int) -> NDArray[np.float64]:
+def _schur_pardiso(matrix: sp.csr_matrix, eliminated: int) -> Array:
     upper = sp.triu(matrix, format="csr")
     size = matrix.shape[0] - eliminated
     solver = _pardiso()
@@ -101,7 +101,7 @@ def _schur_pardiso(matrix: sp.csr_matrix, eliminated: int) -> NDArray[np.float64
         solver._call_pardiso(upper, np.zeros((matrix.shape[0], 1)))
 
 
-def _schur_scipy(matrix: sp.csr_matrix, eliminated: int) -> NDArray[np.float64]:
+def _schur_scipy(matrix: sp.csr_matrix, eliminated: int) -> Array:
     inner = matrix[:eliminated, :eliminated].tocsc()
     coupling = matrix[:eliminated, eliminated:].tocsc()
     schur = matrix[eliminated:, eliminated:].toarray()

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.contact.bodies.surface import face_functions
 from facegear.geometry.design import Material
 
@@ -26,21 +26,21 @@ class Gauges:
     stress `normal` across the lines, `axial` along them, and `shear`, each (a b, 3 n).
     """
 
-    position: NDArray[np.float64]
-    across: NDArray[np.float64]
-    along: NDArray[np.float64]
+    position: Array
+    across: Array
+    along: Array
     normal: sp.csr_matrix
     axial: sp.csr_matrix
     shear: sp.csr_matrix
 
 
-def gauge_coordinates(nodes: int) -> NDArray[np.float64]:
+def gauge_coordinates(nodes: int) -> Array:
     """Lattice coordinates of the gauges along a line of `nodes` nodes, two an element."""
     middle = np.arange(1.0, nodes, 2.0)
     return np.stack([middle - GAUSS, middle + GAUSS], axis=1).ravel()
 
 
-def gauges_on(points: NDArray[np.float64], nodes: NDArray[np.int64], material: Material) -> Gauges:
+def gauges_on(points: Array, nodes: Integers, material: Material) -> Gauges:
     """Gauges on the faces of 27-node hexahedra with the nodes (nu, nv) of a body with `points` (n, 3), m.
 
     The lines that gauges stand across are those of constant first index.
@@ -79,7 +79,7 @@ def gauges_on(points: NDArray[np.float64], nodes: NDArray[np.int64], material: M
     )
 
 
-def _rows(nodes: NDArray[np.int64], values: NDArray[np.float64], count: int) -> sp.csr_matrix:
+def _rows(nodes: Integers, values: Array, count: int) -> sp.csr_matrix:
     """Matrix (q, 3 count) with values (q, a, 3) at the dof of nodes (q, a)."""
     dof = 3 * nodes[:, :, None] + np.arange(3)
     pointer = np.arange(0, values.size + 1, values[0].size)

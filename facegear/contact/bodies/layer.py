@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from skfem import ElementHex2, MeshHex1, MeshHex2
 
+from facegear.arrays import Array, Integers, Mask
 from facegear.contact.bodies.assembly import Part, stiffness_matrix
 from facegear.contact.bodies.body import ElasticBody
 from facegear.contact.bodies.elements import hex_values
@@ -32,13 +32,13 @@ class TiedSystem:
     """
 
     stiffness: sp.csr_matrix
-    points: NDArray[np.float64]
-    held: NDArray[np.bool_]
-    coarse: NDArray[np.int64]
-    surface: NDArray[np.float64]
-    normals: NDArray[np.float64]
-    loaded: NDArray[np.int64]
-    loaded_normals: NDArray[np.float64]
+    points: Array
+    held: Mask
+    coarse: Integers
+    surface: Array
+    normals: Array
+    loaded: Integers
+    loaded_normals: Array
     spread: sp.csr_matrix
 
     def followed(self, body: ElasticBody, refinement: Refinement) -> sp.csr_matrix:
@@ -65,9 +65,9 @@ class FlankElements:
     position corner + (u, v, w) @ axes, with `corner` (a, b, 3) and `axes` (a, b, 3, 3).
     """
 
-    elements: NDArray[np.int64]
-    corner: NDArray[np.float64]
-    axes: NDArray[np.float64]
+    elements: Integers
+    corner: Array
+    axes: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,18 +80,18 @@ class Layer:
     """
 
     mesh: MeshHex2
-    lattice: NDArray[np.int64]
-    number: NDArray[np.int64]
-    parents: NDArray[np.int64]
-    weights: NDArray[np.float64]
+    lattice: Integers
+    number: Integers
+    parents: Integers
+    weights: Array
 
     @property
-    def points(self) -> NDArray[np.float64]:
+    def points(self) -> Array:
         """Positions (n, 3) of the nodes, m."""
         return self.mesh.doflocs.T
 
     @property
-    def surface(self) -> NDArray[np.int64]:
+    def surface(self) -> Integers:
         """Nodes (nu nv,) of the refined contact surface."""
         return self.number[:, :, 0].ravel()
 
@@ -107,7 +107,7 @@ def flank_elements(body: ElasticBody) -> FlankElements:
         raise ValueError("a flank facet is not the face of one element")
     elements = body.mesh.f2t[0, facets].astype(np.int64)
 
-    def local(nodes: NDArray[np.int64]) -> NDArray[np.float64]:
+    def local(nodes: Integers) -> Array:
         same = dofs.element_dofs[:, elements] == nodes
         if not same.any(axis=0).all():
             raise ValueError("a flank facet is not the face of one element")
@@ -119,7 +119,7 @@ def flank_elements(body: ElasticBody) -> FlankElements:
     return FlankElements(elements, corner, np.stack([profile, width, depth], axis=-2))
 
 
-def depth_stations(refinement: Refinement) -> NDArray[np.float64]:
+def depth_stations(refinement: Refinement) -> Array:
     """Positions 0..1 of the 2 depth + 1 node planes, elements growing by `grading` away from the surface."""
     sizes = refinement.grading ** np.arange(refinement.depth)
     ends = np.concatenate([[0.0], np.cumsum(sizes) / sizes.sum()])
@@ -206,7 +206,7 @@ def tied_system(body: ElasticBody, refinement: Refinement, element: Element = "h
     )
 
 
-def _tied_nodes(layer: Layer, used: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _tied_nodes(layer: Layer, used: Mask) -> Mask:
     """Fine nodes on the boundary of the layer whose coarse parents all belong to elements that stay."""
     at, ends = layer.lattice, np.array(layer.number.shape) - 1
     edge = (at[:, :2] == 0).any(axis=1) | (at == ends).any(axis=1)
@@ -217,7 +217,7 @@ def _stiffness(
     body: ElasticBody,
     rest: Part,
     layer: Layer,
-    fine: NDArray[np.int64],
+    fine: Integers,
     follow: sp.csr_matrix,
     element: Element,
 ) -> sp.csr_matrix:

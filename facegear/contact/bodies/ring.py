@@ -7,13 +7,13 @@ of teeth. Matrices (2s, 2s) hold the left face first, then the right one.
 
 import numpy as np
 import scipy.linalg as sl
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.contact.bodies.dense import cholesky, inverse
 from facegear.contact.options import Ends
 
 
-def joined(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+def joined(first: Array, second: Array) -> Array:
     """Stiffness (2s, 2s) of two chains in series, right face of the first on the left face of the second."""
     s = len(first) // 2
     middle = cholesky(first[s:, s:] + second[:s, :s])
@@ -25,7 +25,7 @@ def joined(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[n
     return chain
 
 
-def chain(faces: NDArray[np.float64], teeth: int) -> NDArray[np.float64]:
+def chain(faces: Array, teeth: int) -> Array:
     """Stiffness (2s, 2s) of `teeth` >= 1 equal teeth in series, by binary powers."""
     result, power = None, faces
     while True:
@@ -37,9 +37,7 @@ def chain(faces: NDArray[np.float64], teeth: int) -> NDArray[np.float64]:
         power = joined(power, power)
 
 
-def rest_stiffness(
-    faces: NDArray[np.float64], neighbours: int, teeth: int, ends: Ends
-) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+def rest_stiffness(faces: Array, neighbours: int, teeth: int, ends: Ends) -> list[tuple[Array, Array]]:
     """What the faces of 1 + k adjoining teeth feel from the others, k = 0..neighbours.
 
     For k further teeth to the right, and for k to the left, the stiffness (2s, 2s) that joins the row's left
@@ -71,9 +69,7 @@ def rest_stiffness(
     return rests
 
 
-def face_compliance(
-    faces: NDArray[np.float64], rests: list[tuple[NDArray[np.float64], NDArray[np.float64]]]
-) -> NDArray[np.float64]:
+def face_compliance(faces: Array, rests: list[tuple[Array, Array]]) -> Array:
     """Displacements of the cut faces of a tooth and its neighbours by forces on the tooth's own faces.
 
     `faces` (2s, 2s) is one tooth's stiffness, `rests` from `rest_stiffness` for n neighbours on each side.
@@ -93,7 +89,7 @@ def face_compliance(
     return np.stack([np.concatenate(planes[tooth : tooth + 2]) for tooth in range(len(planes) - 1)])
 
 
-def plane_compliance(faces: NDArray[np.float64], teeth: int) -> NDArray[np.float64]:
+def plane_compliance(faces: Array, teeth: int) -> Array:
     """Displacements of all cut planes of `teeth` teeth in a row, ends free, by forces on them.
 
     Shape ((teeth + 1) s, (teeth + 1) s), m/N, planes from the left end to the right.
@@ -106,9 +102,7 @@ def plane_compliance(faces: NDArray[np.float64], teeth: int) -> NDArray[np.float
     return inverse(cholesky(stiffness))
 
 
-def _seen_from_end(
-    stiffness: NDArray[np.float64], near: slice, far: slice, ends: Ends
-) -> NDArray[np.float64]:
+def _seen_from_end(stiffness: Array, near: slice, far: slice, ends: Ends) -> Array:
     """Stiffness (s, s) of a chain at its near end, the far one free or clamped."""
     if ends == "clamped":
         return stiffness[near, near]

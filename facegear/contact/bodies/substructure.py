@@ -4,9 +4,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 
+from facegear.arrays import Array, Integers, Mask
 from facegear.contact.bodies.body import ElasticBody
 from facegear.contact.bodies.dense import cholesky, inverse
 from facegear.contact.bodies.factor import schur_complement
@@ -24,11 +24,11 @@ class Superelement:
     with both faces clamped; `gauge_faces` (g, 2 s): by unit face displacements, flank unloaded.
     """
 
-    flank: NDArray[np.float64]
-    influence: NDArray[np.float64]
-    faces: NDArray[np.float64]
-    gauge_flank: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
-    gauge_faces: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0)))
+    flank: Array
+    influence: Array
+    faces: Array
+    gauge_flank: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    gauge_faces: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
 
 def condense(body: ElasticBody, system: TiedSystem, gauges: sp.csr_matrix | None = None) -> Superelement:
@@ -66,7 +66,7 @@ def _with_gauges(stiffness: sp.csr_matrix, gauges: sp.csr_matrix) -> sp.csr_matr
     return sp.bmat([[stiffness, gauges.T], [gauges, sp.eye(gauges.shape[0])]], format="csr")
 
 
-def held_by(tooth: Superelement, rest: NDArray[np.float64]) -> NDArray[np.float64]:
+def held_by(tooth: Superelement, rest: Array) -> Array:
     """Normal displacements (k, k), m/N, of the flank by unit normal forces, faces held by `rest` (2s, 2s)."""
     if rest.size == 0:
         return tooth.flank
@@ -74,7 +74,7 @@ def held_by(tooth: Superelement, rest: NDArray[np.float64]) -> NDArray[np.float6
     return tooth.flank + half.T @ half
 
 
-def frames_of(normals: NDArray[np.float64], held: NDArray[np.bool_]) -> NDArray[np.float64]:
+def frames_of(normals: Array, held: Mask) -> Array:
     """Orthonormal rows (n, 3, 3): the unit normal (n, 3), then the held axes (n, 3) of a node that has any.
 
     Raises ValueError if a held axis is not tangential.
@@ -88,9 +88,7 @@ def frames_of(normals: NDArray[np.float64], held: NDArray[np.bool_]) -> NDArray[
     return np.stack([normals, first, np.cross(normals, first)], axis=1)
 
 
-def _turned(
-    body: ElasticBody, system: TiedSystem
-) -> tuple[sp.csr_matrix, sp.csr_matrix, NDArray[np.int64], NDArray[np.int64]]:
+def _turned(body: ElasticBody, system: TiedSystem) -> tuple[sp.csr_matrix, sp.csr_matrix, Integers, Integers]:
     """Stiffness on the free dof, flank nodes turned to their normals and right faces to the left's frame.
 
     Also the turn itself (free dof, 3 n), the positions of the flank's normal dof and of the faces' dof (left,

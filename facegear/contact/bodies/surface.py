@@ -13,8 +13,9 @@ from functools import lru_cache
 import numpy as np
 import scipy.sparse as sp
 from numba import njit
-from numpy.typing import NDArray
 from skfem import Basis, ElementLineP1, ElementQuad1, ElementQuad2, MeshLine, MeshQuad
+
+from facegear.arrays import Array, Integers
 
 TWO_POINTS = 3
 """Degree that two Gauss points integrate exactly."""
@@ -26,8 +27,8 @@ LINEAR_STEPS, QUADRATIC_STEPS = (
 
 
 def face_functions(
-    coordinates: NDArray[np.float64], shape: tuple[int, int], linear: bool = False
-) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    coordinates: Array, shape: tuple[int, int], linear: bool = False
+) -> tuple[Integers, Array, Array]:
     """Nodes (n, a) of the faces at lattice coordinates (n, 2), values (n, a) and gradients (n, a, 2) there.
 
     Biquadratic over faces of hexahedra; with `linear` bilinear between neighbouring nodes, as 8-node
@@ -70,9 +71,7 @@ def _interval(x, degree, value, slope):  # type: ignore[no-untyped-def]
     slope[0], slope[1], slope[2] = 4.0 * x - 3.0, 4.0 - 8.0 * x, 4.0 * x - 1.0
 
 
-def interpolation(
-    coordinates: NDArray[np.float64], shape: tuple[int, int], linear: bool = False
-) -> sp.csr_matrix:
+def interpolation(coordinates: Array, shape: tuple[int, int], linear: bool = False) -> sp.csr_matrix:
     """Interpolation (n, nu nv) from lattice nodes to lattice coordinates (n, 2), see `face_functions`."""
     nodes, values, _ = face_functions(coordinates, shape, linear)
     return _rows(nodes, values, shape[0] * shape[1])
@@ -84,7 +83,7 @@ def pressure_basis(shape: tuple[int, int]) -> Basis:
     return Basis(mesh, ElementQuad1(), intorder=TWO_POINTS)
 
 
-def cell_points(basis: Basis) -> NDArray[np.float64]:
+def cell_points(basis: Basis) -> Array:
     """Lattice coordinates (q, 2) of a pressure basis' Gauss points, cell by cell."""
     return np.asarray(basis.global_coordinates()).reshape(2, -1).T.copy()
 
@@ -95,7 +94,7 @@ def hat_values(basis: Basis) -> sp.csr_matrix:
 
 
 @lru_cache(maxsize=16)
-def edge_hats(nodes: int) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
+def edge_hats(nodes: int) -> tuple[Array, Integers, Array]:
     """Two Gauss points (q,) in each interval between `nodes` nodes on a line, and the two hats there.
 
     Hats (q, 2) by their nodes, and their values (q, 2).
@@ -104,19 +103,19 @@ def edge_hats(nodes: int) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArr
     return np.asarray(basis.global_coordinates()).ravel(), *_by_point(basis)
 
 
-def cell_areas(surface: NDArray[np.float64], basis: Basis) -> NDArray[np.float64]:
+def cell_areas(surface: Array, basis: Basis) -> Array:
     """Area (m2) that each Gauss point of the pressure basis stands for, surface nodes (nu, nv, 3)."""
     nodes, _, gradients = face_functions(cell_points(basis), surface.shape[:2])
     tangents = np.einsum("qad,qai->dqi", gradients, surface.reshape(-1, 3)[nodes])
     return np.linalg.norm(np.cross(*tangents), axis=1) * basis.dx.ravel()
 
 
-def _by_point(basis: Basis) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+def _by_point(basis: Basis) -> tuple[Integers, Array]:
     """Nodes (q, a) and values (q, a) of a scalar basis' functions at all its quadrature points."""
     values = np.stack([np.asarray(function[0]).ravel() for function in basis.basis], axis=1)
     return np.repeat(basis.element_dofs.T, basis.X.shape[1], axis=0).astype(np.int64), values
 
 
-def _rows(nodes: NDArray[np.int64], values: NDArray[np.float64], count: int) -> sp.csr_matrix:
+def _rows(nodes: Integers, values: Array, count: int) -> sp.csr_matrix:
     pointer = np.arange(0, nodes.size + 1, nodes.shape[1])
     return sp.csr_matrix((values.ravel(), nodes.ravel(), pointer), shape=(len(nodes), count))

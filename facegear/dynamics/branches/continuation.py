@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.branches.locate import locate
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point, at_parameter, solve_point
@@ -15,7 +15,6 @@ from facegear.dynamics.branches.special import Kind, Special
 from facegear.dynamics.branches.stepping import next_length, step_along
 from facegear.errors import NotConverged
 
-Array = NDArray[np.float64]
 JUNCTION = 1e-6
 """Logarithms of the parameter that differ by less belong to one junction of branches."""
 NEAR_JUNCTION = 3.0

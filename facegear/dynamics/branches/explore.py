@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.branches.continuation import Branch
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point, at_parameter
@@ -15,7 +15,6 @@ from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import steady_state
 from facegear.errors import NotConverged
 
-Array = NDArray[np.float64]
 NEAR = 1e-4
 """A run this close to a stable orbit, in length scales, that comes closer still, ends there."""
 SAME = 1e-4

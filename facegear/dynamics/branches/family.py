@@ -4,7 +4,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.reduction import modal_damping
@@ -12,7 +11,6 @@ from facegear.dynamics.integrator.system import System
 from facegear.dynamics.steady_state.simulate import Model
 from facegear.transmission.machine import mesh_frequency
 
-Array = NDArray[np.float64]
 MACHINE_PARAMETERS = ("torque", "backlash", "mesh_damping", "bearing_stiffness")
 
 

@@ -4,13 +4,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers, Mask
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point
 from facegear.dynamics.branches.segment import Segment
 
-Array = NDArray[np.float64]
 EDGES = (-1, 1)
 LOOKED_AT = np.linspace(0.0, 1.0, 33)[1:-1]
 """Shares of a stretch at which a cubic is looked at."""
@@ -55,7 +54,7 @@ def _levels(flow: PeriodMap, u: float) -> Array:
     return np.where(np.isfinite(levels), levels, np.nan)
 
 
-def _above(turning: Array, levels: Array) -> NDArray[np.int64]:
+def _above(turning: Array, levels: Array) -> Integers:
     """How many maxima and minima lie above each edge, shape (2, m, 2)."""
     return (turning > levels[:, :, None, None]).sum(axis=-1)
 
@@ -92,20 +91,18 @@ def hidden_graze(segment: Segment, low: float, high: float) -> float | None:
     return None
 
 
-def _passages(turning: Array, levels: Array) -> NDArray[np.int64]:
+def _passages(turning: Array, levels: Array) -> Integers:
     """Pairs of passages of each finite edge, shape (2, m)."""
     return np.where(np.isfinite(levels), np.diff(_above(turning, levels))[..., 0], 0)
 
 
-def _near(first: Array, second: Array, level: Array, reach: float) -> NDArray[np.bool_]:
+def _near(first: Array, second: Array, level: Array, reach: float) -> Mask:
     """Extremes on one side of an edge at both ends, at one of them no farther from it than `reach`."""
     one, two = first - level[:, None, None], second - level[:, None, None]
     return np.isfinite(one) & np.isfinite(two) & (one * two > 0.0) & (np.minimum(abs(one), abs(two)) < reach)
 
 
-def _dips(
-    turning: list[Array], slopes: list[Array], levels: Array, near: list[NDArray[np.bool_]]
-) -> Iterator[float]:
+def _dips(turning: list[Array], slopes: list[Array], levels: Array, near: list[Mask]) -> Iterator[float]:
     """Where cubics through the extremes come closest to an edge or beyond it."""
     t = LOOKED_AT
     for level, few in zip(levels, near, strict=True):

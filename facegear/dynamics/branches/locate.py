@@ -4,15 +4,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.branches.grazes import grazes, hidden_graze
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point
 from facegear.dynamics.branches.segment import Segment, zero
 from facegear.dynamics.branches.special import Kind, Special, evidence
 
-Array = NDArray[np.float64]
 LEVEL = 1e-7
 """A component of the tangent below this is zero: a motion that keeps contact may double at one speed."""
 SHORTEST = 1e-10

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.branches.continuation import End
 from facegear.dynamics.branches.family import Plane
 from facegear.dynamics.branches.locus_point import (
@@ -21,7 +21,6 @@ from facegear.dynamics.branches.segment import zero
 from facegear.dynamics.branches.special import Kind
 from facegear.errors import NotConverged
 
-Array = NDArray[np.float64]
 STRAIGHT = 0.9
 
 

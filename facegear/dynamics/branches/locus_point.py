@@ -3,15 +3,14 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.branches.family import Plane
 from facegear.dynamics.branches.period_map import Linear, PeriodMap
 from facegear.dynamics.branches.points import SINGULAR
 from facegear.dynamics.branches.special import Kind
 from facegear.errors import NotConverged
 
-Array = NDArray[np.float64]
 DIFFERENCE = 1e-5
 """Step of the differences that tell how the test changes along the family of orbits."""
 SHARP = 2e-5

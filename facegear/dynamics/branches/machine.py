@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.branches.continuation import Branch, Run
 from facegear.dynamics.branches.explore import Found, box, explore
 from facegear.dynamics.branches.family import machine_plane, speed_family
@@ -21,7 +21,6 @@ from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import Model, simulate, static_start
 from facegear.errors import NotConverged
 
-Array = NDArray[np.float64]
 TRIES = 12
 SETTLING = Settings(tolerance=1e-6, settle=256, window=64, extensions=1)
 

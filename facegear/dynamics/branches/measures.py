@@ -3,14 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point
 from facegear.dynamics.steady_state.mesh_samples import each_deflection, mesh_forces, mesh_shares
 from facegear.dynamics.steady_state.window import run_window
 
-Array = NDArray[np.float64]
 SAMPLES = 64
 
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass, field, replace
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Mask
 from facegear.dynamics.branches.family import Family
 from facegear.dynamics.branches.turning import turning_points
 from facegear.dynamics.integrator.integrator import Integrator
@@ -13,7 +13,6 @@ from facegear.dynamics.integrator.rings import ROWS
 from facegear.dynamics.motion import State
 from facegear.dynamics.steady_state.orbits import monodromy
 
-Array = NDArray[np.float64]
 PARAMETER_STEP = 1e-5
 """Change of the parameter's logarithm in the central difference of the map."""
 RIGID = 1e-10
@@ -32,7 +31,7 @@ class Linear:
     gap: Array
     matrix: Array
     slope: Array
-    contact: NDArray[np.bool_]
+    contact: Mask
     afloat: Array
     divergence: float
     inverses: dict[bytes, Array] = field(default_factory=dict, repr=False)
@@ -121,7 +120,7 @@ class PeriodMap:
             divergence=result.divergence,
         )
 
-    def _rigid(self, integrator: Integrator, contact: NDArray[np.bool_], weights: Array) -> Array:
+    def _rigid(self, integrator: Integrator, contact: Mask, weights: Array) -> Array:
         """Shifts that neither a mesh in contact nor a bearing feels: their multiplier is one."""
         key = (contact.tobytes(), weights.tobytes())
         if key not in self.memory:

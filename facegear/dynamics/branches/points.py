@@ -4,12 +4,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, ComplexArray
 from facegear.dynamics.branches.period_map import Linear, PeriodMap
 from facegear.errors import NotConverged
 
-Array = NDArray[np.float64]
 CHORD_STEPS = 10
 GAIN = 0.5
 """Least gain of a step with an old matrix."""
@@ -55,7 +54,7 @@ class Point:
         return float(np.exp(self.x[-1]))
 
     @cached_property
-    def multipliers(self) -> NDArray[np.complex128]:
+    def multipliers(self) -> ComplexArray:
         """Floquet multipliers (2 n - k,), largest first, without the ones of k bodies afloat."""
         values = np.linalg.eigvals(self.linear.matrix).astype(complex)
         near_one = np.argsort(np.abs(values - 1.0))
@@ -69,7 +68,7 @@ class Point:
         return np.sort(values[np.abs(values.imag) <= REAL_PAIR * (np.abs(values) > 0.5)].real)
 
     @cached_property
-    def pairs(self) -> NDArray[np.complex128]:
+    def pairs(self) -> ComplexArray:
         """Complex multipliers with positive imaginary part, largest modulus first."""
         values = self.multipliers
         values = values[values.imag > REAL_PAIR * (np.abs(values) > 0.5)]

@@ -3,14 +3,13 @@
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from facegear.arrays import Array
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point, correct_state, solve_point
 from facegear.errors import NotConverged
 
-Array = NDArray[np.float64]
 ALIGNED = 0.3
 """Least cosine between a chord and a tangent of the same branch."""
 SMALL = 1e-5

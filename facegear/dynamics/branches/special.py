@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import ComplexArray
 from facegear.dynamics.branches.points import Point
 
 
@@ -60,5 +60,5 @@ def evidence(kind: Kind, off: float, before: Point, here: Point, after: Point) -
     return complex(pair), f"modulus {abs(pair):.9f}, angle {np.degrees(np.angle(pair)):.6f} deg"
 
 
-def _nearest(values: NDArray[np.complex128], goal: float) -> complex:
+def _nearest(values: ComplexArray, goal: float) -> complex:
     return complex(values[np.argmin(np.abs(values - goal))])

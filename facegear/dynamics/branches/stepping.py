@@ -1,13 +1,12 @@
 """Steps along a branch: the guess ahead, when a step is accepted, how long the next one is."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point, solve_point
 from facegear.errors import NotConverged
 
-Array = NDArray[np.float64]
 STRAIGHT = 0.9
 """Least cosine between neighbouring tangents."""
 CORRECTION = 0.2

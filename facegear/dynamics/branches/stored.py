@@ -1,11 +1,10 @@
 """Motions found by random starts as arrays, so that a stage that was stopped goes on from them."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import AnyArray, Array, Arrays
 from facegear.dynamics.branches.continuation import Branch
 from facegear.dynamics.branches.explore import Found
 from facegear.dynamics.branches.period_map import PeriodMap
@@ -22,7 +21,7 @@ SHAPES = {
 }
 
 
-def to_arrays(speed_rpm: float, found: Sequence[Found]) -> dict[str, NDArray[Any]]:
+def to_arrays(speed_rpm: float, found: Sequence[Found]) -> dict[str, AnyArray]:
     """Arrays of SHAPES."""
     return {
         "speed_rpm": np.array(speed_rpm),
@@ -34,7 +33,7 @@ def to_arrays(speed_rpm: float, found: Sequence[Found]) -> dict[str, NDArray[Any
     }
 
 
-def from_arrays(flow: PeriodMap, arrays: Mapping[str, NDArray[Any]]) -> tuple[float, list[Found]]:
+def from_arrays(flow: PeriodMap, arrays: Arrays) -> tuple[float, list[Found]]:
     """Speed and motions of to_arrays(). Raises NotConverged if an orbit is not found again."""
     speed = float(arrays["speed_rpm"])
     counts = arrays["count"].astype(int)
@@ -53,7 +52,7 @@ SPECIAL_SHAPES = {"kind": (None,), "period": (None,), "x": (None, None), "number
 LOCUS_KINDS = (Kind.FOLD, Kind.DOUBLING)
 
 
-def special_arrays(branches: Sequence[Branch]) -> dict[str, NDArray[Any]]:
+def special_arrays(branches: Sequence[Branch]) -> dict[str, AnyArray]:
     """Folds and period doublings as arrays of SPECIAL_SHAPES."""
     found = [(b, n, s) for n, b in enumerate(branches) for s in b.of(*LOCUS_KINDS)]
     size = branches[0].points[0].x.size
@@ -65,9 +64,7 @@ def special_arrays(branches: Sequence[Branch]) -> dict[str, NDArray[Any]]:
     }
 
 
-def special_points(
-    flow: PeriodMap, arrays: Mapping[str, NDArray[Any]]
-) -> list[tuple[PeriodMap, Kind, NDArray[np.float64]]]:
+def special_points(flow: PeriodMap, arrays: Arrays) -> list[tuple[PeriodMap, Kind, Array]]:
     """Map, kind and x of the special points of special_arrays()."""
     return [
         (flow.over(int(period)), LOCUS_KINDS[int(kind)], x)

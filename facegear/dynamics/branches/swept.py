@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.branches.continuation import Branch
 from facegear.dynamics.branches.explore import distance
 from facegear.dynamics.branches.period_map import PeriodMap
@@ -15,7 +15,6 @@ from facegear.dynamics.steady_state.simulate import steady_state
 from facegear.dynamics.sweeps.sweep import Piece
 from facegear.errors import NotConverged
 
-Array = NDArray[np.float64]
 REPEATS = 1e-5
 """An orbit whose states one shorter period apart differ by less, in length scales, has that period."""
 ON = 1e-5

@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.branches.continuation import Branch, End, Run, follow
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import Point, at_parameter, solve_point
@@ -12,7 +12,6 @@ from facegear.dynamics.branches.special import Special
 from facegear.dynamics.motion import State
 from facegear.errors import NotConverged
 
-Array = NDArray[np.float64]
 ASIDE = (0.02, 0.005, 0.06, 0.15, 0.4, 1e-3)
 """Distances from a special point, in length scales, at which another branch is sought."""
 LEFT = 0.3

@@ -1,8 +1,8 @@
 """Turning points of the mesh deflections over whole mesh periods, to the accuracy of the steps."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.dynamics.integrator.advance import advance, after, move
 from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.integrator import Integrator, require
@@ -11,7 +11,6 @@ from facegear.dynamics.integrator.periods import DONE, MOST_STEPS, TOO_MANY_STEP
 from facegear.dynamics.integrator.roots import refine_root
 from facegear.dynamics.integrator.work import Work
 
-Array = NDArray[np.float64]
 MOST = 64
 """Turning points of a mesh kept for each mesh period."""
 PARTS = 4
@@ -50,7 +49,7 @@ def _find(
     tolerance: float,
     longest: float,
     values: Array,
-    counts: NDArray[np.int64],
+    counts: Integers,
 ) -> int:
     """Move displacement and velocity over the periods; write the deflection at every change of its direction.
 

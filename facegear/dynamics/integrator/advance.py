@@ -1,8 +1,6 @@
 """One step of the integration: as far as the Taylor polynomials hold, or to the next contact switch."""
 
-import numpy as np
-from numpy.typing import NDArray
-
+from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.contact_states import correct_states, find_states
 from facegear.dynamics.integrator.excitation import excitation
@@ -15,7 +13,6 @@ from facegear.dynamics.integrator.work import Work
 from facegear.machine_code.lanes import LANES
 from facegear.mesh_law.terms import force_terms, is_curved
 
-Array = NDArray[np.float64]
 ROUNDING = 1e-13
 """A step that ends this close to the end of a period (rad) ends there."""
 MOST_GUESSES = 4

@@ -4,13 +4,12 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.dynamics.integrator.system import System
 from facegear.machine_code.memory import aligned, divided, padded, whole_lanes
 from facegear.mesh_law.linear import fourier_columns
 
-Array = NDArray[np.float64]
 TAU = 2.0 * np.pi
 LEAST_CLEARANCE = 1e-12
 ROUNDING = 1e-15
@@ -34,8 +33,8 @@ class Sparse(NamedTuple):
     where they are zero but for rounding.
     """
 
-    starts: NDArray[np.int64]
-    columns: NDArray[np.int64]
+    starts: Integers
+    columns: Integers
     values: Array
 
 
@@ -67,7 +66,7 @@ class Packed(NamedTuple):
     upper: Array
     law: Any
     error: Array
-    error_kind: NDArray[np.int64]
+    error_kind: Integers
     drift: Array
     load: Array
     breaks: Array

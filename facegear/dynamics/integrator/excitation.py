@@ -1,15 +1,10 @@
 """Taylor coefficients of what drives the motion: the contact law's phase, transmission error, load."""
 
-import numpy as np
-from numpy.typing import NDArray
-
 from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.kernel import inlined
 from facegear.dynamics.integrator.work import Work
 from facegear.machine_code.fourier import fourier_terms, give, shifted
 from facegear.mesh_law.terms import phase_terms
-
-Array = NDArray[np.float64]
 
 
 @inlined

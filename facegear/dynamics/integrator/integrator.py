@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import TAU, Packed, pack
 from facegear.dynamics.integrator.periods import (
     DONE,
@@ -20,8 +20,6 @@ from facegear.dynamics.integrator.system import System
 from facegear.dynamics.integrator.work import Work, make_work
 from facegear.dynamics.motion import Settings, State
 from facegear.errors import NotConverged
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,9 +7,6 @@ cut adds one edge to a contact, law(x) + c x' = 0. The force is continuous there
 unchanged; it jumps only where flanks meet, by c x'.
 """
 
-import numpy as np
-from numpy.typing import NDArray
-
 from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.contact_states import SHORTEST
 from facegear.dynamics.integrator.kernel import inlined
@@ -17,7 +14,6 @@ from facegear.dynamics.integrator.roots import first_root, root_after
 from facegear.dynamics.integrator.work import Work
 from facegear.mesh_law.terms import force_of
 
-Array = NDArray[np.float64]
 NO_FORCE = 1e-10
 """A force this small beside its spring's and its damper's part counts as zero: its rate decides what follows.
 It is continuous, so that nothing is lost by it."""

@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.dynamics.integrator.advance import advance, after, move
 from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.contact_states import flank_of
@@ -17,7 +17,6 @@ from facegear.dynamics.integrator.taylor import values
 from facegear.dynamics.integrator.work import Work
 from facegear.mesh_law.terms import slope_terms
 
-Array = NDArray[np.float64]
 MOST_STEPS = 2_000_000
 DONE, TOO_MANY_STEPS, NOT_FINITE = 0, 1, 2
 
@@ -38,7 +37,7 @@ class Log(NamedTuple):
     shares: Array
     divergence: Array
     growth: Array
-    steps: NDArray[np.int64]
+    steps: Integers
     sums: Sums
 
 

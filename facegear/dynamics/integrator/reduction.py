@@ -9,8 +9,8 @@ decoupled.
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.transmission.layout import DOF_PER_BODY, Layout
 from facegear.transmission.machine import Damping, Machine
 from facegear.transmission.matrices import (
@@ -36,11 +36,11 @@ class Reduced:
     damping (n,) in 1/s, load (n,) from the torques, `free` the names of the DOF that nothing touches.
     """
 
-    basis: NDArray[np.float64]
-    mesh_jacobian: NDArray[np.float64]
-    omega_squared: NDArray[np.float64]
-    damping: NDArray[np.float64]
-    load: NDArray[np.float64]
+    basis: Array
+    mesh_jacobian: Array
+    omega_squared: Array
+    damping: Array
+    load: Array
     free: tuple[str, ...]
 
 
@@ -75,7 +75,7 @@ def reduce(machine: Machine) -> Reduced:
     )
 
 
-def without_bearings(layout: Layout, pinions: NDArray[np.int64]) -> Layout:
+def without_bearings(layout: Layout, pinions: Integers) -> Layout:
     """The layout with some pinions free in x and y."""
     changed = list(layout.pinions)
     for i in pinions:
@@ -84,27 +84,25 @@ def without_bearings(layout: Layout, pinions: NDArray[np.int64]) -> Layout:
     return replace(layout, pinions=tuple(changed))
 
 
-def _push_row(machine: Machine) -> NDArray[np.float64]:
+def _push_row(machine: Machine) -> Array:
     """Direction of the external forces without the torques, (1, dof)."""
     loads = machine.applied
     loads[machine.layout.spins] = 0.0
     return (loads / np.linalg.norm(loads))[None]
 
 
-def _ring_rows(layout: Layout, pinion: int) -> NDArray[np.float64]:
+def _ring_rows(layout: Layout, pinion: int) -> Array:
     rows = np.zeros((3, layout.dof))
     rows[[0, 1], DOF_PER_BODY * pinion + np.arange(2)] = 1.0
     return rows
 
 
-def modal_damping(damping: Damping, omega_squared: NDArray[np.float64]) -> NDArray[np.float64]:
+def modal_damping(damping: Damping, omega_squared: Array) -> Array:
     """lambda + beta omega^2 of each coordinate, equation (21), 1/s."""
     return damping.mass + damping.bearing * omega_squared
 
 
-def coupled_basis(
-    mesh_jacobian: NDArray[np.float64], mass: NDArray[np.float64], bearing: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def coupled_basis(mesh_jacobian: Array, mass: Array, bearing: Array) -> tuple[Array, Array]:
     """Basis (DOF, n) with unit modal mass of all motions that meshes couple, and their bearing omega^2
     (n,).
     """

@@ -9,9 +9,7 @@ Machines without play pass None for both rings and series; what stands behind th
 compiled.
 """
 
-import numpy as np
-from numpy.typing import NDArray
-
+from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import Packed, Rings
 from facegear.dynamics.integrator.kernel import inlined
 from facegear.dynamics.integrator.work import RingSeries, Work
@@ -25,7 +23,6 @@ from facegear.machine_code.lanes import (
     store,
 )
 
-Array = NDArray[np.float64]
 ROWS = 3
 
 

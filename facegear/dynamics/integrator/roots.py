@@ -3,11 +3,10 @@
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.integrator.kernel import inlined, kernel
 
-Array = NDArray[np.float64]
 MAX_DEPTH = 48
 BESIDE = 1e-12
 """Part of an interval beside its end in which a zero may be that of the next one."""

@@ -10,8 +10,8 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.kernel import inlined
 from facegear.dynamics.integrator.taylor import values
@@ -31,7 +31,6 @@ from facegear.machine_code.lanes import (
 from facegear.machine_code.memory import aligned
 from facegear.mesh_law.terms import force_ahead
 
-Array = NDArray[np.float64]
 LOOKS = 8
 """Parts of a step between whose ends a turning point is looked for."""
 TURNS = 4

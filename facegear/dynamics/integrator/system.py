@@ -10,16 +10,14 @@ of freedom is a case like any other.
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.dynamics.integrator.reduction import Reduced
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.law import MeshLaw
 from facegear.mesh_law.linear import different
 from facegear.transmission.flanks import constant_errors, contact_law, error_series, flank_gaps
 from facegear.transmission.machine import Machine, OpenFlanks
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +41,7 @@ class System:
     upper: Array
     law: MeshLaw
     error: Array
-    error_kind: NDArray[np.int64]
+    error_kind: Integers
     load: Array
     damping_when_open: bool
     scale: float

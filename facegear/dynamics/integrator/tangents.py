@@ -6,8 +6,8 @@ that are zero are left out.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import Packed, Sparse
 from facegear.dynamics.integrator.kernel import inlined
 from facegear.dynamics.integrator.parting import shearing_damping
@@ -16,8 +16,6 @@ from facegear.dynamics.integrator.taylor import deflect, evaluate, recurrence
 from facegear.dynamics.integrator.work import ABREAST, Work
 from facegear.machine_code.lanes import LANES, load, multiply, multiply_add, splat, spread, store, take
 from facegear.mesh_law.terms import is_curved
-
-Array = NDArray[np.float64]
 
 
 @inlined

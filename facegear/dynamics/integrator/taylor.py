@@ -7,8 +7,8 @@ kept in several parts side by side, as a processor adds many numbers at once but
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.kernel import inlined
 from facegear.dynamics.integrator.rings import ring_push, ring_row, ring_tangent_row
@@ -26,8 +26,6 @@ from facegear.machine_code.lanes import (
 )
 from facegear.mesh_law.linear_terms import product_terms
 from facegear.mesh_law.terms import force_terms
-
-Array = NDArray[np.float64]
 
 
 @inlined

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.dynamics.integrator.advance import advance, after, move
 from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.integrator import Integrator
@@ -14,7 +14,6 @@ from facegear.dynamics.integrator.work import Work
 from facegear.dynamics.motion import Settings, State
 from facegear.errors import NotConverged
 
-Array = NDArray[np.float64]
 MOST_STEPS = 200_000
 
 
@@ -45,7 +44,7 @@ class Trajectory:
     lengths: Array
     coordinates: Array
     deflections: Array
-    states: NDArray[np.int64]
+    states: Integers
 
     def at(self, phases: Array) -> tuple[Array, Array]:
         """Coordinates (K, n) and deflections (K, meshes) at mesh phases (K,) in rad."""

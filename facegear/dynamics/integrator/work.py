@@ -4,15 +4,14 @@ from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers
 from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.roots import MAX_DEPTH, bernstein_matrix
 from facegear.dynamics.integrator.system import System
 from facegear.machine_code.fourier import FourierScratch, fourier_scratch
 from facegear.machine_code.memory import LANES, aligned
 
-Array = NDArray[np.float64]
 ABREAST = 3 * LANES
 """Tangents moved side by side: as many vectors as the registers hold with what they are multiplied by."""
 
@@ -61,10 +60,10 @@ class Work(NamedTuple):
     edge: Array
     active: Array
     acting: Array
-    state: NDArray[np.int64]
-    at_level: NDArray[np.int64]
+    state: Integers
+    at_level: Integers
     side: Array
-    at_parting: NDArray[np.int64]
+    at_parting: Integers
     law: Any
     fourier: FourierScratch
     kinds: Array

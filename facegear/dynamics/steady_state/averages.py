@@ -5,13 +5,12 @@ from functools import cache
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.sums import Sums
 
-Array = NDArray[np.float64]
 BATCHES = 16
 CONFIDENCE = 0.95
 

@@ -3,13 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.orbits import changes, largest
 
-Array = NDArray[np.float64]
 TREND = 7
 """Periods over which the largest change is taken, twice in succession, to see it fall."""
 SMALL, VERY_SMALL = 0.02, 1e-3

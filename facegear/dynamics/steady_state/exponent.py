@@ -4,14 +4,13 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.averages import BATCHES, mean_interval
 from facegear.dynamics.steady_state.window import Window, run_window
 
-Array = NDArray[np.float64]
 ALIGN, LEAST_ALIGN = 2, 32
 """Batches, and least periods, for which a disturbance turns before its growth counts."""
 LEAST_WINDOW = 8 * BATCHES

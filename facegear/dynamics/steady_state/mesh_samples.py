@@ -1,14 +1,12 @@
 """Deflections and elastic forces of the meshes at evenly spaced instants of a motion."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, Mask
 from facegear.dynamics.integrator.system import System
 from facegear.harmonics.series import stacked_values
 from facegear.mesh_law.law import beyond_edges
 from facegear.transmission.flanks import NO_LOAD
-
-Array = NDArray[np.float64]
 
 
 def mesh_response(system: System, coordinates: Array, per_period: int) -> tuple[Array, Array]:
@@ -70,7 +68,7 @@ def mesh_shares(system: System, shares: Array, each: Array) -> Array:
     return np.stack([1.0 - drive - back + wedged, drive, back])
 
 
-def _never_pressed(depths: Array, shares: Array) -> NDArray[np.bool_]:
+def _never_pressed(depths: Array, shares: Array) -> Mask:
     """Which contacts touch for longer than a sample (shares (m,)) without ever being pressed by more than
     rounding; depths (K, m) beyond the edge.
     """

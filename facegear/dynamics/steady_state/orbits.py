@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, ComplexArray, Mask
 from facegear.dynamics.integrator.integrator import Integrator, RunResult
 
-Array = NDArray[np.float64]
 NEWTON_STEPS, MATRICES = 12, 3
 """Steps that Newton's method may take, and matrices for them: what needs more is nowhere near an orbit."""
 NEUTRAL = 1e-9
@@ -33,12 +32,12 @@ class Orbit:
     state: Array
     period: int
     residual: float
-    multipliers: NDArray[np.complex128]
-    vectors: NDArray[np.complex128]
+    multipliers: ComplexArray
+    vectors: ComplexArray
     liouville: float
 
     @property
-    def moving(self) -> NDArray[np.bool_]:
+    def moving(self) -> Mask:
         """Which multipliers (2 n,) lie off the unit circle: all but the neutral ones of bodies afloat."""
         return np.abs(1.0 - np.abs(self.multipliers)) > AFLOAT
 
@@ -47,7 +46,7 @@ class Orbit:
         """By which factor a period brings the slowest disturbance back, those of bodies afloat left out."""
         return float(np.abs(self.multipliers[self.moving]).max(initial=0.0))
 
-    def parts(self, off: Array) -> NDArray[np.complex128]:
+    def parts(self, off: Array) -> ComplexArray:
         """Components (..., 2 n) of states (..., 2, n) off the orbit along its own directions."""
         flat = off.reshape(*off.shape[:-2], -1)
         found = np.linalg.lstsq(self.vectors, np.atleast_2d(flat).T.astype(complex), rcond=None)[0]
@@ -112,8 +111,8 @@ class _Tangent:
 
     state: Array
     matrix: Array
-    multipliers: NDArray[np.complex128]
-    directions: NDArray[np.complex128]
+    multipliers: ComplexArray
+    directions: ComplexArray
     divergence: float
 
     @property

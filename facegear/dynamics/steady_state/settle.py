@@ -3,15 +3,14 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.closing import TREND, VERY_SMALL, Closing, closed, closing
 from facegear.dynamics.steady_state.orbits import AFLOAT, MATRICES, Orbit, changes, drawn_in, shoot
 
-Array = NDArray[np.float64]
 NEWTON_COST = 20
 """Mesh periods that cost as much time as one with all tangents."""
 NEWTON_STEPS = 2

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array, ComplexArray
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.reduction import Reduced, reduce
@@ -26,7 +26,6 @@ from facegear.transmission.machine import Machine, mesh_frequency
 from facegear.transmission.matrices import mass_diagonal
 from facegear.transmission.statics import static_equilibrium
 
-Array = NDArray[np.float64]
 CLASSES = {Growth.GROWS: Motion.CHAOTIC, Growth.NEUTRAL: Motion.QUASI_PERIODIC}
 ESCAPING = 1e-3
 """Growing disturbances of a motion that repeats as closely as this tell of its end, not of chaos."""
@@ -55,7 +54,7 @@ class SteadyState:
     coordinates: Array
     averages: Averages
     shares: Array
-    multipliers: NDArray[np.complex128] | None
+    multipliers: ComplexArray | None
     liouville: float | None
     exponent: tuple[float, float] | None
     periods_run: int

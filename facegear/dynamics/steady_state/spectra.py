@@ -1,9 +1,9 @@
 """Amplitude spectra over multiples of the mesh frequency."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from facegear.arrays import Array
+
 SEGMENT = 8
 """Mesh periods in a segment; orders are multiples of 1 / SEGMENT."""
 HIGHEST = 6

@@ -1,11 +1,10 @@
 """Moments of plain samples, and whether a run is still on its way."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.steady_state.averages import BATCHES, Averages, Moments, mean_interval
 
-Array = NDArray[np.float64]
 SMOOTH = 0.02
 
 

@@ -3,12 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.steady_state.averages import BATCHES, Averages, averages
 
-Array = NDArray[np.float64]
 MOST_SAMPLES = 4096
 MOST_IN_ALL = 65_536
 """Samples of a window of many periods; a single period may have MOST_SAMPLES."""

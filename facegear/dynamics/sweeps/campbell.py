@@ -4,12 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.sweeps.sweep import Piece
 from facegear.transmission.modes import Modes
 
-Array = NDArray[np.float64]
 PROMINENT = 1.15
 SMALL = 0.1
 """Maxima below this share of the largest do not count."""

@@ -4,13 +4,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.motion import State
 from facegear.dynamics.steady_state.simulate import SteadyState
 from facegear.dynamics.sweeps.sweep import Piece
 
-Array = NDArray[np.float64]
 LEAST_CHANGE = 0.1
 """Relative change of a mesh's AC RMS between neighbouring speeds that may be a jump."""
 ABRUPT = 3.0

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from math import ceil
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.dynamics.motion import Settings
 
 SLOWEST_RPM = 1.0
@@ -29,11 +29,11 @@ class SweepPlan:
     settings: Settings
 
     @property
-    def speeds(self) -> NDArray[np.float64]:
+    def speeds(self) -> Array:
         """All speeds, ascending, rpm."""
         return np.linspace(self.first_rpm, self.last_rpm, self.points)
 
-    def chunk(self, direction: str, number: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def chunk(self, direction: str, number: int) -> tuple[Array, Array]:
         """Speeds to run for overlap, and the chunk's own, each in the order of running."""
         speeds = self.speeds if direction == "up" else self.speeds[::-1]
         bounds = np.linspace(0, self.points, self.chunks + 1).round().astype(int)

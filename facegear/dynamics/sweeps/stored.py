@@ -3,11 +3,9 @@
 Files hold finite numbers; where a number may not exist (NaN) an array `..._known` says where it does.
 """
 
-from collections.abc import Mapping
-
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import AnyArray, Arrays
 from facegear.dynamics.sweeps.sweep import Piece
 
 NAMES = tuple(Piece.__dataclass_fields__)
@@ -26,9 +24,9 @@ _PER_PART: dict[str, tuple[int | None, ...]] = {
 SHAPES = {f"{part}_{name}": shape for part in ("before", "own") for name, shape in _PER_PART.items()}
 
 
-def to_arrays(before: Piece, own: Piece) -> dict[str, NDArray]:
+def to_arrays(before: Piece, own: Piece) -> dict[str, AnyArray]:
     """Arrays of a chunk's overlap and own speeds."""
-    arrays: dict[str, NDArray] = {}
+    arrays: dict[str, AnyArray] = {}
     for part, piece in (("before", before), ("own", own)):
         arrays |= {f"{part}_{name}": getattr(piece, name) for name in NAMES}
         for name in MAY_LACK:
@@ -38,7 +36,7 @@ def to_arrays(before: Piece, own: Piece) -> dict[str, NDArray]:
     return arrays
 
 
-def from_arrays(arrays: Mapping[str, NDArray]) -> tuple[Piece, Piece]:
+def from_arrays(arrays: Arrays) -> tuple[Piece, Piece]:
     """Overlap and own speeds of a stored chunk."""
     pieces = []
     for part in ("before", "own"):

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from facegear.arrays import Array, Integers, Mask
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.simulate import Model, SteadyState, simulate, static_start
 from facegear.dynamics.steady_state.spectra import order_spectrum, spectrum
@@ -14,7 +15,6 @@ from facegear.transmission.layout import DOF_PER_BODY
 from facegear.transmission.loaded_modes import loaded_modes
 from facegear.transmission.matrices import mass_diagonal
 
-Array = NDArray[np.float64]
 DEFLECTION = ("mean", "rms", "ac_rms", "least", "most", "rms_interval", "ac_rms_interval")
 TRANSLATION = ("rms", "ac_rms", "ac_rms_interval")
 
@@ -36,7 +36,7 @@ class Piece:
 
     speeds: Array
     motion: NDArray[np.str_]
-    period: NDArray[np.int64]
+    period: Integers
     deflection_mean: Array
     deflection_rms: Array
     deflection_ac_rms: Array
@@ -66,7 +66,7 @@ class Piece:
     velocity: Array
 
     @property
-    def periodic(self) -> NDArray[np.bool_]:
+    def periodic(self) -> Mask:
         """Whether the motion at each speed (P,) is periodic."""
         return self.period > 0
 
