@@ -28,7 +28,7 @@ class FlankContact:
     roots
         Root stress of pinion and face gear, by body.
     pressure
-        Largest pressure and load on edges over the passage.
+        Largest pressure and load on edges over the passage, and the largest share of the torque in fillets.
     """
 
     roots: Mapping[str, RootStress]

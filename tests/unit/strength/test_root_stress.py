@@ -1,52 +1,26 @@
-"""Root stress: superposition over teeth and loads, and the spur pinion against ISO 6336-3."""
+"""Root stress: superposition over teeth and loads, its tables and surface, the pinion against ISO 6336-3."""
 
 import base64
-from dataclasses import replace
 from math import cos, sqrt
 from xml.etree import ElementTree
 
 import numpy as np
-import pandas as pd
 import pytest
 import scipy.sparse as sp
 from contact_bodies import pair_design
 from hypothesis import given
 from hypothesis import strategies as st
+from root_readings import ERROR, GRID, passing
 from spur_gears import fzg_c, root_tension, slab_design
 
-import facegear
-from facegear.config.machines import case_machine
-from facegear.geometry.flank_errors import FLANKS
-from facegear.harmonics.series import Harmonics
 from facegear.io.meshes import write_vtu
-from facegear.strength.columns import BODIES
-from facegear.strength.contact_pressure import ContactPressure
-from facegear.strength.dynamic_stress import dynamic_stress_table
 from facegear.strength.fillet_surface import stress_surface
-from facegear.strength.flank_contacts import FlankContact
 from facegear.strength.root_form import root_form
-from facegear.strength.root_stress import down_the_fillet, root_stress
 from facegear.strength.root_tables import root_arrays, root_tables
 from facegear.strength.spur import SpurGear
-from facegear.strength.stress_over_speed import FORCE_COLUMNS, branch_forces, stress_table, swept_forces
-from facegear.strength.tension_history import TensionHistory
-from facegear.transmission.flanks import flank_places, stiffness_series
 
-TORQUES, POSITIONS = np.array([100.0, 300.0]), np.array([0.0, 0.5])
-GRID = (2, 4, 3)
 ALIKE = np.zeros((2, 2), int)
 """Flanks of both gears without assembly errors."""
-ERROR = np.array([0.02, 0.01, 0.03])
-PRESSURE = ContactPressure(TORQUES, np.sqrt(TORQUES), *np.zeros((4, 2)))
-EDGES_ALONE = replace(PRESSURE, pressure=np.full(2, np.nan))
-
-
-def passing(loads):
-    """Root stress by readings on five teeth of gauges GRID from seven flank nodes."""
-    readings = np.random.default_rng(1).normal(size=(5, int(np.prod(GRID)), 7))
-    angle = np.broadcast_to(np.linspace(0.4, 1.2, 4)[:, None], GRID)
-    found = root_stress(readings, loads, TORQUES, POSITIONS, np.linspace(0.25, 0.27, 3), angle, ERROR)
-    return readings, found
 
 
 def test_a_tooth_feels_its_own_load_and_those_of_the_teeth_beside_it():
@@ -179,163 +153,3 @@ def test_surface_for_paraview_shows_the_largest_and_smallest_stress_of_every_gau
         np.testing.assert_array_equal(on_gear, found[1])
     corners = points[cells["quad"][0]]
     np.testing.assert_array_equal(corners, position[0][[0, 1, 1, 0], [0, 0, 1, 1]])
-
-
-def test_running_machine_is_judged_by_the_magnitude_of_each_mesh_force():
-    _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
-    forces = {
-        "pulsing": np.array([1000.0, 3000.0]),
-        "back": np.array([-2000.0, -2000.0]),
-        "open": np.zeros(2),
-    }
-    places = dict.fromkeys([*forces, "high"], np.array([0.0, 0.5]))
-    roots = {"pinion": found, "face_gear": found}
-    contacts = dict.fromkeys(places, dict.fromkeys(FLANKS, FlankContact(roots, PRESSURE)))
-    table = dynamic_stress_table(forces, places, 0.1, contacts).set_index("mesh")
-    assert table["dynamic_factor"].iloc[:2].tolist() == pytest.approx([1.5, 1.0])
-    assert np.isnan(table.loc["open", "dynamic_factor"])
-    assert table.loc["pulsing", "pinion_mean_mpa"] == pytest.approx(table.loc["back", "pinion_bound_mpa"])
-    solved = root_tables({"pinion": found})["summary"]
-    largest = solved[solved["torque_n_m"] == 300.0]["largest_mpa"].max()
-    assert table.loc["pulsing", "face_gear_bound_mpa"] == pytest.approx(largest)
-    assert table["within_torques_solved"].all()
-    assert table.loc["pulsing", "pressure_bound_mpa"] == pytest.approx(1e-6 * np.sqrt(300.0))
-    assert table.loc["pulsing", "pressure_mean_mpa"] == pytest.approx(1e-6 * np.sqrt(200.0))
-    beyond = dynamic_stress_table({"high": np.array([4000.0, 0.0])}, places, 0.1, contacts)
-    assert not beyond["within_torques_solved"].any()
-
-
-def test_stress_in_motion_is_that_of_the_force_and_the_place_of_the_moment():
-    _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
-    history = TensionHistory(found)
-    for torque in (50.0, 100.0, 300.0, 700.0):
-        for place in POSITIONS:
-            here = found.at_torque(torque)[np.isclose(np.mod(found.passage, 1.0), place)]
-            expected = down_the_fillet(here).max()
-            assert history(np.array([torque]), np.array([place]))[0] == pytest.approx(expected)
-    torques, places = np.full(8, 200.0), np.arange(8) / 8
-    bound = max(down_the_fillet(found.at_torque(200.0)).max(), 0.0)
-    assert history(torques, places).max() <= max(bound, history(torques[:2], POSITIONS).max()) * (1 + 1e-12)
-    np.testing.assert_allclose(history(torques, places + 1e-12), history(torques, places), rtol=1e-9)
-
-
-def test_each_flank_of_each_gear_in_motion_has_the_stress_of_its_own_contact():
-    """Assembly errors part the flanks; every flank was read as the drive flank."""
-    _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
-    drive, back = (
-        FlankContact(dict.fromkeys(BODIES, replace(found, stress=factor * found.stress)), press)
-        for factor, press in ((1.0, PRESSURE), (2.0, replace(PRESSURE, pressure=2.0 * PRESSURE.pressure)))
-    )
-    force = np.array([1000.0, 3000.0])
-    forces = {"a/upper": force, "a/lower": -force, "b/lower": np.array([3000.0, -1000.0])}
-    places = dict.fromkeys(forces, np.array([0.0, 0.5]))
-    contacts = {key: {"drive": drive, "back": back} for key in forces}
-    table = dynamic_stress_table(forces, places, 0.1, contacts).set_index("mesh")
-    for column in ("pinion_mean_mpa", "pinion_running_mpa", "face_gear_bound_mpa"):
-        assert table.loc["a/lower", column] == pytest.approx(2.0 * table.loc["a/upper", column])
-    assert table.loc["a/lower", "pressure_bound_mpa"] == pytest.approx(2e-6 * np.sqrt(300.0))
-    both = table.loc["b/lower", "face_gear_bound_mpa"]
-    alone = [contact.history["face_gear"].over_passage(at) for contact, at in ((drive, 300.0), (back, 100.0))]
-    assert both == pytest.approx(1e-6 * max(alone))
-    swept = pd.DataFrame([("sweep up", "period-1", 1000.0, "a/lower", 3000.0)], columns=list(FORCE_COLUMNS))
-    over = stress_table(swept, 1.0, 0.1, {"a/lower": [drive, back]})
-    assert over["pinion_mpa"].iloc[0] == pytest.approx(1e-6 * back.tension["pinion"](300.0))
-
-
-@pytest.mark.parametrize("edges_alone", FLANKS)
-def test_pressure_in_motion_is_known_where_edges_carry_all_on_one_of_two_loaded_flanks(edges_alone):
-    """It was empty or not by the order of the flanks."""
-    _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
-    roots = dict.fromkeys(BODIES, found)
-    contacts = {
-        flank: FlankContact(roots, EDGES_ALONE if flank == edges_alone else PRESSURE) for flank in FLANKS
-    }
-    forces, places = {"a/upper": np.array([3000.0, -3000.0])}, {"a/upper": np.array([0.0, 0.5])}
-    table = dynamic_stress_table(forces, places, 0.1, {"a/upper": contacts})
-    assert table["pressure_bound_mpa"].iloc[0] == pytest.approx(1e-6 * np.sqrt(300.0))
-    swept = pd.DataFrame([("sweep up", "period-1", 1000.0, "a/upper", 3000.0)], columns=list(FORCE_COLUMNS))
-    over = stress_table(swept, 1.0, 0.1, {"a/upper": list(contacts.values())})
-    assert over["pressure_mpa"].iloc[0] == pytest.approx(1e-6 * np.sqrt(300.0))
-
-
-def test_stress_in_motion_stays_below_its_bound_where_another_gauge_leads_at_each_torque():
-    _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
-    rough = replace(found, stress=np.random.default_rng(0).normal(size=found.stress.shape))
-    roots = {"pinion": rough, "face_gear": rough}
-    forces = {str(force): np.full(16, force) for force in (500.0, 1500.0, 1700.0, 2500.0, 5000.0)}
-    places = dict.fromkeys(forces, np.arange(16) / 16)
-    contacts = dict.fromkeys(forces, dict.fromkeys(FLANKS, FlankContact(roots, PRESSURE)))
-    table = dynamic_stress_table(forces, places, 0.1, contacts)
-    assert (table["pinion_bound_mpa"] >= table["pinion_running_mpa"]).all()
-
-
-def test_the_place_of_a_flank_is_where_its_stiffness_is_that_of_the_reference():
-    machine = case_machine(
-        facegear.example().values, Harmonics(np.array([0, 3e7, 1e7]), np.array([4e8, 2e7, -1e7]))
-    )
-    cycles = np.linspace(0.0, 2.0, 23)
-    places = flank_places(machine.phases, cycles)
-    for flank, series in enumerate(stiffness_series(machine)):
-        np.testing.assert_allclose(series(cycles), machine.stiffness(places[:, flank]), rtol=1e-9)
-
-
-SWEPT = pd.DataFrame(
-    [
-        ("up", 1000.0, "largest_elastic_force_n", "a/upper", 100.0, "period-1"),
-        ("up", 1000.0, "largest_elastic_force_n", "b/upper", 900.0, "period-1"),
-        ("up", 2000.0, "largest_elastic_force_n", "a/upper", 2000.0, "chaotic"),
-        ("up", 2000.0, "largest_elastic_force_n", "b/upper", 500.0, "chaotic"),
-        ("up", 1000.0, "mean_elastic_force_n", "a/upper", 1e9, "period-1"),
-    ],
-    columns=["direction", "speed_rpm", "quantity", "body_or_mesh", "value", "class"],
-)
-
-
-@pytest.mark.parametrize("way", [1, -1])
-def test_a_stable_stretch_counts_at_both_its_ends_and_once_where_its_pieces_meet(way):
-    """A path that is followed to its limit comes there but for rounding."""
-    speed = np.array([1000.0, 1400.0, 1999.9999999999998])[::way]
-    one = {"branch": 0, "period": 1, "stable": True, "mesh": "a/upper"}
-    path = pd.DataFrame({**one, "point": range(3), "speed_rpm": speed, "peak_force_n": 2.0 * speed})
-    found = branch_forces(path, np.array([1000.0, 1200.0, 1400.0, 1700.0, 2000.0]))
-    assert sorted(found["speed_rpm"]) == [1000.0, 1200.0, 1400.0, 1700.0, 2000.0]
-    np.testing.assert_allclose(found["largest_force_n"], 2.0 * found["speed_rpm"])
-    torn = path.assign(stable=[True, True, False])
-    assert sorted(branch_forces(torn, np.array([1000.0, 1400.0, 2000.0]))["speed_rpm"]) == (
-        [1000.0, 1400.0] if way == 1 else [1400.0, 2000.0]
-    )
-
-
-def test_stress_over_speed_takes_the_hardest_of_coexisting_motions():
-    _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
-    branches = pd.DataFrame(
-        {
-            "branch": 3,
-            "point": [0, 0, 1, 1, 2, 2],
-            "period": 2,
-            "speed_rpm": [900.0, 900.0, 1100.0, 1100.0, 2100.0, 2100.0],
-            "stable": [True, True, True, True, False, False],
-            "mesh": ["a/upper", "b/upper"] * 3,
-            "peak_force_n": [1000.0, 10.0, 2000.0, 10.0, 9000.0, 10.0],
-        }
-    )
-    forces = pd.concat([swept_forces(SWEPT), branch_forces(branches, np.array([1000.0, 2000.0]))])
-    pressure = replace(PRESSURE, pressure=np.array([5e8, 9e8]))
-    roots = {"pinion": found, "face_gear": found}
-    contacts = {key: [FlankContact(roots, pressure)] for key in forces["mesh"]}
-    table = stress_table(forces.reset_index(drop=True), 750.0, 0.1, contacts)
-    at_1000 = table[table["speed_rpm"] == 1000.0].set_index("motion")
-    assert at_1000.loc["sweep up", "mesh"] == "b/upper"
-    assert at_1000.loc["branch 3", "largest_force_n"] == pytest.approx(1500.0)
-    assert at_1000.loc["branch 3", "class"] == "period-2"
-    assert at_1000["worst"].to_dict() == {"branch 3": True, "sweep up": False}
-    at_2000 = table[table["speed_rpm"] == 2000.0]
-    assert at_2000["motion"].tolist() == ["sweep up"]  # the branch is not stable there
-    assert at_2000["dynamic_factor"].iloc[0] == pytest.approx(2000.0 / 750.0)
-    expected = down_the_fillet(found.at_torque(200.0)).max()
-    assert at_2000["pinion_mpa"].iloc[0] == pytest.approx(1e-6 * expected)
-    assert at_2000["pressure_mpa"].iloc[0] == pytest.approx(500.0 * 2.0 ** (np.log(1.8) / np.log(3.0)))
-    assert pressure.at(1200.0) == pytest.approx(2.0 * 9e8)
-    nowhere = {key: [FlankContact(roots, EDGES_ALONE)] for key in forces["mesh"]}
-    idle = stress_table(forces.reset_index(drop=True), 0.0, 0.1, nowhere)
-    assert idle["pressure_mpa"].isna().all() and idle["dynamic_factor"].isna().all()
