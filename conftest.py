@@ -10,6 +10,7 @@ from hypothesis import settings
 from hypothesis.internal.conjecture import providers
 from lumped_machines import make_layout, make_machine
 
+pytest_plugins = ["references"]
 os.environ.setdefault("MPLBACKEND", "Agg")
 settings.register_profile("fixed", derandomize=True)
 settings.register_profile("random", derandomize=False, print_blob=True)

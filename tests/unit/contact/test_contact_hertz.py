@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from contact_bodies import STEEL, half_disc, pressed, quarter_space
+from references import against, agrees
 
 from facegear.contact.options import Refinement
 
@@ -37,10 +38,16 @@ def point_contact(refinement, radius=0.01, half_width=2e-4):
     )
 
 
+@against(
+    "analytic",
+    "Johnson, Contact Mechanics, 5.6: disc between rigid plates",
+    capability="contact",
+    module="facegear.contact.solver",
+)
 def test_line_contact_meets_hertz_within_a_percent_with_five_nodes_in_the_half_width():
     approach, peak, contact = line_contact(12, Refinement(8, 1, 4, 2.0))
-    assert abs(approach) < 0.01
-    assert abs(peak) < 0.01
+    agrees("approach over Hertz's", 1 + approach, 1, absolute=0.01)
+    agrees("peak pressure over Hertz's", 1 + peak, 1, absolute=0.01)
     assert contact.residual < 1e-13
 
 
@@ -50,14 +57,26 @@ def test_line_contact_converges_to_hertz():
     assert errors[1] < 1e-3
 
 
+@against(
+    "analytic",
+    "Hertz: rigid sphere on a half space",
+    capability="contact",
+    module="facegear.contact.solver",
+)
 def test_point_contact_meets_hertz_within_a_percent():
     approach, peak, contact = point_contact(Refinement(4, 4, 4, 1.0))
-    assert abs(approach) < 0.01
-    assert abs(peak) < 0.01
+    agrees("approach over Hertz's", 1 + approach, 1, absolute=0.01)
+    agrees("peak pressure over Hertz's", 1 + peak, 1, absolute=0.01)
     assert contact.residual < 1e-13
 
 
+@against(
+    "analytic",
+    "Johnson, Contact Mechanics, 5.6: disc between rigid plates",
+    capability="contact",
+    module="facegear.contact.solver",
+)
 @pytest.mark.parametrize("width", [1e-4, 4e-4])
 def test_approach_of_a_line_contact_follows_the_logarithm_of_the_strip(width):
     approach, _, _ = line_contact(12, Refinement(8, 1, 4, 2.0), half_width=width)
-    assert abs(approach) < 0.01
+    agrees("approach over Hertz's", 1 + approach, 1, absolute=0.01)

@@ -1,6 +1,7 @@
 """The limits table of the reference page oracles.md, to all digits given."""
 
 import pytest
+from references import against, agrees
 
 from facegear.geometry.limits import radius_limits
 
@@ -12,11 +13,19 @@ TABLE = {
 }
 
 
+@against(
+    "analytic",
+    "undercut and pointing limits of the generated flank, computed twice by independent means (oracles.md)",
+    capability="geometry",
+    module="facegear.geometry.limits",
+)
 @pytest.mark.parametrize("teeth", TABLE)
 def test_undercut_and_pointing_radii_match_the_table(pair, teeth):
     short, long = radius_limits(pair(teeth, 1.0)), radius_limits(pair(teeth, 1.25))
     found = (short.inner, long.inner, long.outer_planar, long.outer)
-    assert [round(1e3 * value, 3) for value in found] == list(TABLE[teeth])
+    names = ("inner, short shaper", "inner", "outer, planar", "outer")
+    for name, value, expected in zip(names, found, TABLE[teeth], strict=True):
+        agrees(f"limit radius, {name}, mm", 1e3 * value, expected, absolute=5.01e-4)
 
 
 @pytest.mark.parametrize("teeth", TABLE)

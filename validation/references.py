@@ -1,0 +1,97 @@
+"""References that tests compare with, as a table: what was checked, against what, and how well.
+
+Tests record the rows (`tests/helpers/references.py`), `make verification` stores them, and the page
+"Verification" of the documentation shows them.
+"""
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+
+import pandas as pd
+
+ROOT = Path(__file__).parents[1]
+STORED = Path(__file__).with_suffix(".csv")
+TESTS = ("tests", "validation/tests", "paper/tests")
+
+
+class Kind(StrEnum):
+    """What an expected value rests on."""
+
+    ANALYTIC = "analytic"
+    MANUFACTURED = "manufactured"
+    EXTERNAL = "external source"
+    PROGRAM = "other program"
+    CONVERGENCE = "own convergence"
+
+
+INDEPENDENT = tuple(kind for kind in Kind if kind is not Kind.CONVERGENCE)
+DECLARED = ("kind", "source", "capability", "module")
+"""Columns that a test declares in its decorator `against`."""
+EQUAL, AT_LEAST = "equal", "at least"
+"""Relations of a computed value to the expected one."""
+COLUMNS = (
+    *("capability", "quantity", "kind", "source", "relation", "expected", "computed", "error", "tolerance"),
+    *("module", "test", "date", "commit"),
+)
+
+
+@dataclass(frozen=True)
+class Declaration:
+    """What a test says of its reference in the decorator `against`.
+
+    Attributes
+    ----------
+    test
+        File inside the repository and name of the function, as pytest writes them.
+    kind, source
+        Where the expected value is from: a Kind, and the formula, book, program or study.
+    capability
+        Stages of the pipeline or methods of the Gearbox whose results the reference checks, with spaces
+        between them.
+    module
+        The module under test.
+    """
+
+    test: str
+    kind: str
+    source: str
+    capability: str
+    module: str
+
+
+def declarations(root: Path = ROOT) -> dict[str, Declaration]:
+    """All tests of the repository that compare with a reference, by name, read from their source."""
+    files = [file for folder in TESTS for file in sorted((root / folder).rglob("test_*.py"))]
+    return {one.test: one for file in files for one in _declared_in(file, file.relative_to(root).as_posix())}
+
+
+def _declared_in(file: Path, name: str) -> Iterator[Declaration]:
+    for node in ast.parse(file.read_text(encoding="utf-8")).body:
+        if not isinstance(node, ast.FunctionDef):
+            continue
+        for call in node.decorator_list:
+            if isinstance(call, ast.Call) and getattr(call.func, "id", "") == "against":
+                given = dict(zip(DECLARED, call.args, strict=False))
+                given |= {str(keyword.arg): keyword.value for keyword in call.keywords}
+                texts = {key: ast.literal_eval(value) for key, value in given.items()}
+                yield Declaration(f"{name}::{node.name}", **texts)
+
+
+def read(path: Path = STORED) -> pd.DataFrame:
+    """The stored references, COLUMNS, one row for each quantity that a test compares."""
+    return pd.read_csv(path, dtype={"commit": str}, keep_default_na=False)
+
+
+def write(rows: pd.DataFrame, path: Path = STORED) -> None:
+    """Store references, ordered by test and quantity."""
+    ordered = rows[list(COLUMNS)].sort_values(["test", "quantity"])
+    ordered.to_csv(path, index=False, lineterminator="\n")
+
+
+def merged(stored: pd.DataFrame, fresh: pd.DataFrame, declared: set[str]) -> pd.DataFrame:
+    """Fresh rows in place of the stored ones of the same tests, without rows of tests that are gone."""
+    kept = stored[~stored["test"].isin(fresh["test"]) & stored["test"].isin(declared)]
+    return pd.concat([kept, fresh], ignore_index=True) if len(kept) else fresh
