@@ -58,6 +58,9 @@ class FrictionSection(Section):
         None, gt=0, le=2, description="X_L of schlenk, iso_6336_20 and iso_6336_22; null: that of the oil"
     )
     constants: DoleschelConstants | None = Field(None, description="of the model doleschel")
+    effect: Literal["loss_only", "excitation"] = Field(
+        "loss_only", description="whether friction also disturbs the motion of the machine"
+    )
 
     @model_validator(mode="after")
     def _complete(self) -> "FrictionSection":

@@ -87,6 +87,7 @@ class Config(Section):
     def _buildable(self) -> "Config":
         require_all(
             self._check_branches,
+            self._check_friction,
             self._check_reproduction,
             lambda: check_load(self.mesh_stiffness, self.contact),
             self._check_pair,
@@ -95,6 +96,13 @@ class Config(Section):
             lambda: check_studies(self.studies),
         )
         return self
+
+    def _check_friction(self) -> None:
+        if self.lubrication is None or self.lubrication.friction.effect == "loss_only":
+            return
+        if self.transmission is None or self.transmission.mesh_kinematics == "printed":
+            allowed = "loss_only without a transmission whose mesh_kinematics are geometric"
+            raise ConfigError("lubrication.friction.effect", self.lubrication.friction.effect, allowed)
 
     def _check_branches(self) -> None:
         speed, section = self.dynamics.speed_rpm, self.branches

@@ -54,6 +54,17 @@ POSITION_COLUMNS = (
 )
 POSITION_FINITE = POSITION_COLUMNS[:5]
 
+EXCITATION_COLUMNS = (
+    "torque_n_m",
+    "position",
+    "tangential",
+    "along_pinion_axis",
+    "along_gear_axis",
+    "pinion_lever_mm",
+    "face_gear_lever_mm",
+)
+"""Friction over the normal force of the mesh: forces on the pinion, moments on pinion and face gear."""
+
 LIMIT_COLUMNS = ("friction_model", "limit", "torque_n_m", "loss_outside_percent")
 
 MAP_COLUMNS = (

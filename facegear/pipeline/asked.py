@@ -54,6 +54,11 @@ def friction(case: Case) -> bool:
     return case.values["lubrication"] is not None
 
 
+def friction_in_motion(case: Case) -> bool:
+    """Whether friction disturbs the motion."""
+    return friction(case) and case.values["lubrication"]["friction"]["effect"] == "excitation"
+
+
 def machine_friction(case: Case) -> bool:
     """Whether sections lubrication and transmission are given."""
     return friction(case) and machine(case)

@@ -8,6 +8,7 @@ from facegear.pipeline.rows import branches, dynamics, friction, machine, sharin
 
 ALL = (
     *teeth.ROWS,
+    *friction.PAIR_ROWS,
     *machine.ROWS,
     *dynamics.ROWS,
     *branches.ROWS,

@@ -31,6 +31,7 @@ def branches(
     branches: Mapping[str, Any] | None,
     sweep: Mapping[str, Any],
     speed_rpm: float,
+    friction: pd.DataFrame | None = None,
 ) -> Outcome:
     """`branches`, `ends`, `unfollowed`, `multipliers`, `special`, `coexistence`, `ranges`, `margins`, `swept`
     and `jumps` (tables) and `orbits` (arrays).
@@ -38,7 +39,7 @@ def branches(
     starts: arrays of the random starts, speed by speed. chunks, jumps: of the sweep, direction by direction
     in the order of the config. Raises NotConverged if no motion of period one is found.
     """
-    model = build_model(wired_machine(transmission, teeth, harmonics))
+    model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction))
     plan, layout = read_branch_plan(branches, speed_rpm), model.machine.layout
     flow, swept_plan = machine_flow(model, plan), sweep_plan(parse(Sweep, sweep))
     found = [from_arrays(flow, one) for one in starts]

@@ -23,9 +23,10 @@ def branches_loci(
     teeth: Mapping[str, Any],
     branches: Mapping[str, Any] | None,
     speed_rpm: float,
+    friction: pd.DataFrame | None = None,
 ) -> Outcome:
     """`loci` (table). orbits: arrays of the special points."""
-    model = build_model(wired_machine(transmission, teeth, harmonics))
+    model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction))
     plan = read_branch_plan(branches, speed_rpm)
     loci, missed = machine_loci(model, plan, special_points(machine_flow(model, plan), orbits), tell)
     return Outcome({"loci": locus_table(loci)}, loci_summary(loci, missed))

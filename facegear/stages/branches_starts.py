@@ -21,9 +21,10 @@ def branches_starts(
     teeth: Mapping[str, Any],
     branches: Mapping[str, Any] | None,
     speed_rpm: float,
+    friction: pd.DataFrame | None = None,
 ) -> Outcome:
     """`found` (arrays) at one of the config's speeds. Raises NotConverged naming the speed."""
-    model = build_model(wired_machine(transmission, teeth, harmonics))
+    model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction))
     plan = read_branch_plan(branches, speed_rpm)
     speed = plan.speeds_rpm[number]
     found = random_starts(model, plan, speed, Progress("random starts", plan.starts).step)

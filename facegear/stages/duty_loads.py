@@ -55,6 +55,7 @@ def duty_loads(
     teeth: Mapping[str, Any],
     accuracy: Mapping[str, Any],
     strength: Mapping[str, Any] | None,
+    friction: pd.DataFrame | None = None,
 ) -> Outcome:
     """`duty_loads` and `duty_spectrum` (tables) from the machine's motion in every bin.
 
@@ -66,7 +67,8 @@ def duty_loads(
     section, known = parse(Strength, strength), settings(parse(Accuracy, accuracy))
     progress, loads, spectrum = Progress("duty cycle", len(section.duty)), [], []
     for number, one in enumerate(section.duty, start=1):
-        machine = wired_machine(at_mesh_torque(transmission, one.torque_n_m), teeth, harmonics)
+        loaded = at_mesh_torque(transmission, one.torque_n_m)
+        machine = wired_machine(loaded, teeth, harmonics, friction=friction)
         history = _history(machine, one.speed_rpm, known)
         place = (number, one.torque_n_m, one.speed_rpm)
         loads += [(*place, *row) for row in _load_rows(history)]

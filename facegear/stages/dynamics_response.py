@@ -26,12 +26,13 @@ def dynamics_response(
     teeth: Mapping[str, Any],
     accuracy: Mapping[str, Any],
     speed_rpm: float,
+    friction: pd.DataFrame | None = None,
 ) -> Outcome:
     """`response`, `spectrum`, `summary`, `multipliers` and `bearings` (tables).
 
     Raises NotConverged naming the speed.
     """
-    model = build_model(wired_machine(transmission, teeth, harmonics))
+    model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction))
     found = simulate(model, speed_rpm, settings(parse(Accuracy, accuracy)))
     layout = model.machine.layout
     content = {

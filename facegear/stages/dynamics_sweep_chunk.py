@@ -22,12 +22,13 @@ def dynamics_sweep_chunk(
     transmission: Mapping[str, Any],
     teeth: Mapping[str, Any],
     sweep: Mapping[str, Any],
+    friction: pd.DataFrame | None = None,
 ) -> Outcome:
     """`chunk` (arrays). Raises NotConverged naming the speed."""
     plan = sweep_plan(parse(Sweep, sweep))
     total = sum(map(len, plan.chunk(direction, number)))
     progress = Progress(f"sweep {direction}, chunk {number}", total)
-    model = build_model(wired_machine(transmission, teeth, harmonics))
+    model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction))
     before, own = run_chunk(model, plan, direction, number, progress.step)
     told = f"{len(own.speeds)} speeds {direction}, {len(before.speeds)} for overlap"
     return Outcome({"chunk": to_arrays(before, own)}, told)

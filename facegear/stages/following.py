@@ -24,12 +24,13 @@ def following(
     speed_rpm: float,
     positions: int,
     cycles: int | None,
+    friction: pd.DataFrame | None = None,
 ) -> Outcome:
     """`groups` and `meshes` (tables) over `cycles` mesh cycles, or all of the hunting cycle.
 
     Raises NotConverged naming the position or the mesh phase.
     """
-    machine = wired_machine(transmission, teeth, harmonics)
+    machine = wired_machine(transmission, teeth, harmonics, friction=friction)
     length = hunting_length(machine)
     part = length if cycles is None else min(cycles, length)
     moving = running(machine, speed_rpm, part, FINER * positions, settings(parse(Accuracy, accuracy)))

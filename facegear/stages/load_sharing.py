@@ -21,10 +21,11 @@ def load_sharing(
     accuracy: Mapping[str, Any],
     speed_rpm: float,
     options: Mapping[str, Any],
+    friction: pd.DataFrame | None = None,
 ) -> Outcome:
     """`curve` and `summary` (tables). Raises NotConverged naming the speed."""
     found = shared(
-        wired_machine(transmission, teeth, harmonics),
+        wired_machine(transmission, teeth, harmonics, friction=friction),
         speed_rpm,
         settings(parse(Accuracy, accuracy)),
         sharing_options(parse(LoadSharing, options)),

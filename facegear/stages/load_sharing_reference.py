@@ -21,9 +21,10 @@ def load_sharing_reference(
     accuracy: Mapping[str, Any],
     range_accuracy: Mapping[str, Any],
     options: Mapping[str, Any],
+    friction: pd.DataFrame | None = None,
 ) -> Outcome:
     """`reference` and `speeds` (tables). Raises NotConverged naming the speed."""
-    machine = wired_machine(transmission, teeth, harmonics)
+    machine = wired_machine(transmission, teeth, harmonics, friction=friction)
     wanted = sharing_options(parse(LoadSharing, options))
     reference = reference_table(machine, settings(parse(Accuracy, accuracy)), wanted)
     speeds = speed_range_table(machine, settings(parse(Accuracy, range_accuracy)), wanted)

@@ -20,6 +20,7 @@ from facegear.lubrication.assessment import (
     position_table,
 )
 from facegear.lubrication.columns import LEFT_OUT
+from facegear.lubrication.excitation import excitation_table
 from facegear.lubrication.loss import hat_slip
 from facegear.lubrication.machine_loss import LoadedPair
 from facegear.lubrication.places import loaded_contacts, places, stored_lines
@@ -33,7 +34,8 @@ def lubrication(
     lubrication: Mapping[str, Any] | None,
     speed_rpm: float,
 ) -> Outcome:
-    """`by_torque`, `positions`, `limits`, `map` (tables) and `local` (arrays) from stored contact.
+    """`by_torque`, `positions`, `limits`, `map`, `excitation` (tables) and `local` (arrays) from stored
+    contact.
 
     ltca, pressure: of stage contact. Raises ConfigError without section lubrication, TooHot where a body
     passes the oil's flash point, NotConverged where bulk temperatures do not settle.
@@ -49,6 +51,7 @@ def lubrication(
         "limits": limit_table(loaded, states),
         "map": map_table(loaded, map_speeds(section, speed_rpm)),
         "local": local_arrays(loaded, states, speed),
+        "excitation": excitation_table(loaded, states, pair(tooth_pair).design),
     }
     last = table.iloc[-1]
     told = (

@@ -11,6 +11,7 @@ from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.law import MeshLaw
 from facegear.transmission.imperfections import Imperfections, perfect
 from facegear.transmission.layout import DOF_PER_BODY, Layout, Role, Side
+from facegear.transmission.mesh_friction import MeshFriction
 from facegear.transmission.phases import PhaseConvention, mesh_phases
 
 TORQUE_BALANCE = 1e-9
@@ -46,7 +47,8 @@ class Machine:
     mesh periods, or by its stiffness phase if there are none. `imperfections` default to none. `forces`
     (bodies, 3): external ones on the bodies along x, y, z, N, none by default. `law`: of all contacts, see
     facegear.transmission.flanks.contact_law; without one their force is the stiffness times how far they are
-    pressed in, and with one `stiffness` is only the scale of it.
+    pressed in, and with one `stiffness` is only the scale of it. `friction` of the meshes disturbs the motion,
+    and nothing at rest.
     """
 
     layout: Layout
@@ -60,6 +62,7 @@ class Machine:
     imperfections: Imperfections = None  # type: ignore[assignment]
     forces: Array = None  # type: ignore[assignment]
     law: MeshLaw | None = None
+    friction: MeshFriction | None = None
 
     def __post_init__(self) -> None:
         if self.imperfections is None:

@@ -68,6 +68,7 @@ class PeriodMap:
             type(law),
             *system.mesh_jacobian.shape,
             system.contacts,
+            None if system.rubbing is None else system.rubbing.ratios.shape,
             *(series.shape for series in (law.harmonic_fractions, law.levels, system.error, system.load)),
         )
         like = cast(Integrator | None, self.memory.get(key))

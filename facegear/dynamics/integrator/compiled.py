@@ -28,6 +28,17 @@ class Rings(NamedTuple):
     lag: float
 
 
+class Rubbing(NamedTuple):
+    """Forces of friction: their number K, the flank (K,) of each, its ratio as Fourier columns, and the
+    direction (K, n) in which it acts.
+    """
+
+    number: int
+    flank: NDArray[np.int64]
+    ratios: Array
+    directions: Array
+
+
 class Sparse(NamedTuple):
     """A matrix row by row: the entries of row i are those from starts[i] to starts[i + 1], which are left out
     where they are zero but for rounding.
@@ -49,8 +60,8 @@ class Packed(NamedTuple):
     (m,) names. drift (terms, m): polynomial in s added to the error of this period, or none. leverage (m,):
     sum of squares of a row of mesh_jacobian. pairs: meshes whose two flanks stand at j and j + pairs; 0 where
     every mesh stands for itself. contacts: rows of the m that are meshes or flanks; the others belong to the
-    rings of bearings with play. Without any, `rings` is None, and the kernels are compiled without them:
-    another type, of rings or of the law, is another machine code.
+    rings of bearings with play. Without any, `rings` is None, and the kernels are compiled without them, and
+    so is `rubbing` without friction: another type, of rings, friction or the law, is another machine code.
     """
 
     n: int
@@ -79,6 +90,7 @@ class Packed(NamedTuple):
     scale: float
     contacts: int
     rings: Rings | None
+    rubbing: Rubbing | None
 
 
 def pack(system: System, frequency: float) -> Packed:
@@ -126,7 +138,7 @@ def _packed(system: System) -> Packed:
         drift=np.zeros((0, wide_m)),
         load=fourier_columns(system.load),
         breaks=system.law.breaks * TAU,
-        weights=padded(np.abs(transposed).max(axis=0), wide_n),
+        weights=padded(_weights(system), wide_n),
         leverage=(transposed**2).sum(axis=1),
         fastest=sum(_fastest(system)),
         damping_when_open=system.damping_when_open,
@@ -135,7 +147,23 @@ def _packed(system: System) -> Packed:
         scale=system.scale,
         contacts=system.contacts,
         rings=None,
+        rubbing=_rubbing(system),
     )
+
+
+def _weights(system: System) -> Array:
+    """Largest motion along a mesh or a force of friction that one unit of each coordinate makes, (n,)."""
+    rows = [system.mesh_jacobian] if system.rubbing is None else [system.mesh_jacobian, system.rubbing.directions]
+    return np.asarray(np.abs(np.concatenate(rows)).max(axis=0))
+
+
+def _rubbing(system: System) -> Rubbing | None:
+    if system.rubbing is None:
+        return None
+    count, n = system.rubbing.directions.shape
+    directions = aligned(count, whole_lanes(n))
+    directions[:, :n] = system.rubbing.directions
+    return Rubbing(count, system.rubbing.flank, fourier_columns(system.rubbing.ratios), directions)
 
 
 def _sparse(matrix: Array) -> Sparse:

@@ -1,7 +1,8 @@
-"""Taylor coefficients of what drives the motion: the contact law's phase, transmission error, load."""
+"""Taylor coefficients of what drives the motion: the contact law's phase, friction, transmission error, load."""
 
 from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.kernel import inlined
+from facegear.dynamics.integrator.rubbing import rubbing_terms
 from facegear.dynamics.integrator.work import Work
 from facegear.machine_code.fourier import fourier_terms, give, shifted
 from facegear.mesh_law.terms import phase_terms
@@ -9,9 +10,10 @@ from facegear.mesh_law.terms import phase_terms
 
 @inlined
 def excitation(packed: Packed, work: Work, s: float, piece: int, rows: int) -> None:
-    """The first `rows` coefficients of law, error and load at s, in stretch `piece` between two breaks."""
+    """The first `rows` coefficients of law, friction, error and load at s, in stretch `piece` between two breaks."""
     ahead = s - packed.breaks[piece] if packed.breaks.size > 0 else 0.0
     phase_terms(packed.law, work.law, work.fourier, s, ahead, piece, rows)
+    rubbing_terms(packed.rubbing, work.rubbing, work.fourier, s, rows)
     fourier_terms(work.fourier, packed.error, s, rows, work.kinds)
     give(work.kinds, packed.error.shape[2], packed.error_kind, rows, work.error)
     if packed.drift.shape[0] > 0:

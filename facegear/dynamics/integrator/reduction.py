@@ -21,6 +21,7 @@ from facegear.transmission.matrices import (
     mass_diagonal,
     mesh_directions,
 )
+from facegear.transmission.mesh_friction import friction_rows
 
 SAME_FREQUENCY = 1e-12
 RANK = 1e-10
@@ -52,8 +53,10 @@ def reduce(machine: Machine) -> Reduced:
     mesh_jacobian = flank_directions(layout) if layout.is_geometric else mesh_directions(layout)
     mesh_jacobian = np.concatenate([mesh_jacobian, *(_ring_rows(layout, int(i)) for i in rings)])
     applied = machine.applied
-    # What external forces move belongs to the motion, though no mesh may feel it: bearings carry it.
+    # What forces move belongs to the motion, though no mesh may feel it: bearings carry it.
     pushes = [_push_row(machine)] if machine.forces.any() else []
+    if machine.friction is not None:
+        pushes.append(friction_rows(layout).reshape(-1, layout.dof))
     felt = np.concatenate([mesh_jacobian, *pushes])
     bearing = bearing_diagonal(layout)
     if any(body.bearing_xy != 0.0 for body in layout.bodies):

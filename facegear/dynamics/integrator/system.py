@@ -3,8 +3,9 @@
     y'' + damping y' + omega_squared y + G^T F = load(t),   F = law(s, x) + c d',   d = G y - e(t),
 
 x = d - upper above `upper`, d - lower below `lower`, zero between. e and load are Fourier series in the mesh
-phase s = 2 pi t / T, the law is any of facegear.mesh_law. Bearings with play are rings (rings.py). One degree
-of freedom is a case like any other.
+phase s = 2 pi t / T, the law is any of facegear.mesh_law. Bearings with play are rings (rings.py). Friction
+adds forces in directions of its own, which are Fourier series times the law's forces (rubbing.py). One degree of
+freedom is a case like any other.
 """
 
 from dataclasses import dataclass, field
@@ -18,6 +19,7 @@ from facegear.mesh_law.law import MeshLaw
 from facegear.mesh_law.linear import different
 from facegear.transmission.flanks import constant_errors, contact_law, error_series, flank_gaps
 from facegear.transmission.machine import Machine, OpenFlanks
+from facegear.transmission.mesh_friction import MeshFriction, flank_ratios, friction_rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +32,7 @@ class System:
     `two_flanks`: the m are one-sided flanks, all drive flanks, then the back flanks of the same meshes.
     `push_only`: spring and damper of a contact together never pull, F >= 0, damping acts in contact only. The
     last 3 R of the m rows belong to the rings: x, y of the body, and a row of zeros. ring_stiffness and
-    ring_play (R,); ring_lag: damping over stiffness of the rings, s.
+    ring_play (R,); ring_lag: damping over stiffness of the rings, s. rubbing: friction of the flanks, or none.
     """
 
     mesh_jacobian: Array
@@ -50,6 +52,7 @@ class System:
     ring_stiffness: Array = field(default_factory=lambda: np.zeros(0))
     ring_play: Array = field(default_factory=lambda: np.zeros(0))
     ring_lag: float = 0.0
+    rubbing: "FlankRubbing | None" = None
 
     @property
     def size(self) -> int:
@@ -65,6 +68,18 @@ class System:
     def pairs(self) -> int:
         """Number of meshes with two flanks."""
         return self.contacts // 2 if self.two_flanks else 0
+
+
+@dataclass(frozen=True, eq=False)
+class FlankRubbing:
+    """Forces of friction: each of K adds `ratio` times the law's force of a flank along a direction.
+
+    flank (K,) numbers of the flanks, ratios (K, 2, harmonics + 1) Fourier series, directions (K, n).
+    """
+
+    flank: NDArray[np.int64]
+    ratios: Array
+    directions: Array
 
 
 def machine_system(machine: Machine, reduced: Reduced) -> System:
@@ -125,7 +140,16 @@ def _flank_system(machine: Machine, reduced: Reduced) -> System:
         ring_stiffness=np.array([machine.layout.pinions[i].body.bearing[0] for i in rings]),
         ring_play=play[rings],
         ring_lag=machine.damping.bearing,
+        rubbing=None if machine.friction is None else _rubbing(machine, machine.friction, reduced),
     )
+
+
+def _rubbing(machine: Machine, friction: MeshFriction, reduced: Reduced) -> FlankRubbing:
+    """Friction of all flanks in reduced coordinates, without directions in which nothing moves."""
+    rows = np.tile(friction_rows(machine.layout), (2, 1, 1))
+    flank, part = np.nonzero(rows.any(axis=2))
+    ratios = flank_ratios(friction.ratios, machine.phases)
+    return FlankRubbing(flank, ratios[flank, part], rows[flank, part] @ reduced.basis)
 
 
 def length_scale(machine: Machine) -> float:

@@ -12,6 +12,7 @@ from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.kernel import inlined
 from facegear.dynamics.integrator.rings import ring_push, ring_row, ring_tangent_row
+from facegear.dynamics.integrator.rubbing import keep_elastic, rub
 from facegear.dynamics.integrator.work import Work
 from facegear.machine_code.lanes import (
     LANES,
@@ -102,6 +103,7 @@ def recurrence(
                 total = product_terms(work.law.slope, deflection, i, c)
             else:
                 total = force_terms(packed.law, work.law, work.state, deflection, i, c)
+            keep_elastic(work.rubbing, work.side, total, i, c)
             total = multiply(load(work.active, c), total)
             damping = multiply(load(work.acting, c), rate)
             total = multiply_add(damping, load(deflection, (i + 1) * wide + c), total)
@@ -114,6 +116,7 @@ def recurrence(
             total = multiply_add(minus, total, load(applied, i * n + c))
             store(y, (i + 2) * n + c, multiply(factor, total))
         accumulate(packed.transposed, packed.m + packed.m % 2, force, 0, y, (i + 2) * n)
+        rub(packed.rubbing, work.rubbing, work.side, i, 1.0 / ((i + 1) * (i + 2)), y, i + 2)
         deflect(packed, y, i + 2, error, deflection)
         _ring(packed, work, i + 2, deflection, tangent)
 

@@ -37,6 +37,13 @@ class RingSeries(NamedTuple):
     slope_yy: Array
 
 
+class RubbingSeries(NamedTuple):
+    """Series of friction: ratios (rows, forces of friction) and elastic forces (rows, flanks)."""
+
+    ratios: Array
+    forces: Array
+
+
 class Work(NamedTuple):
     """Scratch space for one thread and one order p: coefficient tables have one row for each power of s.
 
@@ -48,7 +55,7 @@ class Work(NamedTuple):
     fourier and kinds are used by Fourier series. bernstein holds the deflections' Bernstein coefficients over
     the step, least and most their bounds. block, block_deflection (rows, coordinates or meshes times ABREAST)
     and block_force: of tangents side by side. nodes: of the rule that integrates products of polynomials.
-    rings: None without play. Tables that hang on sizes alone (conversion, nodes) are shared and only read.
+    rings: None without play; rubbing: None without friction. Tables that hang on sizes alone (conversion, nodes) are shared and only read.
     """
 
     order: int
@@ -86,13 +93,16 @@ class Work(NamedTuple):
     most: Array
     nodes: Array
     rings: RingSeries | None
+    rubbing: RubbingSeries | None
 
 
 def make_work(system: System, packed: Packed, order: int) -> Work:
     """Allocate scratch space."""
     n, m = packed.mesh_jacobian.shape
     rows = order + 1
-    harmonics = max(system.law.harmonic_fractions.size, len(packed.error), len(packed.load))
+    rubbing = packed.rubbing
+    ratios = 0 if rubbing is None else len(rubbing.ratios)
+    harmonics = max(system.law.harmonic_fractions.size, len(packed.error), len(packed.load), ratios)
     return Work(
         order=order,
         y=aligned(rows, n),
@@ -129,6 +139,7 @@ def make_work(system: System, packed: Packed, order: int) -> Work:
         most=aligned(m),
         nodes=_gauss(order // 4 + 1),
         rings=_ring_series(rows, packed.rings.play.size) if packed.rings else None,
+        rubbing=RubbingSeries(aligned(rows, rubbing.ratios.shape[2]), aligned(rows, m)) if rubbing else None,
     )
 
 

@@ -1,7 +1,7 @@
 """Branches of periodic motions."""
 
 from facegear.pipeline import asked
-from facegear.pipeline.rows.shared import HARMONICS, MACHINE, SPEED, SWEEP
+from facegear.pipeline.rows.shared import MACHINE, MOVING, SPEED, SWEEP
 from facegear.pipeline.stage import NUMBER, Figures, File, From, Needs, Stage, from_stage
 
 BRANCHES: Needs = {**MACHINE, **SPEED, "branches": "branches"}
@@ -12,7 +12,7 @@ ROWS = (
         title="Where random starts end at one speed",
         needs=BRANCHES,
         section="branches",
-        upstream=HARMONICS,
+        upstream=MOVING,
         files={"found": File("branches/starts/{number}.npz", "facegear.dynamics.branches.stored:SHAPES")},
         wildcards={"number": NUMBER},
         minutes=30,
@@ -24,7 +24,7 @@ ROWS = (
         needs={**BRANCHES, **SWEEP},
         section="branches",
         upstream={
-            **HARMONICS,
+            **MOVING,
             "starts": From("branches_starts", "found", each=asked.random_starts),
             "chunks": From("dynamics_sweep_chunk", "chunk", each=asked.sweep_chunks),
             "jumps": From("dynamics_sweep", "jumps"),
@@ -68,7 +68,7 @@ ROWS = (
         title="Loci of folds and period doublings",
         needs=BRANCHES,
         section="branches",
-        upstream={**HARMONICS, "orbits": From("branches", "orbits")},
+        upstream={**MOVING, "orbits": From("branches", "orbits")},
         files={
             "loci": File(
                 "branches/loci.csv",

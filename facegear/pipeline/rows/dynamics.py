@@ -1,7 +1,7 @@
 """The machine in motion: response at one speed, and the speed sweep."""
 
 from facegear.pipeline import asked
-from facegear.pipeline.rows.shared import ACCURACY, HARMONICS, MACHINE, SPEED, SWEEP
+from facegear.pipeline.rows.shared import ACCURACY, MACHINE, MOVING, SPEED, SWEEP
 from facegear.pipeline.stage import NUMBER, Figures, File, From, Stage, from_stage
 
 ROWS = (
@@ -16,7 +16,7 @@ ROWS = (
         name="dynamics_response",
         title="Response at the nominal speed",
         needs={**MACHINE, **ACCURACY, **SPEED},
-        upstream=HARMONICS,
+        upstream=MOVING,
         files={
             "response": File(
                 "dynamics/response.csv", ("mesh_cycle", "mesh", "deflection_um", "elastic_force_n")
@@ -32,7 +32,7 @@ ROWS = (
         name="dynamics_sweep_chunk",
         title="Speed sweep, one chunk",
         needs={**MACHINE, **SWEEP},
-        upstream=HARMONICS,
+        upstream=MOVING,
         files={
             "chunk": File(
                 "dynamics/chunks/{direction}_{number}.npz", "facegear.dynamics.sweeps.stored:SHAPES"
@@ -46,7 +46,7 @@ ROWS = (
         name="dynamics_sweep",
         title="Jumps and resonances",
         needs={**MACHINE, **SWEEP},
-        upstream={**HARMONICS, "chunks": From("dynamics_sweep_chunk", "chunk", each=asked.sweep_chunks)},
+        upstream={**MOVING, "chunks": From("dynamics_sweep_chunk", "chunk", each=asked.sweep_chunks)},
         files={
             "sweep": File(
                 "dynamics/sweep.csv",

@@ -6,7 +6,7 @@ from facegear.pipeline.stage import Figures, File, From, Stage, from_stage
 
 PRESSED = from_stage("contact", "ltca", "pressure")
 
-ROWS = (
+PAIR_ROWS = (
     Stage(
         name="lubrication",
         title="Sliding, friction, heat and film of the pair",
@@ -21,6 +21,9 @@ ROWS = (
             ),
             "map": File("lubrication/map.csv", "facegear.lubrication.columns:MAP_FINITE"),
             "local": File("lubrication/local.npz", "facegear.lubrication.columns:LOCAL_ARRAYS"),
+            "excitation": File(
+                "lubrication/excitation.csv", "facegear.lubrication.columns:EXCITATION_COLUMNS"
+            ),
         },
         figures=Figures(
             draw="facegear.plots.friction:figures",
@@ -35,6 +38,9 @@ ROWS = (
         asked=asked.friction,
         local=True,
     ),
+)
+
+ROWS = (
     Stage(
         name="machine_loss",
         title="Loss and heat of the machine",

@@ -13,3 +13,5 @@ SHARING: Needs = {**MACHINE, **ACCURACY, **SPEED, "options": "load_sharing"}
 
 FLANKS = {name: From("compliance", "arrays", where={"body": name}) for name in asked.BODIES}
 HARMONICS = from_stage("stiffness", "harmonics")
+MOVING = {**HARMONICS, "friction": From("lubrication", "excitation", when=asked.friction_in_motion)}
+"""What stages take that set the machine in motion."""

@@ -1,7 +1,7 @@
 """How meshes share the load."""
 
 from facegear.pipeline import asked, studies
-from facegear.pipeline.rows.shared import ACCURACY, HARMONICS, MACHINE, SHARING, SPEED
+from facegear.pipeline.rows.shared import ACCURACY, HARMONICS, MACHINE, MOVING, SHARING, SPEED
 from facegear.pipeline.stage import Computed, Figures, File, From, Stage, from_stage
 
 CASE_COLUMNS = ("study", "point", "label")
@@ -11,7 +11,7 @@ ROWS = (
         name="load_sharing",
         title="Load sharing at the nominal speed",
         needs=SHARING,
-        upstream=HARMONICS,
+        upstream=MOVING,
         files={
             "curve": File("load_sharing/nominal.csv", ("cycle_fraction",), may_be_empty=True),
             "summary": File("load_sharing/nominal_summary.csv", ("group", "kind"), may_be_empty=True),
@@ -57,7 +57,7 @@ ROWS = (
             "range_accuracy": "dynamics.sweep.accuracy",
             "options": "load_sharing",
         },
-        upstream=HARMONICS,
+        upstream=MOVING,
         files={
             "reference": File("load_sharing/reference.csv"),
             "speeds": File("load_sharing/speed_range.csv"),
@@ -107,7 +107,7 @@ ROWS = (
             "positions": "load_sharing.hunting_positions",
             "cycles": "load_sharing.followed_cycles",
         },
-        upstream=HARMONICS,
+        upstream=MOVING,
         files={
             "groups": File("load_sharing/following_groups.csv"),
             "meshes": File("load_sharing/following_meshes.csv"),

@@ -1,7 +1,7 @@
 """Root stress, and safety and life under a duty cycle."""
 
 from facegear.pipeline import asked
-from facegear.pipeline.rows.shared import ACCURACY, FLANKS, HARMONICS, MACHINE, PAIR, SPEED
+from facegear.pipeline.rows.shared import ACCURACY, FLANKS, HARMONICS, MACHINE, MOVING, PAIR, SPEED
 from facegear.pipeline.stage import Computed, Figures, File, From, Stage, from_stage
 
 GEARS = {"gears": Computed(asked.gears_met, ("transmission",))}
@@ -39,7 +39,7 @@ ROWS = (
         title="Loads of the running machine in every bin of the duty cycle",
         needs={**MACHINE, **ACCURACY, "strength": "strength"},
         section="strength",
-        upstream=HARMONICS,
+        upstream=MOVING,
         files={
             "duty_loads": File("strength/duty_loads.csv"),
             "duty_spectrum": File(

@@ -1,0 +1,46 @@
+"""Friction of the machine's meshes from the table of the tooth pair, at the torque that each mesh carries."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+
+from facegear.harmonics.fit import fit_harmonics
+from facegear.harmonics.series import stacked
+from facegear.lubrication.columns import EXCITATION_COLUMNS
+from facegear.transmission.machine import Machine
+from facegear.transmission.mesh_friction import MeshFriction
+from facegear.transmission.statics import mean_equilibrium
+
+Array = NDArray[np.float64]
+ORDERS = 8
+"""Harmonics of the mesh frequency that friction excites. The mean is exact, and so is the loss of an even force."""
+
+
+def with_friction(machine: Machine, table: pd.DataFrame) -> Machine:
+    """The machine with friction in motion; `table`: columns EXCITATION_COLUMNS of stage lubrication.
+
+    Each mesh has the friction of the torque that it carries at rest, between the torques of the contact analysis
+    as their logarithm has it, outside them that of the nearest. Raises NotConverged where there is no rest.
+    """
+    torques = machine.layout.pinion_arm * np.abs(mean_equilibrium(machine).forces[0])
+    known, ratios = _ratios(table)
+    ratios[..., 3] /= 1e3 * machine.layout.pinion_arm
+    ratios[..., 4] /= 1e3 * machine.layout.gear_arm
+    return replace(machine, friction=MeshFriction(np.stack([_series(known, ratios, one) for one in torques])))
+
+
+def _ratios(table: pd.DataFrame) -> tuple[Array, Array]:
+    """Torques (t,) and the ratios (t, positions, parts) at each of them."""
+    names = list(EXCITATION_COLUMNS[2:])
+    by_torque = table.sort_values(["torque_n_m", "position"]).groupby("torque_n_m")
+    return np.array(list(by_torque.groups), float), np.stack([one[names].to_numpy() for _, one in by_torque])
+
+
+def _series(torques: Array, ratios: Array, torque: float) -> Array:
+    """Fourier series (parts, 2, orders) of the ratios at a torque, N m."""
+    asked = np.clip(torque, torques[0], torques[-1])
+    at = ratios[0] if torques.size == 1 else PchipInterpolator(np.log(torques), ratios)(np.log(asked))
+    return stacked([fit_harmonics(one).series.kept(ORDERS) for one in at.T])

@@ -1,0 +1,93 @@
+"""Friction of the meshes as forces on the bodies, in first order a part of each flank's elastic force.
+
+The forces of friction at all points of the contact of a flank, with the signs of sliding that they have at each
+place of the mesh cycle, make one force on the pinion and two moments about the axes. Each is the elastic force
+of the flank times a ratio that depends on the place in the mesh cycle alone. Vibration changes the force, but
+not the direction of sliding.
+
+The machine turns evenly: the output gives way by the torque that friction takes, at every instant.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.harmonics.series import Harmonics, stacked_values
+from facegear.transmission.layout import DOF_PER_BODY, Layout, Side
+
+Array = NDArray[np.float64]
+
+PARTS = ("tangential", "along_pinion_axis", "along_gear_axis", "pinion_lever", "face_gear_lever")
+"""Ratios of friction to the elastic force of a flank.
+
+Force on the pinion along the tangent of the face gear, along the pinion's axis (away from the gear's) and along
+the gear's axis, in the frame of the upper gear's mesh, and the moments on pinion and face gear about their own
+axes, positive as they turn, over the arms of the elastic force.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class MeshFriction:
+    """Fourier series (meshes, PARTS, 2, orders) of the ratios over the reference's mesh cycle, sine part first.
+
+    They are those of the drive flank of each mesh without its lag.
+    """
+
+    ratios: Array
+
+    def loss(self, phases: Array, cycles: Array, forces: Array) -> Array:
+        """Force (K, meshes) that friction takes along the base circles, N: loss over their speed.
+
+        phases (meshes,): lag of each mesh; cycles (K,) in mesh periods; forces (K, meshes): elastic ones, those of
+        the drive flank positive. The machine turns evenly.
+        """
+        levers = -flank_ratios(self.ratios, phases)[:, 3:].sum(axis=1)
+        drive, back = np.split(stacked_values(levers, cycles), 2, axis=1)
+        return np.maximum(forces, 0.0) * drive + np.maximum(-forces, 0.0) * back
+
+
+def friction_rows(layout: Layout, at_output: bool = True) -> Array:
+    """Directions in which the PARTS act on the bodies, (meshes, PARTS, dof), N/N and m for moments.
+
+    With `at_output` each moment is met by one on the output, so that none turns the machine as a whole. A pinion
+    without a bearing along its axis stays where it is. Equal for both flanks.
+    """
+    rows = np.zeros((len(layout.meshes), len(PARTS), layout.dof))
+    tilted = {g: DOF_PER_BODY * len(layout.bodies) + 2 * k for k, g in enumerate(layout.tilting)}
+    output = DOF_PER_BODY * (len(layout.pinions) + _output(layout)) + 3
+    for row, (i, g) in zip(rows, layout.meshes, strict=True):
+        side = layout.gears[g].sign
+        cosine, sine = np.cos(layout.angles[i]), np.sin(layout.angles[i])
+        pinion, gear = DOF_PER_BODY * i, DOF_PER_BODY * (len(layout.pinions) + g)
+        row[0, pinion], row[0, gear : gear + 2] = side, [-side * cosine, -side * sine]
+        held = layout.pinions[i].body.bearing[2] > 0.0
+        row[1, pinion + 2], row[1, gear : gear + 2] = float(held), [-sine, cosine]
+        row[2, pinion + 1], row[2, gear + 2] = side, -side
+        if g in tilted:
+            row[2, tilted[g] : tilted[g] + 2] = side * layout.mesh_radius * np.array([cosine, sine])
+        row[3, pinion + 3], row[4, gear + 3] = layout.pinion_arm, layout.gear_arm
+        if at_output:
+            row[3:, output] -= layout.gear_arm
+    return rows
+
+
+def flank_ratios(ratios: Array, phases: Array) -> Array:
+    """Series (2 meshes, PARTS, 2, orders) of all drive flanks, then all back flanks, each with its lag.
+
+    phases (meshes,) in mesh periods. The back flank is the mirror image of the drive flank that turns the other
+    way: its tangential force and its moments are those at the mirrored place, the other parts are opposite.
+    """
+    mirror = np.array([1.0, -1.0, -1.0, 1.0, 1.0])[:, None, None] * np.array([-1.0, 1.0])[:, None]
+    both = np.concatenate([ratios, ratios * mirror])
+    shifted = np.empty_like(both)
+    for flank, lag in zip(np.ndindex(both.shape[:2]), np.repeat(np.tile(phases, 2), len(PARTS)), strict=True):
+        one = Harmonics(*both[flank]).shifted(float(lag))
+        shifted[flank] = one.a, one.b
+    return shifted
+
+
+def _output(layout: Layout) -> int:
+    """The face gear that gives the power out, as `balanced_torques` has it."""
+    sides = [gear.side for gear in layout.gears]
+    return sides.index(Side.UPPER) if Side.UPPER in sides else 0

@@ -1,0 +1,233 @@
+"""Friction as a disturbance of the motion: forces on the bodies, SciPy, energy, the static loss."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from lumped_machines import make_layout, make_machine
+from scipy.integrate import solve_ivp
+
+from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.integrator.trajectory import record
+from facegear.dynamics.motion import Settings, State
+from facegear.dynamics.steady_state.orbits import monodromy
+from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
+from facegear.harmonics.series import stacked_values
+from facegear.transmission.layout import Body, FaceGear, MeshKinematics, Role, Side, Tilt
+from facegear.transmission.machine import OpenFlanks, mesh_frequency
+from facegear.transmission.matrices import bearing_matrix, flank_directions, mass_diagonal, rigid_rotation
+from facegear.transmission.mesh_friction import PARTS, MeshFriction, flank_ratios, friction_rows
+
+TWO = (("engine", Role.INPUT, 0.0), ("idler", Role.IDLER, 35.5))
+
+
+def layout_with_axial_bearings():
+    """Two pinions held along their axes, two gears of which one rocks."""
+    shape = make_layout(TWO, kinematics=MeshKinematics.GEOMETRIC)
+    held = [replace(one, body=replace(one.body, bearing=(6.5e7, 6.5e7, 3e7))) for one in shape.pinions]
+    lower, upper = shape.gears
+    rocking = FaceGear(Side.UPPER, replace(upper.body, tilt=Tilt(0.3, 5e7)))
+    return replace(shape, pinions=tuple(held), gears=(lower, rocking))
+
+
+def rubbing_machine(size=0.05, layout=None, **options):
+    """A machine whose meshes rub by made-up series of a few harmonics, each with its own."""
+    layout = layout or layout_with_axial_bearings()
+    random = np.random.default_rng(11)
+    ratios = size * random.normal(size=(len(layout.meshes), len(PARTS), 2, 4))
+    ratios[:, :, 0, 0] = 0.0
+    ratios[:, 3:, 1, 0] = -size
+    options = {"torque": 500.0, "tail_share": 0.0, "error": 8e-6, **options}
+    return replace(make_machine(layout, **options), friction=MeshFriction(ratios))
+
+
+def test_a_force_along_the_normal_acts_on_the_bodies_as_the_force_of_the_mesh_does():
+    layout = layout_with_axial_bearings()
+    cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
+    for rows in (friction_rows(layout), friction_rows(layout, at_output=False)):
+        drive = np.einsum("p,mpd->md", [-cosine, 0.0, -sine, -1.0, 1.0], rows)
+        back = np.einsum("p,mpd->md", [cosine, 0.0, -sine, 1.0, -1.0], rows)
+        np.testing.assert_allclose(
+            np.concatenate([drive, back]), -flank_directions(layout), atol=1e-15 * layout.gear_arm
+        )
+
+
+def test_friction_never_turns_the_machine_as_a_whole():
+    layout = layout_with_axial_bearings()
+    rows, turn = friction_rows(layout), rigid_rotation(layout)
+    np.testing.assert_allclose(rows @ turn, 0.0, atol=1e-13)
+    # What the output gives way by is what the moments take.
+    np.testing.assert_allclose(
+        friction_rows(layout, at_output=False) @ turn, np.tile([0.0, 0.0, 0.0, 1.0, 1.0], (4, 1)), atol=1e-13
+    )
+
+
+def test_the_back_flank_rubs_as_the_mirror_image_that_turns_the_other_way():
+    ratios = rubbing_machine().friction.ratios
+    both = flank_ratios(ratios, np.zeros(4))
+    cycles = np.array([0.13, 0.4, 0.77])
+    for part, sign in enumerate((1.0, -1.0, -1.0, 1.0, 1.0)):
+        here, mirrored = (stacked_values(both[half, part], at) for half, at in ((slice(4, 8), cycles), (slice(0, 4), -cycles)))
+        np.testing.assert_allclose(here, sign * mirrored, atol=1e-15)
+
+
+def kicked(model, size):
+    start = static_start(model)
+    reach = np.abs(model.reduced.mesh_jacobian).max()
+    kick = np.random.default_rng(3).normal(size=start.velocity.size)
+    return replace(start, velocity=size / reach * kick)
+
+
+def right_side(model, omega):
+    """y', y'' written out once more, with the friction of each flank on all bodies."""
+    system, machine = model.system, model.machine
+    errors = system.error[system.error_kind]
+    orders = np.arange(errors.shape[2])
+    rates = np.stack([-orders * errors[:, 1], orders * errors[:, 0]], axis=1) * omega
+    ratios = flank_ratios(machine.friction.ratios, machine.phases)
+    rows = np.tile(friction_rows(machine.layout), (2, 1, 1)) @ model.reduced.basis
+
+    def right(t, z):
+        y, v = np.split(z, 2)
+        cycles = np.array([omega * t / TAU])
+        d = system.mesh_jacobian @ y - stacked_values(errors, cycles)[0]
+        d_rate = system.mesh_jacobian @ v - stacked_values(rates, cycles)[0]
+        over = d - system.upper
+        acts = system.mesh_damping * ((over > 0.0) | system.damping_when_open)
+        elastic = system.law.force(cycles, np.maximum(over, 0.0)[None])[0]
+        at = stacked_values(ratios.reshape(-1, *ratios.shape[2:]), cycles).reshape(rows.shape[:2])
+        rubbed = np.einsum("f,fp,fpn->n", elastic, at, rows)
+        push = system.mesh_jacobian.T @ (elastic + acts * d_rate)
+        load = system.load[:, 1, 0]
+        return np.concatenate([v, load - system.damping * v - system.omega_squared * y - push + rubbed])
+
+    return right
+
+
+def test_rubbing_flanks_move_as_scipy_says_through_parting_and_both_flanks():
+    model = build_model(rubbing_machine(torque=60.0, backlash=20e-6))
+    omega = TAU * 2000.0
+    start = kicked(model, 0.3)
+    run = record(model.system, omega, start, 1, Settings(tolerance=1e-13))
+    assert (run.states == 0).any() and (run.states[:, :4] == 1).any() and (run.states[:, 4:] == 1).any()
+    phases = np.linspace(0.0, TAU, 11)
+    scale = np.abs(model.reduced.mesh_jacobian).max()
+    found = solve_ivp(
+        right_side(model, omega),
+        (0.0, TAU / omega),
+        np.concatenate([start.displacement, start.velocity]),
+        "DOP853",
+        phases / omega,
+        rtol=1e-11,
+        atol=1e-13 / scale,
+        max_step=2e-6,
+    )
+    gap = np.abs(found.y[: model.system.size].T - run.at(phases)[0]).max() * scale
+    assert gap < 2e-6 * model.system.scale
+
+
+@pytest.mark.parametrize("open_flanks", [OpenFlanks.CONTACT_ONLY, OpenFlanks.PUSH_ONLY])
+def test_disturbances_of_rubbing_flanks_are_differences_and_keep_their_volume(open_flanks):
+    model = build_model(rubbing_machine(torque=60.0, backlash=20e-6, open_flanks=open_flanks))
+    omega = TAU * 2000.0
+    integrator = Integrator(model.system, omega, 1e-14, 20)
+    start, n = kicked(model, 0.3), integrator.size
+    state = integrator.by_phase(start)
+    matrix, run = monodromy(integrator, state, 1)
+    assert ((run.fractions[0] > 0.0) & (run.fractions[0] < 1.0)).any()
+    assert np.linalg.slogdet(matrix)[1] == pytest.approx(run.divergence, abs=1e-7)
+    for column in range(0, 2 * n, 7):
+        ends = []
+        for sign in (-1.0, 1.0):
+            change = np.zeros((2, n))
+            change[divmod(column, n)] = sign * 1e-9
+            ends.append(integrator.run(state + change, 1, fine=True).state[0])
+        slope = (ends[1] - ends[0]) / 2e-9
+        np.testing.assert_allclose(matrix[:n, column], slope, atol=2e-4 * np.abs(matrix).max())
+
+
+def test_power_in_less_power_out_less_friction_less_damping_is_the_change_of_energy():
+    """Of the whole machine that turns evenly, along a motion that parts and strikes back.
+
+    What the varying stiffness and the error bring in is the work of the even rotation on them.
+    """
+    machine = rubbing_machine(torque=60.0, backlash=20e-6, open_flanks=OpenFlanks.CONTACT_ONLY)
+    model = build_model(machine)
+    layout, system, damping = machine.layout, model.system, machine.damping
+    speed = 5000.0
+    omega = TAU * mesh_frequency(layout, speed)
+    turn = rigid_rotation(layout) * layout.pinion_arm * speed * TAU / 60.0
+    run = record(system, omega, kicked(model, 0.3), 1, Settings(tolerance=1e-13))
+    assert (run.states == 0).any() and (run.states[:, 4:] == 1).any()
+    bearing, mass = bearing_matrix(layout), mass_diagonal(layout)
+    jacobian, kept = flank_directions(layout), friction_rows(layout, at_output=False)
+    output = layout.spins.start + 4 * (len(layout.bodies) - 1)
+    errors = system.error[system.error_kind]
+
+    def instants(phases, step, coordinates):
+        """Displacements, their rates, cycles, overlaps and rates of overlap at phases of a step."""
+        powers = (phases[:, None] - run.starts[step]) ** np.arange(coordinates.shape[0])
+        slopes = np.arange(1, coordinates.shape[0])
+        q = powers @ coordinates @ model.reduced.basis.T
+        rate = omega * (powers[:, :-1] * slopes) @ coordinates[1:] @ model.reduced.basis.T
+        cycles = phases / TAU
+        orders = np.arange(errors.shape[2])
+        e = stacked_values(errors, cycles)
+        e_rate = omega * stacked_values(np.stack([-orders * errors[:, 1], orders * errors[:, 0]], axis=1), cycles)
+        return q, rate, cycles, q @ jacobian.T - e - system.upper, rate @ jacobian.T - e_rate, e_rate
+
+    def energy(q, rate, cycles, over):
+        elastic = 0.5 * (system.law.stiffness(cycles) * np.maximum(over, 0.0) ** 2).sum(axis=1)
+        return 0.5 * (rate**2) @ mass + 0.5 * np.einsum("kd,de,ke->k", q, bearing, q) + elastic
+
+    nodes, weights = np.polynomial.legendre.leggauss(14)
+    sums = dict.fromkeys(("power", "friction", "damping", "rotation"), 0.0)
+    even, change = 0.0, 0.0
+    ratios = flank_ratios(machine.friction.ratios, machine.phases)
+    ratios = ratios.reshape(-1, *ratios.shape[2:])
+    for step in range(run.starts.size):
+        length = run.lengths[step]
+        phases = run.starts[step] + 0.5 * length * (1.0 + nodes)
+        q, rate, cycles, over, over_rate, e_rate = instants(phases, step, run.coordinates[step])
+        touching = run.states[step] > 0
+        over = np.where(touching, over, 0.0)
+        force = system.law.stiffness(cycles) * over
+        damper = damping.mesh * over_rate * touching
+        on_each = force[:, :, None] * stacked_values(ratios, cycles).reshape(len(cycles), 8, len(PARTS))
+        rubbing = np.einsum("kfp,fpd->kd", on_each, np.tile(kept, (2, 1, 1)))
+        # The output's torque gives way by the moments that friction takes.
+        torque = np.tile(machine.applied, (len(cycles), 1))
+        torque[:, output] -= layout.gear_arm * on_each[:, :, 3:].sum(axis=(1, 2))
+        ahead = 1e-6
+        stiffer = (system.law.stiffness(cycles + ahead) - system.law.stiffness(cycles - ahead)) / (2.0 * ahead)
+        powers = {
+            "power": (torque * (turn + rate)).sum(axis=1),
+            "friction": -(rubbing * (turn + rate)).sum(axis=1),
+            "damping": (rate**2) @ (damping.mass * mass)
+            + damping.bearing * np.einsum("kd,de,ke->k", rate, bearing, rate)
+            + (damper * over_rate).sum(axis=1),
+            "rotation": -((force + damper) * e_rate).sum(axis=1)
+            + 0.5 * (stiffer * over**2).sum(axis=1) * omega / TAU,
+        }
+        for name, values in powers.items():
+            sums[name] += 0.5 * length / omega * weights @ values
+        even += 0.5 * length / omega * weights @ -(rubbing @ turn)
+        ends = instants(run.starts[step] + np.array([0.0, length]), step, run.coordinates[step])
+        low, high = energy(*ends[:3], np.where(touching, ends[3], 0.0))
+        change += high - low
+    left_over = sums["power"] - sums["friction"] - sums["damping"] + sums["rotation"] - change
+    assert abs(sums["friction"]) > 1e-2 * abs(change)
+    assert abs(left_over) < 1e-8 * (abs(sums["friction"]) + abs(sums["damping"]))
+    # Of the even rotation alone: what goes in and does not come out is what friction takes.
+    assert even > 0.0
+
+
+def test_without_friction_nothing_is_added_to_the_system():
+    machine = rubbing_machine()
+    plain = build_model(replace(machine, friction=None))
+    assert plain.system.rubbing is None
+    # Without any force of friction the motion of the larger system is that without it.
+    none = build_model(replace(machine, friction=MeshFriction(0.0 * machine.friction.ratios)))
+    forces = [simulate(one, 2500.0, Settings(tolerance=1e-11)).forces for one in (plain, none)]
+    np.testing.assert_allclose(forces[1], forces[0], atol=1e-7 * forces[0].max())
