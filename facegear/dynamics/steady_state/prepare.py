@@ -10,16 +10,16 @@ import numpy as np
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.kernel import SOURCES
 from facegear.dynamics.integrator.periods import run_periods
-from facegear.dynamics.integrator.system import System
+from facegear.dynamics.integrator.system import FlankRubbing, System
 from facegear.machine_code.compiler import stored_in, text_of
 from facegear.mesh_law.linear import LinearLaw
 
 
 @cache
-def prepare(play: bool = False) -> None:
+def prepare(play: bool = False, friction: bool = False) -> None:
     """Load the stored machine code of the time integration, or compile and store it while others wait.
 
-    play: that of machines with play in their bearings; the law is linear. Without this, jobs that start at
+    play, friction: that of machines with play in their bearings and with friction; the law is linear. Without this, jobs that start at
     once on a fresh checkout each compile the same for several seconds.
     """
     folder = stored_in(run_periods)
@@ -29,21 +29,24 @@ def prepare(play: bool = False) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         with open(folder / "compiling.lock", "w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
-            _compile(folder / f"compiled-{text_of(*SOURCES)[:16]}{'-play' if play else ''}", play)
+            parts = f"{'-play' if play else ''}{'-friction' if friction else ''}"
+            _compile(folder / f"compiled-{text_of(*SOURCES)[:16]}{parts}", _smallest(play, friction))
     except OSError:
         # A folder that cannot be written keeps no machine code either: each process compiles its own.
         return
 
 
-def _compile(done: Path, play: bool) -> None:
+def _compile(done: Path, smallest: System) -> None:
     if not done.exists():
         print("compiling the time integration once, some 15 s", file=sys.stderr, flush=True)
-    Integrator(_smallest(play), 1.0, 1e-2, 6).run(np.zeros((2, 1)), 1, fine=True)
+    Integrator(smallest, 1.0, 1e-2, 6).run(np.zeros((2, 1)), 1, fine=True)
     done.touch()
 
 
-def _smallest(play: bool) -> System:
-    """One coordinate and one mesh, with a ring or without: the types are those of any such machine."""
+def _smallest(play: bool, friction: bool) -> System:
+    """One coordinate and one mesh, with a ring or without, rubbing or not: the types are those of any such
+    machine.
+    """
     rings = np.ones(int(play))
     one, rows, nothing = np.ones(1), np.ones(1 + 3 * rings.size), np.zeros((1, 2, 1))
     kinds = np.zeros(rows.size, dtype=np.int64)
@@ -62,4 +65,5 @@ def _smallest(play: bool) -> System:
         ring_play=rings,
         damping_when_open=True,
         scale=1.0,
+        rubbing=FlankRubbing(kinds[:1], nothing, rows[:1, None]) if friction else None,
     )
