@@ -16,14 +16,15 @@ from facegear.transmission.statics import mean_equilibrium
 
 Array = NDArray[np.float64]
 ORDERS = 8
-"""Harmonics of the mesh frequency that friction excites. The mean is exact, and so is the loss of an even force."""
+"""Harmonics of the mesh frequency that friction excites; the mean is exact."""
 
 
 def with_friction(machine: Machine, table: pd.DataFrame) -> Machine:
     """The machine with friction in motion; `table`: columns EXCITATION_COLUMNS of stage lubrication.
 
-    Each mesh has the friction of the torque that it carries at rest, between the torques of the contact analysis
-    as their logarithm has it, outside them that of the nearest. Raises NotConverged where there is no rest.
+    Each mesh has the friction of the torque that it carries at rest, between the torques of the contact
+    analysis as their logarithm has it, outside them that of the nearest. Raises NotConverged where there is
+    no rest.
     """
     torques = machine.layout.pinion_arm * np.abs(mean_equilibrium(machine).forces[0])
     known, ratios = _ratios(table)

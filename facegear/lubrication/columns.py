@@ -89,6 +89,7 @@ MESH_COLUMNS = (
     "power_w",
     "loss_w",
     "loss_percent",
+    "loss_in_motion_w",
     "pinion_heat_w",
     "face_gear_heat_w",
     "pinion_bulk_c",
@@ -102,9 +103,12 @@ MESH_COLUMNS = (
     "micropitting_safety",
     "within_torques_solved",
 )
-"""Bin 0 is the nominal load at rest, the others are those of the duty cycle."""
+"""Bin 0 is the nominal load at rest, the others are those of the duty cycle. Loss in motion: the mean of the
+motion at the nominal load, where friction disturbs it."""
 MESH_FINITE = tuple(
-    name for name in MESH_COLUMNS if "safety" not in name and "margin" not in name and "smallest" not in name
+    name
+    for name in MESH_COLUMNS
+    if "safety" not in name and "margin" not in name and "smallest" not in name and name != "loss_in_motion_w"
 )
 
 BODY_COLUMNS = ("bin", "speed_rpm", "body", "heat_w", "bulk_c")

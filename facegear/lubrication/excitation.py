@@ -1,7 +1,7 @@
-"""Friction of a mesh as a disturbance of the motion: its force and moments over the normal force, by position.
+"""Friction of a mesh as a disturbance of the motion: force and moments over the normal force.
 
-At every loaded hat friction acts on the pinion against the sliding velocity. The sums over the contact at each
-position of a pitch keep the sign that sliding has there: it turns at the pitch line.
+At every loaded hat friction acts on the pinion against the sliding velocity. The sums over the contact at
+each position of a pitch keep the sign that sliding has there: it turns at the pitch line.
 """
 
 from collections.abc import Sequence
@@ -23,9 +23,9 @@ Array = NDArray[np.float64]
 def friction_ratios(design: PairDesign, hats: HatSlip, friction: Array) -> Array:
     """Ratios (p, 5) at the p positions of a pitch, rising, of hats of one torque with coefficients (h,).
 
-    Force on the pinion along x, y and -z of the mesh frame (tangential, along the pinion's axis, along the gear's
-    axis), the moment on the pinion about its axis and that on the face gear about its own, m; over the sum of
-    the normal forces.
+    Force on the pinion along x, y and -z of the mesh frame (tangential, along the pinion's axis, along the
+    gear's axis), the moment on the pinion about its axis and that on the face gear about its own, m; over
+    the sum of the normal forces.
     """
     positions, row = np.unique(hats.position, return_inverse=True)
     sliding = hats.sliding
@@ -33,7 +33,8 @@ def friction_ratios(design: PairDesign, hats: HatSlip, friction: Array) -> Array
     force = against[:, None] * hats.velocity
     pinion, gear = spins(design)
     on_pinion, on_gear = (
-        np.cross(hats.point - one.through, sign * force) @ one.axis for one, sign in ((pinion, 1.0), (gear, -1.0))
+        np.cross(hats.point - one.through, sign * force) @ one.axis
+        for one, sign in ((pinion, 1.0), (gear, -1.0))
     )
     parts = np.stack([force[:, 0], force[:, 1], -force[:, 2], on_pinion, on_gear], axis=1)
     summed = np.zeros((positions.size, 5))

@@ -53,6 +53,7 @@ def mesh_loss_table(states: Sequence[MachineState], known: Lubrication, limits: 
             "power_w": state.power,
             "loss_w": found.loss,
             "loss_percent": 100 * found.loss / state.power,
+            "loss_in_motion_w": np.nan,
             "pinion_heat_w": found.pinion_heat,
             "face_gear_heat_w": found.loss - found.pinion_heat,
             "pinion_bulk_c": found.bulk[:, 0],

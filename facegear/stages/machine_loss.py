@@ -32,6 +32,8 @@ def machine_loss(
     pressure: Arrays,
     harmonics: pd.DataFrame,
     duty_loads: pd.DataFrame | None = None,
+    friction: pd.DataFrame | None = None,
+    response: pd.DataFrame | None = None,
     *,
     tooth_pair: Mapping[str, Any],
     lubrication: Mapping[str, Any] | None,
@@ -43,8 +45,10 @@ def machine_loss(
     """`meshes`, `bodies`, `machine` (tables): at the nominal load at rest and in every bin of a duty cycle.
 
     ltca, pressure: of stage contact; harmonics: table of stage stiffness; duty_loads: table of that stage,
-    where the loads of the duty cycle are the machine's. Raises ConfigError without section lubrication,
-    TooHot where a body passes the oil's flash point, NotConverged where bulk temperatures do not settle.
+    where the loads of the duty cycle are the machine's; friction, response: table `excitation` of stage
+    lubrication and that of stage dynamics_response, where friction disturbs the motion. Raises ConfigError
+    without section lubrication, TooHot where a body passes the oil's flash point, NotConverged where bulk
+    temperatures do not settle.
     """
     section = lubrication_section(lubrication)
     loaded = loaded_pair(ltca, pressure, section, tooth_pair)
@@ -54,6 +58,11 @@ def machine_loss(
         "bodies": body_heat_table(found, loaded.known),
         "machine": machine_loss_table(found),
     }
+    if friction is not None and response is not None:
+        machine = wired_machine(transmission, teeth, harmonics, friction=friction)
+        rest = content["meshes"]["bin"] == 0
+        moving = losses_in_motion(machine, response, speed_rpm)
+        content["meshes"].loc[rest, "loss_in_motion_w"] = content["meshes"].loc[rest, "mesh"].map(moving)
     whole, hottest = content["machine"].iloc[0], content["meshes"]["contact_temperature_c"].max()
     beyond = content["meshes"].loc[~content["meshes"]["within_torques_solved"], "bin"].unique()
     told = (
@@ -64,6 +73,17 @@ def machine_loss(
         bins = ", ".join(str(number) for number in beyond)
         told = f"{told}; bins with loads outside the torques of the contact analysis: {bins}"
     return Outcome(content, told)
+
+
+def losses_in_motion(machine: Machine, response: pd.DataFrame, speed_rpm: float) -> dict[str, float]:
+    """Mean loss (W) of each mesh by name, of a machine with friction; `response`: its elastic forces."""
+    layout, friction = machine.layout, machine.friction
+    if friction is None:
+        raise ValueError("a machine with friction is needed")
+    forces = response["elastic_force_n"].to_numpy().reshape(len(layout.meshes), -1).T
+    cycles = response["mesh_cycle"].to_numpy()[: len(forces)]
+    taken = friction.loss(machine.phases, cycles, forces).mean(axis=0)
+    return dict(zip(layout.mesh_names, speed_rpm * pi / 30 * layout.pinion_arm * taken, strict=True))
 
 
 def _states(

@@ -47,8 +47,8 @@ class Machine:
     mesh periods, or by its stiffness phase if there are none. `imperfections` default to none. `forces`
     (bodies, 3): external ones on the bodies along x, y, z, N, none by default. `law`: of all contacts, see
     facegear.transmission.flanks.contact_law; without one their force is the stiffness times how far they are
-    pressed in, and with one `stiffness` is only the scale of it. `friction` of the meshes disturbs the motion,
-    and nothing at rest.
+    pressed in, and with one `stiffness` is only the scale of it. `friction` of the meshes disturbs the
+    motion, and nothing at rest.
     """
 
     layout: Layout

@@ -1,9 +1,9 @@
 """Friction of the meshes as forces on the bodies, in first order a part of each flank's elastic force.
 
-The forces of friction at all points of the contact of a flank, with the signs of sliding that they have at each
-place of the mesh cycle, make one force on the pinion and two moments about the axes. Each is the elastic force
-of the flank times a ratio that depends on the place in the mesh cycle alone. Vibration changes the force, but
-not the direction of sliding.
+The forces of friction at all points of the contact of a flank, with the signs of sliding that they have at
+each place of the mesh cycle, make one force on the pinion and two moments about the axes. Each is the
+elastic force of the flank times a ratio that depends on the place in the mesh cycle alone. Vibration changes
+the force, but not the direction of sliding.
 
 The machine turns evenly: the output gives way by the torque that friction takes, at every instant.
 """
@@ -21,15 +21,15 @@ Array = NDArray[np.float64]
 PARTS = ("tangential", "along_pinion_axis", "along_gear_axis", "pinion_lever", "face_gear_lever")
 """Ratios of friction to the elastic force of a flank.
 
-Force on the pinion along the tangent of the face gear, along the pinion's axis (away from the gear's) and along
-the gear's axis, in the frame of the upper gear's mesh, and the moments on pinion and face gear about their own
-axes, positive as they turn, over the arms of the elastic force.
+Force on the pinion along the tangent of the face gear, along the pinion's axis (away from the gear's) and
+along the gear's axis, in the frame of the upper gear's mesh, and the moments on pinion and face gear about
+their own axes, positive as they turn, over the arms of the elastic force.
 """
 
 
 @dataclass(frozen=True, eq=False)
 class MeshFriction:
-    """Fourier series (meshes, PARTS, 2, orders) of the ratios over the reference's mesh cycle, sine part first.
+    """Fourier series (meshes, PARTS, 2, orders) of the ratios, sine part first, over the reference's cycle.
 
     They are those of the drive flank of each mesh without its lag.
     """
@@ -39,8 +39,8 @@ class MeshFriction:
     def loss(self, phases: Array, cycles: Array, forces: Array) -> Array:
         """Force (K, meshes) that friction takes along the base circles, N: loss over their speed.
 
-        phases (meshes,): lag of each mesh; cycles (K,) in mesh periods; forces (K, meshes): elastic ones, those of
-        the drive flank positive. The machine turns evenly.
+        phases (meshes,): lag of each mesh; cycles (K,) in mesh periods; forces (K, meshes): elastic ones,
+        those of the drive flank positive. The machine turns evenly.
         """
         levers = -flank_ratios(self.ratios, phases)[:, 3:].sum(axis=1)
         drive, back = np.split(stacked_values(levers, cycles), 2, axis=1)
@@ -50,8 +50,8 @@ class MeshFriction:
 def friction_rows(layout: Layout, at_output: bool = True) -> Array:
     """Directions in which the PARTS act on the bodies, (meshes, PARTS, dof), N/N and m for moments.
 
-    With `at_output` each moment is met by one on the output, so that none turns the machine as a whole. A pinion
-    without a bearing along its axis stays where it is. Equal for both flanks.
+    With `at_output` each moment is met by one on the output, so that none turns the machine as a whole. A
+    pinion without a bearing along its axis stays where it is. Equal for both flanks.
     """
     rows = np.zeros((len(layout.meshes), len(PARTS), layout.dof))
     tilted = {g: DOF_PER_BODY * len(layout.bodies) + 2 * k for k, g in enumerate(layout.tilting)}
@@ -75,8 +75,9 @@ def friction_rows(layout: Layout, at_output: bool = True) -> Array:
 def flank_ratios(ratios: Array, phases: Array) -> Array:
     """Series (2 meshes, PARTS, 2, orders) of all drive flanks, then all back flanks, each with its lag.
 
-    phases (meshes,) in mesh periods. The back flank is the mirror image of the drive flank that turns the other
-    way: its tangential force and its moments are those at the mirrored place, the other parts are opposite.
+    phases (meshes,) in mesh periods. The back flank is the mirror image of the drive flank that turns the
+    other way: its tangential force and its moments are those at the mirrored place, the other parts are
+    opposite.
     """
     mirror = np.array([1.0, -1.0, -1.0, 1.0, 1.0])[:, None, None] * np.array([-1.0, 1.0])[:, None]
     both = np.concatenate([ratios, ratios * mirror])

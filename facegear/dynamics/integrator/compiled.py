@@ -153,7 +153,9 @@ def _packed(system: System) -> Packed:
 
 def _weights(system: System) -> Array:
     """Largest motion along a mesh or a force of friction that one unit of each coordinate makes, (n,)."""
-    rows = [system.mesh_jacobian] if system.rubbing is None else [system.mesh_jacobian, system.rubbing.directions]
+    rows = [system.mesh_jacobian]
+    if system.rubbing is not None:
+        rows.append(system.rubbing.directions)
     return np.asarray(np.abs(np.concatenate(rows)).max(axis=0))
 
 

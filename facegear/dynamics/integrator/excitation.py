@@ -1,4 +1,4 @@
-"""Taylor coefficients of what drives the motion: the contact law's phase, friction, transmission error, load."""
+"""Taylor coefficients of what drives the motion: phase of the law, friction, transmission error, load."""
 
 from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.kernel import inlined
@@ -10,7 +10,7 @@ from facegear.mesh_law.terms import phase_terms
 
 @inlined
 def excitation(packed: Packed, work: Work, s: float, piece: int, rows: int) -> None:
-    """The first `rows` coefficients of law, friction, error and load at s, in stretch `piece` between two breaks."""
+    """The first `rows` coefficients of law, friction, error, load at s, in stretch `piece` between breaks."""
     ahead = s - packed.breaks[piece] if packed.breaks.size > 0 else 0.0
     phase_terms(packed.law, work.law, work.fourier, s, ahead, piece, rows)
     rubbing_terms(packed.rubbing, work.rubbing, work.fourier, s, rows)

@@ -1,10 +1,10 @@
 """Friction of flanks: forces along directions of their own, each a ratio times the elastic force of a flank.
 
-The ratio is a Fourier series in the mesh phase. The force is the law's, and goes to zero with slope zero or more
-at the edge: it is continuous and depends on no velocity, so that friction shears no tangent and leaves the
-divergence alone. A flank whose spring and damper together only push is rubbed by its spring until it parts.
-Machines without friction pass None for both friction and series; what stands behind that question is then not
-compiled.
+The ratio is a Fourier series in the mesh phase. The force is the law's, and goes to zero with slope zero or
+more at the edge: it is continuous and depends on no velocity, so that friction shears no tangent and leaves
+the divergence alone. A flank whose spring and damper together only push is rubbed by its spring until it
+parts. Machines without friction pass None for both friction and series; what stands behind that question is
+then not compiled.
 """
 
 import numpy as np
@@ -40,7 +40,13 @@ def keep_elastic(series: RubbingSeries | None, side: Array, elastic: Lanes, i: i
 
 @inlined
 def rub(
-    rubbing: Rubbing | None, series: RubbingSeries | None, side: Array, i: int, factor: float, y: Array, row: int
+    rubbing: Rubbing | None,
+    series: RubbingSeries | None,
+    side: Array,
+    i: int,
+    factor: float,
+    y: Array,
+    row: int,
 ) -> None:
     """Add coefficient i of the forces of friction, times the factor, to a row of the coordinates."""
     if rubbing is None or series is None:

@@ -4,8 +4,8 @@
 
 x = d - upper above `upper`, d - lower below `lower`, zero between. e and load are Fourier series in the mesh
 phase s = 2 pi t / T, the law is any of facegear.mesh_law. Bearings with play are rings (rings.py). Friction
-adds forces in directions of its own, which are Fourier series times the law's forces (rubbing.py). One degree of
-freedom is a case like any other.
+adds forces in directions of its own, which are Fourier series times the law's forces (rubbing.py). One
+degree of freedom is a case like any other.
 """
 
 from dataclasses import dataclass, field
@@ -32,7 +32,8 @@ class System:
     `two_flanks`: the m are one-sided flanks, all drive flanks, then the back flanks of the same meshes.
     `push_only`: spring and damper of a contact together never pull, F >= 0, damping acts in contact only. The
     last 3 R of the m rows belong to the rings: x, y of the body, and a row of zeros. ring_stiffness and
-    ring_play (R,); ring_lag: damping over stiffness of the rings, s. rubbing: friction of the flanks, or none.
+    ring_play (R,); ring_lag: damping over stiffness of the rings, s. rubbing: friction of the flanks, or
+    none.
     """
 
     mesh_jacobian: Array

@@ -55,7 +55,8 @@ class Work(NamedTuple):
     fourier and kinds are used by Fourier series. bernstein holds the deflections' Bernstein coefficients over
     the step, least and most their bounds. block, block_deflection (rows, coordinates or meshes times ABREAST)
     and block_force: of tangents side by side. nodes: of the rule that integrates products of polynomials.
-    rings: None without play; rubbing: None without friction. Tables that hang on sizes alone (conversion, nodes) are shared and only read.
+    rings: None without play; rubbing: None without friction. Tables that hang on sizes alone (conversion,
+    nodes) are shared and only read.
     """
 
     order: int

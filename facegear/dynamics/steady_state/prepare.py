@@ -19,8 +19,8 @@ from facegear.mesh_law.linear import LinearLaw
 def prepare(play: bool = False, friction: bool = False) -> None:
     """Load the stored machine code of the time integration, or compile and store it while others wait.
 
-    play, friction: that of machines with play in their bearings and with friction; the law is linear. Without this, jobs that start at
-    once on a fresh checkout each compile the same for several seconds.
+    play, friction: that of machines with play in their bearings and with friction; the law is linear.
+    Without this, jobs that start at once on a fresh checkout each compile the same for several seconds.
     """
     folder = stored_in(run_periods)
     if folder is None:

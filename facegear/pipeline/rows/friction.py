@@ -1,7 +1,7 @@
 """Friction, heat and film."""
 
 from facegear.pipeline import asked
-from facegear.pipeline.rows.shared import HARMONICS, MACHINE, PAIR, SPEED
+from facegear.pipeline.rows.shared import MACHINE, MOVING, PAIR, SPEED
 from facegear.pipeline.stage import Figures, File, From, Stage, from_stage
 
 PRESSED = from_stage("contact", "ltca", "pressure")
@@ -48,7 +48,8 @@ ROWS = (
         section="lubrication",
         upstream={
             **PRESSED,
-            **HARMONICS,
+            **MOVING,
+            "response": From("dynamics_response", "response", when=asked.friction_in_motion),
             "duty_loads": From("duty_loads", "duty_loads", when=asked.machine_loads),
         },
         files={

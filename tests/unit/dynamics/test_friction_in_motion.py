@@ -10,11 +10,11 @@ from scipy.integrate import solve_ivp
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.trajectory import record
-from facegear.dynamics.motion import Settings, State
+from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
 from facegear.harmonics.series import stacked_values
-from facegear.transmission.layout import Body, FaceGear, MeshKinematics, Role, Side, Tilt
+from facegear.transmission.layout import FaceGear, MeshKinematics, Role, Side, Tilt
 from facegear.transmission.machine import OpenFlanks, mesh_frequency
 from facegear.transmission.matrices import bearing_matrix, flank_directions, mass_diagonal, rigid_rotation
 from facegear.transmission.mesh_friction import PARTS, MeshFriction, flank_ratios, friction_rows
@@ -68,7 +68,10 @@ def test_the_back_flank_rubs_as_the_mirror_image_that_turns_the_other_way():
     both = flank_ratios(ratios, np.zeros(4))
     cycles = np.array([0.13, 0.4, 0.77])
     for part, sign in enumerate((1.0, -1.0, -1.0, 1.0, 1.0)):
-        here, mirrored = (stacked_values(both[half, part], at) for half, at in ((slice(4, 8), cycles), (slice(0, 4), -cycles)))
+        here, mirrored = (
+            stacked_values(both[half, part], at)
+            for half, at in ((slice(4, 8), cycles), (slice(0, 4), -cycles))
+        )
         np.testing.assert_allclose(here, sign * mirrored, atol=1e-15)
 
 
@@ -174,7 +177,9 @@ def test_power_in_less_power_out_less_friction_less_damping_is_the_change_of_ene
         cycles = phases / TAU
         orders = np.arange(errors.shape[2])
         e = stacked_values(errors, cycles)
-        e_rate = omega * stacked_values(np.stack([-orders * errors[:, 1], orders * errors[:, 0]], axis=1), cycles)
+        e_rate = omega * stacked_values(
+            np.stack([-orders * errors[:, 1], orders * errors[:, 0]], axis=1), cycles
+        )
         return q, rate, cycles, q @ jacobian.T - e - system.upper, rate @ jacobian.T - e_rate, e_rate
 
     def energy(q, rate, cycles, over):
@@ -189,7 +194,7 @@ def test_power_in_less_power_out_less_friction_less_damping_is_the_change_of_ene
     for step in range(run.starts.size):
         length = run.lengths[step]
         phases = run.starts[step] + 0.5 * length * (1.0 + nodes)
-        q, rate, cycles, over, over_rate, e_rate = instants(phases, step, run.coordinates[step])
+        _, rate, cycles, over, over_rate, e_rate = instants(phases, step, run.coordinates[step])
         touching = run.states[step] > 0
         over = np.where(touching, over, 0.0)
         force = system.law.stiffness(cycles) * over
@@ -200,7 +205,9 @@ def test_power_in_less_power_out_less_friction_less_damping_is_the_change_of_ene
         torque = np.tile(machine.applied, (len(cycles), 1))
         torque[:, output] -= layout.gear_arm * on_each[:, :, 3:].sum(axis=(1, 2))
         ahead = 1e-6
-        stiffer = (system.law.stiffness(cycles + ahead) - system.law.stiffness(cycles - ahead)) / (2.0 * ahead)
+        stiffer = (system.law.stiffness(cycles + ahead) - system.law.stiffness(cycles - ahead)) / (
+            2.0 * ahead
+        )
         powers = {
             "power": (torque * (turn + rate)).sum(axis=1),
             "friction": -(rubbing * (turn + rate)).sum(axis=1),
