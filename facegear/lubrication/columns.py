@@ -63,7 +63,7 @@ EXCITATION_COLUMNS = (
     "pinion_lever_mm",
     "face_gear_lever_mm",
 )
-"""Friction over the normal force of the mesh: forces on the pinion, moments on pinion and face gear."""
+"""Friction over the force of the mesh: forces on the pinion, moments on pinion and face gear."""
 
 LIMIT_COLUMNS = ("friction_model", "limit", "torque_n_m", "loss_outside_percent")
 

@@ -1,4 +1,4 @@
-"""Friction of a mesh as a disturbance of the motion: force and moments over the normal force.
+"""Friction of a mesh as a disturbance of the motion: its force and moments over the force of the mesh.
 
 At every loaded hat friction acts on the pinion against the sliding velocity. The sums over the contact at
 each position of a pitch keep the sign that sliding has there: it turns at the pitch line.
@@ -25,7 +25,7 @@ def friction_ratios(design: PairDesign, hats: HatSlip, friction: Array) -> Array
 
     Force on the pinion along x, y and -z of the mesh frame (tangential, along the pinion's axis, along the
     gear's axis), the moment on the pinion about its axis and that on the face gear about its own, m; over
-    the sum of the normal forces.
+    the force along the line of action that carries the torque.
     """
     positions, row = np.unique(hats.position, return_inverse=True)
     sliding = hats.sliding
@@ -39,7 +39,7 @@ def friction_ratios(design: PairDesign, hats: HatSlip, friction: Array) -> Array
     parts = np.stack([force[:, 0], force[:, 1], -force[:, 2], on_pinion, on_gear], axis=1)
     summed = np.zeros((positions.size, 5))
     np.add.at(summed, row, parts)
-    return summed / np.bincount(row, weights=hats.force)[:, None]
+    return summed * design.pinion_base_radius / float(hats.torque[0])
 
 
 def excitation_table(pair: LoadedPair, states: Sequence[Running], design: PairDesign) -> pd.DataFrame:

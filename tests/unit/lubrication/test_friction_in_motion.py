@@ -77,5 +77,6 @@ def test_loss_only_leaves_the_motion_as_it_is_without_lubrication_to_the_bit(gea
 
 
 def test_friction_in_motion_is_refused_for_meshes_as_printed(gearbox):
-    with pytest.raises(FacegearError, match=r"lubrication.friction.effect = 'excitation': must be loss_only"):
-        running(gearbox, "excitation", **{"transmission.mesh_kinematics": "printed"})
+    printed = {"transmission.mesh_kinematics": "printed", "transmission.face_gear.mesh_radius_mm": 262.5}
+    with pytest.raises(FacegearError, match=r'lubrication.friction.effect = "excitation": must be loss_only'):
+        running(gearbox, "excitation", **printed)

@@ -110,8 +110,8 @@ def right_side(model, omega):
 
 def test_rubbing_flanks_move_as_scipy_says_through_parting_and_both_flanks():
     model = build_model(rubbing_machine(torque=60.0, backlash=20e-6))
-    omega = TAU * 2000.0
-    start = kicked(model, 0.3)
+    omega = TAU * 6000.0
+    start = kicked(model, 0.6)
     run = record(model.system, omega, start, 1, Settings(tolerance=1e-13))
     assert (run.states == 0).any() and (run.states[:, :4] == 1).any() and (run.states[:, 4:] == 1).any()
     phases = np.linspace(0.0, TAU, 11)
@@ -122,8 +122,8 @@ def test_rubbing_flanks_move_as_scipy_says_through_parting_and_both_flanks():
         np.concatenate([start.displacement, start.velocity]),
         "DOP853",
         phases / omega,
-        rtol=1e-11,
-        atol=1e-13 / scale,
+        rtol=1e-10,
+        atol=1e-12 / scale,
         max_step=2e-6,
     )
     gap = np.abs(found.y[: model.system.size].T - run.at(phases)[0]).max() * scale
