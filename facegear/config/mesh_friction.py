@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
+from facegear.arrays import Array
 from facegear.harmonics.fit import fit_harmonics
 from facegear.harmonics.series import stacked
 from facegear.lubrication.columns import EXCITATION_COLUMNS
@@ -14,7 +14,6 @@ from facegear.transmission.machine import Machine
 from facegear.transmission.mesh_friction import MeshFriction
 from facegear.transmission.statics import mean_equilibrium
 
-Array = NDArray[np.float64]
 ORDERS = 8
 """Harmonics of the mesh frequency that friction excites; the mean is exact."""
 

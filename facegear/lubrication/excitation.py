@@ -8,16 +8,14 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.geometry.design import PairDesign
 from facegear.lubrication.columns import EXCITATION_COLUMNS
 from facegear.lubrication.heat import Running
 from facegear.lubrication.kinematics import spins
 from facegear.lubrication.loss import HatSlip
 from facegear.lubrication.machine_loss import LoadedPair
-
-Array = NDArray[np.float64]
 
 
 def friction_ratios(design: PairDesign, hats: HatSlip, friction: Array) -> Array:

@@ -11,12 +11,10 @@ The machine turns evenly: the output gives way by the torque that friction takes
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from facegear.arrays import Array
 from facegear.harmonics.series import Harmonics, stacked_values
 from facegear.transmission.layout import DOF_PER_BODY, Layout, Side
-
-Array = NDArray[np.float64]
 
 PARTS = ("tangential", "along_pinion_axis", "along_gear_axis", "pinion_lever", "face_gear_lever")
 """Ratios of friction to the elastic force of a flank.

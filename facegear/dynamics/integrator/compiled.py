@@ -34,7 +34,7 @@ class Rubbing(NamedTuple):
     """
 
     number: int
-    flank: NDArray[np.int64]
+    flank: Integers
     ratios: Array
     directions: Array
 

@@ -7,17 +7,13 @@ parts. Machines without friction pass None for both friction and series; what st
 then not compiled.
 """
 
-import numpy as np
-from numpy.typing import NDArray
-
+from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import Rubbing
 from facegear.dynamics.integrator.kernel import inlined
 from facegear.dynamics.integrator.work import RubbingSeries
 from facegear.machine_code.fourier import FourierScratch, fourier_terms
 from facegear.machine_code.lanes import LANES, load, magnitude, multiply, multiply_add, splat, store
 from facegear.mesh_law.terms import Lanes
-
-Array = NDArray[np.float64]
 
 
 @inlined

@@ -78,7 +78,7 @@ class FlankRubbing:
     flank (K,) numbers of the flanks, ratios (K, 2, harmonics + 1) Fourier series, directions (K, n).
     """
 
-    flank: NDArray[np.int64]
+    flank: Integers
     ratios: Array
     directions: Array
 
