@@ -6,7 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 from numba import njit
 
-from facegear.arrays import Array, Integers, Mask
+from facegear.arrays import AnyArray, Array, Integers, Mask
 from facegear.contact.bodies.surface import face_functions
 from facegear.contact.options import Refinement
 
@@ -79,7 +79,9 @@ def hat_averages(
 
 
 @njit(cache=True)
-def _hat_averages(hats, values, area, least):  # type: ignore[no-untyped-def]
+def _hat_averages(
+    hats: Integers, values: Array, area: Array, least: Array
+) -> tuple[Integers, Integers, Array, Integers]:
     covered, points = np.zeros(least.size), np.zeros(least.size, np.int64)
     for q in range(hats.shape[0]):
         for h in range(hats.shape[1]):
@@ -148,7 +150,9 @@ class Lattice:
 
 
 @njit(cache=True)
-def _averaged(pointer, index, weight, nodes, values, count):  # type: ignore[no-untyped-def]
+def _averaged(
+    pointer: Integers, index: Integers, weight: Array, nodes: Integers, values: Array, count: int
+) -> tuple[AnyArray, Array, AnyArray]:
     """Columns, values and row ends of averages over points times rows of `values` at the columns `nodes`."""
     width = nodes.shape[1]
     columns, result = np.empty(width * index.size, np.int32), np.empty(width * index.size)

@@ -1,12 +1,17 @@
 """Compliance between candidate hats of a position: both bodies, own teeth and neighbours."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import scipy.sparse as sp
 from numba import njit
 
-from facegear.arrays import Array
+from facegear.arrays import AnyArray, Array, Integers
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.candidates import Candidates
+
+Sparse = tuple[AnyArray, AnyArray, AnyArray]
+"""Row ends, columns and values of a sparse matrix in rows."""
 
 
 def influence_matrix(
@@ -50,7 +55,13 @@ def displacement(
     return np.concatenate([_approach(here, loads, pinion, gear, coupled) for here in seen])
 
 
-def _approach(here, loads, pinion, gear, coupled):  # type: ignore[no-untyped-def]
+def _approach(
+    here: Candidates,
+    loads: Sequence[tuple[Candidates, Array]],
+    pinion: FlankCompliance,
+    gear: FlankCompliance,
+    coupled: bool,
+) -> Array:
     total = np.zeros((len(here.hats), loads[0][1].shape[1]))
     for pair, force in loads:
         teeth_apart = here.tooth - pair.tooth
@@ -76,7 +87,7 @@ def _response(
 
 
 @njit(cache=True)
-def _sparse_response(seen, compliance, loads, forces):  # type: ignore[no-untyped-def]
+def _sparse_response(seen: Sparse, compliance: Array, loads: Sparse, forces: Array) -> Array:
     loaded, slot = _used(loads[1], compliance.shape[1])
     nodal = np.zeros((loaded.size, forces.shape[1]))
     for i in range(forces.shape[0]):
@@ -99,7 +110,7 @@ def product(first: sp.csr_matrix, compliance: Array | None, second: sp.csr_matri
 
 
 @njit(cache=True)
-def _sparse_product(first, compliance, second):  # type: ignore[no-untyped-def]
+def _sparse_product(first: Sparse, compliance: Array, second: Sparse) -> Array:
     rows, row_slot = _used(first[1], compliance.shape[0])
     columns, column_slot = _used(second[1], compliance.shape[1])
     part = _gathered(compliance, rows, columns)
@@ -108,7 +119,7 @@ def _sparse_product(first, compliance, second):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _gathered(dense, rows, columns):  # type: ignore[no-untyped-def]
+def _gathered(dense: Array, rows: Integers, columns: Integers) -> Array:
     """dense[np.ix_(rows, columns)], contiguous."""
     part = np.empty((rows.size, columns.size))
     for a in range(rows.size):
@@ -119,7 +130,7 @@ def _gathered(dense, rows, columns):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _used(indices, count):  # type: ignore[no-untyped-def]
+def _used(indices: Integers, count: int) -> tuple[Integers, Integers]:
     """The distinct indices, rising, and the index of each among them."""
     mark = np.zeros(count, np.bool_)
     for index in indices:
@@ -131,7 +142,7 @@ def _used(indices, count):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _averaged(pointer, index, weight, dense):  # type: ignore[no-untyped-def]
+def _averaged(pointer: Integers, index: Integers, weight: Array, dense: Array) -> Array:
     """Sparse rows times a dense matrix."""
     result = np.zeros((pointer.size - 1, dense.shape[1]))
     for i in range(pointer.size - 1):

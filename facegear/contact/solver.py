@@ -99,7 +99,7 @@ class _Bonded:
     slope: float
 
 
-def _bonded(compliance, gap, lever_arm, torque, touching):  # type: ignore[no-untyped-def]
+def _bonded(compliance: Array, gap: Array, lever_arm: Array, torque: float, touching: Mask) -> _Bonded:
     active = np.flatnonzero(touching)
     block = compliance[np.ix_(active, active)]
     factor = sl.cho_factor(block, lower=True, check_finite=False)
@@ -120,7 +120,9 @@ def _bonded(compliance, gap, lever_arm, torque, touching):  # type: ignore[no-un
     )
 
 
-def _checked(compliance, gap, lever_arm, torque, bonded, steps, where):  # type: ignore[no-untyped-def]
+def _checked(
+    compliance: Array, gap: Array, lever_arm: Array, torque: float, bonded: _Bonded, steps: int, where: str
+) -> ContactSolution:
     """The result after two steps of iterative refinement, its residual tested."""
     active, turning = bonded.active, bonded.turning
     force, rotation = bonded.force[active], bonded.rotation
@@ -168,7 +170,7 @@ def kkt_residual(
     )
 
 
-def _feasible(gap, lever_arm, torque, force):  # type: ignore[no-untyped-def]
+def _feasible(gap: Array, lever_arm: Array, torque: float, force: Array) -> Array:
     """Forces without tension that carry the torque: those given, or one where the gap closes first."""
     pressing = np.maximum(force, 0.0)
     if lever_arm @ pressing > 0.0:
@@ -180,7 +182,9 @@ def _feasible(gap, lever_arm, torque, force):  # type: ignore[no-untyped-def]
     return alone
 
 
-def _exchange(compliance, gap, lever_arm, torque, force, where):  # type: ignore[no-untyped-def]
+def _exchange(
+    compliance: Array, gap: Array, lever_arm: Array, torque: float, force: Array, where: str
+) -> ContactSolution:
     """One point at a time from feasible forces, energy falling at every step, hence finite."""
     active = force > 0.0
     limit = 20 * gap.size + 100

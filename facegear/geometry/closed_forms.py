@@ -5,10 +5,17 @@ Symbols as in `face_gear`; base is the shaper's base radius (m), ratio its tooth
 its half space angle (rad), lift the distance (m) of the axes' planes. Right side of tooth 0, m and rad.
 """
 
+from typing import Any
+
 import numpy as np
 
+Numbers = Any
+"""A single number, or an array of them; floats where a function is compiled."""
 
-def flank_frame(base, ratio, space, lift, roll, psi):  # type: ignore[no-untyped-def]
+
+def flank_frame(
+    base: float, ratio: float, space: float, lift: float, roll: Numbers, psi: Numbers
+) -> tuple[Numbers, ...]:
     """Point x, y, z of the flank, and its derivatives with respect to roll and to psi."""
     turn = ratio * (psi - roll - space)
     ct, st, cp, sp = np.cos(turn), np.sin(turn), np.cos(psi), np.sin(psi)
@@ -20,12 +27,14 @@ def flank_frame(base, ratio, space, lift, roll, psi):  # type: ignore[no-untyped
     return x, y, z, x_roll, y_roll, z_roll, x_psi, y_psi, p
 
 
-def normal(turn, psi):  # type: ignore[no-untyped-def]
+def normal(turn: Numbers, psi: Numbers) -> tuple[Numbers, Numbers, Numbers]:
     """Outward unit normal x, y, z of slope psi where the gear has turned by `turn` since it was generated."""
     return np.cos(psi) * np.cos(turn), np.cos(psi) * np.sin(turn), np.sin(psi)
 
 
-def fillet_frame(centre, rounding, ratio, lift, edge_start, psi, q):  # type: ignore[no-untyped-def]
+def fillet_frame(
+    centre: float, rounding: float, ratio: float, lift: float, edge_start: float, psi: Numbers, q: Numbers
+) -> tuple[Numbers, ...]:
     """Point x, y, z of the fillet, and its derivatives with respect to psi and to q.
 
     centre: distance (m) of the centre of the shaper's tip rounding from its axis; edge_start: where that
@@ -49,25 +58,29 @@ def fillet_frame(centre, rounding, ratio, lift, edge_start, psi, q):  # type: ig
     return x, y, z, x_psi, y_psi, z_psi, x_q, y_q, z_q
 
 
-def radius_at_roll(base, ratio, radius, roll, psi):  # type: ignore[no-untyped-def]
+def radius_at_roll(
+    base: float, ratio: float, radius: Numbers, roll: Numbers, psi: Numbers
+) -> tuple[Numbers, Numbers]:
     """Square of the flank's radius at roll and psi less that of `radius` (m2), and its slope by psi."""
     p, q = base * (np.sin(psi) - roll * np.cos(psi)), base / (ratio * np.cos(psi))
     slope = 2 * p * base * (np.cos(psi) + roll * np.sin(psi)) + 2 * q * q * np.tan(psi)
     return p * p + q * q - radius * radius, slope
 
 
-def radius_at_height(base, ratio, radius, height, psi):  # type: ignore[no-untyped-def]
+def radius_at_height(
+    base: float, ratio: float, radius: Numbers, height: Numbers, psi: Numbers
+) -> tuple[Numbers, Numbers]:
     """The same at a height, taken from the lift downwards and over the base radius."""
     p, q = base * (1 - height * np.cos(psi)) / np.sin(psi), base / (ratio * np.cos(psi))
     p_psi = base * (height - np.cos(psi)) / np.sin(psi) ** 2
     return p * p + q * q - radius * radius, 2 * p * p_psi + 2 * q * q * np.tan(psi)
 
 
-def roll_at_height(height, psi):  # type: ignore[no-untyped-def]
+def roll_at_height(height: Numbers, psi: Numbers) -> Numbers:
     """Roll angle where the flank has a height, taken as in `radius_at_height`."""
     return (height - np.cos(psi)) / np.sin(psi)
 
 
-def first_psi(base, ratio, radius):  # type: ignore[no-untyped-def]
+def first_psi(base: float, ratio: float, radius: Numbers) -> Numbers:
     """psi where the contact path's pressure angle belongs to a gear radius: a start for Newton's method."""
     return np.arccos(base / (ratio * radius))

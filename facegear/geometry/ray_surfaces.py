@@ -7,13 +7,19 @@ point and n a unit direction.
 
 from math import atan2, hypot, inf, isfinite, isnan, nan, pi, sqrt
 
+from facegear.arrays import Array
 from facegear.geometry import closed_forms
+from facegear.geometry.ray_blank import Blank
 from facegear.machine_code.compiler import for_callers
 
 NEWTON_STEPS = 40
 LARGEST_STEP = 0.2
 PSI_STEPS = 60
 BISECTIONS = 6
+
+FlankCut = tuple[float, float, float, float, bool]
+"""Distance to the flank, and to the flank continued beyond its edges; roll and psi there; whether Newton's
+method converged."""
 
 inlined = for_callers()
 
@@ -27,7 +33,7 @@ first_psi = inlined(closed_forms.first_psi)
 
 
 @inlined
-def cut_flank(blank, p, n, inside):  # type: ignore[no-untyped-def]
+def cut_flank(blank: Blank, p: Array, n: Array, inside: float) -> FlankCut:
     """From the generating section that the point lies in."""
     cosine = blank.base / (blank.ratio * inside)
     sine = sqrt(max(1 - cosine * cosine, 1e-12))
@@ -37,7 +43,7 @@ def cut_flank(blank, p, n, inside):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def cut_flank_from(blank, p, n, roll, psi):  # type: ignore[no-untyped-def]
+def cut_flank_from(blank: Blank, p: Array, n: Array, roll: float, psi: float) -> FlankCut:
     roll, psi, distance, x, y, z, done = _newton(blank, False, p, n, roll, psi)
     nx, ny, nz = surface_normal(blank.ratio * (psi - roll - blank.space), psi)
     facing = n[0] * nx + n[1] * ny + n[2] * nz
@@ -48,7 +54,7 @@ def cut_flank_from(blank, p, n, roll, psi):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def cut_fillet(blank, p, n, radius):  # type: ignore[no-untyped-def]
+def cut_fillet(blank: Blank, p: Array, n: Array, radius: float) -> tuple[float, float, float]:
     """Distance, slope psi of the fillet's normal and gear radius where the ray meets it, inf beside it."""
     psi = _psi_at_height(blank, radius, p[2])
     psi, _, distance, x, y, _, done = _newton(blank, True, p, n, psi, radius)
@@ -62,7 +68,7 @@ def cut_fillet(blank, p, n, radius):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _psi_at_height(blank, q, z):  # type: ignore[no-untyped-def]
+def _psi_at_height(blank: Blank, q: float, z: float) -> float:
     """psi on the fillet's section near a height, by bisection to a few degrees."""
     low, high = blank.fillet_start, 0.5 * pi
     for _ in range(BISECTIONS):
@@ -75,7 +81,7 @@ def _psi_at_height(blank, q, z):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def cut_land(blank, p, n, height):  # type: ignore[no-untyped-def]
+def cut_land(blank: Blank, p: Array, n: Array, height: float) -> tuple[float, float, float]:
     """Distance, gear angle and radius where the ray meets the plane, inf beside the blank."""
     if not n[2] < -1e-9:
         return inf, nan, nan
@@ -88,7 +94,7 @@ def cut_land(blank, p, n, height):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def tip_angle(blank, radius):  # type: ignore[no-untyped-def]
+def tip_angle(blank: Blank, radius: float) -> float:
     """Gear angle of the tip edge at a gear radius."""
     height = (blank.lift - blank.tip_plane) / blank.base
     psi = first_psi(blank.base, blank.ratio, radius)
@@ -105,7 +111,7 @@ def tip_angle(blank, radius):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _psi_at(blank, radius, roll):  # type: ignore[no-untyped-def]
+def _psi_at(blank: Blank, radius: float, roll: float) -> float:
     psi = first_psi(blank.base, blank.ratio, radius)
     for _ in range(PSI_STEPS):
         value, slope = radius_at_roll(blank.base, blank.ratio, radius, roll, psi)
@@ -117,12 +123,12 @@ def _psi_at(blank, radius, roll):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _flank_frame(blank, roll, psi):  # type: ignore[no-untyped-def]
+def _flank_frame(blank: Blank, roll: float, psi: float) -> tuple[float, ...]:
     return flank_frame(blank.base, blank.ratio, blank.space, blank.lift, roll, psi)
 
 
 @inlined
-def _fillet_frame(blank, psi, q):  # type: ignore[no-untyped-def]
+def _fillet_frame(blank: Blank, psi: float, q: float) -> tuple[float, ...]:
     """Point and derivatives with respect to psi and q; nan where the shaper's tip generates nothing."""
     return fillet_frame(
         blank.tip_centre, blank.tip_rounding, blank.ratio, blank.lift, blank.edge_start, psi, q
@@ -130,7 +136,9 @@ def _fillet_frame(blank, psi, q):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _newton(blank, fillet, p, n, a, b):  # type: ignore[no-untyped-def]
+def _newton(
+    blank: Blank, fillet: bool, p: Array, n: Array, a: float, b: float
+) -> tuple[float, float, float, float, float, float, bool]:
     """Cut a ray with X(a, b): a, b, distance along the ray, the point hit, and whether it converged."""
     length = hypot(n[0], n[2])
     e0, e2 = n[2] / length, -n[0] / length

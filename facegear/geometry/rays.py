@@ -7,7 +7,10 @@ from math import hypot, inf, isnan, nan
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
+from facegear.arrays import Array, Mask
+from facegear.geometry.ray_blank import Blank
 from facegear.geometry.ray_surfaces import (
     cut_fillet,
     cut_flank,
@@ -22,7 +25,18 @@ NONE, FLANK, FILLET, TIP_LAND, ROOT_LAND = range(5)
 
 
 @compiler(Path(__file__).parent)
-def cut(blank, position, normal, search_radius, points, normals, rolls, psis, inner, spacing):  # type: ignore[no-untyped-def]
+def cut(
+    blank: Blank,
+    position: Array,
+    normal: Array,
+    search_radius: float,
+    points: Array,
+    normals: Array,
+    rolls: Array,
+    psis: Array,
+    inner: Mask,
+    spacing: float,
+) -> tuple[Array, NDArray[np.int8], Array, Array, Array, int]:
     """Cut rays (n, 3), unit `normal` (n, 3), with the gear, as far as `search_radius` along them.
 
     `points`, `normals` (m, 3), `rolls`, `psis`, `inner` (m,) and `spacing` are a sample of the flank: a
@@ -77,7 +91,7 @@ def cut(blank, position, normal, search_radius, points, normals, rolls, psis, in
 
 
 @inlined
-def _nearest(p, n, search_radius, points, normals, spacing):  # type: ignore[no-untyped-def]
+def _nearest(p: Array, n: Array, search_radius: float, points: Array, normals: Array, spacing: float) -> int:
     """The sampled flank point that the ray passes closest, if it does so within `spacing`, else -1."""
     least, best = spacing * spacing, -1
     for k in range(points.shape[0]):

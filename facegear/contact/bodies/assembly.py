@@ -54,7 +54,7 @@ def element_stiffness(basis: Basis, material: Material) -> Array:
 
 
 @njit(cache=True)
-def _scatter(elements, blocks, indptr, indices, data):  # type: ignore[no-untyped-def]
+def _scatter(elements: Integers, blocks: Array, indptr: Integers, indices: Integers, data: Array) -> None:
     nodes = elements.shape[1]
     for element in range(elements.shape[0]):
         for a in range(nodes):

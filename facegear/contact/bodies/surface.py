@@ -39,7 +39,7 @@ def face_functions(
 
 
 @njit(cache=True)
-def _faces(coordinates, rows, columns, steps):  # type: ignore[no-untyped-def]
+def _faces(coordinates: Array, rows: int, columns: int, steps: Integers) -> tuple[Integers, Array, Array]:
     """`face_functions` of elements whose nodes stand `steps` (a, 2) from their corner."""
     count, width, size = coordinates.shape[0], steps.shape[0], steps.max()
     nodes = np.empty((count, width), np.int64)
@@ -61,7 +61,7 @@ def _faces(coordinates, rows, columns, steps):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _interval(x, degree, value, slope):  # type: ignore[no-untyped-def]
+def _interval(x: float, degree: int, value: Array, slope: Array) -> None:
     """Fill in values and slopes of the Lagrange polynomials of an interval at x in 0..1."""
     if degree == 1:
         value[0], value[1] = 1.0 - x, x
