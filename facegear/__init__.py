@@ -9,10 +9,22 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from facegear.errors import ConfigError, ConfigErrors, CorruptFile, FacegearError, MissingExtra, NotConverged
+
 if TYPE_CHECKING:
     from facegear.gearbox import Gearbox, example, load
 
-__all__ = ["Gearbox", "example", "load"]
+__all__ = [
+    "ConfigError",
+    "ConfigErrors",
+    "CorruptFile",
+    "FacegearError",
+    "Gearbox",
+    "MissingExtra",
+    "NotConverged",
+    "example",
+    "load",
+]
 
 
 def __getattr__(name: str) -> Any:

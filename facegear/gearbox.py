@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from facegear.config.cases import changed_config
-from facegear.config.load import load_config
+from facegear.config.load import config_of, load_config, plain
 from facegear.config.model import Config, resolved
 from facegear.errors import ConfigError, extras_named
 from facegear.results.chain import Chain
@@ -39,18 +39,25 @@ HOLDS = {"tolerances": "causes and what is asked of them", "search": "variables 
 """Sections that a config may leave out, and what they say."""
 
 
-def load(config: str | Path, results: str | Path | None = "results") -> "Gearbox":
-    """The gearbox of a config file.
+def load(config: str | Path | Mapping[str, Any], results: str | Path | None = "results") -> "Gearbox":
+    """The gearbox of a config file, or of a mapping with the keys of one.
 
-    `results`: folder that the workflow writes to; a relative one is looked for here and beside the config's
-    folder, None computes everything anew. Raises ConfigErrors with one line for every mistake in the file.
+    `results`: folder that the workflow writes to; a relative one is looked for here and beside the folder of
+    the config file, None computes everything anew. A mapping counts names of files from the working
+    directory, and its key `extends` names a config file anywhere. Raises ConfigErrors with one line for every
+    mistake.
 
     >>> import facegear
     >>> facegear.load("config/harmonics_only.yaml").values["tooth_pair"]["pinion_teeth"]
     23
+    >>> facegear.load({"extends": "config/harmonics_only.yaml", "case": "mine"}).config.case
+    'mine'
     """
-    read = load_config(config)
-    return Gearbox(read, Store(None if results is None else case_folder(config, results, read.case)))
+    if isinstance(config, Mapping):
+        read, folders = config_of(config), [Path()]
+    else:
+        read, folders = load_config(config), [Path(), Path(config).resolve().parents[1]]
+    return Gearbox(read, Store(None if results is None else case_folder(folders, results, read.case)))
 
 
 @cache
@@ -467,8 +474,7 @@ class Gearbox:
     def _changed(self, where: str, changes: Mapping[str, Any]) -> "Gearbox":
         if not changes:
             return self
-        plain = {key: _plain(value) for key, value in changes.items()}
-        config = changed_config(self.config.model_dump(mode="json"), plain, where)
+        config = changed_config(self.config.model_dump(mode="json"), plain(changes), where)
         return Gearbox(config, self.store)
 
     @cached_property
@@ -478,16 +484,3 @@ class Gearbox:
 
 def _given(changes: Mapping[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in changes.items() if value is not None}
-
-
-def _plain(value: Any) -> Any:
-    """NumPy numbers and arrays, tuples and other iterables as YAML would hold them."""
-    if hasattr(value, "tolist"):
-        return value.tolist()
-    if isinstance(value, Mapping):
-        return {key: _plain(item) for key, item in value.items()}
-    return (
-        [_plain(item) for item in value]
-        if isinstance(value, Iterable) and not isinstance(value, str)
-        else value
-    )

@@ -1,7 +1,7 @@
 """The whole config: read, merged, validated, with defaults filled in."""
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +24,33 @@ FILE_KEYS = (
 def load_config(path: str | Path, overrides: Mapping[str, Any] | None = None) -> Config:
     """Read and validate a config file. Raises ConfigErrors with one line for every mistake."""
     return parse(Config, merged(read_layers(path), numbers(dict(overrides or {}))), source=str(path))
+
+
+def config_of(values: Mapping[str, Any]) -> Config:
+    """Validate a config that stands in memory: names of files in it count from the working directory.
+
+    Its key `extends` names a config file anywhere. Raises ConfigErrors with one line for every mistake.
+    """
+    own = _with_paths(plain(values), Path())
+    base = own.pop("extends", None)
+    if base is not None and not isinstance(base, str | Path):
+        raise ConfigErrors("config", [f"extends = {base!r}: must be the name of a config file"])
+    return parse(Config, own if base is None else merged(read_layers(base), own))
+
+
+def plain(value: Any) -> Any:
+    """NumPy numbers and arrays, tuples and other iterables as YAML would hold them; a copy."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return {key: plain(item) for key, item in value.items()}
+    if isinstance(value, Path):
+        return str(value)
+    return (
+        [plain(item) for item in value]
+        if isinstance(value, Iterable) and not isinstance(value, str)
+        else value
+    )
 
 
 def load_values(paths: Sequence[str | Path], overrides: Mapping[str, Any]) -> dict[str, Any]:

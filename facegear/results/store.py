@@ -2,7 +2,7 @@
 
 import json
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -92,10 +92,10 @@ class Store:
         )
 
 
-def case_folder(config: str | Path, results: str | Path, case: str) -> Path | None:
-    """The case's folder below `results`, looked for here and beside the folder of the config file."""
-    places = [Path(results), Path(config).resolve().parents[1] / results]
-    return next((place / case for place in places if (place / case).is_dir()), None)
+def case_folder(folders: Iterable[Path], results: str | Path, case: str) -> Path | None:
+    """The case's folder below `results`, which a relative one is looked for in `folders`; None without."""
+    stored = [folder / results / case for folder in folders]
+    return next((folder for folder in stored if folder.is_dir()), None)
 
 
 def _unless_corrupt(read: Callable[[], Value]) -> Value | None:

@@ -2,12 +2,15 @@
 
 import subprocess
 import sys
+from copy import deepcopy
 from pathlib import Path
 
 import numpy as np
 import pytest
+from ruamel.yaml import YAML
 
 import facegear
+from facegear import errors
 from facegear.errors import FacegearError
 
 ROOT = Path(__file__).parents[2]
@@ -176,6 +179,45 @@ def test_given_harmonics_need_no_teeth(tmp_path):
         facegear.load(config)
     with pytest.raises(FacegearError, match="geometry and contact need the bodies"):
         stored.geometry()
+
+
+def test_a_mapping_and_a_file_with_the_same_keys_are_the_same_gearbox(tmp_path, monkeypatch):
+    file = ROOT / "facegear" / "example.yaml"
+    stored = facegear.load(file)
+    given = YAML(typ="safe").load(file.read_text())
+    before = deepcopy(given)
+    assert facegear.load(given).config == stored.config
+    assert given == before
+    given["mesh_stiffness"]["mean_n_per_m"] = np.float64(5e8)
+    given["transmission"]["pinions"] = tuple(given["transmission"]["pinions"])
+    changed = {"mesh_stiffness.mean_n_per_m": 5e8}
+    assert facegear.load(given).config == stored.with_values(changed).config
+    monkeypatch.chdir(tmp_path)
+    own = {"extends": file, "mesh_stiffness": {"mean_n_per_m": 5e8}}
+    assert facegear.load(own).values == stored.with_values(changed).values
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        ({}, "config: case = (missing): this key is required"),
+        ({"extends": "no.yaml"}, "no.yaml: no such config file"),
+        ({"extends": 3}, "config: extends = 3: must be the name of a config file"),
+        ({"extends": "config/harmonics_only.yaml", "dynamics": {"speed": 3}}, "dynamics.speed = 3: unknown"),
+    ],
+)
+def test_a_mistake_in_a_mapping_is_one_line_as_in_a_file(given, line):
+    with pytest.raises(facegear.ConfigErrors) as caught:
+        facegear.load(given)
+    assert line in str(caught.value).splitlines()[0]
+
+
+def test_every_error_that_a_user_may_meet_has_a_name_in_the_package():
+    own = {one for one in vars(errors).values() if isinstance(one, type) and issubclass(one, Exception)}
+    for error in own - {errors.GeometryError}:
+        assert getattr(facegear, error.__name__) is error and error.__name__ in facegear.__all__
+        assert issubclass(error, facegear.FacegearError)
+    assert issubclass(errors.GeometryError, facegear.ConfigError)
 
 
 def test_values_of_a_gearbox_and_of_its_results_are_copies():
