@@ -22,7 +22,7 @@ class Progress:
         self.done = 0
         self.start = self.last = time.monotonic()
         self.first: tuple[float, int] | None = None
-        self.told: tuple[float, float] | None = None
+        self.estimate: tuple[float, float] | None = None
 
     def step(self, count: int = 1) -> None:
         """Count work as done; prints at most once an interval."""
@@ -39,9 +39,9 @@ class Progress:
 
     def _left(self, now: float, first: tuple[float, int]) -> float:
         left = (now - first[0]) / (self.done - first[1]) * (self.total - self.done)
-        if self.told is not None:
-            then, told = self.told
-            left = 0.5 * (left + max(told - (now - then), 0.0))
-            left = left if left > SLOWER * told else min(left, told)
-        self.told = now, left
+        if self.estimate is not None:
+            then, estimate = self.estimate
+            left = 0.5 * (left + max(estimate - (now - then), 0.0))
+            left = left if left > SLOWER * estimate else min(left, estimate)
+        self.estimate = now, left
         return left

@@ -39,12 +39,12 @@ def store(folder: Path, path: Path) -> None:
     The file names the larger tables too, so that nothing is compared with them. Two equal folders give the
     same bytes. What was on the machine that made them is left out.
     """
-    found = sorted(answer_tables(folder))
-    names = [name for name in found if (folder / name).stat().st_size <= MOST_BYTES]
+    all_names = sorted(answer_tables(folder))
+    names = [name for name in all_names if (folder / name).stat().st_size <= MOST_BYTES]
     manifests = {near for name in names for near in (folder / name).parent.glob(f"*{MANIFEST_SUFFIX}")}
     texts = {name: (folder / name).read_text(encoding="utf-8") for name in names}
     texts |= {manifest.relative_to(folder).as_posix(): _short(manifest) for manifest in manifests}
-    texts[NOT_STORED] = json.dumps({"tables": [name for name in found if name not in names]})
+    texts[NOT_STORED] = json.dumps({"tables": [name for name in all_names if name not in names]})
     with atomic_path(path) as temporary, zipfile.ZipFile(temporary, "w") as archive:
         for name, text in sorted(texts.items()):
             archive.writestr(zipfile.ZipInfo(name, SAME_DATE), text, zipfile.ZIP_DEFLATED)

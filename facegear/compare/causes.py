@@ -45,11 +45,11 @@ def _history(path: Path) -> dict[str, Manifest]:
 
 def _manifests(folder: Path) -> dict[str, tuple[Path, Manifest]]:
     """Path and content of the manifest behind each file of a folder."""
-    found: dict[str, tuple[Path, Manifest]] = {}
+    manifests: dict[str, tuple[Path, Manifest]] = {}
     for path in sorted(folder.glob(f"*{MANIFEST_SUFFIX}")):
         manifest = documents.read(path, ("rule", "files", "params"))
-        found = {**dict.fromkeys(manifest["files"], (path, manifest)), **found}
-    return found
+        manifests = {**dict.fromkeys(manifest["files"], (path, manifest)), **manifests}
+    return manifests
 
 
 def _config(before: Mapping[str, Manifest], after: Mapping[str, Manifest]) -> Iterator[str]:

@@ -80,8 +80,8 @@ def compare(old: Path, new: Path) -> Comparison:
 
 def answer_tables(folder: Path) -> set[str]:
     """Tables of a folder of results, as paths inside it."""
-    found = (path.relative_to(folder) for path in folder.rglob("*.csv"))
-    kept = {path.as_posix() for path in found if not set(path.parts) & {*LEFT_OUT, *UNDETERMINED}}
+    paths = (path.relative_to(folder) for path in folder.rglob("*.csv"))
+    kept = {path.as_posix() for path in paths if not set(path.parts) & {*LEFT_OUT, *UNDETERMINED}}
     if not kept:
         raise FacegearError(f"{folder}: must be a folder of results, with tables (*.csv) in it")
     return kept
@@ -101,10 +101,10 @@ def _judge_file(name: str, old: Path | None, new: Path | None) -> pd.DataFrame:
     shared = before.index.intersection(after.index, sort=False)
     columns = [column for column in before.columns if column in after.columns]
     parts = [_judge_column(name, table, before.loc[shared], after.loc[shared], column) for column in columns]
-    for one, other, verdict in ((before, after, Verdict.GONE), (after, before, Verdict.ADDED)):
-        lost = [f"column {column}" for column in one.columns if column not in other.columns]
+    for this, other, verdict in ((before, after, Verdict.GONE), (after, before, Verdict.ADDED)):
+        lost = [f"column {column}" for column in this.columns if column not in other.columns]
         parts.append(
-            _one_sided(name, [*one.index.difference(other.index, sort=False).astype(str), *lost], verdict)
+            _one_sided(name, [*this.index.difference(other.index, sort=False).astype(str), *lost], verdict)
         )
     return pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
 

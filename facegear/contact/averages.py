@@ -67,30 +67,30 @@ def hat_averages(
     hats: Integers,
     values: Array,
     area: Array,
-    least: Array,
+    min_area: Array,
 ) -> tuple[Rows, Integers]:
     """Averages by area over hats, from points (q,) of known area.
 
-    `hats`, `values` (q, h): the hats that a point lies under and their values there; `least` (n,): the area
-    below which a hat is left out. Returns the rows and their hats (m,).
+    `hats`, `values` (q, h): the hats that a point lies under and their values there; `min_area` (n,): the
+    area below which a hat is left out. Returns the rows and their hats (m,).
     """
-    pointer, index, weight, chosen = _hat_averages(hats, values, area, least)
+    pointer, index, weight, chosen = _hat_averages(hats, values, area, min_area)
     return Rows(pointer, index, weight), chosen
 
 
 @njit(cache=True)
 def _hat_averages(
-    hats: Integers, values: Array, area: Array, least: Array
+    hats: Integers, values: Array, area: Array, min_area: Array
 ) -> tuple[Integers, Integers, Array, Integers]:
-    covered, points = np.zeros(least.size), np.zeros(least.size, np.int64)
+    covered, points = np.zeros(min_area.size), np.zeros(min_area.size, np.int64)
     for q in range(hats.shape[0]):
         for h in range(hats.shape[1]):
             covered[hats[q, h]] += values[q, h] * area[q]
             points[hats[q, h]] += 1
-    chosen = np.flatnonzero(covered > least)
+    chosen = np.flatnonzero(covered > min_area)
     pointer = np.zeros(chosen.size + 1, np.int64)
     pointer[1:] = np.cumsum(points[chosen])
-    slot = np.full(least.size, -1)
+    slot = np.full(min_area.size, -1)
     slot[chosen] = pointer[:-1]
     index, weight = np.empty(pointer[-1], np.int64), np.empty(pointer[-1])
     for q in range(hats.shape[0]):

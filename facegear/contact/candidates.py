@@ -63,7 +63,7 @@ def candidates_of(
     rows = rows.only(near)
     on_pinion, pinion_coarse = pinion.loads(rows, loads.pinion)
     on_gear, gear_coarse = gear.loads(rows, loads.gear)
-    found = Candidates(
+    candidates = Candidates(
         tooth=tooth,
         hats=loads.hats[near],
         column=loads.hats[near] % pinion.shape[1],
@@ -75,4 +75,4 @@ def candidates_of(
         pinion_coarse=pinion_coarse,
         gear_coarse=gear_coarse,
     )
-    return [found]
+    return [candidates]

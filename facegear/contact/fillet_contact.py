@@ -36,9 +36,9 @@ def on_flank(spot: Spot, line: Array, surface: PinionSurface) -> Spot:
         return spot
     row, plane = np.divmod(spot.hats, surface.shape[1])
     keep = ~spot.fillet
-    for one in np.unique(plane[spot.fillet]):
-        here = np.flatnonzero(plane == one)
-        keep[here] &= _of_the_line(row[here], spot.fillet[here], line[one])
+    for number in np.unique(plane[spot.fillet]):
+        here = np.flatnonzero(plane == number)
+        keep[here] &= _of_the_line(row[here], spot.fillet[here], line[number])
     return replace(spot, hats=spot.hats[keep], force=spot.force[keep], fillet=spot.fillet[keep])
 
 
@@ -48,8 +48,8 @@ def _of_the_line(row: Integers, fillet: Mask, line: float) -> Mask:
     contact = np.zeros(row.size, np.int64)
     contact[order] = np.cumsum(np.diff(row[order], prepend=row[order[0]]) > APART)
     kept = np.ones(row.size, bool)
-    for one in np.unique(contact[fillet]):
-        own = contact == one
+    for number in np.unique(contact[fillet]):
+        own = contact == number
         if not row[own].min() - APART <= line <= row[own].max() + APART:
             kept[own] = False
     return kept

@@ -149,7 +149,7 @@ class GearSurface:
     def _fillet_nodes(self) -> Array:
         """Shares of the fillet at its rows' nodes (the same on all planes), 0 at the flank."""
         first = self.side.v[-1, 0], self.side.u[self.side.flank_rows :, 0]
-        return np.concatenate([[0.0], face_gear.fillet_share(self.design, *first)])
+        return np.concatenate([[0.0], face_gear.fillet_fraction(self.design, *first)])
 
     def coordinates(self, hits: GearHits, fillet: bool, edge: float | Array) -> Array:
         """Lattice coordinates (p, n, 2), nan where nothing that can touch is hit.

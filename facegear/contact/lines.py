@@ -54,10 +54,10 @@ def contact_lines(design: PairDesign, phi1: Array, phi2: Array, tooth: ArrayLike
     Raises NotConverged as `separation` does.
     """
     tooth = np.asarray(tooth, float)
-    roll = _least_gap(design, (phi1, phi2, tooth), y)
+    roll = _min_gap_roll(design, (phi1, phi2, tooth), y)
     points = flank_points(design, roll, y)
     seen = separation(design, points, phi1, phi2, tooth)
-    flank = (seen.part == FLANK) & (roll > _lowest_roll(design))
+    flank = (seen.part == FLANK) & (roll > _min_roll(design))
     gear_roll, psi = np.where(flank, seen.u, np.nan), np.where(flank, seen.v, np.nan)
     curvature, slope = (np.full(roll.shape, np.nan) for _ in range(2))
     turns = np.broadcast_to(to_left_flank(design, phi1, phi2, tooth).matrix[:, None], (*roll.shape, 3, 3))
@@ -97,7 +97,7 @@ def unloaded_lines(
     return contact_lines(design, phi1, phi2, tooth, y)
 
 
-def _lowest_roll(design: PairDesign) -> float:
+def _min_roll(design: PairDesign) -> float:
     return max(pinion.junction_roll(design), 0.0)
 
 
@@ -106,15 +106,15 @@ def _arc(design: PairDesign, roll: Array | float) -> Array:
     return design.pinion_base_radius * np.square(roll) / 2
 
 
-def _least_gap(design: PairDesign, placement: tuple[Array, Array, Array], y: Array) -> Array:
+def _min_gap_roll(design: PairDesign, placement: tuple[Array, Array, Array], y: Array) -> Array:
     """Roll (p, n) of the least gap in each plane; at an end of the profile where it falls up to there."""
-    top, bottom = design.pinion_tip_roll**2, _lowest_roll(design) ** 2
-    squares = np.linspace(bottom, top + BEYOND * (top - bottom), SAMPLES)
-    step = squares[1] - squares[0]
-    gap = _gaps(design, placement, np.broadcast_to(squares[:, None], (SAMPLES, y.size)), y)
-    lowest = np.clip(np.argmin(gap, axis=1), 1, SAMPLES - 2)
-    square = squares[lowest] + step * _vertex(
-        *(np.take_along_axis(gap, (lowest + side)[:, None], 1)[:, 0] for side in (-1, 0, 1))
+    top, bottom = design.pinion_tip_roll**2, _min_roll(design) ** 2
+    roll_squared = np.linspace(bottom, top + BEYOND * (top - bottom), SAMPLES)
+    step = roll_squared[1] - roll_squared[0]
+    gap = _gaps(design, placement, np.broadcast_to(roll_squared[:, None], (SAMPLES, y.size)), y)
+    nearest = np.clip(np.argmin(gap, axis=1), 1, SAMPLES - 2)
+    square = roll_squared[nearest] + step * _vertex(
+        *(np.take_along_axis(gap, (nearest + side)[:, None], 1)[:, 0] for side in (-1, 0, 1))
     )
     for part in FINER:
         around = square[:, None] + part * step * np.array([-1.0, 0.0, 1.0])[:, None]
@@ -122,21 +122,21 @@ def _least_gap(design: PairDesign, placement: tuple[Array, Array, Array], y: Arr
     return np.sqrt(np.clip(square, bottom, None))
 
 
-def _gaps(design: PairDesign, placement: tuple[Array, Array, Array], squares: Array, y: Array) -> Array:
+def _gaps(design: PairDesign, placement: tuple[Array, Array, Array], roll_squared: Array, y: Array) -> Array:
     """Gaps (p, k, n) at squares (k, n) or (p, k, n) of the roll, to the gear's flank continued."""
-    points = flank_points(design, np.sqrt(np.maximum(squares, 0.0)), y)
-    flat = (*squares.shape[:-2], -1, 3)
+    points = flank_points(design, np.sqrt(np.maximum(roll_squared, 0.0)), y)
+    flat = (*roll_squared.shape[:-2], -1, 3)
     flat_points = SurfacePoints(points.position.reshape(flat), points.normal.reshape(flat))
     seen = separation(design, flat_points, *placement)
     gap = np.where(np.isfinite(seen.continued), seen.continued, np.inf)
-    return gap.reshape(placement[0].size, *squares.shape[-2:])
+    return gap.reshape(placement[0].size, *roll_squared.shape[-2:])
 
 
 def _vertex(before: Array, middle: Array, after: Array) -> Array:
     """Where a parabola through three values at -1, 0, 1 is lowest, within -1..1; 0 where there is none."""
     with np.errstate(invalid="ignore", divide="ignore"):
-        lowest = 0.5 * (before - after) / (before - 2 * middle + after)
-    return np.clip(np.nan_to_num(lowest, nan=0.0, posinf=0.0, neginf=0.0), -1.0, 1.0)
+        vertex = 0.5 * (before - after) / (before - 2 * middle + after)
+    return np.clip(np.nan_to_num(vertex, nan=0.0, posinf=0.0, neginf=0.0), -1.0, 1.0)
 
 
 def _radius(y: Array, known: Array) -> Array:

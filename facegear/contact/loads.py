@@ -116,10 +116,10 @@ def flank_loads(surface: PinionSurface, points: Facing) -> list[Loads]:
 def edge_loads(surface: PinionSurface, points: Facing, columns: int) -> list[Loads]:
     """Loads along a tip edge of `columns` nodes, over points of `edge_hats`."""
     _, hats_here, values = edge_hats(columns)
-    least = np.full(columns, SMALLEST_COVER)
-    least[[0, -1]] *= 0.5
+    min_cover = np.full(columns, SMALLEST_COVER)
+    min_cover[[0, -1]] *= 0.5
     rows, hats = hat_averages(
-        hats_here[points.index], values[points.index], np.full(points.index.size, 0.5), least
+        hats_here[points.index], values[points.index], np.full(points.index.size, 0.5), min_cover
     )
     if hats.size == 0:
         return []

@@ -18,10 +18,10 @@ def load_arrays(variants: Sequence[Sequence[LoadedPosition]], flank_variant: Int
     Nodes count along each row of the contact surface's lattice before refinement; the force (N) acts against
     the surface's outward normal.
     """
-    ordered = [sorted(one, key=lambda result: (result.torque, result.position)) for one in variants]
-    cases = [case for one in ordered for case in one]
+    ordered = [sorted(results, key=lambda result: (result.torque, result.position)) for results in variants]
+    cases = [case for results in ordered for case in results]
     arrays = {
-        "variant": np.repeat(np.arange(len(ordered)), [len(one) for one in ordered]),
+        "variant": np.repeat(np.arange(len(ordered)), [len(results) for results in ordered]),
         "flank_variant": np.asarray(flank_variant),
         "torque_n_m": np.array([case.torque for case in cases]),
         "position": np.array([case.position for case in cases]),

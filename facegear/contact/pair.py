@@ -41,8 +41,8 @@ def gear_flank(
     if plan.root_stress:
         errors = section_errors(design, body, BUILDERS[body], sizes, material)
         gauges, rows = root_gauges(tooth, material, errors)
-    found = flank_compliance(elastic, plan.refinement, teeth, neighbours, ends, plan.element, rows)
-    return GearFlank(side, found, gauges)
+    compliance = flank_compliance(elastic, plan.refinement, teeth, neighbours, ends, plan.element, rows)
+    return GearFlank(side, compliance, gauges)
 
 
 def extent(tooth: ToothMesh, body: str, plan: ContactPlan) -> tuple[int, int, Ends]:

@@ -43,11 +43,11 @@ def pattern(arrays: Arrays) -> Pattern:
     for torque in np.unique(arrays["line_torque_n_m"]):
         on = arrays["line_torque_n_m"] == torque
         cells = at[on], arrays["line_plane"][on]
-        told, kind, load = np.full(shape, np.nan), np.full(shape, -1), np.zeros(shape)
+        values, kind, load = np.full(shape, np.nan), np.full(shape, -1), np.zeros(shape)
         inside = arrays["line_where"][on] == EDGES.index("inside")
-        told[cells] = np.where(inside, arrays["line_pressure_pa"][on], np.nan)
+        values[cells] = np.where(inside, arrays["line_pressure_pa"][on], np.nan)
         kind[cells], load[cells] = arrays["line_where"][on], arrays["line_load_n_per_m"][on]
-        pressure[float(torque)], where[float(torque)], line_load[float(torque)] = told, kind, load
+        pressure[float(torque)], where[float(torque)], line_load[float(torque)] = values, kind, load
     return Pattern(points=points, pressure=pressure, where=where, line_load=line_load)
 
 
@@ -57,13 +57,13 @@ def pressure_surface(
     """The pattern as quadrilaterals for ParaView: points, cells, and pressure (Pa) and line load (N/m) at
     each torque; a pressure of nan where none is known.
     """
-    found = pattern(arrays)
-    steps, planes = found.points.shape[:2]
+    swept = pattern(arrays)
+    steps, planes = swept.points.shape[:2]
     nodes = np.arange(steps * planes).reshape(steps, planes)
     corners = nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]
-    told = {}
-    for torque in found.pressure:
-        told[f"pressure_pa_at_{torque:g}_n_m"] = found.pressure[torque].ravel()
-        told[f"line_load_n_per_m_at_{torque:g}_n_m"] = found.line_load[torque].ravel()
+    fields = {}
+    for torque in swept.pressure:
+        fields[f"pressure_pa_at_{torque:g}_n_m"] = swept.pressure[torque].ravel()
+        fields[f"line_load_n_per_m_at_{torque:g}_n_m"] = swept.line_load[torque].ravel()
     cells = {"quad": np.stack([c.ravel() for c in corners], axis=-1)}
-    return found.points.reshape(-1, 3), cells, told
+    return swept.points.reshape(-1, 3), cells, fields

@@ -65,8 +65,8 @@ class LoadedPosition:
 
     `position` 0..1 of a pitch; `torque` N m on the pinion; transmission errors (m) along the line of action,
     the pinion ahead of the gear positive, `ste` loaded and `unloaded`; stiffnesses (N/m) on the line of
-    action; `share` (5,) of the torque carried by the pairs -2..2; `fillet_share` of the torque carried in
-    fillets; `overlap` (m, along the line of action) by which teeth whose flanks just touch stand in each
+    action; `load_share` (5,) of the torque carried by the pairs -2..2; `fillet_share` of the torque carried
+    in fillets; `overlap` (m, along the line of action) by which teeth whose flanks just touch stand in each
     other elsewhere, with which `k_average` is nan where it matters; `residual` of the contact conditions.
     """
 
@@ -76,7 +76,7 @@ class LoadedPosition:
     unloaded: float
     k_average: float
     k_local: float
-    share: Array
+    load_share: Array
     fillet_share: float
     overlap: float
     residual: float
@@ -86,7 +86,7 @@ class LoadedPosition:
 
     @property
     def pairs_in_contact(self) -> int:
-        return int(np.count_nonzero(self.share))
+        return int(np.count_nonzero(self.load_share))
 
 
 def solve_position(
@@ -126,7 +126,7 @@ def _result(
     contact: ContactSolution,
 ) -> LoadedPosition:
     base = pair.base_radius
-    share = np.zeros(len(PAIRS))
+    load_share = np.zeros(len(PAIRS))
     in_fillets = overlap = 0.0
     spots, start = [], 0
     for loads in candidates:
@@ -134,7 +134,7 @@ def _result(
         start = rows.stop
         force = contact.force[rows]
         part = force * loads.lever_arm / contact.torque
-        share[np.searchsorted(PAIRS, loads.tooth)] = part.sum()
+        load_share[np.searchsorted(PAIRS, loads.tooth)] = part.sum()
         in_fillets += float(part[loads.fillet].sum())
         overlap = max(overlap, base * loads.overlap)
         on = force > 0.0
@@ -157,7 +157,7 @@ def _result(
         unloaded=pair.unloaded,
         k_average=contact.torque / base / approach if overlap <= UNKNOWN_REFERENCE * approach else np.nan,
         k_local=1.0 / (base**2 * contact.slope),
-        share=share,
+        load_share=load_share,
         fillet_share=in_fillets,
         overlap=overlap,
         residual=contact.residual,

@@ -105,7 +105,7 @@ def flank_pressure(
     for result in results:
         at = [row[result.position, spot.tooth] for spot in result.spots]
         spots = [
-            on_flank(spot, places[one], flanks.pinion) for spot, one in zip(result.spots, at, strict=True)
+            on_flank(spot, places[line], flanks.pinion) for spot, line in zip(result.spots, at, strict=True)
         ]
         loads.append(line_loads(spots, at, lines, modulus))
     points = flank_points(design, lines.roll, lines.y).position

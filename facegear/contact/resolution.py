@@ -59,12 +59,12 @@ def check_memory(design: PairDesign, sizes: MeshSizes, plan: ContactPlan, availa
     """
     needed = estimated_memory(design, sizes, plan)
     if needed > MEMORY_ERROR * available:
-        told = f"{1e3 * sizes.profile:.3g} mm across the profile, {1e3 * sizes.width:.3g} mm along the face"
+        asked = f"{1e3 * sizes.profile:.3g} mm across the profile, {1e3 * sizes.width:.3g} mm along the face"
         allowed = (
             f"coarser: an estimate of the memory for factorisation and compliance is {needed / 1e9:.3g} GB, "
             f"and this machine has {available / 1e9:.3g} GB"
         )
-        raise ConfigError("mesh.resolution", told, allowed)
+        raise ConfigError("mesh.resolution", asked, allowed)
 
 
 def _elements_along(design: PairDesign, sizes: MeshSizes) -> float:

@@ -52,16 +52,16 @@ def root_gauges(
     fillet, across its lines, with the surface in plane stress.
     """
     mesh, number = hex_mesh(tooth.nodes, tooth.hexes)
-    found: list[Gauges] = [
+    fillets: list[Gauges] = [
         gauges_on(mesh.doflocs.T, number[tooth.surfaces[f"fillet_{side}"].nodes], material)
         for side in fillet_sides(tooth.body)
     ]
-    position = np.stack([one.position for one in found])
+    position = np.stack([fillet.position for fillet in fillets])
     gauges = RootGauges(
         position=position,
-        across=np.stack([one.across for one in found]),
+        across=np.stack([fillet.across for fillet in fillets]),
         error=np.full(position.shape[2], np.nan),
     )
     if errors is not None:
         gauges = replace(gauges, error=errors.at(gauges.along(tooth.body)))
-    return gauges, sp.vstack([one.normal for one in found], format="csr")
+    return gauges, sp.vstack([fillet.normal for fillet in fillets], format="csr")

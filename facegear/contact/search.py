@@ -40,11 +40,11 @@ def find_candidates(
         else None
         for points, tooth in zip(near, teeth, strict=True)
     ]
-    found = []
+    candidates = []
     for row, tooth in enumerate(teeth.tolist()):
         loads = pair_loads(pair, near[row], hits[row], feet[row], options)
-        found += candidates_of(pinion.lattice, gear.lattice, tooth, loads, limit)
-    return found
+        candidates += candidates_of(pinion.lattice, gear.lattice, tooth, loads, limit)
+    return candidates
 
 
 def _near(pair: FlankPair, placement: tuple[float, float], teeth: Integers, depth: float) -> list[Integers]:

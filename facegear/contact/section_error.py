@@ -57,15 +57,15 @@ def section_errors(
     """Of the mesh with `sizes` that `build` makes of a body: in the middle plane of the pinion, in five
     planes of the gear."""
     finest = min(sizes.profile / FINER, ACROSS_RADIUS * smallest_radius(design, body))
-    wide = {"width": np.inf}
-    own = build(design, replace(sizes, **wide))
+    full_width = {"width": np.inf}
+    own = build(design, replace(sizes, **full_width))
     finer = build(design, MeshSizes(finest, np.inf, sizes.thickness / FINER_INSIDE))
     count = own.surfaces["fillet_right"].nodes.shape[1]
     planes = (count // 2,) if body == "pinion" else range(count)
     error, along = [], []
     for plane in planes:
-        found, reference = (_tensions(one, plane, material) for one in (own, finer))
-        error.append(np.abs(found / reference - 1.0).max())
+        tension, reference = (_tensions(tooth, plane, material) for tooth in (own, finer))
+        error.append(np.abs(tension / reference - 1.0).max())
         along.append(_section(own, plane)[1])
     return SectionErrors(np.array(along), np.array(error))
 
@@ -81,9 +81,9 @@ def _section(tooth: ToothMesh, plane: int) -> tuple[Array, float]:
     return np.stack([radius * angle, points[:, 2]], axis=1), radius
 
 
-def _beside(tooth: ToothMesh, points: Array, place: int, radius: float) -> Array:
-    """Points of the tooth `place` further."""
-    angle = place * tooth.pitch
+def _beside(tooth: ToothMesh, points: Array, pitches: int, radius: float) -> Array:
+    """Points of the tooth `pitches` further."""
+    angle = pitches * tooth.pitch
     if tooth.body == "face_gear":
         return points + np.array([radius * angle, 0.0])
     turned = np.stack([points[:, 0], np.zeros(len(points)), points[:, 1]], axis=1)
@@ -97,7 +97,7 @@ def _tensions(tooth: ToothMesh, plane: int, material: Material) -> Array:
     quads = tooth.hexes[(tooth.hexes < 3 * count).all(axis=1), :9]
     teeth = TEETH[tooth.body]
     places = range(-(teeth // 2), teeth // 2 + 1)
-    copies = np.concatenate([_beside(tooth, points, place, at) for place in places])
+    copies = np.concatenate([_beside(tooth, points, pitches, at) for pitches in places])
     number = _merged(tooth, count, teeth)
     nodes = np.empty((number.max() + 1, 2))
     nodes[number] = copies
@@ -112,7 +112,9 @@ def _tensions(tooth: ToothMesh, plane: int, material: Material) -> Array:
     free = np.setdiff1d(np.arange(nodes.size), 2 * fixed[:, None] + np.arange(2))
     moved = np.zeros_like(loads)
     moved[free] = solve_sparse(_stiffness(nodes, cells, material)[free][:, free].tocsr(), loads[free])
-    return np.array([_tension(one.reshape(nodes.shape)[fillet], nodes[fillet], material) for one in moved.T])
+    return np.array(
+        [_tension(field.reshape(nodes.shape)[fillet], nodes[fillet], material) for field in moved.T]
+    )
 
 
 def _merged(tooth: ToothMesh, count: int, teeth: int) -> Integers:
@@ -143,10 +145,10 @@ def _lagrange(x: float) -> tuple[Array, Array]:
 
 def _push(load: Array, nodes: Array, flank: Integers, height: float) -> None:
     """Add a force of 1 N/m into the tooth, normal to its right flank, to `load` (n, 2)."""
-    place = height * (flank.size - 1)
-    first = min(2 * int(place // 2), flank.size - 3)
+    station = height * (flank.size - 1)
+    first = min(2 * int(station // 2), flank.size - 3)
     members = flank[first : first + 3]
-    values, slopes = _lagrange(place - first - 1.0)
+    values, slopes = _lagrange(station - first - 1.0)
     along = slopes @ nodes[members]
     normal = np.array([along[1], -along[0]]) / np.linalg.norm(along)
     normal *= -np.sign(normal[0])  # the right flank faces +x
@@ -157,9 +159,9 @@ def _tension(moved: Array, points: Array, material: Material) -> float:
     """Largest stress (Pa) down a fillet of nodes `points` (n, 2) by their displacements (n, 2)."""
     stiff = material.young_modulus / (1.0 - material.poisson_ratio**2)
     stress = []
-    for place in gauge_coordinates(len(points)):
-        first = 2 * int(place // 2)
-        slopes = _lagrange(place - first - 1.0)[1]
+    for station in gauge_coordinates(len(points)):
+        first = 2 * int(station // 2)
+        slopes = _lagrange(station - first - 1.0)[1]
         along, moves = slopes @ points[first : first + 3], slopes @ moved[first : first + 3]
         stress.append(stiff * float(along @ moves) / float(along @ along))
     kind = CubicSpline(np.arange(len(stress)), stress)

@@ -193,8 +193,8 @@ def _exchange(
         target, rotation = bonded.force, bonded.rotation
         falling = active & (target <= 0.0)
         if falling.any():
-            share = np.min(force[falling] / (force[falling] - target[falling]))
-            force = force + share * (target - force)
+            fraction = np.min(force[falling] / (force[falling] - target[falling]))
+            force = force + fraction * (target - force)
             leaving = falling & (force <= 1e-14 * force.max())
             force[leaving] = 0.0
             active &= ~leaving

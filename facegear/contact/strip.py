@@ -41,10 +41,10 @@ class _Turns:
     """Turn (n,) of the pinion that closes each candidate's gap, and the least (n,) in its column of hats."""
 
     own: Array
-    least: Array
+    column_min: Array
 
-    def within(self, lowest: float, band: float) -> Mask:
-        return (self.own < self.least + band) & (self.least < lowest)
+    def within(self, min_turn: float, band: float) -> Mask:
+        return (self.own < self.column_min + band) & (self.column_min < min_turn)
 
 
 def _turns(pairs: list[Candidates]) -> _Turns:
@@ -52,10 +52,10 @@ def _turns(pairs: list[Candidates]) -> _Turns:
     for pair in pairs:
         forward = pair.lever_arm > 0
         turn = np.where(forward, pair.gap / np.where(forward, pair.lever_arm, 1.0), np.inf)
-        least = np.full(pair.column.max() + 1, np.inf)
-        np.minimum.at(least, pair.column, turn)
+        column_min = np.full(pair.column.max() + 1, np.inf)
+        np.minimum.at(column_min, pair.column, turn)
         own.append(turn)
-        low.append(least[pair.column])
+        low.append(column_min[pair.column])
     return _Turns(np.concatenate(own), np.concatenate(low))
 
 

@@ -63,8 +63,8 @@ def study_table(cases: Sequence[StudiedContact]) -> pd.DataFrame:
     parts = []
     for case in cases:
         rows = case.by_torque.copy()
-        for place, name in enumerate(("study", "point", "label")):
-            rows.insert(place, name, getattr(case, name))
+        for column, name in enumerate(("study", "point", "label")):
+            rows.insert(column, name, getattr(case, name))
         rows["path_shift_mm"] = rows["path_radius_mm"] - rows["torque_n_m"].map(loaded)
         rows["unloaded_path_radius_mm"] = case.unloaded_path_mm
         rows["unloaded_path_shift_mm"] = case.unloaded_path_mm - machine.unloaded_path_mm

@@ -73,12 +73,12 @@ def contact_summary(ltca: pd.DataFrame) -> pd.DataFrame:
     tip edges, the share of the torque that fillets carry and the interference are the largest of all
     positions, which need not be one position's. A mean stiffness over positions of which one has none is nan.
     """
-    rows = [_row(float(torque), found) for torque, found in ltca.groupby("torque_n_m", sort=True)]
+    rows = [_row(float(torque), table) for torque, table in ltca.groupby("torque_n_m", sort=True)]
     return pd.DataFrame(rows, columns=list(COLUMNS))
 
 
-def _row(torque: float, found: pd.DataFrame) -> tuple[float, ...]:
-    at = found.sort_values("position")
+def _row(torque: float, table: pd.DataFrame) -> tuple[float, ...]:
+    at = table.sort_values("position")
     error, average = at["ste_um"].to_numpy(), at["k_average_n_per_m"]
     return (
         torque,
@@ -100,11 +100,11 @@ def _row(torque: float, found: pd.DataFrame) -> tuple[float, ...]:
     )
 
 
-def _largest_pressure(found: pd.DataFrame) -> tuple[float, float]:
+def _largest_pressure(table: pd.DataFrame) -> tuple[float, float]:
     """The largest of all positions with its error (MPa); nan where no position has one."""
-    if found["pressure_mpa"].isna().all():
+    if table["pressure_mpa"].isna().all():
         return np.nan, np.nan
-    row = found.loc[found["pressure_mpa"].idxmax()]
+    row = table.loc[table["pressure_mpa"].idxmax()]
     return float(row["pressure_mpa"]), float(row["pressure_error_mpa"])
 
 

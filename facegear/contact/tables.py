@@ -26,12 +26,12 @@ def ltca_table(results: Sequence[LoadedPosition], pressure: FlankPressure) -> pd
             r.k_average,
             r.k_local,
             r.pairs_in_contact,
-            *r.share,
+            *r.load_share,
             *_pressures(loads),
             r.fillet_share,
             1e6 * r.overlap,
             r.residual,
-            abs(r.share.sum() - 1.0),
+            abs(r.load_share.sum() - 1.0),
         )
         for r, loads in zip(results, pressure.loads, strict=True)
     ]
@@ -85,13 +85,13 @@ def pressure_arrays(
 
 
 def _forces(results: Sequence[LoadedPosition]) -> dict[str, AnyArray]:
-    found = [(result, spot) for result in results for spot in result.spots]
-    count = [spot.hats.size for _, spot in found]
+    spots = [(result, spot) for result in results for spot in result.spots]
+    count = [spot.hats.size for _, spot in spots]
     return {
-        "torque_n_m": np.repeat([result.torque for result, _ in found], count),
-        "position": np.repeat([result.position for result, _ in found], count),
-        "tooth": np.repeat([spot.tooth for _, spot in found], count),
-        "node": np.concatenate([spot.hats for _, spot in found]),
-        "force_n": np.concatenate([spot.force for _, spot in found]),
-        "in_fillet": np.concatenate([spot.fillet for _, spot in found]),
+        "torque_n_m": np.repeat([result.torque for result, _ in spots], count),
+        "position": np.repeat([result.position for result, _ in spots], count),
+        "tooth": np.repeat([spot.tooth for _, spot in spots], count),
+        "node": np.concatenate([spot.hats for _, spot in spots]),
+        "force_n": np.concatenate([spot.force for _, spot in spots]),
+        "in_fillet": np.concatenate([spot.fillet for _, spot in spots]),
     }

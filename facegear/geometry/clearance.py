@@ -42,7 +42,7 @@ def smallest_gaps(design: PairDesign, phi1: ArrayLike, phi2: ArrayLike) -> dict[
     Both sides of the teeth are looked at. Pairs of parts that never come within half a module are left out.
     """
     phi1, phi2 = np.atleast_1d(np.asarray(phi1, float)), np.atleast_1d(np.asarray(phi2, float))
-    found: dict[tuple[str, str], Gap] = {}
+    gaps: dict[tuple[str, str], Gap] = {}
     for side, pair, sign in (("drive", design, 1.0), ("back", mirrored(design), -1.0)):
         turns = sign * phi1, sign * phi2
         outline = pinion_outline(pair)
@@ -53,13 +53,13 @@ def smallest_gaps(design: PairDesign, phi1: ArrayLike, phi2: ArrayLike) -> dict[
                 here = np.where(outline.part[nearest] == number, distance, np.inf)
                 row, tooth, point = at = np.unravel_index(np.argmin(here), here.shape)
                 key, gap = (pinion_part, gear_part), float(here[at])
-                if gap < (found[key].gap if key in found else np.inf):
+                if gap < (gaps[key].gap if key in gaps else np.inf):
                     spot = (points[[point]], turns[0][[row]], turns[1][[row]], TOOTH_NUMBERS[[tooth]])
                     lever = _lever(pair, spot, outline.normals[nearest[at]])
                     approach = gap * design.gear_base_radius / lever if lever else copysign(inf, gap)
                     radius = float(np.hypot(*points[point, :2]))
-                    found[key] = Gap(gap, approach, *key, radius, float(phi1[row]), side)
-    return found
+                    gaps[key] = Gap(gap, approach, *key, radius, float(phi1[row]), side)
+    return gaps
 
 
 def _lever(design: PairDesign, spot: tuple[Array, Array, Array, Array], normal: Array) -> float:

@@ -44,8 +44,8 @@ def closest(
     turns = np.repeat(phi1, len(PAIRS))[chosen], np.repeat(phi2, len(PAIRS))[chosen]
     rows = _Rows(*turns, np.tile(PAIRS, len(phi1))[chosen].astype(float))
     parts = [part.ravel().copy() for part in (near.gap, near.roll, near.y)]
-    found = _search(design, rows, parts[1][chosen], parts[2][chosen], size, levels)
-    for part, values in zip(parts, found, strict=True):
+    refined = _search(design, rows, parts[1][chosen], parts[2][chosen], size, levels)
+    for part, values in zip(parts, refined, strict=True):
         part[chosen] = values
     return Closest(*(part.reshape(near.roll.shape) for part in parts))
 
@@ -97,12 +97,12 @@ def _search(
         rolls = np.clip(roll[active, None] + across + lean[:, None] * along, low[0], high[0])
         ys = np.clip(y[active, None] + along, low[1], high[1])
         turns = rows.phi1[active], rows.phi2[active], rows.tooth[active]
-        found = separation(design, flank_points(design, rolls, ys), *turns).gap
-        at, best = np.arange(len(active)), np.argmin(found, axis=1)
-        lowest = found[at, best]
-        gained = lowest < gap[active] - 1e-13
-        border = (np.abs(_GRID[best]) == 1) & gained[:, None] & np.isfinite(lowest)[:, None]
-        gap[active] = lowest
+        gaps = separation(design, flank_points(design, rolls, ys), *turns).gap
+        at, best = np.arange(len(active)), np.argmin(gaps, axis=1)
+        min_gap = gaps[at, best]
+        gained = min_gap < gap[active] - 1e-13
+        border = (np.abs(_GRID[best]) == 1) & gained[:, None] & np.isfinite(min_gap)[:, None]
+        gap[active] = min_gap
         roll[active], y[active] = rolls[at, best], ys[at, best]
         width[active] *= np.where(border, 1.5, _SHRINK)
         active = active[np.any(width[active] > size * _SHRINK**levels, axis=1)]

@@ -44,15 +44,15 @@ def ease_off(design: PairDesign, transmission_error: float, shape: tuple[int, in
     roll, y = np.meshgrid(rolls, np.linspace(first, last, shape[1]), indexing="ij")
     phi1 = np.linspace(-1.5, 1.5, 61) * 2 * pi / design.pinion.teeth
     phi2 = conjugate_angle(design, phi1) + transmission_error / design.gear_base_radius
-    found = separation(design, flank_points(design, roll, y).flat(), phi1, phi2)
-    gap = np.where(found.part == FLANK, found.gap, np.inf)
+    separations = separation(design, flank_points(design, roll, y).flat(), phi1, phi2)
+    gap = np.where(separations.part == FLANK, separations.gap, np.inf)
     best = np.clip(np.argmin(gap, axis=0), 1, len(phi1) - 2)
     points = np.arange(gap.shape[1])
     before, middle, after = (gap[best + step, points] for step in (-1, 0, 1))
     facing = np.isfinite(before) & np.isfinite(middle) & np.isfinite(after)
     with np.errstate(invalid="ignore", divide="ignore"):
-        lowest = middle - (after - before) ** 2 / (8 * (before - 2 * middle + after))
-    hit = face_gear.flank_point(design, found.u[best, points], found.v[best, points])
+        min_gap = middle - (after - before) ** 2 / (8 * (before - 2 * middle + after))
+    hit = face_gear.flank_point(design, separations.u[best, points], separations.v[best, points])
     radius = np.hypot(hit[:, 0], hit[:, 1])
 
     def kept(values: Array) -> Array:
@@ -61,7 +61,7 @@ def ease_off(design: PairDesign, transmission_error: float, shape: tuple[int, in
     return EaseOff(
         roll=roll,
         y=y,
-        gap=kept(lowest),
+        gap=kept(min_gap),
         facing=facing.reshape(shape),
         radius=kept(radius),
         height=kept(hit[:, 2]),

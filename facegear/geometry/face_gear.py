@@ -170,13 +170,13 @@ def fillet_start(design: PairDesign, radius: ArrayLike) -> Array:
     return psi_at(design, radius, design.shaper_tip_roll)
 
 
-def fillet_slopes(design: PairDesign, radius: ArrayLike, share: ArrayLike) -> Array:
+def fillet_slopes(design: PairDesign, radius: ArrayLike, fraction: ArrayLike) -> Array:
     """psi (rad) at a share of the fillet's turn at a gear radius (m): 0 at the flank, 1 at the root."""
     start = fillet_start(design, radius)
-    return start + np.asarray(share, float) * (np.pi / 2 - start)
+    return start + np.asarray(fraction, float) * (np.pi / 2 - start)
 
 
-def fillet_share(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Array:
+def fillet_fraction(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Array:
     """The inverse of `fillet_slopes`."""
     start = fillet_start(design, radius)
     return (np.asarray(psi, float) - start) / (np.pi / 2 - start)

@@ -17,12 +17,12 @@ def smallest_radius(design: PairDesign, body: str) -> float:
         radius, angle = pinion.trochoid_point(design, gamma)
         return _sharpest(radius * np.sin(angle), radius * np.cos(angle))
     ends = design.face_gear.inner_radius, design.face_gear.outer_radius
-    found = []
-    for place in (*ends, float(np.clip(sharpest_fillet_radius(design), *ends))):
-        slopes = face_gear.fillet_slopes(design, place, np.linspace(0.0, 1.0, SAMPLES))
-        angle, z = face_gear.fillet_section(design, place, slopes)
-        found.append(_sharpest(place * angle, z))
-    return min(found)
+    radii = []
+    for gear_radius in (*ends, float(np.clip(sharpest_fillet_radius(design), *ends))):
+        slopes = face_gear.fillet_slopes(design, gear_radius, np.linspace(0.0, 1.0, SAMPLES))
+        angle, z = face_gear.fillet_section(design, gear_radius, slopes)
+        radii.append(_sharpest(gear_radius * angle, z))
+    return min(radii)
 
 
 def _sharpest(x: np.ndarray, z: np.ndarray) -> float:

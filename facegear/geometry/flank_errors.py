@@ -31,4 +31,4 @@ def distinct_errors(errors: Assembly) -> tuple[list[Assembly], Integers]:
     """The different ones of all flanks, those of the design first, and which (gears, flanks) each meets."""
     met = [errors_at(errors, gear, flank) for gear in GEARS for flank in FLANKS]
     different = list(dict.fromkeys(met))
-    return different, np.array([different.index(one) for one in met]).reshape(len(GEARS), len(FLANKS))
+    return different, np.array([different.index(error) for error in met]).reshape(len(GEARS), len(FLANKS))

@@ -59,8 +59,8 @@ class FilletCurve:
 def fillet_curve(design: PairDesign, first: float, last: float) -> FilletCurve:
     """Many points of the pinion's fillet between two angles gamma (rad)."""
     gamma = np.linspace(first, last, FILLET_SAMPLES)
-    found = fillet_points(design, gamma, design.mean_radius)
-    points, normals = (part[:, [0, 2]] * np.array([1.0, -1.0]) for part in (found.position, found.normal))
+    surface = fillet_points(design, gamma, design.mean_radius)
+    points, normals = (part[:, [0, 2]] * np.array([1.0, -1.0]) for part in (surface.position, surface.normal))
     return FilletCurve(points, normals, gamma)
 
 
@@ -86,7 +86,7 @@ def located(design: PairDesign, seen: Separation) -> GearHits:
     flank[on] = (seen.u[on] - tip) / (design.shaper_tip_roll - tip)
     on = seen.part == FILLET
     radius[on] = seen.v[on]
-    fillet[on] = face_gear.fillet_share(design, seen.v[on], seen.u[on])
+    fillet[on] = face_gear.fillet_fraction(design, seen.v[on], seen.u[on])
     on = seen.part == TIP_LAND
     radius[on] = seen.v[on]
     edge = face_gear.tip_edge(design, seen.v[on])
@@ -107,15 +107,15 @@ def tip_edge_feet(
     placement: phi1, phi2 (rad). Beside the flank the fillet is looked at, unless that is None.
     """
     phi1, phi2 = (np.array([angle]) for angle in placement)
-    found = []
+    all_feet = []
     for section in to_pinion_section(design, phi1, phi2, np.asarray(teeth)).points(points)[0]:
         feet = _flank_feet(design, section)
         if fillet is not None:
             beside = ~np.isfinite(feet.gap)
             there = _fillet_feet(design, section[beside], fillet, search_radius)
             feet.gap[beside], feet.fillet[beside], feet.lever_arm[beside] = there
-        found.append(feet)
-    return found
+        all_feet.append(feet)
+    return all_feet
 
 
 def _flank_feet(design: PairDesign, section: Array) -> EdgeFeet:

@@ -68,37 +68,37 @@ def cut(
                     lost += 1
         if abs(straight) < search_radius:
             continued[ray] = straight
-        found = FLANK
+        surface = FLANK
         if not abs(distance) < search_radius and low < blank.fillet_top:
             distance, a, b = cut_fillet(blank, p, n, radius)
             lost += isnan(distance)
-            found = FILLET
+            surface = FILLET
         if not abs(distance) < search_radius:
             distance, a, b = cut_land(blank, p, n, blank.tip_plane)
-            found = TIP_LAND
+            surface = TIP_LAND
             if abs(distance) < search_radius:
                 edge = tip_angle(blank, b)
                 lost += isnan(edge)
                 distance = distance if abs(a) <= edge else inf
         if not abs(distance) < search_radius:
             distance, a, b = cut_land(blank, p, n, blank.root_plane)
-            found = ROOT_LAND
+            surface = ROOT_LAND
             if not (blank.root_start <= a <= blank.pitch - blank.root_start):
                 distance = inf
         if abs(distance) < search_radius:
-            gap[ray], part[ray], u[ray], v[ray] = distance, found, a, b
+            gap[ray], part[ray], u[ray], v[ray] = distance, surface, a, b
     return gap, part, u, v, continued, lost
 
 
 @inlined
 def _nearest(p: Array, n: Array, search_radius: float, points: Array, normals: Array, spacing: float) -> int:
     """The sampled flank point that the ray passes closest, if it does so within `spacing`, else -1."""
-    least, best = spacing * spacing, -1
+    min_distance, best = spacing * spacing, -1
     for k in range(points.shape[0]):
         x, y, z = points[k, 0] - p[0], points[k, 1] - p[1], points[k, 2] - p[2]
         along = x * n[0] + y * n[1] + z * n[2]
         aside = x * x + y * y + z * z - along * along
         facing = n[0] * normals[k, 0] + n[1] * normals[k, 1] + n[2] * normals[k, 2]
-        if aside < least and abs(along) <= search_radius and facing <= -0.1:
-            least, best = aside, k
+        if aside < min_distance and abs(along) <= search_radius and facing <= -0.1:
+            min_distance, best = aside, k
     return best

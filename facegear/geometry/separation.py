@@ -90,6 +90,6 @@ def separation(
             raise NotConverged(
                 "separation", f"{lost} rays at the gear", "Newton from two starts, 40 steps each"
             )
-        for target, found in zip((gap, part, u, v, continued), hit, strict=True):
-            target[rows] = found.reshape(-1, count)
+        for target, values in zip((gap, part, u, v, continued), hit, strict=True):
+            target[rows] = values.reshape(-1, count)
     return Separation(gap=gap, part=part, u=u, v=v, continued=continued)

@@ -77,11 +77,11 @@ def mirrored(patch: Array) -> Array:
 
 def _sides(half: HalfTooth) -> list[Array]:
     """Surface, base and both ends of half a tooth, normals outwards."""
-    found = []
+    patches = []
     for surface, base in zip(half.surface, half.base, strict=True):
         first, last = (np.stack([surface[:, k], base[:, k]], axis=1) for k in (0, -1))
-        found += [surface, base[::-1], first[::-1], last]
-    return found if half.normal_sign > 0 else [patch[::-1] for patch in found]
+        patches += [surface, base[::-1], first[::-1], last]
+    return patches if half.normal_sign > 0 else [patch[::-1] for patch in patches]
 
 
 def _cut(half: HalfTooth) -> Array:
@@ -118,7 +118,7 @@ def _roll_bounds(design: PairDesign) -> list[float]:
 
     def kinks(relief: Relief) -> list[float]:
         places = [relief.start, relief.start + relief.length] if relief.amount else []
-        return [place / design.pinion_base_radius for place in places]
+        return [length / design.pinion_base_radius for length in places]
 
     inside = [top - kink for kink in kinks(design.pinion.tip_relief)]
     inside += [bottom + kink for kink in kinks(design.pinion.root_relief)]
@@ -132,17 +132,17 @@ def _polar(points: Array) -> tuple[Array, Array]:
 def _arc(start: Array, end: Array, count: int) -> Array:
     """From polar angles `start` (n,) to points (n, 3) on their circles."""
     radius, angle = _polar(end)
-    share = np.linspace(0.0, 1.0, count)[:, None]
-    found = pinion.cartesian(radius, start + share * (angle - start), end[:, 1])
-    found[-1] = end
-    return found
+    fraction = np.linspace(0.0, 1.0, count)[:, None]
+    points = pinion.cartesian(radius, start + fraction * (angle - start), end[:, 1])
+    points[-1] = end
+    return points
 
 
 def _between(start: Array, end: Array, count: int) -> Array:
-    share = np.linspace(0.0, 1.0, count)[:, None, None]
-    found = start + share * (end - start)
-    found[-1] = end
-    return found
+    fraction = np.linspace(0.0, 1.0, count)[:, None, None]
+    points = start + fraction * (end - start)
+    points[-1] = end
+    return points
 
 
 def _onto_bore(points: Array, bore: float) -> Array:
@@ -153,11 +153,11 @@ def _onto_bore(points: Array, bore: float) -> Array:
 def _gear_half(design: PairDesign, profile: int, width: int) -> HalfTooth:
     gear, few = design.face_gear, (profile - 1) // 4 + 1
     radius = np.linspace(gear.inner_radius, gear.outer_radius, width)[None, :]
-    share = np.linspace(0.0, 1.0, profile)[:, None]
+    fraction = np.linspace(0.0, 1.0, profile)[:, None]
     top, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
-    roll = top + share * (design.shaper_tip_roll - top)
+    roll = top + fraction * (design.shaper_tip_roll - top)
     flank = face_gear.flank_point(design, roll, face_gear.psi_at(design, radius, roll))
-    slopes = face_gear.fillet_slopes(design, radius, share)
+    slopes = face_gear.fillet_slopes(design, radius, fraction)
     fillet = face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, slopes))
     fillet[0] = flank[-1]
     step = np.linspace(0.0, 1.0, few)[:, None]
@@ -179,8 +179,8 @@ def volume(patches: Sequence[Array]) -> float:
 
 def triangles(patches: Sequence[Array]) -> Array:
     """Corners (n, 3, 3) of two triangles for every cell of the patches, counterclockwise from outside."""
-    found = []
+    parts = []
     for patch in patches:
         a, b, c, d = patch[:-1, :-1], patch[1:, :-1], patch[1:, 1:], patch[:-1, 1:]
-        found += [np.stack(corners, axis=-2).reshape(-1, 3, 3) for corners in ((a, b, c), (a, c, d))]
-    return np.concatenate(found)
+        parts += [np.stack(corners, axis=-2).reshape(-1, 3, 3) for corners in ((a, b, c), (a, c, d))]
+    return np.concatenate(parts)

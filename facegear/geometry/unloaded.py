@@ -53,33 +53,33 @@ def unloaded_contact(design: PairDesign, phi1: ArrayLike) -> UnloadedContact:
     errors, angle = design.assembly, design.pressure_angle
     moved = errors.offset * np.cos(angle) - errors.axial_shift * np.sin(angle) - design.pinion.thinning / 2
     phi2 = conjugate + moved / design.gear_base_radius
-    found = closest(design, phi1, phi2)
+    nearest = closest(design, phi1, phi2)
     unseen = np.zeros(len(phi1))
     for _ in range(MOST_TURNS):
-        smallest = found.gap.min(axis=1)
+        smallest = nearest.gap.min(axis=1)
         if not np.all(np.isfinite(smallest)):
             where = f"phi1 = {phi1[~np.isfinite(smallest)][0]:.6f} rad"
             raise NotConverged("unloaded contact", where, "tooth pairs -2..2: no flanks face each other")
         if np.max(np.abs(smallest)) < TOLERANCE and np.max(np.abs(unseen)) > 1e-6:
             # only pairs about to touch were followed: look at all of them where the gear stands now
-            found, unseen = closest(design, phi1, phi2, found), np.zeros(len(phi1))
-            smallest = found.gap.min(axis=1)
+            nearest, unseen = closest(design, phi1, phi2, nearest), np.zeros(len(phi1))
+            smallest = nearest.gap.min(axis=1)
         if np.max(np.abs(smallest)) < TOLERANCE:
-            facing = np.isfinite(found.gap)
+            facing = np.isfinite(nearest.gap)
             return UnloadedContact(
                 phi1=phi1,
                 phi2=phi2,
                 transmission_error=(phi2 - conjugate) * design.gear_base_radius,
-                tooth=PAIRS[np.argmin(found.gap, axis=1)],
-                gap=found.gap,
-                roll=np.where(facing, found.roll, np.nan),
-                y=np.where(facing, found.y, np.nan),
+                tooth=PAIRS[np.argmin(nearest.gap, axis=1)],
+                gap=nearest.gap,
+                roll=np.where(facing, nearest.roll, np.nan),
+                y=np.where(facing, nearest.y, np.nan),
             )
         phi2 = phi2 - smallest / design.gear_base_radius
         # the turn opens or closes all pairs alike, those not followed too
-        turned = replace(found, gap=found.gap - smallest[:, None])
-        found, unseen = closest(design, phi1, phi2, turned, margin=5e-6), unseen + smallest
-    residual = np.max(np.abs(found.gap.min(axis=1)))
+        turned = replace(nearest, gap=nearest.gap - smallest[:, None])
+        nearest, unseen = closest(design, phi1, phi2, turned, margin=5e-6), unseen + smallest
+    residual = np.max(np.abs(nearest.gap.min(axis=1)))
     raise NotConverged(
         "unloaded contact", f"residual gap {residual:.1e} m", f"{MOST_TURNS} turns of the gear"
     )

@@ -38,23 +38,25 @@ def _check_pinion(design: PairDesign) -> None:
     part, m, angle = design.pinion, design.module, design.pressure_angle
     rho = part.rack_tip_radius
     half_thickness = pi * m / 4 + part.thinning / (2 * cos(angle))
-    most = (
+    max_rounding = (
         (half_thickness - part.dedendum * tan(angle) - THINNEST_LAND * m / 2) * cos(angle) / (1 - sin(angle))
     )
-    if rho > most:
+    if rho > max_rounding:
         _refuse(
             "pinion.rack_tip_radius_modules",
             rho / m,
-            f"at most {max(most, 0) / m:.4f}: the rack's tip is round",
+            f"at most {max(max_rounding, 0) / m:.4f}: the rack's tip is round",
         )
-    if most < 0:
+    if max_rounding < 0:
         deepest = (half_thickness - THINNEST_LAND * m / 2) / tan(angle)
         _refuse(
             "pinion.dedendum_modules", part.dedendum / m, f"at most {deepest / m:.4f}: the rack is pointed"
         )
-    least = part.dedendum - rho - (design.pinion_pitch_radius * sin(angle) - rho) * sin(angle)
-    if part.profile_shift < least:
-        _refuse("pinion.profile_shift_modules", part.profile_shift / m, f"at least {least / m:.4f}: undercut")
+    min_shift = part.dedendum - rho - (design.pinion_pitch_radius * sin(angle) - rho) * sin(angle)
+    if part.profile_shift < min_shift:
+        _refuse(
+            "pinion.profile_shift_modules", part.profile_shift / m, f"at least {min_shift / m:.4f}: undercut"
+        )
     if part.profile_shift >= part.dedendum - rho - 1e-3 * m:
         _refuse(
             "pinion.profile_shift_modules",
@@ -98,26 +100,26 @@ def _check_relief(design: PairDesign) -> None:
     _check_crowning_at_end(part.lead_crowning, part.width / 2, MOST_RELIEF * design.module)
 
 
-def _check_crowning_at_end(crowning: Relief, half_width: float, most: float) -> None:
+def _check_crowning_at_end(crowning: Relief, half_width: float, max_relief: float) -> None:
     """The parabola of a crowning goes on beyond its length, up to the ends of the pinion's face."""
     beyond = half_width - crowning.start
     if crowning.amount == 0 or beyond <= 0:
         return
     at_end = crowning.amount * (beyond / crowning.length) ** 2
-    if at_end > most:
-        least = beyond * sqrt(crowning.amount / most)
+    if at_end > max_relief:
+        min_length = beyond * sqrt(crowning.amount / max_relief)
         allowed = (
-            f"at least {1e3 * least:.4g}: the parabola would take {1e6 * at_end:.0f} um off the ends "
-            f"of the pinion's face, and at most {1e6 * most:.1f}, {MOST_RELIEF:g} modules, may come off"
+            f"at least {1e3 * min_length:.4g}: the parabola would take {1e6 * at_end:.0f} um off the ends "
+            f"of the pinion's face, and at most {1e6 * max_relief:.1f}, {MOST_RELIEF:g} modules, may come off"
         )
         _refuse("pinion.lead_crowning.length_mm", 1e3 * crowning.length, allowed)
 
 
-def _check_modification(name: str, relief: Relief, room: float, most: float) -> None:
+def _check_modification(name: str, relief: Relief, room: float, max_relief: float) -> None:
     if relief.amount == 0:
         return
-    if relief.amount > most:
-        allowed = f"at most {1e6 * most:.1f}, {MOST_RELIEF:g} modules"
+    if relief.amount > max_relief:
+        allowed = f"at most {1e6 * max_relief:.1f}, {MOST_RELIEF:g} modules"
         _refuse(f"pinion.{name}.amount_um", 1e6 * relief.amount, allowed)
     if relief.length <= 0:
         _refuse(f"pinion.{name}.length_mm", 1e3 * relief.length, "greater than 0 where an amount is given")
@@ -130,13 +132,13 @@ def _check_modification(name: str, relief: Relief, room: float, most: float) -> 
 
 def check_shaper(design: PairDesign) -> None:
     """Raises GeometryError for a tool that cannot be made, or not for this pinion."""
-    teeth, least = design.shaper.teeth, design.pinion.teeth
-    if not least <= teeth <= least + 3:
-        _refuse("shaper.teeth", teeth, f"from {least} (line contact) to {least + 3}")
+    teeth, min_teeth = design.shaper.teeth, design.pinion.teeth
+    if not min_teeth <= teeth <= min_teeth + 3:
+        _refuse("shaper.teeth", teeth, f"from {min_teeth} (line contact) to {min_teeth + 3}")
     m = design.module
     if design.shaper.addendum < design.pinion.addendum:
-        least_addendum = f"at least {design.pinion.addendum / m:.4f}, the pinion's addendum"
-        _refuse("shaper.addendum_modules", design.shaper.addendum / m, least_addendum)
+        min_addendum = f"at least {design.pinion.addendum / m:.4f}, the pinion's addendum"
+        _refuse("shaper.addendum_modules", design.shaper.addendum / m, min_addendum)
     sharp = _land_left(design, 0.0)
     if sharp < 0:
         land = 1e3 * (sharp + THINNEST_LAND * m)
@@ -145,10 +147,10 @@ def check_shaper(design: PairDesign) -> None:
     rounding = design.shaper.tip_rounding
     deepest = design.shaper_tip_radius - design.shaper_base_radius
     if rounding >= deepest or _land_left(design, rounding) < 0:
-        most = deepest
+        max_rounding = deepest
         if _land_left(design, deepest) < 0:
-            most = root(lambda radius: _land_left(design, radius), 0.0, deepest, 1e-9)
-        allowed = f"at most {most / m:.4f}: the shaper's tip is round"
+            max_rounding = root(lambda radius: _land_left(design, radius), 0.0, deepest, 1e-9)
+        allowed = f"at most {max_rounding / m:.4f}: the shaper's tip is round"
         _refuse("shaper.tip_rounding_modules", rounding / m, allowed)
 
 
@@ -174,21 +176,21 @@ def _check_gear(design: PairDesign) -> RadiusLimits:
         if not face.inner <= value <= face.outer:
             _refuse(f"face_gear.{key}", 1e3 * value, str(face))
     if gear.outer_radius - gear.inner_radius < 0.5 * m:
-        least = 1e3 * (gear.inner_radius + 0.5 * m)
+        min_radius = 1e3 * (gear.inner_radius + 0.5 * m)
         _refuse(
             "face_gear.outer_radius_mm",
             1e3 * gear.outer_radius,
-            f"at least {least:.3f}, half a module of face",
+            f"at least {min_radius:.3f}, half a module of face",
         )
     _check_width(design)
     radius = np.linspace(gear.inner_radius, gear.outer_radius, 33)
-    highest = face_gear.flank_point(design, 0.0, face_gear.psi_at(design, radius, 0.0))[:, 2].min()
-    if design.gear_tip_plane > highest:
-        most = highest - design.pitch_plane
+    top = face_gear.flank_point(design, 0.0, face_gear.psi_at(design, radius, 0.0))[:, 2].min()
+    if design.gear_tip_plane > top:
+        max_addendum = top - design.pitch_plane
         _refuse(
             "face_gear.addendum_modules",
             gear.addendum / m,
-            f"less than {most / m:.4f}: no involute generates it",
+            f"less than {max_addendum / m:.4f}: no involute generates it",
         )
     roll, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
     if np.max(roll) >= design.shaper_tip_roll:
@@ -198,9 +200,11 @@ def _check_gear(design: PairDesign) -> RadiusLimits:
 
 def _check_width(design: PairDesign) -> None:
     gear, width = design.face_gear, design.pinion.width
-    least, most = NARROWEST * (gear.outer_radius - gear.inner_radius), 2 * design.mean_radius
-    if width < least:
-        allowed = f"at least {1e3 * least:.3f}, half the gear's face"
+    min_width, max_width = NARROWEST * (gear.outer_radius - gear.inner_radius), 2 * design.mean_radius
+    if width < min_width:
+        allowed = f"at least {1e3 * min_width:.3f}, half the gear's face"
         _refuse("pinion.width_mm", 1e3 * width, allowed)
-    if width >= most:
-        _refuse("pinion.width_mm", 1e3 * width, f"less than {1e3 * most:.3f}: it reaches the gear's axis")
+    if width >= max_width:
+        _refuse(
+            "pinion.width_mm", 1e3 * width, f"less than {1e3 * max_width:.3f}: it reaches the gear's axis"
+        )

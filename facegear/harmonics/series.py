@@ -86,9 +86,9 @@ class Harmonics:
 
 def stacked(series: Sequence[Harmonics]) -> Array:
     """Fourier series as rows (series, 2, harmonics + 1), sine part first, padded to the longest."""
-    rows = np.zeros((len(series), 2, max(one.order for one in series) + 1))
-    for row, one in zip(rows, series, strict=True):
-        row[0, : one.order + 1], row[1, : one.order + 1] = one.a, one.b
+    rows = np.zeros((len(series), 2, max(harmonics.order for harmonics in series) + 1))
+    for row, harmonics in zip(rows, series, strict=True):
+        row[0, : harmonics.order + 1], row[1, : harmonics.order + 1] = harmonics.a, harmonics.b
     return rows
 
 

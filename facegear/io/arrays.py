@@ -33,9 +33,11 @@ def read(path: str | Path, shapes: Mapping[str, tuple[int | None, ...]]) -> dict
     for name, shape in shapes.items():
         if name not in arrays:
             raise CorruptFile(path, f"array {name!r} is missing")
-        found = arrays[name].shape
-        if len(found) != len(shape) or any(n not in (None, m) for n, m in zip(shape, found, strict=True)):
-            raise CorruptFile(path, f"array {name!r} has shape {found}, expected {shape}")
+        stored_shape = arrays[name].shape
+        if len(stored_shape) != len(shape) or any(
+            n not in (None, m) for n, m in zip(shape, stored_shape, strict=True)
+        ):
+            raise CorruptFile(path, f"array {name!r} has shape {stored_shape}, expected {shape}")
     for name, array in arrays.items():
         if array.dtype.kind == "f" and not np.isfinite(array).all():
             raise CorruptFile(path, f"array {name!r} holds a value that is not finite")

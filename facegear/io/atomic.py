@@ -9,7 +9,7 @@ from pathlib import Path
 from facegear.errors import FacegearError
 
 NO_SPACE = (errno.ENOSPC, errno.EDQUOT)
-NO_SPACE_TOLD = "no space left on the disk; free some and run again"
+NO_SPACE_HINT = "no space left on the disk; free some and run again"
 
 
 @contextmanager
@@ -28,7 +28,7 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
         os.replace(temporary, path)
     except OSError as error:
         if error.errno in NO_SPACE:
-            raise FacegearError(f"{path}: {NO_SPACE_TOLD}") from None
+            raise FacegearError(f"{path}: {NO_SPACE_HINT}") from None
         raise
     finally:
         temporary.unlink(missing_ok=True)

@@ -24,7 +24,7 @@ def require_manifest(path: str | Path) -> None:
     """
     path = Path(path)
     if path.is_file() and not any(
-        path.name in _files(one) for one in path.parent.glob(f"*{MANIFEST_SUFFIX}")
+        path.name in _files(manifest) for manifest in path.parent.glob(f"*{MANIFEST_SUFFIX}")
     ):
         raise CorruptFile(path, "no manifest beside it says what its stage wrote")
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from facegear.errors import FacegearError
-from facegear.io.atomic import NO_SPACE, NO_SPACE_TOLD, atomic_path
+from facegear.io.atomic import NO_SPACE, NO_SPACE_HINT, atomic_path
 
 
 def read(path: str | Path, identity: str) -> list[dict[str, Any]]:
@@ -23,10 +23,10 @@ def read(path: str | Path, identity: str) -> list[dict[str, Any]]:
     records = []
     for line in lines[1:]:
         try:
-            told, text = line.decode().split(" ", 1)
+            digest, text = line.decode().split(" ", 1)
         except ValueError:
             break
-        if told != _digest(text):
+        if digest != _digest(text):
             break
         records.append(json.loads(text))
     return records
@@ -48,7 +48,7 @@ def appending(path: str | Path, identity: str) -> Iterator[Callable[[dict[str, A
             yield lambda record: _append(stream, record)
     except OSError as error:
         if error.errno in NO_SPACE:
-            raise FacegearError(f"{path}: {NO_SPACE_TOLD}") from None
+            raise FacegearError(f"{path}: {NO_SPACE_HINT}") from None
         raise
 
 

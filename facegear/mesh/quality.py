@@ -34,8 +34,8 @@ def require_right_side_out(tooth: ToothMesh) -> None:
     """Raises ConfigError for a mesh with an element turned inside out, which no stiffness may come from."""
     turned = np.count_nonzero(scaled_jacobians(tooth.nodes, tooth.hexes) <= 0.0)
     if turned:
-        told = f"{turned} elements of the {tooth.body.replace('_', ' ')} turned inside out"
-        raise ConfigError("mesh.resolution", told, "another one, or another fillet_depth_mm")
+        elements = f"{turned} elements of the {tooth.body.replace('_', ' ')} turned inside out"
+        raise ConfigError("mesh.resolution", elements, "another one, or another fillet_depth_mm")
 
 
 def volume(nodes: Array, hexes: Integers) -> float:

@@ -55,8 +55,8 @@ def plan_section(outline: Outline, sizes: MeshSizes) -> SectionPlan:
         floor_levels += 1
     floor_columns = max(floor_columns, ceil((lower + land) / 3**floor_levels))
     total = 3**floor_levels * floor_columns
-    share = lengths["root_land"] / (lengths["root_land"] + lengths["fillet"] / 2)
-    land = min(max(1, round(total * share)), total - 1)
+    land_fraction = lengths["root_land"] / (lengths["root_land"] + lengths["fillet"] / 2)
+    land = min(max(1, round(total * land_fraction)), total - 1)
 
     breaks = {
         "chamfer": (0.0, chamfer / fine),

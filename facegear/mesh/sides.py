@@ -11,6 +11,6 @@ def element_faces(sector: SectorMesh, name: str) -> list[tuple[int, str]]:
     middle = sector.faces(name)[:, 4]
     sides = sector.hexes[:, list(FACES.values())]
     order = np.argsort(sides.ravel(), kind="stable")
-    place = order[np.searchsorted(sides.ravel(), middle, sorter=order)]
+    index = order[np.searchsorted(sides.ravel(), middle, sorter=order)]
     labels = list(FACES)
-    return [(int(at // 6), labels[at % 6]) for at in place]
+    return [(int(at // 6), labels[at % 6]) for at in index]

@@ -31,8 +31,8 @@ SHOWN = 0.06
 
 def typical_meshes(pinions: Sequence[Mapping[str, Any]], meshes: Iterable[str]) -> list[str]:
     """The first mesh of the first pinion of each role; pinions as in the config, meshes `pinion/side`."""
-    roles = [place["role"] for place in pinions]
-    names = [place["name"] for i, place in enumerate(pinions) if roles[i] not in roles[:i]]
+    roles = [pinion["role"] for pinion in pinions]
+    names = [pinion["name"] for i, pinion in enumerate(pinions) if roles[i] not in roles[:i]]
     different = list(dict.fromkeys(meshes))
     return [next(mesh for mesh in different if mesh.startswith(f"{name}/")) for name in names]
 
@@ -101,7 +101,9 @@ def _colour(period: int) -> str:
 def _keys(branches: pd.DataFrame, special: pd.DataFrame) -> list[Line2D]:
     keys = [
         Line2D([], [], color=colour, lw=1.6, label=name)
-        for name, colour in dict.fromkeys(_motion(f"period-{one}") for one in _by_size(branches["period"]))
+        for name, colour in dict.fromkeys(
+            _motion(f"period-{period}") for period in _by_size(branches["period"])
+        )
     ]
     keys += [
         Line2D([], [], color="0.3", lw=1.6, label="stable"),
@@ -121,7 +123,7 @@ def _keys(branches: pd.DataFrame, special: pd.DataFrame) -> list[Line2D]:
 
 def _by_size(periods: pd.Series) -> list[int]:
     """Periods with a colour of their own first."""
-    return sorted(periods.unique(), key=lambda one: (one not in NAMED, one))
+    return sorted(periods.unique(), key=lambda period: (period not in NAMED, period))
 
 
 def loci(table: pd.DataFrame, speed_rpm: float) -> Figure:
@@ -162,18 +164,18 @@ def shares(table: pd.DataFrame) -> Figure:
     used: dict[str, str] = {}
     with styled():
         figure, axis = plt.subplots(figsize=(7, 4))
-        for place, speed in enumerate(speeds):
+        for bar, speed in enumerate(speeds):
             bottom = 0.0
             for row in table[table["speed_rpm"] == speed].itertuples():
                 name, colour = _motion(str(row.motion))
                 used[name] = colour
-                axis.bar(place, row.share, 0.7, bottom=bottom, color=colour, edgecolor="white")
+                axis.bar(bar, row.share, 0.7, bottom=bottom, color=colour, edgecolor="white")
                 if str(row.branch).isdigit() and row.share > SHOWN:
                     middle = bottom + 0.5 * row.share
-                    axis.text(place, middle, row.branch, ha="center", va="center", color="white", fontsize=8)
+                    axis.text(bar, middle, row.branch, ha="center", va="center", color="white", fontsize=8)
                 bottom += row.share
                 if 0.0 < row.share < 1.0 and bottom < 1.0 - 1e-9:
-                    axis.errorbar(place, bottom, row.error, color="black", capsize=3, lw=0.8)
+                    axis.errorbar(bar, bottom, row.error, color="black", capsize=3, lw=0.8)
         axis.set_xticks(range(len(speeds)), [f"{speed:g}" for speed in speeds])
         axis.set_xlabel("pinion speed (rpm)")
         axis.set_ylabel("share of random starts")

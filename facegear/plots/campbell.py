@@ -56,10 +56,10 @@ def _mark(axis: Axes, rows: pd.DataFrame, speed: str, teeth: int, symbol: str, l
     """Marks where the strongest mode's response frequency lies at each row's speed; grey off all lines."""
     unique = rows.drop_duplicates([speed, "resonance"])
     on = _on_line(unique["order"].astype(float))
-    for chosen, colour, told in ((on, "black", label), (~on, "0.6", f"{label} at no multiple")):
+    for chosen, colour, text in ((on, "black", label), (~on, "0.6", f"{label} at no multiple")):
         if chosen.any():
             frequency = unique["order"][chosen] * teeth * unique[speed][chosen] / 60.0
-            axis.plot(unique[speed][chosen], frequency, symbol, color=colour, ms=4, label=told)
+            axis.plot(unique[speed][chosen], frequency, symbol, color=colour, ms=4, label=text)
 
 
 def waterfall(spectra: Mapping[str, Array], mesh: int, mesh_name: str, teeth: int) -> Figure:

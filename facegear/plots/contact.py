@@ -65,7 +65,7 @@ def closed(rows: pd.DataFrame) -> pd.DataFrame:
 def contact_pattern(arrays: Arrays) -> Figure:
     """Pressure each point of the pinion's flank sees as it passes through the mesh, one panel a torque."""
     torques = np.unique(arrays["line_torque_n_m"])
-    return pattern_panels({_told(arrays, torque): (arrays, torque) for torque in torques})
+    return pattern_panels({_title(arrays, torque): (arrays, torque) for torque in torques})
 
 
 def pattern_panels(panels: Mapping[str, tuple[Arrays, float]]) -> Figure:
@@ -73,15 +73,15 @@ def pattern_panels(panels: Mapping[str, tuple[Arrays, float]]) -> Figure:
 
     All have one scale, which ends at their largest pressure; marks stand where only a line load is known.
     """
-    found = {title: (pattern(arrays), float(torque)) for title, (arrays, torque) in panels.items()}
-    top = max(np.nanmax(seen.pressure[torque], initial=0.0) for seen, torque in found.values())
-    rows = len(found)
+    patterns = {title: (pattern(arrays), float(torque)) for title, (arrays, torque) in panels.items()}
+    top = max(np.nanmax(seen.pressure[torque], initial=0.0) for seen, torque in patterns.values())
+    rows = len(patterns)
     with styled():
         figure, axes = plt.subplots(
             rows, 1, figsize=(NARROW, 1.3 + 1.7 * rows), sharex=True, sharey=True, squeeze=False
         )
         for axis, (title, (seen, torque)), (arrays, _) in zip(
-            axes.flat, found.items(), panels.values(), strict=True
+            axes.flat, patterns.items(), panels.values(), strict=True
         ):
             drawn = _panel(axis, seen, torque, 1e-6 * top or 1.0)
             nodes = 1e3 * arrays["point_m"]
@@ -103,8 +103,8 @@ def _panel(axis: Axes, seen: Pattern, torque: float, top: float) -> QuadMesh:
     field = np.ma.masked_invalid(1e-6 * _faded(seen.pressure[torque], where))
     axis.set_facecolor("0.92")
     axis.grid(visible=False)
-    for kinds, marker, colour, name in MARKS:
-        on = np.isin(where, [EDGES.index(kind) for kind in kinds])
+    for edges, marker, colour, name in MARKS:
+        on = np.isin(where, [EDGES.index(kind) for kind in edges])
         axis.plot(width[on], radius[on], marker, color=colour, ms=2.5, label=name, rasterized=True)
     look = {"cmap": "inferno", "shading": "gouraud", "rasterized": True}
     return axis.pcolormesh(width, radius, field, vmin=0, vmax=top, **look)
@@ -119,7 +119,7 @@ def _faded(field: Array, where: Integers) -> Array:
     return np.where(beside & (where < 0), 0.0, field)
 
 
-def _told(arrays: Arrays, torque: float) -> str:
+def _title(arrays: Arrays, torque: float) -> str:
     """Title of a panel: torque, largest pressure with its error, largest line load of a tip edge."""
     on = arrays["line_torque_n_m"] == torque
     at = np.argmax(arrays["line_pressure_pa"][on])

@@ -63,8 +63,8 @@ def figures(
     `points`: study, point and label of each case; `titles`: of each study by its name.
     """
     machine, *others = StudiedContact.several(points, pair, ltca, by_torque, pressure)
-    found = []
+    drawn = []
     for study, title in titles.items():
         shown = [machine, *(case for case in others if case.study == study)]
-        found += [contact_study(shown, torque, title), pattern_study(shown, torque)]
-    return found
+        drawn += [contact_study(shown, torque, title), pattern_study(shown, torque)]
+    return drawn

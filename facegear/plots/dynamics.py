@@ -39,34 +39,34 @@ def drawn_machine(transmission: Mapping[str, Any], pinion_teeth: int) -> DrawnMa
     """
     pinions, gears = transmission["pinions"], transmission["face_gears"]
     differ = any(transmission[key] for key in ("single_pinions", "single_meshes", "single_gears"))
-    kinds = [(place["role"], place["torque_n_m"]) for place in pinions]
-    shown = [place["name"] for i, place in enumerate(pinions) if differ or kinds[i] not in kinds[:i]]
+    duties = [(pinion["role"], pinion["torque_n_m"]) for pinion in pinions]
+    shown = [pinion["name"] for i, pinion in enumerate(pinions) if differ or duties[i] not in duties[:i]]
     sides = [side for side in ("upper", "lower") if side in gears]
-    return DrawnMachine(tuple(place["name"] for place in pinions), tuple(shown), tuple(sides), pinion_teeth)
+    return DrawnMachine(tuple(pinion["name"] for pinion in pinions), tuple(shown), tuple(sides), pinion_teeth)
 
 
-def _waterfall(found: Mapping[str, Any], machine: DrawnMachine) -> Figure:
+def _waterfall(tables: Mapping[str, Any], machine: DrawnMachine) -> Figure:
     shown = f"{machine.shown[-1]}/{machine.sides[0]}"
-    return waterfall(found["waterfall"], machine.meshes.index(shown), shown, machine.teeth)
+    return waterfall(tables["waterfall"], machine.meshes.index(shown), shown, machine.teeth)
 
 
-def _campbell(found: Mapping[str, Any], machine: DrawnMachine) -> Figure:
-    last = found["sweep"]["speed_rpm"].max()
-    return campbell(found["frequencies"], found["resonances"], found["jumps"], machine.teeth, last)
+def _campbell(tables: Mapping[str, Any], machine: DrawnMachine) -> Figure:
+    last = tables["sweep"]["speed_rpm"].max()
+    return campbell(tables["frequencies"], tables["resonances"], tables["jumps"], machine.teeth, last)
 
 
 SWEEP_FIGURES: dict[str, Callable[[Mapping[str, Any], DrawnMachine], Figure]] = {
-    "pinions": lambda found, machine: translations(found["sweep"], machine.shown, "xy"),
-    "gears": lambda found, machine: translations(found["sweep"], machine.gears, "xyz"),
-    "meshes": lambda found, machine: mesh_sweeps(
-        found["sweep"], found["jumps"], machine.shown, machine.sides
+    "pinions": lambda tables, machine: translations(tables["sweep"], machine.shown, "xy"),
+    "gears": lambda tables, machine: translations(tables["sweep"], machine.gears, "xyz"),
+    "meshes": lambda tables, machine: mesh_sweeps(
+        tables["sweep"], tables["jumps"], machine.shown, machine.sides
     ),
     "campbell": _campbell,
     "waterfall": _waterfall,
 }
 """Figure by name: RMS of pinions, of face gears, of the meshes (with jumps), Campbell diagram, waterfall.
 
-`found` holds the tables sweep, jumps, resonances, frequencies and the arrays waterfall.
+`tables` holds the tables sweep, jumps, resonances, frequencies and the arrays waterfall.
 """
 
 

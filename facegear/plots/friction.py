@@ -124,6 +124,6 @@ def _lines(axis: Axes, table: pd.DataFrame, column: str, label: str) -> None:
 def _extreme(stage: Array, values: Array, on: Mask, sign: float) -> tuple[Array, Array]:
     """Places of the passage and the largest (sign 1) or smallest (-1) value at each."""
     places, row = np.unique(stage[on], return_inverse=True)
-    found = np.full(places.size, -np.inf)
-    np.maximum.at(found, row, sign * values[on])
-    return places, sign * found
+    extreme = np.full(places.size, -np.inf)
+    np.maximum.at(extreme, row, sign * values[on])
+    return places, sign * extreme

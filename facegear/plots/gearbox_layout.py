@@ -86,8 +86,8 @@ def _panel(
         _label(axis, radius, outwards, f"{name}\n{np.degrees(angle):.2f} deg\n{_kilo(row['mean_n'])} kN")
     own = forces.loc[gear.name]
     _arrow(axis, np.zeros(2), metres * own[["mean_x_n", "mean_y_n"]].to_numpy(float), BEARING)
-    told = f"axial on its bearing {own['mean_z_n'] / 1e3:+.1f} kN"
-    title = f"{gear.name.capitalize()}, seen from above\n{told}"
+    axial = f"axial on its bearing {own['mean_z_n'] / 1e3:+.1f} kN"
+    title = f"{gear.name.capitalize()}, seen from above\n{axial}"
     axis.text(0.0, TITLE * radius, title, ha="center", va="bottom", fontsize=10)
     axis.set(xlim=(-REACH * radius, REACH * radius), aspect="equal")
     axis.set_ylim(-LOWEST * radius, (2.0 * REACH - LOWEST) * radius)

@@ -30,10 +30,12 @@ def hunting_figure(cycles: pd.DataFrame, meshes: pd.DataFrame, torque: float) ->
             loads = cycles[[f"{name} (N)" for name in names]].to_numpy()
             total = loads.sum(axis=1)
             shares = 100.0 * loads / np.where(total > 0.0, total, np.nan)[:, None]
-            wide = len(shares) > 1
-            at = cycles["cycle"].to_numpy() if wide else np.array([0, 1])
-            for share, name, colour in zip(shares.T, names, COLOURS, strict=False):
-                axis.plot(at, share if wide else np.repeat(share, 2), lw=0.9, color=colour, label=name)
+            several = len(shares) > 1
+            at = cycles["cycle"].to_numpy() if several else np.array([0, 1])
+            for load_share, name, colour in zip(shares.T, names, COLOURS, strict=False):
+                axis.plot(
+                    at, load_share if several else np.repeat(load_share, 2), lw=0.9, color=colour, label=name
+                )
             axis.axhline(100.0 / len(names), color="0.5", lw=0.8, ls=":")
             axis.set_ylabel("Share (%)")
             axis.legend(
@@ -54,11 +56,11 @@ def hunting_figure(cycles: pd.DataFrame, meshes: pd.DataFrame, torque: float) ->
 
 def bearing_figure(scan: pd.DataFrame, torque: float) -> Figure:
     """K_gamma against bearing stiffness of the inputs (top) and of the idlers (below), both kinematics."""
-    kinds = list(scan["kind"].unique())
+    quantities = list(scan["kind"].unique())
     with styled():
         figure, axes = plt.subplots(2, 1, figsize=(NARROW, 6.6), sharey=True)
         for axis, varied in zip(axes, ("inputs", "idlers"), strict=True):
-            for kind, colour in zip(kinds, COLOURS, strict=False):
+            for kind, colour in zip(quantities, COLOURS, strict=False):
                 for kinematics, line in LINES.items():
                     mask = (scan["varied"] == varied) & (scan["kind"] == kind)
                     rows = scan[mask & (scan["kinematics"] == kinematics)]

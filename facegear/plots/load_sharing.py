@@ -81,8 +81,12 @@ def figures(
     summary: pd.DataFrame,
     titles: Sequence[str],
     captions: Sequence[str],
-    kinds: Sequence[str],
+    groups: Sequence[str],
 ) -> list[Figure]:
     """A figure for each study and kind of group."""
-    told = zip(studies, titles, captions, strict=True)
-    return [sharing_figure(one, summary, kind, title, text) for one, title, text in told for kind in kinds]
+    labelled = zip(studies, titles, captions, strict=True)
+    return [
+        sharing_figure(table, summary, kind, title, text)
+        for table, title, text in labelled
+        for kind in groups
+    ]

@@ -18,11 +18,11 @@ def typical_modes(frequencies: pd.DataFrame) -> list[tuple[int, ...]]:
     as a single vector out of several modes of one frequency is arbitrary.
     """
     elastic = frequencies[frequencies["class"] != "rigid body"]
-    found = []
+    modes = []
     for _, rows in elastic.groupby(["class", "symbols"], sort=False):
         first = rows.loc[rows["multiplicity"].idxmin()]
-        found.append(tuple(int(first["order"]) + i for i in range(int(first["multiplicity"]))))
-    return sorted(found)
+        modes.append(tuple(int(first["order"]) + i for i in range(int(first["multiplicity"]))))
+    return sorted(modes)
 
 
 def amplitudes(shapes: pd.DataFrame, orders: tuple[int, ...]) -> Array:
@@ -38,15 +38,15 @@ def amplitudes(shapes: pd.DataFrame, orders: tuple[int, ...]) -> Array:
 
 def mode_shapes(frequencies: pd.DataFrame, shapes: pd.DataFrame) -> Figure:
     """Bars over all DOF, relative to the largest in the mode (m and rad alike, as in the paper)."""
-    kinds = typical_modes(frequencies)
+    shown = typical_modes(frequencies)
     by_order = frequencies.set_index("order")
     dofs = shapes[shapes["order"] == shapes["order"].iloc[0]].reset_index(drop=True)
     bodies = dofs["body"].drop_duplicates()
     with styled():
         figure, axes = plt.subplots(
-            len(kinds), 1, figsize=(NARROW, 1.6 + 1.35 * len(kinds)), sharex=True, squeeze=False
+            len(shown), 1, figsize=(NARROW, 1.6 + 1.35 * len(shown)), sharex=True, squeeze=False
         )
-        for axis, orders in zip(axes[:, 0], kinds, strict=True):
+        for axis, orders in zip(axes[:, 0], shown, strict=True):
             mode = by_order.loc[orders[0]]
             axis.bar(dofs.index, amplitudes(shapes, orders), color=COLOURS[mode["class"]], width=0.8)
             axis.axhline(0.0, color="black", lw=0.6)

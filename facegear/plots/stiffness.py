@@ -21,9 +21,9 @@ def stiffness_curve(curve: pd.DataFrame) -> Figure:
     return figure
 
 
-def harmonic_amplitudes(spectrum: pd.DataFrame, most: int = 15) -> Figure:
+def harmonic_amplitudes(spectrum: pd.DataFrame, max_order: int = 15) -> Figure:
     """Absolute amplitudes of the orders of the stiffness variation."""
-    rows = spectrum[(spectrum["order"] >= 1) & (spectrum["order"] <= most)]
+    rows = spectrum[(spectrum["order"] >= 1) & (spectrum["order"] <= max_order)]
     with styled():
         figure, axis = plt.subplots(figsize=(NARROW, 3.3))
         axis.bar(rows["order"], 1e-8 * rows["amplitude_n_per_m"], width=0.5, color="tab:blue")

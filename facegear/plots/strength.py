@@ -31,22 +31,22 @@ def along_face_figure(table: pd.DataFrame) -> Figure:
     return _both(table, "radius_mm", "Gear radius (mm)")
 
 
-def _both(table: pd.DataFrame, place: str, label: str) -> Figure:
+def _both(table: pd.DataFrame, coordinate: str, label: str) -> Figure:
     torques = np.sort(table["torque_n_m"].unique())
     colours = plt.get_cmap("viridis")(np.linspace(0.0, 0.85, torques.size))
     with styled():
-        figure, axes = plt.subplots(2, 1, figsize=(NARROW, 6.2), sharex=place == "passage")
+        figure, axes = plt.subplots(2, 1, figsize=(NARROW, 6.2), sharex=coordinate == "passage")
         for axis, (body, name) in zip(axes, BODIES.items(), strict=True):
             for torque, colour in zip(torques, colours, strict=True):
                 rows = table[(table["torque_n_m"] == torque) & (table["body"] == body)]
                 loaded, other = (
-                    rows[rows["fillet"] == fillet].sort_values(place) for fillet in ("loaded", "other")
+                    rows[rows["fillet"] == fillet].sort_values(coordinate) for fillet in ("loaded", "other")
                 )
-                axis.plot(loaded[place], loaded["largest_mpa"], color=colour, label=f"{torque:g} N m")
-                axis.plot(other[place], other["smallest_mpa"], "--", color=colour, lw=0.9)
+                axis.plot(loaded[coordinate], loaded["largest_mpa"], color=colour, label=f"{torque:g} N m")
+                axis.plot(other[coordinate], other["smallest_mpa"], "--", color=colour, lw=0.9)
             axis.set(ylabel=f"{name}: root stress (MPa)\ntension solid, compression dashed")
         legend_above(axes[0], 3)
-        for axis in axes if place != "passage" else axes[1:]:
+        for axis in axes if coordinate != "passage" else axes[1:]:
             axis.set_xlabel(label)
     return figure
 

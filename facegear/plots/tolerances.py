@@ -80,14 +80,14 @@ def importance_figure(percentiles: pd.DataFrame, importance: pd.DataFrame, indic
     causes = list(own.groupby("cause")["size"].max().sort_values(ascending=False).index[:BARS])[::-1]
     with styled():
         figure, axis = plt.subplots(figsize=(NARROW, 1.1 + 0.17 * len(names) * (1 + max(len(causes), 1))))
-        wide = 0.76 / max(len(names), 1)
+        height = 0.76 / max(len(names), 1)
         for number, (name, colour) in enumerate(zip(names, COLOURS, strict=False)):
             rows = own[own["quantity"] == name].set_index("cause").reindex(causes)
             ends = None
             if value == "total":
                 ends = np.array([rows[value] - rows["total_low"], rows["total_high"] - rows[value]]).clip(0.0)
-            places = np.arange(len(causes)) + wide * (0.5 * (len(names) - 1) - number)
-            axis.barh(places, rows[value], 0.95 * wide, xerr=ends, color=colour, label=in_words(name))
+            places = np.arange(len(causes)) + height * (0.5 * (len(names) - 1) - number)
+            axis.barh(places, rows[value], 0.95 * height, xerr=ends, color=colour, label=in_words(name))
         axis.set_yticks(np.arange(len(causes)), [cause.replace("_", " ") for cause in causes])
         axis.axvline(0.0, color="black", lw=0.6)
         axis.set_xlabel("Total Sobol index" if value == "total" else "Rank correlation")
@@ -137,8 +137,8 @@ def load_map_figure(table: pd.DataFrame) -> Figure:
         for (value, rows), colour in zip(own.groupby(lines), colours, strict=False):
             for level, style in ((50.0, ":"), (99.0, "-")):
                 at = rows[rows["percentile"] == level].sort_values(over)
-                told = label.format(value) if level == 99.0 else None
-                axis.plot(at[over], at["value"], style, marker=".", ms=4, color=colour, label=told)
+                entry = label.format(value) if level == 99.0 else None
+                axis.plot(at[over], at["value"], style, marker=".", ms=4, color=colour, label=entry)
                 axis.fill_between(at[over], at["low"], at["high"], color=colour, alpha=0.15, lw=0)
         axis.set_xlabel({"torque_factor": "Torque (of the nominal)", "speed_rpm": "Pinion speed (rpm)"}[over])
         axis.set_ylabel(in_words(name))

@@ -40,9 +40,9 @@ def _manifest(path: Path) -> Manifest | None:
     """The readable manifest that covers a file."""
     for candidate in sorted(path.parent.glob(f"*{MANIFEST_SUFFIX}")):
         try:
-            found = json.loads(candidate.read_text(encoding="utf-8"))
-            if path.name in found["files"]:
-                return found
+            manifest = json.loads(candidate.read_text(encoding="utf-8"))
+            if path.name in manifest["files"]:
+                return manifest
         except (OSError, ValueError, KeyError, TypeError):
             continue
     return None

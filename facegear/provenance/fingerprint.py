@@ -110,8 +110,8 @@ def reached_modules(script: str | Path, root: str | Path) -> tuple[str, ...]:
 
 
 def _source(path: Path, root: Path) -> _Source:
-    found = path.stat()
-    return _looked_up(path, root, found.st_size, found.st_mtime_ns)
+    status = path.stat()
+    return _looked_up(path, root, status.st_size, status.st_mtime_ns)
 
 
 @cache
@@ -124,17 +124,17 @@ def _looked_up(path: Path, root: Path, size: int, modified: int) -> _Source:
 
 def _parsed(path: Path, root: Path) -> _Source:
     tree = ast.parse(path.read_text(encoding="utf-8"))
-    found: set[str] = set()
+    modules: set[str] = set()
     for node in _executed(tree):
         if isinstance(node, ast.Import | ast.ImportFrom):
             for name in _names(node):
                 if name.split(".")[0] in PACKAGES:
-                    found.update(name.rsplit(".", depth)[0] for depth in range(name.count(".") + 1))
+                    modules.update(name.rsplit(".", depth)[0] for depth in range(name.count(".") + 1))
         elif isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
             body = node.body
             if body and isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Constant):
                 node.body = body[1:] or ([] if isinstance(node, ast.Module) else [ast.Pass()])
-    return _Source(hashlib.sha256(ast.unparse(tree).encode()).hexdigest(), tuple(sorted(found)))
+    return _Source(hashlib.sha256(ast.unparse(tree).encode()).hexdigest(), tuple(sorted(modules)))
 
 
 def _executed(tree: ast.AST) -> Iterator[ast.AST]:

@@ -53,12 +53,12 @@ def write_manifest(
 
 
 def _versions() -> dict[str, str]:
-    found = {}
+    versions = {}
     for name in LIBRARIES:
         module = name.replace("scikit-fem", "skfem")
         if module in sys.modules or name == "numpy":
             try:
-                found[name] = version(name)
+                versions[name] = version(name)
             except PackageNotFoundError:
                 continue
-    return found
+    return versions

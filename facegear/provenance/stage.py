@@ -11,7 +11,7 @@ from types import TracebackType
 from typing import Any, BinaryIO
 
 from facegear.errors import CorruptFile, FacegearError
-from facegear.io.atomic import NO_SPACE, NO_SPACE_TOLD
+from facegear.io.atomic import NO_SPACE, NO_SPACE_HINT
 from facegear.io.checksums import MANIFEST_SUFFIX, require_manifest
 from facegear.provenance.manifest import write_manifest
 
@@ -19,7 +19,7 @@ RESULTS = "results"
 """Folder of what stages write, each file with its manifest; inputs elsewhere are the user's."""
 
 
-class Run:
+class StageRun:
     """What a script may tell about its stage; `name` leads its line on the terminal."""
 
     def __init__(self, name: str) -> None:
@@ -32,14 +32,14 @@ class Run:
 
 
 @contextmanager
-def stage(snakemake: Any) -> Iterator[Run]:
+def stage(snakemake: Any) -> Iterator[StageRun]:
     """Run a script's body: copy standard error to the rule's log and write the manifest at the end.
 
     A FacegearError or a full disk ends the script with one line, the log's path and exit code 1, without a
     traceback. The manifest goes to the output whose name ends in `.provenance.json` and covers all others.
     """
     run, start = (
-        Run(" ".join([snakemake.rule, *dict(snakemake.wildcards.items()).values()])),
+        StageRun(" ".join([snakemake.rule, *dict(snakemake.wildcards.items()).values()])),
         time.perf_counter(),
     )
     outputs = [Path(output) for output in snakemake.output]
@@ -79,7 +79,7 @@ def _one_line_errors(snakemake: Any, log: Path) -> Iterator[None]:
         if isinstance(error, OSError) and error.errno not in NO_SPACE:
             raise
         where = f"{snakemake.rule} of {snakemake.wildcards.get('case', 'this workflow')}"
-        what = f"{log}: {NO_SPACE_TOLD}" if isinstance(error, OSError) else str(_rebuilt(error, snakemake))
+        what = f"{log}: {NO_SPACE_HINT}" if isinstance(error, OSError) else str(_rebuilt(error, snakemake))
         print(f"error in {where}: {what} (log: {log})", file=sys.stderr, flush=True)
         raise SystemExit(1) from None
 

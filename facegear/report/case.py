@@ -107,15 +107,15 @@ def case_report(
     chapters = [glance_chapter(values, tables, drawn, pair), machine_chapter(values, tables)]
     for title, text, names in CHAPTERS:
         shown = [*names, *added.get(title, ())]
-        found = [
+        shown_pictures = [
             _picture(pictures[name], caption_of(name, values))
             for name in shown
             if name in pictures and name != drawing
         ]
         own = _tables(title, tables, values["dynamics"]["speed_rpm"])
         seen = view if title == "Loaded contact" else None
-        if found or own or seen:
-            chapters.append(Chapter(title, text, found, own, seen))
+        if shown_pictures or own or seen:
+            chapters.append(Chapter(title, text, shown_pictures, own, seen))
     if "scorecard" in tables:
         chapters.append(_scorecard(tables["scorecard"]))
     chapters.append(_errors(tables))
@@ -191,29 +191,29 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
 
 def _rated(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     shown = tables["safety"].dropna(axis="columns", how="all")
-    found = [Table(SAFETY, shown, 4), Table(RATING, tables["rating"], 4, folded=True)]
+    listed = [Table(SAFETY, shown, 4), Table(RATING, tables["rating"], 4, folded=True)]
     if "duty_loads" in tables:
         loads = tables["duty_loads"]
         hardest = loads.loc[loads.groupby("bin")["largest_force_n"].idxmax()]
-        found += [Table(DUTY_LOADS, hardest, 4), Table(EVERY_LOAD, loads, 4, folded=True)]
-    return found
+        listed += [Table(DUTY_LOADS, hardest, 4), Table(EVERY_LOAD, loads, 4, folded=True)]
+    return listed
 
 
 def _friction(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     shown = tables["friction"].dropna(axis="columns", how="all")
-    found = [Table("One mesh at the nominal speed, by torque", shown, 4)]
+    listed = [Table("One mesh at the nominal speed, by torque", shown, 4)]
     if "machine_loss" in tables:
         whole = tables["machine_loss"].dropna(axis="columns", how="all")
         meshes = tables["mesh_losses"].dropna(axis="columns", how="all")
-        found = [
+        listed = [
             Table("The machine: bin 0 at the nominal load, -1 the whole duty cycle", whole, 4),
-            *found,
+            *listed,
             Table("Every loaded flank", meshes, 4, folded=True),
             Table("Heat of every body", tables["body_heat"], 4, folded=True),
         ]
     limits = tables["limits"]
     return [
-        *found,
+        *listed,
         Table("Part of the loss outside the limits of the friction model", limits, 3, folded=True),
     ]
 
@@ -281,8 +281,10 @@ def _errors(tables: Mapping[str, pd.DataFrame]) -> Chapter:
 
 def _provenance(manifests: Sequence[Mapping[str, Any]]) -> Chapter:
     columns = ["rule", "summary", "seconds", "made_at", "code"]
-    frame = pd.DataFrame([{name: one.get(name) for name in columns} for one in manifests], columns=columns)
-    versions = dict(sorted({item for one in manifests for item in one["versions"].items()}))
+    frame = pd.DataFrame(
+        [{name: manifest.get(name) for name in columns} for manifest in manifests], columns=columns
+    )
+    versions = dict(sorted({item for manifest in manifests for item in manifest["versions"].items()}))
     text = "Each output has a manifest beside it with versions, config slice, code fingerprint and checksums."
     stored = pd.DataFrame(list(versions.items()), columns=["library", "version"])
     return Chapter("Provenance", text, (), [Table("Rules", frame, 4), Table("Versions", stored)])

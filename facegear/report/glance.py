@@ -26,12 +26,12 @@ def glance_chapter(
     pair: Mapping[str, Any] | None,
 ) -> Chapter:
     """What is read first, from the same inputs as the whole report; `drawing` shows the machine."""
-    found = []
+    listed = []
     for caption, rows in (("Verdicts", verdicts(tables, pair)), ("Warnings", warnings(values, tables, pair))):
-        found.append(Table(caption, pd.DataFrame(list(rows), columns=["about", "what was found"])))
+        listed.append(Table(caption, pd.DataFrame(list(rows), columns=["about", "what was found"])))
     numbers = key_numbers(tables, pair)
     first = [] if numbers.empty else [Table("Key numbers", numbers)]
-    return Chapter("At a glance", "", drawing, [*first, *found])
+    return Chapter("At a glance", "", drawing, [*first, *listed])
 
 
 def verdicts(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None) -> Iterator[tuple[str, str]]:
@@ -40,8 +40,8 @@ def verdicts(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None)
         gap = pair["interference"] or pair["smallest_gap"]
         parts = f"gear {gap['gear_part']} against pinion {gap['pinion_part']}"
         where = f"{parts}, radius {gap['gear_radius_mm']:.1f} mm"
-        found = "interference" if pair["interference"] else "free; smallest gap beside the contact"
-        yield "teeth", f"{found} {gap['gap_um']:.1f} um ({where})"
+        state = "interference" if pair["interference"] else "free; smallest gap beside the contact"
+        yield "teeth", f"{state} {gap['gap_um']:.1f} um ({where})"
     for row in tables.get("by_torque", pd.DataFrame()).itertuples():
         mean = row.k_average_mean_n_per_m
         known = f"mean stiffness {scientific(mean, 4)} N/m" if mean == mean else "no mean stiffness"
@@ -66,8 +66,8 @@ def verdicts(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None)
         )
     if "jumps" in tables:
         speeds = tables["jumps"].groupby("direction")["speed_after_rpm"].unique()
-        told = [f"{len(at)} {name} ({_range(at.min(), at.max())} rpm)" for name, at in speeds.items()]
-        yield "jumps in the sweep", ", ".join(told) or "none"
+        counts = [f"{len(at)} {name} ({_range(at.min(), at.max())} rpm)" for name, at in speeds.items()]
+        yield "jumps in the sweep", ", ".join(counts) or "none"
     if "scorecard" in tables:
         counted = tables["scorecard"][tables["scorecard"]["counted"]]["verdict"].value_counts(sort=False)
         yield "claims of the paper", ", ".join(f"{name} {rows}" for name, rows in counted.items())
@@ -150,12 +150,12 @@ def _sweep_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[tuple[str, s
             "apart: numbers there are averages",
         )
     gaps = sweep[sweep["quantity"] == "open_share"].groupby("body_or_mesh", sort=False)["value"]
-    least, most = gaps.min(), gaps.max()
-    if (always := least.index[least >= 1.0]).size:
+    min_open, max_open = gaps.min(), gaps.max()
+    if (always := min_open.index[min_open >= 1.0]).size:
         yield "speed sweep", f"open at every speed: {_listed(always)}"
-    lost = most.index[(most > 0.0) & (least < 1.0)]
+    lost = max_open.index[(max_open > 0.0) & (min_open < 1.0)]
     if lost.size:
-        time = f"up to {100 * most[lost].max():.2g} % of the time"
+        time = f"up to {100 * max_open[lost].max():.2g} % of the time"
         yield "speed sweep", f"contact is lost at some speeds, {time}: {_listed(lost)}"
 
 
@@ -185,29 +185,29 @@ def _contact_warnings(
             )
     if "by_torque" not in tables:
         return
-    found = tables["by_torque"]
-    for row in found[found["fillet_share"] > FILLETS_MATTER].itertuples():
+    by_torque = tables["by_torque"]
+    for row in by_torque[by_torque["fillet_share"] > FILLETS_MATTER].itertuples():
         yield (
             f"contact at {row.torque_n_m:g} N m",
             f"tips press into fillets and carry up to {100 * row.fillet_share:.1f} % of the torque there, "
             "which is kept out of pressure and root stress",
         )
-    pressed = found.get("pressure_mpa", pd.Series(nan, found.index))
-    for row in found[1e6 * pressed > DENTED].itertuples():
+    pressed = by_torque.get("pressure_mpa", pd.Series(nan, by_torque.index))
+    for row in by_torque[1e6 * pressed > DENTED].itertuples():
         yield (
             f"contact at {row.torque_n_m:g} N m",
             f"a pressure of {row.pressure_mpa:.0f} MPa: from {1e-6 * DENTED:.0f} MPa on even hardened steel "
             "yields (ISO 76), and elastic contact does not hold",
         )
-    change = 1.0 - found["ste_peak_to_peak_half_um"] / found["ste_peak_to_peak_um"]
-    for row in found[change > POSITIONS_MATTER].itertuples():
+    change = 1.0 - by_torque["ste_peak_to_peak_half_um"] / by_torque["ste_peak_to_peak_um"]
+    for row in by_torque[change > POSITIONS_MATTER].itertuples():
         yield (
             f"contact at {row.torque_n_m:g} N m",
             f"peak-to-peak transmission error {row.ste_peak_to_peak_um:.2f} um, "
             f"{row.ste_peak_to_peak_half_um:.2f} with half of the positions: more of them may change it",
         )
     if "meshes" in tables:
-        largest, solved = tables["meshes"]["pinion_torque_n_m"].abs().max(), found["torque_n_m"].max()
+        largest, solved = tables["meshes"]["pinion_torque_n_m"].abs().max(), by_torque["torque_n_m"].max()
         if largest > solved * (1.0 + BALANCED):
             yield (
                 "contact",

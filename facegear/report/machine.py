@@ -36,9 +36,9 @@ NUMBERS = {
 
 def machine_chapter(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> Chapter:
     """Config, torques and powers; `tables` may hold ratings, bodies, meshes."""
-    found = []
+    listed = []
     if "bodies" in tables:
-        found = [
+        listed = [
             Table("Torque and power of every body; positive: brought in", tables["bodies"], 5),
             Table(
                 "Every mesh at rest with mean stiffness; the force is along the line of action",
@@ -46,7 +46,7 @@ def machine_chapter(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame
                 5,
             ),
         ]
-    return Chapter("The machine as configured", _text(values, tables), (), [*found, *_config_tables(values)])
+    return Chapter("The machine as configured", _text(values, tables), (), [*listed, *_config_tables(values)])
 
 
 def key_numbers(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None) -> pd.DataFrame:

@@ -45,10 +45,10 @@ class Picture:
     def width_px(self) -> int:
         """Width at which the text has the size it was drawn with."""
         if self.path.suffix == ".svg":
-            found = re.search(
+            match = re.search(
                 r'<svg[^>]* width="([\d.]+)(pt|px)?"', self.path.read_text(encoding="utf-8")[:4000]
             )
-            return 0 if found is None else round(float(found[1]) * (4 / 3 if found[2] == "pt" else 1.0))
+            return 0 if match is None else round(float(match[1]) * (4 / 3 if match[2] == "pt" else 1.0))
         return round(int.from_bytes(self.path.read_bytes()[16:20], "big") * SCREEN_DPI / PNG_DPI)
 
     def data_uri(self) -> str:

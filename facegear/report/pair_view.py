@@ -98,10 +98,10 @@ def _body(design: PairDesign, name: Body, stress: Arrays | None) -> dict[str, An
 
 def _fillets(stress: Arrays, name: Body) -> dict[str, Any]:
     """Where the gauges of a tooth are, and the number of the first tooth of a passage."""
-    place = stress[f"{name}_position_m"]
+    position = stress[f"{name}_position_m"]
     return {
-        "shape": list(place.shape[1:3]),
-        "points": _encoded(1e3 * place, np.float32),
+        "shape": list(position.shape[1:3]),
+        "points": _encoded(1e3 * position, np.float32),
         "first": int(np.floor(stress[f"{name}_passage"][0])),
     }
 
@@ -127,7 +127,7 @@ def _torque(
     top = {key: float(np.nanmax(values, initial=0.0)) for key, values in shown.items()}
     tension = {} if stress is None else _tension(torque, stress)
     if tension:
-        top[ROOT_STRESS["key"]] = max(float(found.max()) for found in tension.values())
+        top[ROOT_STRESS["key"]] = max(float(arrays.max()) for arrays in tension.values())
     return {
         "torque_n_m": torque,
         "largest": top,
@@ -135,7 +135,7 @@ def _torque(
         "node": _encoded(loads["node"][on][order], np.uint16),
         "tooth": _encoded(loads["tooth"][on][order], np.int8),
         "values": {key: _parts(values, top[key]) for key, values in shown.items()},
-        "tension": {name: _parts(found, top[ROOT_STRESS["key"]]) for name, found in tension.items()},
+        "tension": {name: _parts(arrays, top[ROOT_STRESS["key"]]) for name, arrays in tension.items()},
         "error_um": rows["ste_um"].round(3).tolist(),
         "share": rows[list(SHARES)].round(4).to_numpy().tolist(),
     }
@@ -153,8 +153,8 @@ def line_pressure(loads: Arrays, on: Mask) -> Array:
     known = known[loads["line_where"] == EDGES.index("inside")].groupby(level=keys).max()
     columns = int(loads["shape"][1])
     nodes = [loads[key][on] for key in keys[:-1]]
-    found = known.reindex(pd.MultiIndex.from_arrays([*nodes, loads["node"][on] % columns])).to_numpy()
-    return np.where(loads["in_fillet"][on], np.nan, found)
+    pressures = known.reindex(pd.MultiIndex.from_arrays([*nodes, loads["node"][on] % columns])).to_numpy()
+    return np.where(loads["in_fillet"][on], np.nan, pressures)
 
 
 def line_load(loads: Arrays, on: Mask) -> Array:

@@ -55,7 +55,9 @@ def scale(torques: Array, largest: Array, lone: float, beyond: float) -> Scale:
     `lone` where one torque alone was solved.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = np.diff(np.log(largest)) / np.diff(np.log(torques))
-    between = np.clip(np.nan_to_num(found, nan=LARGEST, posinf=LARGEST, neginf=LARGEST), SMALLEST, LARGEST)
+        exponents = np.diff(np.log(largest)) / np.diff(np.log(torques))
+    between = np.clip(
+        np.nan_to_num(exponents, nan=LARGEST, posinf=LARGEST, neginf=LARGEST), SMALLEST, LARGEST
+    )
     below = max(between[0] - FALLS, SMALLEST) if between.size else lone
     return Scale(torques, np.concatenate([[below], between, [beyond]]))

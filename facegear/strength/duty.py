@@ -47,14 +47,14 @@ class FlankDuty:
 
 def given_duty(gear: str, duty: Sequence[DutyBin], turns: float, both_ways: bool) -> FlankDuty:
     """Every load of the duty cycle on the teeth of one gear, `turns` times a turn of the pinion."""
-    torque = np.array([one.torque for one in duty])
+    torque = np.array([load.torque for load in duty])
     return FlankDuty(
         body=gear,
         gear=gear,
         flank="each" if both_ways else "drive",
         bins=np.arange(len(duty)),
         torque=torque,
-        cycles=np.array([turns * one.speed * one.time for one in duty]),
+        cycles=np.array([turns * load.speed * load.time for load in duty]),
         opposite=torque if both_ways else np.zeros_like(torque),
     )
 
@@ -69,14 +69,14 @@ def machine_duty(
     body once a turn.
     """
     turns = {"pinion": 1.0, "face_gear": ratio}
-    passes = np.array([one.speed * one.time for one in duty])
-    most = spectrum.groupby(["body", "flank", "bin"])["force_n"].max()
-    found = []
+    passes = np.array([entry.speed * entry.time for entry in duty])
+    max_force = spectrum.groupby(["body", "flank", "bin"])["force_n"].max()
+    flanks = []
     for (body, gear, flank), rows in spectrum.groupby(["body", "gear", "flank"], sort=False):
         other = "back" if flank == "drive" else "drive"
         bins = rows["bin"].to_numpy() - 1
-        opposite = [most.get((body, other, number + 1), 0.0) for number in range(len(duty))]
-        found.append(
+        opposite = [max_force.get((body, other, number + 1), 0.0) for number in range(len(duty))]
+        flanks.append(
             FlankDuty(
                 body=str(body),
                 gear=str(gear),
@@ -87,4 +87,4 @@ def machine_duty(
                 opposite=arm * np.array(opposite),
             )
         )
-    return tuple(sorted(found, key=lambda one: one.gear != "pinion"))
+    return tuple(sorted(flanks, key=lambda entry: entry.gear != "pinion"))

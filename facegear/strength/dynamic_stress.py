@@ -31,19 +31,19 @@ def dynamic_stress_table(
 def _row(
     mesh: str, force: Array, places: Array, base_radius: float, contacts: Mapping[str, FlankContact]
 ) -> tuple[str | float | bool, ...]:
-    mean, most = float(np.abs(force).mean()), float(np.abs(force).max())
+    mean, max_force = float(np.abs(force).mean()), float(np.abs(force).max())
     by_flank = {"drive": np.maximum(force, 0.0), "back": np.maximum(-force, 0.0)}
     loaded = {flank: part for flank, part in by_flank.items() if part.any()} or {"drive": by_flank["drive"]}
     steady = contacts[max(loaded, key=lambda flank: float(loaded[flank].mean()))]
-    most_of = {flank: base_radius * float(part.max()) for flank, part in loaded.items()}
+    max_torque = {flank: base_radius * float(part.max()) for flank, part in loaded.items()}
     stresses: list[float] = []
     for body in BODIES:
         running = (contacts[at].history[body](base_radius * part, places) for at, part in loaded.items())
-        bounds = (contacts[at].history[body].over_passage(torque) for at, torque in most_of.items())
+        bounds = (contacts[at].history[body].over_passage(torque) for at, torque in max_torque.items())
         largest = max(float(values.max()) for values in running)
         stresses += [steady.tension[body](base_radius * mean), largest, max(bounds)]
     stresses.append(steady.pressure.at(base_radius * mean))
-    stresses.append(largest_pressure((contacts[at], torque) for at, torque in most_of.items()))
-    within = steady.solved(base_radius * mean) and steady.solved(base_radius * most)
-    factor = most / mean if mean > 0.0 else np.nan
-    return (mesh, mean, most, factor, *(1e-6 * stress for stress in stresses), within)
+    stresses.append(largest_pressure((contacts[at], torque) for at, torque in max_torque.items()))
+    within = steady.solved(base_radius * mean) and steady.solved(base_radius * max_force)
+    factor = max_force / mean if mean > 0.0 else np.nan
+    return (mesh, mean, max_force, factor, *(1e-6 * stress for stress in stresses), within)

@@ -15,7 +15,7 @@ def stress_surface(
     below the loaded flank, 1 below the other.
     """
     points, cells, start = [], [], 0
-    told: dict[str, list[Array]] = {}
+    gathered: dict[str, list[Array]] = {}
     for number, body in enumerate(BODIES):
         position, stress = arrays[f"{body}_position_m"], arrays[f"{body}_stress_pa"]
         down, along = position.shape[1:3]
@@ -30,6 +30,6 @@ def stress_surface(
             fields[f"largest_pa_at_{torque:g}_n_m"] = stress[row].max(axis=0).ravel()
             fields[f"smallest_pa_at_{torque:g}_n_m"] = stress[row].min(axis=0).ravel()
         for name, values in fields.items():
-            told.setdefault(name, []).append(values)
-    joined = {name: np.concatenate(parts) for name, parts in told.items()}
+            gathered.setdefault(name, []).append(values)
+    joined = {name: np.concatenate(parts) for name, parts in gathered.items()}
     return np.concatenate(points), {"quad": np.concatenate(cells)}, joined

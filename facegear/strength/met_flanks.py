@@ -24,18 +24,22 @@ def met_by(duty: FlankDuty, gears: Sequence[str]) -> list[tuple[str, str]]:
 
 def worst_root(duty: FlankDuty, contacts: Sequence[FlankContact]) -> RootStress:
     """That of the contact with the largest stress under the flank's largest load."""
-    roots = [one.roots[duty.gear] for one in contacts]
+    roots = [contact.roots[duty.gear] for contact in contacts]
     return max(roots, key=lambda root: root.at_torque(duty.largest).max())
 
 
 def worst_pressure(contacts: Sequence[FlankContact]) -> ContactPressure:
     """The largest of all contacts at every torque."""
-    found = [one.pressure for one in contacts]
-    pressures, errors = (np.array([getattr(one, name) for one in found]) for name in ("pressure", "error"))
+    by_contact = [entry.pressure for entry in contacts]
+    pressures, errors = (
+        np.array([getattr(entry, name) for entry in by_contact]) for name in ("pressure", "error")
+    )
     worst = np.argmax(np.nan_to_num(pressures), axis=0)
     columns = np.arange(worst.size)
     largest = {
-        name: np.max([getattr(one, name) for one in found], axis=0)
+        name: np.max([getattr(entry, name) for entry in by_contact], axis=0)
         for name in ("edge_load", "edge_length", "fillet_share")
     }
-    return ContactPressure(found[0].torques, pressures[worst, columns], errors[worst, columns], **largest)
+    return ContactPressure(
+        by_contact[0].torques, pressures[worst, columns], errors[worst, columns], **largest
+    )

@@ -102,13 +102,13 @@ class Rated:
     @property
     def reasons(self) -> tuple[str, ...]:
         """Why it is not green although as safe as required: loads whose stress is not known."""
-        told = []
+        reasons = []
         if self.failure == "pitting" and self.edge_load >= EDGE:
-            told.append(f"tip edges carry {1e-3 * self.edge_load:.0f} N/mm, where pressure has no limit")
+            reasons.append(f"tip edges carry {1e-3 * self.edge_load:.0f} N/mm, where pressure has no limit")
         if self.fillet_share >= FILLET:
-            share = f"fillets carry up to {100 * self.fillet_share:.2g} % of the torque"
-            told.append(f"{share}, kept out of pressure and root stress")
-        return tuple(told)
+            carried = f"fillets carry up to {100 * self.fillet_share:.2g} % of the torque"
+            reasons.append(f"{carried}, kept out of pressure and root stress")
+        return tuple(reasons)
 
 
 def rate(
@@ -123,7 +123,7 @@ def rate(
     `contact_ratio` that of the section of the pitch point; `roots` the root stress of both bodies. The
     standard alone judges pitting where no `pressure` away from edges is known.
     """
-    found = []
+    ratings = []
     form = pinion_form(design, contact_ratio)
     pitting = hertz_stress(design, contact_ratio, request)
     tension = {gear: largest_tension(root) for gear, root in roots.items()}
@@ -136,12 +136,16 @@ def rate(
         if duty.gear == "pinion":
             ways["ISO 6336-3"] = standard_bending(design, form)
         for method, stress in ways.items():
-            found.append(_rated(request, duty, "bending", method, stress, allowed, bending_limits, pressure))
+            ratings.append(
+                _rated(request, duty, "bending", method, stress, allowed, bending_limits, pressure)
+            )
         ways = {"contact analysis": pressure.at} if pressure.known else {}
         allowed = pitting_limits.limit
         for method, stress in (ways | {"ISO 6336-2": pitting[duty.gear]}).items():
-            found.append(_rated(request, duty, "pitting", method, stress, allowed, pitting_limits, pressure))
-    return found
+            ratings.append(
+                _rated(request, duty, "pitting", method, stress, allowed, pitting_limits, pressure)
+            )
+    return ratings
 
 
 def _rated(

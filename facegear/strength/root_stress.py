@@ -73,15 +73,15 @@ def root_stress(
     """
     shape, count = angle.shape, len(positions)
     teeth = np.arange(min(loads) - 1, max(loads) + 2) if teeth is None else teeth
-    found = np.zeros((len(torques), len(teeth), count, readings.shape[1]))
-    for place in range(count):
-        here = {tooth: force[place::count] for tooth, force in loads.items()}
-        found[:, :, place] = _felt(readings, here, teeth)
-    place = (teeth[:, None] + np.asarray(positions, dtype=float)).ravel()
+    stress = np.zeros((len(torques), len(teeth), count, readings.shape[1]))
+    for index in range(count):
+        here = {tooth: force[index::count] for tooth, force in loads.items()}
+        stress[:, :, index] = _felt(readings, here, teeth)
+    passage = (teeth[:, None] + np.asarray(positions, dtype=float)).ravel()
     return RootStress(
         torques=np.asarray(torques, dtype=float),
-        passage=place,
-        stress=found.reshape(len(torques), place.size, *shape),
+        passage=passage,
+        stress=stress.reshape(len(torques), passage.size, *shape),
         along=along,
         angle=angle,
         error=np.full(len(along), np.nan) if error is None else error,
@@ -114,7 +114,7 @@ def down_the_fillet(values: Array) -> Array:
 
 def largest_tension(root: RootStress) -> Callable[[float], float]:
     """Largest stress (Pa) on either fillet over the passage and the face, at a torque (N m)."""
-    places = np.stack([down_the_fillet(one).ravel() for one in root.stress])
+    places = np.stack([down_the_fillet(stress).ravel() for stress in root.stress])
     kept = np.zeros(places.shape[1], dtype=bool)
     kept[places.argmax(axis=1)] = True
     for low, high in pairwise(places):

@@ -20,23 +20,23 @@ STANDARD_ANGLE = np.radians(30.0)
 """Between the fillet's tangent and the tooth's middle line at the section of ISO 6336-3."""
 
 
-def root_tables(found: Mapping[str, RootStress]) -> dict[str, pd.DataFrame]:
+def root_tables(roots: Mapping[str, RootStress]) -> dict[str, pd.DataFrame]:
     """`summary`, `passage` and `along_face` of the root stress of each body.
 
     Largest and smallest values are of splines through the gauges down the fillet, but of the gauges
     themselves along the face, the outermost of which stand a fifth of an element from its ends.
     """
     summary, passage, along_face = [], [], []
-    for body, root in found.items():
+    for body, root in roots.items():
         for row, torque in enumerate(root.torques):
             for side, fillet in enumerate(FILLETS):
                 fine = down_the_fillet(root.stress[row, :, side])
-                place = (torque, body, fillet)
-                summary.append((*place, *_peak(root, row, side, fine)))
+                key = (torque, body, fillet)
+                summary.append((*key, *_peak(root, row, side, fine)))
                 history = zip(root.passage, fine.max(axis=(1, 2)), fine.min(axis=(1, 2)), strict=True)
-                passage += [(*place, at, 1e-6 * high, 1e-6 * low) for at, high, low in history]
+                passage += [(*key, at, 1e-6 * high, 1e-6 * low) for at, high, low in history]
                 ends = zip(root.along, fine.max(axis=(0, 1)), fine.min(axis=(0, 1)), strict=True)
-                along_face += [(*place, 1e3 * at, 1e-6 * high, 1e-6 * low) for at, high, low in ends]
+                along_face += [(*key, 1e3 * at, 1e-6 * high, 1e-6 * low) for at, high, low in ends]
     return {
         "summary": pd.DataFrame(summary, columns=list(ROOT_STRESS_COLUMNS)),
         "passage": pd.DataFrame(passage, columns=list(PASSAGE_COLUMNS)),
@@ -61,13 +61,13 @@ def _peak(root: RootStress, row: int, side: int, fine: Array) -> tuple[float, ..
 
 def _at_angle(fine: Array, angle: Array, wanted: float) -> float:
     """Largest of stress (n, m, b) where the angle (m, b) has a value; nan where no gauges enclose it."""
-    found = [np.nan]
+    values = [np.nan]
     for column in range(angle.shape[1]):
         order = np.argsort(angle[:, column])
         here = angle[order, column]
         if here[0] <= wanted <= here[-1]:
-            found.append(max(np.interp(wanted, here, stress[order]) for stress in fine[..., column]))
-    return float(np.nanmax(found)) if len(found) > 1 else np.nan
+            values.append(max(np.interp(wanted, here, stress[order]) for stress in fine[..., column]))
+    return float(np.nanmax(values)) if len(values) > 1 else np.nan
 
 
 def root_by_flank(variants: Sequence[Mapping[str, RootStress]], flank_variant: Integers) -> pd.DataFrame:
@@ -76,7 +76,7 @@ def root_by_flank(variants: Sequence[Mapping[str, RootStress]], flank_variant: I
     `variants`: root stress of each body under each of the errors that flanks meet; `flank_variant`
     (gears, flanks) numbers them.
     """
-    summaries = [root_tables(found)["summary"] for found in variants]
+    summaries = [root_tables(roots)["summary"] for roots in variants]
     parts = [
         summaries[int(number)].assign(gear=GEARS[row], flank=FLANKS[column])
         for (row, column), number in np.ndenumerate(flank_variant)

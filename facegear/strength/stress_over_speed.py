@@ -30,7 +30,7 @@ def branch_forces(branches: pd.DataFrame, speeds: Array) -> pd.DataFrame:
 
     A stretch has both its ends. Speeds of points that differ from one of `speeds` by rounding are that one.
     """
-    found = []
+    forces = []
     for (number, period), rows in branches.groupby(["branch", "period"], sort=False):
         worst = rows.loc[rows.groupby("point", sort=True)["peak_force_n"].idxmax()]
         speed = _without_rounding(worst["speed_rpm"].to_numpy(), speeds)
@@ -44,11 +44,11 @@ def branch_forces(branches: pd.DataFrame, speeds: Array) -> pd.DataFrame:
             part = (inside - first) / (last - first or 1.0)
             there = (1.0 - part) * force[at] + part * force[at + 1]
             mesh = meshes[at] if force[at] >= force[at + 1] else meshes[at + 1]
-            found += [
-                (f"branch {number}", f"period-{period}", float(one), mesh, float(value))
-                for one, value in zip(inside, there, strict=True)
+            forces += [
+                (f"branch {number}", f"period-{period}", float(rpm), mesh, float(value))
+                for rpm, value in zip(inside, there, strict=True)
             ]
-    return pd.DataFrame(found, columns=list(FORCE_COLUMNS))
+    return pd.DataFrame(forces, columns=list(FORCE_COLUMNS))
 
 
 def _without_rounding(values: Array, exact: Array) -> Array:
@@ -71,16 +71,20 @@ def stress_table(
     """
     torques = base_radius * forces["largest_force_n"].to_numpy()
     loads = list(zip([dict.fromkeys(contacts[mesh]) for mesh in forces["mesh"]], torques, strict=True))
-    most = forces.groupby("speed_rpm")["largest_force_n"].transform("max")
+    max_force = forces.groupby("speed_rpm")["largest_force_n"].transform("max")
     table = forces.assign(
         dynamic_factor=forces["largest_force_n"] / static_force if static_force > 0.0 else np.nan,
         **{
-            f"{body}_mpa": [1e-6 * max(one.tension[body](torque) for one in near) for near, torque in loads]
+            f"{body}_mpa": [
+                1e-6 * max(contact.tension[body](torque) for contact in near) for near, torque in loads
+            ]
             for body in BODIES
         },
-        pressure_mpa=[1e-6 * largest_pressure((one, torque) for one in near) for near, torque in loads],
+        pressure_mpa=[
+            1e-6 * largest_pressure((contact, torque) for contact in near) for near, torque in loads
+        ],
         within_torques_solved=[next(iter(near)).solved(torque) for near, torque in loads],
-        worst=forces["largest_force_n"] >= (1.0 - ALIKE) * most,
+        worst=forces["largest_force_n"] >= (1.0 - ALIKE) * max_force,
     )
     return table.sort_values(["speed_rpm", "motion"], kind="stable", ignore_index=True)[
         list(STRESS_OVER_SPEED_COLUMNS)

@@ -15,11 +15,11 @@ class TensionHistory:
 
     def __init__(self, root: RootStress) -> None:
         within, where = np.unique(np.round(np.mod(root.passage, 1.0), 9), return_inverse=True)
-        largest = np.array([down_the_fillet(one).max(axis=(1, 2, 3)) for one in root.stress])
-        by_place = np.array([largest[:, where == place].max(axis=1) for place in range(within.size)]).T
+        largest = np.array([down_the_fillet(stress).max(axis=(1, 2, 3)) for stress in root.stress])
+        by_position = np.array([largest[:, where == index].max(axis=1) for index in range(within.size)]).T
         self._scale = root.scale
         self._places = np.append(within, within[0] + 1.0)
-        self._table = np.hstack([by_place, by_place[:, :1]])
+        self._table = np.hstack([by_position, by_position[:, :1]])
 
     def __call__(self, torques: Array, places: Array) -> Array:
         """Stress (n,) Pa at torques (n,) N m and places (n,) in [0, 1)."""

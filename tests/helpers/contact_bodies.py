@@ -138,8 +138,8 @@ def sound(results):
     """
     for result in results:
         assert result.residual < 1e-12
-        assert result.share.sum() == pytest.approx(1.0, abs=1e-10)
-        assert (result.share >= 0).all()
+        assert result.load_share.sum() == pytest.approx(1.0, abs=1e-10)
+        assert (result.load_share >= 0).all()
         assert result.k_average > 0 or (np.isnan(result.k_average) and result.overlap > 0)
         assert result.k_local > 0
         assert sum(spot.force.sum() for spot in result.spots) > 0

@@ -30,7 +30,7 @@ def test_pressure_at_the_pitch_point_is_the_published_one():
     position = 1.0 - half_tooth * pinion.pinion.teeth / (2 * pi)
     (found,) = analyse_twin(model, np.array([position]), [FORCE])
     (spot,) = found.spots
-    assert found.share[2] == pytest.approx(1.0)
+    assert found.load_share[2] == pytest.approx(1.0)
     points = model.surface.nodes[spot.hats]
     base = pinion.pinion_base_radius
     roll = np.sqrt(np.hypot(points[:, 0], points[:, 2]) ** 2 / base**2 - 1)

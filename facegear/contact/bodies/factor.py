@@ -75,10 +75,10 @@ def _pardiso() -> "PyPardisoSolver":
 @cache
 def _mkl() -> str | None:
     try:
-        found = [str(file.locate()) for file in files("mkl") or () if "mkl_rt" in file.name]
+        paths = [str(file.locate()) for file in files("mkl") or () if "mkl_rt" in file.name]
     except PackageNotFoundError:
         return None
-    return min((path for path in found if os.path.exists(path)), key=len, default=None)
+    return min((path for path in paths if os.path.exists(path)), key=len, default=None)
 
 
 def _schur_pardiso(matrix: sp.csr_matrix, eliminated: int) -> Array:

@@ -63,7 +63,7 @@ def test_contact_sought_in_a_strip_is_that_among_all_candidates(model_of, errors
         assert one.candidates == other.candidates
         assert one.ste == pytest.approx(other.ste, rel=1e-9)
         assert one.k_local == pytest.approx(other.k_local, rel=1e-9)
-        np.testing.assert_allclose(one.share, other.share, atol=1e-9)
+        np.testing.assert_allclose(one.load_share, other.load_share, atol=1e-9)
 
 
 def test_strip_that_is_too_narrow_is_found_out_and_widened(model_of, monkeypatch):

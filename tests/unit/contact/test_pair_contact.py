@@ -67,13 +67,13 @@ def test_result_does_not_depend_on_the_order_of_loads_or_positions(model_of):
     assert (expected.position, expected.torque) == (0.6, 300.0)
     for other in (alone, backwards[1]):
         assert other.ste == pytest.approx(expected.ste, rel=1e-8)
-        np.testing.assert_allclose(other.share, expected.share, atol=1e-8)
+        np.testing.assert_allclose(other.load_share, expected.load_share, atol=1e-8)
 
 
 def test_result_repeats_after_a_pitch_with_the_next_tooth(model_of):
     first, second = loaded_contact(model_of(), [0.0, 1.0], [600.0])
     assert second.ste == pytest.approx(first.ste, rel=1e-8)
-    np.testing.assert_allclose(second.share[:-1], first.share[1:], atol=1e-8)
+    np.testing.assert_allclose(second.load_share[:-1], first.load_share[1:], atol=1e-8)
 
 
 @pytest.fixture(scope="module")
@@ -107,7 +107,7 @@ def test_contact_of_the_opposite_flanks_is_the_mirror_image_s(model_of, back_sid
         for one, other in zip(*(loaded_contact(m, [0.1, 0.7], TORQUES) for m in (here, there)), strict=True):
             assert other.ste == pytest.approx(one.ste, rel=1e-8)
             assert other.k_local == pytest.approx(one.k_local, rel=1e-8)
-            np.testing.assert_allclose(other.share, one.share, atol=1e-8)
+            np.testing.assert_allclose(other.load_share, one.load_share, atol=1e-8)
             for here_spot, there_spot in zip(one.spots, other.spots, strict=True):
                 assert there_spot.force.max() == pytest.approx(here_spot.force.max(), rel=1e-6)
 
@@ -198,13 +198,13 @@ def test_tip_relief_takes_load_off_the_pair_that_comes_into_contact(model_of):
 
 def test_stiffness_is_continuous_through_a_hand_over(model_of):
     positions = np.linspace(0, 1, 17)
-    shares = [result.share for result in loaded_contact(model_of(), positions, [300.0])]
+    shares = [result.load_share for result in loaded_contact(model_of(), positions, [300.0])]
     change = [i for i in range(16) if np.count_nonzero(shares[i]) != np.count_nonzero(shares[i + 1])]
     low, high = positions[change[0]], positions[change[0] + 1]
     count = np.count_nonzero(shares[change[0]])
     while high - low > 1e-6:
         middle = 0.5 * (low + high)
-        here = np.count_nonzero(loaded_contact(model_of(), [middle], [300.0])[0].share)
+        here = np.count_nonzero(loaded_contact(model_of(), [middle], [300.0])[0].load_share)
         low, high = (middle, high) if here == count else (low, middle)
     before, after = sound(loaded_contact(model_of(), [low, high], [300.0]))
     assert after.pairs_in_contact != before.pairs_in_contact
