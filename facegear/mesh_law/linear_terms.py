@@ -69,6 +69,18 @@ def phase_terms(
                 series.slope[i, m] += series.polynomial[i]
 
 
+@terms.piece_terms.of(LinearTerms)
+def piece_terms(
+    law: LinearTerms,
+    series: LinearSeries,
+    scratch: FourierScratch,
+    state: Integers,
+    s: float,
+    rows: int,
+) -> None:
+    """There is one piece."""
+
+
 @terms.force_terms.of(LinearTerms)
 def force_terms(
     law: LinearTerms, series: LinearSeries, state: Integers, deflection: Array, i: int, c: int

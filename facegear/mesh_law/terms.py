@@ -26,6 +26,13 @@ def phase_terms(
 
 
 @by_type(**FAST)
+def piece_terms(law: Any, series: Any, scratch: FourierScratch, state: Integers, s: float, rows: int) -> None:
+    """Expand what depends on the phase and on the pieces that the contacts are in, once these are known: the
+    first `rows` coefficients at phase s, rad.
+    """
+
+
+@by_type(**FAST)
 def force_terms(law: Any, series: Any, state: Integers, deflection: Array, i: int, c: int) -> Lanes:
     """Coefficient i of the forces, from those up to i of the deflections. Open contacts may have any finite
     one.

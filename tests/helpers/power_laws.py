@@ -146,6 +146,11 @@ def phase_terms(law, series, scratch, s, ahead, piece, rows):
     fourier_terms(scratch, law.fourier, s, rows, series.factor)
 
 
+@terms.piece_terms.of(PowerTerms)
+def piece_terms(law, series, scratch, state, s, rows):
+    pass
+
+
 @terms.force_terms.of(PowerTerms)
 def force_terms(law, series, state, deflection, i, c):
     for m in range(c, c + LANES):

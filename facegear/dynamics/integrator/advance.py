@@ -11,7 +11,7 @@ from facegear.dynamics.integrator.switches import until_switch
 from facegear.dynamics.integrator.taylor import deflect, evaluate, recurrence, step_length
 from facegear.dynamics.integrator.work import Work
 from facegear.machine_code.lanes import LANES
-from facegear.mesh_law.terms import force_terms, is_curved
+from facegear.mesh_law.terms import force_terms, is_curved, piece_terms
 
 ROUNDING = 1e-13
 """A step that ends this close to the end of a period (rad) ends there."""
@@ -41,6 +41,7 @@ def advance(
         deflect(packed, work.y, row, work.error, work.deflection)
         ring_row(packed.rings, work.rings, work, row)
     find_states(packed, work)
+    piece_terms(packed.law, work.law, work.fourier, work.state, s, work.order + 1)
     if packed.push_only:
         find_parting(packed, work)
     for _ in range(MOST_GUESSES):
@@ -50,6 +51,7 @@ def advance(
             changed = correct_parting(packed, work) or changed
         if not changed:
             break
+        piece_terms(packed.law, work.law, work.fourier, work.state, s, work.order + 1)
     if is_curved(packed.law):
         for i in range(work.order - 1, work.order + 1):
             for c in range(0, packed.contacts, LANES):

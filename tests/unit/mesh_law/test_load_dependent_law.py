@@ -1,0 +1,86 @@
+"""The load-dependent law by itself: what statics, motion and tangents ask of it is one function."""
+
+import numpy as np
+import pytest
+from force_tables import power_table, two_pairs
+from hypothesis import given
+from hypothesis import strategies as st
+
+from facegear.mesh_law.load_dependent import ForceTable, load_dependent_law
+from facegear.mesh_law.terms import held_force
+
+AMOUNTS = np.append(np.linspace(0.0, 5.0, 83), [1e-6, 3e-5])
+LAW = load_dependent_law([power_table(12, 0.3), power_table(12, 0.3).shifted(0.2)])
+
+
+def test_the_table_gives_forces_and_slopes_of_its_levels_back():
+    table = two_pairs(9, 6, 1.5)
+    law = load_dependent_law([table])
+    phases = np.array([0.0, 0.13, 0.7])
+    for part, found in (
+        (table.forces, law.force(phases, np.repeat(table.levels[:, None, None], 3, axis=1))),
+        (table.slopes[1:], law.slope(phases, np.repeat(table.levels[1:, None, None], 3, axis=1))),
+    ):
+        angle = 2.0 * np.pi * np.outer(np.arange(part.shape[2]), phases)
+        wanted = part[:, 0] @ np.sin(angle) + part[:, 1] @ np.cos(angle)
+        np.testing.assert_allclose(found[..., 0], wanted, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_slopes_are_the_derivatives_of_forces_and_are_continuous_at_the_levels(side):
+    cycle, step = np.array([0.37]), 1e-7
+    beyond = side * np.stack([AMOUNTS, AMOUNTS], axis=1)[1:, None]
+    difference = (LAW.force(cycle, beyond + step) - LAW.force(cycle, beyond - step)) / (2.0 * step)
+    inner = np.abs(beyond) > 1e-4
+    np.testing.assert_allclose(difference[inner], LAW.slope(cycle, beyond)[inner], rtol=0, atol=1e-6)
+    level = side * LAW.levels[1:, None]
+    around = [LAW.slope(cycle, level * (1.0 + sign * 1e-12)) for sign in (1.0, -1.0)]
+    np.testing.assert_allclose(around[0], around[1], rtol=0, atol=1e-9)
+
+
+def test_compiled_statics_see_the_same_law():
+    cycles = np.array([0.1, 0.85])
+    held = LAW.held(cycles)
+    for amount in AMOUNTS[1:]:
+        beyond = np.full((2, 2), amount)
+        found = np.array([[held_force(held, k, m, amount) for m in range(2)] for k in range(2)])
+        np.testing.assert_allclose(found[..., 0], LAW.force(cycles, beyond), rtol=1e-12, atol=1e-15)
+        np.testing.assert_allclose(found[..., 1], LAW.slope(cycles, beyond), rtol=1e-12, atol=1e-15)
+
+
+@given(st.floats(0.0, 1.0), st.floats(1e-9, 6.0), st.floats(-1.0, 1.0))
+def test_a_table_that_comes_later_or_runs_backwards_is_the_same_function_of_the_phase(cycle, amount, lag):
+    table = two_pairs(9, 6, 1.5).shifted(0.1)
+
+    def force(of: ForceTable, phase):
+        return load_dependent_law([of]).force(np.array([phase]), np.array([[amount]]))[0, 0]
+
+    assert force(table.shifted(lag), cycle) == pytest.approx(force(table, cycle - lag), abs=1e-11)
+    assert force(table.mirrored(), cycle) == pytest.approx(force(table, -cycle), abs=1e-11)
+
+
+@given(st.floats(0.0, 1.0), st.floats(-6.0, 6.0))
+def test_no_slope_exceeds_the_bound_and_the_force_of_a_power_law_never_falls(cycle, amount):
+    slope = LAW.slope(np.array([cycle]), np.full((1, 2), amount))[0]
+    assert (slope <= LAW.steepest * (1.0 + 1e-12)).all()
+    assert (slope >= 0.0).all()
+    assert LAW.tables[0].least_slope >= 0.0
+
+
+def test_mean_and_fixed_phase_are_those_of_the_forces():
+    phases = np.arange(64) / 64
+    beyond = np.full((64, 2), 0.7)
+    held = LAW.at_phase(0.3).force(phases, beyond)
+    np.testing.assert_allclose(held, np.repeat(LAW.force(np.array([0.3]), beyond[:1]), 64, 0), rtol=1e-13)
+    mean = LAW.force(phases, beyond).mean(0)
+    np.testing.assert_allclose(LAW.mean().force(phases[:1], beyond[:1])[0], mean, rtol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("levels", "at_first"), [([0.0], 0.0), ([0.1, 0.2], 0.0), ([0.0, 0.2, 0.2], 0.0), ([0.0, 1.0], 1.0)]
+)
+def test_levels_that_do_not_rise_from_zero_and_forces_at_zero_are_refused(levels, at_first):
+    forces = np.zeros((len(levels), 2, 1))
+    forces[0, 1] = at_first
+    with pytest.raises(ValueError, match="must"):
+        ForceTable(np.array(levels), forces, forces)
