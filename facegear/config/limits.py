@@ -3,7 +3,7 @@
 from math import radians
 
 from facegear.errors import ConfigError
-from facegear.geometry.design import FaceGear, PairDesign, Pinion, Shaper
+from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
 from facegear.geometry.limits import face_range, radius_limits
 from facegear.geometry.validate import check_shaper
 
@@ -43,7 +43,7 @@ def told_limits(
         if not low <= value <= high:
             raise ConfigError(name, value, f"from {low:g} to {high:g}")
     m = 1e-3 * module_mm
-    pinion = Pinion(
+    pinion = PinionGeometry(
         teeth=pinion_teeth,
         width=m,
         addendum=m * pinion_addendum_modules,
@@ -52,7 +52,7 @@ def told_limits(
         bore_radius=m,
         profile_shift=m * profile_shift_modules,
     )
-    gear = FaceGear(
+    gear = FaceGearGeometry(
         teeth=face_gear_teeth,
         inner_radius=m,
         outer_radius=m,

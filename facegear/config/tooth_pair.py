@@ -10,11 +10,11 @@ from pydantic import Field, model_validator
 from facegear.config.base import Section, parse, refuse, require_all
 from facegear.errors import ConfigError, GeometryError, NotConverged
 from facegear.geometry.design import (
-    Assembly,
-    FaceGear,
+    AssemblyErrors,
+    FaceGearGeometry,
     Material,
     PairDesign,
-    Pinion,
+    PinionGeometry,
     Relief,
     Shaper,
 )
@@ -135,7 +135,7 @@ def pair_design(section: ToothPair) -> PairDesign:
     return PairDesign(
         module=m,
         pressure_angle=radians(section.pressure_angle_deg),
-        pinion=Pinion(
+        pinion=PinionGeometry(
             teeth=section.pinion_teeth,
             width=1e-3 * pinion.width_mm,
             addendum=m * pinion.addendum_modules,
@@ -149,7 +149,7 @@ def pair_design(section: ToothPair) -> PairDesign:
             root_relief=_relief(pinion.root_relief),
             lead_crowning=_relief(pinion.lead_crowning),
         ),
-        face_gear=FaceGear(
+        face_gear=FaceGearGeometry(
             teeth=section.face_gear_teeth,
             inner_radius=1e-3 * gear.inner_radius_mm,
             outer_radius=1e-3 * gear.outer_radius_mm,
@@ -157,7 +157,7 @@ def pair_design(section: ToothPair) -> PairDesign:
             rim_thickness=1e-3 * gear.rim_thickness_mm,
         ),
         shaper=Shaper(shaper.teeth, m * shaper.addendum_modules, m * shaper.tip_rounding_modules),
-        assembly=Assembly(
+        assembly=AssemblyErrors(
             offset=1e-6 * section.assembly.offset_um,
             shaft_angle_error=section.assembly.shaft_angle_error_deg * pi / 180,
             axial_shift=1e-6 * section.assembly.axial_shift_um,

@@ -14,7 +14,7 @@ from facegear.contact.options import ContactOptions
 from facegear.contact.path import pairs_to_try
 from facegear.contact.position import FIRST_GUESS, LoadedPosition, solve_position
 from facegear.contact.search import find_candidates
-from facegear.geometry.design import Assembly, PairDesign
+from facegear.geometry.design import AssemblyErrors, PairDesign
 from facegear.geometry.placement import pinion_angle
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.progress import Progress
@@ -32,7 +32,7 @@ class ContactModel:
     def design(self) -> PairDesign:
         return self.flanks.design
 
-    def assembled(self, errors: Assembly) -> "ContactModel":
+    def assembled(self, errors: AssemblyErrors) -> "ContactModel":
         """The same bodies in another assembly, which moves no node of theirs."""
         design = replace(self.design, assembly=errors)
         pinion, gear = self.flanks.pinion, self.flanks.gear

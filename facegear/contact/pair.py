@@ -14,12 +14,12 @@ from facegear.errors import ConfigError
 from facegear.geometry.design import Material, PairDesign
 from facegear.mesh.quality import require_right_side_out
 from facegear.mesh.sizes import MeshSizes
-from facegear.mesh.tooth import ToothMesh, gear_tooth, pinion_tooth
+from facegear.mesh.tooth import FeTooth, gear_tooth, pinion_tooth
 
 NEIGHBOURS = 2
 """Teeth on each side whose coupling is kept: at most three or four pairs touch at once."""
 
-BUILDERS: dict[str, Callable[[PairDesign, MeshSizes], ToothMesh]] = {
+BUILDERS: dict[str, Callable[[PairDesign, MeshSizes], FeTooth]] = {
     "pinion": pinion_tooth,
     "face_gear": gear_tooth,
 }
@@ -45,7 +45,7 @@ def gear_flank(
     return GearFlank(side, compliance, gauges)
 
 
-def extent(tooth: ToothMesh, body: str, plan: ContactPlan) -> tuple[int, int, Ends]:
+def extent(tooth: FeTooth, body: str, plan: ContactPlan) -> tuple[int, int, Ends]:
     """How many teeth of a body are modelled, the neighbours on each side that are kept, and what ends them.
 
     Raises ConfigError for a sector with more teeth than the gear.

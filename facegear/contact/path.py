@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from facegear.arrays import Integers
 from facegear.contact.options import ContactOptions
-from facegear.geometry.design import Assembly, PairDesign
+from facegear.geometry.design import AssemblyErrors, PairDesign
 from facegear.geometry.unloaded import PAIRS, unloaded_contact
 
 TOUCHING = 1e-9
@@ -18,5 +18,5 @@ def pairs_to_try(design: PairDesign, phi1: float, options: ContactOptions) -> In
     """
     if not options.path_only:
         return PAIRS
-    gaps = unloaded_contact(replace(design, assembly=Assembly()), [phi1]).gap[0]
+    gaps = unloaded_contact(replace(design, assembly=AssemblyErrors()), [phi1]).gap[0]
     return PAIRS[gaps < TOUCHING]

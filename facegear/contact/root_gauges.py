@@ -11,7 +11,7 @@ from facegear.contact.section_error import SectionErrors
 from facegear.contact.teeth import LOADED_SIDE
 from facegear.geometry.design import Material
 from facegear.mesh.hexahedra import hex_mesh
-from facegear.mesh.tooth import ToothMesh
+from facegear.mesh.tooth import FeTooth
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +44,7 @@ def fillet_sides(body: str) -> tuple[str, str]:
 
 
 def root_gauges(
-    tooth: ToothMesh, material: Material, errors: SectionErrors | None = None
+    tooth: FeTooth, material: Material, errors: SectionErrors | None = None
 ) -> tuple[RootGauges, sp.csr_matrix]:
     """Gauges of a tooth, and their readings (g, 3 n) by the displacements of the elastic body's nodes.
 

@@ -21,9 +21,9 @@ from facegear.contact.bodies.gauges import gauge_coordinates
 from facegear.geometry.design import Material, PairDesign
 from facegear.geometry.fillets import smallest_radius
 from facegear.mesh.sizes import MeshSizes
-from facegear.mesh.tooth import ToothMesh
+from facegear.mesh.tooth import FeTooth
 
-Builder = Callable[[PairDesign, MeshSizes], ToothMesh]
+Builder = Callable[[PairDesign, MeshSizes], FeTooth]
 
 HEIGHTS = (0.05, 0.25, 0.5, 0.75)
 """Of the loads on the flank, 0 at its tip end to 1 at its root end."""
@@ -70,7 +70,7 @@ def section_errors(
     return SectionErrors(np.array(along), np.array(error))
 
 
-def _section(tooth: ToothMesh, plane: int) -> tuple[Array, float]:
+def _section(tooth: FeTooth, plane: int) -> tuple[Array, float]:
     """Points (n, 2) of a plane of a tooth, m, a gear's laid flat, and where along the face it stands."""
     count = int(np.ptp(tooth.surfaces["fillet_right"].nodes[0, :2]))
     points = tooth.nodes[count * plane : count * (plane + 1)]
@@ -81,7 +81,7 @@ def _section(tooth: ToothMesh, plane: int) -> tuple[Array, float]:
     return np.stack([radius * angle, points[:, 2]], axis=1), radius
 
 
-def _beside(tooth: ToothMesh, points: Array, pitches: int, radius: float) -> Array:
+def _beside(tooth: FeTooth, points: Array, pitches: int, radius: float) -> Array:
     """Points of the tooth `pitches` further."""
     angle = pitches * tooth.pitch
     if tooth.body == "face_gear":
@@ -90,7 +90,7 @@ def _beside(tooth: ToothMesh, points: Array, pitches: int, radius: float) -> Arr
     return tooth.rotated(turned, angle)[:, [0, 2]]
 
 
-def _tensions(tooth: ToothMesh, plane: int, material: Material) -> Array:
+def _tensions(tooth: FeTooth, plane: int, material: Material) -> Array:
     """Largest tension (Pa) of the fillet below the loaded flank for line loads of 1 N/m at HEIGHTS."""
     points, at = _section(tooth, plane)
     count = len(points)
@@ -117,7 +117,7 @@ def _tensions(tooth: ToothMesh, plane: int, material: Material) -> Array:
     )
 
 
-def _merged(tooth: ToothMesh, count: int, teeth: int) -> Integers:
+def _merged(tooth: FeTooth, count: int, teeth: int) -> Integers:
     """Number of each node of the copies of a section, those on shared cuts once."""
     left, right = (cut[cut < count] for cut in (tooth.cut_left, tooth.cut_right))
     number = np.arange(teeth * count)

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Arrays, Integers
-from facegear.geometry.design import Assembly
+from facegear.geometry.design import AssemblyErrors
 from facegear.geometry.flank_errors import FLANKS, GEARS
 
 COLUMNS = (
@@ -42,7 +42,7 @@ def by_torque(ltca: pd.DataFrame, pressure: Arrays) -> pd.DataFrame:
 
 
 def by_flank(
-    variants: Sequence[pd.DataFrame], different: Sequence[Assembly], numbers: Integers
+    variants: Sequence[pd.DataFrame], different: Sequence[AssemblyErrors], numbers: Integers
 ) -> pd.DataFrame:
     """Tables of `by_torque` of all gears and flanks, columns as BY_FLANK_COLUMNS.
 

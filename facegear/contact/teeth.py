@@ -12,7 +12,7 @@ from facegear.geometry import face_gear
 from facegear.geometry.design import Material, PairDesign
 from facegear.geometry.pinion_surface import SurfacePoints, fillet_points, flank_points
 from facegear.mesh.hexahedra import hex_mesh
-from facegear.mesh.tooth import ToothMesh
+from facegear.mesh.tooth import FeTooth
 
 LOADED_SIDE = {"pinion": "right", "face_gear": "left"}
 """Sides in contact when the pinion drives towards +x; the opposite flanks are their mirror images."""
@@ -42,7 +42,7 @@ class ContactSide:
         return self.nodes.shape
 
 
-def contact_side(design: PairDesign, tooth: ToothMesh, side: str | None = None) -> ContactSide:
+def contact_side(design: PairDesign, tooth: FeTooth, side: str | None = None) -> ContactSide:
     """The surface of a tooth that can touch; `side` None takes the one loaded when the pinion drives."""
     side = side or LOADED_SIDE[tooth.body]
     flank, fillet = (tooth.surfaces[f"{name}_{side}"] for name in ("flank", "fillet"))
@@ -66,7 +66,7 @@ def contact_side(design: PairDesign, tooth: ToothMesh, side: str | None = None) 
 
 
 def elastic_tooth(
-    design: PairDesign, tooth: ToothMesh, material: Material, side: str | None = None
+    design: PairDesign, tooth: FeTooth, material: Material, side: str | None = None
 ) -> tuple[ElasticBody, ContactSide]:
     """The tooth as an elastic body, bore or rim back clamped, and its contact surface."""
     surface = contact_side(design, tooth, side)

@@ -4,7 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from facegear.geometry.design import Assembly, PairDesign
+from facegear.geometry.design import AssemblyErrors, PairDesign
 from facegear.geometry.placement import mirrored, pinion_angle
 
 POSITIONS = 4
@@ -17,7 +17,7 @@ def normal_backlash(design: PairDesign) -> float:
     Without assembly errors it is the thinning of the pinion's teeth. Raises NotConverged where the flanks
     do not face each other.
     """
-    if design.assembly == Assembly():
+    if design.assembly == AssemblyErrors():
         return design.pinion.thinning
     # Imported here: a start reads configs, most of them without the errors that need compiled geometry.
     from facegear.geometry.unloaded import unloaded_contact

@@ -43,7 +43,7 @@ class Relief:
 
 
 @dataclass(frozen=True)
-class Pinion:
+class PinionGeometry:
     """Spur pinion cut by a rack (lengths in m)."""
 
     teeth: int
@@ -62,7 +62,7 @@ class Pinion:
 
 
 @dataclass(frozen=True)
-class FaceGear:
+class FaceGearGeometry:
     """Face gear blank (m): ends are coaxial cylinders, tip and root lands are planes."""
 
     teeth: int
@@ -85,7 +85,7 @@ class Shaper:
 
 
 @dataclass(frozen=True)
-class Assembly:
+class AssemblyErrors:
     """Errors of assembly: where the pinion stands against its nominal place in the gear's frame.
 
     offset dE moves the pinion along +x (m); shaft_angle_error dgamma tilts it about x through the point of
@@ -104,10 +104,10 @@ class PairDesign:
 
     module: float
     pressure_angle: float
-    pinion: Pinion
-    face_gear: FaceGear
+    pinion: PinionGeometry
+    face_gear: FaceGearGeometry
     shaper: Shaper
-    assembly: Assembly = field(default_factory=Assembly)
+    assembly: AssemblyErrors = field(default_factory=AssemblyErrors)
 
     @cached_property
     def pinion_pitch_radius(self) -> float:

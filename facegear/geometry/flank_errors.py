@@ -10,13 +10,13 @@ from dataclasses import replace
 import numpy as np
 
 from facegear.arrays import Integers
-from facegear.geometry.design import Assembly
+from facegear.geometry.design import AssemblyErrors
 
 GEARS = ("upper", "lower")
 FLANKS = ("drive", "back")
 
 
-def errors_at(errors: Assembly, gear: str, flank: str) -> Assembly:
+def errors_at(errors: AssemblyErrors, gear: str, flank: str) -> AssemblyErrors:
     """Errors that `flank` (drive or back) of the upper or lower `gear` meets, as those of a drive flank."""
     side = 1.0 if gear == "upper" else -1.0
     mirror = 1.0 if flank == "drive" else -1.0
@@ -27,7 +27,7 @@ def errors_at(errors: Assembly, gear: str, flank: str) -> Assembly:
     )
 
 
-def distinct_errors(errors: Assembly) -> tuple[list[Assembly], Integers]:
+def distinct_errors(errors: AssemblyErrors) -> tuple[list[AssemblyErrors], Integers]:
     """The different ones of all flanks, those of the design first, and which (gears, flanks) each meets."""
     met = [errors_at(errors, gear, flank) for gear in GEARS for flank in FLANKS]
     different = list(dict.fromkeys(met))

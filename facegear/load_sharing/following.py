@@ -28,15 +28,15 @@ def running(
     machine: Machine, speed_rpm: float, cycles: int, positions: int = 64, settings: Settings | None = None
 ) -> Running:
     """The first `cycles` mesh cycles of the hunting cycle at a speed. Raises NotConverged."""
-    found: Followed = follow(build_model(machine), speed_rpm, 0, cycles, positions, settings)
+    following: Followed = follow(build_model(machine), speed_rpm, 0, cycles, positions, settings)
     return Running(
         machine=machine,
         positions=positions,
-        cycles=found.cycles,
-        flank_forces=carried(found.flank_forces),
+        cycles=following.cycles,
+        flank_forces=carried(following.flank_forces),
         speed_rpm=speed_rpm,
-        lead=found.lead,
-        memory=found.memory,
+        lead=following.lead,
+        memory=following.memory,
     )
 
 
@@ -60,7 +60,7 @@ def running_table(moving: Running, still: HuntingCycle) -> pd.DataFrame:
     coarse = replace(moving, flank_forces=moving.flank_forces[::2], positions=moving.positions // 2)
     rows = []
     for group in moving.groups:
-        quasi, whole = (largest(one.path_factors(group)) for one in (part, still))
+        quasi, whole = (largest(torque.path_factors(group)) for torque in (part, still))
         coefficient, factor = moving.coefficients(group), largest(moving.path_factors(group))
         dynamic = _dynamic_factor(moving, group)
         rows.append(

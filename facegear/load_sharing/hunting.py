@@ -86,19 +86,19 @@ def largest(values: Array) -> float:
 class HuntingCycle(LoadHistory):
     """The quasi-static motion."""
 
-    found: Equilibria
+    at_rest: Equilibria
 
     @cached_property
     def bearings(self) -> Array:
         """Force of each body on its bearing (K, bodies, 3), N."""
-        return bearing_forces(self.machine, self.found)
+        return bearing_forces(self.machine, self.at_rest)
 
 
 def hunting_length(machine: Machine) -> int:
     """Mesh cycles until the pattern repeats: 1 without runouts and pitch errors."""
     errors, layout = machine.imperfections, machine.layout
-    pinions = bool(errors.pinion_pitch) or any(one.amplitude != 0.0 for one in errors.pinion_runout)
-    gears = bool(errors.gear_pitch) or any(one.amplitude != 0.0 for one in errors.gear_runout)
+    pinions = bool(errors.pinion_pitch) or any(runout.amplitude != 0.0 for runout in errors.pinion_runout)
+    gears = bool(errors.gear_pitch) or any(runout.amplitude != 0.0 for runout in errors.gear_runout)
     return lcm(layout.pinion_teeth if pinions else 1, layout.gear_teeth if gears else 1)
 
 
@@ -113,5 +113,5 @@ def hunting_cycle(machine: Machine, positions: int = 16, every: int = 1) -> Hunt
 def at_cycles(machine: Machine, whole: Integers, positions: int) -> HuntingCycle:
     """Equilibrium at `positions` of each of some mesh cycles (n,). Raises NotConverged."""
     cycles = (whole[:, None] + np.arange(positions) / positions).ravel()
-    found = equilibria(machine, cycles)
-    return HuntingCycle(machine, positions, cycles, carried(found.flank_forces), found)
+    at_rest = equilibria(machine, cycles)
+    return HuntingCycle(machine, positions, cycles, carried(at_rest.flank_forces), at_rest)

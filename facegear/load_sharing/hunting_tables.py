@@ -86,7 +86,7 @@ def group_table(run: HuntingCycle) -> pd.DataFrame:
                 "undefined_share": np.isnan(coefficient).mean(),
                 "torque_n_m": run.largest_torque,
                 "mesh_cycles": len(run.cycles) // run.positions,
-                "kkt_residual": run.found.residual.max(),
+                "kkt_residual": run.at_rest.residual.max(),
             }
         )
     return pd.DataFrame(rows)

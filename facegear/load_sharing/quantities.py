@@ -29,14 +29,14 @@ def quasi_static_quantities(machine: Machine, cycles: int) -> dict[str, float]:
     run = hunting_cycle(machine, POSITIONS, max(hunting_length(machine) // cycles, 1))
     hard = hardest_cycles(run)
     shared = _shared(machine.layout)
-    found = (
+    values = (
         *np.maximum(run.mesh_load_factors, hard.mesh_load_factors)[shared],
         *_coefficients(run),
         max(run.loads.max(), hard.loads.max()),
         *_shares(run, shared),
         bearing_mass(run.bearings),
     )
-    return _named(machine.layout, found, dynamic=False)
+    return _named(machine.layout, values, dynamic=False)
 
 
 def dynamic_quantities(
@@ -49,7 +49,7 @@ def dynamic_quantities(
     flanks = np.concatenate([np.maximum(forces, 0.0), np.maximum(-forces, 0.0)], axis=1)
     cycles = np.arange(len(flanks)) / response.per_period
     run, shared = LoadHistory(machine, response.per_period, cycles, flanks), _shared(machine.layout)
-    found = (
+    values = (
         *run.mesh_load_factors[shared],
         *run.dynamic_factors[shared],
         *_coefficients(run),
@@ -57,11 +57,11 @@ def dynamic_quantities(
         *_shares(run, shared),
         bearing_mass(bearing_history(model, response)),
     )
-    return _named(machine.layout, found, dynamic=True)
+    return _named(machine.layout, values, dynamic=True)
 
 
-def _named(layout: Layout, found: tuple[float, ...], dynamic: bool) -> dict[str, float]:
-    return dict(zip(quantity_names(layout, dynamic), map(float, found), strict=True))
+def _named(layout: Layout, values: tuple[float, ...], dynamic: bool) -> dict[str, float]:
+    return dict(zip(quantity_names(layout, dynamic), map(float, values), strict=True))
 
 
 def _shared(layout: Layout) -> list[int]:

@@ -79,17 +79,17 @@ def speed_range_table(machine: Machine, settings: Settings, options: SharingOpti
         response = watched_motion(model, float(speed), settings, options, state)
         state, response = response.state, densely_sampled(response)
         for group in load_groups(machine.layout):
-            one = group_average(response, group, options.confidence)[2]
+            sharing_average = group_average(response, group, options.confidence)[2]
             rows.append(
                 {
                     "speed_rpm": speed,
                     "group": group.name,
                     "kind": group.kind.value,
-                    "mean": one.mean,
-                    "half_width": one.half_width,
-                    "maximum": one.maximum,
-                    "lost_share": one.lost,
-                    "undefined_share": one.undefined,
+                    "mean": sharing_average.mean,
+                    "half_width": sharing_average.half_width,
+                    "maximum": sharing_average.maximum,
+                    "lost_share": sharing_average.lost,
+                    "undefined_share": sharing_average.undefined,
                     "motion": response.label,
                 }
             )
@@ -101,17 +101,17 @@ def _rows(machine: Machine, quantity: str, forces: Array) -> list[dict[str, obje
     rows: list[dict[str, object]] = []
     for group in load_groups(machine.layout):
         own = forces[..., group.meshes]
-        one = average(sharing_coefficient(own), lost_contact(own), periodic=True)
+        mesh_average = average(sharing_coefficient(own), lost_contact(own), periodic=True)
         rows.append(
             {
                 "quantity": quantity,
                 "group": group.name,
                 "kind": group.kind.value,
-                "mean": one.mean,
-                "minimum": one.minimum,
-                "maximum": one.maximum,
-                "lost_share": one.lost,
-                "undefined_share": one.undefined,
+                "mean": mesh_average.mean,
+                "minimum": mesh_average.minimum,
+                "maximum": mesh_average.maximum,
+                "lost_share": mesh_average.lost,
+                "undefined_share": mesh_average.undefined,
             }
         )
     return rows

@@ -92,13 +92,15 @@ def watched_motion(
     torus for a while: what seems to be one is watched on. A class that must hold for good, as that of the
     response at the nominal speed, is watched for longer.
     """
-    most = settings.settle
-    found = simulate(model, speed_rpm, replace(settings, settle=min(most, WATCHED * options.cycles)), start)
-    if found.motion is not Motion.QUASI_PERIODIC:
-        return found
-    longer = replace(settings, settle=min(most, TORUS_WATCHED * options.cycles))
-    again = simulate(model, speed_rpm, longer, found.state)
-    return replace(again, periods_run=found.periods_run + again.periods_run)
+    max_periods = settings.settle
+    state = simulate(
+        model, speed_rpm, replace(settings, settle=min(max_periods, WATCHED * options.cycles)), start
+    )
+    if state.motion is not Motion.QUASI_PERIODIC:
+        return state
+    longer = replace(settings, settle=min(max_periods, TORUS_WATCHED * options.cycles))
+    again = simulate(model, speed_rpm, longer, state.state)
+    return replace(again, periods_run=state.periods_run + again.periods_run)
 
 
 def disturb(model: Model, start: State, spread: float, random: np.random.Generator) -> State:

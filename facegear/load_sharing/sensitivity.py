@@ -28,7 +28,7 @@ BEARINGS = np.geomspace(1e6, 1e11, 26)
 
 def worst_factor(run: HuntingCycle, kind: str | None = None) -> float:
     """Largest K_gamma of all paths, or of the groups of one kind; nan where there is none."""
-    factors = [largest(run.path_factors(one)) for one in run.groups if kind in (None, one.kind.value)]
+    factors = [largest(run.path_factors(group)) for group in run.groups if kind in (None, group.kind.value)]
     return largest(np.array(factors))
 
 
@@ -78,8 +78,8 @@ def _may_be_hardest(base: HuntingCycle) -> Mask:
     hard = np.zeros(len(factors), dtype=bool)
     for group in base.groups:
         own = factors[:, list(group.meshes)]
-        lowest = own.max() - reach / np.nanmin(even) if np.isfinite(own).any() else np.inf
-        hard |= (own >= lowest).any(axis=1)
+        threshold = own.max() - reach / np.nanmin(even) if np.isfinite(own).any() else np.inf
+        hard |= (own >= threshold).any(axis=1)
     hard[0] |= not hard.any()
     return hard
 

@@ -47,21 +47,21 @@ def curve_table(sharing: Sharing) -> pd.DataFrame:
     return pd.concat(curves, ignore_index=True) if curves else pd.DataFrame(columns=list(CURVE_COLUMNS))
 
 
-def _curve(found: GroupSharing, period: float) -> pd.DataFrame:
-    samples = found.coefficients.shape[1]
+def _curve(group: GroupSharing, period: float) -> pd.DataFrame:
+    samples = group.coefficients.shape[1]
     fraction = np.arange(samples) / samples
-    undefined = np.isnan(found.coefficients)
-    low = np.where(undefined, np.inf, found.coefficients).min(axis=0)
-    high = np.where(undefined, -np.inf, found.coefficients).max(axis=0)
+    undefined = np.isnan(group.coefficients)
+    low = np.where(undefined, np.inf, group.coefficients).min(axis=0)
+    high = np.where(undefined, -np.inf, group.coefficients).max(axis=0)
     values = (
-        found.group.name,
-        found.group.kind.value,
+        group.group.name,
+        group.group.kind.value,
         fraction,
         fraction * period,
-        found.coefficients[0],
+        group.coefficients[0],
         np.where(np.isfinite(low), low, np.nan),
         np.where(np.isfinite(high), high, np.nan),
-        found.lost.mean(axis=0),
+        group.lost.mean(axis=0),
     )
     return pd.DataFrame(dict(zip(CURVE_COLUMNS, values, strict=True)))
 
@@ -70,24 +70,24 @@ def summary_table(sharing: Sharing) -> pd.DataFrame:
     """One row a group."""
     motions = "; ".join(dict.fromkeys(sharing.motions))
     rows = []
-    for found in sharing.groups:
-        one = found.average
+    for group in sharing.groups:
+        average = group.average
         values = (
-            found.group.name,
-            found.group.kind.value,
-            one.mean,
-            one.half_width,
-            one.minimum,
-            one.maximum,
-            one.cycle_minimum,
-            one.cycle_low,
-            one.cycle_high,
-            one.lost,
-            one.undefined,
+            group.group.name,
+            group.group.kind.value,
+            average.mean,
+            average.half_width,
+            average.minimum,
+            average.maximum,
+            average.cycle_minimum,
+            average.cycle_low,
+            average.cycle_high,
+            average.lost,
+            average.undefined,
             sharing.response.label,
-            one.cycles,
-            found.starts_low,
-            found.starts_high,
+            average.cycles,
+            group.starts_low,
+            group.starts_high,
             motions,
             sharing.response.motion is Motion.PERIODIC,
         )

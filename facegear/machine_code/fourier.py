@@ -53,14 +53,14 @@ def fourier_terms(scratch: FourierScratch, series: Array, s: float, rows: int, o
     """Taylor coefficients at s of Fourier series (harmonics + 1, 2, width), sine part first, into out, row
     after row of `width`.
     """
-    terms, _, wide = series.shape
+    terms, _, width = series.shape
     parts, powers = scratch.parts, scratch.powers
     span = powers.shape[1]
     cosine, sine = np.cos(s), np.sin(s)
-    for c in range(0, wide, LANES):
+    for c in range(0, width, LANES):
         cos_j, sin_j = 1.0, 0.0
         for j in range(terms):
-            a, b = load(series, 2 * j * wide + c), load(series, (2 * j + 1) * wide + c)
+            a, b = load(series, 2 * j * width + c), load(series, (2 * j + 1) * width + c)
             even = multiply_add(b, splat(cos_j), multiply(a, splat(sin_j)))
             odd = multiply_add(a, splat(cos_j), multiply(b, splat(-sin_j)))
             store(parts, j * LANES, even)
@@ -77,17 +77,17 @@ def fourier_terms(scratch: FourierScratch, series: Array, s: float, rows: int, o
             if terms % 2 == 1:
                 last = terms - 1
                 first = multiply_add(load(parts, (start + last) * LANES), spread(powers, row + last), first)
-            store(out, i * wide + c, add(first, second))
+            store(out, i * width + c, add(first, second))
 
 
 @inlined
-def give(kinds: Array, wide: int, kind: Integers, rows: int, out: Array) -> None:
+def give(different: Array, width: int, kind: Integers, rows: int, out: Array) -> None:
     """Give every column of out (rows, columns) the coefficients of its kind."""
     columns = out.shape[1]
     for m in range(kind.size):
         column = kind[m]
         for i in range(rows):
-            put(out, i * columns + m, take(kinds, i * wide + column))
+            put(out, i * columns + m, take(different, i * width + column))
 
 
 @inlined

@@ -26,9 +26,9 @@ def whole_lanes(length: int) -> int:
 
 def padded(values: Array, length: int) -> Array:
     """Values with zeros behind the last row up to a length."""
-    wide = aligned(length, *values.shape[1:])
-    wide[: len(values)] = values
-    return wide
+    buffer = aligned(length, *values.shape[1:])
+    buffer[: len(values)] = values
+    return buffer
 
 
 def divided(values: Array, divisor: float) -> Array:

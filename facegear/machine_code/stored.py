@@ -48,13 +48,13 @@ class SourcesCache(FunctionCache):
         self._lock: TextIO | None = None
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        found = super().load_overload(sig, target_context)
-        if found is None and self._lock is None:
+        overload = super().load_overload(sig, target_context)
+        if overload is None and self._lock is None:
             self._lock = self._wait()
-            found = super().load_overload(sig, target_context)
-            if found is not None:
+            overload = super().load_overload(sig, target_context)
+            if overload is not None:
                 self._end()
-        return found
+        return overload
 
     def save_overload(self, sig: Any, data: Any) -> None:
         super().save_overload(sig, data)
@@ -147,8 +147,8 @@ def inlined(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     def typed(function: Callable[..., Any]) -> Any:
         dispatcher = njit(forceinline=True, pipeline_class=_ForCallers, **options)(function)
 
-        def add_overload(found: Any) -> None:
-            dispatcher.overloads[tuple(found.signature.args)] = found
+        def add_overload(overload: Any) -> None:
+            dispatcher.overloads[tuple(overload.signature.args)] = overload
 
         dispatcher.add_overload = add_overload
         return dispatcher

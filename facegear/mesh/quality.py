@@ -9,7 +9,7 @@ from skfem.quadrature import get_quadrature
 from facegear.arrays import Array, Integers
 from facegear.errors import ConfigError
 from facegear.mesh.hexahedra import hex_mesh
-from facegear.mesh.tooth import ToothMesh
+from facegear.mesh.tooth import FeTooth
 
 ELEMENTS_AT_ONCE = 2000
 DEGREE = 7
@@ -30,7 +30,7 @@ def scaled_jacobians(nodes: Array, hexes: Integers) -> Array:
     return np.concatenate(worst)
 
 
-def require_right_side_out(tooth: ToothMesh) -> None:
+def require_right_side_out(tooth: FeTooth) -> None:
     """Raises ConfigError for a mesh with an element turned inside out, which no stiffness may come from."""
     turned = np.count_nonzero(scaled_jacobians(tooth.nodes, tooth.hexes) <= 0.0)
     if turned:

@@ -6,19 +6,19 @@ import numpy as np
 
 from facegear.arrays import Array, Integers
 from facegear.errors import GeometryError
-from facegear.mesh.tooth import ToothMesh
+from facegear.mesh.tooth import FeTooth
 
 
 @dataclass(frozen=True)
 class SectorMesh:
     """Merged copies of one tooth in the body frame.
 
-    nodes: (N, 3) m; hexes: (M, 27) ordered as in `ToothMesh`, tooth after tooth.
+    nodes: (N, 3) m; hexes: (M, 27) ordered as in `FeTooth`, tooth after tooth.
     tooth_nodes: (n_teeth, nodes of one tooth) global node of each copy's node; tooth j stands at j pitches.
     first: index j of the first tooth; closed: whether the sector is the full ring.
     """
 
-    tooth: ToothMesh
+    tooth: FeTooth
     nodes: Array
     hexes: Integers
     tooth_nodes: Integers
@@ -37,7 +37,7 @@ class SectorMesh:
         return self.tooth_nodes[:, self.tooth.faces[name]].reshape(-1, 9)
 
 
-def sector(tooth: ToothMesh, n_teeth: int, first: int = 0) -> SectorMesh:
+def sector(tooth: FeTooth, n_teeth: int, first: int = 0) -> SectorMesh:
     """Teeth first .. first + n_teeth - 1 with shared nodes on the cuts; the full ring closes on itself.
 
     Raises GeometryError when n_teeth is not within 1 .. number of teeth.

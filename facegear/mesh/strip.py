@@ -15,7 +15,7 @@ from facegear.arrays import Array, Integers
 
 
 @dataclass(frozen=True)
-class Row:
+class ElementRow:
     """A row of the strip between depths t0 and t1; `level` of its outer side, coarsening inwards or not."""
 
     t0: float
@@ -35,7 +35,7 @@ class HalfSection:
     """Coarse columns against the centre line, and against the floor."""
 
 
-def depth_rows(profile: float, thickness: float, depth: float, levels: int) -> list[Row]:
+def depth_rows(profile: float, thickness: float, depth: float, levels: int) -> list[ElementRow]:
     """Rows from the surface to the centre line for a reference depth; all lengths in one unit.
 
     A plain row and a coarsening row per level, or one plain row where nothing coarsens, then plain coarse
@@ -53,7 +53,7 @@ def depth_rows(profile: float, thickness: float, depth: float, levels: int) -> l
     ends = np.concatenate([[0.0], np.cumsum([height for height, _, _ in heights])]) / depth
     ends[-1] = 1.0
     return [
-        Row(float(ends[i]), float(ends[i + 1]), level, coarsens)
+        ElementRow(float(ends[i]), float(ends[i + 1]), level, coarsens)
         for i, (_, level, coarsens) in enumerate(heights)
     ]
 
@@ -71,7 +71,7 @@ def _used(profile: float, levels: int) -> float:
 
 
 def half_section(
-    rows: list[Row], column_levels: list[int], columns: tuple[int, int], block: int
+    rows: list[ElementRow], column_levels: list[int], columns: tuple[int, int], block: int
 ) -> HalfSection:
     """Quads of the strip and of `block` rows below it.
 
@@ -93,7 +93,7 @@ def _rectangle(s0: float, s1: float, t0: float, t1: float) -> Array:
     return np.array([[s0, t0], [s1, t0], [s0, t1], [s1, t1]])
 
 
-def _row_quads(column: int, level: int, row: Row, active: bool) -> list[Array]:
+def _row_quads(column: int, level: int, row: ElementRow, active: bool) -> list[Array]:
     """Corners (4, 2) ordered (0,0), (1,0), (0,1), (1,1) in local (sigma, t)."""
     divisions = 3**level
     if not (row.coarsens and active):

@@ -28,7 +28,7 @@ class SurfaceGrid:
 
 
 @dataclass(frozen=True)
-class ToothMesh:
+class FeTooth:
     """Tooth 0 with its share of the body, from cut face to cut face, in the body frame of `geometry.design`.
 
     nodes: (N, 3) in m. hexes: (M, 27), node i + 3 j + 9 k at local (i/2, j/2, k/2), right handed; the eight
@@ -61,18 +61,18 @@ CORNERS = np.array([0, 2, 6, 8, 18, 20, 24, 26])
 """Columns of `hexes` of the corners (i, j, k) = (0,0,0), (1,0,0), (0,1,0), (1,1,0), (0,0,1), ..."""
 
 
-def pinion_tooth(design: PairDesign, sizes: MeshSizes) -> ToothMesh:
+def pinion_tooth(design: PairDesign, sizes: MeshSizes) -> FeTooth:
     """Mesh of one pinion tooth; the face is centred on the gear's mean radius."""
     half = design.pinion.width / 2
     return _tooth(design, "pinion", sizes, design.mean_radius - half, design.mean_radius + half)
 
 
-def gear_tooth(design: PairDesign, sizes: MeshSizes) -> ToothMesh:
+def gear_tooth(design: PairDesign, sizes: MeshSizes) -> FeTooth:
     """Mesh of one face gear tooth from the inner to the outer cylinder."""
     return _tooth(design, "face_gear", sizes, design.face_gear.inner_radius, design.face_gear.outer_radius)
 
 
-def _tooth(design: PairDesign, body: str, sizes: MeshSizes, start: float, end: float) -> ToothMesh:
+def _tooth(design: PairDesign, body: str, sizes: MeshSizes, start: float, end: float) -> FeTooth:
     layers = max(2, round((end - start) / sizes.width))
     outline = Outline(design, body, np.linspace(start, end, 2 * layers + 1))
     plan = plan_section(outline, sizes)
@@ -105,7 +105,7 @@ def _tooth(design: PairDesign, body: str, sizes: MeshSizes, start: float, end: f
     faces = {name: _outward(nodes, face, owners.get(name), centre, hexes) for name, face in faces.items()}
     cut = np.flatnonzero(half.sigma == half.sigma.max())
     planes = count * np.arange(2 * layers + 1)
-    return ToothMesh(
+    return FeTooth(
         body=body,
         teeth=teeth,
         nodes=nodes,

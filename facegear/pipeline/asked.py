@@ -137,8 +137,8 @@ def tolerance_chunks(design: Design) -> Callable[[Case], list[Wildcards]]:
 
     def places(case: Case) -> list[Wildcards]:
         section = parse(Tolerances, case.values["tolerances"])
-        found = chunks(section, design)
-        return [{"design": design, "first": str(first), "last": str(last)} for first, last in found]
+        numbered = chunks(section, design)
+        return [{"design": design, "first": str(first), "last": str(last)} for first, last in numbered]
 
     return places
 

@@ -28,8 +28,8 @@ def _row(stage: Stage, taken: bool) -> str:
 def _where(stage: Stage, taken: bool) -> str:
     """When a plain run makes the stage, as its function says it."""
     if stage.asked:
-        told = (stage.asked.__doc__ or "").splitlines()[0]
-        return told.removeprefix("Whether ").rstrip(".").replace("Always", "always")
+        text = (stage.asked.__doc__ or "").splitlines()[0]
+        return text.removeprefix("Whether ").rstrip(".").replace("Always", "always")
     return "another stage takes from it" if taken else "its file is asked for by name"
 
 

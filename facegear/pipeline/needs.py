@@ -33,26 +33,26 @@ def require_section(name: str | None, values: Values) -> None:
 
 def stages_before(name: str, values: Values) -> list[str]:
     """A stage and all whose results it uses, each once, with the plain values of a whole config."""
-    found: dict[str, None] = {}
+    before: dict[str, None] = {}
     todo, case = [name], Case(values)
     while todo:
         stage = todo.pop()
-        if stage not in found:
-            found[stage] = None
+        if stage not in before:
+            before[stage] = None
             upstream = STAGES[stage].upstream.values()
             todo += [source.stage for source in upstream if source.wanted(case)]
-    return list(found)
+    return list(before)
 
 
 def shared_sources(cases: Mapping[str, Values], stage: str) -> dict[str, str]:
     """Of each case the first whose config agrees with it in everything that `stage` depends on."""
     first: dict[str, str] = {}
-    found = {}
+    sources = {}
     for case, values in cases.items():
         before = stages_before(stage, values)
         needs = {name: resolved_needs(STAGES[name].needs, Case(values, cases)) for name in before}
-        found[case] = first.setdefault(json.dumps(needs, sort_keys=True), case)
-    return found
+        sources[case] = first.setdefault(json.dumps(needs, sort_keys=True), case)
+    return sources
 
 
 def _resolved(need: Need, case: Case) -> Any:
@@ -65,7 +65,7 @@ def _resolved(need: Need, case: Case) -> Any:
 
 def value_at(values: Values, key: str) -> Any:
     """The value at a dotted key; None below a section that is not there."""
-    found: Any = values
+    value: Any = values
     for part in key.split("."):
-        found = found[part] if found is not None else None
-    return found
+        value = value[part] if value is not None else None
+    return value

@@ -21,14 +21,14 @@ def read_all(upstream: Mapping[str, From], paths: Paths, stages: Mapping[str, St
 
     Raises CorruptFile if one is missing, altered or lacks something.
     """
-    found: dict[str, Any] = {}
+    contents: dict[str, Any] = {}
     for name, source in upstream.items():
         file, given = stages[source.stage].files[source.file], paths[name]
         if source.each or file.each:
-            found[name] = [file.read(Path(path)) for path in given]
+            contents[name] = [file.read(Path(path)) for path in given]
         elif given:
-            found[name] = file.read(Path(str(given)))
-    return found
+            contents[name] = file.read(Path(str(given)))
+    return contents
 
 
 def write_stage(stage: Stage, content: Mapping[str, Any], paths: Paths) -> list[Path]:
@@ -36,13 +36,13 @@ def write_stage(stage: Stage, content: Mapping[str, Any], paths: Paths) -> list[
     written = []
     for name, file in stage.files.items():
         part = load(file.view)(content[file.of]) if file.view else content[name]
-        for path, one in zip(paths[name], part, strict=True) if file.each else [(paths[name], part)]:
-            write_part(str(path), one)
+        for path, target in zip(paths[name], part, strict=True) if file.each else [(paths[name], part)]:
+            write_part(str(path), target)
             written.append(Path(str(path)))
     return written
 
 
 def call(stage: Stage, given: Mapping[str, Any], **more: Any) -> "Outcome":
     """The stage with arguments `given` and `more`."""
-    found: Outcome = load(stage.function)(**given, **more)
-    return found
+    outcome: Outcome = load(stage.function)(**given, **more)
+    return outcome

@@ -195,5 +195,5 @@ class Stage:
 
     def typed(self, wildcards: Wildcards) -> dict[str, Any]:
         """Wildcards as arguments."""
-        kinds = self.wildcards
-        return {name: int(text) if kinds[name] == NUMBER else text for name, text in wildcards.items()}
+        types = self.wildcards
+        return {name: int(text) if types[name] == NUMBER else text for name, text in wildcards.items()}

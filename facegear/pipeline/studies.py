@@ -18,7 +18,11 @@ Points = list[tuple[str, str, str]]
 def points(case: Case) -> Points:
     """Study, point and label of every point of the studies."""
     studies = [parse(Study, study) for study in case.values["studies"]]
-    return [(one.name, name, point.label) for one in studies for name, point in study_points(one).items()]
+    return [
+        (planned.name, name, point.label)
+        for planned in studies
+        for name, point in study_points(planned).items()
+    ]
 
 
 def every_point(case: Case) -> list[Wildcards]:
@@ -64,13 +68,13 @@ def contact_points(case: Case) -> Points:
     """
     if not asked.contact(case) or not case.values["studies"]:
         return [NOMINAL]
-    found: Points = []
+    chosen: Points = []
     for name in names(case):
         own = [point for point in points(case) if point[0] == name]
         solved = [point for point in own if asked.contact(Case(case.cases[_id(case, *point[:2])]))]
         if any(case.source("contact", _id(case, *point[:2])) != case.values["case"] for point in solved):
-            found += solved
-    return [NOMINAL, *found]
+            chosen += solved
+    return [NOMINAL, *chosen]
 
 
 def contact_cases(case: Case) -> list[Wildcards]:

@@ -23,14 +23,14 @@ def run_chunk(
     columns: Sequence[str],
     partial: str | Path,
     identity: str,
-    told: Callable[[], None] = lambda: None,
+    on_progress: Callable[[], None] = lambda: None,
 ) -> pd.DataFrame:
     """Evaluate samples by number; rows in the order of the numbers.
 
     `partial` keeps every finished sample at once, so that a killed chunk goes on after its last one; its rows
     count only if they were written under the same `identity` (a hash of everything that decides a result).
-    `told` is called after each sample. A sample that raises FacegearError becomes a row with the error's text
-    and NaN in `columns`. Columns: sample, `columns`, error.
+    `on_progress` is called after each sample. A sample that raises FacegearError becomes a row with the
+    error's text and NaN in `columns`. Columns: sample, `columns`, error.
     """
     known = {row[SAMPLE]: row for row in journal.read(partial, identity)}
     with journal.appending(partial, identity) as append:
@@ -38,16 +38,16 @@ def run_chunk(
             if number not in known:
                 known[number] = _row(evaluate, number, columns)
                 append(known[number])
-            told()
+            on_progress()
     return _frame([known[number] for number in numbers], columns)
 
 
 def _row(evaluate: Evaluate, number: int, columns: Sequence[str]) -> dict[str, Any]:
     try:
-        found = evaluate(number)
+        values = evaluate(number)
     except FacegearError as error:
         return {SAMPLE: number, "values": None, ERROR: str(error).splitlines()[0]}
-    return {SAMPLE: number, "values": [float(found[name]) for name in columns], ERROR: ""}
+    return {SAMPLE: number, "values": [float(values[name]) for name in columns], ERROR: ""}
 
 
 def _frame(rows: list[dict[str, Any]], columns: Sequence[str]) -> pd.DataFrame:

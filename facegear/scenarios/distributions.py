@@ -36,8 +36,8 @@ class Distribution:
     def quantile(self, probability: Array) -> Array:
         """Values (same shape) at probabilities in (0, 1)."""
         if self.shape is Shape.CHOICE:
-            place = np.floor(probability * len(self.values)).astype(int)
-            return np.asarray(self.values)[np.minimum(place, len(self.values) - 1)]
+            index = np.floor(probability * len(self.values)).astype(int)
+            return np.asarray(self.values)[np.minimum(index, len(self.values) - 1)]
         if self.shape is Shape.UNIFORM:
             low, high = self._limits
             return low + (high - low) * probability

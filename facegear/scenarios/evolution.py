@@ -80,7 +80,7 @@ def evolve(
     effort: Effort,
     partial: str | Path,
     identity: str,
-    told: Callable[[], None] = lambda: None,
+    on_progress: Callable[[], None] = lambda: None,
 ) -> pd.DataFrame:
     """Every design tried, in order. Columns: generation, the variables, the goals, error.
 
@@ -96,18 +96,20 @@ def evolve(
             asked = algorithm.ask()
             if asked is None:
                 break  # of designs on few steps, no new one is left
-            found = []
+            evaluated = []
             for parts in asked.get("X"):
-                design = tuple(one.value(part) for one, part in zip(task.variables, parts, strict=True))
+                design = tuple(
+                    variable.value(part) for variable, part in zip(task.variables, parts, strict=True)
+                )
                 if design not in known:
                     known[design] = _row(evaluate, design, task.goals)
                     append(known[design])
-                told()
-                found.append(known[design])
-                values = found[-1]["values"] or [np.nan] * len(task.goals)
-                rows.append((algorithm.n_gen, *design, *values, found[-1][ERROR]))
-            _tell(algorithm, asked, found, task)
-    names = [one.name for one in task.variables]
+                on_progress()
+                evaluated.append(known[design])
+                values = evaluated[-1]["values"] or [np.nan] * len(task.goals)
+                rows.append((algorithm.n_gen, *design, *values, evaluated[-1][ERROR]))
+            _tell(algorithm, asked, evaluated, task)
+    names = [variable.name for variable in task.variables]
     return pd.DataFrame(rows, columns=[GENERATION, *names, *task.goals, ERROR])
 
 
@@ -123,7 +125,7 @@ def front(designs: pd.DataFrame, task: Task) -> pd.DataFrame:
     """The feasible designs that no other beats in every objective, each once, by the first objective."""
     from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
 
-    names = [one.name for one in task.variables]
+    names = [variable.name for variable in task.variables]
     held = designs[feasible(designs, task)].drop_duplicates(names)
     if held.empty:
         return held
@@ -156,13 +158,13 @@ def hypervolumes(islands: Mapping[int, pd.DataFrame], task: Task) -> pd.DataFram
 def _row(evaluate: Evaluate, design: tuple[float, ...], goals: Sequence[str]) -> dict[str, Any]:
     try:
         values = evaluate(design)
-        found = [float(values[name]) for name in goals]
+        objectives = [float(values[name]) for name in goals]
     except FacegearError as error:
         return {"design": design, "values": None, ERROR: str(error).splitlines()[0]}
-    if not np.isfinite(found).all():
-        missing = next(name for name, value in zip(goals, found, strict=True) if not np.isfinite(value))
+    if not np.isfinite(objectives).all():
+        missing = next(name for name, value in zip(goals, objectives, strict=True) if not np.isfinite(value))
         return {"design": design, "values": None, ERROR: f"{missing} is not defined for every sample"}
-    return {"design": design, "values": found, ERROR: ""}
+    return {"design": design, "values": objectives, ERROR: ""}
 
 
 def _algorithm(task: Task, effort: Effort) -> Any:
@@ -172,7 +174,7 @@ def _algorithm(task: Task, effort: Effort) -> Any:
 
     class Snap(Repair):
         def _do(self, problem: Any, X: Array, **_: Any) -> Array:
-            return np.column_stack([one.snapped(X[:, i]) for i, one in enumerate(task.variables)])
+            return np.column_stack([variable.snapped(X[:, i]) for i, variable in enumerate(task.variables)])
 
     count = len(task.variables)
     problem = Problem(
@@ -183,7 +185,7 @@ def _algorithm(task: Task, effort: Effort) -> Any:
     return algorithm
 
 
-def _tell(algorithm: Any, asked: Any, found: list[dict[str, Any]], task: Task) -> None:
+def _tell(algorithm: Any, asked: Any, rows: list[dict[str, Any]], task: Task) -> None:
     """Give the algorithm the objectives and by how much limits are broken, 1e9 for what has no results."""
     from pymoo.core.evaluator import Evaluator
     from pymoo.problems.static import StaticProblem
@@ -192,17 +194,19 @@ def _tell(algorithm: Any, asked: Any, found: list[dict[str, Any]], task: Task) -
     signs = np.array([task.sign(name) for name in task.goals])
     limits = np.array([limit for _, limit in task.limits])
     nothing = ([1e9] * size, [1e9] * (len(limits) + 1))
-    told = [
+    objectives = [
         (
             signs[:size] * row["values"][:size],
             np.append(signs[size:] * (np.array(row["values"][size:]) - limits), 0.0),
         )
         if row["values"]
         else nothing
-        for row in found
+        for row in rows
     ]
     static = StaticProblem(
-        algorithm.problem, F=np.array([row[0] for row in told]), G=np.array([row[1] for row in told])
+        algorithm.problem,
+        F=np.array([row[0] for row in objectives]),
+        G=np.array([row[1] for row in objectives]),
     )
     Evaluator().eval(static, asked)
     algorithm.tell(infills=asked)

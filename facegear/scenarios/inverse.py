@@ -29,8 +29,8 @@ class Loosest:
     trials: pd.DataFrame
 
 
-def loosest(sampled: Callable[[float], Array], at_most: float, level: float, most: float) -> Loosest:
-    """The largest scale up to `most` at which the percentile `level` (0 to 1) does not exceed a limit.
+def loosest(sampled: Callable[[float], Array], at_most: float, level: float, max_factor: float) -> Loosest:
+    """The largest scale up to `max_factor` at which the percentile `level` (0 to 1) does not exceed a limit.
 
     `sampled` gives the results of the same samples at a scale of their deviations, nan where one has none,
     which counts as above every limit. The percentile is taken to rise with the scale. Raises FacegearError
@@ -45,15 +45,18 @@ def loosest(sampled: Callable[[float], Array], at_most: float, level: float, mos
         return bool(tried[scale][0].value <= at_most)  # inf and nan do not hold
 
     if not holds(0.0):
-        told = f"already {tried[0.0][0].value:.6g} without any deviation"
-        raise FacegearError(f"at_most = {at_most:g}: {told}")
-    low, high = 0.0, most
-    if holds(most):
-        low = most
-    for _ in range(HALVINGS if low < most else 0):
+        allowed = f"already {tried[0.0][0].value:.6g} without any deviation"
+        raise FacegearError(f"at_most = {at_most:g}: {allowed}")
+    low, high = 0.0, max_factor
+    if holds(max_factor):
+        low = max_factor
+    for _ in range(HALVINGS if low < max_factor else 0):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if holds(middle) else (low, middle)
-    rows = [(scale, one.value, one.low, one.high, failed) for scale, (one, failed) in sorted(tried.items())]
+    rows = [
+        (scale, answer.value, answer.low, answer.high, failed)
+        for scale, (answer, failed) in sorted(tried.items())
+    ]
     trials = pd.DataFrame(rows, columns=["scale", "value", "low", "high", "failed"])
     return Loosest(low, _interval(trials, at_most), tried[low][0], trials)
 
@@ -61,17 +64,17 @@ def loosest(sampled: Callable[[float], Array], at_most: float, level: float, mos
 def _interval(trials: pd.DataFrame, at_most: float) -> tuple[float, float]:
     """Scales at which the ends of the percentile's interval, made to rise, pass the limit."""
     scale = trials["scale"].to_numpy(float)
-    found = []
+    bounds = []
     for end in ("high", "low"):
         values = np.maximum.accumulate(trials[end].to_numpy(float))
         above = np.flatnonzero(values > at_most)
         first = int(above[0]) if above.size else len(scale)
         if first in (0, len(scale)):
-            found.append(0.0 if first == 0 else np.inf)
+            bounds.append(0.0 if first == 0 else np.inf)
         elif not np.isfinite(values[[first - 1, first]]).all():
-            found.append(float(scale[first - 1]))
+            bounds.append(float(scale[first - 1]))
         else:
-            found.append(
+            bounds.append(
                 float(np.interp(at_most, values[first - 1 : first + 1], scale[first - 1 : first + 1]))
             )
-    return found[0], found[1]
+    return bounds[0], bounds[1]

@@ -39,9 +39,9 @@ def percentile(values: Array, probability: float, confidence: float = 0.95) -> E
 
 def share(hits: Mask, confidence: float = 0.95) -> Estimate:
     """Share of samples for which something holds, with Wilson's interval."""
-    count, found = hits.size, int(hits.sum())
-    interval = scipy.stats.binomtest(found, count).proportion_ci(confidence, method="wilson")
-    return Estimate(found / count, float(interval.low), float(interval.high))
+    count, counts = hits.size, int(hits.sum())
+    interval = scipy.stats.binomtest(counts, count).proportion_ci(confidence, method="wilson")
+    return Estimate(counts / count, float(interval.low), float(interval.high))
 
 
 @dataclass(frozen=True)
@@ -68,14 +68,14 @@ def sobol_indices(
     if not whole.any():
         raise ValueError("no block of the design is whole")
     kept = blocks[whole][: 2 ** int(np.log2(whole.sum()))]
-    found = _indices(kept)
+    indices = _indices(kept)
     draw = np.random.default_rng(seed)
     resampled = [_indices(kept[draw.integers(0, len(kept), len(kept))]) for _ in range(resamples)]
     tail = 0.5 * (1.0 - confidence)
     low, high = np.nanquantile(resampled, [tail, 1.0 - tail], axis=0)
     first, total = (
         tuple(Estimate(*map(float, row)) for row in zip(*parts, strict=True))
-        for parts in zip(found, low, high, strict=True)
+        for parts in zip(indices, low, high, strict=True)
     )
     return SobolIndices(first, total, blocks=len(kept), failed=int((~whole).sum()))
 
@@ -83,5 +83,5 @@ def sobol_indices(
 def _indices(blocks: Array) -> Array:
     """First-order and total indices (2, causes) of whole blocks; a resample at a time, to save memory."""
     functions = {"f_A": blocks[None, :, 0], "f_B": blocks[None, :, 1], "f_AB": blocks[:, 2:].T[:, None, :]}
-    found = scipy.stats.sobol_indices(func=functions, n=len(blocks))
-    return np.array([found.first_order.ravel(), found.total_order.ravel()])
+    estimate = scipy.stats.sobol_indices(func=functions, n=len(blocks))
+    return np.array([estimate.first_order.ravel(), estimate.total_order.ravel()])

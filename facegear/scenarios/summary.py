@@ -39,8 +39,8 @@ def percentile_table(samples: pd.DataFrame, causes: Sequence[str], confidence: f
         values = samples[name].to_numpy(float)
         values = values[np.isfinite(values)]
         for probability in PERCENTILES if values.size else ():
-            found = _bounded(percentile(values, probability, confidence))
-            rows.append((name, 100.0 * probability, *found, values.size))
+            estimate = _bounded(percentile(values, probability, confidence))
+            rows.append((name, 100.0 * probability, *estimate, values.size))
     table = pd.DataFrame(rows, columns=["quantity", "percentile", "value", "low", "high", "samples"])
     numbers = dict.fromkeys(("percentile", "value", "low", "high"), float)
     return table.astype({"quantity": str, **numbers, "samples": int})  # also where every sample failed
@@ -53,10 +53,10 @@ def share_table(samples: pd.DataFrame, shares: dict[str, str], confidence: float
     """
     failed = samples[ERROR].to_numpy() != ""
     rows = [("cannot be built or computed", failed)]
-    rows += [(told, samples.loc[~failed, name].to_numpy(float) > 0.0) for name, told in shares.items()]
-    found = [(told, share(hits, confidence), hits.size) for told, hits in rows if hits.size]
+    rows += [(label, samples.loc[~failed, name].to_numpy(float) > 0.0) for name, label in shares.items()]
+    fractions = [(label, share(hits, confidence), hits.size) for label, hits in rows if hits.size]
     return pd.DataFrame(
-        [(told, one.value, one.low, one.high, size) for told, one, size in found],
+        [(label, fraction.value, fraction.low, fraction.high, size) for label, fraction, size in fractions],
         columns=["what", "share", "low", "high", "samples"],
     )
 
@@ -80,12 +80,12 @@ def importance_table(samples: pd.DataFrame, causes: Sequence[str]) -> pd.DataFra
     whole = samples[samples[ERROR] == ""]
     rows = []
     for name in quantities_of(samples, causes):
-        found = whole[name].to_numpy(float)
-        known = np.isfinite(found)
+        values = whole[name].to_numpy(float)
+        known = np.isfinite(values)
         for cause in causes:
             given = whole[cause].to_numpy(float)[known]
-            changes = known.sum() > 2 and np.ptp(found[known]) > 0.0 and np.ptp(given) > 0.0
-            rank = scipy.stats.spearmanr(given, found[known]).statistic if changes else np.nan
+            changes = known.sum() > 2 and np.ptp(values[known]) > 0.0 and np.ptp(given) > 0.0
+            rank = scipy.stats.spearmanr(given, values[known]).statistic if changes else np.nan
             rows.append((name, cause, rank))
     return pd.DataFrame(rows, columns=["quantity", "cause", "rank_correlation"])
 
@@ -97,13 +97,13 @@ def index_table(samples: pd.DataFrame, causes: Sequence[str], confidence: float)
         values = samples[name].to_numpy(float)
         if not np.isfinite(values).any() or np.nanmax(values) == np.nanmin(values):
             continue
-        found = sobol_indices(values, len(causes), confidence)
-        for cause, first, total in zip(causes, found.first, found.total, strict=True):
+        indices = sobol_indices(values, len(causes), confidence)
+        for cause, first, total in zip(causes, indices.first, indices.total, strict=True):
             ends = (first.value, first.low, first.high, total.value, total.low, total.high)
-            rows.append((name, cause, *ends, found.blocks, found.failed))
+            rows.append((name, cause, *ends, indices.blocks, indices.failed))
     return pd.DataFrame(rows, columns=list(INDEX_COLUMNS))
 
 
-def _bounded(one: Estimate) -> tuple[float, float, float]:
-    low, high = (end if np.isfinite(end) else np.nan for end in (one.low, one.high))
-    return one.value, low, high
+def _bounded(estimate: Estimate) -> tuple[float, float, float]:
+    low, high = (end if np.isfinite(end) else np.nan for end in (estimate.low, estimate.high))
+    return estimate.value, low, high

@@ -46,8 +46,8 @@ def base_rates(samples: pd.DataFrame, claims: Iterable[Claim]) -> pd.DataFrame:
     rows, judged = [], sound(samples)
     for claim in claims:
         held = judged[claim.id].to_numpy(bool)
-        found = share(held, CONFIDENCE)
-        rows.append((claim.id, held.size, int(held.sum()), found.value, found.low, found.high))
+        fraction = share(held, CONFIDENCE)
+        rows.append((claim.id, held.size, int(held.sum()), fraction.value, fraction.low, fraction.high))
     return pd.DataFrame(rows, columns=list(RATE_COLUMNS))
 
 

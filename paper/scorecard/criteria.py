@@ -16,10 +16,10 @@ MODULES = (criteria_modal, criteria_response, criteria_sharing, criteria_stiffne
 
 CRITERIA: Mapping[str, Criterion] = MappingProxyType(
     {
-        name: found
+        name: function
         for module in MODULES
-        for name, found in vars(module).items()
-        if callable(found) and not name.startswith("_") and found.__module__ == module.__name__
+        for name, function in vars(module).items()
+        if callable(function) and not name.startswith("_") and function.__module__ == module.__name__
     }
 )
 """Every public function of the criteria modules."""

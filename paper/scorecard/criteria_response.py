@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array
-from paper.scorecard.outcome import Outcome, Tables, number, statement
+from paper.scorecard.outcome import ClaimOutcome, Tables, number, statement
 
 SIDES = ("lower", "upper")
 WINDOW_LINES = 2
@@ -14,13 +14,13 @@ FINE = 1.0 / 64.0
 periodic motion looked for is as long."""
 
 
-def synchronous(tables: Tables, a: str, b: str, lower: float) -> Outcome:
+def synchronous(tables: Tables, a: str, b: str, lower: float) -> ClaimOutcome:
     """On both sides the deflections of the two pinions correlate by at least the stated value."""
     values = [_correlation(tables, f"{a}/{side}", f"{b}/{side}") for side in SIDES]
     return statement(min(values) >= lower, _sides(values))
 
 
-def not_synchronous(tables: Tables, a: str, b: list[str], upper: float) -> Outcome:
+def not_synchronous(tables: Tables, a: str, b: list[str], upper: float) -> ClaimOutcome:
     """On at least one side the deflection of the pinion correlates below the stated value with each other."""
     values = {
         other: min(_correlation(tables, f"{a}/{side}", f"{other}/{side}") for side in SIDES) for other in b
@@ -29,7 +29,7 @@ def not_synchronous(tables: Tables, a: str, b: list[str], upper: float) -> Outco
     return statement(max(values.values()) <= upper, shown)
 
 
-def sides_not_synchronous(tables: Tables, upper: float) -> Outcome:
+def sides_not_synchronous(tables: Tables, upper: float) -> ClaimOutcome:
     """The deflections of a pinion's lower and upper mesh correlate below the value, for every pinion."""
     pinions = dict.fromkeys(mesh.rsplit("/", 1)[0] for mesh in _meshes(tables))
     values = {name: _correlation(tables, f"{name}/lower", f"{name}/upper") for name in pinions}
@@ -37,40 +37,42 @@ def sides_not_synchronous(tables: Tables, upper: float) -> Outcome:
     return statement(max(values.values()) <= upper, shown)
 
 
-def dominant_lines(tables: Tables, pinion: str, lines: list[float]) -> Outcome:
+def dominant_lines(tables: Tables, pinion: str, lines: list[float]) -> ClaimOutcome:
     """On both sides the largest spectral lines, as many as are listed, stand at the listed orders."""
-    found = [_strongest(tables, f"{pinion}/{side}", len(lines)) for side in SIDES]
-    holds = all(sorted(orders) == sorted(lines) for orders in found)
-    return statement(holds, _sides(["+".join(f"{order:g}x" for order in orders) for orders in found]))
+    strongest = [_strongest(tables, f"{pinion}/{side}", len(lines)) for side in SIDES]
+    holds = all(sorted(orders) == sorted(lines) for orders in strongest)
+    return statement(holds, _sides(["+".join(f"{order:g}x" for order in orders) for orders in strongest]))
 
 
-def line_larger(tables: Tables, pinion: str, line: float, share: float) -> Outcome:
+def line_larger(tables: Tables, pinion: str, line: float, fraction: float) -> ClaimOutcome:
     """The line at the stated order is larger on the upper side than on the lower one, by at least the stated
     share of the upper side's line at 1x.
     """
     values = [_amplitude(tables, f"{pinion}/{side}", line) for side in SIDES]
-    least = share * _amplitude(tables, f"{pinion}/upper", 1.0)
-    return statement(values[1] - values[0] >= least > 0.0, _sides([f"{value:.3g} um" for value in values]))
+    threshold = fraction * _amplitude(tables, f"{pinion}/upper", 1.0)
+    return statement(
+        values[1] - values[0] >= threshold > 0.0, _sides([f"{value:.3g} um" for value in values])
+    )
 
 
-def subharmonic_content(tables: Tables, pinion: str, share: float) -> Outcome:
+def subharmonic_content(tables: Tables, pinion: str, fraction: float) -> ClaimOutcome:
     """On both sides some line below 1x has at least the stated share of the line at 1x.
 
     The lines beside the mean and beside 1x are not counted where the spectrum is that of an irregular motion:
     its window spreads every line over the two beside it.
     """
     shares = [_below(tables, f"{pinion}/{side}") for side in SIDES]
-    return statement(min(shares) >= share, _sides([f"{100 * value:.0f} % of 1x" for value in shares]))
+    return statement(min(shares) >= fraction, _sides([f"{100 * value:.0f} % of 1x" for value in shares]))
 
 
-def lost_contact(tables: Tables) -> Outcome:
+def lost_contact(tables: Tables) -> ClaimOutcome:
     """At the nominal speed some mesh is out of contact for part of the time."""
     frame = tables["sharing"]
-    share = float(frame.loc[frame["study"] == "nominal", "lost_share"].max())
-    return statement(share > 0.0, f"up to {100 * share:.0f} % of the time")
+    fraction = float(frame.loc[frame["study"] == "nominal", "lost_share"].max())
+    return statement(fraction > 0.0, f"up to {100 * fraction:.0f} % of the time")
 
 
-def mesh_period(tables: Tables) -> Outcome:
+def mesh_period(tables: Tables) -> ClaimOutcome:
     """Mesh period at the nominal speed."""
     curve = tables["curves"]
     rows = curve[(curve["study"] == "nominal") & (curve["cycle_fraction"] > 0.0)]

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
-from paper.scorecard.outcome import Outcome, Tables, number, statement
+from paper.scorecard.outcome import ClaimOutcome, Tables, number, statement
 
 WINDOWS = ("cycle", "starts")
 """The summary holds the lowest and the highest mean of these."""
@@ -22,7 +22,9 @@ mesh of the group carries load there.
 """
 
 
-def sharing(tables: Tables, kind: str, column: str = "mean", study: str = "", point: Point = "") -> Outcome:
+def sharing(
+    tables: Tables, kind: str, column: str = "mean", study: str = "", point: Point = ""
+) -> ClaimOutcome:
     """A column of the load-sharing summary, averaged over the input pinions where kind is inputs; no number
     where the coefficient is undefined for half the cycle or more.
 
@@ -31,21 +33,21 @@ def sharing(tables: Tables, kind: str, column: str = "mean", study: str = "", po
     undefined = _value(tables, kind, "undefined_share", study, point)
     value = _value(tables, kind, column, study, point)
     if undefined >= MOST_UNDEFINED:
-        return Outcome(None, f"{value:.4g}, but undefined for {100 * undefined:.0f} % of the cycle")
+        return ClaimOutcome(None, f"{value:.4g}, but undefined for {100 * undefined:.0f} % of the cycle")
     if column != "mean":
         return number(value, 4)
     ends = [_value(tables, kind, f"{of}_{end}", study, point) for of in WINDOWS for end in ("low", "high")]
     return replace(number(value, 4), windows=(float(np.nanmin(ends)), float(np.nanmax(ends))))
 
 
-def reference(tables: Tables, kind: str, quantity: str, column: str = "mean") -> Outcome:
+def reference(tables: Tables, kind: str, quantity: str, column: str = "mean") -> ClaimOutcome:
     """A static or quasi-static coefficient, averaged over the input pinions where kind is inputs."""
     frame = tables["reference"]
     rows = frame[(frame["quantity"] == quantity) & (frame["kind"] == kind)]
     return number(rows[column].mean(), 4)
 
 
-def one_carrier_occurs(tables: Tables, study: str) -> Outcome:
+def one_carrier_occurs(tables: Tables, study: str) -> ClaimOutcome:
     """Of the inputs as of the idlers, at least one curve of the study comes within 2 % of its bound somewhere
     in the cycle.
     """
@@ -57,7 +59,7 @@ def one_carrier_occurs(tables: Tables, study: str) -> Outcome:
     return statement((reached["sum"] > 0).all(), f"curves that reach their maximum: {shown}")
 
 
-def flat_region(tables: Tables, study: str, point: Point, kind: str) -> Outcome:
+def flat_region(tables: Tables, study: str, point: Point, kind: str) -> ClaimOutcome:
     """For at least 5 % of the cycle the coefficient changes by less than 0.1 of its value per cycle and lies
     below its bound, in a curve that is defined for more than half the cycle.
     """
@@ -65,19 +67,19 @@ def flat_region(tables: Tables, study: str, point: Point, kind: str) -> Outcome:
     undefined = float(np.isnan(curve).mean())
     if undefined >= MOST_UNDEFINED:
         return statement(False, f"undefined for {100 * undefined:.0f} % of the cycle")
-    share = _flat_share(curve, BOUNDS[kind] * (1.0 - NEARLY_ONE_CARRIER))
-    return statement(share >= FLAT_SHARE, f"flat for {100 * share:.0f} % of the cycle")
+    fraction = _flat_share(curve, BOUNDS[kind] * (1.0 - NEARLY_ONE_CARRIER))
+    return statement(fraction >= FLAT_SHARE, f"flat for {100 * fraction:.0f} % of the cycle")
 
 
 def orders(
     tables: Tables, study: str, kind: str, points: list[Point], column: str = "mean", margin: float = 0.0
-) -> Outcome:
+) -> ClaimOutcome:
     """The column grows along the listed points of the study, each time by more than the margin."""
     values = [_value(tables, kind, column, study, point) for point in points]
     return statement(bool((np.diff(values) > margin).all()), _listed(points, values))
 
 
-def lowest_at(tables: Tables, study: str, kind: str, point: Point, column: str = "mean") -> Outcome:
+def lowest_at(tables: Tables, study: str, kind: str, point: Point, column: str = "mean") -> ClaimOutcome:
     """Among all points of the study the column is lowest at the named one; points without a value do not
     count, and the named one must have one.
     """
@@ -87,7 +89,7 @@ def lowest_at(tables: Tables, study: str, kind: str, point: Point, column: str =
     return statement(_extreme(points, -np.array(values)) == _name(point), _listed(points, values))
 
 
-def steeper(tables: Tables, study: str, kind: str, point: Point) -> Outcome:
+def steeper(tables: Tables, study: str, kind: str, point: Point) -> ClaimOutcome:
     """The curve's RMS slope at the named point exceeds that at every other point of the study; undefined
     instants are left out, and a curve that is undefined for half the cycle or more is not compared.
     """
@@ -98,7 +100,7 @@ def steeper(tables: Tables, study: str, kind: str, point: Point) -> Outcome:
     )
 
 
-def differ(tables: Tables, study: str, kind: str, column: str, by: float) -> Outcome:
+def differ(tables: Tables, study: str, kind: str, column: str, by: float) -> ClaimOutcome:
     """Between the study's points the column changes by more than the stated amount."""
     points = list(dict.fromkeys(_study(tables, study)["point"]))
     values = [_value(tables, kind, column, study, name) for name in points]
@@ -106,7 +108,7 @@ def differ(tables: Tables, study: str, kind: str, column: str, by: float) -> Out
     return statement(len(finite) > 1 and max(finite) - min(finite) > by, _listed(points, values))
 
 
-def lost_regions_move(tables: Tables, study: str, by: float, kind: str = "") -> Outcome:
+def lost_regions_move(tables: Tables, study: str, by: float, kind: str = "") -> ClaimOutcome:
     """Between two points of the study contact is lost at different instants for more than the stated share of
     the cycle, in some group of the kind (of any kind if none is named).
     """

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from paper.scorecard.outcome import Outcome, Tables, number, statement
+from paper.scorecard.outcome import ClaimOutcome, Tables, number, statement
 
 
-def fe_mean_stiffness(tables: Tables) -> Outcome:
+def fe_mean_stiffness(tables: Tables) -> ClaimOutcome:
     """Mean of the average stiffness from contact analysis at the load at which k(t) is taken."""
     frame = tables["load_dependence"]
     rows = frame[frame["definition"] == "average"].sort_values("torque_n_m")
@@ -14,7 +14,7 @@ def fe_mean_stiffness(tables: Tables) -> Outcome:
     return number(float(np.interp(np.log(torque), logs, rows["mean_n_per_m"])), 4)
 
 
-def series_carries_curve(tables: Tables, within: float) -> Outcome:
+def series_carries_curve(tables: Tables, within: float) -> ClaimOutcome:
     """The kept Fourier series differs from the contact analysis nowhere by more than this part of the
     peak-to-peak value.
     """

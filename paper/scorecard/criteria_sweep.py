@@ -8,7 +8,7 @@ import numpy as np
 from scipy.signal import find_peaks
 
 from facegear.arrays import Array, Integers, Mask
-from paper.scorecard.outcome import Outcome, Tables, nearest, number, statement
+from paper.scorecard.outcome import ClaimOutcome, Tables, nearest, number, statement
 
 PROMINENCE = 0.1
 """A peak stands out by this share of the sweep's largest level."""
@@ -20,17 +20,17 @@ TRANSLATIONS = ("x_ac_rms_um", "y_ac_rms_um", "z_ac_rms_um")
 DEFLECTION = ("deflection_ac_rms_um",)
 
 
-def peak_speed(tables: Tables, parts: list[str], near: float) -> Outcome:
+def peak_speed(tables: Tables, parts: list[str], near: float) -> ClaimOutcome:
     """Speed of the translations' peak nearest to the paper's; a peak stands out by 10 % of the largest level,
     and the motion there or at the next speed is regular.
     """
     speeds, level = _level(tables, TRANSLATIONS, parts, "up")
     regular = _regular(tables, speeds, "up")
-    found = [i for i in _peaks(level) if regular[i - 1 : i + 2].any()]
-    return nearest(speeds[found], near, (float(speeds[0]), float(speeds[-1])), "peak")
+    peaks = [i for i in _peaks(level) if regular[i - 1 : i + 2].any()]
+    return nearest(speeds[peaks], near, (float(speeds[0]), float(speeds[-1])), "peak")
 
 
-def dominant_peak(tables: Tables, parts: list[str], near: float, within: float) -> Outcome:
+def dominant_peak(tables: Tables, parts: list[str], near: float, within: float) -> ClaimOutcome:
     """The largest translation over all speeds is a peak within the stated relative distance of the speed, and
     not an end of the sweep.
     """
@@ -41,13 +41,13 @@ def dominant_peak(tables: Tables, parts: list[str], near: float, within: float) 
     return statement(abs(speeds[top] / near - 1.0) <= within, f"largest at {speeds[top]:.0f} rpm")
 
 
-def not_dominant_peak(tables: Tables, parts: list[str], near: float, within: float) -> Outcome:
+def not_dominant_peak(tables: Tables, parts: list[str], near: float, within: float) -> ClaimOutcome:
     """The largest translation over all speeds lies outside the stated relative distance of the speed."""
-    found = dominant_peak(tables, parts, near, within)
-    return statement(not found.holds, found.shown)
+    dominant = dominant_peak(tables, parts, near, within)
+    return statement(not dominant.holds, dominant.shown)
 
 
-def jump_speed(tables: Tables, near: float) -> Outcome:
+def jump_speed(tables: Tables, near: float) -> ClaimOutcome:
     """Speed of the jump, in either direction, nearest to the paper's; at a jump the RMS of a mesh changes by
     a quarter of the larger value or more, and the motion is regular on one side.
     """
@@ -60,7 +60,7 @@ def jump_speed(tables: Tables, near: float) -> Outcome:
     return nearest(middle[(size >= JUMP_SIZE) & regular], near, span, "jump")
 
 
-def jump_leans(tables: Tables, near: float, within: float, lean: str) -> Outcome:
+def jump_leans(tables: Tables, near: float, within: float, lean: str) -> ClaimOutcome:
     """Of the speeds within the stated distance at which the mean mesh levels of the up and down sweeps differ
     by 10 %, the upward level is the higher one at most (hardening) or the lower one at most (softening).
     """
@@ -69,14 +69,14 @@ def jump_leans(tables: Tables, near: float, within: float, lean: str) -> Outcome
     return _leaning(more[close], lean)
 
 
-def jump_in_mesh(tables: Tables, pinion: str, near: float, within: float, lean: str) -> Outcome:
+def jump_in_mesh(tables: Tables, pinion: str, near: float, within: float, lean: str) -> ClaimOutcome:
     """As for the whole machine, for the meshes of one pinion."""
     speeds, more = _bistable(tables, [mesh for mesh in _meshes(tables) if mesh.startswith(f"{pinion}/")])
     close = np.abs(speeds / near - 1.0) <= within
     return _leaning(more[close], lean)
 
 
-def wider_region(tables: Tables, wide: float, narrow: float, within: float) -> Outcome:
+def wider_region(tables: Tables, wide: float, narrow: float, within: float) -> ClaimOutcome:
     """More speeds around the first than around the second have different levels in the up and down sweeps."""
     speeds, more = _bistable(tables, list(_meshes(tables)))
     width = [
@@ -86,18 +86,18 @@ def wider_region(tables: Tables, wide: float, narrow: float, within: float) -> O
     return statement(width[0] > width[1], f"{width[0]:.0f} rpm against {width[1]:.0f} rpm")
 
 
-def mode_speed(tables: Tables, order: int, multiple: float, pinion_teeth: int = 23) -> Outcome:
+def mode_speed(tables: Tables, order: int, multiple: float, pinion_teeth: int = 23) -> ClaimOutcome:
     """Speed at which the mesh frequency meets the frequency of the mode, times the multiple."""
     values = tables["frequencies"].set_index("order")["frequency_hz"]
     return number(60.0 * multiple * values[order] / pinion_teeth)
 
 
-def _leaning(more: Integers, lean: str) -> Outcome:
+def _leaning(more: Integers, lean: str) -> ClaimOutcome:
     if not more.any():
         return statement(False, "up and down sweeps agree")
-    found = "hardening" if more.sum() > 0 else "softening" if more.sum() < 0 else "neither"
+    lean_of_sweep = "hardening" if more.sum() > 0 else "softening" if more.sum() < 0 else "neither"
     counts = f"{(more > 0).sum()} speeds higher upward, {(more < 0).sum()} higher downward"
-    return statement(found == lean, f"{found} ({counts})")
+    return statement(lean_of_sweep == lean, f"{lean_of_sweep} ({counts})")
 
 
 def _meshes(tables: Tables) -> list[str]:

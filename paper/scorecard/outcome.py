@@ -12,7 +12,7 @@ Tables = Mapping[str, pd.DataFrame]
 
 
 @dataclass(frozen=True)
-class Outcome:
+class ClaimOutcome:
     """Our number (None for a statement), the same in words, and whether the statement holds.
 
     For a number `holds` is decided by the claim's tolerance and left None here. A number that is the nearest
@@ -43,27 +43,27 @@ class Outcome:
         return covered / (high - low)
 
 
-Criterion = Callable[..., Outcome]
+Criterion = Callable[..., ClaimOutcome]
 """Takes the tables and the claim's arguments by name; its docstring is the stated criterion."""
 
 
-def number(value: float, digits: int = 6) -> Outcome:
+def number(value: float, digits: int = 6) -> ClaimOutcome:
     """Outcome of a numeric claim."""
-    return Outcome(float(value), f"{value:.{digits}g}")
+    return ClaimOutcome(float(value), f"{value:.{digits}g}")
 
 
-def nearest(candidates: Iterable[float], near: float, span: tuple[float, float], name: str) -> Outcome:
+def nearest(candidates: Iterable[float], near: float, span: tuple[float, float], name: str) -> ClaimOutcome:
     """Outcome of a numeric claim that the nearest of several candidates answers."""
-    found = tuple(float(value) for value in candidates)
-    if not found:
-        return Outcome(None, f"no {name}", span=span)
-    value = min(found, key=lambda at: abs(at - near))
-    return Outcome(value, f"{value:.6g}", candidates=found, span=span)
+    values = tuple(float(value) for value in candidates)
+    if not values:
+        return ClaimOutcome(None, f"no {name}", span=span)
+    value = min(values, key=lambda at: abs(at - near))
+    return ClaimOutcome(value, f"{value:.6g}", candidates=values, span=span)
 
 
-def statement(holds: bool, shown: str) -> Outcome:
+def statement(holds: bool, shown: str) -> ClaimOutcome:
     """Outcome of a statement with the evidence in words."""
-    return Outcome(None, shown, bool(holds))
+    return ClaimOutcome(None, shown, bool(holds))
 
 
 def describe(criterion: Criterion, args: Mapping[str, Any]) -> str:

@@ -15,7 +15,7 @@ DIGITS = 5
 def counts(frame: pd.DataFrame) -> dict[str, int]:
     """Distinct rows about this model by verdict, all verdicts present."""
     kept = frame[frame["counted"]]
-    return {one.value: int((kept["verdict"] == one.value).sum()) for one in Verdict}
+    return {verdict.value: int((kept["verdict"] == verdict.value).sum()) for verdict in Verdict}
 
 
 def render(

@@ -9,7 +9,7 @@ import pandas as pd
 from facegear.errors import FacegearError
 from paper.scorecard.claims import Claim
 from paper.scorecard.criteria import CRITERIA
-from paper.scorecard.outcome import Outcome, Tables, describe
+from paper.scorecard.outcome import ClaimOutcome, Tables, describe
 
 OWN = "config"
 """Name of the config's own inputs among the sets."""
@@ -39,9 +39,9 @@ def outcome_table(claims: Iterable[Claim], tables: Tables) -> pd.DataFrame:
     for claim in claims:
         outcome = _evaluate(claim, tables)
         chance = None if claim.tolerance is None else outcome.chance(claim.tolerance)
-        found = (outcome.value, outcome.shown, _holds(claim, outcome.value, outcome.holds), chance)
+        judged = (outcome.value, outcome.shown, _holds(claim, outcome.value, outcome.holds), chance)
         low, high = outcome.windows or (0.0, 0.0)
-        rows.append((claim.id, *found, _split(claim, outcome), 0.5 * (high - low)))
+        rows.append((claim.id, *judged, _split(claim, outcome), 0.5 * (high - low)))
     return pd.DataFrame(rows, columns=list(OUTCOME_COLUMNS))
 
 
@@ -59,7 +59,7 @@ def scorecard(
     Raises FacegearError for a row that differs or depends without a reason.
     """
     indexed = own.set_index("id")
-    judged = {str(name): found.set_index("set") for name, found in runs.groupby("id")}
+    judged = {str(name): rows.set_index("set") for name, rows in runs.groupby("id")}
     shares = rates.set_index("id")
     return pd.DataFrame([_row(claim, indexed, judged.get(claim.id), shares) for claim in claims])
 
@@ -73,7 +73,7 @@ def verdict(split: bool, holds: bool, others: Sequence[bool], undisclosed: Seque
     return Verdict.DEPENDS if undisclosed and any(others) else Verdict.DIFFERS
 
 
-def _evaluate(claim: Claim, tables: Tables) -> Outcome:
+def _evaluate(claim: Claim, tables: Tables) -> ClaimOutcome:
     if claim.criterion not in CRITERIA:
         raise FacegearError(f"scorecard row {claim.id}: unknown criterion {claim.criterion!r}")
     try:
@@ -89,27 +89,27 @@ def _holds(claim: Claim, value: float | None, stated: bool | None) -> bool:
     return value is not None and abs(value - claim.paper) <= claim.tolerance + slack
 
 
-def _split(claim: Claim, outcome: Outcome) -> str:
+def _split(claim: Claim, outcome: ClaimOutcome) -> str:
     """Range over the windows where a part of it, but not all, is within the tolerance."""
     if outcome.windows is None or claim.paper is None or claim.tolerance is None:
         return ""
     low, high = outcome.windows
-    least, most = claim.paper - claim.tolerance, claim.paper + claim.tolerance
-    meets, inside = low <= most and high >= least, least <= low and high <= most
+    lower, upper = claim.paper - claim.tolerance, claim.paper + claim.tolerance
+    meets, inside = low <= upper and high >= lower, lower <= low and high <= upper
     return f"{low:.4g} to {high:.4g}" if meets and not inside else ""
 
 
 def _row(claim: Claim, own: pd.DataFrame, judged: pd.DataFrame | None, rates: pd.DataFrame) -> dict[str, Any]:
-    found = own.loc[claim.id]
+    run = own.loc[claim.id]
     sets = pd.DataFrame(columns=RUN_COLUMNS) if judged is None else judged.drop(index=OWN, errors="ignore")
     again = None if judged is None or OWN not in judged.index else judged.loc[OWN]
-    others = [bool(one.held == one.runs) for one in sets.itertuples()]
-    told = _disagreement(bool(found["holds"]), str(found["windows"]), again)
-    decided = verdict(told != "", bool(found["holds"]), others, claim.undisclosed)
-    reason = told if told else "" if decided is Verdict.REPRODUCED else claim.reason
+    others = [bool(entry.held == entry.runs) for entry in sets.itertuples()]
+    note = _disagreement(bool(run["holds"]), str(run["windows"]), again)
+    decided = verdict(note != "", bool(run["holds"]), others, claim.undisclosed)
+    reason = note if note else "" if decided is Verdict.REPRODUCED else claim.reason
     if decided is not Verdict.REPRODUCED and not reason:
-        raise FacegearError(f"scorecard row {claim.id} ({found['shown']}): {decided.value}, without a reason")
-    ours = float(found["value"]) if pd.notna(found["value"]) else None
+        raise FacegearError(f"scorecard row {claim.id} ({run['shown']}): {decided.value}, without a reason")
+    ours = float(run["value"]) if pd.notna(run["value"]) else None
     rate = rates.loc[claim.id] if claim.id in rates.index else None
     return {
         "id": claim.id,
@@ -121,13 +121,13 @@ def _row(claim: Claim, own: pd.DataFrame, judged: pd.DataFrame | None, rates: pd
         "difference": ours - claim.paper if ours is not None and claim.paper is not None else None,
         "tolerance": claim.tolerance,
         "unit": claim.unit,
-        "shown": found["shown"],
-        "chance": float(found["chance"]) if pd.notna(found["chance"]) else None,
+        "shown": run["shown"],
+        "chance": float(run["chance"]) if pd.notna(run["chance"]) else None,
         "random_share": None if rate is None else float(rate["share"]),
         "random_low": None if rate is None else float(rate["low"]),
         "random_high": None if rate is None else float(rate["high"]),
         "verdict": decided.value,
-        "holds": bool(found["holds"]),
+        "holds": bool(run["holds"]),
         "runs_holding": "" if again is None else f"{int(again['held'])} of {int(again['runs'])}",
         "fitted": claim.fitted,
         "counted": claim.counts,

@@ -21,10 +21,10 @@ def start_table(runs: pd.DataFrame, claims: Sequence[Claim]) -> pd.DataFrame:
     counted = {claim.id for claim in claims if claim.counts and claim.dynamic}
     numbers = {claim.id for claim in claims if claim.paper is not None}
     rows = []
-    for name, found in runs[runs["id"].isin(counted)].groupby("set", sort=False):
-        held, judged = found["held"], found["runs"]
-        rest = int(found["at_rest"].astype(bool).sum())
-        missing = int((found["id"].isin(numbers) & found["low"].isna()).sum())
+    for name, of_set in runs[runs["id"].isin(counted)].groupby("set", sort=False):
+        held, judged = of_set["held"], of_set["runs"]
+        rest = int(of_set["at_rest"].astype(bool).sum())
+        missing = int((of_set["id"].isin(numbers) & of_set["low"].isna()).sum())
         every, some = int((held == judged).sum()), int((held > 0).sum())
-        rows.append((str(name), len(found), rest, every, some, missing))
+        rows.append((str(name), len(of_set), rest, every, some, missing))
     return pd.DataFrame(rows, columns=list(START_COLUMNS))

@@ -19,15 +19,15 @@ STORED = (
 
 with stage(snakemake) as run:
     files, values = snakemake.input, snakemake.params.values
-    found = {name: tables.read(files[name], allow_empty=name == "jumps") for name in STORED}
+    inputs = {name: tables.read(files[name], allow_empty=name == "jumps") for name in STORED}
     nominal = collected({(NOMINAL, NOMINAL): tables.read(files.nominal)})
-    found["curves"] = pd.concat([nominal, *(tables.read(path) for path in files.studies)], ignore_index=True)
+    inputs["curves"] = pd.concat([nominal, *(tables.read(path) for path in files.studies)], ignore_index=True)
     for name in ("sharing", "curves"):
-        found[name]["point"] = found[name]["point"].astype(str)
+        inputs[name]["point"] = inputs[name]["point"].astype(str)
     load = values["mesh_stiffness"]["torque_n_m"]
-    found["inputs"] = pd.DataFrame({"stiffness_torque_n_m": [load]})
+    inputs["inputs"] = pd.DataFrame({"stiffness_torque_n_m": [load]})
     claims = read_claims(files.claims)
-    own = outcome_table(claims.claims, found)
+    own = outcome_table(claims.claims, inputs)
     stored = stored_evidence(claims.claims, snakemake.params.case, files.sets, files.runs, files.random)
     frame = scorecard(claims.claims, own, stored.runs, stored.rates)
     tables.write(snakemake.output.csv, frame)

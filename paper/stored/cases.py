@@ -40,7 +40,7 @@ def changed_cases(
             point["set"].update(points.get((study["name"], folder_name(point["label"])), {}))
     cases = expand_cases(changed)
     base = cases.pop(changed["case"])
-    return base, {_study_and_point(case): found for case, found in cases.items()}
+    return base, {_study_and_point(case): case_values for case, case_values in cases.items()}
 
 
 def settings_key(base: Mapping[str, Any], points: Mapping[tuple[str, str], Mapping[str, Any]]) -> str:

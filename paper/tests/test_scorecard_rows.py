@@ -10,7 +10,7 @@ from paper.scorecard import rows
 from paper.scorecard.base_rates import RATE_COLUMNS, Totals
 from paper.scorecard.claims import Claim, read_claims
 from paper.scorecard.criteria import CRITERIA
-from paper.scorecard.outcome import Outcome
+from paper.scorecard.outcome import ClaimOutcome
 from paper.scorecard.page import counts, render
 from paper.scorecard.rows import OWN, RUN_COLUMNS, Verdict, outcome_table, scorecard
 from paper.scorecard.starts import START_COLUMNS, start_table
@@ -102,7 +102,7 @@ def test_set_that_holds_in_some_runs_only_excuses_nothing():
 def test_number_that_agrees_in_a_part_of_the_windows_is_undecided(monkeypatch, windows, undecided):
     def measured(tables):
         """A number that differs from cycle to cycle."""
-        return Outcome(sum(windows) / 2.0, "some", windows=windows)
+        return ClaimOutcome(sum(windows) / 2.0, "some", windows=windows)
 
     monkeypatch.setattr(rows, "CRITERIA", {"measured": measured})
     claim = NUMBER.model_copy(update={"criterion": "measured", "args": {}})

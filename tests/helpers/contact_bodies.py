@@ -14,7 +14,7 @@ from facegear.contact.bodies.substructure import condense
 from facegear.contact.bodies.surface import cell_areas, cell_points, hat_values, interpolation, pressure_basis
 from facegear.contact.options import Refinement
 from facegear.contact.solver import solve_contact
-from facegear.geometry.design import FaceGear, Material, PairDesign, Pinion, Shaper
+from facegear.geometry.design import FaceGearGeometry, Material, PairDesign, PinionGeometry, Shaper
 from facegear.mesh.sizes import MeshSizes
 
 STEEL = Material(206e9, 0.3)
@@ -127,8 +127,10 @@ def pair_design(
     radii: tuple[float, float] = (0.250, 0.275),
 ) -> PairDesign:
     m = 3.75e-3
-    pinion = Pinion(23, pinion_width, m, 1.25 * m, rack_tip_radius * m, 0.025)
-    return PairDesign(m, radians(25), pinion, FaceGear(143, *radii, m, 0.012), Shaper(shaper_teeth, 1.25 * m))
+    pinion = PinionGeometry(23, pinion_width, m, 1.25 * m, rack_tip_radius * m, 0.025)
+    return PairDesign(
+        m, radians(25), pinion, FaceGearGeometry(143, *radii, m, 0.012), Shaper(shaper_teeth, 1.25 * m)
+    )
 
 
 def sound(results):

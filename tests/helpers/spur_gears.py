@@ -11,7 +11,7 @@ from facegear.contact.bodies.surface import interpolation
 from facegear.contact.options import Refinement
 from facegear.contact.root_gauges import root_gauges
 from facegear.contact.teeth import elastic_tooth
-from facegear.geometry.design import FaceGear, PairDesign, Pinion, Shaper
+from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
 from facegear.mesh.sizes import named_sizes
 from facegear.strength.root_stress import down_the_fillet
 from facegear.strength.spur import SpurGear, SpurMesh
@@ -41,7 +41,7 @@ def slab_design(gear: SpurGear, rim: float = 3.0) -> PairDesign:
     m = gear.module
     pitch, shift = 0.5 * m * gear.teeth, m * gear.profile_shift
     root = pitch - m * gear.rack_addendum + shift
-    part = Pinion(
+    part = PinionGeometry(
         teeth=gear.teeth,
         width=0.5 * m,
         addendum=gear.tip_radius - pitch - shift,
@@ -50,7 +50,7 @@ def slab_design(gear: SpurGear, rim: float = 3.0) -> PairDesign:
         bore_radius=root - rim * m,
         profile_shift=shift,
     )
-    blank = FaceGear(
+    blank = FaceGearGeometry(
         teeth=3 * gear.teeth, inner_radius=pitch, outer_radius=2 * pitch, addendum=m, rim_thickness=m
     )
     return PairDesign(m, gear.pressure_angle, part, blank, Shaper(gear.teeth, 1.25 * m))

@@ -20,7 +20,7 @@ from facegear.errors import NotConverged
 from facegear.geometry import pinion
 from facegear.geometry.design import Material
 from facegear.geometry.unloaded import PAIRS
-from validation.contact.brute_mesh import Chain, FlatGear, FlatMesh, flat_gear, refined
+from validation.contact.brute_mesh import FacetChain, FlatGear, FlatMesh, flat_gear, refined
 from validation.contact.twin import involute_separation, standard_centre, turned
 
 PENALTIES = (1e14, 1e15, 1e16, 1e17, 1e18)
@@ -76,14 +76,16 @@ def loaded_rotations(
     rows = sp.hstack([rows[:, free], np.full((len(gaps), 1), -base)], format="csr")
     state = np.zeros(free.sum() + 1)
     state[-1] = gaps.min() / base + line_loads[0] / (1e10 * base)
-    found = []
+    rotations = []
     for load in line_loads:
         for penalty in PENALTIES if load == line_loads[0] else PENALTIES[-1:]:
             springs = penalty * weights
             state = _balanced(stiffness, rows, springs, gaps, state, load * base, f"position {position:g}")
         force = springs * np.maximum(-gaps - rows @ state, 0.0)
-        found.append((float(state[-1]), np.array([force[owner == tooth].sum() for tooth in PAIRS]) / load))
-    return found
+        rotations.append(
+            (float(state[-1]), np.array([force[owner == tooth].sum() for tooth in PAIRS]) / load)
+        )
+    return rotations
 
 
 def _balanced(stiffness, rows, springs, gaps, state, torque, where):  # type: ignore[no-untyped-def]
@@ -198,7 +200,7 @@ def _constraints(
     )
 
 
-def _rows(chain: Chain, at, normal, size, shift):  # type: ignore[no-untyped-def]
+def _rows(chain: FacetChain, at, normal, size, shift):  # type: ignore[no-untyped-def]
     """Minus the displacement along `normal` (n, 2) at positions of a chain, as rows on all dof."""
     facet = np.clip(np.searchsorted(chain.ends, at, side="right") - 1, 0, len(chain.ends) - 2)
     x = (at - chain.ends[facet]) / np.diff(chain.ends)[facet]

@@ -20,7 +20,7 @@ from validation.contact.twin import slab_tooth
 
 
 @dataclass(frozen=True, eq=False)
-class Chain:
+class FacetChain:
     """Facets of a flank: places (n + 1,) of their ends, in facets of the mesh before refinement from tip to
     root, the facets' `length` (n,) m, and the x and z dof (2 n + 1, 2) of ends and middles.
     """
@@ -47,7 +47,7 @@ class FlatGear:
     design: PairDesign
     stiffness: sp.csc_matrix
     free: Mask
-    chains: dict[int, Chain]
+    chains: dict[int, FacetChain]
 
 
 def flat_mesh(design: PairDesign, sizes: MeshSizes, teeth: int) -> FlatMesh:
@@ -68,7 +68,7 @@ def flat_mesh(design: PairDesign, sizes: MeshSizes, teeth: int) -> FlatMesh:
 
 def refined(flat: FlatMesh, spots: Sequence[tuple[int, float]], radius: float, halvings: int) -> MeshTri:
     """Halve the triangles within `radius` (m) of the spots (tooth, place along its flank) so many times."""
-    centres = np.array([_at(flat.flanks[tooth], place) for tooth, place in spots])
+    centres = np.array([_at(flat.flanks[tooth], spot) for tooth, spot in spots])
     mesh = flat.mesh
     for _ in range(halvings):
         middle = mesh.p[:, mesh.t].mean(axis=1).T
@@ -95,30 +95,30 @@ def flat_gear(flat: FlatMesh, mesh: MeshTri, material: Material, teeth: Sequence
     return FlatGear(flat.design, stiffness, free, chains)
 
 
-def _at(line: Array, place: float) -> Array:
-    facet = min(int(place), len(line) - 2)
-    return line[facet] + (place - facet) * (line[facet + 1] - line[facet])
+def _at(line: Array, position: float) -> Array:
+    facet = min(int(position), len(line) - 2)
+    return line[facet] + (position - facet) * (line[facet + 1] - line[facet])
 
 
-def _chain(basis: Basis, boundary: Integers, line: Array) -> Chain:
+def _chain(basis: Basis, boundary: Integers, line: Array) -> FacetChain:
     """Boundary facets on a broken line (n + 1, 2), in its order."""
     ends = basis.mesh.facets[:, boundary]
     middle = basis.mesh.p[:, ends].mean(axis=1).T
     start, along = line[:-1], np.diff(line, axis=0)
     length = np.linalg.norm(along, axis=1)
     away = middle[:, None] - start
-    share = np.sum(away * along, axis=2) / length**2
+    fraction = np.sum(away * along, axis=2) / length**2
     beside = np.abs(away[..., 0] * along[:, 1] - away[..., 1] * along[:, 0]) / length
-    hit = (share > 0) & (share < 1) & (beside < 1e-10)
+    hit = (fraction > 0) & (fraction < 1) & (beside < 1e-10)
     on, owner = np.nonzero(hit)
-    order = np.argsort(owner + share[on, owner])
+    order = np.argsort(owner + fraction[on, owner])
     on, owner = on[order], owner[order]
     facets = boundary[on]
     pair = basis.mesh.facets[:, facets]
-    place = owner + np.sum(
+    position = owner + np.sum(
         (basis.mesh.p[:, pair] - start[owner].T[:, None]) * along[owner].T[:, None], axis=0
     ) / (length[owner] ** 2)
-    first = np.argmin(place, axis=0)
+    first = np.argmin(position, axis=0)
     left, right = (pair[which, np.arange(len(on))] for which in (first, 1 - first))
     if not np.array_equal(left[1:], right[:-1]):
         raise ValueError("the flank's facets do not join")
@@ -126,5 +126,5 @@ def _chain(basis: Basis, boundary: Integers, line: Array) -> Chain:
     dofs[:-1:2] = basis.nodal_dofs[:, left].T
     dofs[-1] = basis.nodal_dofs[:, right[-1]]
     dofs[1::2] = basis.facet_dofs[:, facets].T
-    at = np.append(place.min(axis=0), place[:, -1].max())
-    return Chain(at, np.diff(at) * length[owner], dofs)
+    at = np.append(position.min(axis=0), position[:, -1].max())
+    return FacetChain(at, np.diff(at) * length[owner], dofs)

@@ -30,7 +30,7 @@ PROGRAM = "ccx"
 
 
 @dataclass(frozen=True)
-class Run:
+class CalculixRun:
     """Wall time (s), memory (GB) and version of a run."""
 
     seconds: float
@@ -44,7 +44,7 @@ class PeerResult:
 
     torque: float
     dof: int
-    run: Run
+    run: CalculixRun
 
 
 def program() -> str | None:
@@ -125,13 +125,13 @@ def run_deck(path: Path, threads: int, dof: int, timeout: float = 3600.0) -> Pee
     return PeerResult(torque=1e-3 * abs(float(moments[-1][1])), dof=dof, run=run)
 
 
-def run_program(path: Path, threads: int, timeout: float = 3600.0) -> Run:
+def run_program(path: Path, threads: int, timeout: float = 3600.0) -> CalculixRun:
     """Run ccx on a deck, its output in a log beside it.
 
     Raises FacegearError if ccx is not installed or fails.
     """
-    found = program()
-    if found is None:
+    executable = program()
+    if executable is None:
         raise FacegearError(f"{PROGRAM} is not installed (Debian: apt-get install calculix-ccx)")
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss, time.perf_counter()
     environment = {
@@ -140,7 +140,7 @@ def run_program(path: Path, threads: int, timeout: float = 3600.0) -> Run:
         "PATH": "/usr/bin:/bin",
     }
     done = subprocess.run(
-        [found, "-i", path.stem],
+        [executable, "-i", path.stem],
         cwd=path.parent,
         env=environment,
         capture_output=True,
@@ -154,7 +154,7 @@ def run_program(path: Path, threads: int, timeout: float = 3600.0) -> Run:
     if done.returncode != 0:
         raise FacegearError(f"{PROGRAM} failed on {path}: see {log}")
     version = re.search(r"Version ([\d.]+)", done.stdout)
-    return Run(seconds, memory * 1024 / 1e9, version.group(1) if version else "unknown")
+    return CalculixRun(seconds, memory * 1024 / 1e9, version.group(1) if version else "unknown")
 
 
 def _placed(

@@ -30,8 +30,8 @@ class HalfSpace:
 
     def displaced(self, pressure: Array) -> Array:
         """Displacement (m) into both bodies together by pressures (Pa), of `shape`."""
-        found = irfft2(rfft2(pressure, self.padded) * self.kernel, self.padded)
-        return found[: self.shape[0], : self.shape[1]]
+        displacement = irfft2(rfft2(pressure, self.padded) * self.kernel, self.padded)
+        return displacement[: self.shape[0], : self.shape[1]]
 
 
 def half_space(shape: tuple[int, int], size: tuple[float, float], modulus: float) -> HalfSpace:
@@ -42,8 +42,10 @@ def half_space(shape: tuple[int, int], size: tuple[float, float], modulus: float
     left, right = x - size[0] / 2, x + size[0] / 2
     low, high = y - size[1] / 2, y + size[1] / 2
 
-    def part(one: Array, first: Array, second: Array) -> Array:
-        return one * np.log((first + np.hypot(first, one)) / (second + np.hypot(second, one)))
+    def part(coordinate: Array, first: Array, second: Array) -> Array:
+        return coordinate * np.log(
+            (first + np.hypot(first, coordinate)) / (second + np.hypot(second, coordinate))
+        )
 
     loaded = part(right, high, low) + part(high, right, left) + part(left, low, high) + part(low, left, right)
     return HalfSpace(shape, padded, rfft2(loaded / (np.pi * modulus)))

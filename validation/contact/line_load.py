@@ -13,7 +13,7 @@ from facegear.contact.root_gauges import RootGauges, root_gauges
 from facegear.contact.teeth import ContactSide, elastic_tooth
 from facegear.geometry.design import Material, PairDesign
 from facegear.mesh.sizes import MeshSizes
-from facegear.mesh.tooth import ToothMesh
+from facegear.mesh.tooth import FeTooth
 
 HEIGHT = 0.25
 """Where on the flank the line lies, 0 at its tip end to 1 at its root end, evenly in the mesh's rows."""
@@ -26,7 +26,7 @@ class LoadedTooth:
     `stress` (2, a, b) Pa at the gauges of its fillets.
     """
 
-    mesh: ToothMesh
+    mesh: FeTooth
     side: ContactSide
     load: Array
     gauges: RootGauges
@@ -53,8 +53,8 @@ def loaded_tooth(
     load = line_load(elastic.points[elastic.flank], side, on_corners)
     strip = _loaded_rows(load.reshape(side.shape))
     loaded = replace(elastic, flank=elastic.flank[strip], normals=elastic.normals[strip])
-    found = flank_compliance(loaded, Refinement(), teeth, 0, ends, gauges=rows)
-    stress = -(found.readings[0] @ load.reshape(side.shape)[strip].ravel())
+    compliance = flank_compliance(loaded, Refinement(), teeth, 0, ends, gauges=rows)
+    stress = -(compliance.readings[0] @ load.reshape(side.shape)[strip].ravel())
     stress = stress.reshape(gauges.position.shape[:3])
     forces = -load.reshape(*side.shape, 1) * elastic.normals
     return LoadedTooth(mesh, side, forces, gauges, stress)

@@ -26,7 +26,7 @@ from facegear.contact.teeth import LOADED_SIDE, contact_side, elastic_tooth
 from facegear.geometry.design import Material, PairDesign
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.mesh.sizes import MeshSizes
-from facegear.mesh.tooth import ToothMesh
+from facegear.mesh.tooth import FeTooth
 
 Blocks = dict[tuple[int, int], Array]
 
@@ -100,7 +100,7 @@ def sector_pair(
 
 def sector_blocks(
     design: PairDesign,
-    tooth: ToothMesh,
+    tooth: FeTooth,
     material: Material,
     teeth: int,
     loaded: Sequence[int],

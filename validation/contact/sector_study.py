@@ -31,7 +31,7 @@ def whole_sectors(
     for count in teeth:
         loaded = [tooth for tooth in LOADED if abs(tooth) <= count // 2]
         pair = sector_pair(design, sizes, materials, count, loaded, Refinement())
-        results = [pair.solve(place, (torque,))[0] for place in places]
+        results = [pair.solve(spot, (torque,))[0] for spot in places]
         tables.append(summary(results).assign(level=_name(count)))
     table = with_errors(pd.concat(tables, ignore_index=True), _name(max(teeth)))
     return table.rename(columns={"level": "case"})

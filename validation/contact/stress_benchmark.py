@@ -107,10 +107,10 @@ def _many_loads(flank: GearFlank, body: str) -> tuple[float, int]:
     loads = dict.fromkeys((-1, 0, 1), force)
     torques, positions = np.linspace(1.0, 1000.0, LOADS), np.arange(POSITIONS) / POSITIONS
     along, angle = flank.gauges.along(body), flank.gauges.tangent_angle
-    seconds, found = _cpu(
+    seconds, stress = _cpu(
         lambda: root_stress(flank.compliance.readings, loads, torques, positions, along, angle)
     )
-    return seconds, found.passage.size // POSITIONS
+    return seconds, stress.passage.size // POSITIONS
 
 
 def _timed(design: PairDesign, body: str, sizes: MeshSizes, material: Material) -> tuple[LoadedTooth, float]:
@@ -120,5 +120,5 @@ def _timed(design: PairDesign, body: str, sizes: MeshSizes, material: Material) 
 
 def _cpu(work: Callable[[], Result]) -> tuple[float, Result]:
     start = time.process_time()
-    found = work()
-    return time.process_time() - start, found
+    result = work()
+    return time.process_time() - start, result

@@ -151,21 +151,21 @@ def along_the_face(tooth: LoadedTooth, results: Path, material: Material) -> tup
     read = gauges_on(tooth.mesh.nodes, grid, material).normal @ displaced.ravel()
     nodal = _down(read_nodes(results, "STRESS", 6), labels[:, ::2], tooth.mesh.nodes[grid[:, ::2]])
     places = tooth.mesh.nodes[grid[:, ::2]], tooth.gauges.position[0]
-    at, own = (_along(tooth.mesh.body, place).mean(axis=0) for place in places)
+    at, own = (_along(tooth.mesh.body, position).mean(axis=0) for position in places)
     inside = np.abs(own - own.mean()) < (0.5 - ENDS) * np.ptp(own)
-    found = tooth.stress[0], read.reshape(tooth.stress[0].shape)
-    ours, theirs = (down_the_fillet(values).max(axis=0)[inside] for values in found)
+    compared = tooth.stress[0], read.reshape(tooth.stress[0].shape)
+    ours, theirs = (down_the_fillet(values).max(axis=0)[inside] for values in compared)
     return ours, theirs, np.interp(own[inside], at, down_the_fillet(nodal).max(axis=0))
 
 
 def _on_grid(values: Mapping[int, Array], labels: Integers) -> Array:
     """Displacements (nu, nv, 3) of a surface, in the middle of each face by the functions of its 8 nodes."""
     nothing = np.zeros(3)
-    found = np.array([[values.get(label, nothing) for label in row] for row in labels])
-    sides = found[1::2, :-1:2] + found[1::2, 2::2] + found[:-1:2, 1::2] + found[2::2, 1::2]
-    corners = found[:-1:2, :-1:2] + found[2::2, :-1:2] + found[:-1:2, 2::2] + found[2::2, 2::2]
-    found[1::2, 1::2] = sides / 2.0 - corners / 4.0
-    return found
+    grid = np.array([[values.get(label, nothing) for label in row] for row in labels])
+    sides = grid[1::2, :-1:2] + grid[1::2, 2::2] + grid[:-1:2, 1::2] + grid[2::2, 1::2]
+    corners = grid[:-1:2, :-1:2] + grid[2::2, :-1:2] + grid[:-1:2, 2::2] + grid[2::2, 2::2]
+    grid[1::2, 1::2] = sides / 2.0 - corners / 4.0
+    return grid
 
 
 def _down(stress: Mapping[int, Array], labels: Integers, points: Array) -> Array:

@@ -56,9 +56,9 @@ def strip_at(
     gap = _gap(design, pressure, row, unloaded, arc, y)
     across = np.interp(y, known, loads.line_load[on] / np.cos(lines.slope[row, planes]))
     size = arc[1] - arc[0], y[1] - y[0]
-    found = pressures(half_space(gap.shape, size, modulus), gap, across / size[0]).max(axis=0)
+    peak = pressures(half_space(gap.shape, size, modulus), gap, across / size[0]).max(axis=0)
     inner = (y > y[0] + ENDS * width) & (y < y[-1] - ENDS * width)
-    return Strip(y[inner], found[inner], np.interp(y[inner], known, loads.pressure[on]))
+    return Strip(y[inner], peak[inner], np.interp(y[inner], known, loads.pressure[on]))
 
 
 def _gap(

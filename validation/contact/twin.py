@@ -25,7 +25,7 @@ from facegear.geometry.design import Material, PairDesign, involute
 from facegear.geometry.placement import body_rotation
 from facegear.geometry.unloaded import PAIRS
 from facegear.mesh.sizes import MeshSizes
-from facegear.mesh.tooth import ToothMesh, pinion_tooth
+from facegear.mesh.tooth import FeTooth, pinion_tooth
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +82,7 @@ def twin_model(
     )
 
 
-def slab_tooth(design: PairDesign, sizes: MeshSizes) -> ToothMesh:
+def slab_tooth(design: PairDesign, sizes: MeshSizes) -> FeTooth:
     """First layer of elements of a spur tooth along its axis."""
     tooth = pinion_tooth(design, sizes)
     planes = tooth.surfaces["flank_right"].nodes.shape[1]
@@ -201,7 +201,7 @@ def _candidates(model: TwinModel, phi1: float, limit: float) -> list[Candidates]
     on_flank = ~surface.lattice.in_fillet(surface.at)
     low, high = pinion.junction_roll(model.gear), model.gear.pinion_tip_roll
     depth = 3 * limit * model.pinion.pinion_base_radius + 20e-6
-    found = []
+    candidates = []
     for tooth in PAIRS.tolist():
         gap, roll = involute_separation(
             *(model.pinion, model.gear, surface.points.position, surface.points.normal),
@@ -211,5 +211,5 @@ def _candidates(model: TwinModel, phi1: float, limit: float) -> list[Candidates]
         row = fraction * (side.flank_rows - 1) * lattice.refinement.profile
         near = np.where(on_flank & (gap < depth), gap, np.inf)
         points = facing(near, surface.lever_arm, surface.at, np.stack([row, surface.at[:, 1]], axis=1))
-        found += candidates_of(surface.lattice, lattice, tooth, flank_loads(surface, points), limit)
-    return found
+        candidates += candidates_of(surface.lattice, lattice, tooth, flank_loads(surface, points), limit)
+    return candidates

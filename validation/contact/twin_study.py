@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.contact.options import Refinement
-from facegear.geometry.design import Assembly, Material, PairDesign, Pinion
+from facegear.geometry.design import AssemblyErrors, Material, PairDesign, PinionGeometry
 from facegear.mesh.sizes import MeshSizes
 from facegear.progress import Progress
 from validation.contact.brute_force import gears_at, loaded_rotations
@@ -30,7 +30,7 @@ def twin_gears(design: PairDesign, teeth: int) -> tuple[PairDesign, PairDesign]:
     Both are standard gears without backlash: thinning, profile shift, chamfer and reliefs are left out.
     """
     part = design.pinion
-    standard = Pinion(
+    standard = PinionGeometry(
         part.teeth,
         0.5 * design.module,
         part.addendum,
@@ -38,7 +38,7 @@ def twin_gears(design: PairDesign, teeth: int) -> tuple[PairDesign, PairDesign]:
         part.rack_tip_radius,
         part.bore_radius,
     )
-    first = replace(design, pinion=standard, assembly=Assembly())
+    first = replace(design, pinion=standard, assembly=AssemblyErrors())
     bore = design.pinion.bore_radius + (teeth - design.pinion.teeth) * design.module / 2
     return first, replace(first, pinion=replace(first.pinion, teeth=teeth, bore_radius=bore))
 
@@ -88,10 +88,10 @@ def twin_study(
 def _brute(first, second, sizes, sector, positions, line_loads, progress):  # type: ignore[no-untyped-def]
     """Stiffness (N/m per m) at all loads of all positions on one mesh."""
     meshes = flat_mesh(first, sizes, sector), flat_mesh(second, sizes, sector)
-    base, found = first.pinion_base_radius, []
+    base, results = first.pinion_base_radius, []
     for position in positions:
         gears = gears_at(meshes, position, STEEL, RADIUS * first.module, HALVINGS)
         turns = loaded_rotations(gears, position, line_loads)
-        found += [load / (turn * base) for load, (turn, _) in zip(line_loads, turns, strict=True)]
+        results += [load / (turn * base) for load, (turn, _) in zip(line_loads, turns, strict=True)]
         progress.step()
-    return found
+    return results

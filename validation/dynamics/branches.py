@@ -60,7 +60,7 @@ def oscillator_case() -> Case:
     return Case(
         "oscillator",
         family,
-        lambda flow: at_parameter(flow, np.array([1.1, 0.0]), float(np.log(0.3))),
+        lambda period_map: at_parameter(period_map, np.array([1.1, 0.0]), float(np.log(0.3))),
         Run(0.25, 2.6),
         0.75,
     )
@@ -74,7 +74,7 @@ def machine_case(machine: Machine, speed_rpm: float) -> Case:
     return Case(
         "machine",
         speed_family(model),
-        lambda flow: at_parameter(flow, flow.weighted(state, u), u),
+        lambda period_map: at_parameter(period_map, period_map.weighted(state, u), u),
         Run(0.9 * speed_rpm, 1.3 * speed_rpm),
         1.05 * speed_rpm,
     )
@@ -93,8 +93,8 @@ def accuracy(machine: Machine, speed_rpm: float, step: Callable[[], None] = lamb
         exact = None if case.name == "machine" else _exact()
         expected = exact or _found(case, *_followed(case, REFERENCE)[:2])
         for tolerance in TOLERANCES:
-            flow, branch, seconds = _followed(case, tolerance)
-            found = _found(case, flow, branch)
+            period_map, branch, seconds = _followed(case, tolerance)
+            found = _found(case, period_map, branch)
             rows.append(
                 {
                     "case": case.name,
@@ -111,27 +111,27 @@ def accuracy(machine: Machine, speed_rpm: float, step: Callable[[], None] = lamb
 
 @dataclass(frozen=True, eq=False)
 class _Answers:
-    kinds: list[Kind]
+    which: list[Kind]
     values: Array
     state: Array
     multipliers: Array
 
 
 def _exact() -> _Answers:
-    kinds, values = [kind for kind, _ in EXACT_POINTS], [value for _, value in EXACT_POINTS]
-    place, velocity = EXACT_STATE
-    return _Answers(kinds, np.array(values), np.array([place, velocity / 0.75]), np.array(EXACT_MULTIPLIERS))
+    which, values = [kind for kind, _ in EXACT_POINTS], [value for _, value in EXACT_POINTS]
+    state, velocity = EXACT_STATE
+    return _Answers(which, np.array(values), np.array([state, velocity / 0.75]), np.array(EXACT_MULTIPLIERS))
 
 
 def _followed(case: Case, tolerance: float) -> tuple[PeriodMap, Branch, float]:
-    flow = PeriodMap(case.family, 1, tolerance)
-    start = case.begin(flow)
+    period_map = PeriodMap(case.family, 1, tolerance)
+    start = case.begin(period_map)
     begin = time.process_time()
-    branch = follow(flow, start, case.run)
-    return flow, branch, time.process_time() - begin
+    branch = follow(period_map, start, case.run)
+    return period_map, branch, time.process_time() - begin
 
 
-def _found(case: Case, flow: PeriodMap, branch: Branch) -> _Answers:
+def _found(case: Case, period_map: PeriodMap, branch: Branch) -> _Answers:
     orbits = crossings(branch, case.value)
     chosen = next((orbit for orbit in orbits if not orbit.stable), orbits[0])
     return _Answers(
@@ -142,28 +142,28 @@ def _found(case: Case, flow: PeriodMap, branch: Branch) -> _Answers:
     )
 
 
-def _errors(found: _Answers, expected: _Answers) -> dict[str, float | bool]:
+def _errors(answers_found: _Answers, expected: _Answers) -> dict[str, float | bool]:
     """Relative errors of each kind in its own order along the branch, whichever end that began at."""
-    errors: dict[str, float | bool] = {"same_list": _in_order(found) == _in_order(expected)}
-    for name, kinds in (
+    errors: dict[str, float | bool] = {"same_list": _in_order(answers_found) == _in_order(expected)}
+    for name, which in (
         ("fold_error", (Kind.FOLD,)),
         ("other_error", (Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)),
         ("graze_error", (Kind.GRAZE,)),
     ):
-        one, two = (_values(answers, kinds) for answers in (found, expected))
-        same = one.size == two.size > 0
-        errors[name] = float(np.abs(one / two - 1.0).max()) if same else np.nan
-    errors["orbit_error"] = float(np.abs(found.state - expected.state).max())
-    errors["multiplier_error"] = float(np.abs(found.multipliers - expected.multipliers).max())
+        own, two = (_values(answers, which) for answers in (answers_found, expected))
+        same = own.size == two.size > 0
+        errors[name] = float(np.abs(own / two - 1.0).max()) if same else np.nan
+    errors["orbit_error"] = float(np.abs(answers_found.state - expected.state).max())
+    errors["multiplier_error"] = float(np.abs(answers_found.multipliers - expected.multipliers).max())
     return errors
 
 
 def _in_order(answers: _Answers) -> list[Kind]:
-    return [answers.kinds[i] for i in np.argsort(answers.values)]
+    return [answers.which[i] for i in np.argsort(answers.values)]
 
 
-def _values(answers: _Answers, kinds: tuple[Kind, ...]) -> Array:
-    return np.sort([v for v, kind in zip(answers.values, answers.kinds, strict=True) if kind in kinds])
+def _values(answers: _Answers, which: tuple[Kind, ...]) -> Array:
+    return np.sort([v for v, kind in zip(answers.values, answers.which, strict=True) if kind in which])
 
 
 def costs(machine: Machine, speed_rpm: float, step: Callable[[], None] = lambda: None) -> pd.DataFrame:
@@ -199,35 +199,35 @@ def _damped(system: System, factor: float) -> System:
 def _orbits(model: Model, speed_rpm: float) -> dict[float, State]:
     """The orbit at a speed, carried on to less and less damping by continuation in the factor."""
     system, frequency = speed_family(model).at(speed_rpm)
-    flow = PeriodMap(
+    period_map = PeriodMap(
         Family("damping_factor", lambda factor: (_damped(system, factor), frequency)), 1, TOLERANCE
     )
     state = steady_state(system, frequency, Settings(tolerance=TOLERANCE), static_start(model)).state
-    start = at_parameter(flow, flow.weighted(state, 0.0), 0.0)
-    branch = follow(flow, turned(start), Run(0.99 * DAMPING[-1], 1.0), both=False)
-    found = {1.0: state}
+    start = at_parameter(period_map, period_map.weighted(state, 0.0), 0.0)
+    branch = follow(period_map, turned(start), Run(0.99 * DAMPING[-1], 1.0), both=False)
+    states = {1.0: state}
     for factor in DAMPING[1:]:
         for point in crossings(branch, factor)[:1]:
-            found[factor] = flow.state(point.z, point.u)
-    return found
+            states[factor] = period_map.state(point.z, point.u)
+    return states
 
 
 def _cost(model: Model, factor: float, speed_rpm: float, state: State) -> dict[str, float | bool]:
-    flow = PeriodMap(speed_family(model), 1, TOLERANCE)
+    period_map = PeriodMap(speed_family(model), 1, TOLERANCE)
     u = float(np.log(speed_rpm))
-    start = at_parameter(flow, flow.weighted(state, u), u)
+    start = at_parameter(period_map, period_map.weighted(state, u), u)
     begin = time.process_time()
-    branch = follow(flow, start, Run(0.98 * speed_rpm, 1.02 * speed_rpm))
+    branch = follow(period_map, start, Run(0.98 * speed_rpm, 1.02 * speed_rpm))
     point_seconds = (time.process_time() - begin) / len(branch.points)
-    beside = at_parameter(flow, start.z, float(np.log(0.995 * speed_rpm))).z
+    beside = at_parameter(period_map, start.z, float(np.log(0.995 * speed_rpm))).z
     begin = time.process_time()
     for _ in range(REPEATS):
-        orbit = at_parameter(flow, beside, u)
+        orbit = at_parameter(period_map, beside, u)
     orbit_seconds = (time.process_time() - begin) / REPEATS
-    periods, seconds, settled = _plain(flow, beside, u)
+    periods, seconds, settled = _plain(period_map, beside, u)
     begin = time.process_time()
-    system, frequency = flow.family.at(speed_rpm)
-    steady_state(system, frequency, Settings(tolerance=TOLERANCE), flow.state(beside, u))
+    system, frequency = period_map.family.at(speed_rpm)
+    steady_state(system, frequency, Settings(tolerance=TOLERANCE), period_map.state(beside, u))
     searched = time.process_time() - begin
     return {
         "damping_factor": factor,
@@ -243,11 +243,11 @@ def _cost(model: Model, factor: float, speed_rpm: float, state: State) -> dict[s
     }
 
 
-def _plain(flow: PeriodMap, z: Array, u: float) -> tuple[int, float, bool]:
+def _plain(period_map: PeriodMap, z: Array, u: float) -> tuple[int, float, bool]:
     """Periods and seconds of plain running from z until the state hardly changes over a period."""
-    block, begin = flow.over(BLOCK), time.process_time()
+    block, begin = period_map.over(BLOCK), time.process_time()
     for count in range(1, MOST_PERIODS // BLOCK + 1):
         z = z + block.gap(z, u)
-        if np.abs(flow.gap(z, u)).max() < SETTLED:
+        if np.abs(period_map.gap(z, u)).max() < SETTLED:
             return count * BLOCK, time.process_time() - begin, True
     return MOST_PERIODS, time.process_time() - begin, False

@@ -33,7 +33,7 @@ def rerun(model: Model, piece: Piece, settings: Settings, step: Callable[[], Non
     for i, period in enumerate(piece.period):
         finer = exact(settings) if period else tighter(settings)
         responses = run_speeds(model, piece.speeds[i : i + 1], finer, piece.state(i), step)
-        again.append(collect(model, (sampled_response(found) for found in responses)))
+        again.append(collect(model, (sampled_response(response) for response in responses)))
     return joined(again)
 
 
@@ -42,9 +42,9 @@ def exact(settings: Settings) -> Settings:
     return replace(settings, tolerance=1e-10, order=None, periodic_residual=1e-9, samples=SAMPLES)
 
 
-def sampled_response(found: tuple[float, SteadyState]) -> tuple[float, SteadyState]:
+def sampled_response(watched: tuple[float, SteadyState]) -> tuple[float, SteadyState]:
     """A response whose averages come from its samples and not from the step polynomials."""
-    speed, response = found
+    speed, response = watched
     averages = sampled(response.averages, response.deflections, response.forces, response.per_period)
     return speed, replace(response, averages=averages)
 
@@ -95,12 +95,12 @@ def watched_longer(model: Model, piece: Piece, finer: Piece, settings: Settings)
 
 def _watched(model: Model, speed: Array, settings: Settings, starts: list[State]) -> Watched:
     runs = [run_speeds(model, speed, each, start) for each in (settings, exact(settings)) for start in starts]
-    found = [collect(model, (sampled_response(response) for response in run)) for run in runs]
-    periods = {int(one.period[0]) for one in found}
+    pieces = [collect(model, (sampled_response(response) for response in run)) for run in runs]
+    periods = {int(piece.period[0]) for piece in pieces}
     return Watched(
-        labels=tuple(one.labels[0] for one in found),
+        labels=tuple(piece.labels[0] for piece in pieces),
         period=periods.pop() if len(periods) == 1 else None,
-        ac_rms=found[len(starts)].deflection_ac_rms[0],
+        ac_rms=pieces[len(starts)].deflection_ac_rms[0],
     )
 
 
@@ -124,22 +124,22 @@ def convergence_table(
     - `wrong`: named periodic, and something else in all four.
     """
     exact_rms = finer.deflection_ac_rms.copy()
-    for i, found in watched.items():
-        exact_rms[i] = found.ac_rms
+    for i, pieces in watched.items():
+        exact_rms[i] = pieces.ac_rms
     first = piece.deflection_ac_rms
     change = np.abs(first - exact_rms).max(axis=1) / np.maximum(first.max(axis=1), 1e-300)
     verdicts = [
         _verdict(label, int(piece.period[i]), int(finer.period[i]), change[i], watched.get(i))
         for i, label in enumerate(piece.labels)
     ]
-    told = ["; ".join(watched[i].labels) if i in watched else "" for i in range(len(change))]
+    labels = ["; ".join(watched[i].labels) if i in watched else "" for i in range(len(change))]
     return pd.DataFrame(
         {
             "direction": direction,
             "speed_rpm": piece.speeds,
             "class": piece.labels,
             "class_finer": finer.labels,
-            "watched_longer": told,
+            "watched_longer": labels,
             "multiplier": piece.leading_multiplier,
             "multiplier_finer": finer.leading_multiplier,
             "rms_change": change,
@@ -163,8 +163,8 @@ def _verdict(label: str, period: int, finer: int, change: float, watched: Watche
 
 def not_converged(table: pd.DataFrame) -> str:
     """Counts of the verdicts, and the speeds where they are not what one hopes for."""
-    found = table["verdict"].value_counts()
-    counts = ", ".join(f"{count} speeds {verdict}" for verdict, count in found.items())
+    verdicts = table["verdict"].value_counts()
+    counts = ", ".join(f"{count} speeds {verdict}" for verdict, count in verdicts.items())
     odd = table[~table["verdict"].isin(["converged", "irregular", Motion.NOT_SETTLED.value])]
     places = [
         f"{row.direction} {row.speed_rpm:.0f} rpm {row.verdict} ({row['class']}, finer "

@@ -73,8 +73,8 @@ def _rms_errors(model: Model, piece: Piece, settings: Settings) -> tuple[int, Ar
     for i in periodic:
         best = collect(model, run_speeds(model, piece.speeds[i : i + 1], tight, piece.state(int(i))))
         if best.period[0] == piece.period[i]:
-            found, exact = piece.deflection_ac_rms[i], best.deflection_ac_rms[0]
-            errors.append(np.abs(found - exact).max() / exact.max())
+            rms, exact = piece.deflection_ac_rms[i], best.deflection_ac_rms[0]
+            errors.append(np.abs(rms - exact).max() / exact.max())
     return len(periodic), np.array(errors)
 
 

@@ -199,12 +199,12 @@ def compiled(
     advises: unrolled they take minutes. The lanes of a batch start a little apart.
     """
     units = scaled(problem.system)
-    found = expressions(heyoka, problem, units)
+    expressions_of_problem = expressions(heyoka, problem, units)
     opening = np.flatnonzero(units.lower < units.upper)
     switch = Switch(units) if opening.size else None
     event = heyoka.t_event_batch if lanes else heyoka.t_event
     events = [
-        event(found.deflections[m] - float(edge[m]), callback=switch)
+        event(expressions_of_problem.deflections[m] - float(edge[m]), callback=switch)
         for m in opening
         for edge in (units.upper, units.lower)
     ]
@@ -212,10 +212,12 @@ def compiled(
     heyoka.llvm_state.set_diskcache_enabled(False)
     start = np.r_[problem.start.displacement, problem.start.velocity / problem.frequency]
     start /= np.tile(units.unit, 2)
-    parameters = np.zeros(2 * len(found.deflections) if switch else 0)
+    parameters = np.zeros(2 * len(expressions_of_problem.deflections) if switch else 0)
     build = heyoka.taylor_adaptive_batch if lanes else heyoka.taylor_adaptive
     adaptive = build(
-        heyoka.var_ode_sys(found.equations, heyoka.var_args.vars) if tangents else found.equations,
+        heyoka.var_ode_sys(expressions_of_problem.equations, heyoka.var_args.vars)
+        if tangents
+        else expressions_of_problem.equations,
         start[:, None] * (1.0 + APART * np.arange(lanes)) if lanes else start,
         pars=np.tile(parameters[:, None], max(lanes, 1)) if lanes else parameters,
         t_events=events,

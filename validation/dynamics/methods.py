@@ -20,8 +20,8 @@ from validation.dynamics import heyoka_peer
 from validation.dynamics.problems import SAMPLES, Compared, Problem
 from validation.dynamics.right_side import compiled_right_side, fixed_rk4, plain_right_side
 
-Run = Callable[[], Array]
-Prepare = Callable[[Problem, float], Run]
+Solve = Callable[[], Array]
+Prepare = Callable[[Problem, float], Solve]
 TOLERANCES = tuple(10.0**-k for k in range(2, 13))
 PATIENCE, PATIENCE_IRREGULAR = 2.0, 6.0
 STEPS = (16, 32, 64, 128, 256, 512, 1024, 2048, 4096)
@@ -64,7 +64,7 @@ def ours(problem: Problem, tolerance: float) -> Array:
     return prepare_ours(problem, tolerance)()
 
 
-def prepare_ours(problem: Problem, tolerance: float) -> Run:
+def prepare_ours(problem: Problem, tolerance: float) -> Solve:
     """Taylor steps with located contact switches."""
     integrator, start = prepared(problem, tolerance)
 
@@ -74,7 +74,7 @@ def prepare_ours(problem: Problem, tolerance: float) -> Run:
     return run
 
 
-def our_tangents(problem: Problem, tolerance: float) -> Run:
+def our_tangents(problem: Problem, tolerance: float) -> Solve:
     """Our tangents: derivatives (2 n, 2 n) of coordinates and rates after the periods by the first ones."""
     integrator, start = prepared(problem, tolerance)
 
@@ -84,7 +84,7 @@ def our_tangents(problem: Problem, tolerance: float) -> Run:
     return run
 
 
-def rk4(problem: Problem, steps: float) -> Run:
+def rk4(problem: Problem, steps: float) -> Solve:
     """Fixed steps, all compiled, no event location."""
     integrator, state = prepared(problem, order=2)
     packed, work, start = integrator.packed, integrator.work, integrator.padded(state).ravel()
@@ -102,7 +102,7 @@ def rk4(problem: Problem, steps: float) -> Run:
 def scipy_method(name: str, plain: bool = False) -> Prepare:
     """SciPy's solve_ivp on the compiled right-hand side, or on plain NumPy."""
 
-    def prepare(problem: Problem, tolerance: float) -> Run:
+    def prepare(problem: Problem, tolerance: float) -> Solve:
         integrator, state = prepared(problem, order=2)
         start = integrator.padded(state).ravel()
         derivative = compiled_right_side(integrator)
@@ -133,7 +133,7 @@ def cvode(method: str) -> Prepare:
     """SUNDIALS CVODE through scikit-sundae. Raises ImportError where it is not installed."""
     from sksundae.cvode import CVODE
 
-    def prepare(problem: Problem, tolerance: float) -> Run:
+    def prepare(problem: Problem, tolerance: float) -> Solve:
         integrator, state = prepared(problem, order=2)
         start = integrator.padded(state).ravel()
         compiled = compiled_right_side(integrator)

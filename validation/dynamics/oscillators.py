@@ -85,53 +85,53 @@ def judge(oscillator: Oscillator, settings: Settings) -> dict[str, object]:
     the undisturbed run from the start comes to that orbit. sensitive: that run's own end changes when its
     tolerance is ten times tighter, so that nobody's is the only right one.
     """
-    found = steady_state(oscillator.system, oscillator.speed, settings, oscillator.start)
+    response = steady_state(oscillator.system, oscillator.speed, settings, oscillator.start)
     plain = steady_state(
         oscillator.system, oscillator.speed, replace(settings, refine=False), oscillator.start
     )
     tolerance = settings.tolerance
-    later = end_of(plain_run(oscillator, found.state, FURTHER, tolerance))
+    later = end_of(plain_run(oscillator, response.state, FURTHER, tolerance))
     direct = end_of(plain_run(oscillator, oscillator.start, FURTHER, tolerance))
     tighter = end_of(plain_run(oscillator, oscillator.start, FURTHER, 0.1 * tolerance))
     closed = end_of(closed_form_run(oscillator, FURTHER))
     return {
         **vars(oscillator),
-        "label": found.label,
+        "label": response.label,
         "label_without_refinement": plain.label,
-        "periods_run": found.periods_run,
+        "periods_run": response.periods_run,
         "label_later": later.label,
-        "agrees": _agrees(found, later),
-        "reached": _agrees(found, direct),
-        "reached_closed_form": _agrees(found, closed),
+        "agrees": _agrees(response, later),
+        "reached": _agrees(response, direct),
+        "reached_closed_form": _agrees(response, closed),
         "sensitive": not _same(direct, tighter),
-        "refinement_agrees": found.label == plain.label,
+        "refinement_agrees": response.label == plain.label,
     }
 
 
 @dataclass(frozen=True, eq=False)
-class End:
+class OscillatorEnd:
     """Class that the end of a plain run shows, and its last states (periods, 2) by time."""
 
     label: str
     states: Array
 
 
-def end_of(states: Array) -> End:
+def end_of(states: Array) -> OscillatorEnd:
     """period-n if the last states repeat after n periods, else irregular."""
     last = states[-LOOKED_AT:]
     for period in range(1, LONGEST + 1):
         if np.abs(last[-LONGEST:] - last[-LONGEST - period : -period]).max() <= SAME:
-            return End(f"period-{period}", last)
-    return End("irregular", last)
+            return OscillatorEnd(f"period-{period}", last)
+    return OscillatorEnd("irregular", last)
 
 
-def _agrees(found: SteadyState, end: End) -> bool:
-    if found.motion is not Motion.PERIODIC:
-        return found.motion is not Motion.NOT_SETTLED and end.label == "irregular"
-    return end.label == found.label and _passes(end.states, found.state)
+def _agrees(response: SteadyState, end: OscillatorEnd) -> bool:
+    if response.motion is not Motion.PERIODIC:
+        return response.motion is not Motion.NOT_SETTLED and end.label == "irregular"
+    return end.label == response.label and _passes(end.states, response.state)
 
 
-def _same(first: End, second: End) -> bool:
+def _same(first: OscillatorEnd, second: OscillatorEnd) -> bool:
     state = State(second.states[-1, :1], second.states[-1, 1:])
     return first.label == second.label and (first.label == "irregular" or _passes(first.states, state))
 

@@ -74,5 +74,7 @@ def tangent_problems(problems: Sequence[Problem]) -> list[Problem]:
 
 def oscillator_problem() -> Problem:
     """Oracle (a) at W = 0.75 from a point off its upper orbit."""
-    one = Oscillator(0.05, 0.1, 0.05, speed=0.75, displacement=0.8, velocity=0.2)
-    return Problem("oracle (a)", one.system, one.speed, one.start, 20, Compared.DEFLECTIONS)
+    oscillator = Oscillator(0.05, 0.1, 0.05, speed=0.75, displacement=0.8, velocity=0.2)
+    return Problem(
+        "oracle (a)", oscillator.system, oscillator.speed, oscillator.start, 20, Compared.DEFLECTIONS
+    )

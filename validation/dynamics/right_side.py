@@ -18,17 +18,17 @@ from facegear.mesh_law.linear import LinearLaw
 @kernel
 def right_side(packed: Packed, work: Work, s: float, z: Array, out: Array) -> None:
     """Derivative by s of z (2 n,) into out, for a linear law; work must be of order 1 or more."""
-    n, wide = packed.mesh_jacobian.shape
+    n, width = packed.mesh_jacobian.shape
     excitation(packed, work, s, 0, 2)
     minus = splat(-1.0)
-    for c in range(0, wide, LANES):
-        level, rate = multiply(minus, load(work.error, c)), multiply(minus, load(work.error, wide + c))
+    for c in range(0, width, LANES):
+        level, rate = multiply(minus, load(work.error, c)), multiply(minus, load(work.error, width + c))
         for k in range(packed.n):
-            direction = load(packed.mesh_jacobian, k * wide + c)
+            direction = load(packed.mesh_jacobian, k * width + c)
             level = multiply_add(direction, splat(z[k]), level)
             rate = multiply_add(direction, splat(z[n + k]), rate)
         store(work.deflection, c, level)
-        store(work.deflection, wide + c, rate)
+        store(work.deflection, width + c, rate)
     for m in range(packed.m):
         d = work.deflection[0, m]
         beyond = max(d - packed.upper[m], 0.0) + min(d - packed.lower[m], 0.0)

@@ -68,20 +68,20 @@ def sharing_costs(
         times = []
         for _ in range(REPEATS):
             begin = time.process_time()
-            found = load_sharing(case.machine, case.speed_rpm, settings, options)
+            sharing = load_sharing(case.machine, case.speed_rpm, settings, options)
             times.append(time.process_time() - begin)
-        finer = _again(case, found, settings, options)
+        finer = _again(case, sharing, settings, options)
         rows.append(
             {
                 "torque_factor": case.torque_factor,
                 "backlash_factor": case.backlash_factor,
                 "error_factor": case.error_factor,
                 "speed_rpm": case.speed_rpm,
-                "motion": found.response.label,
-                "motions_from_starts": "; ".join(dict.fromkeys(found.motions)),
-                "periods_run": found.response.periods_run,
+                "motion": sharing.response.label,
+                "motions_from_starts": "; ".join(dict.fromkeys(sharing.motions)),
+                "periods_run": sharing.response.periods_run,
                 "seconds": statistics.median(times),
-                **_error(found, finer, options),
+                **_error(sharing, finer, options),
                 "motion_exact": finer.label,
             }
         )
@@ -89,10 +89,10 @@ def sharing_costs(
     return pd.DataFrame(rows)
 
 
-def _again(case: RandomMachine, found: Sharing, settings: Settings, options: SharingOptions) -> SteadyState:
+def _again(case: RandomMachine, sharing: Sharing, settings: Settings, options: SharingOptions) -> SteadyState:
     """The motion once more from where it was left, far finer."""
-    model, state = build_model(case.machine), found.response.state
-    if found.response.motion is Motion.PERIODIC:
+    model, state = build_model(case.machine), sharing.response.state
+    if sharing.response.motion is Motion.PERIODIC:
         return simulate(model, case.speed_rpm, exact(settings), state)
     longer = replace(
         settings,
@@ -104,10 +104,10 @@ def _again(case: RandomMachine, found: Sharing, settings: Settings, options: Sha
     return simulate(model, case.speed_rpm, longer, state)
 
 
-def _error(found: Sharing, finer: SteadyState, options: SharingOptions) -> dict[str, float]:
+def _error(sharing: Sharing, finer: SteadyState, options: SharingOptions) -> dict[str, float]:
     """Of the group whose mean coefficient changes most."""
     pairs: list[tuple[Average, Average]] = [
-        (one.average, group_average(finer, one.group, options.confidence)[2]) for one in found.groups
+        (group.average, group_average(finer, group.group, options.confidence)[2]) for group in sharing.groups
     ]
     first, second = max(pairs, key=lambda pair: abs(pair[0].mean - pair[1].mean))
     return {

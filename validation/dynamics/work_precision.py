@@ -54,9 +54,9 @@ def work_precision(
         for problem in problems:
             method.prepare(replace(problem, periods=1), method.settings[0])()
             for setting in method.settings:
-                found = measure(problem, method, setting, references[problem.name], budget)
-                rows.append((problem.name, method.name, setting, *found))
-                *_, seconds, _, failure = found
+                row = measure(problem, method, setting, references[problem.name], budget)
+                rows.append((problem.name, method.name, setting, *row))
+                *_, seconds, _, failure = row
                 if failure or seconds > budget.limit(problem):
                     break
             step()
@@ -75,7 +75,7 @@ def reference(problem: Problem) -> tuple[Array, Array]:
     return compared_values(problem, prepare(problem, REFERENCE)())
 
 
-def compared_values(problem: Problem, found: Array) -> tuple[Array, Array]:
+def compared_values(problem: Problem, states: Array) -> tuple[Array, Array]:
     """Values whose differences are errors, from what a run returns, and their half-widths.
 
     Tangents count in mesh deflections and their rates.
@@ -83,17 +83,17 @@ def compared_values(problem: Problem, found: Array) -> tuple[Array, Array]:
     system = problem.system
     if problem.compared is Compared.TANGENTS:
         weights = np.tile(np.abs(system.mesh_jacobian).max(axis=0), 2)
-        matrix = found * weights[:, None] / weights
+        matrix = states * weights[:, None] / weights
         return matrix, np.zeros(matrix.shape)
-    deflections = mesh_response(system, found, SAMPLES)[0]
+    deflections = mesh_response(system, states, SAMPLES)[0]
     if problem.compared is Compared.RMS:
         return ac_rms(deflections)
     return deflections / system.scale, np.zeros(deflections.shape)
 
 
-def error_of(problem: Problem, found: Array, exact: tuple[Array, Array]) -> tuple[float, float]:
+def error_of(problem: Problem, states: Array, exact: tuple[Array, Array]) -> tuple[float, float]:
     """Error of a run against the reference, and its half-width."""
-    values, doubt = compared_values(problem, found)
+    values, doubt = compared_values(problem, states)
     if problem.compared is Compared.RMS:
         error = float((np.abs(values - exact[0]) / exact[0]).mean())
         return error, float((np.hypot(doubt, exact[1]) / exact[0]).mean())
@@ -103,8 +103,8 @@ def error_of(problem: Problem, found: Array, exact: tuple[Array, Array]) -> tupl
 
 def ac_rms(deflections: Array) -> tuple[Array, Array]:
     """RMS without mean of each mesh and its 95 % half-width, each (meshes,)."""
-    found = moments(deflections, SAMPLES, False)
-    return found.ac_rms, found.ac_rms_interval
+    rms = moments(deflections, SAMPLES, False)
+    return rms.ac_rms, rms.ac_rms_interval
 
 
 def measure(
@@ -122,14 +122,14 @@ def measure(
         preparation = time.process_time() - begin
         for _ in range(1 if problem.compared is Compared.RMS else budget.repeats):
             begin = time.process_time()
-            found = run()
+            values = run()
             times.append(time.process_time() - begin)
             if sum(times) > budget.longest:
                 break
     except Exception as error:  # a solver that fails is a result of the comparison
-        told = f"{type(error).__name__}: {error}".splitlines()[0][:100]
-        return np.nan, np.nan, time.process_time() - begin, preparation, told
-    return *error_of(problem, found, exact), statistics.median(times) / method.together, preparation, ""
+        error_text = f"{type(error).__name__}: {error}".splitlines()[0][:100]
+        return np.nan, np.nan, time.process_time() - begin, preparation, error_text
+    return *error_of(problem, values, exact), statistics.median(times) / method.together, preparation, ""
 
 
 def cheapest_within_chance(table: pd.DataFrame, problem: str) -> pd.DataFrame:

@@ -23,18 +23,18 @@ def statistics_errors(sizes: Sequence[int]) -> pd.DataFrame:
     exact = WEIGHTS**2 / spread**2
     rows = []
     for size in sizes:
-        found: dict[str, list[float]] = {"p95": [], "p99": [], "total_index": []}
+        estimates: dict[str, list[float]] = {"p95": [], "p99": [], "total_index": []}
         for seed in SEEDS:
             population = _population(seed)
             values = samples(population, 0, size) @ WEIGHTS
             for level in (95, 99):
                 closed = spread * NormalDist().inv_cdf(level / 100.0)
-                found[f"p{level}"].append(percentile(values, level / 100.0).value / closed - 1.0)
+                estimates[f"p{level}"].append(percentile(values, level / 100.0).value / closed - 1.0)
             design = index_samples(population, 0, size * (WEIGHTS.size + 2)) @ WEIGHTS
             indices = sobol_indices(design, WEIGHTS.size, resamples=1)
-            found["total_index"].append(indices.total[0].value / exact[0] - 1.0)
-        rows.append((size, *(float(np.sqrt(np.mean(np.square(errors)))) for errors in found.values())))
-    return pd.DataFrame(rows, columns=["samples", *(f"{name}_error" for name in found)])
+            estimates["total_index"].append(indices.total[0].value / exact[0] - 1.0)
+        rows.append((size, *(float(np.sqrt(np.mean(np.square(errors)))) for errors in estimates.values())))
+    return pd.DataFrame(rows, columns=["samples", *(f"{name}_error" for name in estimates)])
 
 
 def _population(seed: int) -> Population:

@@ -26,12 +26,12 @@ with stage(snakemake) as run:
     plan = sweep_plan(parse(Sweep, params.sweep))
     files = iter(snakemake.input.chunks)
     progress = Progress("finer sweep", len(plan.directions) * plan.points)
-    found = []
+    frames = []
     for name in plan.directions:
         piece = joined([from_arrays(arrays.read(next(files), SHAPES))[1] for _ in range(plan.chunks)])
         again = rerun(model, piece, plan.settings, progress.step)
         longer = watched_longer(model, piece, again, plan.settings)
-        found.append(convergence_table(name, piece, again, longer))
-    table = pd.concat(found, ignore_index=True)
+        frames.append(convergence_table(name, piece, again, longer))
+    table = pd.concat(frames, ignore_index=True)
     tables.write(snakemake.output.table, table)
     run.summary(not_converged(table))

@@ -13,8 +13,8 @@ with stage(snakemake) as run:
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
     flanks = [arrays.read(path, STORED) for path in snakemake.input.flanks]
     sampled = SampledMachine.of_stage(harmonics=harmonics, flanks=flanks, **params.chunk)
-    found = costs(sampled, params.samples)
-    tables.write(snakemake.output.costs, found)
+    table = costs(sampled, params.samples)
+    tables.write(snakemake.output.costs, table)
     tables.write(snakemake.output.errors, statistics_errors([2**power for power in range(7, 14)]))
-    told = ", ".join(f"{row.model} {row.ms_a_sample:.3g} ms" for row in found.itertuples())
-    run.summary(f"a sample takes: {told}")
+    text = ", ".join(f"{row.model} {row.ms_a_sample:.3g} ms" for row in table.itertuples())
+    run.summary(f"a sample takes: {text}")

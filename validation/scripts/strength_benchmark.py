@@ -19,5 +19,5 @@ with stage(snakemake) as run:
     ]
     costs = pd.DataFrame(rows)
     tables.write(snakemake.output.costs, costs)
-    share = 100.0 * (costs["with_gauges_cpu_s"].sum() / costs["compliance_cpu_s"].sum() - 1.0)
-    run.summary(f"gauges add {share:.0f} % to the compliance of both bodies")
+    overhead = 100.0 * (costs["with_gauges_cpu_s"].sum() / costs["compliance_cpu_s"].sum() - 1.0)
+    run.summary(f"gauges add {overhead:.0f} % to the compliance of both bodies")

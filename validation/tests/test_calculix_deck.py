@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from contact_bodies import STEEL, pair_design
 
-from facegear.geometry.design import Assembly
+from facegear.geometry.design import AssemblyErrors
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.mesh.sizes import MeshSizes
 from validation.contact.calculix import write_deck
@@ -33,7 +33,7 @@ def read(path, design):
     return nodes, sets, angles
 
 
-@pytest.mark.parametrize("assembly", [Assembly(), Assembly(0.1e-3, 1e-3, 0.05e-3)])
+@pytest.mark.parametrize("assembly", [AssemblyErrors(), AssemblyErrors(0.1e-3, 1e-3, 0.05e-3)])
 def test_bore_turns_about_its_own_axis_wherever_the_gear_stands(tmp_path, assembly):
     design = replace(pair_design(), assembly=assembly)
     nodes, sets, _ = read(tmp_path / "deck.inp", design)

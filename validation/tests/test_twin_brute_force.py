@@ -4,15 +4,17 @@ from math import radians
 
 import pytest
 
-from facegear.geometry.design import FaceGear, PairDesign, Pinion, Relief, Shaper
+from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometry, Relief, Shaper
 from validation.contact.twin_study import twin_gears, twin_study
 
 M = 3.75e-3
 
 
 def design_with(**changes) -> PairDesign:
-    pinion = Pinion(23, 0.030, M, 1.25 * M, 0.1 * M, 0.025, **changes)
-    return PairDesign(M, radians(25), pinion, FaceGear(143, 0.250, 0.275, M, 0.012), Shaper(26, 1.25 * M))
+    pinion = PinionGeometry(23, 0.030, M, 1.25 * M, 0.1 * M, 0.025, **changes)
+    return PairDesign(
+        M, radians(25), pinion, FaceGearGeometry(143, 0.250, 0.275, M, 0.012), Shaper(26, 1.25 * M)
+    )
 
 
 def test_twin_of_a_modified_pair_is_the_standard_pair_without_backlash():

@@ -58,19 +58,21 @@ def keep(workflow: Any, job: Any) -> bool:
 
 def given_config(workflow: Any) -> Mapping[str, Any]:
     """Values after `--config`. Without an answer: none."""
-    found: Mapping[str, Any] = getattr(getattr(workflow, "config_settings", None), "config", {})
-    return found
+    config: Mapping[str, Any] = getattr(getattr(workflow, "config_settings", None), "config", {})
+    return config
 
 
 def given_directory(workflow: Any) -> str | Path | None:
     """The folder after `--directory`. Without an answer: none."""
-    found: str | Path | None = getattr(workflow, "overwrite_workdir", None)
-    return found
+    directory: str | Path | None = getattr(workflow, "overwrite_workdir", None)
+    return directory
 
 
 def terminal_handlers(logger: Any) -> list[Any]:
     """Handlers of a logger that print to the terminal. Without an answer: none."""
-    return [one for one in logger.handlers if getattr(one, "name", None) == "DefaultStreamHandler"]
+    return [
+        handler for handler in logger.handlers if getattr(handler, "name", None) == "DefaultStreamHandler"
+    ]
 
 
 def event_of(record: Any) -> str:

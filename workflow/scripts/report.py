@@ -12,7 +12,7 @@ from facegear.report.pair_view import pair_view
 from facegear.strength.columns import ROOT_STRESS_ARRAYS
 
 with stage(snakemake) as run:
-    found = {Path(path).stem: tables.read(path, allow_empty=True) for path in snakemake.input.tables}
+    frames = {Path(path).stem: tables.read(path, allow_empty=True) for path in snakemake.input.tables}
     pictures = {Path(path).stem: Path(path) for path in snakemake.input.pictures}
     case = Path(snakemake.output.html).parent
     manifests = [documents.read(path, ["rule"]) for path in sorted(case.glob("*/*.provenance.json"))]
@@ -23,8 +23,8 @@ with stage(snakemake) as run:
         given = snakemake.input.stress
         stress = arrays.read(given[0], ROOT_STRESS_ARRAYS) if given else None
         design = tooth_pair(snakemake.params.values["tooth_pair"]).design
-        view = pair_view(design, loads, found["ltca"], stress)
-    page = case_report(snakemake.params.values, found, pictures, manifests, pair, view)
+        view = pair_view(design, loads, frames["ltca"], stress)
+    page = case_report(snakemake.params.values, frames, pictures, manifests, pair, view)
     with atomic_path(snakemake.output.html) as temporary:
         temporary.write_text(page, encoding="utf-8")
-    run.summary(f"{len(pictures)} pictures, {len(found)} tables, {len(page) / 1e6:.1f} MB")
+    run.summary(f"{len(pictures)} pictures, {len(frames)} tables, {len(page) / 1e6:.1f} MB")

@@ -14,8 +14,8 @@ with stage(snakemake) as run:
     wildcards = {name: snakemake.wildcards[name] for name in row.wildcards}
     partial = Path(output[row.resumable]).with_suffix(".partial") if row.resumable else None
     resumed = {"partial": partial, "code": params.code} if partial else {}
-    found = call(row, given, **row.typed(wildcards), **resumed)
-    write_stage(row, found.content, output)
+    outcome = call(row, given, **row.typed(wildcards), **resumed)
+    write_stage(row, outcome.content, output)
     if partial:
         partial.unlink()
-    run.summary(found.summary)
+    run.summary(outcome.summary)

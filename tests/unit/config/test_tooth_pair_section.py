@@ -11,7 +11,7 @@ from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
 from facegear.config.yaml_file import read_yaml
 from facegear.errors import ConfigErrors
-from facegear.geometry.design import Assembly
+from facegear.geometry.design import AssemblyErrors
 
 ROOT = Path(__file__).parents[3]
 
@@ -30,7 +30,9 @@ def test_config_units_become_si(section):
     assert design.pinion_pitch_radius == pytest.approx(43.125e-3)
     assert design.face_gear.inner_radius == pytest.approx(0.250)
     assert design.pinion.tip_relief.amount == pytest.approx(15e-6)
-    assert design.assembly == Assembly(pytest.approx(1e-5), pytest.approx(radians(0.1)), pytest.approx(-2e-5))
+    assert design.assembly == AssemblyErrors(
+        pytest.approx(1e-5), pytest.approx(radians(0.1)), pytest.approx(-2e-5)
+    )
 
 
 def test_a_body_may_have_its_own_material(section):

@@ -19,7 +19,7 @@ from facegear.contact.resolution import (
     half_width,
 )
 from facegear.errors import ConfigError, ConfigErrors
-from facegear.geometry.design import FaceGear, Material, PairDesign, Pinion, Relief, Shaper
+from facegear.geometry.design import FaceGearGeometry, Material, PairDesign, PinionGeometry, Relief, Shaper
 from facegear.mesh.sizes import MeshSizes, named_sizes, thin_fillet
 from facegear.pipeline.needs import stage_needs
 
@@ -28,8 +28,8 @@ M = 3.75e-3
 DESIGN = PairDesign(
     M,
     radians(25),
-    Pinion(23, 0.030, M, 1.25 * M, 0.1 * M, 0.025),
-    FaceGear(143, 0.250, 0.275, M, 0.012),
+    PinionGeometry(23, 0.030, M, 1.25 * M, 0.1 * M, 0.025),
+    FaceGearGeometry(143, 0.250, 0.275, M, 0.012),
     Shaper(26, 1.25 * M),
 )
 

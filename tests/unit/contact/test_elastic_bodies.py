@@ -20,7 +20,7 @@ from facegear.contact.options import Refinement
 from facegear.contact.root_gauges import root_gauges
 from facegear.contact.teeth import contact_side, elastic_tooth
 from facegear.errors import FacegearError
-from facegear.geometry.design import FaceGear, PairDesign, Pinion, Shaper
+from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
 from facegear.mesh.hexahedra import hex_mesh
 from facegear.mesh.sector import sector
 from facegear.mesh.sizes import MeshSizes
@@ -34,8 +34,10 @@ CUTS = Refinement(3, 1, 2, 2.0)
 
 def spur(teeth=17):
     m = 4e-3
-    pinion = Pinion(teeth, 0.004, m, 1.25 * m, 0.2 * m, 0.022)
-    return PairDesign(m, radians(20), pinion, FaceGear(80, 0.16, 0.17, m, 0.01), Shaper(teeth, 1.25 * m))
+    pinion = PinionGeometry(teeth, 0.004, m, 1.25 * m, 0.2 * m, 0.022)
+    return PairDesign(
+        m, radians(20), pinion, FaceGearGeometry(80, 0.16, 0.17, m, 0.01), Shaper(teeth, 1.25 * m)
+    )
 
 
 @pytest.fixture(scope="module")

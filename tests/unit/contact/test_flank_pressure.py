@@ -20,7 +20,7 @@ from facegear.contact.pressure import INSIDE, flank_pressure, line_loads
 from facegear.contact.resolution import PLANES, ellipse_half_length
 from facegear.contact.tables import ltca_table, pressure_arrays
 from facegear.geometry.analysis import path_curvatures
-from facegear.geometry.design import Assembly, Relief
+from facegear.geometry.design import AssemblyErrors, Relief
 from facegear.geometry.pinion_surface import flank_points
 from facegear.geometry.separation import separation
 from facegear.geometry.unloaded import PAIRS, unloaded_contact
@@ -153,7 +153,7 @@ def test_sphere_pressed_on_finite_elements_has_hertz_pressure_within_a_percent()
 @pytest.mark.parametrize("errors", [{}, {"offset": 2e-4, "shaft_angle_error": 2e-3, "axial_shift": 5e-5}])
 @pytest.mark.parametrize("teeth", [23, 26])
 def test_contact_lines_lie_where_the_gap_is_least_and_curved_as_it_is(teeth, errors):
-    design = replace(pair_design(teeth), assembly=Assembly(**errors))
+    design = replace(pair_design(teeth), assembly=AssemblyErrors(**errors))
     phi1 = np.array([-0.05, 0.02])
     phi2 = unloaded_contact(design, phi1).phi2
     y = np.linspace(0.251, 0.274, 9)

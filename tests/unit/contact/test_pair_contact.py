@@ -18,7 +18,7 @@ from facegear.contact.pressure import PINION_TIP, flank_pressure
 from facegear.contact.tables import ltca_table
 from facegear.contact.teeth import LOADED_SIDE, elastic_tooth
 from facegear.geometry.clearance import smallest_gaps
-from facegear.geometry.design import Assembly, Relief
+from facegear.geometry.design import AssemblyErrors, Relief
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.stiffness.source import stiffness_from_contact
 from facegear.stiffness.tables import unloaded_error
@@ -29,7 +29,7 @@ TORQUES = [100.0, 600.0]
 
 def misaligned(model, **errors):
     """The same elastic bodies in another assembly."""
-    return model.assembled(Assembly(**errors))
+    return model.assembled(AssemblyErrors(**errors))
 
 
 def redesigned(model, design):

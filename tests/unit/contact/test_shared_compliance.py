@@ -9,7 +9,7 @@ from contact_bodies import STEEL, pair_design
 import facegear
 from facegear.contact.pair import BUILDERS
 from facegear.contact.teeth import elastic_tooth
-from facegear.geometry.design import Assembly, Relief
+from facegear.geometry.design import AssemblyErrors, Relief
 from facegear.mesh.sizes import MeshSizes
 from facegear.pipeline.needs import shared_sources, stage_needs
 from facegear.results.store import Store
@@ -31,7 +31,7 @@ def test_assembly_errors_and_modifications_move_no_node_of_the_bodies(body):
     nominal = pair_design()
     relief = Relief(1e-5, 0.0, 1e-3)
     teeth = replace(nominal.pinion, tip_relief=relief, root_relief=relief, lead_crowning=relief)
-    changed = replace(nominal, pinion=teeth, assembly=Assembly(2e-5, 2e-4, 3e-5))
+    changed = replace(nominal, pinion=teeth, assembly=AssemblyErrors(2e-5, 2e-4, 3e-5))
     meshes = [BUILDERS[body](design, MeshSizes(1.5e-3, 3.2e-3, 3e-3)) for design in (nominal, changed)]
     np.testing.assert_array_equal(meshes[0].nodes, meshes[1].nodes)
     designs = zip((nominal, changed), meshes, strict=True)

@@ -126,7 +126,7 @@ def test_without_play_the_ring_is_the_bearing():
 def test_slow_running_with_play_is_the_quasi_static_machine():
     errors = {"position": 1e-6 * np.array([[30.0, 10.0], [-20.0, 5.0]])}
     machine = machine_with(25e-6, torque=250.0, errors=errors)
-    still = hunting_cycle(machine, 32).found.forces
+    still = hunting_cycle(machine, 32).at_rest.forces
     gaps = []
     for speed in (160.0, 40.0):
         settings = Settings(samples=32, dwell=2, settle=2, window=1, refine=False)

@@ -5,7 +5,14 @@ from math import radians
 
 import pytest
 
-from facegear.geometry.design import Assembly, FaceGear, PairDesign, Pinion, Relief, Shaper
+from facegear.geometry.design import (
+    AssemblyErrors,
+    FaceGearGeometry,
+    PairDesign,
+    PinionGeometry,
+    Relief,
+    Shaper,
+)
 
 
 def paper_pair(
@@ -19,7 +26,7 @@ def paper_pair(
     **assembly: float,
 ) -> PairDesign:
     m = 3.75e-3
-    pinion = Pinion(
+    pinion = PinionGeometry(
         teeth=23,
         width=0.030,
         addendum=m,
@@ -30,9 +37,11 @@ def paper_pair(
         thinning=thinning,
         tip_relief=tip_relief or Relief(),
     )
-    gear = FaceGear(teeth=143, inner_radius=0.250, outer_radius=0.275, addendum=m, rim_thickness=0.012)
+    gear = FaceGearGeometry(
+        teeth=143, inner_radius=0.250, outer_radius=0.275, addendum=m, rim_thickness=0.012
+    )
     shaper = Shaper(shaper_teeth, shaper_addendum * m, tip_rounding * m)
-    return PairDesign(m, radians(25), pinion, gear, shaper, Assembly(**assembly))
+    return PairDesign(m, radians(25), pinion, gear, shaper, AssemblyErrors(**assembly))
 
 
 @pytest.fixture(scope="session")

@@ -6,14 +6,14 @@ import pytest
 
 from facegear.geometry.analysis import analyse
 from facegear.geometry.backlash import normal_backlash
-from facegear.geometry.design import Assembly
+from facegear.geometry.design import AssemblyErrors
 from facegear.geometry.document import pair_record
 from facegear.plots.tooth_pair import path_text
 
 
 def test_backlash_before_meshing_is_that_of_the_full_analysis_and_the_path_told_is_the_real_one(pair):
     """The nominal radius was printed for a misaligned pair whose path lies elsewhere."""
-    design = replace(pair(26), assembly=Assembly(offset=5e-5, shaft_angle_error=5e-4, axial_shift=2e-5))
+    design = replace(pair(26), assembly=AssemblyErrors(offset=5e-5, shaft_angle_error=5e-4, axial_shift=2e-5))
     analysis = analyse(design, positions=8)
     assert normal_backlash(design) == pytest.approx(analysis.backlash.min(), abs=1e-9)
     told = path_text(pair_record(design, analysis))

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout
 
-from facegear.geometry.design import Assembly
+from facegear.geometry.design import AssemblyErrors
 from facegear.geometry.flank_errors import FLANKS, GEARS, distinct_errors, errors_at
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.transmission.layout import MeshKinematics, Side
@@ -32,7 +32,7 @@ def moved(design, errors):
 @pytest.mark.parametrize(("errors", "drive", "back"), PATHS)
 def test_contact_of_either_flank_stands_where_the_closed_form_has_it(pair, errors, drive, back):
     offset, shift, angle = errors
-    given_errors = Assembly(offset=offset, shaft_angle_error=angle, axial_shift=shift)
+    given_errors = AssemblyErrors(offset=offset, shaft_angle_error=angle, axial_shift=shift)
     for flank, radius in zip(FLANKS, (drive, back), strict=True):
         design = moved(pair(26), errors_at(given_errors, "upper", flank))
         _, along_the_pinion = unloaded_contact(design, np.array([0.01, 0.1])).path
@@ -49,7 +49,7 @@ def test_a_displaced_pinion_closes_each_flank_as_the_machine_s_directions_say(pa
     pinion = 4 * layout.meshes[mesh][0]
     row = mesh + (len(layout.meshes) if flank == "back" else 0)
     lead = [
-        unloaded_contact(moved(pair(26), errors_at(Assembly(offset=x), gear, flank)), [0.0])
+        unloaded_contact(moved(pair(26), errors_at(AssemblyErrors(offset=x), gear, flank)), [0.0])
         for x in (step, -step)
     ]
     along = (lead[0].transmission_error[0] - lead[1].transmission_error[0]) / (2 * step)
@@ -57,7 +57,7 @@ def test_a_displaced_pinion_closes_each_flank_as_the_machine_s_directions_say(pa
 
 
 ERRORS = st.builds(
-    Assembly,
+    AssemblyErrors,
     offset=st.sampled_from([0.0, 5e-5, -2e-5]),
     shaft_angle_error=st.sampled_from([0.0, 3e-4]),
     axial_shift=st.sampled_from([0.0, 4e-5]),

@@ -8,7 +8,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from facegear.geometry.design import FaceGear, PairDesign, Pinion, Shaper
+from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
 from facegear.geometry.limits import face_range, radius_limits
 from facegear.geometry.placement import rotation
 from facegear.geometry.roots import root
@@ -59,8 +59,8 @@ def test_limits_are_found_where_the_flank_turns_back_at_the_tip_plane():
         angle, addendum = radians(chance.uniform(18, 28)), m * chance.uniform(0.8, 1.1)
         shift, gear_addendum = chance.uniform(-0.1, 0.3) * m, m * chance.uniform(0.7, 1)
         if number in (4, 68, 288, 361):
-            pinion = Pinion(pinion_teeth, 0.03, addendum, 1.25 * m, 0.1 * m, 0.01, shift)
-            gear = FaceGear(gear_teeth, radius, 1.05 * radius, gear_addendum, 0.01)
+            pinion = PinionGeometry(pinion_teeth, 0.03, addendum, 1.25 * m, 0.1 * m, 0.01, shift)
+            gear = FaceGearGeometry(gear_teeth, radius, 1.05 * radius, gear_addendum, 0.01)
             design = PairDesign(m, angle, pinion, gear, Shaper(shaper, 1.25 * m))
             limits = radius_limits(design)
             assert face_range(design, limits).inner >= limits.inner

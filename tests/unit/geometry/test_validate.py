@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from facegear.errors import GeometryError
-from facegear.geometry.design import FaceGear, PairDesign, Pinion, Relief, Shaper
+from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometry, Relief, Shaper
 from facegear.geometry.limits import face_range, radius_limits
 from facegear.geometry.outline import pinion_outline
 from facegear.geometry.pinion import removed
@@ -113,7 +113,7 @@ def designs(draw):
     inner = m * n2 * np.cos(angle) / 2 * (1 + number(0.005, 0.1))
     width = m * number(0.6, 10)
     dedendum, shift = number(1.15, 1.4), draw(st.sampled_from([0.0, 0.2, 0.4, -0.1]))
-    pinion = Pinion(
+    pinion = PinionGeometry(
         teeth=n1,
         width=width * number(0.8, 1.3),
         addendum=m * number(0.8, 1.05),
@@ -123,7 +123,7 @@ def designs(draw):
         profile_shift=m * shift,
         thinning=m * number(0, 0.03),
     )
-    gear = FaceGear(n2, inner, inner + width, m * number(0.8, 1.05), m * number(0.4, 4))
+    gear = FaceGearGeometry(n2, inner, inner + width, m * number(0.8, 1.05), m * number(0.4, 4))
     rounding = m * draw(st.sampled_from([0.0, 0.05, 0.1, 0.15]))
     shaper = Shaper(n1 + draw(st.integers(0, 3)), m * number(1.05, 1.3), rounding)
     return PairDesign(m, angle, pinion, gear, shaper)

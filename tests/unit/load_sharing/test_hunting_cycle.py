@@ -65,8 +65,8 @@ def test_meshes_without_an_even_share_have_no_mesh_load_factor_in_tables(monkeyp
 
 def test_the_hunting_cycle_balances_every_torque_to_rounding():
     run = hunting_cycle(machine_with(clearance=np.full(5, 20e-6), **RUNOUTS, **CONSTANT), 16, 100)
-    assert run.found.residual.max() < 1e-12
-    net = run.found.forces.reshape(len(run.cycles), 2, 5).sum(axis=1)
+    assert run.at_rest.residual.max() < 1e-12
+    net = run.at_rest.forces.reshape(len(run.cycles), 2, 5).sum(axis=1)
     torques = np.broadcast_to(run.machine.torques[:5], net.shape)
     np.testing.assert_allclose(net * LAYOUT.pinion_arm, torques, atol=2e-12 * np.abs(torques).max())
 
@@ -94,7 +94,7 @@ def unloaded_part(seed):
 @pytest.mark.parametrize("seed", range(20))
 def test_free_idlers_between_stiff_bearings_come_to_rest_to_rounding_in_every_position(seed):
     """A flank that closes by less than its place can be told once kept the search where it was."""
-    found = hunting_cycle(unloaded_part(seed), 8).found
+    found = hunting_cycle(unloaded_part(seed), 8).at_rest
     assert (found.residual <= 2e-13).all()
 
 
@@ -106,7 +106,7 @@ def test_a_pitch_curve_that_is_a_runout_gives_the_runouts_shares():
     pitched = hunting_cycle(machine_with(gear_pitch={1: curve}), 4)
     whole = slice(None, None, 4)
     np.testing.assert_allclose(
-        pitched.found.forces[whole], eccentric.found.forces[whole], atol=1e-3 * eccentric.loads.max()
+        pitched.at_rest.forces[whole], eccentric.at_rest.forces[whole], atol=1e-3 * eccentric.loads.max()
     )
 
 
@@ -122,7 +122,7 @@ def test_the_same_pattern_returns_after_the_hunting_cycle():
 def test_statics_is_the_slow_limit_of_the_dynamics():
     machine = machine_with(**CONSTANT)
     samples = 32
-    still = hunting_cycle(machine, samples).found.forces
+    still = hunting_cycle(machine, samples).at_rest.forces
     gaps = []
     for speed in (320.0, 80.0):
         settings = Settings(samples=samples, dwell=2, settle=2, window=1, refine=False)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from spur_path import c40
 
 from facegear.contact.lines import contact_lines
-from facegear.geometry.design import Assembly
+from facegear.geometry.design import AssemblyErrors
 from facegear.geometry.pinion_surface import fillet_points, flank_points
 from facegear.geometry.placement import body_rotation, pinion_to_gear
 from facegear.geometry.unloaded import unloaded_contact
@@ -31,7 +31,7 @@ places = st.tuples(st.floats(-0.01, 0.01), st.floats(0.25, 0.275), st.floats(-0.
 @settings(max_examples=25)
 @given(places, st.floats(-0.1, 0.1), st.floats(-3e-4, 3e-4), st.floats(-3e-3, 3e-3), st.floats(-2e-4, 2e-4))
 def test_velocities_are_those_of_material_points_in_any_assembly(place, phi1, offset, tilt, shift):
-    design = replace(PAIR, assembly=Assembly(offset, tilt, shift))
+    design = replace(PAIR, assembly=AssemblyErrors(offset, tilt, shift))
     point, step = np.array([place]), 1e-5
     moves = []
     for turn in (step, -step):
@@ -46,7 +46,7 @@ def test_velocities_are_those_of_material_points_in_any_assembly(place, phi1, of
 
 
 def test_the_pinion_stands_in_the_mesh_frame_as_the_geometry_places_it_on_the_gear():
-    design = replace(PAIR, assembly=Assembly(1e-4, 1e-3, 5e-5))
+    design = replace(PAIR, assembly=AssemblyErrors(1e-4, 1e-3, 5e-5))
     point = np.array([[0.003, 0.26, -0.044]])
     gear = pinion_to_gear(design, 0.03, 0.005, 1)
     back = standing(design, 0.03, 1).then(body_rotation("face_gear", -(0.005 + 2 * pi / 143)))

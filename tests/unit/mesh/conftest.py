@@ -4,7 +4,7 @@ from math import radians
 
 import pytest
 
-from facegear.geometry.design import FaceGear, PairDesign, Pinion, Shaper
+from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
 from facegear.mesh.sizes import named_sizes
 from facegear.mesh.tooth import gear_tooth, pinion_tooth
 
@@ -12,8 +12,10 @@ from facegear.mesh.tooth import gear_tooth, pinion_tooth
 @pytest.fixture(scope="session")
 def design() -> PairDesign:
     m = 3.75e-3
-    pinion = Pinion(23, 0.030, m, 1.25 * m, 0.1 * m, 0.025)
-    return PairDesign(m, radians(25), pinion, FaceGear(143, 0.250, 0.275, m, 0.012), Shaper(26, 1.25 * m))
+    pinion = PinionGeometry(23, 0.030, m, 1.25 * m, 0.1 * m, 0.025)
+    return PairDesign(
+        m, radians(25), pinion, FaceGearGeometry(143, 0.250, 0.275, m, 0.012), Shaper(26, 1.25 * m)
+    )
 
 
 @pytest.fixture(scope="session", params=["pinion", "face_gear"])

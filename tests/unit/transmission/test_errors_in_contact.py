@@ -8,7 +8,7 @@ from lumped_machines import make_layout, make_machine
 
 from facegear.config.load import load_config
 from facegear.config.tooth_pair import pair_design
-from facegear.geometry.design import Assembly
+from facegear.geometry.design import AssemblyErrors
 from facegear.geometry.placement import mirrored
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.transmission.flanks import constant_errors
@@ -28,7 +28,7 @@ def closed_by(design, **assembly):
     """How much further the flank pushes the gear on: (drive, back), m along the line of action."""
     ways = []
     for pair in (design, mirrored(design)):
-        moved = replace(pair, assembly=Assembly(**assembly))
+        moved = replace(pair, assembly=AssemblyErrors(**assembly))
         moved = mirrored(moved) if pair is not design else moved
         errors = [unloaded_contact(one, PHI).transmission_error[0] for one in (moved, pair)]
         ways.append(errors[0] - errors[1])
@@ -73,7 +73,7 @@ def test_an_axial_shim_is_twice_its_sine_of_backlash(design):
 def test_errors_of_assembly_change_the_unloaded_errors_mean_and_nothing_else(config, assembly):
     """Why e(t) from contact is one series for all meshes: a pinion out of place adds a constant only."""
     design = replace(
-        pair_design(load_config(f"config/{config}.yaml").tooth_pair), assembly=Assembly(**assembly)
+        pair_design(load_config(f"config/{config}.yaml").tooth_pair), assembly=AssemblyErrors(**assembly)
     )
     cycle = 2.0 * np.pi / design.pinion.teeth * np.linspace(0.0, 1.0, 9)
     error = unloaded_contact(design, cycle).transmission_error
