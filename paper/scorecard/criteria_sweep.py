@@ -76,12 +76,12 @@ def jump_in_mesh(tables: Tables, pinion: str, near: float, within: float, lean: 
     return _leaning(more[close], lean)
 
 
-def wider_region(tables: Tables, wide: float, narrow: float, within: float) -> ClaimOutcome:
+def wider_region(tables: Tables, broad: float, narrow: float, within: float) -> ClaimOutcome:
     """More speeds around the first than around the second have different levels in the up and down sweeps."""
     speeds, more = _bistable(tables, list(_meshes(tables)))
     width = [
         float(np.abs(more[np.abs(speeds / near - 1.0) <= within]).sum() * (speeds[1] - speeds[0]))
-        for near in (wide, narrow)
+        for near in (broad, narrow)
     ]
     return statement(width[0] > width[1], f"{width[0]:.0f} rpm against {width[1]:.0f} rpm")
 

@@ -149,17 +149,17 @@ def test_spectral_statements_follow_the_lines():
     tables = {"spectrum": pd.DataFrame(rows, columns=["mesh", "order", "amplitude_um"])}
     assert CRITERIA["dominant_lines"](tables, pinion="a", lines=[1.0, 2.0]).holds
     assert not CRITERIA["dominant_lines"](tables, pinion="a", lines=[1.0, 0.5]).holds
-    assert CRITERIA["line_larger"](tables, pinion="a", line=0.5, share=0.05).holds
-    assert not CRITERIA["line_larger"](tables, pinion="a", line=1.0, share=0.05).holds
-    assert not CRITERIA["line_larger"](tables, pinion="a", line=0.5, share=0.3).holds
-    assert CRITERIA["subharmonic_content"](tables, pinion="a", share=0.1).holds
-    assert not CRITERIA["subharmonic_content"](tables, pinion="a", share=0.2).holds
+    assert CRITERIA["line_larger"](tables, pinion="a", line=0.5, fraction=0.05).holds
+    assert not CRITERIA["line_larger"](tables, pinion="a", line=1.0, fraction=0.05).holds
+    assert not CRITERIA["line_larger"](tables, pinion="a", line=0.5, fraction=0.3).holds
+    assert CRITERIA["subharmonic_content"](tables, pinion="a", fraction=0.1).holds
+    assert not CRITERIA["subharmonic_content"](tables, pinion="a", fraction=0.2).holds
 
 
 def test_noise_is_no_larger_line():
     rows = [("a/lower", 0.5, 1e-9), ("a/lower", 1.0, 9.0), ("a/upper", 0.5, 2e-9), ("a/upper", 1.0, 9.0)]
     tables = {"spectrum": pd.DataFrame(rows, columns=["mesh", "order", "amplitude_um"])}
-    assert not CRITERIA["line_larger"](tables, pinion="a", line=0.5, share=0.05).holds
+    assert not CRITERIA["line_larger"](tables, pinion="a", line=0.5, fraction=0.05).holds
 
 
 def test_window_beside_1x_and_the_mean_is_no_subharmonic_content():
@@ -177,7 +177,7 @@ def test_window_beside_1x_and_the_mean_is_no_subharmonic_content():
     plain = 5.0 + np.cos(2 * np.pi * cycles) + 1e-3 * rng.standard_normal(cycles.size)
     for samples, expected in ((plain, False), (plain + 0.3 * np.cos(np.pi * cycles), True)):
         tables = {"spectrum": spectra(samples)}
-        assert CRITERIA["subharmonic_content"](tables, pinion="a", share=0.05).holds is expected
+        assert CRITERIA["subharmonic_content"](tables, pinion="a", fraction=0.05).holds is expected
 
 
 def curves(**points):
