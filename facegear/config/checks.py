@@ -8,15 +8,7 @@ from typing import Any
 import numpy as np
 
 from facegear.config.base import parse
-from facegear.config.contact import Contact
-from facegear.config.lumped_model import ToothNumbers, given_torques, layout, other_gear_torque, tooth_numbers
-from facegear.config.search import Search
-from facegear.config.stiffness import MeshStiffness
-from facegear.config.studies import Study
-from facegear.config.tolerances import Tolerances
-from facegear.config.tooth_pair import ToothPair, materials, pair_design
-from facegear.config.transmission import Transmission
-from facegear.config.variants import (
+from facegear.config.changes import (
     MACHINE,
     PAIR,
     SPEED,
@@ -25,6 +17,14 @@ from facegear.config.variants import (
     moves_pair,
     variable_part,
 )
+from facegear.config.contact import Contact
+from facegear.config.lumped_model import ToothNumbers, given_torques, layout, other_gear_torque, tooth_numbers
+from facegear.config.search import Search
+from facegear.config.stiffness import MeshStiffness
+from facegear.config.studies import Study
+from facegear.config.tolerances import Tolerances
+from facegear.config.tooth_pair import ToothPair, materials, pair_design
+from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError, ConfigErrors, NotConverged
 
 MOST_POINTS = 200

@@ -1,6 +1,5 @@
 """Decorators for compiled functions; the plain `njit` where the version of numba is not known."""
 
-import hashlib
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
@@ -88,15 +87,6 @@ def by_type(**options: Any) -> Callable[[Callable[..., Any]], ByType]:
 def stored_in(function: Any) -> Path | None:
     """Folder that keeps a function's machine code; None where none is kept."""
     return Path(function._cache.cache_path) if NUMBA_IS_KNOWN else None
-
-
-def text_of(*sources: Path) -> str:
-    """Hash of the text of all Python files in some folders, or of files."""
-    digest = hashlib.sha256()
-    for source in sources:
-        for path in sorted(source.glob("*.py")) if source.is_dir() else [source]:
-            digest.update(path.read_bytes())
-    return digest.hexdigest()
 
 
 def _public(options: dict[str, Any]) -> dict[str, Any]:

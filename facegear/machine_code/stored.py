@@ -18,7 +18,7 @@ from numba.core.compiler_machinery import register_pass
 from numba.core.typed_passes import NativeLowering
 
 from facegear.io.run_lock import hold
-from facegear.machine_code.compiler import text_of
+from facegear.machine_code.sources import text_of
 
 PATIENCE = 300.0
 """How long (s) another process may compile a function before this one compiles it as well."""

@@ -4,11 +4,11 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from facegear.config.base import parse
+from facegear.config.changes import GAPS, moves_pair, without
 from facegear.config.modal import modes_need_contact
 from facegear.config.notes import turns
 from facegear.config.sharing_groups import group_kinds
 from facegear.config.tolerances import Design, Tolerances, chunks
-from facegear.config.variants import GAPS, moves_pair, without
 from facegear.load_sharing.quantity_names import of_contact
 from facegear.pipeline.stage import Case, Wildcards
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from facegear.config.contact_setup import contact_setup
-from facegear.contact.gear_flank import GearFlank, to_arrays
+from facegear.contact.gear_flank import to_arrays
 from facegear.contact.pair import gear_flank
 from facegear.stages.outcome import Outcome
 
@@ -16,14 +16,7 @@ def compliance(
 
     Raises ConfigError for a sector with more teeth than the gear and a mesh turned inside out.
     """
-    found = flank_of(body, tooth_pair, mesh, contact)
+    setup = contact_setup(tooth_pair, mesh, contact)
+    found = gear_flank(setup.pair.design, body, setup.sizes, setup.pair.material(body), setup.plan)
     told = f"{len(found.compliance.own)} flank nodes, {len(found.compliance.others)} teeth coupled"
     return Outcome({"arrays": to_arrays(found)}, told)
-
-
-def flank_of(
-    body: str, tooth_pair: Mapping[str, Any], mesh: Mapping[str, Any], contact: Mapping[str, Any]
-) -> GearFlank:
-    """Contact surface and compliance of `body`, in memory."""
-    setup = contact_setup(tooth_pair, mesh, contact)
-    return gear_flank(setup.pair.design, body, setup.sizes, setup.pair.material(body), setup.plan)

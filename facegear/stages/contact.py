@@ -10,17 +10,8 @@ from facegear.arrays import Arrays
 from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.tooth_pair import pair
-from facegear.contact.gear_flank import GearFlank, from_arrays
-from facegear.contact.ltca import ContactModel, even_positions, loaded_contact
-from facegear.contact.nodal_loads import load_arrays
-from facegear.contact.options import ContactPlan
-from facegear.contact.pair import contact_model
-from facegear.contact.position import LoadedPosition
-from facegear.contact.pressure import FlankPressure, flank_pressure
-from facegear.contact.summary import by_flank, by_torque
-from facegear.contact.tables import ltca_table, pressure_arrays
-from facegear.geometry.design import Material
-from facegear.geometry.flank_errors import distinct_errors
+from facegear.contact.analysis import ContactAnalysis, contact_analysis
+from facegear.contact.gear_flank import from_arrays
 from facegear.stages.outcome import Outcome
 
 WORTH_A_WORD = 0.005
@@ -39,50 +30,24 @@ def contact(
     assembly errors part them from it, on the same compliances. Raises NotConverged naming position and
     torque.
     """
-    return contact_of(from_arrays(pinion), from_arrays(face_gear), tooth_pair, contact)
+    teeth, plan = pair(tooth_pair), contact_plan(parse(Contact, contact))
+    flanks = from_arrays(pinion), from_arrays(face_gear)
+    found = contact_analysis(teeth.design, teeth.materials, flanks, plan)
+    worst = max(table["kkt_residual"].max() for table in found.ltca)
+    count = sum(map(len, found.ltca))
+    told = f"{count} contacts, {_mean_stiffness(found.ltca[0])}, worst KKT residual {worst:.0e}"
+    return Outcome(contents(found), told)
 
 
-def contact_of(
-    pinion: GearFlank,
-    face_gear: GearFlank,
-    tooth_pair: Mapping[str, Any],
-    contact: Mapping[str, Any],
-    every_flank: bool = True,
-) -> Outcome:
-    """`contact` of flanks in memory; of the upper gear's drive flank alone unless `every_flank`."""
-    plan = contact_plan(parse(Contact, contact))
-    teeth = pair(tooth_pair)
-    model = contact_model(teeth.design, pinion, face_gear)
-    errors = teeth.design.assembly
-    different, numbers = distinct_errors(errors)
-    if not every_flank:
-        different, numbers = different[:1], np.zeros_like(numbers)
-    models = [model.assembled(one) for one in different]
-    solved = [_solved(one, teeth.materials, plan) for one in models]
-    tables = [ltca_table(*one) for one in solved]
-    pressures = [
-        pressure_arrays(one, each.flanks.pinion, pressure)
-        for each, (one, pressure) in zip(models, solved, strict=True)
-    ]
-    summaries = [by_torque(*one) for one in zip(tables, pressures, strict=True)]
-    worst = max(table["kkt_residual"].max() for table in tables)
-    return Outcome(
-        {
-            "ltca": tables[0],
-            "by_torque": summaries[0],
-            "by_flank": by_flank(summaries, different, numbers),
-            "pressure": pressures[0],
-            "loads": load_arrays([one for one, _ in solved], numbers),
-        },
-        f"{sum(map(len, tables))} contacts, {_mean_stiffness(tables[0])}, worst KKT residual {worst:.0e}",
-    )
-
-
-def _solved(
-    model: ContactModel, materials: tuple[Material, Material], plan: ContactPlan
-) -> tuple[list[LoadedPosition], FlankPressure]:
-    found = loaded_contact(model, even_positions(plan.positions), plan.torques, plan.options)
-    return found, flank_pressure(found, model.flanks, materials)
+def contents(found: ContactAnalysis) -> dict[str, Any]:
+    """The parts of stage contact."""
+    return {
+        "ltca": found.ltca[0],
+        "by_torque": found.by_torque[0],
+        "by_flank": found.by_flank,
+        "pressure": found.pressure[0],
+        "loads": found.loads,
+    }
 
 
 def _mean_stiffness(table: pd.DataFrame) -> str:

@@ -10,7 +10,6 @@ import pandas as pd
 from facegear.arrays import Array, Arrays
 from facegear.config.base import parse
 from facegear.config.lubrication import limits_of
-from facegear.config.lumped_model import at_mesh_torque
 from facegear.config.machines import wired_machine
 from facegear.config.strength import Strength
 from facegear.lubrication import machine_loss as losses
@@ -25,6 +24,7 @@ from facegear.stages.lubrication import loaded_pair, lubrication_section
 from facegear.stages.outcome import Outcome
 from facegear.transmission.machine import Machine
 from facegear.transmission.ratings import mesh_table, rated
+from facegear.variants.loads import at_mesh_torque
 
 
 def machine_loss(

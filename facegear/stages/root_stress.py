@@ -1,15 +1,11 @@
 """Root stress of both gears on their way through the mesh."""
 
-import numpy as np
 import pandas as pd
 
 from facegear.arrays import Arrays
-from facegear.contact.gear_flank import GearFlank, from_arrays
-from facegear.contact.nodal_loads import loads_by_tooth
-from facegear.errors import ConfigError
+from facegear.contact.gear_flank import from_arrays
 from facegear.stages.outcome import Outcome
-from facegear.strength import root_stress as superposed
-from facegear.strength.root_stress import RootStress
+from facegear.strength.passage import passing
 from facegear.strength.root_tables import root_arrays, root_by_flank, root_tables
 
 
@@ -33,27 +29,6 @@ def root_stress(pinion: Arrays, face_gear: Arrays, loads: Arrays) -> Outcome:
         "stress": root_arrays(variants, numbers, positions),
     }
     return Outcome(content, _summary(content["by_flank"]))
-
-
-def passing(body: str, flank: GearFlank, loads: Arrays, variant: int = 0) -> RootStress:
-    """Root stress of one body under the loads of stage contact on its flank, of one of its variants.
-
-    What presses on its fillet is left out: the gauges below would read the dent. Raises ConfigError where its
-    fillets carry no gauges.
-    """
-    if flank.gauges is None:
-        raise ConfigError("contact.root_stress", False, "true, for root stress")
-    loaded = loads[f"{body}_tooth"]
-    return superposed.root_stress(
-        flank.compliance.readings,
-        loads_by_tooth(loads, body, flank.side.flank_rows * flank.side.shape[1], variant),
-        np.unique(loads["torque_n_m"]),
-        np.unique(loads["position"]),
-        flank.gauges.along(body),
-        flank.gauges.tangent_angle,
-        flank.gauges.error,
-        np.arange(loaded.min() - 1, loaded.max() + 2),
-    )
 
 
 def _summary(table: pd.DataFrame) -> str:

@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from facegear.config.variants import movable, nominal
+from facegear.config.changes import movable, nominal
 from facegear.scenarios.evolution import Task, front, hypervolumes
-from facegear.stages.designs import SearchedMachine, assessor, task
-from facegear.stages.many_machines import WHOLE
 from facegear.stages.outcome import Outcome
+from facegear.variants.designs import SearchedMachine, assessor, task
+from facegear.variants.machines import WHOLE
 
 
 def search(islands: Sequence[pd.DataFrame], **given: Any) -> Outcome:

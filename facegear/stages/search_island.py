@@ -6,8 +6,8 @@ from typing import Any
 
 from facegear.progress import Progress
 from facegear.scenarios.evolution import Effort, evolve
-from facegear.stages.designs import SearchedMachine, assessor, task
 from facegear.stages.outcome import Outcome
+from facegear.variants.designs import SearchedMachine, assessor, task
 
 
 def search_island(seed: int, partial: str | Path | None = None, code: str = "", **given: Any) -> Outcome:

@@ -7,7 +7,7 @@ from facegear.config.tolerances import Design
 from facegear.load_sharing.quantity_names import MISSED
 from facegear.scenarios.sampling import index_samples, samples
 from facegear.stages.outcome import Outcome
-from facegear.stages.sampled_machine import CHECKED, SampledMachine
+from facegear.variants.sampled import CHECKED, SampledMachine
 
 
 def tolerances_chunk(

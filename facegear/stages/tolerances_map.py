@@ -5,15 +5,15 @@ from typing import Any
 
 import pandas as pd
 
-from facegear.config.lumped_model import with_torques
 from facegear.config.tolerances import LoadMap
 from facegear.load_sharing.quantity_names import MISSED
 from facegear.scenarios.chunks import ERROR
 from facegear.scenarios.sampling import samples
 from facegear.scenarios.summary import percentile_table, sampling_table, share_table
 from facegear.stages.outcome import Outcome
-from facegear.stages.sampled_machine import CHECKED, SampledMachine
 from facegear.stages.tolerances import SHARES
+from facegear.variants.loads import with_torques
+from facegear.variants.sampled import CHECKED, SampledMachine
 
 COLUMNS = (
     *("torque_factor", "speed_rpm", "quantity", "percentile"),

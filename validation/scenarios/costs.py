@@ -9,8 +9,8 @@ from tempfile import TemporaryDirectory
 import pandas as pd
 
 from facegear.io import columnar
-from facegear.stages.sampled_machine import SampledMachine
 from facegear.stages.tolerances_chunk import chunk_of
+from facegear.variants.sampled import SampledMachine
 
 MODELS = ("quasi_static", "dynamic")
 WANTED, CORES = 10_000, 2

@@ -11,7 +11,8 @@ from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.kernel import SOURCES
 from facegear.dynamics.integrator.periods import run_periods
 from facegear.dynamics.integrator.system import FlankRubbing, System
-from facegear.machine_code.compiler import stored_in, text_of
+from facegear.machine_code.compiler import stored_in
+from facegear.machine_code.sources import text_of
 from facegear.mesh_law.linear import LinearLaw
 
 

@@ -9,10 +9,10 @@ from ruamel.yaml import YAML
 import facegear
 from facegear.config.base import parse
 from facegear.config.buildable import require_buildable, require_room
+from facegear.config.changes import movable, moved
 from facegear.config.lumped_model import machine, tooth_numbers
 from facegear.config.notes import notes
 from facegear.config.transmission import Transmission
-from facegear.config.variants import movable, moved
 from facegear.errors import ConfigError, ConfigErrors
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.statics import mean_equilibrium, static_equilibrium

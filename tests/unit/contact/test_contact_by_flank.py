@@ -11,10 +11,11 @@ import facegear
 from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.tooth_pair import pair
+from facegear.contact import analysis
 from facegear.contact.gear_flank import to_arrays
 from facegear.contact.pair import gear_flank
 from facegear.geometry.flank_errors import FLANKS, GEARS, errors_at
-from facegear.stages import contact as contact_stage
+from facegear.stages.contact import contents
 from facegear.stages.root_stress import root_stress
 from facegear.strength.root_tables import root_from_arrays
 
@@ -31,6 +32,12 @@ def with_errors(**errors):
     return {**facegear.example().values["tooth_pair"], "assembly": errors}
 
 
+def contact_of(bodies, tooth_pair, every_flank=True):
+    teeth, plan = pair(tooth_pair), contact_plan(parse(Contact, CONTACT))
+    found = analysis.contact_analysis(teeth.design, teeth.materials, tuple(bodies), plan, every_flank)
+    return contents(found)
+
+
 @pytest.fixture(scope="module")
 def bodies():
     """Both bodies with gauges, condensed once: no assembly error moves their nodes."""
@@ -43,7 +50,7 @@ def bodies():
 
 @pytest.fixture(scope="module")
 def found(bodies):
-    return contact_stage.contact_of(*bodies, with_errors(**ERRORS), CONTACT).content
+    return contact_of(bodies, with_errors(**ERRORS))
 
 
 def test_every_flank_is_that_of_a_pair_assembled_with_its_own_errors(bodies, found):
@@ -58,7 +65,7 @@ def test_every_flank_is_that_of_a_pair_assembled_with_its_own_errors(bodies, fou
                 shaft_angle_error_deg=float(np.degrees(met["shaft_angle_error"])),
                 axial_shift_um=1e6 * met["axial_shift"],
             )
-            alone = contact_stage.contact_of(*bodies, own, CONTACT, every_flank=False).content["by_torque"]
+            alone = contact_of(bodies, own, every_flank=False)["by_torque"]
             for name in ("k_average_mean_n_per_m", "pressure_mpa", "path_radius_mm", "ste_peak_to_peak_um"):
                 assert told.loc[(gear, flank), name] == pytest.approx(alone[name][0], rel=1e-6)
 
@@ -84,9 +91,9 @@ def test_without_errors_every_flank_costs_nothing_and_is_the_same(bodies, monkey
         solved.append(1)
         return original(*arguments)
 
-    original = contact_stage.loaded_contact
-    monkeypatch.setattr(contact_stage, "loaded_contact", counted)
-    alike = contact_stage.contact_of(*bodies, with_errors(axial_shift_um=10.0), CONTACT).content
+    original = analysis.loaded_contact
+    monkeypatch.setattr(analysis, "loaded_contact", counted)
+    alike = contact_of(bodies, with_errors(axial_shift_um=10.0))
     assert len(solved) == 1
     rows = [one.drop(columns=["gear", "flank"]) for _, one in alike["by_flank"].groupby(["gear", "flank"])]
     for other in rows[1:]:

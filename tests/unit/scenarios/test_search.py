@@ -78,9 +78,7 @@ def test_a_search_moves_the_operating_speed_away_from_the_jump():
 
 def test_jumps_are_looked_for_only_where_a_goal_asks_for_them(monkeypatch):
     asked = []
-    monkeypatch.setattr(
-        "facegear.stages.many_machines.jump_margin", lambda *given: asked.append(given) or 7.0
-    )
+    monkeypatch.setattr("facegear.variants.machines.jump_margin", lambda *given: asked.append(given) or 7.0)
     sizes = {"generations": 1, "samples": 2, "winner_samples": 2}
     table = near_a_jump(objectives=[SHARING], **sizes).search().winners()
     assert not asked and "jump_margin_rpm" not in table

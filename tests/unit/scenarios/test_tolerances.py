@@ -16,9 +16,9 @@ from facegear.io import tables
 from facegear.load_sharing import quantities
 from facegear.load_sharing.hunting import hunting_cycle
 from facegear.pipeline.needs import stage_needs
-from facegear.stages.sampled_machine import SampledMachine
 from facegear.stages.tolerances import tolerances
 from facegear.stages.tolerances_chunk import chunk_of
+from facegear.variants.sampled import SampledMachine
 
 MEAN = "transmission.single_meshes"
 LINEAR = {

@@ -16,10 +16,10 @@ from facegear.mesh.sizes import MeshSizes
 from facegear.pipeline.asked import sampled_contact
 from facegear.pipeline.needs import stage_needs
 from facegear.pipeline.stage import Case
-from facegear.stages import contact_meshes
-from facegear.stages.sampled_machine import SampledMachine
 from facegear.stages.tolerances_chunk import chunk_of
-from facegear.stages.tooth_meshes import stored_flanks
+from facegear.variants import contact as in_contact
+from facegear.variants.machines import stored_flanks
+from facegear.variants.sampled import SampledMachine
 
 pytestmark = pytest.mark.xdist_group("notebooks")  # the example's compliance is computed once a process
 CROWNING = "tooth_pair.pinion.lead_crowning.amount_um"
@@ -66,18 +66,18 @@ def test_a_sample_is_the_machine_of_a_config_with_its_values(found):
 def test_no_compliance_is_computed_for_a_sample_and_pairs_that_are_alike_are_solved_once(monkeypatch):
     gearbox = machine(*BOTH, cause("young", YOUNG, -6.0), cause("speed", "dynamics.speed_rpm", 0.0, 100.0))
     solved = []
-    monkeypatch.setattr(contact_meshes, "flank_of", lambda *_: pytest.fail("compliance"))
-    contact_of = contact_meshes.contact_of
+    monkeypatch.setattr(in_contact, "gear_flank", lambda *_: pytest.fail("compliance"))
+    analysis = in_contact.contact_analysis
     monkeypatch.setattr(
-        contact_meshes,
-        "contact_of",
-        lambda *given, **more: solved.append(given[2]) or contact_of(*given, **more),
+        in_contact,
+        "contact_analysis",
+        lambda *given, **more: solved.append(given[1]) or analysis(*given, **more),
     )
     table = gearbox.tolerances().samples()
     assert (table["error"] == "").all()
     pairs = table[["crowning", "offset"]].drop_duplicates()
     assert len(solved) == len(pairs)
-    assert {pair["material"]["young_modulus_gpa"] for pair in solved} == {200.0}
+    assert {material.young_modulus for pair in solved for material in pair} == {200e9}
 
 
 def test_displacements_go_with_young_s_modulus_and_stress_in_the_fillets_does_not():
@@ -100,7 +100,7 @@ def test_what_the_assembly_adds_to_the_backlash_counts_for_every_mesh():
     gearbox = machine(cause("shim", "tooth_pair.assembly.axial_shift_um", 20.0)).with_values(own)
     needs = stage_needs("tolerances_chunk", gearbox.values)
     flanks = stored_flanks(gearbox._chain.arguments("tolerances_chunk")["flanks"])
-    mesh = contact_meshes.meshes_in_contact(needs["pair"], flanks)
+    mesh = in_contact.meshes_in_contact(needs["pair"], flanks)
     shifted = {**needs["pair"]["tooth_pair"]}
     shifted["assembly"] = {**shifted["assembly"], "axial_shift_um": 20.0}
     machine_section = mesh(shifted).in_machine(needs["transmission"])
@@ -182,7 +182,7 @@ def searched(**section):
 
 
 def test_a_search_over_teeth_weighs_error_against_pressure(monkeypatch):
-    monkeypatch.setattr(contact_meshes, "flank_of", lambda *_: pytest.fail("compliance"))
+    monkeypatch.setattr(in_contact, "gear_flank", lambda *_: pytest.fail("compliance"))
     found = searched().search()
     designs = found.designs()
     assert (designs["error"] != "").sum() == 0 and designs["crowning"].nunique() > 1
@@ -200,11 +200,11 @@ def test_a_variable_that_changes_a_body_has_it_condensed_anew_and_once(monkeypat
     given = facegear.example()._chain.arguments("contact")
     nominal = {body: from_arrays(given[body]) for body in ("pinion", "face_gear")}
 
-    def made(body, values, *_):
-        asked.append((body, values["pinion_teeth"], values["pinion"]["width_mm"]))
+    def made(design, body, *_):
+        asked.append((body, design.pinion.teeth, design.pinion.width))
         return nominal[body]
 
-    monkeypatch.setattr(contact_meshes, "flank_of", made)
+    monkeypatch.setattr(in_contact, "gear_flank", made)
     sizes = {"variables": [variable], "population": 4, "generations": 1}
     objectives = [{"name": "pressure", "largest_of": ["pressure"]}]
     designs = searched(objectives=objectives, **sizes).search().designs()

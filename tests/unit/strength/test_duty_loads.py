@@ -7,7 +7,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import facegear
-from facegear.config.lumped_model import at_mesh_torque
 from facegear.config.machines import wired_machine
 from facegear.errors import ConfigError, ConfigErrors
 from facegear.load_sharing.even_shares import even_shares
@@ -16,6 +15,7 @@ from facegear.stages.duty_loads import duty_loads
 from facegear.strength.duty import DutyBin, machine_duty
 from facegear.strength.passage_loads import classes, hardest_tooth
 from facegear.transmission.ratings import mesh_table
+from facegear.variants.loads import at_mesh_torque
 
 BIN = {"speed_rpm": 7500, "hours": 10}
 SMOOTH = {

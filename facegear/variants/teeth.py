@@ -1,16 +1,12 @@
-"""The tooth pair of machines among many: one for all, or in contact anew wherever it differs."""
+"""What a tooth pair means for the machine that it is built into."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import pandas as pd
-
-from facegear.arrays import Arrays
 from facegear.config.lumped_model import TEETH, ToothNumbers, tooth_numbers
 from facegear.harmonics.series import Harmonics
 from facegear.load_sharing.quantity_names import ERROR_HARMONIC, ERROR_RANGE, PRESSURE, ROOTS
-from facegear.stiffness.tables import series_of, unloaded_error
 from facegear.strength.pair_answers import PairAnswers
 
 if TYPE_CHECKING:
@@ -64,29 +60,6 @@ class ToothMesh:
 
 Meshes = Callable[[Values], ToothMesh]
 """The mesh of a tooth pair, given the plain values of its section. Raises the errors that a config gets."""
-
-
-def tooth_meshes(harmonics: pd.DataFrame, pair: Values | None, flanks: Flanks) -> Meshes:
-    """One mesh for all, of `harmonics`; or by contact where `pair` holds the sections that it needs.
-
-    `pair`: tooth_pair, mesh, contact, mesh_stiffness; `flanks`: the compliance of its bodies by name.
-    """
-    if pair is not None:
-        from facegear.stages.contact_meshes import meshes_in_contact  # only contact needs finite elements
-
-        return meshes_in_contact(pair, flanks)
-    series, error = series_of(harmonics), unloaded_error(harmonics)
-    return lambda values: ToothMesh(numbers_of(values), series, error)
-
-
-def stored_flanks(arrays: Sequence[Arrays]) -> Flanks:
-    """From the arrays of the pinion and of the face gear, or from none where there is no contact."""
-    if not arrays:
-        return {}
-    from facegear.contact.gear_flank import from_arrays
-    from facegear.contact.nodal_loads import BODIES
-
-    return {body: from_arrays(one) for body, one in zip(BODIES, arrays, strict=True)}
 
 
 def numbers_of(tooth_pair: Values) -> ToothNumbers:

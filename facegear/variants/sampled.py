@@ -11,15 +11,15 @@ from typing import Any
 import pandas as pd
 
 from facegear.config.base import parse
+from facegear.config.changes import movable, moved, variable_part
 from facegear.config.lumped_model import wired_layout
 from facegear.config.tolerances import Tolerances, population
-from facegear.config.variants import movable, moved, variable_part
 from facegear.load_sharing.quantity_names import K_GAMMA, MISSED, OPEN, REVERSED, columns_of
 from facegear.progress import Progress
 from facegear.scenarios.chunks import Evaluate, run_chunk
 from facegear.scenarios.sampling import Population, changes
-from facegear.stages.many_machines import WHOLE, Judge, Question, VariedMachine, judge
-from facegear.stages.tooth_meshes import Values
+from facegear.variants.machines import WHOLE, Judge, Question, VariedMachine, judge
+from facegear.variants.teeth import Values
 
 CHECKED = 8
 """Number of samples that are computed over the whole hunting cycle as well."""

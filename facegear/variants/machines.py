@@ -20,11 +20,12 @@ from facegear.dynamics.sweeps.plan import JumpRange
 from facegear.load_sharing.quantities import dynamic_quantities, quasi_static_quantities
 from facegear.load_sharing.quantity_names import JUMP_MARGIN, PEAK, quantity_names
 from facegear.scenarios.chunks import identity
-from facegear.stages.tooth_meshes import Flanks, Meshes, Values, stored_flanks, tooth_meshes
+from facegear.stiffness.tables import series_of, unloaded_error
 from facegear.transmission.layout import Layout
+from facegear.variants.teeth import Flanks, Meshes, ToothMesh, Values, numbers_of
 
 Judge = Callable[[Mapping[str, Any]], dict[str, float]]
-"""What a machine is judged by, by column name, given the values of `facegear.config.variants.variable_part`.
+"""What a machine is judged by, by column name, given the values of `facegear.config.changes.variable_part`.
 
 Raises the error that a config gets for a machine that cannot be built, NotConverged."""
 
@@ -88,6 +89,29 @@ class VariedMachine:
         """Text that differs whenever one of the parts or a value of the machine does."""
         plain = {one.name: getattr(self, one.name) for one in fields(self) if one.name != "flanks"}
         return identity(*parts, {**plain, "harmonics": self.harmonics.to_csv()})
+
+
+def tooth_meshes(harmonics: pd.DataFrame, pair: Values | None, flanks: Flanks) -> Meshes:
+    """One mesh for all, of `harmonics`; or by contact where `pair` holds the sections that it needs.
+
+    `pair`: tooth_pair, mesh, contact, mesh_stiffness; `flanks`: the compliance of its bodies by name.
+    """
+    if pair is not None:
+        from facegear.variants.contact import meshes_in_contact  # only contact needs finite elements
+
+        return meshes_in_contact(pair, flanks)
+    series, error = series_of(harmonics), unloaded_error(harmonics)
+    return lambda values: ToothMesh(numbers_of(values), series, error)
+
+
+def stored_flanks(arrays: Sequence[Arrays]) -> Flanks:
+    """From the arrays of the pinion and of the face gear, or from none where there is no contact."""
+    if not arrays:
+        return {}
+    from facegear.contact.gear_flank import from_arrays
+    from facegear.contact.nodal_loads import BODIES
+
+    return {body: from_arrays(one) for body, one in zip(BODIES, arrays, strict=True)}
 
 
 def judge(question: Question, meshes: Meshes, told: str) -> Judge:

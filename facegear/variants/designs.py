@@ -8,19 +8,19 @@ from typing import Any
 import numpy as np
 
 from facegear.config.base import parse
+from facegear.config.changes import movable, moved, placed, variable_part
 from facegear.config.checks import check_places
 from facegear.config.lumped_model import wired_layout
 from facegear.config.search import ObjectiveSection, Search, jump_range
 from facegear.config.tolerances import Tolerances, population
 from facegear.config.tooth_pair import ToothPair
 from facegear.config.transmission import Transmission
-from facegear.config.variants import movable, moved, placed, variable_part
 from facegear.dynamics.sweeps.plan import JumpRange
 from facegear.load_sharing.quantity_names import columns_of, of_jumps
 from facegear.scenarios.evolution import Task, Variable
 from facegear.scenarios.sampling import changes, samples
-from facegear.stages.many_machines import Question, VariedMachine, judge
-from facegear.stages.tooth_meshes import Values
+from facegear.variants.machines import Question, VariedMachine, judge
+from facegear.variants.teeth import Values
 
 Found = dict[str, float]
 

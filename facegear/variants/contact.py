@@ -5,23 +5,26 @@ from collections.abc import Callable
 from functools import lru_cache
 
 from facegear.config.base import parse
+from facegear.config.changes import GAPS, MODULI, without
 from facegear.config.checks import geometric_backlash
+from facegear.config.contact import Contact, contact_plan
 from facegear.config.contact_setup import contact_setup
 from facegear.config.lumped_model import ToothNumbers
-from facegear.config.tooth_pair import ToothPair, materials
-from facegear.config.variants import GAPS, MODULI, without
+from facegear.config.stiffness import MeshStiffness, stiffness_request
+from facegear.config.tooth_pair import ToothPair, materials, pair_design
+from facegear.contact.analysis import ContactAnalysis, contact_analysis
 from facegear.contact.gear_flank import GearFlank
 from facegear.contact.nodal_loads import BODIES
+from facegear.contact.pair import gear_flank
 from facegear.contact.resolution import check_resolution
-from facegear.stages.compliance import flank_of
-from facegear.stages.contact import contact_of
-from facegear.stages.root_stress import passing
-from facegear.stages.stiffness import stiffness
-from facegear.stages.tooth_meshes import Flanks, Meshes, ToothMesh, Values, numbers_of
 from facegear.stiffness.curve import load_table
+from facegear.stiffness.request import StiffnessRequest
+from facegear.stiffness.source import stiffness_from_contact
 from facegear.stiffness.tables import series_of, unloaded_error
 from facegear.strength.contact_pressure import contact_pressure
 from facegear.strength.pair_answers import PairAnswers
+from facegear.strength.passage import passing
+from facegear.variants.teeth import Flanks, Meshes, ToothMesh, Values, numbers_of
 
 KEPT = 16
 """Pairs that are remembered: samples of one block of Saltelli's design share theirs."""
@@ -32,6 +35,7 @@ KEPT_BODIES = 4
 def meshes_in_contact(pair: Values, flanks: Flanks) -> Meshes:
     """`pair`: sections tooth_pair, mesh, contact, mesh_stiffness; `flanks`: the compliance of its bodies."""
     backlash = geometric_backlash(parse(ToothPair, pair["tooth_pair"]))
+    plan, request = contact_plan(parse(Contact, pair["contact"])), _request(pair)
     bodies = _bodies(pair, flanks)
 
     @lru_cache(maxsize=KEPT)
@@ -40,27 +44,34 @@ def meshes_in_contact(pair: Values, flanks: Flanks) -> Meshes:
         section = parse(ToothPair, values, "this pair")
         added = geometric_backlash(section) - backlash
         both = bodies(values)
-        found = contact_of(*both, values, pair["contact"], every_flank=False).content
-        table = stiffness(pair["mesh_stiffness"], found["ltca"]).content["harmonics"]
+        found = contact_analysis(pair_design(section), materials(section), both, plan, every_flank=False)
+        table = stiffness_from_contact(found.ltca[0], request).harmonics
         numbers = numbers_of(values)
         return ToothMesh(
             numbers=numbers,
             stiffness=series_of(table),
             unloaded=unloaded_error(table),
             backlash_added=added,
-            answers=_answers(pair, found, dict(zip(BODIES, both, strict=True)), numbers),
+            answers=_answers(found, dict(zip(BODIES, both, strict=True)), numbers, request),
         )
 
     return lambda values: meshed(json.dumps(values, sort_keys=True))
 
 
-def _answers(pair: Values, found: Values, flanks: Flanks, numbers: ToothNumbers) -> PairAnswers:
-    torque, ltca = pair["mesh_stiffness"]["torque_n_m"], found["ltca"]
+def _request(pair: Values) -> StiffnessRequest:
+    return stiffness_request(parse(MeshStiffness, pair["mesh_stiffness"]))
+
+
+def _answers(
+    found: ContactAnalysis, flanks: Flanks, numbers: ToothNumbers, request: StiffnessRequest
+) -> PairAnswers:
+    assert request.torque is not None
+    torque, ltca = request.torque, found.ltca[0]
     unloaded = ltca[ltca["torque_n_m"] == ltca["torque_n_m"].min()].sort_values("position")["unloaded_ste_um"]
     approach = torque / numbers.pinion_base_radius / load_table(ltca).at(torque, "average")
     error = 1e-6 * unloaded.to_numpy(float) + approach
-    roots = {body: passing(body, flank, found["loads"]) for body, flank in flanks.items() if flank.gauges}
-    return PairAnswers(error, contact_pressure(found["by_torque"]), roots)
+    roots = {body: passing(body, flank, found.loads) for body, flank in flanks.items() if flank.gauges}
+    return PairAnswers(error, contact_pressure(found.by_torque[0]), roots)
 
 
 def _bodies(pair: Values, flanks: Flanks) -> Callable[[Values], tuple[GearFlank, GearFlank]]:
@@ -77,7 +88,10 @@ def _bodies(pair: Values, flanks: Flanks) -> Callable[[Values], tuple[GearFlank,
         if key not in known:
             setup = contact_setup(values, pair["mesh"], pair["contact"])
             check_resolution(setup.pair.design, setup.pair.materials, setup.sizes, setup.plan)
-            made = {body: flank_of(body, values, pair["mesh"], pair["contact"]) for body in BODIES}
+            made = {
+                body: gear_flank(setup.pair.design, body, setup.sizes, setup.pair.material(body), setup.plan)
+                for body in BODIES
+            }
             if len(known) > KEPT_BODIES:
                 known.pop(list(known)[1])
             known[key] = values, made
