@@ -5,14 +5,14 @@ import time
 from typing import TextIO
 
 SLOWER = 1.25
-"""The time left is told to have risen only by more than this factor."""
+"""The printed time left rises only when the estimate has grown by more than this factor."""
 
 
 class Progress:
     """Print `label: done/total, about N s left` every `interval` seconds.
 
     The pace leaves out the first step, in which code is compiled; until a second one nothing is estimated.
-    The end that is told follows the pace half way from line to line. The stream is standard error, which a
+    The printed end follows the pace half way from line to line. The stream is standard error, which a
     workflow stage also copies to its log.
     """
 

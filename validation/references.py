@@ -30,7 +30,7 @@ class Kind(StrEnum):
 INDEPENDENT = tuple(kind for kind in Kind if kind is not Kind.CONVERGENCE)
 DECLARED = ("kind", "source", "capability", "module")
 """Columns that a test declares in its decorator `against`."""
-EQUAL, AT_LEAST = "equal", "at least"
+EQUAL, NO_LESS = "equal", "at least"
 """Relations of a computed value to the expected one."""
 COLUMNS = (
     *("capability", "quantity", "kind", "source", "relation", "expected", "computed", "error", "tolerance"),
@@ -65,7 +65,11 @@ class Declaration:
 def declarations(root: Path = ROOT) -> dict[str, Declaration]:
     """All tests of the repository that compare with a reference, by name, read from their source."""
     files = [file for folder in TESTS for file in sorted((root / folder).rglob("test_*.py"))]
-    return {one.test: one for file in files for one in _declared_in(file, file.relative_to(root).as_posix())}
+    return {
+        declaration.test: declaration
+        for file in files
+        for declaration in _declared_in(file, file.relative_to(root).as_posix())
+    }
 
 
 def _declared_in(file: Path, name: str) -> Iterator[Declaration]:

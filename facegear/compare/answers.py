@@ -14,7 +14,7 @@ from facegear.io import documents
 from facegear.io.atomic import atomic_path
 from facegear.io.checksums import MANIFEST_SUFFIX
 
-MOST_BYTES = 60_000
+MAX_BYTES = 60_000
 """A table larger than this is a history, and not stored with a release."""
 SAME_DATE = (2000, 1, 1, 0, 0, 0)
 
@@ -40,7 +40,7 @@ def store(folder: Path, path: Path) -> None:
     same bytes. What was on the machine that made them is left out.
     """
     all_names = sorted(answer_tables(folder))
-    names = [name for name in all_names if (folder / name).stat().st_size <= MOST_BYTES]
+    names = [name for name in all_names if (folder / name).stat().st_size <= MAX_BYTES]
     manifests = {near for name in names for near in (folder / name).parent.glob(f"*{MANIFEST_SUFFIX}")}
     texts = {name: (folder / name).read_text(encoding="utf-8") for name in names}
     texts |= {manifest.relative_to(folder).as_posix(): _short(manifest) for manifest in manifests}

@@ -37,12 +37,13 @@ class RunoutSection(Section):
 
 
 DIAMETRAL = (
-    "play from side to side, as catalogues give it (radial internal clearance, ISO 5753): twice clearance_um"
+    "clearance from side to side, as catalogues give it (radial internal clearance, ISO 5753): "
+    "twice clearance_um"
 )
 
 
 def _play(one_side: float | None, diametral: float | None) -> float | None:
-    """Play of a bearing to each side of its centre, um."""
+    """Clearance of a bearing to each side of its centre, um."""
     return one_side if diametral is None else 0.5 * diametral
 
 
@@ -64,14 +65,14 @@ class PinionBody(Section):
         description="for mesh_kinematics printed; null: module * teeth / 2 * cos(pressure angle)",
     )
     clearance_um: float = Field(
-        0.0, ge=0, le=1e4, description="play of the bearings to each side of their centre"
+        0.0, ge=0, le=1e4, description="clearance of the bearings to each side of their centre"
     )
     clearance_diametral_um: float | None = Field(None, ge=0, le=2e4, description=DIAMETRAL)
     runout: RunoutSection | None = None
 
     @property
     def play_um(self) -> float:
-        """Play of the bearings to each side of their centre."""
+        """Clearance of the bearings to each side of their centre."""
         return _play(self.clearance_um, self.clearance_diametral_um) or 0.0
 
     @model_validator(mode="after")
@@ -140,7 +141,7 @@ class SinglePinion(Section):
 
     @property
     def play_um(self) -> float | None:
-        """Play of the bearings to each side of their centre; null: that of all pinions."""
+        """Clearance of the bearings to each side of their centre; null: that of all pinions."""
         return _play(self.clearance_um, self.clearance_diametral_um)
 
     @model_validator(mode="after")

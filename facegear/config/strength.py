@@ -167,6 +167,6 @@ def rating_request(
         },
         duty=flanks,
         time=sum(one.time for one in duty),
-        least_bending=section.least_bending_safety,
-        least_pitting=section.least_pitting_safety,
+        min_bending=section.least_bending_safety,
+        min_pitting=section.least_pitting_safety,
     )

@@ -51,25 +51,25 @@ def contact_analysis(
     different, numbers = distinct_errors(design.assembly)
     if not every_flank:
         different, numbers = different[:1], np.zeros_like(numbers)
-    models = [model.assembled(one) for one in different]
-    solved = [_solved(one, materials, plan) for one in models]
-    tables = [ltca_table(*one) for one in solved]
+    models = [model.assembled(result) for result in different]
+    solved = [_solved(result, materials, plan) for result in models]
+    tables = [ltca_table(*result) for result in solved]
     pressures = [
-        pressure_arrays(one, each.flanks.pinion, pressure)
-        for each, (one, pressure) in zip(models, solved, strict=True)
+        pressure_arrays(result, each.flanks.pinion, pressure)
+        for each, (result, pressure) in zip(models, solved, strict=True)
     ]
-    summaries = [by_torque(*one) for one in zip(tables, pressures, strict=True)]
+    summaries = [by_torque(*result) for result in zip(tables, pressures, strict=True)]
     return ContactAnalysis(
         ltca=tables,
         pressure=pressures,
         by_torque=summaries,
         by_flank=by_flank(summaries, different, numbers),
-        loads=load_arrays([one for one, _ in solved], numbers),
+        loads=load_arrays([result for result, _ in solved], numbers),
     )
 
 
 def _solved(
     model: ContactModel, materials: tuple[Material, Material], plan: ContactPlan
 ) -> tuple[list[LoadedPosition], FlankPressure]:
-    found = loaded_contact(model, even_positions(plan.positions), plan.torques, plan.options)
-    return found, flank_pressure(found, model.flanks, materials)
+    results = loaded_contact(model, even_positions(plan.positions), plan.torques, plan.options)
+    return results, flank_pressure(results, model.flanks, materials)

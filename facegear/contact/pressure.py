@@ -34,8 +34,8 @@ WIDER = np.array([1.0, 2.0, 2.0, 2.0, 1.0]) / 8
 
 SHORT = 11
 """Loaded planes up to which a contact counts as a short ellipse."""
-LEAST_SPREAD = 0.02
-"""Variance of a load along the face, in squares of the planes' distance, below which it is not told."""
+MIN_SPREAD = 0.02
+"""Variance of a load along the face, in squares of the planes' distance, below which it is not given."""
 
 NEIGHBOURHOOD = 5
 """Planes among which the largest difference is taken, as it may vanish at one by chance."""
@@ -171,7 +171,7 @@ def _peak_if_short(force: Array, y: Array) -> float:
         return 0.0
     middle = force @ y / total
     spread = force @ (y - middle) ** 2 / total - step**2 / 6.0
-    return float(0.75 * total / np.sqrt(5.0 * max(spread, LEAST_SPREAD * step**2)))
+    return float(0.75 * total / np.sqrt(5.0 * max(spread, MIN_SPREAD * step**2)))
 
 
 def _owners(face: Array, step: float) -> Integers:

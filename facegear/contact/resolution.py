@@ -13,7 +13,7 @@ COARSEST = 1.5
 """Node distance over the strip's half-width that is still let through: one or two nodes in contact."""
 PLANES = 4.0
 """Planes of nodes in the half-length of a contact ellipse, with which its pressure errs by some 3 %."""
-MOST_CUTS = 16
+MAX_CUTS = 16
 """Along the face, of the elements under the flank."""
 ROUNDING = 1e-9
 DEEPEST = 2.0
@@ -109,8 +109,8 @@ def along_the_ellipse(
     torque = min(plan.torques)
     half = ellipse_half_length(design, materials, torque)
     cuts = max(plan.refinement.width, ceil(PLANES * sizes.width / 2.0 / half - ROUNDING))
-    if cuts > MOST_CUTS:
-        needed = 2e3 * MOST_CUTS * half / PLANES
+    if cuts > MAX_CUTS:
+        needed = 2e3 * MAX_CUTS * half / PLANES
         raise ConfigError(
             "mesh.resolution",
             f"{1e3 * sizes.width:.3g} mm along the face",

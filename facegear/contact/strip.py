@@ -15,11 +15,11 @@ from facegear.arrays import Array, Mask
 from facegear.contact.candidates import Candidates
 from facegear.contact.solver import TOLERANCE, ContactSolution, solve_contact
 
-LOWEST, BAND = 0.8, 0.2
+GAP, BAND = 0.8, 0.2
 """Parts of the rigid approach within which contact is sought: the least gap of a column of hats (the bodies
 give way by the rest) and, above that, the gap of the others in it (the strip's half-width)."""
 
-START_LOWEST, START_BAND = 0.6, 0.09
+START_GAP, START_WIDTH = 0.6, 0.09
 """The same parts for the first guess of what touches."""
 
 
@@ -83,7 +83,7 @@ def solve_torques(
         np.concatenate([getattr(pair, name) for pair in pairs]) for name in ("gap", "lever_arm")
     )
     turns = _turns(pairs)
-    keep = turns.within(LOWEST * limit, BAND * limit) if bodies.in_strip else np.ones(len(gap), dtype=bool)
+    keep = turns.within(GAP * limit, BAND * limit) if bodies.in_strip else np.ones(len(gap), dtype=bool)
     if not (keep & (lever_arm > 0)).any():
         keep[:] = True
     while True:
@@ -94,7 +94,7 @@ def solve_torques(
         for torque in torques:
             if contacts:
                 turn = contacts[-1].rotation * torque / contacts[-1].torque
-            start = turns.within(START_LOWEST * turn, START_BAND * turn)[keep]
+            start = turns.within(START_GAP * turn, START_WIDTH * turn)[keep]
             contacts.append(solve_contact(matrix, gap[keep], lever_arm[keep], torque, start, where(torque)))
             if contacts[0].rotation > limit:
                 break

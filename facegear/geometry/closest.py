@@ -15,7 +15,7 @@ PAIRS = np.arange(-2, 3)
 """Tooth numbers looked at: at phi1 within half a pitch of zero no other pair can touch."""
 
 _GRID = np.array([(a, b) for a in np.linspace(-1, 1, 5) for b in np.linspace(-1, 1, 5)])
-_SHRINK, _MOST = 0.55, 60
+_SHRINK, _MAX_STEPS = 0.55, 60
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ def _search(
     width = np.tile(size, (len(roll), 1))
     gap, roll, y = np.full(len(roll), np.inf), roll.copy(), y.copy()
     active = np.arange(len(roll))
-    for _ in range(_MOST):
+    for _ in range(_MAX_STEPS):
         w = width[active]
         lean = _contact_line(design, roll[active], y[active])
         across, along = _GRID[:, 0] * w[:, :1], _GRID[:, 1] * w[:, 1:]

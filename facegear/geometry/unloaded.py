@@ -13,7 +13,7 @@ from facegear.geometry.placement import conjugate_angle
 
 TOLERANCE = 1e-11
 """Largest gap (m) left where the flanks touch."""
-MOST_TURNS = 100
+MAX_TURNS = 100
 """Turns of the gear; where an edge touches each may leave half of the gap."""
 
 
@@ -55,7 +55,7 @@ def unloaded_contact(design: PairDesign, phi1: ArrayLike) -> UnloadedContact:
     phi2 = conjugate + moved / design.gear_base_radius
     nearest = closest(design, phi1, phi2)
     unseen = np.zeros(len(phi1))
-    for _ in range(MOST_TURNS):
+    for _ in range(MAX_TURNS):
         smallest = nearest.gap.min(axis=1)
         if not np.all(np.isfinite(smallest)):
             where = f"phi1 = {phi1[~np.isfinite(smallest)][0]:.6f} rad"
@@ -80,6 +80,4 @@ def unloaded_contact(design: PairDesign, phi1: ArrayLike) -> UnloadedContact:
         turned = replace(nearest, gap=nearest.gap - smallest[:, None])
         nearest, unseen = closest(design, phi1, phi2, turned, margin=5e-6), unseen + smallest
     residual = np.max(np.abs(nearest.gap.min(axis=1)))
-    raise NotConverged(
-        "unloaded contact", f"residual gap {residual:.1e} m", f"{MOST_TURNS} turns of the gear"
-    )
+    raise NotConverged("unloaded contact", f"residual gap {residual:.1e} m", f"{MAX_TURNS} turns of the gear")

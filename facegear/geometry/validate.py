@@ -12,7 +12,7 @@ from facegear.geometry.design import PairDesign, Relief
 from facegear.geometry.limits import THINNEST_LAND, RadiusLimits, face_range, radius_limits
 from facegear.geometry.roots import root
 
-MOST_RELIEF = 0.05
+MAX_RELIEF = 0.05
 """Largest relief or crowning, in modules: some three times what the heaviest load asks for."""
 NARROWEST = 0.5
 """Narrowest pinion over the gear's face."""
@@ -96,8 +96,8 @@ def _check_relief(design: PairDesign) -> None:
         ("root_relief", part.root_relief, flank),
         ("lead_crowning", part.lead_crowning, inf),
     ):
-        _check_modification(name, relief, room, MOST_RELIEF * design.module)
-    _check_crowning_at_end(part.lead_crowning, part.width / 2, MOST_RELIEF * design.module)
+        _check_modification(name, relief, room, MAX_RELIEF * design.module)
+    _check_crowning_at_end(part.lead_crowning, part.width / 2, MAX_RELIEF * design.module)
 
 
 def _check_crowning_at_end(crowning: Relief, half_width: float, max_relief: float) -> None:
@@ -110,7 +110,7 @@ def _check_crowning_at_end(crowning: Relief, half_width: float, max_relief: floa
         min_length = beyond * sqrt(crowning.amount / max_relief)
         allowed = (
             f"at least {1e3 * min_length:.4g}: the parabola would take {1e6 * at_end:.0f} um off the ends "
-            f"of the pinion's face, and at most {1e6 * max_relief:.1f}, {MOST_RELIEF:g} modules, may come off"
+            f"of the pinion's face, and at most {1e6 * max_relief:.1f}, {MAX_RELIEF:g} modules, may come off"
         )
         _refuse("pinion.lead_crowning.length_mm", 1e3 * crowning.length, allowed)
 
@@ -119,7 +119,7 @@ def _check_modification(name: str, relief: Relief, room: float, max_relief: floa
     if relief.amount == 0:
         return
     if relief.amount > max_relief:
-        allowed = f"at most {1e6 * max_relief:.1f}, {MOST_RELIEF:g} modules"
+        allowed = f"at most {1e6 * max_relief:.1f}, {MAX_RELIEF:g} modules"
         _refuse(f"pinion.{name}.amount_um", 1e6 * relief.amount, allowed)
     if relief.length <= 0:
         _refuse(f"pinion.{name}.length_mm", 1e3 * relief.length, "greater than 0 where an amount is given")

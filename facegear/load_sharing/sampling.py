@@ -9,7 +9,7 @@ from facegear.dynamics.motion import Motion
 from facegear.dynamics.steady_state.mesh_samples import by_mesh, each_deflection
 from facegear.dynamics.steady_state.simulate import SteadyState
 
-DENSE, MOST = 2048, 16_384
+DENSE, MAX_SAMPLES_OF_RUN = 2048, 16_384
 """Samples of a mesh cycle, and of a period of many cycles."""
 SAME = 1e-5
 """Distance over the length scale, in mesh deflections, within which two places are one."""
@@ -23,7 +23,7 @@ def densely_sampled(response: SteadyState) -> SteadyState:
     """
     if response.motion is not Motion.PERIODIC:
         return response
-    factor = min(DENSE // response.per_period, MOST // len(response.coordinates))
+    factor = min(DENSE // response.per_period, MAX_SAMPLES_OF_RUN // len(response.coordinates))
     if factor < 2:
         return response
     coordinates, per_period = between(response.coordinates, factor), factor * response.per_period

@@ -43,10 +43,10 @@ def sensitivities(base: HuntingCycle) -> pd.DataFrame:
     base = _coarser(base)
     machine, rows, hard = base.machine, [], _may_be_hardest(base)
     for name, low, high, width in _changes(machine):
-        changed = [replace(machine, imperfections=one) for one in (low, high)]
+        changed = [replace(machine, imperfections=shifted) for shifted in (low, high)]
         # The base repeats itself through a longer hunting cycle.
         hardest = np.flatnonzero(np.tile(hard, max(map(hunting_length, changed)) // hard.size))
-        ends = [at_cycles(one, hardest, base.positions) for one in changed]
+        ends = [at_cycles(shifted, hardest, base.positions) for shifted in changed]
         for group in base.groups:
             before, after = (largest(run.path_factors(group)) for run in ends)
             rows.append((name, group.name, 1e-6 * (after - before) / width))

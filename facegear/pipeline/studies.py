@@ -42,10 +42,10 @@ def names(case: Case) -> list[str]:
 
 def sharing_figures(case: Case) -> list[str]:
     """A figure a study and kind of group."""
-    return [f"study_{name}_{kind}" for name in names(case) for kind in kinds(case)]
+    return [f"study_{name}_{kind}" for name in names(case) for kind in kinds_of_groups(case)]
 
 
-def kinds(case: Case) -> list[str]:
+def kinds_of_groups(case: Case) -> list[str]:
     """Kinds of groups that share a load; none without a machine."""
     return group_kinds(case.values) if asked.machine(case) else []
 

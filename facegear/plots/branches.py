@@ -15,7 +15,7 @@ from facegear.plots.style import styled
 from facegear.plots.sweep import select
 
 PERIOD_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
-"""Okabe and Ito's colours, told apart by the colour-blind; of period 1, 2, 4 and any other."""
+"""Okabe and Ito's colours, which the colour-blind can distinguish; of period 1, 2, 4 and any other."""
 NAMED = (1, 2, 4)
 MARKERS = {
     "fold": ("^", "black"),

@@ -21,7 +21,7 @@ HALF_FACE = 0.06
 
 LABEL = 1.16
 """Where the pinions' labels begin, over the mesh radius."""
-REACH, LOWEST, TITLE = 2.0, 1.75, 1.8
+REACH, BELOW, TITLE = 2.0, 1.75, 1.8
 """What a panel shows beside and below the gear, and where its title stands, over the mesh radius."""
 LETTERS = 13
 """Letters of a pinion's name in one line."""
@@ -90,7 +90,7 @@ def _panel(
     title = f"{gear.name.capitalize()}, seen from above\n{axial}"
     axis.text(0.0, TITLE * radius, title, ha="center", va="bottom", fontsize=10)
     axis.set(xlim=(-REACH * radius, REACH * radius), aspect="equal")
-    axis.set_ylim(-LOWEST * radius, (2.0 * REACH - LOWEST) * radius)
+    axis.set_ylim(-BELOW * radius, (2.0 * REACH - BELOW) * radius)
     axis.text(0.0, 0.3 * radius, f"mesh radius\n{1e3 * radius:.1f} mm", ha="center", va="center", fontsize=9)
     axis.set_axis_off()
 

@@ -237,7 +237,7 @@
       root.querySelector("output").textContent =
         `Position ${position.toFixed(3)} of a pitch. ${pairs}. Transmission error ${found.error_um[index].toFixed(2)} µm.`;
       root.querySelector(".most").textContent = `${found.largest[quantity().key].toFixed(0)} ${quantity().unit}`;
-      root.querySelector("p.quantity").textContent = quantity().told;
+      root.querySelector("p.quantity").textContent = quantity().help;
     }
 
     function redraw() {

@@ -25,13 +25,13 @@ QUANTITIES = (
         "key": "pressure",
         "name": "pressure",
         "unit": "MPa",
-        "told": "Largest pressure across each line of contact; grey where an edge carries the load",
+        "help": "Largest pressure across each line of contact; grey where an edge carries the load",
     },
     {
         "key": "load",
         "name": "load",
         "unit": "N/mm",
-        "told": "Load per millimetre of face width, edges included",
+        "help": "Load per millimetre of face width, edges included",
     },
 )
 """What the colours may show."""
@@ -39,7 +39,7 @@ ROOT_STRESS = {
     "key": "root_stress",
     "name": "root stress",
     "unit": "MPa",
-    "told": "Tension down the fillets; grey where they are pressed",
+    "help": "Tension down the fillets; grey where they are pressed",
 }
 """What they show as well where root stress was computed."""
 

@@ -37,7 +37,7 @@ def percentile(values: Array, probability: float, confidence: float = 0.95) -> E
     )
 
 
-def share(hits: Mask, confidence: float = 0.95) -> Estimate:
+def fraction_of(hits: Mask, confidence: float = 0.95) -> Estimate:
     """Share of samples for which something holds, with Wilson's interval."""
     count, counts = hits.size, int(hits.sum())
     interval = scipy.stats.binomtest(counts, count).proportion_ci(confidence, method="wilson")

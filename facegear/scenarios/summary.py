@@ -7,7 +7,7 @@ import pandas as pd
 import scipy.stats
 
 from facegear.scenarios.chunks import ERROR, SAMPLE
-from facegear.scenarios.statistics import Estimate, percentile, share, sobol_indices
+from facegear.scenarios.statistics import Estimate, fraction_of, percentile, sobol_indices
 
 PERCENTILES = (0.5, 0.95, 0.99)
 INDEX_COLUMNS = (
@@ -54,7 +54,7 @@ def share_table(samples: pd.DataFrame, shares: dict[str, str], confidence: float
     failed = samples[ERROR].to_numpy() != ""
     rows = [("cannot be built or computed", failed)]
     rows += [(label, samples.loc[~failed, name].to_numpy(float) > 0.0) for name, label in shares.items()]
-    fractions = [(label, share(hits, confidence), hits.size) for label, hits in rows if hits.size]
+    fractions = [(label, fraction_of(hits, confidence), hits.size) for label, hits in rows if hits.size]
     return pd.DataFrame(
         [(label, fraction.value, fraction.low, fraction.high, size) for label, fraction, size in fractions],
         columns=["what", "share", "low", "high", "samples"],

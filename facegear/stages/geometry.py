@@ -9,7 +9,7 @@ from facegear.errors import FacegearError
 from facegear.geometry.analysis import PairAnalysis, analyse
 from facegear.geometry.document import contact_arrays, flank_arrays, pair_record
 from facegear.geometry.easeoff import ease_off
-from facegear.geometry.play import Jam, jam
+from facegear.geometry.jam import Jam, jam
 from facegear.stages.outcome import Outcome
 
 EASE_OFF_GRID = (37, 29)

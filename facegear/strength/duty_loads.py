@@ -51,10 +51,10 @@ def history_of(machine: Machine, speed_rpm: float, known: Settings) -> History:
         kept = run.memory <= FORGOTTEN
         forces = run.flank_forces.reshape(-1, POSITIONS, flanks)
         return History(layout, even, forces, True, "followed" if kept else "depends on its past", kept)
-    found = simulate(model, speed_rpm, known)
-    both = np.concatenate([np.maximum(found.forces, 0.0), np.maximum(-found.forces, 0.0)], axis=1)
-    forces = both.reshape(found.periods, found.per_period, flanks)
-    return History(layout, even, forces, False, found.label, found.motion is not Motion.NOT_SETTLED)
+    response = simulate(model, speed_rpm, known)
+    both = np.concatenate([np.maximum(response.forces, 0.0), np.maximum(-response.forces, 0.0)], axis=1)
+    forces = both.reshape(response.periods, response.per_period, flanks)
+    return History(layout, even, forces, False, response.label, response.motion is not Motion.NOT_SETTLED)
 
 
 def load_rows(history: History) -> Iterator[tuple[Any, ...]]:
@@ -67,11 +67,11 @@ def load_rows(history: History) -> Iterator[tuple[Any, ...]]:
     means = history.forces.mean(axis=1)
     for flank in np.flatnonzero(largest > NO_LOAD * largest.max()):
         side, mesh = divmod(int(flank), len(layout.meshes))
-        most = float(means[:, flank].max())
+        max_force = float(means[:, flank].max())
         yield (
             *(layout.mesh_names[mesh], FLANKS[side]),
             *(float(means[:, flank].mean()), float(largest[flank])),
-            *(most / history.even_shares[mesh], float(largest[flank]) / most),
+            *(max_force / history.even_shares[mesh], float(largest[flank]) / max_force),
             *(history.motion, history.settled),
         )
 
@@ -92,6 +92,6 @@ def spectrum_rows(history: History) -> Iterator[tuple[Any, ...]]:
             mine = passages[:, [side * len(layout.meshes) + mesh for mesh in own]]
             forces = hardest_tooth(mine, numbers) if history.turning else list(mine.T)
             for mesh, force in zip(own, forces, strict=True):
-                for share, level in classes(force):
+                for fraction, level in classes(force):
                     if level > floor:
-                        yield name, gear, flank, layout.mesh_names[mesh], share, level
+                        yield name, gear, flank, layout.mesh_names[mesh], fraction, level

@@ -59,8 +59,8 @@ class RatingRequest:
     bodies: Mapping[str, RatedBody]
     duty: tuple[FlankDuty, ...]
     time: float
-    least_bending: float
-    least_pitting: float
+    min_bending: float
+    min_pitting: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,7 +171,7 @@ def _rated(
         limit=limits.life,
         damage=harm,
         safety=safety(by_load, duty.cycles, allowed, limits.life),
-        required=request.least_bending if failure == "bending" else request.least_pitting,
+        required=request.min_bending if failure == "bending" else request.min_pitting,
         life=request.time / total if total > 0.0 else np.inf,
         reliability=reliability(total, limits.weibull_shape),
         has_shape=limits.weibull_shape is not None,

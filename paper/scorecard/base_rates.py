@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array
-from facegear.scenarios.statistics import share
+from facegear.scenarios.statistics import fraction_of
 from paper.scorecard.claims import Claim
 
 CONFIDENCE = 0.95
@@ -46,7 +46,7 @@ def base_rates(samples: pd.DataFrame, claims: Iterable[Claim]) -> pd.DataFrame:
     rows, judged = [], sound(samples)
     for claim in claims:
         held = judged[claim.id].to_numpy(bool)
-        fraction = share(held, CONFIDENCE)
+        fraction = fraction_of(held, CONFIDENCE)
         rows.append((claim.id, held.size, int(held.sum()), fraction.value, fraction.low, fraction.high))
     return pd.DataFrame(rows, columns=list(RATE_COLUMNS))
 

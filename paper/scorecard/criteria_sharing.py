@@ -16,7 +16,7 @@ BOUNDS = {"inputs": 2.0, "idlers": 3.0}
 Point = str | float
 FLAT_SLOPE = 0.1
 FLAT_SHARE = 0.05
-MOST_UNDEFINED = 0.5
+MAX_UNDEFINED = 0.5
 """A curve that is drawn over the whole cycle is not judged where this share of it or more is undefined: no
 mesh of the group carries load there.
 """
@@ -32,7 +32,7 @@ def sharing(
     """
     undefined = _value(tables, kind, "undefined_share", study, point)
     value = _value(tables, kind, column, study, point)
-    if undefined >= MOST_UNDEFINED:
+    if undefined >= MAX_UNDEFINED:
         return ClaimOutcome(None, f"{value:.4g}, but undefined for {100 * undefined:.0f} % of the cycle")
     if column != "mean":
         return number(value, 4)
@@ -65,7 +65,7 @@ def flat_region(tables: Tables, study: str, point: Point, kind: str) -> ClaimOut
     """
     curve = _curve(tables, study, point, kind)
     undefined = float(np.isnan(curve).mean())
-    if undefined >= MOST_UNDEFINED:
+    if undefined >= MAX_UNDEFINED:
         return statement(False, f"undefined for {100 * undefined:.0f} % of the cycle")
     fraction = _flat_share(curve, BOUNDS[kind] * (1.0 - NEARLY_ONE_CARRIER))
     return statement(fraction >= FLAT_SHARE, f"flat for {100 * fraction:.0f} % of the cycle")
@@ -79,7 +79,7 @@ def orders(
     return statement(bool((np.diff(values) > margin).all()), _listed(points, values))
 
 
-def lowest_at(tables: Tables, study: str, kind: str, point: Point, column: str = "mean") -> ClaimOutcome:
+def minimum_at(tables: Tables, study: str, kind: str, point: Point, column: str = "mean") -> ClaimOutcome:
     """Among all points of the study the column is lowest at the named one; points without a value do not
     count, and the named one must have one.
     """
@@ -161,7 +161,7 @@ def _slope(curve: np.ndarray) -> np.ndarray:
 def _steepness(curve: np.ndarray) -> float:
     """RMS slope over the defined instants; NaN where half the cycle or more is undefined."""
     slope = _slope(curve)
-    if np.isnan(curve).mean() >= MOST_UNDEFINED:
+    if np.isnan(curve).mean() >= MAX_UNDEFINED:
         return float("nan")
     return float(np.sqrt(np.nanmean(slope**2)))
 

@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from validation.references import AT_LEAST, EQUAL, ROOT, Kind, declarations, merged, read, write
+from validation.references import EQUAL, NO_LESS, ROOT, Kind, declarations, merged, read, write
 
 ROWS = "reference"
 """Name of the rows in what a worker of xdist reports of a test."""
@@ -53,7 +53,7 @@ def agrees(
     assert error[worst] <= allowed[worst], f"{quantity}: {shown}"
     if quantity not in _rows or parts[worst] > float(_rows[quantity]["part"]):
         _rows[quantity] = {
-            "relation": AT_LEAST if at_least else EQUAL,
+            "relation": NO_LESS if at_least else EQUAL,
             "expected": float(references[worst]),
             "computed": float(values[worst]),
             "error": float(f"{error[worst]:.3g}"),

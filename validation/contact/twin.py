@@ -2,7 +2,7 @@
 
 The pinion is as in `facegear.geometry.design`, its axis the y axis; the gear is a second pinion body turned
 by half a turn below it, so that both touch with their right sides. Involute flanks only; at any centre
-distance the gear is turned until its play is closed on that side.
+distance the gear is turned until its backlash is closed on that side.
 """
 
 from dataclasses import dataclass, replace
@@ -153,7 +153,7 @@ def involute_separation(
     """Gap (n,) m along the normals of pinion points (n, 3), and the gear's roll there (nan: no flank)."""
     teeth, other = model_pinion.pinion.teeth, model_gear.pinion.teeth
     turn = phi1 + (tooth - 0.5) * 2 * pi / teeth
-    back = phi1 * teeth / other + tooth * 2 * pi / other - _play(model_pinion, model_gear, centre)
+    back = phi1 * teeth / other + tooth * 2 * pi / other - _rotary_backlash(model_pinion, model_gear, centre)
     start, along = turned(points[:, [0, 2]], turn), turned(normals[:, [0, 2]], turn)
     start, along = (turned(-vector, back) for vector in (start + np.array([0.0, centre]), along))
     low, high = pinion.junction_roll(model_gear), model_gear.pinion_tip_roll
@@ -182,7 +182,7 @@ def standard_centre(first: PairDesign, second: PairDesign) -> float:
     return first.pinion_pitch_radius + second.pinion_pitch_radius
 
 
-def _play(first: PairDesign, second: PairDesign, centre: float) -> float:
+def _rotary_backlash(first: PairDesign, second: PairDesign, centre: float) -> float:
     """Turn (rad) of the second gear that closes the gap between the flanks of centred teeth and spaces."""
     base, other = first.pinion_base_radius, second.pinion_base_radius
     lost = involute(acos((base + other) / centre))

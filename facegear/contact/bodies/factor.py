@@ -65,7 +65,7 @@ def solve_sparse(matrix: sp.csr_matrix, rhs: Array) -> Array:
 
 
 def _pardiso() -> "PyPardisoSolver":
-    """A solver, told where MKL is: left alone, each looks through the whole environment, for a second."""
+    """A solver that knows where MKL is. Without it, each takes a second to look for it."""
     library = _mkl()
     if library:
         os.environ.setdefault("PYPARDISO_MKL_RT", library)

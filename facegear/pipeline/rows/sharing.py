@@ -42,7 +42,7 @@ ROWS = (
                 "captions": Computed(
                     studies.captions, ("studies", "tooth_pair", "transmission", "mesh_stiffness")
                 ),
-                "kinds": Computed(studies.kinds, ("transmission", "tooth_pair")),
+                "groups": Computed(studies.kinds_of_groups, ("transmission", "tooth_pair")),
             },
         ),
         asked=asked.shares_load,

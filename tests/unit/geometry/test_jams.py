@@ -7,7 +7,7 @@ import pytest
 
 from facegear.errors import FacegearError
 from facegear.geometry.analysis import analyse
-from facegear.geometry.play import jam
+from facegear.geometry.jam import jam
 from facegear.stages.geometry import geometry
 
 DEEP = {"shaper_teeth": 24, "rack_tip_radius": 0.25}

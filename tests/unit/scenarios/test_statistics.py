@@ -7,7 +7,7 @@ import scipy.stats
 from facegear.scenarios.distributions import Distribution, Shape
 from facegear.scenarios.inverse import HALVINGS, loosest
 from facegear.scenarios.sampling import Cause, Population, index_samples, samples
-from facegear.scenarios.statistics import percentile, share, sobol_indices
+from facegear.scenarios.statistics import fraction_of, percentile, sobol_indices
 from validation.scenarios.errors import statistics_errors
 
 SPREADS = np.array([3.0, 2.0, 1.0])
@@ -69,7 +69,7 @@ def test_interval_of_a_percentile_covers_it_as_often_as_stated():
 
 
 def test_share_comes_with_an_interval_that_never_leaves_zero_to_one():
-    none = share(np.zeros(50, dtype=bool))
+    none = fraction_of(np.zeros(50, dtype=bool))
     assert (none.value, none.low) == (0.0, 0.0)
     assert 0.0 < none.high < 0.12
 

@@ -39,8 +39,8 @@ def request(*duty, both_ways=False, card=CARD):
         {"pinion": body, "face_gear": body},
         tuple(given_duty(gear, duty, often, both_ways) for gear, often in turns.items()),
         time=sum(one.time for one in duty),
-        least_bending=1.4,
-        least_pitting=1.0,
+        min_bending=1.4,
+        min_pitting=1.0,
     )
 
 
