@@ -367,7 +367,7 @@ class Gearbox:
         with extras_named():
             from facegear.stages.cad import export
 
-            return export(path, body, teeth, self._values["tooth_pair"])
+            return export(path, body, teeth, self.config.tooth_pair)
 
     def tolerances(self, samples: int | None = None) -> "TolerancesResult":
         """Percentiles, shares and Sobol indices of the machine with its tolerances, in one process.

@@ -3,7 +3,8 @@
 import difflib
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, NoReturn, TypeVar, get_args
+from contextvars import ContextVar
+from typing import Any, NoReturn, Self, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
@@ -16,6 +17,18 @@ class Section(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
+    @classmethod
+    def of_config(cls, values: Mapping[str, Any]) -> Self:
+        """The section from its plain values in a config that was validated: its checks are not repeated."""
+        token = _VALIDATED.set(True)
+        try:
+            return cls.model_validate_json(json.dumps(values))
+        finally:
+            _VALIDATED.reset(token)
+
+
+_VALIDATED = ContextVar("validated", default=False)
+"""Whether values are typed again that were validated with the whole config."""
 
 SectionType = TypeVar("SectionType", bound=Section)
 
@@ -34,7 +47,7 @@ def require_all(*checks: Callable[[], None]) -> None:
     A check calls `refuse` or raises ConfigError with a key relative to the section that is validated.
     """
     refused: list[tuple[str, object, str]] = []
-    for check in checks:
+    for check in () if _VALIDATED.get() else checks:
         try:
             check()
         except ConfigError as error:

@@ -1,11 +1,10 @@
 """Config section `branches`: which motions exist over the speed, where they end, how far a jump is."""
 
-from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import Field, model_validator
 
-from facegear.config.base import Section, parse, refuse
+from facegear.config.base import Section, refuse
 from facegear.config.dynamics import MAX_SPEED_RPM
 from facegear.dynamics.branches.plan import BranchPlan
 
@@ -63,13 +62,9 @@ class Branches(Section):
         return self
 
 
-def read_branch_plan(section: Mapping[str, Any] | None, nominal_rpm: float) -> BranchPlan:
-    """The plan of a config's plain section, of its defaults if there is none."""
-    return branch_plan(parse(Branches, section or {}), nominal_rpm)
-
-
-def branch_plan(section: Branches, nominal_rpm: float) -> BranchPlan:
-    """What the stage does, in SI units but for speeds in rpm."""
+def branch_plan(section: Branches | None, nominal_rpm: float) -> BranchPlan:
+    """What the stage does, by the section's defaults without one; in SI units but for speeds in rpm."""
+    section = section or Branches()
     return BranchPlan(
         from_rpm=section.from_rpm,
         to_rpm=section.to_rpm,

@@ -18,7 +18,7 @@ from facegear.config.changes import (
     variable_part,
 )
 from facegear.config.contact import Contact
-from facegear.config.lumped_model import ToothNumbers, given_torques, layout, other_gear_torque, tooth_numbers
+from facegear.config.lumped_model import TEETH, ToothNumbers, given_torques, layout, other_gear_torque
 from facegear.config.search import Search
 from facegear.config.stiffness import MeshStiffness
 from facegear.config.studies import Study
@@ -41,7 +41,7 @@ TAKEN_NAMES = ("nominal", "nominal_summary", "summary", "reference", "speed_rang
 
 def pair_teeth(pair: ToothPair) -> ToothNumbers:
     """What the lumped model takes from a config's tooth pair."""
-    return tooth_numbers(pair.pinion_teeth, pair.face_gear_teeth, pair.module_mm, pair.pressure_angle_deg)
+    return ToothNumbers.of_teeth(*(getattr(pair, key) for key in TEETH))
 
 
 def with_backlash(pair: ToothPair, section: Transmission) -> Transmission:

@@ -6,12 +6,11 @@ adds the mesh stiffness as its stage has stored it.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.config.base import parse
 from facegear.config.bodies import GearBody, PinionBody, RunoutSection, SingleGear, SinglePinion
 from facegear.config.transmission import PinionPlace, SingleMesh, Transmission
 from facegear.config.transmission_error import error_series
@@ -35,21 +34,26 @@ class ToothNumbers:
     pinion_base_radius: float
     pressure_angle: float
 
+    @classmethod
+    def of_config(cls, values: Mapping[str, Any]) -> Self:
+        """From the keys TEETH of section `tooth_pair`, or all of it."""
+        return cls.of_teeth(*(values[key] for key in TEETH))
 
-def tooth_numbers(
-    pinion_teeth: int, face_gear_teeth: int, module_mm: float, pressure_angle_deg: float
-) -> ToothNumbers:
-    """SI values from the keys of the same names in config section `tooth_pair`."""
-    angle = float(np.radians(pressure_angle_deg))
-    base_radius = 0.5e-3 * module_mm * pinion_teeth * float(np.cos(angle))
-    return ToothNumbers(pinion_teeth, face_gear_teeth, base_radius, angle)
+    @classmethod
+    def of_teeth(
+        cls, pinion_teeth: int, face_gear_teeth: int, module_mm: float, pressure_angle_deg: float
+    ) -> Self:
+        """SI values from those of the keys TEETH."""
+        angle = float(np.radians(pressure_angle_deg))
+        base_radius = 0.5e-3 * module_mm * pinion_teeth * float(np.cos(angle))
+        return cls(pinion_teeth, face_gear_teeth, base_radius, angle)
 
 
 def lumped_sections(
     transmission: Mapping[str, Any], teeth: Mapping[str, Any]
 ) -> tuple[Transmission, ToothNumbers]:
-    """Section `transmission`, and what the lumped model takes from the keys TEETH of section `tooth_pair`."""
-    return parse(Transmission, transmission), tooth_numbers(**{key: teeth[key] for key in TEETH})
+    """Section `transmission` and the tooth numbers from plain values of a config that was validated."""
+    return Transmission.of_config(transmission), ToothNumbers.of_config(teeth)
 
 
 def wired_layout(transmission: Mapping[str, Any], teeth: Mapping[str, Any]) -> Layout:
@@ -111,10 +115,9 @@ def machine(
     )
 
 
-def stiffness_phases(transmission: Mapping[str, Any], teeth: Mapping[str, Any]) -> Array:
-    """Lag of each mesh in mesh periods, (meshes,), from section `transmission` and the tooth numbers."""
-    section, numbers = lumped_sections(transmission, teeth)
-    shape = layout(section, numbers)
+def stiffness_phases(section: Transmission, teeth: ToothNumbers) -> Array:
+    """Lag of each mesh in mesh periods, (meshes,)."""
+    shape = layout(section, teeth)
     clocking = imperfections(section, shape).clocking
     return mesh_phases(shape, PhaseConvention(section.phase_convention), clocking)
 

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from typing import Any
 
-from facegear.config.base import parse
 from facegear.config.buildable import preloads
 from facegear.config.checks import geometric_backlash
 from facegear.config.lumped_model import lumped_sections
@@ -85,7 +84,7 @@ def _backlash(values: Mapping[str, Any]) -> list[str]:
     own = values["transmission"].get("backlash_um")
     if own is None or values.get("tooth_pair", {}).get("pinion") is None:
         return []
-    teeth = geometric_backlash(parse(ToothPair, values["tooth_pair"]))
+    teeth = geometric_backlash(ToothPair.of_config(values["tooth_pair"]))
     if abs(own - teeth) <= BACKLASH_DIFFERS_UM:
         return []
     return [

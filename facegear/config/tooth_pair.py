@@ -1,13 +1,11 @@
 """The section tooth_pair: teeth, blanks, tools, material and assembly of one pinion and face gear."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi, radians
-from typing import Any
 
 from pydantic import Field, model_validator
 
-from facegear.config.base import Section, parse, refuse, require_all
+from facegear.config.base import Section, refuse, require_all
 from facegear.errors import ConfigError, GeometryError, NotConverged
 from facegear.geometry.design import (
     AssemblyErrors,
@@ -184,12 +182,8 @@ class Pair:
         return self.materials[("pinion", "face_gear").index(body)]
 
 
-def pair(values: Mapping[str, Any]) -> Pair:
-    """The pair from the plain values of config section `tooth_pair`, the one place that puts it together.
-
-    Raises ConfigErrors for values that no pair can have, ConfigError for a section without bodies.
-    """
-    section = parse(ToothPair, values)
+def pair(section: ToothPair) -> Pair:
+    """The pair in SI units. Raises ConfigError for a section without bodies."""
     return Pair(pair_design(section), materials(section))
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from facegear.config.base import parse
+from facegear.config.arguments import typed_arguments
 from facegear.config.changes import GAPS, moves_pair, without
 from facegear.config.modal import modes_need_contact
 from facegear.config.notes import turns
@@ -16,6 +16,8 @@ BODIES = ("pinion", "face_gear")
 PAIR_SECTIONS = ("tooth_pair", "mesh", "contact", "mesh_stiffness")
 """What a contact analysis of machines among many takes."""
 
+CONTACT = ("tooth_pair", "mesh", "contact")
+"""What the contact analysis itself takes."""
 
 LOADING = (
     *("torques_n_m", "positions_per_pitch"),
@@ -136,7 +138,7 @@ def tolerance_chunks(design: Design) -> Callable[[Case], list[Wildcards]]:
     """Chunks of a design, named by the samples they hold."""
 
     def places(case: Case) -> list[Wildcards]:
-        section = parse(Tolerances, case.values["tolerances"])
+        section = Tolerances.of_config(case.values["tolerances"])
         numbered = chunks(section, design)
         return [{"design": design, "first": str(first), "last": str(last)} for first, last in numbered]
 
@@ -172,7 +174,7 @@ def without_loads(case: Case) -> Any:
         return section
     from facegear.config.contact_setup import contact_setup
 
-    plan = contact_setup(*(case.values[name] for name in ("tooth_pair", "mesh", "contact"))).plan
+    plan = contact_setup(**typed_arguments(contact_setup, {key: case.values[key] for key in CONTACT})).plan
     return {**section, "refinement": {**section["refinement"], "width": plan.refinement.width}}
 
 

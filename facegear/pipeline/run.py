@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from facegear.config.arguments import typed_arguments
 from facegear.io.files import write_part
 from facegear.pipeline.stage import From, Stage, load
 
@@ -43,6 +44,7 @@ def write_stage(stage: Stage, content: Mapping[str, Any], paths: Paths) -> list[
 
 
 def call(stage: Stage, given: Mapping[str, Any], **more: Any) -> "Outcome":
-    """The stage with arguments `given` and `more`."""
-    outcome: Outcome = load(stage.function)(**given, **more)
+    """The stage with arguments `given`, plain values of the config as the sections that it asks for."""
+    function = load(stage.function)
+    outcome: Outcome = function(**typed_arguments(function, given), **more)
     return outcome

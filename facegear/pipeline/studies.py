@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from facegear.config.base import parse
 from facegear.config.cases import study_points
 from facegear.config.sharing_groups import group_kinds
 from facegear.config.studies import Study
@@ -17,7 +16,7 @@ Points = list[tuple[str, str, str]]
 
 def points(case: Case) -> Points:
     """Study, point and label of every point of the studies."""
-    studies = [parse(Study, study) for study in case.values["studies"]]
+    studies = [Study.of_config(study) for study in case.values["studies"]]
     return [
         (planned.name, name, point.label)
         for planned in studies

@@ -1,15 +1,15 @@
 """Branches of periodic motions over the speed, their special points, margins of the nominal speed."""
 
-from collections.abc import Iterable, Mapping
-from typing import Any
+from collections.abc import Iterable
 
 import pandas as pd
 
 from facegear.arrays import Arrays
-from facegear.config.base import parse
-from facegear.config.branches import read_branch_plan
+from facegear.config.branches import Branches, branch_plan
 from facegear.config.dynamics import Sweep, sweep_plan
+from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
+from facegear.config.transmission import Transmission
 from facegear.dynamics.branches import operating_tables, tables
 from facegear.dynamics.branches.machine import machine_flow, machine_survey, margins
 from facegear.dynamics.branches.margins import several
@@ -26,10 +26,10 @@ def branches(
     chunks: Iterable[Arrays],
     jumps: pd.DataFrame,
     harmonics: pd.DataFrame,
-    transmission: Mapping[str, Any],
-    teeth: Mapping[str, Any],
-    branches: Mapping[str, Any] | None,
-    sweep: Mapping[str, Any],
+    transmission: Transmission,
+    teeth: ToothNumbers,
+    branches: Branches | None,
+    sweep: Sweep,
     speed_rpm: float,
     friction: pd.DataFrame | None = None,
 ) -> Outcome:
@@ -40,8 +40,8 @@ def branches(
     in the order of the config. Raises NotConverged if no motion of period one is found.
     """
     model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction))
-    plan, layout = read_branch_plan(branches, speed_rpm), model.machine.layout
-    flow, swept_plan = machine_flow(model, plan), sweep_plan(parse(Sweep, sweep))
+    plan, layout = branch_plan(branches, speed_rpm), model.machine.layout
+    flow, swept_plan = machine_flow(model, plan), sweep_plan(sweep)
     found = [from_arrays(flow, one) for one in starts]
     stored = iter(chunks)
     pieces = {

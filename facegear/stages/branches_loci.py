@@ -1,13 +1,12 @@
 """Loci of folds and period doublings in the plane of speed and a second parameter."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import pandas as pd
 
 from facegear.arrays import Arrays
-from facegear.config.branches import read_branch_plan
+from facegear.config.branches import Branches, branch_plan
+from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
+from facegear.config.transmission import Transmission
 from facegear.dynamics.branches.machine import machine_flow, machine_loci
 from facegear.dynamics.branches.stored import special_points
 from facegear.dynamics.branches.summary import loci_summary, tell
@@ -19,14 +18,14 @@ from facegear.stages.outcome import Outcome
 def branches_loci(
     orbits: Arrays,
     harmonics: pd.DataFrame,
-    transmission: Mapping[str, Any],
-    teeth: Mapping[str, Any],
-    branches: Mapping[str, Any] | None,
+    transmission: Transmission,
+    teeth: ToothNumbers,
+    branches: Branches | None,
     speed_rpm: float,
     friction: pd.DataFrame | None = None,
 ) -> Outcome:
     """`loci` (table). orbits: arrays of the special points."""
     model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction))
-    plan = read_branch_plan(branches, speed_rpm)
+    plan = branch_plan(branches, speed_rpm)
     loci, missed = machine_loci(model, plan, special_points(machine_flow(model, plan), orbits), tell)
     return Outcome({"loci": locus_table(loci)}, loci_summary(loci, missed))

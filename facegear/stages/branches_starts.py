@@ -1,12 +1,11 @@
 """Random starts at one speed: which motions they end on."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import pandas as pd
 
-from facegear.config.branches import read_branch_plan
+from facegear.config.branches import Branches, branch_plan
+from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
+from facegear.config.transmission import Transmission
 from facegear.dynamics.branches.machine import random_starts
 from facegear.dynamics.branches.stored import to_arrays
 from facegear.dynamics.steady_state.simulate import build_model
@@ -17,15 +16,15 @@ from facegear.stages.outcome import Outcome
 def branches_starts(
     number: int,
     harmonics: pd.DataFrame,
-    transmission: Mapping[str, Any],
-    teeth: Mapping[str, Any],
-    branches: Mapping[str, Any] | None,
+    transmission: Transmission,
+    teeth: ToothNumbers,
+    branches: Branches | None,
     speed_rpm: float,
     friction: pd.DataFrame | None = None,
 ) -> Outcome:
     """`found` (arrays) at one of the config's speeds. Raises NotConverged naming the speed."""
     model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction))
-    plan = read_branch_plan(branches, speed_rpm)
+    plan = branch_plan(branches, speed_rpm)
     speed = plan.speeds_rpm[number]
     found = random_starts(model, plan, speed, Progress("random starts", plan.starts).step)
     shares = ", ".join(f"{one.label} {100 * one.share:.1f} +- {100 * one.error:.1f} %" for one in found)

@@ -1,26 +1,23 @@
 """Exact teeth as solids, for CAD."""
 
-from collections.abc import Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
-from facegear.config.base import parse
 from facegear.config.mesh import Mesh
-from facegear.config.tooth_pair import pair
+from facegear.config.tooth_pair import ToothPair, pair
 from facegear.errors import FacegearError, chosen
 from facegear.geometry.solids import BODIES, Body, solid, teeth_of, triangles
 from facegear.io.cad import write_step, write_stl
 from facegear.stages.outcome import Outcome
 
 
-def cad(body: Body, tooth_pair: Mapping[str, Any], mesh: Mapping[str, Any]) -> Outcome:
+def cad(body: Body, tooth_pair: ToothPair, mesh: Mesh) -> Outcome:
     """`step` and `stl` (bytes of a file) of as many teeth of a body as mesh files hold.
 
     Raises ConfigError for a pair without bodies.
     """
     design = pair(tooth_pair).design
-    patches = solid(design, body, min(parse(Mesh, mesh).exported_teeth, teeth_of(design, body)))
+    patches = solid(design, body, min(mesh.exported_teeth, teeth_of(design, body)))
     with TemporaryDirectory() as folder:
         step, stl = Path(folder, "body.step"), Path(folder, "body.stl")
         volume = write_step(step, patches, body)
@@ -29,7 +26,7 @@ def cad(body: Body, tooth_pair: Mapping[str, Any], mesh: Mapping[str, Any]) -> O
     return Outcome(content, f"{len(patches)} surfaces around {1e9 * volume:.2f} mm3")
 
 
-def export(path: str | Path, body: str, teeth: int | None, tooth_pair: Mapping[str, Any]) -> Path:
+def export(path: str | Path, body: str, teeth: int | None, tooth_pair: ToothPair) -> Path:
     """Write teeth of a body, or the whole gear, as STEP or STL by the ending of `path`; returns the path.
 
     Raises FacegearError for another ending, body or number of teeth, ConfigError for a pair without bodies.

@@ -1,17 +1,15 @@
 """Flank compliance of one body."""
 
-from collections.abc import Mapping
-from typing import Any
-
+from facegear.config.contact import Contact
 from facegear.config.contact_setup import contact_setup
+from facegear.config.mesh import Mesh
+from facegear.config.tooth_pair import ToothPair
 from facegear.contact.gear_flank import to_arrays
 from facegear.contact.pair import gear_flank
 from facegear.stages.outcome import Outcome
 
 
-def compliance(
-    body: str, tooth_pair: Mapping[str, Any], mesh: Mapping[str, Any], contact: Mapping[str, Any]
-) -> Outcome:
+def compliance(body: str, tooth_pair: ToothPair, mesh: Mesh, contact: Contact) -> Outcome:
     """`arrays` of the flank of `body`, pinion or face_gear, whatever loads it.
 
     Raises ConfigError for a sector with more teeth than the gear and a mesh turned inside out.

@@ -1,15 +1,13 @@
 """Loaded tooth contact at every position and torque."""
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from facegear.arrays import Arrays
-from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
-from facegear.config.tooth_pair import pair
+from facegear.config.tooth_pair import ToothPair, pair
 from facegear.contact.analysis import ContactAnalysis, contact_analysis
 from facegear.contact.gear_flank import from_arrays
 from facegear.stages.outcome import Outcome
@@ -21,8 +19,8 @@ WORTH_A_WORD = 0.005
 def contact(
     pinion: Arrays,
     face_gear: Arrays,
-    tooth_pair: Mapping[str, Any],
-    contact: Mapping[str, Any],
+    tooth_pair: ToothPair,
+    contact: Contact,
 ) -> Outcome:
     """`ltca`, `by_torque`, `by_flank` (tables), `pressure`, `loads` (arrays), of stage compliance's flanks.
 
@@ -30,7 +28,7 @@ def contact(
     assembly errors part them from it, on the same compliances. Raises NotConverged naming position and
     torque.
     """
-    teeth, plan = pair(tooth_pair), contact_plan(parse(Contact, contact))
+    teeth, plan = pair(tooth_pair), contact_plan(contact)
     flanks = from_arrays(pinion), from_arrays(face_gear)
     found = contact_analysis(teeth.design, teeth.materials, flanks, plan)
     worst = max(table["kkt_residual"].max() for table in found.ltca)

@@ -1,14 +1,12 @@
 """Mesh forces of the running machine in every bin of the duty cycle, and what its teeth meet of them."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import pandas as pd
 
-from facegear.config.base import parse
 from facegear.config.dynamics import Accuracy, settings
+from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
 from facegear.config.strength import Strength
+from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.progress import Progress
 from facegear.stages.outcome import Outcome
@@ -19,10 +17,10 @@ from facegear.variants.loads import at_mesh_torque
 
 def duty_loads(
     harmonics: pd.DataFrame,
-    transmission: Mapping[str, Any],
-    teeth: Mapping[str, Any],
-    accuracy: Mapping[str, Any],
-    strength: Mapping[str, Any] | None,
+    transmission: Transmission,
+    teeth: ToothNumbers,
+    accuracy: Accuracy,
+    strength: Strength | None,
     friction: pd.DataFrame | None = None,
 ) -> Outcome:
     """`duty_loads` and `duty_spectrum` (tables) from the machine's motion in every bin.
@@ -32,7 +30,7 @@ def duty_loads(
     """
     if strength is None:
         raise ConfigError("strength", None, "given for the loads of its duty cycle")
-    section, known = parse(Strength, strength), settings(parse(Accuracy, accuracy))
+    section, known = strength, settings(accuracy)
     progress, loads, spectrum = Progress("duty cycle", len(section.duty)), [], []
     for number, one in enumerate(section.duty, start=1):
         loaded = at_mesh_torque(transmission, one.torque_n_m)

@@ -1,14 +1,14 @@
 """Root stress of every mesh of the running machine at its nominal speed."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
 
 from facegear.arrays import Arrays
-from facegear.config.lumped_model import stiffness_phases
-from facegear.config.tooth_pair import pair
+from facegear.config.lumped_model import ToothNumbers, stiffness_phases
+from facegear.config.tooth_pair import ToothPair, pair
+from facegear.config.transmission import Transmission
 from facegear.stages.outcome import Outcome
 from facegear.strength.dynamic_stress import dynamic_stress_table
 from facegear.strength.flank_contacts import contacts_of, flank_contacts
@@ -19,15 +19,16 @@ def dynamic_root_stress(
     response: pd.DataFrame,
     stress: Arrays,
     by_flank: pd.DataFrame,
-    tooth_pair: Mapping[str, Any],
-    transmission: Mapping[str, Any],
+    tooth_pair: ToothPair,
+    transmission: Transmission,
+    teeth: ToothNumbers,
     gears: Sequence[str],
 ) -> Outcome:
     """`dynamic_stress` (table) from stage dynamics_response's history and root_stress's arrays.
 
     by_flank: table of stage contact; every mesh has the stress of its own gear and flank, of `gears`.
     """
-    phases = stiffness_phases(transmission, tooth_pair)
+    phases = stiffness_phases(transmission, teeth)
     forces, places = {}, {}
     for number, (mesh, rows) in enumerate(response.groupby("mesh", sort=False)):
         force = rows["elastic_force_n"].to_numpy()

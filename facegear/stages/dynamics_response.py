@@ -1,13 +1,11 @@
 """Response at one speed: time history, spectrum, statistics, multipliers, forces on the bearings."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import pandas as pd
 
-from facegear.config.base import parse
 from facegear.config.dynamics import Accuracy, settings
+from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
+from facegear.config.transmission import Transmission
 from facegear.dynamics.bearing_forces import bearing_table
 from facegear.dynamics.response_tables import (
     multiplier_table,
@@ -22,9 +20,9 @@ from facegear.stages.outcome import Outcome
 
 def dynamics_response(
     harmonics: pd.DataFrame,
-    transmission: Mapping[str, Any],
-    teeth: Mapping[str, Any],
-    accuracy: Mapping[str, Any],
+    transmission: Transmission,
+    teeth: ToothNumbers,
+    accuracy: Accuracy,
     speed_rpm: float,
     friction: pd.DataFrame | None = None,
 ) -> Outcome:
@@ -33,7 +31,7 @@ def dynamics_response(
     Raises NotConverged naming the speed.
     """
     model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction))
-    found = simulate(model, speed_rpm, settings(parse(Accuracy, accuracy)))
+    found = simulate(model, speed_rpm, settings(accuracy))
     layout = model.machine.layout
     content = {
         "response": response_table(layout, found),

@@ -1,14 +1,14 @@
 """The whole sweep from its chunks: table, jumps, resonances, seams, waterfall."""
 
 from collections.abc import Iterable, Mapping
-from typing import Any
 
 import pandas as pd
 
 from facegear.arrays import AnyArray, Arrays
-from facegear.config.base import parse
 from facegear.config.dynamics import Sweep, sweep_plan
+from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
+from facegear.config.transmission import Transmission
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.steady_state.spectra import ORDERS
 from facegear.dynamics.sweeps.stored import from_arrays
@@ -22,9 +22,9 @@ from facegear.transmission.loaded_modes import loaded_modes
 def dynamics_sweep(
     chunks: Iterable[Arrays],
     harmonics: pd.DataFrame,
-    transmission: Mapping[str, Any],
-    teeth: Mapping[str, Any],
-    sweep: Mapping[str, Any],
+    transmission: Transmission,
+    teeth: ToothNumbers,
+    sweep: Sweep,
     threads: int = 1,
     friction: pd.DataFrame | None = None,
 ) -> Outcome:
@@ -33,7 +33,7 @@ def dynamics_sweep(
     `chunks`: the arrays of all chunks, direction by direction in the order of the config.
     """
     model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction))
-    plan, layout = sweep_plan(parse(Sweep, sweep)), model.machine.layout
+    plan, layout = sweep_plan(sweep), model.machine.layout
     stored = iter(chunks)
     pieces = {name: [from_arrays(next(stored)) for _ in range(plan.chunks)] for name in plan.directions}
     found = whole_sweep(model, plan, pieces, threads)

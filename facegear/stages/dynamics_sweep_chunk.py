@@ -1,13 +1,11 @@
 """One chunk of a speed sweep in one direction."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import pandas as pd
 
-from facegear.config.base import parse
 from facegear.config.dynamics import Sweep, sweep_plan
+from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
+from facegear.config.transmission import Transmission
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.sweeps.stored import to_arrays
 from facegear.dynamics.sweeps.sweep import run_chunk
@@ -19,13 +17,13 @@ def dynamics_sweep_chunk(
     direction: str,
     number: int,
     harmonics: pd.DataFrame,
-    transmission: Mapping[str, Any],
-    teeth: Mapping[str, Any],
-    sweep: Mapping[str, Any],
+    transmission: Transmission,
+    teeth: ToothNumbers,
+    sweep: Sweep,
     friction: pd.DataFrame | None = None,
 ) -> Outcome:
     """`chunk` (arrays). Raises NotConverged naming the speed."""
-    plan = sweep_plan(parse(Sweep, sweep))
+    plan = sweep_plan(sweep)
     total = sum(map(len, plan.chunk(direction, number)))
     progress = Progress(f"sweep {direction}, chunk {number}", total)
     model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction))

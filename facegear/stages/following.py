@@ -1,13 +1,11 @@
 """Load sharing of the running machine while its runouts and pitch deviations turn."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import pandas as pd
 
-from facegear.config.base import parse
 from facegear.config.dynamics import Accuracy, settings
+from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
+from facegear.config.transmission import Transmission
 from facegear.load_sharing.following import running, running_mesh_table, running_table
 from facegear.load_sharing.hunting import hunting_cycle, hunting_length
 from facegear.stages.outcome import Outcome
@@ -18,9 +16,9 @@ FINER = 4
 
 def following(
     harmonics: pd.DataFrame,
-    transmission: Mapping[str, Any],
-    teeth: Mapping[str, Any],
-    accuracy: Mapping[str, Any],
+    transmission: Transmission,
+    teeth: ToothNumbers,
+    accuracy: Accuracy,
     speed_rpm: float,
     positions: int,
     cycles: int | None,
@@ -33,7 +31,7 @@ def following(
     machine = wired_machine(transmission, teeth, harmonics, friction=friction)
     length = hunting_length(machine)
     part = length if cycles is None else min(cycles, length)
-    moving = running(machine, speed_rpm, part, FINER * positions, settings(parse(Accuracy, accuracy)))
+    moving = running(machine, speed_rpm, part, FINER * positions, settings(accuracy))
     groups = running_table(moving, hunting_cycle(machine, positions))
     said = ", ".join(
         f"{row.group} {row.k_gamma:.3f} (at rest {row.k_gamma_static:.3f}), K_v {row.k_v:.3f}"

@@ -1,10 +1,8 @@
 """Exact geometry of the tooth pair: limits, contact path, backlash, smallest gaps."""
 
-from collections.abc import Mapping
 from math import isfinite
-from typing import Any
 
-from facegear.config.tooth_pair import pair
+from facegear.config.tooth_pair import ToothPair, pair
 from facegear.errors import FacegearError
 from facegear.geometry.analysis import PairAnalysis, analyse
 from facegear.geometry.document import contact_arrays, flank_arrays, pair_record
@@ -15,7 +13,7 @@ from facegear.stages.outcome import Outcome
 EASE_OFF_GRID = (37, 29)
 
 
-def geometry(tooth_pair: Mapping[str, Any]) -> Outcome:
+def geometry(tooth_pair: ToothPair) -> Outcome:
     """`pair` (record), `flanks` and `contact` (arrays). Raises ConfigError for a pair without bodies,
     FacegearError for bodies that jam.
     """

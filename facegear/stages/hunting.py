@@ -1,11 +1,10 @@
 """Quasi-static load sharing over the hunting cycle, against bearing stiffness, and error by error."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import pandas as pd
 
+from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
+from facegear.config.transmission import Transmission
 from facegear.load_sharing.hunting import hunting_cycle
 from facegear.load_sharing.hunting_tables import bearing_table, cycle_table, group_table, mesh_table
 from facegear.load_sharing.sensitivity import bearing_scan, sensitivities
@@ -13,7 +12,7 @@ from facegear.stages.outcome import Outcome
 
 
 def hunting(
-    harmonics: pd.DataFrame, transmission: Mapping[str, Any], teeth: Mapping[str, Any], positions: int
+    harmonics: pd.DataFrame, transmission: Transmission, teeth: ToothNumbers, positions: int
 ) -> Outcome:
     """Tables `meshes`, `groups`, `bearings`, `cycles`, `scan`, `sensitivity`. Raises NotConverged."""
     machine = wired_machine(transmission, teeth, harmonics)

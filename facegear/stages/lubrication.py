@@ -1,15 +1,12 @@
 """Sliding, loss, heat, film and scuffing of the pair under load."""
 
-from collections.abc import Mapping
 from math import pi
-from typing import Any
 
 import pandas as pd
 
 from facegear.arrays import Arrays
-from facegear.config.base import parse
 from facegear.config.lubrication import LubricationSection, limits_of, lubrication_request, map_speeds
-from facegear.config.tooth_pair import pair
+from facegear.config.tooth_pair import ToothPair, pair
 from facegear.contact.hertz import contact_modulus
 from facegear.errors import ConfigError
 from facegear.lubrication.assessment import (
@@ -30,8 +27,8 @@ from facegear.stages.outcome import Outcome
 def lubrication(
     ltca: pd.DataFrame,
     pressure: Arrays,
-    tooth_pair: Mapping[str, Any],
-    lubrication: Mapping[str, Any] | None,
+    tooth_pair: ToothPair,
+    lubrication: LubricationSection | None,
     speed_rpm: float,
 ) -> Outcome:
     """`by_torque`, `positions`, `limits`, `map`, `excitation` (tables) and `local` (arrays) from stored
@@ -61,18 +58,18 @@ def lubrication(
     return Outcome(content, told)
 
 
-def lubrication_section(values: Mapping[str, Any] | None) -> LubricationSection:
-    """Section lubrication. Raises ConfigError without it, ConfigErrors for its mistakes."""
-    if values is None:
+def lubrication_section(section: LubricationSection | None) -> LubricationSection:
+    """Section lubrication. Raises ConfigError without it."""
+    if section is None:
         raise ConfigError("lubrication", None, "given, for friction and heat")
-    return parse(LubricationSection, values)
+    return section
 
 
 def loaded_pair(
     ltca: pd.DataFrame,
     pressure: Arrays,
     section: LubricationSection,
-    tooth_pair: Mapping[str, Any],
+    tooth_pair: ToothPair,
 ) -> LoadedPair:
     """The stored contact of the pair with its sliding, by torque."""
     teeth = pair(tooth_pair)

@@ -1,17 +1,18 @@
 """Loss and heat of the machine's meshes and bodies, at its nominal load and over its duty cycle."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from math import pi
-from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array, Arrays
-from facegear.config.base import parse
-from facegear.config.lubrication import limits_of
+from facegear.config.lubrication import LubricationSection, limits_of
+from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
 from facegear.config.strength import Strength
+from facegear.config.tooth_pair import ToothPair
+from facegear.config.transmission import Transmission
 from facegear.lubrication import machine_loss as losses
 from facegear.lubrication.machine_loss import LoadedPair, MeshLoads
 from facegear.lubrication.machine_tables import (
@@ -35,11 +36,11 @@ def machine_loss(
     friction: pd.DataFrame | None = None,
     response: pd.DataFrame | None = None,
     *,
-    tooth_pair: Mapping[str, Any],
-    lubrication: Mapping[str, Any] | None,
-    transmission: Mapping[str, Any],
-    teeth: Mapping[str, Any],
-    strength: Mapping[str, Any] | None,
+    tooth_pair: ToothPair,
+    lubrication: LubricationSection | None,
+    transmission: Transmission,
+    teeth: ToothNumbers,
+    strength: Strength | None,
     speed_rpm: float,
 ) -> Outcome:
     """`meshes`, `bodies`, `machine` (tables): at the nominal load at rest and in every bin of a duty cycle.
@@ -90,9 +91,9 @@ def _states(
     loaded: LoadedPair,
     harmonics: pd.DataFrame,
     duty_loads: pd.DataFrame | None,
-    transmission: Mapping[str, Any],
-    teeth: Mapping[str, Any],
-    strength: Mapping[str, Any] | None,
+    transmission: Transmission,
+    teeth: ToothNumbers,
+    strength: Strength | None,
     speed_rpm: float,
 ) -> Iterator[MachineState]:
     """The machine at its nominal load at rest, then in every bin of its duty cycle."""
@@ -104,7 +105,7 @@ def _states(
     yield _state(loaded, machine, (0, np.nan, speed_rpm), names, torque, torque)
     if duty_loads is None or strength is None:
         return
-    section = parse(Strength, strength)
+    section = strength
     for number, one in enumerate(section.duty, start=1):
         rows = duty_loads[duty_loads["bin"] == number]
         machine = wired_machine(at_mesh_torque(transmission, one.torque_n_m), teeth, harmonics)

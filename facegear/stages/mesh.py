@@ -1,15 +1,13 @@
 """Meshes of both bodies as files for gmsh, ParaView, Abaqus and CalculiX."""
 
-from collections.abc import Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 import pandas as pd
 
-from facegear.config.base import parse
 from facegear.config.mesh import Mesh, mesh_sizes
-from facegear.config.tooth_pair import pair
+from facegear.config.tooth_pair import ToothPair, pair
 from facegear.mesh.export import write_files
 from facegear.mesh.sector import SectorMesh, sector
 from facegear.mesh.tooth import gear_tooth, pinion_tooth
@@ -18,7 +16,7 @@ from facegear.stages.outcome import Outcome
 KINDS = ("msh", "vtu", "inp")
 
 
-def mesh(tooth_pair: Mapping[str, Any], mesh: Mapping[str, Any]) -> Outcome:
+def mesh(tooth_pair: ToothPair, mesh: Mesh) -> Outcome:
     """`<body>_<kind>` (bytes of a mesh file) for both bodies and KINDS, and `quality` (table)."""
     content: dict[str, Any] = {}
     quality = []
@@ -34,9 +32,9 @@ def mesh(tooth_pair: Mapping[str, Any], mesh: Mapping[str, Any]) -> Outcome:
     return Outcome({**content, "quality": table}, told)
 
 
-def meshes(tooth_pair: Mapping[str, Any], mesh: Mapping[str, Any]) -> dict[str, SectorMesh]:
+def meshes(tooth_pair: ToothPair, mesh: Mesh) -> dict[str, SectorMesh]:
     """Sectors of `pinion` and `face_gear` with the teeth that the config exports."""
-    design, section = pair(tooth_pair).design, parse(Mesh, mesh)
+    design, section = pair(tooth_pair).design, mesh
     sizes = mesh_sizes(section, design.module)
     teeth = {"pinion": pinion_tooth(design, sizes), "face_gear": gear_tooth(design, sizes)}
     return {body: sector(tooth, min(section.exported_teeth, tooth.teeth)) for body, tooth in teeth.items()}

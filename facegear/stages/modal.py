@@ -1,12 +1,11 @@
 """Natural frequencies, mode shapes and their classes."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 import pandas as pd
 
+from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
+from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
 from facegear.stages.outcome import Outcome
@@ -16,8 +15,8 @@ from facegear.transmission.mode_classes import name_modes
 
 
 def modal(
-    transmission: Mapping[str, Any],
-    teeth: Mapping[str, Any],
+    transmission: Transmission,
+    teeth: ToothNumbers,
     mean_stiffness: float | None,
     source: str,
     definition: str,

@@ -1,15 +1,13 @@
 """Safety and life of the tooth pair under its duty cycle."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import pandas as pd
 
 from facegear.arrays import Arrays
-from facegear.config.base import parse
 from facegear.config.strength import Strength, duty_bins, rating_request
-from facegear.config.tooth_pair import pair
+from facegear.config.tooth_pair import ToothPair, pair
 from facegear.errors import ConfigError
 from facegear.geometry.analysis import section_contact_ratio
 from facegear.stages.outcome import Outcome
@@ -24,8 +22,8 @@ def rating(
     by_flank: pd.DataFrame,
     duty_spectrum: pd.DataFrame | None = None,
     *,
-    tooth_pair: Mapping[str, Any],
-    strength: Mapping[str, Any] | None,
+    tooth_pair: ToothPair,
+    strength: Strength | None,
     gears: Sequence[str],
 ) -> Outcome:
     """`safety`, `rating`, `damage` and `curves` (tables) from the root stress of stage root_stress.
@@ -36,7 +34,7 @@ def rating(
     """
     if strength is None:
         raise ConfigError("strength", None, "given for safety and life")
-    section, design = parse(Strength, strength), pair(tooth_pair).design
+    section, design = strength, pair(tooth_pair).design
     request, bins = rating_request(section, design, duty_spectrum), duty_bins(section)
     contacts = flank_contacts(stress, by_flank)
     found: list[Rated] = []

@@ -1,17 +1,16 @@
 """Gear ratio, speeds, torques and powers of the machine at its nominal speed."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import pandas as pd
 
+from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
+from facegear.config.transmission import Transmission
 from facegear.stages.outcome import Outcome
 from facegear.transmission.ratings import body_table, mesh_table, number_table, rated
 
 
 def ratings(
-    harmonics: pd.DataFrame, transmission: Mapping[str, Any], teeth: Mapping[str, Any], speed_rpm: float
+    harmonics: pd.DataFrame, transmission: Transmission, teeth: ToothNumbers, speed_rpm: float
 ) -> Outcome:
     """`ratings`, `bodies` and `meshes` (tables). Raises NotConverged."""
     machine = wired_machine(transmission, teeth, harmonics)

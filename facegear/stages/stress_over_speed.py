@@ -1,14 +1,15 @@
 """Root stress and pressure over the speed range, and the worst of all motions known at a speed."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
 
 from facegear.arrays import Arrays
+from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
-from facegear.config.tooth_pair import pair
+from facegear.config.tooth_pair import ToothPair, pair
+from facegear.config.transmission import Transmission
 from facegear.stages.outcome import Outcome
 from facegear.strength.flank_contacts import contacts_of, flank_contacts
 from facegear.strength.stress_over_speed import branch_forces, stress_table, swept_forces
@@ -20,9 +21,9 @@ def stress_over_speed(
     stress: Arrays,
     by_flank: pd.DataFrame,
     harmonics: pd.DataFrame,
-    transmission: Mapping[str, Any],
-    teeth: Mapping[str, Any],
-    tooth_pair: Mapping[str, Any],
+    transmission: Transmission,
+    teeth: ToothNumbers,
+    tooth_pair: ToothPair,
     gears: Sequence[str],
     branches: pd.DataFrame | None = None,
 ) -> Outcome:

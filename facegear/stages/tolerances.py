@@ -1,11 +1,9 @@
 """What the samples of a machine with its tolerances say."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import pandas as pd
 
-from facegear.config.base import parse
 from facegear.config.tolerances import Tolerances
 from facegear.load_sharing.quantity_names import MISSED, OPEN, REVERSED
 from facegear.scenarios.chunks import ERROR
@@ -25,14 +23,14 @@ SHARES = {
 
 
 def tolerances(
-    samples: Sequence[pd.DataFrame], indices: Sequence[pd.DataFrame], tolerances: Mapping[str, Any]
+    samples: Sequence[pd.DataFrame], indices: Sequence[pd.DataFrame], tolerances: Tolerances
 ) -> Outcome:
     """`samples`, `percentiles`, `shares`, `importance`, `indices`, `sampling` (tables) from both designs.
 
     `sampling`: what the mesh cycles taken from the hunting cycle miss, in the samples that were computed over
     the whole of it.
     """
-    section = parse(Tolerances, tolerances)
+    section = tolerances
     causes = [cause.name for cause in section.causes]
     every = pd.concat(samples, ignore_index=True)
     found = every.drop(columns=list(MISSED.values()), errors="ignore")

@@ -10,6 +10,7 @@ from facegear.config.checks import geometric_backlash
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.contact_setup import contact_setup
 from facegear.config.lumped_model import ToothNumbers
+from facegear.config.mesh import Mesh
 from facegear.config.stiffness import MeshStiffness, stiffness_request
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
 from facegear.contact.analysis import ContactAnalysis, contact_analysis
@@ -24,7 +25,7 @@ from facegear.stiffness.tables import series_of, unloaded_error
 from facegear.strength.contact_pressure import contact_pressure
 from facegear.strength.pair_answers import PairAnswers
 from facegear.strength.passage import passing
-from facegear.variants.teeth import Flanks, Meshes, ToothMesh, Values, numbers_of
+from facegear.variants.teeth import Flanks, Meshes, ToothMesh, Values
 
 KEPT = 16
 """Pairs that are remembered: samples of one block of Saltelli's design share theirs."""
@@ -34,8 +35,8 @@ KEPT_BODIES = 4
 
 def meshes_in_contact(pair: Values, flanks: Flanks) -> Meshes:
     """`pair`: sections tooth_pair, mesh, contact, mesh_stiffness; `flanks`: the compliance of its bodies."""
-    backlash = geometric_backlash(parse(ToothPair, pair["tooth_pair"]))
-    plan, request = contact_plan(parse(Contact, pair["contact"])), _request(pair)
+    backlash = geometric_backlash(ToothPair.of_config(pair["tooth_pair"]))
+    plan, request = contact_plan(Contact.of_config(pair["contact"])), _request(pair)
     bodies = _bodies(pair, flanks)
 
     @lru_cache(maxsize=KEPT)
@@ -43,10 +44,10 @@ def meshes_in_contact(pair: Values, flanks: Flanks) -> Meshes:
         values = json.loads(text)
         section = parse(ToothPair, values, "this pair")
         added = geometric_backlash(section) - backlash
-        both = bodies(values)
+        both = bodies(values, section)
         found = contact_analysis(pair_design(section), materials(section), both, plan, every_flank=False)
         table = stiffness_from_contact(found.ltca[0], request).harmonics
-        numbers = numbers_of(values)
+        numbers = ToothNumbers.of_config(values)
         return ToothMesh(
             numbers=numbers,
             stiffness=series_of(table),
@@ -59,7 +60,7 @@ def meshes_in_contact(pair: Values, flanks: Flanks) -> Meshes:
 
 
 def _request(pair: Values) -> StiffnessRequest:
-    return stiffness_request(parse(MeshStiffness, pair["mesh_stiffness"]))
+    return stiffness_request(MeshStiffness.of_config(pair["mesh_stiffness"]))
 
 
 def _answers(
@@ -74,19 +75,20 @@ def _answers(
     return PairAnswers(error, contact_pressure(found.by_torque[0]), roots)
 
 
-def _bodies(pair: Values, flanks: Flanks) -> Callable[[Values], tuple[GearFlank, GearFlank]]:
+def _bodies(pair: Values, flanks: Flanks) -> Callable[[Values, ToothPair], tuple[GearFlank, GearFlank]]:
     """Compliance of both bodies of a pair.
 
     Those given serve every pair of the same nodes: displacements by a force go with 1/E exactly. Raises
     ConfigError for a pair whose contact the mesh cannot resolve.
     """
-    start = pair["tooth_pair"]
-    known = {_nodes(start): (start, dict(flanks))}
+    start = ToothPair.of_config(pair["tooth_pair"])
+    mesh, contact = Mesh.of_config(pair["mesh"]), Contact.of_config(pair["contact"])
+    known = {_nodes(pair["tooth_pair"]): (start, dict(flanks))}
 
-    def bodies(values: Values) -> tuple[GearFlank, GearFlank]:
+    def bodies(values: Values, section: ToothPair) -> tuple[GearFlank, GearFlank]:
         key = _nodes(values)
         if key not in known:
-            setup = contact_setup(values, pair["mesh"], pair["contact"])
+            setup = contact_setup(section, mesh, contact)
             check_resolution(setup.pair.design, setup.pair.materials, setup.sizes, setup.plan)
             made = {
                 body: gear_flank(setup.pair.design, body, setup.sizes, setup.pair.material(body), setup.plan)
@@ -94,11 +96,9 @@ def _bodies(pair: Values, flanks: Flanks) -> Callable[[Values], tuple[GearFlank,
             }
             if len(known) > KEPT_BODIES:
                 known.pop(list(known)[1])
-            known[key] = values, made
+            known[key] = section, made
         of, made = known[key]
-        moduli = (
-            [one.young_modulus for one in materials(parse(ToothPair, section))] for section in (of, values)
-        )
+        moduli = ([one.young_modulus for one in materials(other)] for other in (of, section))
         first, second = (
             made[body] if before == after else made[body].softer(before / after)
             for body, before, after in zip(BODIES, *moduli, strict=True)

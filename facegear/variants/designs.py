@@ -34,8 +34,8 @@ class SearchedMachine(VariedMachine):
 
     @cached_property
     def section(self) -> Search:
-        """What is searched, validated."""
-        return parse(Search, self.search)
+        """What is searched."""
+        return Search.of_config(self.search)
 
     @property
     def values(self) -> dict[str, Any]:
@@ -64,7 +64,7 @@ def assessor(
     FacegearError for a design that cannot be built, or of which a sample cannot.
     """
     section = given.section
-    tolerances = parse(Tolerances, given.tolerances) if section.robust and given.tolerances else None
+    tolerances = Tolerances.of_config(given.tolerances) if section.robust and given.tolerances else None
     causes = population(tolerances) if tolerances else None
     keys = [key for variable in section.variables for key in variable.sets]
     moves = [key for cause in causes.causes for key, _ in cause.gains] if causes else []

@@ -3,22 +3,24 @@
 from collections.abc import Mapping
 from typing import Any
 
+from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 
 
-def at_mesh_torque(transmission: Mapping[str, Any], torque: float) -> dict[str, Any]:
+def at_mesh_torque(section: Transmission, torque: float) -> Transmission:
     """Section `transmission` with all torques in proportion, so that an input has `torque` in each mesh.
 
     torque in N m on the pinion. Raises ConfigError where inputs carry none.
     """
-    given = transmission["torque"]["per_input_n_m"]
+    given = section.torque.per_input_n_m
     if given == 0.0:
         raise ConfigError("transmission.torque.per_input_n_m", given, "not 0, for the bins of a duty cycle")
-    return with_torques(transmission, torque * len(transmission["face_gears"]) / abs(given))
+    factor = torque * len(section.face_gears) / abs(given)
+    return Transmission.of_config(with_torques(section.model_dump(mode="json"), factor))
 
 
 def with_torques(transmission: Mapping[str, Any], part: float) -> dict[str, Any]:
-    """Section `transmission` with all torques times `part`."""
+    """Plain values of section `transmission` with all torques times `part`."""
 
     def scaled(section: Mapping[str, Any]) -> dict[str, Any]:
         own = section.get("torque_n_m")

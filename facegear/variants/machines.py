@@ -12,7 +12,7 @@ from facegear.config.base import parse
 from facegear.config.buildable import require_buildable, require_room
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.load_sharing import LoadSharing, sharing_options
-from facegear.config.lumped_model import machine
+from facegear.config.lumped_model import ToothNumbers, machine
 from facegear.config.transmission import Transmission
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.sweeps.jump_margin import jump_margin
@@ -22,7 +22,7 @@ from facegear.load_sharing.quantity_names import JUMP_MARGIN, PEAK, quantity_nam
 from facegear.scenarios.chunks import identity
 from facegear.stiffness.tables import series_of, unloaded_error
 from facegear.transmission.layout import Layout
-from facegear.variants.teeth import Flanks, Meshes, ToothMesh, Values, numbers_of
+from facegear.variants.teeth import Flanks, Meshes, ToothMesh, Values
 
 Judge = Callable[[Mapping[str, Any]], dict[str, float]]
 """What a machine is judged by, by column name, given the values of `facegear.config.changes.variable_part`.
@@ -101,7 +101,7 @@ def tooth_meshes(harmonics: pd.DataFrame, pair: Values | None, flanks: Flanks) -
 
         return meshes_in_contact(pair, flanks)
     series, error = series_of(harmonics), unloaded_error(harmonics)
-    return lambda values: ToothMesh(numbers_of(values), series, error)
+    return lambda values: ToothMesh(ToothNumbers.of_config(values), series, error)
 
 
 def stored_flanks(arrays: Sequence[Arrays]) -> Flanks:
@@ -137,6 +137,6 @@ def judge(question: Question, meshes: Meshes, told: str) -> Judge:
 def _ask(question: Question) -> Callable[[Any, float], dict[str, float]]:
     if not question.dynamic:
         return lambda built, speed: quasi_static_quantities(built, question.cycles)
-    precise = settings(parse(Accuracy, question.accuracy))
-    one_start = replace(sharing_options(parse(LoadSharing, question.options)), starts=1)
+    precise = settings(Accuracy.of_config(question.accuracy))
+    one_start = replace(sharing_options(LoadSharing.of_config(question.options)), starts=1)
     return lambda built, speed: dynamic_quantities(built, speed, precise, one_start)

@@ -10,7 +10,6 @@ from typing import Any
 
 import pandas as pd
 
-from facegear.config.base import parse
 from facegear.config.changes import movable, moved, variable_part
 from facegear.config.lumped_model import wired_layout
 from facegear.config.tolerances import Tolerances, population
@@ -34,8 +33,8 @@ class SampledMachine(VariedMachine):
 
     @cached_property
     def section(self) -> Tolerances:
-        """Its tolerances, validated."""
-        return parse(Tolerances, self.tolerances)
+        """Its tolerances."""
+        return Tolerances.of_config(self.tolerances)
 
     @cached_property
     def causes(self) -> Population:

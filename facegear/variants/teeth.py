@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from facegear.config.lumped_model import TEETH, ToothNumbers, tooth_numbers
+from facegear.config.lumped_model import ToothNumbers
 from facegear.harmonics.series import Harmonics
 from facegear.load_sharing.quantity_names import ERROR_HARMONIC, ERROR_RANGE, PRESSURE, ROOTS
 from facegear.strength.pair_answers import PairAnswers
@@ -60,8 +60,3 @@ class ToothMesh:
 
 Meshes = Callable[[Values], ToothMesh]
 """The mesh of a tooth pair, given the plain values of its section. Raises the errors that a config gets."""
-
-
-def numbers_of(tooth_pair: Values) -> ToothNumbers:
-    """What the lumped model takes from the plain values of section `tooth_pair`."""
-    return tooth_numbers(**{key: tooth_pair[key] for key in TEETH})

@@ -1,5 +1,6 @@
 """Branches of periodic motions: error against tolerance, and cost of an orbit against settling."""
 
+from facegear.config.lumped_model import lumped_sections
 from facegear.config.machines import wired_machine
 from facegear.io import tables
 from facegear.progress import Progress
@@ -10,7 +11,7 @@ from validation.dynamics.branches import DAMPING, ERRORS, TOLERANCES, accuracy, 
 with stage(snakemake) as run:
     params = snakemake.params
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
-    built = wired_machine(**params.machine, stiffness=harmonics)
+    built = wired_machine(*lumped_sections(**params.machine), harmonics)
     errors = accuracy(built, params.speed_rpm, Progress("tolerances", 2 * len(TOLERANCES)).step)
     prices = costs(built, params.speed_rpm, Progress("dampings", len(ERRORS) * len(DAMPING)).step)
     tables.write(snakemake.output.table, errors)

@@ -2,14 +2,14 @@
 
 from pathlib import Path
 
-from facegear.config.tooth_pair import pair
+from facegear.config.tooth_pair import ToothPair, pair
 from facegear.io import tables
 from facegear.mesh.sizes import MeshSizes, named_sizes
 from facegear.provenance.stage import stage
 from validation.contact.peer_study import HAND_OVER, POSITIONS, peer_study
 
 with stage(snakemake) as run:
-    teeth = pair(snakemake.params.tooth_pair)
+    teeth = pair(ToothPair.of_config(snakemake.params.tooth_pair))
     design = teeth.design
     m = design.module
     levels = {

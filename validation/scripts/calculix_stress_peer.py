@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from facegear.config.tooth_pair import pair
+from facegear.config.tooth_pair import ToothPair, pair
 from facegear.io import tables
 from facegear.provenance.stage import stage
 from validation.contact.stress_peer import stress_peer_tables
 
 with stage(snakemake) as run:
-    teeth = pair(snakemake.params.tooth_pair)
+    teeth = pair(ToothPair.of_config(snakemake.params.tooth_pair))
     folder = Path(snakemake.output.table).parent / "calculix"
     folder.mkdir(parents=True, exist_ok=True)
     table = stress_peer_tables(teeth.design, teeth.materials, folder, snakemake.threads)

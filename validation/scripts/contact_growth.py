@@ -1,17 +1,16 @@
 """Time of contact against the number of positions and of loads."""
 
-from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
-from facegear.config.tooth_pair import pair
+from facegear.config.tooth_pair import ToothPair, pair
 from facegear.io import tables
 from facegear.provenance.stage import stage
 from validation.contact.benchmark import growth, level
 from validation.contact.refinement_levels import DEFAULT
 
 with stage(snakemake) as run:
-    teeth = pair(snakemake.params.tooth_pair)
+    teeth = pair(ToothPair.of_config(snakemake.params.tooth_pair))
     design = teeth.design
-    plan = contact_plan(parse(Contact, snakemake.params.contact))
+    plan = contact_plan(Contact.of_config(snakemake.params.contact))
     base = level(DEFAULT, design, plan)
     table = growth(design, base, teeth.materials, (8, 16, 32, 64), (1, 2, 4, 8, 16))
     tables.write(snakemake.output.table, table)

@@ -1,16 +1,15 @@
 """One resolution of the contact benchmark."""
 
-from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
-from facegear.config.tooth_pair import pair
+from facegear.config.tooth_pair import ToothPair, pair
 from facegear.io import tables
 from facegear.provenance.stage import stage
 from validation.contact.benchmark import level, measure
 
 with stage(snakemake) as run:
-    teeth = pair(snakemake.params.tooth_pair)
+    teeth = pair(ToothPair.of_config(snakemake.params.tooth_pair))
     design = teeth.design
-    plan = contact_plan(parse(Contact, snakemake.params.contact))
+    plan = contact_plan(Contact.of_config(snakemake.params.contact))
     table = measure(design, level(snakemake.wildcards.level, design, plan), teeth.materials)
     tables.write(snakemake.output.table, table)
     row = table.iloc[-1]

@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from facegear.config.tooth_pair import pair
+from facegear.config.tooth_pair import ToothPair, pair
 from facegear.contact.options import ContactOptions, ContactPlan, Refinement, Sector
 from facegear.io import tables
 from facegear.mesh.sizes import MeshSizes
@@ -11,7 +11,7 @@ from validation.contact.benchmark import Level, shortcuts
 from validation.contact.sector_study import whole_sectors
 
 with stage(snakemake) as run:
-    teeth = pair(snakemake.params.tooth_pair)
+    teeth = pair(ToothPair.of_config(snakemake.params.tooth_pair))
     design = teeth.design
     plan = ContactPlan(
         torques=(600.0,),

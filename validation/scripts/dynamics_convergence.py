@@ -2,8 +2,8 @@
 
 import pandas as pd
 
-from facegear.config.base import parse
 from facegear.config.dynamics import Sweep, sweep_plan
+from facegear.config.lumped_model import lumped_sections
 from facegear.config.machines import wired_machine
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.sweeps.stored import SHAPES, from_arrays
@@ -22,8 +22,8 @@ from validation.dynamics.convergence import (
 with stage(snakemake) as run:
     params = snakemake.params
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
-    model = build_model(wired_machine(**params.machine, stiffness=harmonics))
-    plan = sweep_plan(parse(Sweep, params.sweep))
+    model = build_model(wired_machine(*lumped_sections(**params.machine), harmonics))
+    plan = sweep_plan(Sweep.of_config(params.sweep))
     files = iter(snakemake.input.chunks)
     progress = Progress("finer sweep", len(plan.directions) * plan.points)
     frames = []

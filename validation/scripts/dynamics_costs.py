@@ -1,7 +1,7 @@
 """Cost and error of sweeps against settings, pinions and harmonics."""
 
-from facegear.config.base import parse
 from facegear.config.dynamics import Sweep, sweep_plan
+from facegear.config.lumped_model import lumped_sections
 from facegear.config.machines import wired_machine
 from facegear.io import tables
 from facegear.progress import Progress
@@ -12,8 +12,8 @@ from validation.dynamics.costs import scaling_costs, sweep_costs
 with stage(snakemake) as run:
     params = snakemake.params
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
-    built = wired_machine(**params.machine, stiffness=harmonics)
-    costs = sweep_costs(built, sweep_plan(parse(Sweep, params.sweep)), Progress("settings", 20).step)
+    built = wired_machine(*lumped_sections(**params.machine), harmonics)
+    costs = sweep_costs(built, sweep_plan(Sweep.of_config(params.sweep)), Progress("settings", 20).step)
     tables.write(snakemake.output.sweep, costs)
     tables.write(snakemake.output.scaling, scaling_costs(built, params.speed_rpm))
     ratio = (costs["plain_seconds_per_speed"] / costs["seconds_per_speed"]).max()

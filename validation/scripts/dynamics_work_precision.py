@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from facegear.config.lumped_model import lumped_sections
 from facegear.config.machines import wired_machine
 from facegear.io import tables
 from facegear.plots.style import save
@@ -20,7 +21,7 @@ from validation.plots.work_precision import work_precision_diagram
 with stage(snakemake) as run:
     params, output = snakemake.params, snakemake.output
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
-    built = wired_machine(**params.machine, stiffness=harmonics)
+    built = wired_machine(*lumped_sections(**params.machine), harmonics)
     problems = [*machine_problems(built, params.speed_rpm), oscillator_problem()]
     comparisons = [(problems, all_methods()), (tangent_problems(problems), tangent_methods())]
     step = Progress("methods", sum(len(first) * len(second) for first, second in comparisons)).step

@@ -1,8 +1,8 @@
 """Time and error of load sharing over random machines."""
 
-from facegear.config.base import parse
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.load_sharing import LoadSharing, sharing_options
+from facegear.config.lumped_model import lumped_sections
 from facegear.config.machines import wired_machine
 from facegear.io import tables
 from facegear.progress import Progress
@@ -14,9 +14,9 @@ with stage(snakemake) as run:
     params = snakemake.params
     harmonics = tables.read(snakemake.input.harmonics, HARMONICS_COLUMNS)
     table = sharing_costs(
-        wired_machine(**params.machine, stiffness=harmonics),
-        settings(parse(Accuracy, params.accuracy)),
-        sharing_options(parse(LoadSharing, params.options)),
+        wired_machine(*lumped_sections(**params.machine), harmonics),
+        settings(Accuracy.of_config(params.accuracy)),
+        sharing_options(LoadSharing.of_config(params.options)),
         step=Progress("random machines", COUNT).step,
     )
     tables.write(snakemake.output.table, table)

@@ -2,7 +2,10 @@
 
 import pandas as pd
 
+from facegear.config.contact import Contact
 from facegear.config.contact_setup import contact_setup
+from facegear.config.mesh import Mesh
+from facegear.config.tooth_pair import ToothPair
 from facegear.io import tables
 from facegear.provenance.stage import stage
 from validation.contact.stress_benchmark import stress_costs
@@ -12,7 +15,9 @@ with stage(snakemake) as run:
     parts = [tables.read(path, ["level", "body", "error_percent"]) for path in snakemake.input]
     tables.write(snakemake.output.table, pd.concat(parts, ignore_index=True))
     mesh = {**params.mesh, "thin_fillet": True}  # as where root stress is asked for
-    setup = contact_setup(params.tooth_pair, mesh, params.contact)
+    setup = contact_setup(
+        ToothPair.of_config(params.tooth_pair), Mesh.of_config(mesh), Contact.of_config(params.contact)
+    )
     rows = [
         stress_costs(setup.pair.design, body, setup.sizes, setup.pair.material(body), setup.plan)
         for body in ("pinion", "face_gear")

@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-from facegear.config.tooth_pair import pair
+from facegear.config.tooth_pair import ToothPair, pair
 from facegear.io import tables
 from facegear.mesh.sizes import named_sizes, thin_fillet
 from facegear.provenance.stage import stage
@@ -10,7 +10,7 @@ from validation.contact.stress_benchmark import stress_convergence
 from validation.contact.stress_levels import OF_LEVEL
 
 with stage(snakemake) as run:
-    teeth, level = pair(snakemake.params.tooth_pair), snakemake.wildcards.level
+    teeth, level = pair(ToothPair.of_config(snakemake.params.tooth_pair)), snakemake.wildcards.level
     sizes = thin_fillet(named_sizes(level, teeth.design.module), level)
     rows = [
         {"level": level, **row}

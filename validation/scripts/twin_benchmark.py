@@ -2,13 +2,13 @@
 
 import pandas as pd
 
-from facegear.config.tooth_pair import pair
+from facegear.config.tooth_pair import ToothPair, pair
 from facegear.io import tables
 from facegear.provenance.stage import stage
 from validation.contact.twin_study import twin_study
 
 with stage(snakemake) as run:
-    design = pair(snakemake.params.tooth_pair).design
+    design = pair(ToothPair.of_config(snakemake.params.tooth_pair)).design
     gears = (design.pinion.teeth, design.face_gear.teeth)
     facets = (0.2, 0.1, 0.05)
     table = pd.concat([twin_study(design, teeth, facets) for teeth in gears], ignore_index=True)

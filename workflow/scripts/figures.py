@@ -2,6 +2,7 @@
 
 from importlib import import_module
 
+from facegear.config.arguments import typed_arguments
 from facegear.pipeline.run import read_all
 from facegear.pipeline.stage import FIGURES, load
 from facegear.plots.style import save
@@ -11,6 +12,7 @@ with stage(snakemake) as run:
     stages = import_module("facegear.pipeline.table").STAGES  # as in stage.py
     drawn = stages[snakemake.rule.removesuffix(FIGURES)].figures
     given = read_all(drawn.upstream, snakemake.input, stages)
-    figures = load(drawn.draw)(**given, **snakemake.params.needs)
+    draw = load(drawn.draw)
+    figures = draw(**given, **typed_arguments(draw, snakemake.params.needs))
     for figure, *paths in zip(figures, snakemake.output.svg, snakemake.output.png, strict=True):
         save(figure, *paths)

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from facegear.config.tooth_pair import ToothPair
 from facegear.config.tooth_pair import pair as tooth_pair
 from facegear.contact.columns import PRESSURE_ARRAYS
 from facegear.io import arrays, documents, tables
@@ -22,7 +23,7 @@ with stage(snakemake) as run:
         loads = arrays.read(snakemake.input.loads[0], PRESSURE_ARRAYS)
         given = snakemake.input.stress
         stress = arrays.read(given[0], ROOT_STRESS_ARRAYS) if given else None
-        design = tooth_pair(snakemake.params.values["tooth_pair"]).design
+        design = tooth_pair(ToothPair.of_config(snakemake.params.values["tooth_pair"])).design
         view = pair_view(design, loads, frames["ltca"], stress)
     page = case_report(snakemake.params.values, frames, pictures, manifests, pair, view)
     with atomic_path(snakemake.output.html) as temporary:

@@ -73,7 +73,7 @@ ROWS = (
     Stage(
         name="dynamic_root_stress",
         title="Root stress of the running machine",
-        needs={**PAIR, "transmission": "transmission", **GEARS},
+        needs={**MACHINE, **PAIR, **GEARS},
         upstream={"response": From("dynamics_response", "response"), **STRESS},
         files={
             "dynamic_stress": File(

@@ -10,14 +10,14 @@ import facegear
 from facegear.config.base import parse
 from facegear.config.buildable import require_buildable, require_room
 from facegear.config.changes import movable, moved
-from facegear.config.lumped_model import machine, tooth_numbers
+from facegear.config.lumped_model import ToothNumbers, machine
 from facegear.config.notes import notes
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError, ConfigErrors
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.statics import mean_equilibrium, static_equilibrium
 
-TEETH = tooth_numbers(23, 143, 3.75, 25)
+TEETH = ToothNumbers.of_teeth(23, 143, 3.75, 25)
 STIFFNESS = Harmonics(np.array([0.0, 1e7]), np.array([4.1e8, 2e7]))
 TEXT = """
 pinions:

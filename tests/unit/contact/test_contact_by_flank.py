@@ -10,7 +10,7 @@ from contact_bodies import COARSE
 import facegear
 from facegear.config.base import parse
 from facegear.config.contact import Contact, contact_plan
-from facegear.config.tooth_pair import pair
+from facegear.config.tooth_pair import ToothPair, pair
 from facegear.contact import analysis
 from facegear.contact.gear_flank import to_arrays
 from facegear.contact.pair import gear_flank
@@ -33,7 +33,7 @@ def with_errors(**errors):
 
 
 def contact_of(bodies, tooth_pair, every_flank=True):
-    teeth, plan = pair(tooth_pair), contact_plan(parse(Contact, CONTACT))
+    teeth, plan = pair(ToothPair.of_config(tooth_pair)), contact_plan(parse(Contact, CONTACT))
     found = analysis.contact_analysis(teeth.design, teeth.materials, tuple(bodies), plan, every_flank)
     return contents(found)
 
@@ -41,7 +41,7 @@ def contact_of(bodies, tooth_pair, every_flank=True):
 @pytest.fixture(scope="module")
 def bodies():
     """Both bodies with gauges, condensed once: no assembly error moves their nodes."""
-    teeth, (sizes, _) = pair(with_errors()), COARSE
+    teeth, (sizes, _) = pair(ToothPair.of_config(with_errors())), COARSE
     plan = contact_plan(parse(Contact, {**CONTACT, "refinement": {"profile": 3, "depth": 1}}))
     return [
         gear_flank(teeth.design, name, sizes, teeth.material(name), plan) for name in ("pinion", "face_gear")
@@ -54,7 +54,7 @@ def found(bodies):
 
 
 def test_every_flank_is_that_of_a_pair_assembled_with_its_own_errors(bodies, found):
-    design = pair(with_errors(**ERRORS)).design
+    design = pair(ToothPair.of_config(with_errors(**ERRORS))).design
     told = found["by_flank"].set_index(["gear", "flank"])
     assert len(told) == 4
     for gear in GEARS:

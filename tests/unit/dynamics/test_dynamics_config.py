@@ -5,12 +5,12 @@ import pytest
 
 from facegear.config.base import parse
 from facegear.config.dynamics import Dynamics, settings, sweep_plan
-from facegear.config.lumped_model import layout, machine, tooth_numbers
+from facegear.config.lumped_model import ToothNumbers, layout, machine
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigErrors
 from facegear.harmonics.series import Harmonics
 
-TEETH = tooth_numbers(23, 143, 3.75, 25)
+TEETH = ToothNumbers.of_teeth(23, 143, 3.75, 25)
 STIFFNESS = Harmonics(np.array([0.0, 1e7]), np.array([4.1e8, 2e7]))
 
 

@@ -39,6 +39,6 @@ def test_a_jam_is_refused_with_its_amount(pair, monkeypatch):
     design = pair(**DEEP)
     monkeypatch.setattr("facegear.stages.geometry.pair", lambda _: type("Pair", (), {"design": design}))
     with pytest.raises(FacegearError) as caught:
-        geometry({})
+        geometry(None)
     assert str(caught.value).startswith("tooth_pair: the bodies jam by 101.2 um along the line of action: ")
     assert "the gear's tip edge stands 47.5 um deep in the pinion's fillet" in str(caught.value)

@@ -1,13 +1,16 @@
 """The table of stages is whole: every file once, every argument from somewhere, every page in step."""
 
 import inspect
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 
+import facegear
+from facegear.config.arguments import typed_arguments
 from facegear.pipeline.listing import listing
-from facegear.pipeline.needs import stages_before
-from facegear.pipeline.stage import FIGURES, load
+from facegear.pipeline.needs import resolved_needs, stages_before
+from facegear.pipeline.stage import FIGURES, Case, load
 from facegear.pipeline.table import STAGES
 from facegear.provenance.fingerprint import reached_modules
 
@@ -35,6 +38,16 @@ def test_every_file_of_every_rule_is_declared_once():
     stages = [path for stage in STAGES.values() for path in (stage.manifest, *paths(stage))]
     figures = [name for stage in DRAWN if not callable(stage.figures.names) for name in stage.figures.names]
     assert len(set(stages)) == len(stages) and len(set(figures)) == len(figures)
+
+
+@pytest.mark.parametrize("stage", STAGES.values(), ids=lambda stage: stage.name)
+def test_sections_of_the_config_reach_a_stage_as_objects(stage):
+    values = facegear.load("config/concentric.yaml", results=None).values
+    plain = resolved_needs(stage.needs, Case(values, {values["case"]: values}))
+    function = load(stage.function)
+    passes_on = arguments(stage.function)[2]  # machines among many: keys of a section are changed by name
+    for name, value in typed_arguments(function, plain).items():
+        assert passes_on or not isinstance(value, Mapping), name
 
 
 def paths(stage):

@@ -6,18 +6,19 @@ import pytest
 
 import facegear
 from facegear.pipeline.needs import stage_needs
+from facegear.pipeline.run import call
+from facegear.pipeline.table import STAGES
 from facegear.report.case import _tables as case_tables
 from facegear.report.contents import caption_of
 from facegear.report.glance import verdicts, warnings
 from facegear.report.machine import key_numbers, machine_chapter
-from facegear.stages.ratings import ratings
 
 
 @pytest.fixture(scope="module")
 def example():
     values = facegear.example().values
     harmonics = pd.DataFrame({"order": [0, 1], "a_n_per_m": [0.0, 0.0], "b_n_per_m": [4.1e8, 1e7]})
-    return values, ratings(harmonics, **stage_needs("ratings", values)).content
+    return values, call(STAGES["ratings"], {"harmonics": harmonics, **stage_needs("ratings", values)}).content
 
 
 def test_key_numbers_are_ratio_torque_speed_frequency_and_power(example):
@@ -154,7 +155,9 @@ def test_a_machine_whose_output_is_a_pinion_shows_its_torque_and_ratio(example):
     }
     harmonics = pd.DataFrame({"order": [0], "a_n_per_m": [0.0], "b_n_per_m": [4.1e8]})
     needs = {**stage_needs("ratings", example[0]), "transmission": section}
-    numbers = key_numbers(ratings(harmonics, **needs).content, None).set_index("quantity")["value"]
+    numbers = key_numbers(call(STAGES["ratings"], {"harmonics": harmonics, **needs}).content, None).set_index(
+        "quantity"
+    )["value"]
     assert numbers["Torque of the output pinions"] == "250"
     assert numbers["Ratio of speeds, input over output pinion"] == "1"
     assert not [name for name in numbers.index if "gear ratio" in name.lower() or "output gear" in name]

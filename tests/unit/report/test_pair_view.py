@@ -10,7 +10,6 @@ import pandas as pd
 import pytest
 
 from facegear.config.load import load_config
-from facegear.config.model import resolved
 from facegear.config.tooth_pair import pair
 from facegear.contact.columns import SHARES
 from facegear.report.page import Chapter, render
@@ -57,7 +56,7 @@ def view(loads):
 
 
 def design():
-    return pair(resolved(load_config(CONFIG))["tooth_pair"]).design
+    return pair(load_config(CONFIG).tooth_pair).design
 
 
 def decoded(text, kind):

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 import facegear
-from facegear.config.machines import wired_machine
+from facegear.config.machines import case_machine
 from facegear.config.tolerances import Tolerances, chunks
 from facegear.errors import ConfigErrors, FacegearError
 from facegear.io import tables
@@ -51,8 +51,7 @@ def gearbox():
 
 
 def wired(gearbox):
-    needs = stage_needs("hunting", gearbox.values)
-    return wired_machine(needs["transmission"], needs["teeth"], gearbox.stiffness().content["harmonics"])
+    return case_machine(gearbox.values, gearbox.stiffness().content["harmonics"])
 
 
 def chunk(gearbox, first, last, design="samples", **others):

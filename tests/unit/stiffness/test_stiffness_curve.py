@@ -10,7 +10,8 @@ from facegear.config.modal import modes_need_contact
 from facegear.config.stiffness import MeshStiffness, stiffness_request
 from facegear.errors import ConfigError, ConfigErrors
 from facegear.pipeline.needs import stage_needs
-from facegear.stages.modal import modal
+from facegear.pipeline.run import call
+from facegear.pipeline.table import STAGES
 from facegear.stiffness.curve import load_table
 from facegear.stiffness.source import stiffness_from_contact, stiffness_given
 from facegear.stiffness.tables import load_dependence, series_of
@@ -74,7 +75,7 @@ def test_both_means_stand_beside_the_harmonics_and_modes_take_the_local_one(sour
     needs = stage_needs("modal", values) | {"mean_stiffness": None}
     taken = {}
     for definition in ("local", "average"):
-        found = modal(**needs | {"definition": definition}, harmonics=table)
+        found = call(STAGES["modal"], {**needs, "definition": definition, "harmonics": table})
         taken[definition] = found.content["contacts"]["stiffness_n_per_m"].to_list()
         assert f"N/m ({definition})" in found.summary
     assert taken["local"] == pytest.approx(10 * [1.3 * average], rel=1e-9)
@@ -98,7 +99,7 @@ def test_modes_ask_for_the_contact_where_the_config_does_not_give_their_stiffnes
 def test_the_papers_modes_are_those_of_the_mean_that_its_config_gives():
     values = load_config(ROOT / "config" / "paper.yaml").model_dump(mode="json")
     assert not modes_need_contact(values)
-    found = modal(**stage_needs("modal", values))
+    found = call(STAGES["modal"], stage_needs("modal", values))
     elastic = found.content["frequencies"]["frequency_hz"].to_numpy()[6:]
     np.testing.assert_allclose(elastic[[0, 4, 10, 21]], [756.7, 833.5, 2260.1, 6488.0], atol=0.0501)
     assert "4.1e+08 N/m (average, given)" in found.summary

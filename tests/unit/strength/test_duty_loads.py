@@ -7,11 +7,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import facegear
+from facegear.config.lumped_model import lumped_sections
 from facegear.config.machines import wired_machine
+from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError, ConfigErrors
 from facegear.load_sharing.even_shares import even_shares
 from facegear.pipeline.needs import stage_needs, stages_before
-from facegear.stages.duty_loads import duty_loads
+from facegear.pipeline.run import call
+from facegear.pipeline.table import STAGES
 from facegear.strength.duty import DutyBin, machine_duty
 from facegear.strength.passage_loads import classes, hardest_tooth
 from facegear.transmission.ratings import mesh_table
@@ -25,16 +28,21 @@ SMOOTH = {
 }
 
 
+def found_by(gearbox, harmonics):
+    given = {"harmonics": harmonics, **stage_needs("duty_loads", gearbox.values)}
+    return call(STAGES["duty_loads"], given).content
+
+
 def test_smooth_meshes_run_at_their_mean_force_on_the_flanks_of_the_statics():
     gearbox = facegear.example().with_values(SMOOTH)
     harmonics = gearbox.stiffness().content["harmonics"]
-    found = duty_loads(harmonics, **stage_needs("duty_loads", gearbox.values)).content
+    found = found_by(gearbox, harmonics)
     loads = found["duty_loads"]
     np.testing.assert_allclose(loads["dynamic_factor"], 1.0, rtol=1e-6)
     assert loads["settled"].all()
     for number, torque in ((1, 600.0), (2, 900.0)):
-        loaded = at_mesh_torque(gearbox.values["transmission"], torque)
-        machine = wired_machine(loaded, gearbox.values["tooth_pair"], harmonics)
+        section, teeth = lumped_sections(gearbox.values["transmission"], gearbox.values["tooth_pair"])
+        machine = wired_machine(at_mesh_torque(section, torque), teeth, harmonics)
         at_rest = mesh_table(machine, 0.0).set_index("mesh")
         running = loads[loads["bin"] == number].set_index("mesh")
         assert running["flank"].to_dict() == at_rest["flank"].to_dict()
@@ -46,7 +54,7 @@ def test_smooth_meshes_run_at_their_mean_force_on_the_flanks_of_the_statics():
 def test_teeth_of_each_body_meet_its_own_meshes_and_idlers_bend_both_ways():
     gearbox = facegear.example().with_values(SMOOTH)
     harmonics = gearbox.stiffness().content["harmonics"]
-    found = duty_loads(harmonics, **stage_needs("duty_loads", gearbox.values)).content
+    found = found_by(gearbox, harmonics)
     spectrum, loads = found["duty_spectrum"], found["duty_loads"]
     flanks = {
         body: set(rows["flank"]) for body, rows in spectrum[spectrum["bin"] == 1].groupby("body", sort=False)
@@ -71,7 +79,7 @@ def test_runouts_load_the_teeth_at_their_high_point_hardest():
     values = {**SMOOTH, "transmission.single_pinions": {"right input": eccentric}}
     gearbox = facegear.example().with_values({**values, "strength.duty": [{**BIN, "torque_n_m": 600}]})
     harmonics = gearbox.stiffness().content["harmonics"]
-    found = duty_loads(harmonics, **stage_needs("duty_loads", gearbox.values)).content
+    found = found_by(gearbox, harmonics)
     assert found["duty_loads"]["motion"].unique().tolist() == ["followed"]
     spectrum = found["duty_spectrum"][found["duty_spectrum"]["mesh"] == "right input/upper"]
     own = spectrum[spectrum["body"] == "right input"]["force_n"]
@@ -103,12 +111,13 @@ def test_all_torques_follow_the_one_in_an_inputs_mesh():
     values = facegear.example().values["transmission"]
     own = {**values["pinions"][1], "torque_n_m": 100.0}
     given = {**values, "pinions": [own, *values["pinions"][2:]]}
-    scaled = at_mesh_torque(given, 2 * 1327.6 / 2)
-    assert scaled["torque"]["per_input_n_m"] == pytest.approx(2 * 1327.6)
-    assert scaled["pinions"][0]["torque_n_m"] == pytest.approx(200.0)
-    assert scaled["pinions"][1]["torque_n_m"] is None
+    scaled = at_mesh_torque(Transmission.of_config(given), 2 * 1327.6 / 2)
+    assert scaled.torque.per_input_n_m == pytest.approx(2 * 1327.6)
+    assert scaled.pinions[0].torque_n_m == pytest.approx(200.0)
+    assert scaled.pinions[1].torque_n_m is None
     with pytest.raises(ConfigError, match="duty cycle"):
-        at_mesh_torque({**given, "torque": {"per_input_n_m": 0.0, "tail_share": 0.0}}, 600.0)
+        unloaded = {**given, "torque": {"per_input_n_m": 0.0, "tail_share": 0.0}}
+        at_mesh_torque(Transmission.of_config(unloaded), 600.0)
 
 
 def test_the_machines_loads_come_before_the_rating_where_it_takes_them():
