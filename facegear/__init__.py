@@ -9,7 +9,15 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from facegear.errors import ConfigError, ConfigErrors, CorruptFile, FacegearError, MissingExtra, NotConverged
+from facegear.errors import (
+    ConfigError,
+    ConfigErrors,
+    CorruptFile,
+    FacegearError,
+    InvalidInput,
+    MissingExtra,
+    NotConverged,
+)
 
 if TYPE_CHECKING:
     from facegear.gearbox import Gearbox, example, load
@@ -20,6 +28,7 @@ __all__ = [
     "CorruptFile",
     "FacegearError",
     "Gearbox",
+    "InvalidInput",
     "MissingExtra",
     "NotConverged",
     "example",

@@ -25,8 +25,20 @@ class ConfigErrors(FacegearError):
         self.lines = tuple(lines)
 
 
-class GeometryError(ConfigError):
-    """A tooth design that cannot exist: names the key, the value and the limit it breaks."""
+class InvalidInput(FacegearError):
+    """A quantity that cannot be computed with: names it in words, its value and what it must be.
+
+    `allowed` may name other quantities `in backticks`. Where the inputs are those of a config, the user reads
+    the keys instead: `facegear.config.keys`.
+    """
+
+    def __init__(self, quantity: str, value: object, allowed: str) -> None:
+        super().__init__(f"{quantity} = {value!r}: must be {allowed.replace('`', '')}")
+        self.quantity, self.value, self.allowed = quantity, value, allowed
+
+
+class GeometryError(InvalidInput):
+    """A tooth design that cannot exist: names the part's dimension, its value and the limit it breaks."""
 
 
 class NotConverged(FacegearError):

@@ -9,7 +9,8 @@ from typing import Any, NoReturn, Self, TypeVar, get_args
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
 
-from facegear.errors import ConfigError, ConfigErrors
+from facegear.config.keys import config_error
+from facegear.errors import ConfigError, ConfigErrors, InvalidInput
 
 
 class Section(BaseModel):
@@ -50,6 +51,9 @@ def require_all(*checks: Callable[[], None]) -> None:
     for check in () if _VALIDATED.get() else checks:
         try:
             check()
+        except InvalidInput as error:
+            named = config_error(error)
+            refused.append((named.key, named.value, named.allowed))
         except ConfigError as error:
             refused.append((error.key, error.value, error.allowed))
         except PydanticCustomError as error:

@@ -119,7 +119,7 @@ class ToothPair(Section):
         try:
             check(pair_design(self))
         except GeometryError as error:
-            refuse(error.key, error.value, error.allowed)
+            refuse(error.quantity, error.value, error.allowed)
         except NotConverged as error:
             refuse("face_gear", self.face_gear_teeth, f"other teeth or radii: {error}")
 

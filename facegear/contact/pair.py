@@ -10,7 +10,7 @@ from facegear.contact.options import ContactPlan, Ends
 from facegear.contact.root_gauges import root_gauges
 from facegear.contact.section_error import section_errors
 from facegear.contact.teeth import elastic_tooth
-from facegear.errors import ConfigError
+from facegear.errors import InvalidInput
 from facegear.geometry.design import Material, PairDesign
 from facegear.mesh.quality import require_right_side_out
 from facegear.mesh.sizes import MeshSizes
@@ -30,7 +30,7 @@ def gear_flank(
 ) -> GearFlank:
     """Contact surface, flank compliance and, where asked for, gauges of the pinion or the face gear.
 
-    Raises ConfigError for a sector with more teeth than the gear and for a mesh with elements turned inside
+    Raises InvalidInput for a sector with more teeth than the gear and for a mesh with elements turned inside
     out, FacegearError if the mesh cannot be factorised.
     """
     tooth = BUILDERS[body](design, sizes)
@@ -48,14 +48,16 @@ def gear_flank(
 def extent(tooth: FeTooth, body: str, plan: ContactPlan) -> tuple[int, int, Ends]:
     """How many teeth of a body are modelled, the neighbours on each side that are kept, and what ends them.
 
-    Raises ConfigError for a sector with more teeth than the gear.
+    Raises InvalidInput for a sector with more teeth than the gear.
     """
     sector = plan.sector
     wanted = sector.pinion_teeth if body == "pinion" else sector.face_gear_teeth
     if wanted is None:
         return tooth.teeth, min(NEIGHBOURS, (tooth.teeth - 3) // 2), "ring"
     if wanted > tooth.teeth:
-        raise ConfigError(f"contact.sector.{body}_teeth", wanted, f"at most {tooth.teeth}")
+        raise InvalidInput(
+            f"modelled teeth of the {body.replace('_', ' ')}", wanted, f"at most {tooth.teeth}"
+        )
     return wanted, min(NEIGHBOURS, (wanted - 3) // 2), sector.cut_faces
 
 

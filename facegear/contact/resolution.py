@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import ceil, inf, pi, sin, sqrt
 
 from facegear.contact.options import ContactPlan
-from facegear.errors import ConfigError
+from facegear.errors import InvalidInput
 from facegear.geometry.design import Material, PairDesign
 from facegear.geometry.fillets import smallest_radius
 from facegear.mesh.sizes import MeshSizes
@@ -55,7 +55,7 @@ def estimated_memory(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) ->
 def check_memory(design: PairDesign, sizes: MeshSizes, plan: ContactPlan, available: float) -> None:
     """Refuse a mesh that cannot fit into `available` bytes even if the estimate is a fifth too high.
 
-    Raises ConfigError.
+    Raises InvalidInput.
     """
     needed = estimated_memory(design, sizes, plan)
     if needed > MEMORY_ERROR * available:
@@ -64,7 +64,7 @@ def check_memory(design: PairDesign, sizes: MeshSizes, plan: ContactPlan, availa
             f"coarser: an estimate of the memory for factorisation and compliance is {needed / 1e9:.3g} GB, "
             f"and this machine has {available / 1e9:.3g} GB"
         )
-        raise ConfigError("mesh.resolution", asked, allowed)
+        raise InvalidInput("element size", asked, allowed)
 
 
 def _elements_along(design: PairDesign, sizes: MeshSizes) -> float:
@@ -103,7 +103,7 @@ def along_the_ellipse(
 ) -> ContactPlan:
     """The plan with as many cuts along the face as the contact ellipse of a crowned pinion asks for.
 
-    At the smallest torque its half-length holds PLANES planes of nodes. Raises ConfigError where that takes
+    At the smallest torque its half-length holds PLANES planes of nodes. Raises InvalidInput where that takes
     more than MOST_CUTS cuts.
     """
     torque = min(plan.torques)
@@ -111,8 +111,8 @@ def along_the_ellipse(
     cuts = max(plan.refinement.width, ceil(PLANES * sizes.width / 2.0 / half - ROUNDING))
     if cuts > MAX_CUTS:
         needed = 2e3 * MAX_CUTS * half / PLANES
-        raise ConfigError(
-            "mesh.resolution",
+        raise InvalidInput(
+            "element size",
             f"{1e3 * sizes.width:.3g} mm along the face",
             f"at most {needed:.3g} mm: at {torque:g} N m the crowned pinion's contact ellipse is "
             f"{2e3 * half:.3g} mm long",
@@ -126,25 +126,26 @@ def check_resolution(
     """Refuse a mesh whose nodes are too far apart for the contact strip at any torque asked for.
 
     Each torque is judged by itself, so that it makes no difference which others stand beside it. Raises
-    ConfigError.
+    InvalidInput.
     """
     spacing, torque = node_spacing(sizes, plan), min(plan.torques)
     strip = half_width(design, materials, torque)
     if not resolves(spacing, design, materials, torque):
         largest = 2e3 * COARSEST * strip * plan.refinement.profile
         enough = torque * (spacing / (COARSEST * strip)) ** 2
-        raise ConfigError(
-            "mesh.resolution",
+        raise InvalidInput(
+            "element size",
             f"{1e3 * sizes.profile:.3g} mm across the profile",
-            f"at most {largest:.3g} mm with contact.refinement.profile = {plan.refinement.profile}, or "
-            f"contact.torques_n_m at least {enough:.4g}: it is too coarse for contact at {torque:g} N m",
+            f"at most {largest:.3g} mm with `profile refinement` = {plan.refinement.profile}, or "
+            f"`torques of the contact analysis` at least {enough:.4g}: "
+            f"it is too coarse for contact at {torque:g} N m",
         )
 
 
 def check_fillet(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) -> None:
     """Refuse a mesh whose elements are too large for the sharpest fillet, where its stress is asked for.
 
-    Raises ConfigError.
+    Raises InvalidInput.
     """
     radius = min(smallest_radius(design, body) for body in ("pinion", "face_gear"))
     depth = sizes.fillet_depth or sizes.profile
@@ -153,4 +154,4 @@ def check_fillet(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) -> Non
             f"at most {1e3 * DEEPEST * radius:.3g} mm, {DEEPEST:g} times the smallest radius of the fillets: "
             "it is too coarse to resolve their stress"
         )
-        raise ConfigError("mesh.resolution", f"{1e3 * depth:.3g} mm below the fillets", allowed)
+        raise InvalidInput("element size", f"{1e3 * depth:.3g} mm below the fillets", allowed)

@@ -7,7 +7,7 @@ from skfem import ElementHex2, MeshHex2
 from skfem.quadrature import get_quadrature
 
 from facegear.arrays import Array, Integers
-from facegear.errors import ConfigError
+from facegear.errors import InvalidInput
 from facegear.mesh.hexahedra import hex_mesh
 from facegear.mesh.tooth import FeTooth
 
@@ -31,11 +31,13 @@ def scaled_jacobians(nodes: Array, hexes: Integers) -> Array:
 
 
 def require_right_side_out(tooth: FeTooth) -> None:
-    """Raises ConfigError for a mesh with an element turned inside out, which no stiffness may come from."""
+    """Raises InvalidInput for a mesh with an element turned inside out, which no stiffness may come from."""
     turned = np.count_nonzero(scaled_jacobians(tooth.nodes, tooth.hexes) <= 0.0)
     if turned:
         elements = f"{turned} elements of the {tooth.body.replace('_', ' ')} turned inside out"
-        raise ConfigError("mesh.resolution", elements, "another one, or another fillet_depth_mm")
+        raise InvalidInput(
+            "element size", elements, "another one, or another `element depth below the fillets`"
+        )
 
 
 def volume(nodes: Array, hexes: Integers) -> float:

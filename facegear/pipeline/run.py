@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from facegear.config.arguments import typed_arguments
+from facegear.config.keys import keys_named
 from facegear.io.files import write_part
 from facegear.pipeline.stage import From, Stage, load
 
@@ -44,7 +45,11 @@ def write_stage(stage: Stage, content: Mapping[str, Any], paths: Paths) -> list[
 
 
 def call(stage: Stage, given: Mapping[str, Any], **more: Any) -> "Outcome":
-    """The stage with arguments `given`, plain values of the config as the sections that it asks for."""
+    """The stage with arguments `given`, plain values of the config as the sections that it asks for.
+
+    What it refuses is named by the key of the config.
+    """
     function = load(stage.function)
-    outcome: Outcome = function(**typed_arguments(function, given), **more)
+    with keys_named():
+        outcome: Outcome = function(**typed_arguments(function, given), **more)
     return outcome

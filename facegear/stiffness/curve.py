@@ -7,7 +7,7 @@ import pandas as pd
 import scipy
 
 from facegear.arrays import Array
-from facegear.errors import ConfigError, FacegearError
+from facegear.errors import FacegearError, InvalidInput
 from facegear.stiffness.request import Definition
 
 COLUMN = {"average": "k_average_n_per_m", "local": "k_local_n_per_m"}
@@ -25,7 +25,7 @@ class LoadTable:
     def at(self, torque: float, definition: Definition) -> Array:
         """Stiffness (p,) at a torque, monotone cubic in log torque at each position.
 
-        Raises ConfigError outside the torques solved: the curve is never extrapolated.
+        Raises InvalidInput outside the torques solved: the curve is never extrapolated.
         """
         values = self.average if definition == "average" else self.local
         exact = np.flatnonzero(np.isclose(self.torques, torque, rtol=1e-12))
@@ -33,8 +33,8 @@ class LoadTable:
             return values[exact[0]]
         low, high = self.torques[0], self.torques[-1]
         if not low <= torque <= high:
-            allowed = f"within contact.torques_n_m, {low:g} to {high:g}"
-            raise ConfigError("mesh_stiffness.torque_n_m", torque, allowed)
+            allowed = f"within `torques of the contact analysis`, {low:g} to {high:g}"
+            raise InvalidInput("torque of the mesh stiffness", torque, allowed)
         return scipy.interpolate.PchipInterpolator(np.log(self.torques), values, axis=0)(np.log(torque))
 
     def interpolation_error(self, torque: float, definition: Definition) -> float:

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array
-from facegear.errors import ConfigError
+from facegear.errors import InvalidInput
 from facegear.harmonics.fit import LEVELS, fit_harmonics
 from facegear.harmonics.series import Harmonics
 from facegear.stiffness.curve import load_table
@@ -32,7 +32,7 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
     """Curve at the requested load and its series.
 
     Source fem_scaled multiplies the curve so that its mean is the requested one. Beside the harmonics stand
-    the means of both definitions at that load, scaled alike. Raises ConfigError for a
+    the means of both definitions at that load, scaled alike. Raises InvalidInput for a
     load outside those solved and for a variation with which k(t) is not positive throughout.
     """
     assert request.torque is not None
@@ -49,7 +49,7 @@ def stiffness_from_contact(ltca: pd.DataFrame, request: StiffnessRequest) -> Sti
         allowed = (
             f"at most {_largest_variation(fit.series.kept(request.kept)):.4g}, so that k(t) stays positive"
         )
-        raise ConfigError("mesh_stiffness.variation", request.variation, allowed)
+        raise InvalidInput("variation of the mesh stiffness", request.variation, allowed)
     reach = ", ".join(f"{100 * level:g} %: {fit.orders_within(level)}" for level in LEVELS)
     error, cut = unloaded_series(ltca, series.order)
     between = table.interpolation_error(request.torque, request.definition)

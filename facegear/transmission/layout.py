@@ -6,7 +6,7 @@ from enum import StrEnum
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.errors import ConfigError
+from facegear.errors import InvalidInput
 
 DOF_PER_BODY = 4
 DOF_LETTERS = ("x", "y", "z", "theta")
@@ -106,18 +106,16 @@ class Layout:
 
     def __post_init__(self) -> None:
         if not self.pinions:
-            raise ConfigError("transmission.pinions", [], "at least one pinion")
+            raise InvalidInput("pinions", [], "at least one pinion")
         if not self.gears or len({gear.side for gear in self.gears}) != len(self.gears):
-            raise ConfigError(
-                "transmission.face_gears", [g.side.value for g in self.gears], "lower, upper or both"
-            )
+            raise InvalidInput("face gears", [g.side.value for g in self.gears], "lower, upper or both")
         names = [pinion.name for pinion in self.pinions]
         if len(set(names)) != len(names):
-            raise ConfigError("transmission.pinions", names, "names that differ from pinion to pinion")
+            raise InvalidInput("pinions", names, "names that differ from pinion to pinion")
         conjugate = self.pinion_radius * self.gear_teeth / self.pinion_teeth
         if self.is_geometric and abs(self.gear_radius - conjugate) > SAME_ARM * conjugate:
             allowed = f"{conjugate:.9g} m, as the tooth numbers say, where mesh_kinematics is geometric"
-            raise ConfigError("gear_radius", self.gear_radius, allowed)
+            raise InvalidInput("gear_radius", self.gear_radius, allowed)
 
     @property
     def is_geometric(self) -> bool:

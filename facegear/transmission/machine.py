@@ -6,7 +6,7 @@ from enum import StrEnum
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.errors import ConfigError
+from facegear.errors import InvalidInput
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.law import MeshLaw
 from facegear.transmission.imperfections import Imperfections, perfect
@@ -71,15 +71,15 @@ class Machine:
             object.__setattr__(self, "forces", np.zeros((len(self.layout.bodies), 3)))
         require_balance(self.layout, self.torques)
         meshes = len(self.layout.meshes)
-        for key, given in (
-            ("transmission_error.phasing", self.error_lags),
-            ("single_meshes", self.imperfections.half_backlash),
+        for quantity, given in (
+            ("lags of the transmission error", self.error_lags),
+            ("half backlashes", self.imperfections.half_backlash),
         ):
             if given is not None and len(given) != meshes:
-                raise ConfigError(f"transmission.{key}", f"{len(given)} meshes", f"one for each of {meshes}")
+                raise InvalidInput(quantity, f"{len(given)} meshes", f"one for each of {meshes}")
         lowest = self.stiffness.minimum
         if lowest <= 0.0:
-            raise ConfigError("mesh_stiffness", f"{lowest:.3g} N/m", "positive everywhere in the mesh cycle")
+            raise InvalidInput("mesh stiffness", f"{lowest:.3g} N/m", "positive everywhere in the mesh cycle")
 
     @property
     def applied(self) -> Array:
@@ -134,7 +134,7 @@ def balanced_torques(layout: Layout, on_pinions: Array, on_other_gear: float = 0
 
 
 def require_balance(layout: Layout, torques: Array) -> None:
-    """Raise ConfigError unless the torques hold the rigid rotation in balance."""
+    """Raise InvalidInput unless the torques hold the rigid rotation in balance."""
     pinions = len(layout.pinions)
     tangential = np.concatenate(
         [torques[:pinions] / layout.pinion_radius, torques[pinions:] / layout.gear_radius]
@@ -144,4 +144,4 @@ def require_balance(layout: Layout, torques: Array) -> None:
         allowed = (
             "0, as torques must balance: sum of pinion torques / r_pinion + sum of gear torques / r_gear"
         )
-        raise ConfigError("transmission.torque", f"{excess:.6g} N in excess at the mesh", allowed)
+        raise InvalidInput("torques", f"{excess:.6g} N in excess at the mesh", allowed)

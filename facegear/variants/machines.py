@@ -11,6 +11,7 @@ from facegear.arrays import Arrays
 from facegear.config.base import parse
 from facegear.config.buildable import require_buildable, require_room
 from facegear.config.dynamics import Accuracy, settings
+from facegear.config.keys import keys_named
 from facegear.config.load_sharing import LoadSharing, sharing_options
 from facegear.config.lumped_model import ToothNumbers, machine
 from facegear.config.transmission import Transmission
@@ -118,6 +119,7 @@ def judge(question: Question, meshes: Meshes, told: str) -> Judge:
     """`told` names the machine in errors."""
     ask = _ask(question)
 
+    @keys_named()
     def judged(values: Mapping[str, Any]) -> dict[str, float]:
         mesh = meshes(values["tooth_pair"])
         section = parse(Transmission, mesh.in_machine(values["transmission"]), told)

@@ -217,7 +217,7 @@ def test_every_error_that_a_user_may_meet_has_a_name_in_the_package():
     for error in own - {errors.GeometryError}:
         assert getattr(facegear, error.__name__) is error and error.__name__ in facegear.__all__
         assert issubclass(error, facegear.FacegearError)
-    assert issubclass(errors.GeometryError, facegear.ConfigError)
+    assert issubclass(errors.GeometryError, facegear.InvalidInput)
 
 
 def test_values_of_a_gearbox_and_of_its_results_are_copies():

@@ -86,6 +86,15 @@ def test_no_module_reaches_itself_by_imports_not_even_inside_a_package():
     assert len(tuple(TopologicalSorter(reached).static_order())) == len(MODULES)
 
 
+def test_what_config_stands_on_names_quantities_and_no_keys_of_the_config():
+    below = MAY_IMPORT["config"] | {"harmonics", "mesh_law"}
+    for module in MODULES:
+        if module.relative_to(PACKAGE).parts[0] in below:
+            assert not {"facegear.errors.ConfigError", "facegear.errors.ConfigErrors"} & imported(
+                module, True
+            )
+
+
 @pytest.mark.parametrize("tenant", TENANTS)
 def test_the_library_never_imports_its_tenants(tenant):
     others = [path for name in TENANTS if name != tenant for path in (PACKAGE.parent / name).rglob("*.py")]

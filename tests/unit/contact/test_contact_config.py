@@ -18,7 +18,7 @@ from facegear.contact.resolution import (
     ellipse_half_length,
     half_width,
 )
-from facegear.errors import ConfigError, ConfigErrors
+from facegear.errors import ConfigErrors, InvalidInput
 from facegear.geometry.design import FaceGearGeometry, Material, PairDesign, PinionGeometry, Relief, Shaper
 from facegear.mesh.sizes import MeshSizes, named_sizes, thin_fillet
 from facegear.pipeline.needs import stage_needs
@@ -61,7 +61,7 @@ def test_strip_widens_with_the_root_of_the_load():
 
 def test_mesh_that_cannot_see_the_strip_is_refused_with_the_size_that_can():
     check_resolution(DESIGN, (STEEL, STEEL), named_sizes("coarse", M), plan())
-    with pytest.raises(ConfigError, match="must be at most"):
+    with pytest.raises(InvalidInput, match="must be at most"):
         check_resolution(DESIGN, (STEEL, STEEL), MeshSizes(6e-3, 6e-3, 6e-3), plan(cuts=Refinement()))
 
 
@@ -69,7 +69,7 @@ def accepted(*torques):
     try:
         sizes = MeshSizes(1.5e-3, 6e-3, 4e-3)
         check_resolution(DESIGN, (STEEL, STEEL), sizes, replace(plan(), torques=torques))
-    except ConfigError:
+    except InvalidInput:
         return False
     return True
 
@@ -81,7 +81,9 @@ def test_a_torque_is_resolved_or_refused_whatever_others_stand_beside_it(torques
 
 
 def test_a_torque_that_is_too_small_for_the_mesh_is_named_with_the_smallest_that_is_not():
-    with pytest.raises(ConfigError, match=r"or contact\.torques_n_m at least .* at 40 N m") as refused:
+    with pytest.raises(
+        InvalidInput, match=r"or torques of the contact analysis at least .* at 40 N m"
+    ) as refused:
         sizes = MeshSizes(1.5e-3, 6e-3, 4e-3)
         check_resolution(DESIGN, (STEEL, STEEL), sizes, replace(plan(), torques=(40.0, 1000.0)))
     enough = float(refused.value.allowed.split("at least ")[1].split(":")[0])
@@ -92,12 +94,12 @@ def test_mesh_too_coarse_for_the_sharpest_fillet_is_refused_where_its_stress_is_
     sizes = named_sizes("coarse", M)
     check_fillet(DESIGN, sizes, plan())
     check_fillet(DESIGN, thin_fillet(sizes, "coarse"), replace(plan(), root_stress=True))
-    with pytest.raises(ConfigError, match=r"0\.75 mm below the fillets': must be at most 0\.442 mm"):
+    with pytest.raises(InvalidInput, match=r"0\.75 mm below the fillets': must be at most 0\.442 mm"):
         check_fillet(DESIGN, sizes, replace(plan(), root_stress=True))
 
 
 def test_sector_larger_than_the_gear_is_refused():
-    with pytest.raises(ConfigError, match="at most 23"):
+    with pytest.raises(InvalidInput, match="at most 23"):
         gear_flank(
             DESIGN, "pinion", MeshSizes(1.5e-3, 6e-3, 3e-3), STEEL, plan(sector=Sector(pinion_teeth=25))
         )
@@ -118,7 +120,7 @@ def test_cuts_along_the_face_follow_the_contact_ellipse_of_a_crowned_pinion(amou
 def test_an_ellipse_too_short_for_any_cuts_is_refused_with_the_mesh_that_holds_it():
     crowned = replace(DESIGN.pinion, lead_crowning=Relief(180e-6, 0.0, 15e-3))
     design, sizes = replace(DESIGN, pinion=crowned), MeshSizes(0.75e-3, 6e-3, 3e-3)
-    with pytest.raises(ConfigError, match=r"mm along the face.* must be at most .* mm: at 0\.01 N m"):
+    with pytest.raises(InvalidInput, match=r"mm along the face.* must be at most .* mm: at 0\.01 N m"):
         along_the_ellipse(design, (STEEL, STEEL), sizes, plan(0.01))
 
 

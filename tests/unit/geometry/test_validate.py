@@ -53,7 +53,7 @@ def changed(design, **changes):
 def test_impossible_designs_name_the_key(pair, change, key):
     with pytest.raises(GeometryError) as refused:
         check(changed(pair(26), **change))
-    assert refused.value.key == key
+    assert refused.value.quantity == key
     assert "\n" not in str(refused.value)
 
 
@@ -68,7 +68,7 @@ def test_an_accepted_crowning_takes_no_more_off_the_ends_of_the_face_than_the_la
     try:
         check(design)
     except GeometryError as error:
-        assert error.key == "pinion.lead_crowning.length_mm"
+        assert error.quantity == "pinion.lead_crowning.length_mm"
         least = float(str(error.allowed).split("at least ")[1].split(":")[0])
         assert least > 1e3 * length
         design = changed(design, pinion__lead_crowning=Relief(amount, start, 1.001e-3 * least))
@@ -135,7 +135,7 @@ def test_random_pairs_are_valid_or_refused(design):
     try:
         limits = check(design)
     except GeometryError as refused:
-        assert refused.key.split(".")[0] in ("pinion", "face_gear", "shaper")
+        assert refused.quantity.split(".")[0] in ("pinion", "face_gear", "shaper")
         return
     assert limits.inner <= design.face_gear.inner_radius < design.face_gear.outer_radius <= limits.outer
     outline = pinion_outline(design, 200)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from skfem import ElementHex2
 
-from facegear.errors import ConfigError
+from facegear.errors import InvalidInput
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.fillets import smallest_radius
 from facegear.mesh.hexahedra import facet_basis, hex_mesh
@@ -41,7 +41,7 @@ def test_a_mesh_with_an_element_turned_inside_out_is_refused(design):
     require_right_side_out(mesh)
     nodes = mesh.nodes.copy()
     nodes[mesh.hexes[0, 13]] = nodes[mesh.hexes[-1, 13]]
-    with pytest.raises(ConfigError, match=r"mesh\.resolution = '1 elements of the pinion turned inside out'"):
+    with pytest.raises(InvalidInput, match=r"element size = '1 elements of the pinion turned inside out'"):
         require_right_side_out(replace(mesh, nodes=nodes))
 
 

@@ -8,7 +8,7 @@ from facegear.config.base import parse
 from facegear.config.load import load_config
 from facegear.config.modal import modes_need_contact
 from facegear.config.stiffness import MeshStiffness, stiffness_request
-from facegear.errors import ConfigError, ConfigErrors
+from facegear.errors import ConfigErrors, InvalidInput
 from facegear.pipeline.needs import stage_needs
 from facegear.pipeline.run import call
 from facegear.pipeline.table import STAGES
@@ -45,7 +45,7 @@ def test_curve_between_solved_loads_follows_the_load_dependence():
 
 @pytest.mark.parametrize("torque", [50.0, 801.0])
 def test_curve_is_never_extrapolated_in_load(torque):
-    with pytest.raises(ConfigError, match="100 to 800"):
+    with pytest.raises(InvalidInput, match="100 to 800"):
         load_table(contact_table()).at(torque, "average")
 
 
@@ -114,7 +114,7 @@ def test_variation_stretches_the_curve_about_its_mean_and_must_leave_it_positive
     for column in ("k_n_per_m", "k_series_n_per_m"):
         assert more[column].mean() == pytest.approx(plain[column].mean(), rel=1e-12)
         assert np.ptp(more[column]) == pytest.approx(2.5 * np.ptp(plain[column]), rel=1e-12)
-    with pytest.raises(ConfigError, match=r"mesh_stiffness.variation.*at most 10"):
+    with pytest.raises(InvalidInput, match=r"variation of the mesh stiffness.*at most 10"):
         stiffness_from_contact(contact_table(), request(source=source, variation=11.0))
 
 
