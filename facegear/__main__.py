@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
-from facegear.config.load import load_values, read_layers
+from facegear.config.load import load_config, read_layers
 from facegear.errors import EXTRAS, FacegearError, MissingExtra
 
 ROOT = Path(__file__).parents[1]
@@ -81,7 +81,7 @@ def _run(given: argparse.Namespace) -> int:
 def _check(given: argparse.Namespace) -> int:
     from facegear.config.cases import expand_cases
 
-    cases = expand_cases(load_values([given.config], {}))
+    cases = expand_cases(load_config(given.config))
     print(f"{given.config}: no mistakes; {len(cases)} case{'s' * (len(cases) > 1)}: {', '.join(cases)}")
     return 0
 

@@ -12,18 +12,18 @@ from facegear.config.studies import Point, Study
 from facegear.errors import ConfigError, ConfigErrors
 
 
-def expand_cases(values: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """Case id -> validated plain config values; the first is the config's own case.
+def expand_cases(config: Config) -> dict[str, dict[str, Any]]:
+    """Case id -> plain values of a config with what follows from other keys filled in; its own case first.
 
     A study's case has the id `<case>/studies/<study>/<point>`. Raises ConfigErrors naming study and point.
     """
-    base = dict(values)
-    cases = {base["case"]: resolved(parse(Config, base))}
-    for study in base["studies"]:
-        for name, point in study_points(parse(Study, study)).items():
-            where = f"studies.{study['name']}.{name}"
+    base = config.model_dump(mode="json")
+    cases = {config.case: resolved(config)}
+    for study in config.studies:
+        for name, point in study_points(study).items():
+            where = f"studies.{study.name}.{name}"
             changed = changed_values(base, point.set, where)
-            cases[f"{base['case']}/studies/{study['name']}/{name}"] = changed
+            cases[f"{config.case}/studies/{study.name}/{name}"] = changed
     return {case: {**changed, "case": case} for case, changed in cases.items()}
 
 

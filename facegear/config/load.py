@@ -21,9 +21,19 @@ FILE_KEYS = (
 """Keys whose value is the name of a file; it counts from the folder of the config file that sets it."""
 
 
-def load_config(path: str | Path, overrides: Mapping[str, Any] | None = None) -> Config:
-    """Read and validate a config file. Raises ConfigErrors with one line for every mistake."""
-    return parse(Config, merged(read_layers(path), numbers(dict(overrides or {}))), source=str(path))
+def load_config(
+    paths: str | Path | Sequence[str | Path], overrides: Mapping[str, Any] | None = None
+) -> Config:
+    """Read and validate a config file, or several laid over one another, with `overrides` on top.
+
+    Raises ConfigErrors with one line for every mistake.
+    """
+    files = [paths] if isinstance(paths, str | Path) else paths
+    values: dict[str, Any] = {}
+    for path in files:
+        values = merged(values, read_layers(path))
+    source = ", ".join(_short(path) for path in files)
+    return parse(Config, merged(values, numbers(dict(overrides or {}))), source)
 
 
 def config_of(values: Mapping[str, Any]) -> Config:
@@ -51,16 +61,6 @@ def plain(value: Any) -> Any:
         if isinstance(value, Iterable) and not isinstance(value, str)
         else value
     )
-
-
-def load_values(paths: Sequence[str | Path], overrides: Mapping[str, Any]) -> dict[str, Any]:
-    """Validated plain values of config files laid over one another, with defaults filled in."""
-    values: dict[str, Any] = {}
-    for path in paths:
-        values = merged(values, read_layers(path))
-    values = merged(values, numbers(dict(overrides)))
-    source = ", ".join(_short(path) for path in paths)
-    return parse(Config, values, source).model_dump(mode="json")
 
 
 def read_layers(path: str | Path, below: Sequence[Path] = ()) -> dict[str, Any]:

@@ -38,7 +38,7 @@ def changed_cases(
     for study in changed["studies"]:
         for point in (point for axis in study["axes"] for point in axis["points"]):
             point["set"].update(points.get((study["name"], folder_name(point["label"])), {}))
-    cases = expand_cases(changed)
+    cases = expand_cases(parse(Config, changed))
     base = cases.pop(changed["case"])
     return base, {_study_and_point(case): case_values for case, case_values in cases.items()}
 

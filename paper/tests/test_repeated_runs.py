@@ -6,7 +6,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from facegear.config.load import load_values
+from facegear.config.load import load_config
 from paper.reproduction import read_reproduction
 from paper.scorecard.base_rates import RATE_COLUMNS
 from paper.scorecard.claims import read_claims
@@ -16,7 +16,7 @@ from paper.stored.runs import runs_of_config
 from paper.stored.sets import set_cases, stored_sets
 
 ROOT = Path(__file__).parents[2]
-VALUES = load_values([ROOT / "config" / "paper.yaml"], {})
+VALUES = load_config(ROOT / "config" / "paper.yaml").model_dump(mode="json")
 STORED = read_reproduction(ROOT / "config" / "reproduction" / "paper.yaml")
 
 
@@ -48,7 +48,7 @@ def test_stored_runs_are_those_of_the_committed_config_and_of_every_set():
 
 
 def test_the_likely_config_is_the_recommended_set_and_has_its_runs():
-    likely = load_values([ROOT / "config" / "paper_likely.yaml"], {})
+    likely = load_config(ROOT / "config" / "paper_likely.yaml").model_dump(mode="json")
     sets = pd.read_csv(STORED.sets).set_index("set")
     (recommended,) = sets.index[sets["recommended"]]
     kept = runs_of_config(pd.read_csv(STORED.runs), likely, stored_sets(STORED.sets))

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from facegear.config.load import load_values
+from facegear.config.load import load_config
 from facegear.errors import ConfigErrors
 from paper.reproduction import read_reproduction
 
@@ -19,7 +19,7 @@ def stored():
 def test_files_are_found_wherever_the_reader_works(stored, tmp_path, monkeypatch):
     assert Path(stored.claims).resolve() == ROOT / "config" / "claims" / "paper.yaml"
     monkeypatch.chdir(tmp_path)
-    config = load_values([ROOT / "config" / "paper.yaml"], {})
+    config = load_config(ROOT / "config" / "paper.yaml").model_dump(mode="json")
     again = read_reproduction(config["reproduction"])
     assert Path(again.sets).resolve() == ROOT / "config" / "identified" / "paper.csv"
 
@@ -43,7 +43,7 @@ def test_mistake_in_the_file_names_file_key_and_what_is_allowed(tmp_path, text, 
 def test_inputs_of_the_scorecard_move_with_the_checkout(monkeypatch):
     """An absolute path stood among them, and the sets of the scorecard ran again in a copy."""
     monkeypatch.chdir(ROOT)
-    values = load_values([ROOT / "config" / "paper.yaml"], {})
+    values = load_config(ROOT / "config" / "paper.yaml").model_dump(mode="json")
     read = read_reproduction(values["reproduction"])
     assert read.claims == "config/claims/paper.yaml"
     assert read.sets == "config/identified/paper.csv"

@@ -8,7 +8,7 @@ import pytest
 from ruamel.yaml import YAML
 
 from facegear.config.cases import expand_cases
-from facegear.config.load import load_values
+from facegear.config.load import load_config
 from facegear.config.yaml_file import read_yaml
 from facegear.errors import FacegearError
 
@@ -52,7 +52,7 @@ def mutate(values, chance):
 
 @pytest.mark.parametrize("config", CONFIGS, ids=lambda path: path.stem)
 def test_every_config_in_the_project_is_accepted(config):
-    assert expand_cases(load_values([config], {}))
+    assert expand_cases(load_config(config))
 
 
 @pytest.mark.parametrize("config", CONFIGS, ids=lambda path: path.stem)
@@ -67,7 +67,7 @@ def test_mutated_configs_are_accepted_or_refused_in_clear_lines(config, tmp_path
     for _ in range(tries):
         YAML(typ="safe", pure=True).dump(mutate(original, chance), path)
         try:
-            expand_cases(load_values([path], {}))
+            expand_cases(load_config(path))
         except FacegearError as error:
             refused += 1
             for line in str(error).splitlines():

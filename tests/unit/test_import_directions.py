@@ -95,6 +95,12 @@ def test_what_config_stands_on_names_quantities_and_no_keys_of_the_config():
             )
 
 
+def test_no_stage_validates_what_was_validated_with_the_config():
+    for module in MODULES:
+        if module.relative_to(PACKAGE).parts[0] in ("stages", "pipeline"):
+            assert "facegear.config.base.parse" not in imported(module, True), module
+
+
 @pytest.mark.parametrize("tenant", TENANTS)
 def test_the_library_never_imports_its_tenants(tenant):
     others = [path for name in TENANTS if name != tenant for path in (PACKAGE.parent / name).rglob("*.py")]

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from projects import FOLDERS, ROOT, SCRIPTS, Project
 
-from facegear.config.load import load_values
+from facegear.config.load import load_config
 from facegear.config.yaml_file import read_yaml
 from facegear.pipeline.stage import FIGURES
 from facegear.pipeline.table import STAGES as TABLE
@@ -99,7 +99,7 @@ def test_every_stage_uses_all_that_it_is_given():
 
 
 def test_no_rule_is_handed_the_whole_config(rules):
-    whole = set(load_values([ROOT / "config" / "paper.yaml"], {}))
+    whole = set(load_config(ROOT / "config" / "paper.yaml").model_dump(mode="json"))
     for name, rule in rules.items():
         assert set(rule["sections"]) < whole | {"none"}, name
 
@@ -112,7 +112,7 @@ def test_the_scorecard_is_handed_the_sections_that_its_caption_tells_of(rules):
             read.add(key)
             return super().__getitem__(key)
 
-    inputs_in_words(Recorded(load_values([ROOT / "config" / "paper.yaml"], {})))
+    inputs_in_words(Recorded(load_config(ROOT / "config" / "paper.yaml").model_dump(mode="json")))
     assert set(rules["scorecard"]["sections"]) == read
 
 

@@ -15,7 +15,7 @@ for name, module in list(sys.modules.items()):  # the profile may have imported 
         del sys.modules[name]
 
 from facegear.config.cases import expand_cases
-from facegear.config.load import load_values
+from facegear.config.load import load_config
 from facegear.config.notes import notes
 from facegear.errors import FacegearError
 from facegear.io.run_lock import hold
@@ -47,14 +47,14 @@ def stop(message):
 
 
 try:
-    CONFIG = load_values(CONFIGFILES, given_config(workflow))
-    REPRODUCTION = read_reproduction(CONFIG["reproduction"]) if CONFIG["reproduction"] else None
+    CONFIG = load_config(CONFIGFILES, given_config(workflow))
+    REPRODUCTION = read_reproduction(CONFIG.reproduction) if CONFIG.reproduction else None
     CASES = expand_cases(CONFIG)
-    CASES[CONFIG["case"]]["reproduction"] = None  # read above; where its file lies decides nothing
+    CASES[CONFIG.case]["reproduction"] = None  # read above; where its file lies decides nothing
 except FacegearError as error:
     stop(str(error))
 
-CASE = CONFIG["case"]
+CASE = CONFIG.case
 config["rebuild_command"] = rebuild_command(
     workflow.main_snakefile,
     workflow.configfiles,
@@ -92,7 +92,7 @@ onstart:
     logger.addHandler(Jobs(workflow))
     if any(path.is_file() for path in Path(".snakemake/incomplete").rglob("*")):
         print("resuming a run that was stopped: its unfinished jobs are made again", file=sys.stderr)
-    for note in notes(CONFIG):
+    for note in notes(CONFIG.model_dump(mode="json")):
         print(note, file=sys.stderr)
     stop_at_once(QUIET)
 

@@ -8,7 +8,7 @@ import pytest
 from facegear.config.base import parse
 from facegear.config.cases import expand_cases
 from facegear.config.contact import contact_plan
-from facegear.config.load import load_values
+from facegear.config.load import load_config
 from facegear.config.mesh import mesh_sizes
 from facegear.config.model import Config, resolved
 from facegear.config.notes import notes
@@ -17,8 +17,8 @@ from facegear.contact.resolution import estimated_memory
 from facegear.errors import ConfigErrors
 
 ROOT = Path(__file__).parents[3]
-QUICK = load_values([ROOT / "config" / "quick.yaml"], {})
-TWO = load_values([ROOT / "config" / "two_pinion.yaml"], {})
+QUICK = load_config(ROOT / "config" / "quick.yaml").model_dump(mode="json")
+TWO = load_config(ROOT / "config" / "two_pinion.yaml").model_dump(mode="json")
 
 
 def changed(values, **keys):
@@ -35,7 +35,7 @@ def changed(values, **keys):
 
 def told(values):
     with pytest.raises(ConfigErrors) as refused:
-        expand_cases(parse(Config, values).model_dump(mode="json"))
+        expand_cases(parse(Config, values))
     (line,) = refused.value.lines
     return line
 
@@ -144,7 +144,7 @@ def test_the_dynamics_take_the_backlash_of_the_teeth_as_assembled():
 def test_a_study_of_the_teeth_moves_the_backlash_of_the_dynamics_with_them():
     axis = {"label": "thinning", "key": "tooth_pair.pinion.thinning_um", "values": [80, 90]}
     values = changed(QUICK, transmission__backlash_um=None, studies=[{**STUDY, "axes": [axis]}])
-    cases = expand_cases(parse(Config, values).model_dump(mode="json"))
+    cases = expand_cases(parse(Config, values))
     assert [case["transmission"]["backlash_um"] for case in cases.values()] == [100.0, 80.0, 90.0]
 
 
@@ -181,5 +181,5 @@ def test_a_csv_named_by_a_study_counts_from_the_folder_of_the_config(tmp_path, m
     for name, target in (("base.yaml", "harmonics_only.yaml"), ("paper.yaml", "paper.yaml")):
         (tmp_path / name).write_bytes((ROOT / "config" / target).read_bytes())
     monkeypatch.chdir(ROOT)
-    cases = expand_cases(load_values([tmp_path / "own.yaml"], {}))
+    cases = expand_cases(load_config(tmp_path / "own.yaml"))
     assert [case["mesh_stiffness"]["mean_n_per_m"] for case in cases.values()] == [4.1e8, 3e8]

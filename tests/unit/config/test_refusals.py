@@ -11,7 +11,7 @@ import facegear
 from facegear.__main__ import main
 from facegear.config.base import parse
 from facegear.config.cases import expand_cases
-from facegear.config.load import load_values
+from facegear.config.load import load_config
 from facegear.config.model import Config
 from facegear.config.notes import notes
 from facegear.config.search import Search
@@ -20,8 +20,8 @@ from facegear.config.tolerances import Tolerances
 from facegear.errors import ConfigErrors
 
 CONFIG = Path(__file__).parents[3] / "config"
-TWO = load_values([CONFIG / "two_pinion.yaml"], {})
-GIVEN = load_values([CONFIG / "harmonics_only.yaml"], {})
+TWO = load_config(CONFIG / "two_pinion.yaml").model_dump(mode="json")
+GIVEN = load_config(CONFIG / "harmonics_only.yaml").model_dump(mode="json")
 
 
 def lines(values, **keys):
@@ -36,7 +36,7 @@ def lines(values, **keys):
             inside = inside[part]
         inside[last] = value
     with pytest.raises(ConfigErrors) as refused:
-        expand_cases(parse(Config, changed).model_dump(mode="json"))
+        expand_cases(parse(Config, changed))
     return refused.value.lines
 
 
@@ -183,7 +183,7 @@ def test_a_misspelt_key_of_with_values_and_of_a_study_is_told_with_what_was_mean
     axis = {"label": "a", "key": key, "values": [1]}
     study = {"name": "one", "title": "One", "axes": [axis]}
     with pytest.raises(ConfigErrors, match=r"studies\.one\.1: ") as refused:
-        expand_cases({**gearbox.values, "studies": [study]})
+        expand_cases(parse(Config, {**gearbox.values, "studies": [study]}))
     assert hint in refused.value.lines[0]
 
 

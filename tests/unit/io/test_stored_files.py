@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
-from facegear.config.load import load_values
+from facegear.config.load import load_config
 from facegear.errors import CorruptFile, FacegearError
 from facegear.io import arrays as array_files
 from facegear.io import columnar, documents, tables
@@ -139,5 +139,5 @@ def test_a_config_cannot_call_code(tmp_path):
     path = tmp_path / "bad.yaml"
     path.write_text(f"case: !!python/object/apply:os.mkdir ['{tmp_path / 'sprung'}']\n")
     with pytest.raises(FacegearError):
-        load_values([path], {})
+        load_config(path).model_dump(mode="json")
     assert not (tmp_path / "sprung").exists()

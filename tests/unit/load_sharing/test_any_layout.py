@@ -12,7 +12,7 @@ from facegear.config.base import parse
 from facegear.config.cases import expand_cases
 from facegear.config.dynamics import Dynamics
 from facegear.config.dynamics import settings as accuracy
-from facegear.config.load import load_values
+from facegear.config.load import load_config
 from facegear.config.load_sharing import LoadSharing, sharing_options
 from facegear.config.machines import case_machine
 from facegear.config.model import Config
@@ -48,7 +48,7 @@ def _few_positions():
 
 
 def values(places, gears, tail_share):
-    own = load_values([CONFIG], {})
+    own = load_config(CONFIG).model_dump(mode="json")
     own["transmission"] |= {"pinions": places, "face_gears": gears}
     own["transmission"]["torque"] = {"per_input_n_m": 500.0, "tail_share": tail_share}
     own["dynamics"]["accuracy"] |= SHORT
@@ -59,7 +59,7 @@ def values(places, gears, tail_share):
 
 def chain(own):
     """Modes, nominal response, load sharing: what the stages of the workflow compute and write."""
-    (case,) = expand_cases(own).values()
+    (case,) = expand_cases(parse(Config, own)).values()
     machine = case_machine(case, given_series(parse(MeshStiffness, case["mesh_stiffness"])))
     vibrating = vibrating_machine(machine)
     modes = vibrating.modes

@@ -103,8 +103,8 @@ def test_reading_configs_leaves_solvers_and_tables_unloaded():
     code = (
         "import sys, paper.reproduction\n"
         "from facegear.config.cases import expand_cases\n"
-        "from facegear.config.load import load_values\n"
-        "expand_cases(load_values(['config/paper.yaml'], {}))\n"
+        "from facegear.config.load import load_config\n"
+        "expand_cases(load_config('config/paper.yaml'))\n"
         "print(*{'numba', 'pandas', 'skfem', 'xarray', 'matplotlib', 'scipy.optimize', 'scipy.spatial', "
         "'scipy.interpolate', 'scipy.sparse'} & {*sys.modules})"
     )

@@ -1,0 +1,54 @@
+"""A value of a config is validated once, where the config is read; behind that it is only typed again."""
+
+from copy import deepcopy
+from pathlib import Path
+
+import pytest
+
+import facegear
+from facegear.config.arguments import typed_arguments
+from facegear.config.base import parse
+from facegear.config.cases import expand_cases
+from facegear.config.load import load_config
+from facegear.config.tooth_pair import ToothPair
+from facegear.config.transmission import Transmission
+from facegear.errors import ConfigErrors
+
+CONFIG = Path(__file__).parents[3] / "config" / "concentric.yaml"
+
+
+def test_cases_and_stages_do_not_repeat_the_checks_of_a_config(monkeypatch):
+    checked = []
+    known = Transmission._known
+    monkeypatch.setattr(Transmission, "_known", lambda self: checked.append(1) or known(self))
+    config = load_config(CONFIG).model_copy(update={"studies": ()})
+    assert len(checked) == 1
+    (values,) = expand_cases(config).values()
+    assert Transmission.of_config(values["transmission"]).pinions == config.transmission.pinions
+    facegear.load(CONFIG, results=None)._chain.arguments("ratings")
+    assert len(checked) == 2, "once for each reading of the file"
+
+
+@pytest.mark.parametrize("section", ["transmission", "tooth_pair"])
+def test_a_section_typed_again_is_the_one_that_was_validated(section):
+    config = load_config(CONFIG)
+    validated = getattr(config, section)
+    assert type(validated).of_config(validated.model_dump(mode="json")) == validated
+
+
+def test_a_section_of_new_values_is_validated():
+    values = deepcopy(facegear.example().values["tooth_pair"])
+    values["face_gear_teeth"] = values["pinion_teeth"]
+    with pytest.raises(ConfigErrors, match="face_gear_teeth"):
+        parse(ToothPair, values)
+
+
+def test_plain_values_become_what_an_annotation_names():
+    def stage(transmission: Transmission | None, tooth_pair: ToothPair, speed_rpm: float, plain: dict):
+        raise NotImplementedError
+
+    values = facegear.example().values
+    given = {key: values[key] for key in ("transmission", "tooth_pair")} | {"speed_rpm": 3.0, "plain": {}}
+    typed = typed_arguments(stage, given)
+    assert [type(value) for value in typed.values()] == [Transmission, ToothPair, float, dict]
+    assert typed_arguments(stage, {"transmission": None}) == {"transmission": None}
