@@ -6,7 +6,6 @@ from typing import Any
 import pandas as pd
 
 from facegear.config.lumped_model import ToothNumbers, lumped_sections, machine
-from facegear.config.mesh_friction import with_friction
 from facegear.config.transmission import Transmission
 from facegear.harmonics.series import Harmonics
 from facegear.stiffness.tables import series_of, unloaded_error
@@ -29,7 +28,11 @@ def wired_machine(
         built = machine(section, teeth, stiffness, unloaded)
     else:
         built = machine(section, teeth, series_of(stiffness), unloaded_error(stiffness))
-    return built if friction is None else with_friction(built, friction)
+    if friction is None:
+        return built
+    from facegear.config.mesh_friction import with_friction  # only friction needs compiled statics
+
+    return with_friction(built, friction)
 
 
 def case_machine(values: Mapping[str, Any], stiffness: Harmonics | pd.DataFrame) -> Machine:
