@@ -1,14 +1,12 @@
 """Quasi-static load sharing: over the hunting cycle, against bearing stiffness, and error by error."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from facegear.config.lumped_model import wired_layout
+from facegear.config.lumped_model import ToothNumbers, layout
+from facegear.config.transmission import Transmission
 from facegear.plots.gearbox_layout import layout_figure
 from facegear.plots.style import NARROW, styled
 
@@ -97,13 +95,13 @@ def figures(
     cycles: pd.DataFrame,
     scan: pd.DataFrame,
     sensitivity: pd.DataFrame,
-    transmission: Mapping[str, Any],
-    teeth: Mapping[str, Any],
+    transmission: Transmission,
+    teeth: ToothNumbers,
 ) -> tuple[Figure, ...]:
     """Layout of the machine with its mean forces, loads over the hunting cycle, bearings, single errors."""
     torque = float(groups["torque_n_m"].iloc[0])
     return (
-        layout_figure(wired_layout(transmission, teeth), meshes, bearings),
+        layout_figure(layout(transmission, teeth), meshes, bearings),
         hunting_figure(cycles, meshes, torque),
         bearing_figure(scan, torque),
         sensitivity_figure(sensitivity, torque),
