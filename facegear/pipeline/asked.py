@@ -86,6 +86,11 @@ def machine_loads(case: Case) -> bool:
     return strength(case) and case.values["strength"]["load_factors"] == "machine"
 
 
+def scuffed_loads(case: Case) -> bool:
+    """Whether the rating takes the machine's loads and its flanks are lubricated."""
+    return machine_loads(case) and machine_friction(case)
+
+
 def branches(case: Case) -> bool:
     """Whether section branches is given."""
     return machine(case) and case.values["branches"] is not None

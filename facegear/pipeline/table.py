@@ -13,8 +13,9 @@ ALL = (
     *dynamics.ROWS,
     *branches.ROWS,
     *sharing.ROWS,
-    *strength.ROWS,
+    *strength.LOAD_ROWS,
     *friction.ROWS,
+    *strength.ROWS,
     *variants.ROWS,
 )
 

@@ -54,6 +54,7 @@ def verdicts(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None)
             f"{'; ' + row.reason if row.reason else ''}"
             f"{'' if row.within_torques_solved else '; outside the torques of the contact analysis'}",
         )
+    yield from _lubricated(tables.get("mesh_losses"))
     for row in _nominal(tables).itertuples():
         width = f" ± {row.half_width:.2f}" if row.half_width > 0.005 else ""
         yield f"load sharing, {row.group}", f"mean coefficient {row.mean:.3f}{width}, {row.motion}"
@@ -79,6 +80,26 @@ def _nearest(rating: pd.DataFrame | None) -> pd.DataFrame:
         return pd.DataFrame()
     spare = rating["safety"] / rating["required"]
     return rating.loc[spare.groupby([rating["gear"], rating["failure"]], sort=False).idxmin()]
+
+
+def _lubricated(losses: pd.DataFrame | None) -> Iterator[tuple[str, str]]:
+    """Scuffing, film and micropitting of the mesh that is nearest to each limit, in any bin."""
+    for about, column in (
+        ("scuffing", "scuffing_safety"),
+        ("smallest film", "smallest_film_ratio"),
+        ("micropitting", "micropitting_safety"),
+    ):
+        if losses is None or not losses[column].notna().any():
+            continue
+        row = losses.loc[losses[column].idxmin()]
+        at = f"bin {row['bin']} of the duty cycle" if row["bin"] > 0 else "the nominal load"
+        outside = "" if row["within_torques_solved"] else "; outside the torques of the contact analysis"
+        where = f"{row['mesh']}, {row['flank']} flank, at {at}{outside}"
+        if column == "smallest_film_ratio":
+            yield about, f"{row[column]:.2f} times the roughness of both flanks ({where})"
+            continue
+        margin = f", {row['scuffing_margin_k']:.0f} K to the limit" if about == "scuffing" else ""
+        yield about, f"safety {row[column]:.2f}{margin} ({where})"
 
 
 def _range(first: float, last: float) -> str:

@@ -15,12 +15,14 @@ from facegear.strength.flank_contacts import flank_contacts
 from facegear.strength.met_flanks import met_by, worst_pressure, worst_root
 from facegear.strength.rating import Rated, rate
 from facegear.strength.rating_tables import curve_table, damage_table, rating_table, safety_table
+from facegear.strength.scuffed_flanks import with_scuffing
 
 
 def rating(
     stress: Arrays,
     by_flank: pd.DataFrame,
     duty_spectrum: pd.DataFrame | None = None,
+    mesh_losses: pd.DataFrame | None = None,
     *,
     tooth_pair: ToothPair,
     strength: Strength | None,
@@ -29,8 +31,9 @@ def rating(
     """`safety`, `rating`, `damage` and `curves` (tables) from the root stress of stage root_stress.
 
     `by_flank`: table of stage contact; every flank is judged by the contacts that it has with the `gears` of
-    the machine. `duty_spectrum`: table of stage duty_loads, where the loads are the machine's. Raises
-    ConfigError without section strength.
+    the machine. `duty_spectrum`: table of stage duty_loads, where the loads are the machine's; `mesh_losses`:
+    table `meshes` of stage machine_loss, where its flanks are lubricated. Raises ConfigError without section
+    strength.
     """
     if strength is None:
         raise ConfigError("strength", None, "given for safety and life")
@@ -52,10 +55,13 @@ def rating(
             "curves": curve_table(ways),
         }.items():
             tables.setdefault(name, []).append(table)
+    content = {name: pd.concat(parts, ignore_index=True) for name, parts in tables.items()}
+    if duty_spectrum is not None and mesh_losses is not None:
+        content["safety"] = with_scuffing(content["safety"], duty_spectrum, mesh_losses)
     worst = min(found, key=lambda one: one.safety / one.required)
     where = f"{worst.duty.body.replace('_', ' ')}, {worst.duty.flank}"
     told = f"{where}, {worst.failure} ({worst.method})"
     return Outcome(
-        {name: pd.concat(parts, ignore_index=True) for name, parts in tables.items()},
+        content,
         f"nearest to its limit: {told}, safety {worst.safety:.2f} where {worst.required:g} is required",
     )

@@ -58,6 +58,8 @@ SAFETY_COLUMNS = (
     "reason",
     "within_torques_solved",
 )
+SCUFFED_COLUMNS = ("scuffing_safety", "scuffing_margin_k", "smallest_film_ratio", "micropitting_safety")
+"""What the table of safety has more where section lubrication is given, of the running machine's loads."""
 RATED_FLANK = ("body", "gear", "flank", "failure", "method")
 """What a row of a rating is about."""
 RATING_COLUMNS = (

@@ -7,7 +7,7 @@ from facegear.pipeline.stage import Computed, Figures, File, From, Stage, from_s
 GEARS = {"gears": Computed(asked.gears_met, ("transmission",))}
 STRESS = {"stress": From("root_stress", "stress"), "by_flank": From("contact", "by_flank")}
 
-ROWS = (
+LOAD_ROWS = (
     Stage(
         name="root_stress",
         title="Root stress of both gears",
@@ -47,6 +47,9 @@ ROWS = (
             ),
         },
     ),
+)
+
+ROWS = (
     Stage(
         name="rating",
         title="Safety and life of the tooth pair",
@@ -55,6 +58,7 @@ ROWS = (
         upstream={
             **STRESS,
             "duty_spectrum": From("duty_loads", "duty_spectrum", when=asked.machine_loads),
+            "mesh_losses": From("machine_loss", "meshes", when=asked.scuffed_loads),
         },
         files={
             "safety": File("strength/safety.csv", "facegear.strength.columns:SAFETY_FINITE"),
