@@ -17,6 +17,8 @@ COLOURS = (
     *("#e56b5d", "#f89540", "#fdc527", "#f0f921"),
 )
 """Matplotlib's plasma at nine even places."""
+LINE = ("torque_n_m", "position", "tooth", "plane")
+"""What says which line of contact is meant, and where on it."""
 PROFILE, WIDTH = 17, 7
 """Points of each drawn patch."""
 SHOWN_GEAR_TEETH = 13
@@ -43,18 +45,36 @@ ROOT_STRESS = {
 }
 """What they show as well where root stress was computed."""
 
+FRICTION = (
+    {
+        "key": "loss",
+        "name": "friction loss",
+        "unit": "W/mm",
+        "told": "Loss by friction per millimetre of the line of contact at the nominal speed, edges included",
+    },
+    {
+        "key": "flash",
+        "name": "flash temperature",
+        "unit": "K",
+        "told": "Flash temperature: largest across each line of contact; grey where an edge carries the load",
+    },
+)
+"""What they show as well where friction was computed."""
+
 
 def pair_view(
     design: PairDesign,
     loads: Arrays,
     ltca: pd.DataFrame,
     stress: Arrays | None = None,
+    friction: Arrays | None = None,
 ) -> View:
     """The pair at every solved position and torque.
 
-    `loads` as PRESSURE_ARRAYS, `ltca` as LTCA_COLUMNS, `stress` as ROOT_STRESS_ARRAYS. Lengths in mm. Colours
-    show the pressure or the load of the line of contact at every loaded node's column of the flank, or the
-    root stress, the largest of each torque at the end of the scale.
+    `loads` as PRESSURE_ARRAYS, `ltca` as LTCA_COLUMNS, `stress` as ROOT_STRESS_ARRAYS, `friction` as
+    LOCAL_ARRAYS of stage lubrication. Lengths in mm. Colours show the pressure, the load, friction's loss or
+    the flash temperature of the line of contact at every loaded node's column of the flank, or the root
+    stress, the largest of each torque at the end of the scale.
     """
     torques = np.unique(loads["torque_n_m"])
     positions = np.unique(loads["position"])
@@ -68,12 +88,17 @@ def pair_view(
         },
         "positions": positions.tolist(),
         "colours": COLOURS,
-        "quantities": [*QUANTITIES, *([ROOT_STRESS] if stress is not None else [])],
-        "torques": [_torque(float(torque), loads, ltca, positions, stress) for torque in torques],
+        "quantities": [
+            *QUANTITIES,
+            *(FRICTION if friction is not None else []),
+            *([ROOT_STRESS] if stress is not None else []),
+        ],
+        "torques": [_torque(float(torque), loads, ltca, positions, stress, friction) for torque in torques],
     }
+    what = "pressure or load" if friction is None else "pressure, load, friction loss or flash temperature"
     return View(
         data,
-        "The pair in mesh, turning through a pitch: drag to look around. Colours: pressure or load along "
+        f"The pair in mesh, turning through a pitch: drag to look around. Colours: {what} along "
         "each line of contact, drawn wider than it is, at the positions that were solved"
         + ("." if stress is None else "; or root stress."),
     )
@@ -118,11 +143,16 @@ def _torque(
     ltca: pd.DataFrame,
     positions: AnyArray,
     stress: Arrays | None,
+    friction: Arrays | None,
 ) -> dict[str, Any]:
     on = loads["torque_n_m"] == torque
     row = np.searchsorted(positions, loads["position"][on])
     order = np.argsort(row, kind="stable")
     shown = {"pressure": line_pressure(loads, on)[order], "load": line_load(loads, on)[order]}
+    if friction is not None:
+        rising = np.where(friction["inside"] != 0, friction["flash_k"], np.nan)
+        shown["loss"] = of_lines(loads, on, friction, 1e-3 * friction["loss_w_per_m"])[order]
+        shown["flash"] = of_lines(loads, on, friction, rising)[order]
     rows = ltca[ltca["torque_n_m"] == torque].sort_values("position")
     top = {key: float(np.nanmax(values, initial=0.0)) for key, values in shown.items()}
     tension = {} if stress is None else _tension(torque, stress)
@@ -145,16 +175,22 @@ def line_pressure(loads: Arrays, on: Mask) -> Array:
     """Pressure (MPa) at each chosen node: that of the line of contact in its column, nan where an edge
     carries the load, and in a fillet.
     """
-    keys = ["torque_n_m", "position", "tooth", "plane"]
-    known = pd.Series(
-        1e-6 * loads["line_pressure_pa"],
-        pd.MultiIndex.from_arrays([loads[f"line_{key}"] for key in keys], names=keys),
-    )
-    known = known[loads["line_where"] == EDGES.index("inside")].groupby(level=keys).max()
+    inside = loads["line_where"] == EDGES.index("inside")
+    pressure = np.where(inside, 1e-6 * loads["line_pressure_pa"], np.nan)
+    return of_lines(loads, on, {key: loads[f"line_{key}"] for key in LINE}, pressure)
+
+
+def of_lines(loads: Arrays, on: Mask, lines: Arrays, values: Array) -> Array:
+    """Value at each chosen node: the largest of the lines of contact in its column, nan in a fillet.
+
+    lines: arrays (m,) under the names LINE, which say where each of the values (m,) holds.
+    """
+    index = pd.MultiIndex.from_arrays([lines[key] for key in LINE], names=LINE)
+    known = pd.Series(values, index).groupby(level=list(LINE)).max()
     columns = int(loads["shape"][1])
-    nodes = [loads[key][on] for key in keys[:-1]]
-    pressures = known.reindex(pd.MultiIndex.from_arrays([*nodes, loads["node"][on] % columns])).to_numpy()
-    return np.where(loads["in_fillet"][on], np.nan, pressures)
+    nodes = [loads[key][on] for key in LINE[:-1]]
+    at_nodes = known.reindex(pd.MultiIndex.from_arrays([*nodes, loads["node"][on] % columns])).to_numpy()
+    return np.where(loads["in_fillet"][on], np.nan, at_nodes)
 
 
 def line_load(loads: Arrays, on: Mask) -> Array:

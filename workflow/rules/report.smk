@@ -9,6 +9,7 @@ rule report:
         pair=where_made("geometry", "pair"),
         loads=where_made("contact", "pressure"),
         stress=where_made("root_stress", "stress"),
+        friction=where_made("lubrication", "local"),
     output:
         html="results/{case}/report.html",
         manifest="results/{case}/report.provenance.json",

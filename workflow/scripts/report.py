@@ -7,6 +7,7 @@ from facegear.config.tooth_pair import pair as tooth_pair
 from facegear.contact.columns import PRESSURE_ARRAYS
 from facegear.io import arrays, documents, tables
 from facegear.io.atomic import atomic_path
+from facegear.lubrication.columns import LOCAL_ARRAYS
 from facegear.provenance.stage import stage
 from facegear.report.case import case_report
 from facegear.report.pair_view import pair_view
@@ -23,8 +24,10 @@ with stage(snakemake) as run:
         loads = arrays.read(snakemake.input.loads[0], PRESSURE_ARRAYS)
         given = snakemake.input.stress
         stress = arrays.read(given[0], ROOT_STRESS_ARRAYS) if given else None
+        given = snakemake.input.friction
+        friction = arrays.read(given[0], LOCAL_ARRAYS) if given else None
         design = tooth_pair(ToothPair.of_config(snakemake.params.values["tooth_pair"])).design
-        view = pair_view(design, loads, frames["ltca"], stress)
+        view = pair_view(design, loads, frames["ltca"], stress, friction)
     page = case_report(snakemake.params.values, frames, pictures, manifests, pair, view)
     with atomic_path(snakemake.output.html) as temporary:
         temporary.write_text(page, encoding="utf-8")

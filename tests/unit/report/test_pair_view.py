@@ -126,3 +126,29 @@ def test_root_stress_colours_the_fillets_of_every_tooth_on_its_passage(loads):
         np.testing.assert_allclose(told, wanted, atol=largest / 255.0)
         points = decoded(body["fillets"]["points"], "<f4")
         np.testing.assert_allclose(points, 1e3 * stress[f"{body['name']}_position_m"].ravel(), rtol=1e-6)
+
+
+def test_friction_colours_the_lines_of_contact_by_loss_and_by_flash_temperature(loads):
+    chance = np.random.default_rng(3)
+    friction = {key: loads[f"line_{key}"] for key in ("torque_n_m", "position", "tooth", "plane")}
+    size = friction["plane"].size
+    friction |= {
+        "inside": (loads["line_where"] == 0).astype(int),
+        "loss_w_per_m": chance.uniform(1e4, 2e5, size),
+        "flash_k": chance.uniform(10.0, 90.0, size),
+    }
+    ltca = pd.DataFrame(
+        [(t, x, 1.0) for t in (100.0, 300.0) for x in (0.0, 0.5)],
+        columns=["torque_n_m", "position", "ste_um"],
+    )
+    ltca = ltca.assign(**dict.fromkeys(SHARES, 0.0))
+    seen = pair_view(design(), loads, ltca, friction=friction).data
+    assert [one["name"] for one in seen["quantities"][2:]] == ["friction loss", "flash temperature"]
+    for number, found in enumerate(seen["torques"]):
+        here = slice(2 * COLUMNS * number, 2 * COLUMNS * (number + 1))
+        loss = np.tile(1e-3 * friction["loss_w_per_m"][here].reshape(2, 1, COLUMNS), (1, 2, 1)).ravel()
+        rise = np.where(friction["inside"], friction["flash_k"], 0.0)[here].reshape(2, 1, COLUMNS)
+        for key, wanted in (("loss", loss), ("flash", np.tile(rise, (1, 2, 1)).ravel())):
+            drawn = decoded(found["values"][key], "u1").astype(float) / 255.0 * found["largest"][key]
+            assert found["largest"][key] == pytest.approx(wanted.max())
+            np.testing.assert_allclose(drawn, wanted, atol=found["largest"][key] / 255.0)
