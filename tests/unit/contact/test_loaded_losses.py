@@ -1,5 +1,6 @@
 """Loss, heat and film of the paper's pair under load, 32 positions of a pitch."""
 
+from dataclasses import fields, replace
 from math import pi
 
 import numpy as np
@@ -11,9 +12,11 @@ from facegear.contact.hertz import contact_modulus
 from facegear.contact.ltca import even_positions, loaded_contact
 from facegear.contact.pressure import flank_pressure
 from facegear.contact.tables import pressure_arrays
+from facegear.geometry.placement import mirrored
+from facegear.lubrication.excitation import friction_ratios
 from facegear.lubrication.friction import Constant, Schlenk, Xu
 from facegear.lubrication.heat import TooHot, running
-from facegear.lubrication.kinematics import spins
+from facegear.lubrication.kinematics import slip, spins
 from facegear.lubrication.loss import hat_slip, loss_factors
 from facegear.lubrication.places import loaded_contacts, places, stored_lines
 from facegear.lubrication.request import STEEL as HEATED
@@ -179,3 +182,26 @@ def test_a_hat_takes_the_value_of_its_own_plane_or_the_nearest_of_its_line(loade
     known = np.array([key in keys for key in own])
     assert known.mean() > 0.9
     assert (planes == one.hats.plane[near])[known].all()
+
+
+def test_the_back_flank_is_the_mirror_image_in_loss_and_in_friction_s_force(loaded):
+    """Of a pair out of place: what the drive flank does, seen in a mirror and turning the same way."""
+    design, hats, _ = loaded
+    moved = replace(design, assembly=replace(design.assembly, offset=3e-4))
+    hats = at(hats, hats.torque == 1000.0)
+    flanks = []
+    for pair, mirror in ((moved, np.ones(3)), (mirrored(moved), np.array([-1.0, 1.0, 1.0]))):
+        point, normal = hats.point * mirror, hats.normal * mirror
+        velocity, closing = slip(*spins(pair), point, normal)
+        seen = replace(hats, point=point, normal=normal, velocity=velocity, closing=closing)
+        flanks.append(
+            (loss_factors(seen).mean[0], friction_ratios(pair, seen, np.full(point.shape[0], 0.05)))
+        )
+    (drive, ratios), (back, opposite) = flanks
+    assert back == pytest.approx(drive, rel=1e-12)
+    assert drive != pytest.approx(loss_factors(hats).mean[0], rel=1e-6)
+    np.testing.assert_allclose(opposite, ratios * [1.0, -1.0, -1.0, 1.0, 1.0], atol=1e-12)
+
+
+def at(hats, on):
+    return replace(hats, **{field.name: getattr(hats, field.name)[on] for field in fields(hats)})
