@@ -128,6 +128,14 @@ MACHINE_COLUMNS = (
 """power_through_meshes: sum of the power of all meshes over the power in. The last row, bin -1, is the whole
 duty cycle."""
 
+FRICTION_STUDY_COLUMNS = (
+    *("study", "point", "label"),
+    *("speed_rpm", "power_in_w", "loss_w", "loss_percent"),
+    *("hottest_mesh", "contact_temperature_c", "scuffing_safety"),
+    "smallest_film_ratio",
+    "within_torques_solved",
+)
+
 LOCAL_ARRAYS: dict[str, tuple[int | None, ...]] = {
     "torque_n_m": (None,),
     "position": (None,),

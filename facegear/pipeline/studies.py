@@ -1,5 +1,6 @@
 """Stages that set the cases of a config's studies side by side: which cases, and what they are called."""
 
+from collections.abc import Callable
 from typing import Any
 
 from facegear.config.cases import study_points
@@ -65,21 +66,45 @@ def contact_points(case: Case) -> Points:
     Those of a study are its points with a contact of their own, if one of them has another contact than the
     machine.
     """
-    if not asked.contact(case) or not case.values["studies"]:
+    return _with_own(case, "contact", asked.contact)
+
+
+def friction_points(case: Case) -> Points:
+    """The machine itself and the points of every study that changes the loss of its meshes."""
+    return _with_own(case, "machine_loss", asked.machine_friction)
+
+
+def _with_own(case: Case, stage: str, has: Callable[[Case], bool]) -> Points:
+    """The machine itself and the points with a stage, of studies of which one point has one of its own."""
+    if not has(case) or not case.values["studies"]:
         return [NOMINAL]
     chosen: Points = []
     for name in names(case):
         own = [point for point in points(case) if point[0] == name]
-        solved = [point for point in own if asked.contact(Case(case.cases[_id(case, *point[:2])]))]
-        if any(case.source("contact", _id(case, *point[:2])) != case.values["case"] for point in solved):
+        solved = [point for point in own if has(Case(case.cases[_id(case, *point[:2])]))]
+        if any(case.source(stage, _id(case, *point[:2])) != case.values["case"] for point in solved):
             chosen += solved
     return [NOMINAL, *chosen]
 
 
 def contact_cases(case: Case) -> list[Wildcards]:
     """The cases of `contact_points`."""
-    others = contact_points(case)[1:]
-    return [{"case": str(case.values["case"])}, *({"case": _id(case, *point[:2])} for point in others)]
+    return _cases(case, contact_points(case))
+
+
+def friction_cases(case: Case) -> list[Wildcards]:
+    """The cases of `friction_points`."""
+    return _cases(case, friction_points(case))
+
+
+def _cases(case: Case, chosen: Points) -> list[Wildcards]:
+    others = ({"case": _id(case, *point[:2])} for point in chosen[1:])
+    return [{"case": str(case.values["case"])}, *others]
+
+
+def friction_studied(case: Case) -> bool:
+    """Whether a study changes the loss of the machine's meshes."""
+    return len(friction_points(case)) > 1
 
 
 def contact_studied(case: Case) -> bool:

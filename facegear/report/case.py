@@ -211,6 +211,8 @@ def _friction(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
             Table("Every loaded flank", meshes, 4, folded=True),
             Table("Heat of every body", tables["body_heat"], 4, folded=True),
         ]
+    if "friction_studies" in tables:
+        listed.append(Table("The studies' cases side by side", tables["friction_studies"], 4))
     limits = tables["limits"]
     return [
         *listed,

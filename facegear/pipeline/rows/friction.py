@@ -1,8 +1,8 @@
 """Friction, heat and film."""
 
-from facegear.pipeline import asked
+from facegear.pipeline import asked, studies
 from facegear.pipeline.rows.shared import MACHINE, MOVING, PAIR, SPEED
-from facegear.pipeline.stage import Figures, File, From, Stage, from_stage
+from facegear.pipeline.stage import Computed, Figures, File, From, Stage, from_stage
 
 PRESSED = from_stage("contact", "ltca", "pressure")
 
@@ -58,6 +58,23 @@ ROWS = (
             "machine": File("lubrication/machine_loss.csv", ("bin", "speed_rpm", "power_in_w", "loss_w")),
         },
         asked=asked.machine_friction,
+        local=True,
+    ),
+    Stage(
+        name="friction_studies",
+        title="Loss and heat of the studies' cases side by side",
+        needs={"points": Computed(studies.friction_points, ("studies",))},
+        upstream={
+            name: From("machine_loss", name, each=studies.friction_cases) for name in ("meshes", "machine")
+        },
+        files={
+            "table": File(
+                "lubrication/friction_studies.csv",
+                ("loss_w", "loss_percent", "contact_temperature_c"),
+                text=("study", "point", "label", "hottest_mesh"),
+            )
+        },
+        asked=studies.friction_studied,
         local=True,
     ),
 )

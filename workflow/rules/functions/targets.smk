@@ -28,6 +28,7 @@ REPORTED = {
     "tolerances": ["percentiles", "shares"],
     "lubrication": ["by_torque", "limits"],
     "machine_loss": ["machine", "meshes", "bodies"],
+    "friction_studies": ["table"],
     "rating": ["safety", "rating"],
     "dynamic_root_stress": ["dynamic_stress"],
     "stress_over_speed": ["stress_over_speed"],

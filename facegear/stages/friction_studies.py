@@ -1,0 +1,30 @@
+"""Loss, temperature and film of the studies' cases side by side."""
+
+from collections.abc import Sequence
+
+import pandas as pd
+
+from facegear.lubrication.columns import FRICTION_STUDY_COLUMNS
+from facegear.stages.outcome import Outcome
+
+
+def friction_studies(
+    points: Sequence[Sequence[str]], meshes: Sequence[pd.DataFrame], machine: Sequence[pd.DataFrame]
+) -> Outcome:
+    """`table`, a row a case at its nominal load: loss of the machine, and its hottest mesh.
+
+    `points`: study, point and label of each case, the machine itself first; of each case the tables of stage
+    machine_loss.
+    """
+    rows = []
+    for point, by_mesh, whole in zip(points, meshes, machine, strict=True):
+        nominal = whole[whole["bin"] == 0].iloc[0]
+        at_rest = by_mesh[by_mesh["bin"] == 0]
+        hottest = at_rest.loc[at_rest["contact_temperature_c"].idxmax()]
+        of_machine = [nominal[key] for key in ("speed_rpm", "power_in_w", "loss_w", "loss_percent")]
+        of_mesh = [hottest[key] for key in ("mesh", "contact_temperature_c", "scuffing_safety")]
+        solved = bool(at_rest["within_torques_solved"].all())
+        rows.append((*point, *of_machine, *of_mesh, at_rest["smallest_film_ratio"].min(), solved))
+    table = pd.DataFrame(rows, columns=list(FRICTION_STUDY_COLUMNS))
+    least, most = table["loss_percent"].min(), table["loss_percent"].max()
+    return Outcome({"table": table}, f"{len(table) - 1} cases; loss from {least:.3f} to {most:.3f} %")
