@@ -50,13 +50,13 @@ FRICTION = (
         "key": "loss",
         "name": "friction loss",
         "unit": "W/mm",
-        "told": "Loss by friction per millimetre of the line of contact at the nominal speed, edges included",
+        "help": "Loss by friction per millimetre of the line of contact at the nominal speed, edges included",
     },
     {
         "key": "flash",
         "name": "flash temperature",
         "unit": "K",
-        "told": "Flash temperature: largest across each line of contact; grey where an edge carries the load",
+        "help": "Flash temperature: largest across each line of contact; grey where an edge carries the load",
     },
 )
 """What they show as well where friction was computed."""

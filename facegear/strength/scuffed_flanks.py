@@ -21,10 +21,10 @@ def with_scuffing(safety: pd.DataFrame, spectrum: pd.DataFrame, losses: pd.DataF
     table = safety.assign(**{name: rows[name].to_numpy() for name in SCUFFED_COLUMNS})
     solved = rows["within_torques_solved"].fillna(True).astype(bool).to_numpy()
     table["within_torques_solved"] = table["within_torques_solved"] & solved
-    for column, told in (("scuffing_safety", "scuffing"), ("micropitting_safety", "micropitting")):
+    for column, failure in (("scuffing_safety", "scuffing"), ("micropitting_safety", "micropitting")):
         short = table[column] < 1.0
         table.loc[short & (table["verdict"] == GREEN), "verdict"] = AMBER
-        reasons = [f"safety against {told} {value:.2f}" for value in table.loc[short, column]]
+        reasons = [f"safety against {failure} {value:.2f}" for value in table.loc[short, column]]
         before = table.loc[short, "reason"]
         joined = [f"{old}; {new}" if old else new for old, new in zip(before, reasons, strict=True)]
         table.loc[short, "reason"] = joined
