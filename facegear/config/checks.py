@@ -27,7 +27,7 @@ from facegear.config.tooth_pair import ToothPair, materials, pair_design
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError, ConfigErrors, NotConverged
 
-MOST_POINTS = 200
+MAX_POINTS = 200
 """Points of all studies of a config together: each is a case of its own with some five jobs."""
 JAM = 1e-8
 """Negative backlash (m) that is rounding."""
@@ -165,8 +165,8 @@ def check_studies(studies: Sequence[Study]) -> None:
     if len(set(figures)) < len(figures):
         raise ConfigError("studies.figures", figures, "each number once")
     points = sum(int(np.prod([len(axis.resolved()) for axis in study.axes])) for study in studies)
-    if points > MOST_POINTS:
-        told = f"at most {MOST_POINTS} in all: fewer values, several configs, or a loop in Python"
+    if points > MAX_POINTS:
+        told = f"at most {MAX_POINTS} in all: fewer values, several configs, or a loop in Python"
         raise ConfigError("studies", f"{points} points", told)
 
 

@@ -12,11 +12,11 @@ from facegear.load_sharing.quantity_names import QUANTITIES
 if TYPE_CHECKING:
     from facegear.scenarios.sampling import Population
 
-MOST_SAMPLES = 2**24
-MOST_CHUNKS = 500
+MAX_SAMPLES = 2**24
+MAX_CHUNKS = 500
 FARTHEST_CUT, NO_CUT = 6.0, 20.0
 """Standard deviations: beyond the first 1e-9 of a normal distribution is left, beyond the second nothing."""
-MOST_MAPPED = 200_000
+MAX_MAPPED = 200_000
 """Machines of a map of loads, which is one job."""
 TAKEN = ("sample", "error")
 """Columns of a table of samples beside causes and quantities."""
@@ -102,8 +102,8 @@ class LoadMap(Section):
             if list(given) != sorted(set(given)):
                 refuse(key, list(given), "rising, each once")
         points = len(self.torque_factors) * max(len(self.speeds_rpm), 1)
-        if points * self.samples > MOST_MAPPED:
-            refuse("samples", self.samples, f"at most {MOST_MAPPED // points}: there are {points} loads")
+        if points * self.samples > MAX_MAPPED:
+            refuse("samples", self.samples, f"at most {MAX_MAPPED // points}: there are {points} loads")
         return self
 
     def loads(self, speed_rpm: float) -> list[tuple[float, float]]:
@@ -120,9 +120,9 @@ class Tolerances(Section):
     model: Literal["quasi_static", "dynamic"] = Field(
         "quasi_static", description="load sharing over the hunting cycle, or of the motion at the speed"
     )
-    samples: int = Field(1024, ge=1, le=MOST_SAMPLES, description="a multiple of chunk_samples")
+    samples: int = Field(1024, ge=1, le=MAX_SAMPLES, description="a multiple of chunk_samples")
     index_blocks: int = Field(
-        0, ge=0, le=MOST_SAMPLES, description="of the design for Sobol indices, a power of two; 0: none"
+        0, ge=0, le=MAX_SAMPLES, description="of the design for Sobol indices, a power of two; 0: none"
     )
     chunk_samples: int = Field(256, ge=1, le=100_000, description="samples of one job")
     seed: int = Field(0, ge=0, le=2**31)
@@ -190,9 +190,9 @@ class Tolerances(Section):
 
     def _check_chunks(self) -> None:
         count = len(chunks(self, "samples")) + len(chunks(self, "indices"))
-        if count > MOST_CHUNKS:
-            least = -(-self.chunk_samples * count // MOST_CHUNKS)
-            refuse("chunk_samples", self.chunk_samples, f"at least {least}, for at most {MOST_CHUNKS} jobs")
+        if count > MAX_CHUNKS:
+            least = -(-self.chunk_samples * count // MAX_CHUNKS)
+            refuse("chunk_samples", self.chunk_samples, f"at least {least}, for at most {MAX_CHUNKS} jobs")
 
 
 Design = Literal["samples", "indices"]

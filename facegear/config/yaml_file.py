@@ -24,7 +24,7 @@ LARGEST_FILE = 500_000
 """Bytes of a config file that are read at most."""
 DEEPEST = 32
 """Levels of nesting."""
-MOST_VALUES = 50_000
+MAX_VALUES = 50_000
 """Values of a file, what its aliases (`*name`) stand for counted as often as they are used."""
 
 _INTEGER = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
@@ -140,8 +140,8 @@ class _Builder:
         else:
             assert isinstance(event, ScalarEvent)
             found = _scalar(event), 1
-        if found[1] > MOST_VALUES:
-            raise _Refused(event, f"more than {MOST_VALUES} values, aliases written out")
+        if found[1] > MAX_VALUES:
+            raise _Refused(event, f"more than {MAX_VALUES} values, aliases written out")
         if event.anchor is not None:
             self.anchored[event.anchor] = found
         return found
@@ -174,8 +174,8 @@ class _Builder:
 
 
 def _bounded(event: Event, size: int) -> int:
-    if size > MOST_VALUES:
-        raise _Refused(event, f"more than {MOST_VALUES} values, aliases written out")
+    if size > MAX_VALUES:
+        raise _Refused(event, f"more than {MAX_VALUES} values, aliases written out")
     return size
 
 

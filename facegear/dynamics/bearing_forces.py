@@ -84,7 +84,7 @@ def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:
         found.rms,
         found.ac_rms,
         found.ac_rms_interval,
-        np.maximum(np.abs(found.least), np.abs(found.most)),
+        np.maximum(np.abs(found.minimum), np.abs(found.maximum)),
     )
     for column, value in zip(BEARING_COLUMNS[2:-1], values, strict=True):
         table[column] = value

@@ -22,7 +22,7 @@ from facegear.transmission.machine import mesh_frequency
 NODES = 6
 LEAD = 64
 """Mesh cycles before those that are kept."""
-MOST_LEAD = 1024
+MAX_LEAD = 1024
 FORGOTTEN = 1e-4
 """Difference between two starts, over the largest flank force, that counts as none."""
 APART = 0.3
@@ -71,7 +71,7 @@ def follow(
         runs = [samples[-kept * positions :] for samples, _ in both]
         forces = [_flank_forces(model, run, whole[-kept:], positions) for run in runs]
         memory = float(np.abs(forces[1] - forces[0]).max() / max(forces[0].max(), 1e-300))
-        if memory <= FORGOTTEN or lead >= MOST_LEAD:
+        if memory <= FORGOTTEN or lead >= MAX_LEAD:
             break
         lead *= 2
     rest_of_it = np.arange(first + kept, first + count)

@@ -45,7 +45,7 @@ def _torque_row(
         state.flash[on].max(initial=0.0),
         mean_flash(places, state.flash),
     )
-    found, integral = state.mean_bulk + largest, float(integral_temperature(state.mean_bulk, mean))
+    temperatures, integral = state.mean_bulk + largest, float(integral_temperature(state.mean_bulk, mean))
     allowed = limits.allowed_contact(known.oil, known.oil_temperature)
     allowed_integral = limits.allowed_integral(known.oil)
     ratio = _least(state.micropitting, on)
@@ -68,10 +68,10 @@ def _torque_row(
         "flash_position": places.position[hottest] if on.any() else np.nan,
         "flash_pair": places.tooth[hottest] if on.any() else np.nan,
         "flash_axial_mm": 1e3 * places.y[hottest] if on.any() else np.nan,
-        "contact_temperature_c": found,
+        "contact_temperature_c": temperatures,
         "allowed_contact_temperature_c": allowed,
-        "scuffing_safety": float(temperature_safety(allowed, known.oil_temperature, found)),
-        "scuffing_margin_k": allowed - found,
+        "scuffing_safety": float(temperature_safety(allowed, known.oil_temperature, temperatures)),
+        "scuffing_margin_k": allowed - temperatures,
         "mean_flash_k": mean,
         "integral_temperature_c": integral,
         "allowed_integral_temperature_c": allowed_integral,
@@ -100,9 +100,9 @@ def _positions(contact: LoadedContact, state: Running) -> pd.DataFrame:
     np.maximum.at(rise, column[on], state.flash[on])
     films = []
     for values in (1e6 * state.film, state.film_ratio):
-        least = np.full(factor.positions.size, np.inf)
-        np.minimum.at(least, column[on], values[on])
-        films.append(np.where(np.isfinite(least), least, np.nan))
+        min_factor = np.full(factor.positions.size, np.inf)
+        np.minimum.at(min_factor, column[on], values[on])
+        films.append(np.where(np.isfinite(min_factor), min_factor, np.nan))
     columns = (torque, factor.positions, factor.at[0], loss, rise, *films)
     return pd.DataFrame(dict(zip(POSITION_COLUMNS, columns, strict=True)))
 
@@ -129,15 +129,15 @@ def map_table(pair: LoadedPair, speeds: Sequence[float]) -> pd.DataFrame:
 
 
 def _map_row(contact: LoadedContact, speed: float, known: Lubrication) -> tuple[float, ...]:
-    place = contact.torque, speed
+    key = contact.torque, speed
     try:
         state = running(contact, speed * RPM, known)
     except TooHot:
-        return (*place, *(len(MAP_COLUMNS) - len(place)) * (np.nan,))
+        return (*key, *(len(MAP_COLUMNS) - len(key)) * (np.nan,))
     on, power = contact.places.inside, contact.torque * speed * RPM
     rise = float(state.flash[on].max(initial=0.0))
-    told = state.loss, 1 - state.loss / power, rise, state.mean_bulk + rise
-    return (*place, *told, _least(state.film_ratio, on))
+    values = state.loss, 1 - state.loss / power, rise, state.mean_bulk + rise
+    return (*key, *values, _least(state.film_ratio, on))
 
 
 def local_arrays(pair: LoadedPair, states: Sequence[Running], speed: float) -> dict[str, AnyArray]:
@@ -169,7 +169,7 @@ def _local(places: Places, state: Running, speed: float) -> dict[str, AnyArray]:
         "friction": state.friction,
         "loss_w_per_m": state.friction * places.line_load * speed * places.sliding,
         "flash_k": state.flash,
-        "pinion_share": state.share,
+        "pinion_share": state.heat_fraction,
         "film_m": state.film,
         "shear_factor": state.sheared,
         "film_ratio": state.film_ratio,

@@ -31,8 +31,8 @@ def friction_ratios(design: PairDesign, hats: HatSlip, friction: Array) -> Array
     force = against[:, None] * hats.velocity
     pinion, gear = spins(design)
     on_pinion, on_gear = (
-        np.cross(hats.point - one.through, sign * force) @ one.axis
-        for one, sign in ((pinion, 1.0), (gear, -1.0))
+        np.cross(hats.point - body.through, sign * force) @ body.axis
+        for body, sign in ((pinion, 1.0), (gear, -1.0))
     )
     parts = np.stack([force[:, 0], force[:, 1], -force[:, 2], on_pinion, on_gear], axis=1)
     summed = np.zeros((positions.size, 5))

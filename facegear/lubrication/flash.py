@@ -88,8 +88,10 @@ def moving_heat(number: float) -> float:
 
     number: Peclet number u b/(2 kappa); q0 the largest flux.
     """
-    found = minimize_scalar(lambda at: -moving_temperature(at, number), bounds=(-1.0, 1.0), method="bounded")
-    return -float(found.fun)
+    optimum = minimize_scalar(
+        lambda at: -moving_temperature(at, number), bounds=(-1.0, 1.0), method="bounded"
+    )
+    return -float(optimum.fun)
 
 
 def moving_temperature(at: float, number: float) -> float:
@@ -103,10 +105,10 @@ def moving_temperature(at: float, number: float) -> float:
         length = abs(end - at)
         # distance = length u^4 takes the logarithm out of the integrand, cos that of the flux's end
         distance = length * half**4
-        place = at + np.sign(end - at) * distance
-        flux = np.sqrt(np.clip(1 - place**2, 0.0, None))
+        position = at + np.sign(end - at) * distance
+        flux = np.sqrt(np.clip(1 - position**2, 0.0, None))
         argument = number * distance
-        rise = np.exp(number * (at - place) - argument) * kve(0, argument)
+        rise = np.exp(number * (at - position) - argument) * kve(0, argument)
         total += float(np.sum(weights * 4 * length * half**3 * flux * rise))
     return total / np.pi
 

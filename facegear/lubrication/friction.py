@@ -15,7 +15,7 @@ from facegear.arrays import Array, Mask
 
 Numbers = float | Array
 
-LEAST_LINE_LOAD = 150e3
+MIN_LINE_LOAD = 150e3
 """N/m, of the gear tests behind Schlenk's formula and those of the standards."""
 
 LARGEST_SPEED = 50.0
@@ -102,7 +102,7 @@ class GearTested:
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
         """Line load and speed of the gear tests."""
         return {
-            "line load at least 150 N/mm": at.line_load >= LEAST_LINE_LOAD,
+            "line load at least 150 N/mm": at.line_load >= MIN_LINE_LOAD,
             "pitch line velocity at most 50 m/s": _slow(at),
         }
 
@@ -183,11 +183,11 @@ class Doleschel:
 
     def coefficient(self, at: Rubbing) -> Array:
         """mu (m,)."""
-        share = np.where(at.film_ratio < 2, (1 - np.minimum(at.film_ratio, 2.0) / 2) ** 2, 0.0)
+        fraction = np.where(at.film_ratio < 2, (1 - np.minimum(at.film_ratio, 2.0) / 2) ** 2, 0.0)
         pressure = 1e-9 * at.pressure
         solid = self.solid * pressure**self.solid_pressure * at.rolled**self.solid_speed
         fluid = self.fluid * pressure**self.fluid_pressure * at.rolled**self.fluid_speed
-        return share * solid + (1 - share) * fluid * (1e3 * at.oil_viscosity) ** self.fluid_viscosity
+        return fraction * solid + (1 - fraction) * fluid * (1e3 * at.oil_viscosity) ** self.fluid_viscosity
 
     def within(self, at: Rubbing) -> Mapping[str, Mask]:
         """None known: those of the test that gave the constants."""

@@ -35,15 +35,15 @@ class TooHot(FacegearError):
 class Running:
     """The flanks at one torque and speed: m places, h hats.
 
-    `friction` mu, `flash` (K) with the pinion's `share` of the heat, smallest `film` (m) of the line with
-    shear heating, its factor `sheared`, the film of the elliptic form `short_film` (m), `film_ratio` lambda
-    and `micropitting` lambda_GF, all (m,). `bulk` temperatures (C) of pinion and gear; `loss` (W) and the
-    `heat` (W) that goes to each. `hat_loss` (h,) W: of each hat at its position.
+    `friction` mu, `flash` (K) with the pinion's `heat_fraction` of the heat, smallest `film` (m) of the line
+    with shear heating, its factor `sheared`, the film of the elliptic form `short_film` (m), `film_ratio`
+    lambda and `micropitting` lambda_GF, all (m,). `bulk` temperatures (C) of pinion and gear; `loss` (W) and
+    the `heat` (W) that goes to each. `hat_loss` (h,) W: of each hat at its position.
     """
 
     friction: Array
     flash: Array
-    share: Array
+    heat_fraction: Array
     film: Array
     sheared: Array
     short_film: Array
@@ -97,17 +97,17 @@ def require_cool(bulk: tuple[float, float], known: Lubrication, torque: float, s
         raise TooHot(torque, speed, max(bulk), known.oil.flash_point)
 
 
-def mean_flash(found: Places, rise: Array) -> float:
+def mean_flash(contact_places: Places, rise: Array) -> float:
     """Mean along the path of contact of the largest flash at each place of it (K), away from edges.
 
     found: places of one torque. The path runs through all positions of all pairs; 0 without any.
     """
-    stage = passage(found.position, found.tooth)[found.inside]
+    stage = passage(contact_places.position, contact_places.tooth)[contact_places.inside]
     if stage.size == 0:
         return 0.0
     _, row = np.unique(stage, return_inverse=True)
     largest = np.zeros(row.max() + 1)
-    np.maximum.at(largest, row, rise[found.inside])
+    np.maximum.at(largest, row, rise[contact_places.inside])
     return float(largest.mean())
 
 
@@ -119,11 +119,11 @@ def warmed(heat: tuple[float, float], cooling: Cooling, oil_temperature: float) 
     )
 
 
-def _bulk_after(state: "Running", found: Places, known: Lubrication) -> tuple[float, float]:
+def _bulk_after(state: "Running", contact_places: Places, known: Lubrication) -> tuple[float, float]:
     if isinstance(known.bulk, Cooling):
         return warmed(state.heat, known.bulk, known.oil_temperature)
     if isinstance(known.bulk, BorrowedBulk):
-        rise = 0.47 * known.bulk.supply_factor * mean_flash(found, state.flash)
+        rise = 0.47 * known.bulk.supply_factor * mean_flash(contact_places, state.flash)
         return known.oil_temperature + rise, known.oil_temperature + rise
     return state.bulk
 
@@ -132,14 +132,14 @@ def running_at(
     contact: LoadedContact, speed: float, known: Lubrication, bulk: tuple[float, float]
 ) -> Running:
     """The same with bulk temperatures (C) of pinion and gear as they are given."""
-    found, hats = contact.places, contact.hats
+    spots, hats = contact.places, contact.hats
     warm, oil = 0.5 * sum(bulk), known.oil
     viscosity, coefficient = float(oil.viscosity(warm)), float(oil.pressure_coefficient_at(warm))
-    u1, u2, sliding = speed * found.u1, speed * found.u2, speed * found.sliding
+    u1, u2, sliding = speed * spots.u1, speed * spots.u2, speed * spots.sliding
     entrained = 0.5 * (u1 + u2)
     wet = viscosity, coefficient, known.reduced_modulus
     sheared = shear_heating(
-        found.pressure,
+        spots.pressure,
         u1,
         u2,
         viscosity,
@@ -147,14 +147,14 @@ def running_at(
         oil.conductivity_of(warm),
         known.reduced_modulus,
     )
-    film = sheared * line_film(found.radius, entrained, found.line_load, *wet)
+    film = sheared * line_film(spots.radius, entrained, spots.line_load, *wet)
     short = elliptic_film(
-        found.radius, entrained, found.ellipse_force, found.half_length / found.half_width, *wet
+        spots.radius, entrained, spots.ellipse_force, spots.half_length / spots.half_width, *wet
     )
     rubbing = Rubbing(
-        line_load=found.line_load,
-        radius=found.radius,
-        pressure=found.pressure,
+        line_load=spots.line_load,
+        radius=spots.radius,
+        pressure=spots.pressure,
         u1=u1,
         u2=u2,
         sliding=sliding,
@@ -166,21 +166,21 @@ def running_at(
         rq=known.composite_rq,
     )
     friction = known.friction.coefficient(rubbing)
-    rise, share = flash_at_any_speed(
-        friction, found.line_load, sliding, (u1, u2), found.half_width, known.flanks
+    rise, fraction = flash_at_any_speed(
+        friction, spots.line_load, sliding, (u1, u2), spots.half_width, known.flanks
     )
     thin = _products(oil, warm + rise)
     slid = sliding_factor(thin, (viscosity, coefficient))
     micro = local_film(
-        found.radius, u1 + u2, found.pressure, viscosity, coefficient, slid, known.reduced_modulus
+        spots.radius, u1 + u2, spots.pressure, viscosity, coefficient, slid, known.reduced_modulus
     )
-    rubbed, parted = (contact.at_hats(values) for values in (friction, share))
+    rubbed, parted = (contact.at_hats(values) for values in (friction, fraction))
     hat_loss = rubbed * hats.force * speed * hats.sliding
     loss, to_pinion = (float(part.sum()) / contact.positions for part in (hat_loss, parted * hat_loss))
     return Running(
         friction=friction,
         flash=rise,
-        share=share,
+        heat_fraction=fraction,
         film=film,
         sheared=sheared,
         short_film=sheared * short,

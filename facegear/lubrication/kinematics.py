@@ -79,8 +79,8 @@ def surface_normals(design: PairDesign, points: Array) -> Array:
     if below.any():
         gamma = np.linspace(design.pressure_angle, 0.5 * pi, FILLET_SAMPLES)
         radii, _ = pinion.trochoid_point(design, gamma)
-        found = np.interp(radius[below], radii[::-1], gamma[::-1])
-        nx[below], nz[below] = pinion.trochoid_normal(design, found)
+        angles = np.interp(radius[below], radii[::-1], gamma[::-1])
+        nx[below], nz[below] = pinion.trochoid_normal(design, angles)
     return np.stack([nx, np.zeros_like(nx), nz], axis=-1)
 
 

@@ -48,12 +48,12 @@ class LoadedPair:
 
 @dataclass(frozen=True, eq=False)
 class MeshCurves:
-    """Of one mesh at a speed, over torque: part of its power `lost`, the pinion's `share` of the heat, the
+    """Of one mesh at a speed, over torque: part of its power `lost`, the pinion's `heat_fraction`, the
     largest `flash` (K), the smallest `film_ratio` and `micropitting` ratio; the last three away from edges.
     """
 
     lost: OverTorque
-    share: OverTorque
+    heat_fraction: OverTorque
     flash: OverTorque
     film_ratio: OverTorque
     micropitting: OverTorque
@@ -129,10 +129,10 @@ def machine_loss(pair: LoadedPair, loads: MeshLoads, speed: float) -> MachineLos
     bulk = np.tile(starting_bulk(known), (loads.torque.size, 1))
     for _ in range(STEPS):
         curves = _curves_at(pair, speed, bulk)
-        found = _evaluated(loads, curves, speed, bulk)
-        after = _machine_bulk(loads, found.heat, known.bulk, known.oil_temperature)
+        losses = _evaluated(loads, curves, speed, bulk)
+        after = _machine_bulk(loads, losses.heat, known.bulk, known.oil_temperature)
         if all(settled(tuple(new), tuple(old)) for new, old in zip(after, bulk, strict=True)):
-            return found
+            return losses
         for row, torque in zip(after, loads.torque, strict=True):
             require_cool((row[0], row[1]), known, float(torque), speed)
         bulk = after
@@ -157,17 +157,17 @@ def _own_bulk(pair: LoadedPair, states: Sequence[Running], torque: Array) -> Arr
 def _evaluated(loads: MeshLoads, curves: Sequence[MeshCurves], speed: float, bulk: Array) -> MachineLoss:
     def at(name: str, torques: Array) -> Array:
         return np.array(
-            [float(getattr(one, name).at(torque)) for one, torque in zip(curves, torques, strict=True)]
+            [float(getattr(curve, name).at(torque)) for curve, torque in zip(curves, torques, strict=True)]
         )
 
     loss = at("lost", loads.torque) * loads.torque * speed
-    warm = at("share", loads.torque) * loss
+    warm = at("heat_fraction", loads.torque) * loss
     heat = np.zeros(loads.bodies)
     np.add.at(heat, loads.pinion, warm)
     np.add.at(heat, loads.pinions + loads.gear, loss - warm)
     within = [
-        bool(one.lost.within(low)) and bool(one.lost.within(high))
-        for one, low, high in zip(curves, loads.torque, loads.peak, strict=True)
+        bool(curve.lost.within(low)) and bool(curve.lost.within(high))
+        for curve, low, high in zip(curves, loads.torque, loads.peak, strict=True)
     ]
     return MachineLoss(
         loss=loss,

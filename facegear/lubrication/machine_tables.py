@@ -28,7 +28,7 @@ class MachineState:
     flanks: Sequence[str]
     bodies: Sequence[str]
     loads: MeshLoads
-    found: MachineLoss
+    losses: MachineLoss
 
     @property
     def power(self) -> np.ndarray:
@@ -41,8 +41,8 @@ def mesh_loss_table(states: Sequence[MachineState], known: Lubrication, limits: 
     allowed = limits.allowed_contact(known.oil, known.oil_temperature)
     frames = []
     for state in states:
-        found = state.found
-        contact = found.contact_temperature
+        losses = state.losses
+        contact = losses.contact_temperature
         columns = {
             "bin": state.bin,
             "speed_rpm": state.speed_rpm,
@@ -51,21 +51,23 @@ def mesh_loss_table(states: Sequence[MachineState], known: Lubrication, limits: 
             "pinion_torque_n_m": state.loads.torque,
             "largest_torque_n_m": state.loads.peak,
             "power_w": state.power,
-            "loss_w": found.loss,
-            "loss_percent": 100 * found.loss / state.power,
+            "loss_w": losses.loss,
+            "loss_percent": 100 * losses.loss / state.power,
             "loss_in_motion_w": np.nan,
-            "pinion_heat_w": found.pinion_heat,
-            "face_gear_heat_w": found.loss - found.pinion_heat,
-            "pinion_bulk_c": found.bulk[:, 0],
-            "face_gear_bulk_c": found.bulk[:, 1],
-            "largest_flash_k": found.flash,
+            "pinion_heat_w": losses.pinion_heat,
+            "face_gear_heat_w": losses.loss - losses.pinion_heat,
+            "pinion_bulk_c": losses.bulk[:, 0],
+            "face_gear_bulk_c": losses.bulk[:, 1],
+            "largest_flash_k": losses.flash,
             "contact_temperature_c": contact,
             "scuffing_safety": temperature_safety(allowed, known.oil_temperature, contact),
             "scuffing_margin_k": allowed - contact,
-            "smallest_film_ratio": found.film_ratio,
-            "smallest_micropitting_film_ratio": found.micropitting,
-            "micropitting_safety": [limits.micropitting_safety(float(ratio)) for ratio in found.micropitting],
-            "within_torques_solved": found.within,
+            "smallest_film_ratio": losses.film_ratio,
+            "smallest_micropitting_film_ratio": losses.micropitting,
+            "micropitting_safety": [
+                limits.micropitting_safety(float(ratio)) for ratio in losses.micropitting
+            ],
+            "within_torques_solved": losses.within,
         }
         frames.append(pd.DataFrame(columns))
     return pd.concat(frames, ignore_index=True)[list(MESH_COLUMNS)]
@@ -79,7 +81,7 @@ def body_heat_table(states: Sequence[MachineState], known: Lubrication) -> pd.Da
     rows = [
         (state.bin, state.speed_rpm, name, heat, _bulk(known, heat, body < state.loads.pinions))
         for state in states
-        for body, (name, heat) in enumerate(zip(state.bodies, state.found.heat.tolist(), strict=True))
+        for body, (name, heat) in enumerate(zip(state.bodies, state.losses.heat.tolist(), strict=True))
     ]
     return pd.DataFrame(rows, columns=list(BODY_COLUMNS))
 
@@ -104,14 +106,14 @@ def machine_loss_table(states: Sequence[MachineState]) -> pd.DataFrame:
 
 
 def _row(state: MachineState) -> dict[str, object]:
-    loss = state.found.total
+    loss = state.losses.total
     return {
         "bin": state.bin,
         "hours": state.hours,
         "speed_rpm": state.speed_rpm,
         **_powers(state.power_in, float(state.power.sum()), loss),
         "energy_lost_kwh": 1e-3 * loss * state.hours,
-        "within_torques_solved": bool(state.found.within.all()),
+        "within_torques_solved": bool(state.losses.within.all()),
     }
 
 

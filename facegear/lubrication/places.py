@@ -77,7 +77,7 @@ def places(design: PairDesign, arrays: Arrays, lines: ContactLines, modulus: flo
     at = row, arrays["line_plane"]
     load, curvature = arrays["line_load_n_per_m"], filled.curvature[at]
     inside = arrays["line_where"] == INSIDE
-    long, wide = strip_pressure(load, curvature, modulus)
+    long, strip = strip_pressure(load, curvature, modulus)
     whole = Places(
         torque=arrays["line_torque_n_m"],
         position=arrays["line_position"],
@@ -89,7 +89,7 @@ def places(design: PairDesign, arrays: Arrays, lines: ContactLines, modulus: flo
         line_load=load,
         length=arrays["line_length_m"],
         pressure=np.where(inside, arrays["line_pressure_pa"], long),
-        half_width=np.where(inside, arrays["line_half_width_m"], wide),
+        half_width=np.where(inside, arrays["line_half_width_m"], strip),
         half_length=_half_lengths(arrays, row),
         radius=1 / curvature,
         u1=moving.u1[at],
@@ -123,10 +123,14 @@ class LoadedContact:
         return np.append(values, mean)[self.nearest]
 
 
-def loaded_contacts(found: Places, hats: HatSlip) -> tuple[LoadedContact, ...]:
+def loaded_contacts(contact_places: Places, hats: HatSlip) -> tuple[LoadedContact, ...]:
     """Places and hats apart by torque, rising."""
     return tuple(
-        _contact(float(torque), _of(found, found.torque == torque), _of(hats, hats.torque == torque))
+        _contact(
+            float(torque),
+            _of(contact_places, contact_places.torque == torque),
+            _of(hats, hats.torque == torque),
+        )
         for torque in np.unique(hats.torque)
     )
 
@@ -138,15 +142,18 @@ def _of(loads: Loads, on: Mask) -> Loads:
     return replace(loads, **{field.name: getattr(loads, field.name)[on] for field in fields(loads)})
 
 
-def _contact(torque: float, found: Places, hats: HatSlip) -> LoadedContact:
-    positions, row = np.unique(np.concatenate([found.position, hats.position]), return_inverse=True)
-    line = row * PAIRS.size + np.concatenate([found.tooth, hats.tooth]) - PAIRS[0]
-    count, planes = found.plane.size, 1 + int(max(found.plane.max(initial=0), hats.plane.max()))
+def _contact(torque: float, contact_places: Places, hats: HatSlip) -> LoadedContact:
+    positions, row = np.unique(np.concatenate([contact_places.position, hats.position]), return_inverse=True)
+    line = row * PAIRS.size + np.concatenate([contact_places.tooth, hats.tooth]) - PAIRS[0]
+    count, planes = (
+        contact_places.plane.size,
+        1 + int(max(contact_places.plane.max(initial=0), hats.plane.max())),
+    )
     table = np.full((positions.size * PAIRS.size, planes), np.nan)
-    table[line[:count], found.plane] = np.arange(count)
+    table[line[:count], contact_places.plane] = np.arange(count)
     picked = _nearest(table)[line[count:], hats.plane]
     nearest = np.where(np.isfinite(picked), np.nan_to_num(picked), -1).astype(np.int64)
-    return LoadedContact(torque, found, hats, nearest, np.unique(hats.position).size)
+    return LoadedContact(torque, contact_places, hats, nearest, np.unique(hats.position).size)
 
 
 def _filled(lines: ContactLines) -> ContactLines:
@@ -161,8 +168,8 @@ def _nearest(values: Array) -> Array:
     after = np.minimum.accumulate(np.where(known, columns, 2 * columns.size)[:, ::-1], axis=1)[:, ::-1]
     back = np.where(before >= 0, columns - before, 3 * columns.size)
     take = np.where(back <= after - columns, before, after)
-    found = np.take_along_axis(values, np.clip(take, 0, columns.size - 1), axis=1)
-    return np.where(known.any(axis=1, keepdims=True), found, np.nan)
+    taken = np.take_along_axis(values, np.clip(take, 0, columns.size - 1), axis=1)
+    return np.where(known.any(axis=1, keepdims=True), taken, np.nan)
 
 
 def _rows(arrays: Arrays) -> Integers:

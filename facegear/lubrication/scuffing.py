@@ -34,7 +34,7 @@ def integral_temperature(bulk: Numbers, mean_flash: Numbers) -> Array:
     return np.asarray(bulk, float) + MEAN_WEIGHT * np.asarray(mean_flash, float)
 
 
-def temperature_safety(allowed: float, oil: float, found: Numbers) -> Array:
+def temperature_safety(allowed: float, oil: float, numbers: Numbers) -> Array:
     """(allowed - oil) / (found - oil), temperatures in degrees C; infinite where nothing is heated."""
-    rise = np.asarray(found, float) - oil
+    rise = np.asarray(numbers, float) - oil
     return np.where(rise > 0, (allowed - oil) / np.where(rise > 0, rise, 1.0), np.inf)

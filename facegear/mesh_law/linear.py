@@ -135,8 +135,10 @@ class LinearLaw:
 
     def terms(self, frequency: float, width: int) -> NamedTuple:
         """k over the squared mesh frequency."""
-        one, square = _terms(self, width), frequency**2
-        return one._replace(fourier=divided(one.fourier, square), pieces=one.pieces / square)
+        terms_of_law, square = _terms(self, width), frequency**2
+        return terms_of_law._replace(
+            fourier=divided(terms_of_law.fourier, square), pieces=terms_of_law.pieces / square
+        )
 
     def series(self, rows: int, width: int) -> NamedTuple:
         """Scratch space; the slope is the series of k."""
@@ -154,8 +156,8 @@ def linear_law(series: Sequence[Harmonics]) -> LinearLaw:
 def different(series: Sequence[Harmonics]) -> tuple[Array, Integers]:
     """The different ones among Fourier series, (kinds, 2, harmonics + 1), and the kind of each."""
     rows = stacked(series)
-    kinds, kind = np.unique(rows.reshape(len(rows), -1), axis=0, return_inverse=True)
-    return kinds.reshape(-1, *rows.shape[1:]), kind.ravel().astype(np.int64)
+    distinct, kind = np.unique(rows.reshape(len(rows), -1), axis=0, return_inverse=True)
+    return distinct.reshape(-1, *rows.shape[1:]), kind.ravel().astype(np.int64)
 
 
 def fourier_columns(rows: Array) -> Array:

@@ -46,14 +46,14 @@ class ForceTable:
         """Of the powers 0 to 3 of the amount beyond the level at which a piece begins, (L, 4, 2, harmonics +
         1).
         """
-        wide = np.diff(self.levels)[:, None, None]
-        rise = np.diff(self.forces, axis=0) / wide
+        spacing = np.diff(self.levels)[:, None, None]
+        rise = np.diff(self.forces, axis=0) / spacing
         begin, end = self.slopes[:-1], self.slopes[1:]
-        found = np.zeros((self.levels.size, 4, *self.forces.shape[1:]))
-        found[:, 0], found[:, 1] = self.forces, self.slopes
-        found[:-1, 2] = (3.0 * rise - 2.0 * begin - end) / wide
-        found[:-1, 3] = (begin + end - 2.0 * rise) / wide**2
-        return found
+        values = np.zeros((self.levels.size, 4, *self.forces.shape[1:]))
+        values[:, 0], values[:, 1] = self.forces, self.slopes
+        values[:-1, 2] = (3.0 * rise - 2.0 * begin - end) / spacing
+        values[:-1, 3] = (begin + end - 2.0 * rise) / spacing**2
+        return values
 
     @cached_property
     def bounds(self) -> Array:
@@ -62,8 +62,8 @@ class ForceTable:
         They are the slopes at the levels, and between two of them the middle coefficient of the slope in
         Bernstein form.
         """
-        wide = np.diff(self.levels)[:, None, None]
-        middle = self.slopes[:-1] + wide * self.coefficients[:-1, 2]
+        spacing = np.diff(self.levels)[:, None, None]
+        middle = self.slopes[:-1] + spacing * self.coefficients[:-1, 2]
         return np.concatenate([self.slopes, middle])
 
     @cached_property
@@ -72,7 +72,7 @@ class ForceTable:
         return float(np.hypot(self.bounds[:, 0], self.bounds[:, 1]).sum(axis=1).max())
 
     @cached_property
-    def least_slope(self) -> float:
+    def min_slope(self) -> float:
         """Smallest slope at the phases and amounts that are looked at, N/m."""
         count = LOOKS * self.forces.shape[2]
         values = _values(self.coefficients[:, 1:], np.arange(count) / count)
@@ -158,13 +158,13 @@ class LoadDependentLaw:
         """Amounts (..., K, M) past the beginnings of their pieces, and coefficients (4, ..., K, M)."""
         values = _values(self._coefficients, cycles)
         ahead = np.abs(beyond)
-        found = np.empty((4, *ahead.shape))
+        coefficients = np.empty((4, *ahead.shape))
         rows = np.arange(cycles.size)
         for m, kind in enumerate(self.kind):
             piece = np.searchsorted(self._levels[kind], ahead[..., m], side="right") - 1
             ahead[..., m] -= self._levels[kind][piece]
-            found[..., m] = np.moveaxis(values[rows, kind, piece], -1, 0)
-        return ahead, found
+            coefficients[..., m] = np.moveaxis(values[rows, kind, piece], -1, 0)
+        return ahead, coefficients
 
     def mean(self) -> "LoadDependentLaw":
         """Mean forces and slopes at every level."""
@@ -211,7 +211,7 @@ class LoadDependentLaw:
         from facegear.mesh_law.load_dependent_terms import LoadDependentSeries
 
         shapes = dict.fromkeys(LoadDependentSeries._fields, width) | {"four": 4}
-        return LoadDependentSeries(**{name: aligned(rows, wide) for name, wide in shapes.items()})
+        return LoadDependentSeries(**{name: aligned(rows, shape) for name, shape in shapes.items()})
 
 
 def load_dependent_law(tables: Sequence[ForceTable]) -> LoadDependentLaw:
@@ -239,6 +239,6 @@ def _lagging(series: Array, cycles: float) -> Array:
 @lru_cache(maxsize=16)
 def _columns(law: LoadDependentLaw) -> Any:
     """Coefficients (kinds, L, harmonics + 1, 2, 4) as compiled functions read them; shared, only read."""
-    found = aligned(*np.moveaxis(law._coefficients, (2, 3, 4), (4, 3, 2)).shape)
-    found[:] = np.moveaxis(law._coefficients, (2, 3, 4), (4, 3, 2))
-    return found
+    columns = aligned(*np.moveaxis(law._coefficients, (2, 3, 4), (4, 3, 2)).shape)
+    columns[:] = np.moveaxis(law._coefficients, (2, 3, 4), (4, 3, 2))
+    return columns

@@ -123,10 +123,10 @@ def force_terms(
 
 
 @inlined
-def _product(one: Array, two: Array, i: int, m: int) -> float:
+def _product(first: Array, two: Array, i: int, m: int) -> float:
     total = 0.0
     for j in range(i + 1):
-        total += one[j, m] * two[i - j, m]
+        total += first[j, m] * two[i - j, m]
     return total
 
 

@@ -11,7 +11,7 @@ from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
 from facegear.config.transmission import Transmission
 from facegear.dynamics.branches import operating_tables, tables
-from facegear.dynamics.branches.machine import machine_flow, machine_survey, margins
+from facegear.dynamics.branches.machine import machine_period_map, machine_survey, margins
 from facegear.dynamics.branches.margins import several
 from facegear.dynamics.branches.stored import from_arrays, special_arrays
 from facegear.dynamics.branches.summary import survey_summary, tell
@@ -41,16 +41,16 @@ def branches(
     """
     model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction))
     plan, layout = branch_plan(branches, speed_rpm), model.machine.layout
-    flow, swept_plan = machine_flow(model, plan), sweep_plan(sweep)
-    found = [from_arrays(flow, one) for one in starts]
+    period_map, swept_plan = machine_period_map(model, plan), sweep_plan(sweep)
+    found = [from_arrays(period_map, one) for one in starts]
     stored = iter(chunks)
     pieces = {
         name: [chunk_from_arrays(next(stored))[1] for _ in range(swept_plan.chunks)]
         for name in swept_plan.directions
     }
-    swept = swept_motions(flow, pieces, plan.from_rpm, plan.to_rpm)
+    swept = swept_motions(period_map, pieces, plan.from_rpm, plan.to_rpm)
     seen = machine_survey(model, plan, found, swept, tell)
-    ranges, losses = several(seen.branches), margins(model, plan, seen.branches)
+    ranges, stability_limits = several(seen.branches), margins(model, plan, seen.branches)
     within = jumps[jumps["speed_before_rpm"].between(plan.from_rpm, plan.to_rpm)]
     spacing = (swept_plan.last_rpm - swept_plan.first_rpm) / (swept_plan.points - 1)
     content = {
@@ -61,11 +61,13 @@ def branches(
         "special": tables.special_table(layout, seen.branches),
         "coexistence": operating_tables.coexistence_table(found, seen.branches),
         "ranges": operating_tables.range_table(ranges),
-        "margins": operating_tables.margin_table(losses),
+        "margins": operating_tables.margin_table(stability_limits),
         "swept": operating_tables.swept_table(swept, seen.branches, plan.longest_found),
         "jumps": operating_tables.jump_table(
             within, swept, seen.branches, swept_plan.jump_resolution_rpm, spacing
         ),
         "orbits": special_arrays(seen.branches),
     }
-    return Outcome(content, survey_summary(seen, ranges, losses, content["swept"], content["jumps"]))
+    return Outcome(
+        content, survey_summary(seen, ranges, stability_limits, content["swept"], content["jumps"])
+    )

@@ -7,7 +7,7 @@ from facegear.config.branches import Branches, branch_plan
 from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
 from facegear.config.transmission import Transmission
-from facegear.dynamics.branches.machine import machine_flow, machine_loci
+from facegear.dynamics.branches.machine import machine_loci, machine_period_map
 from facegear.dynamics.branches.stored import special_points
 from facegear.dynamics.branches.summary import loci_summary, tell
 from facegear.dynamics.branches.tables import locus_table
@@ -27,5 +27,5 @@ def branches_loci(
     """`loci` (table). orbits: arrays of the special points."""
     model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction))
     plan = branch_plan(branches, speed_rpm)
-    loci, missed = machine_loci(model, plan, special_points(machine_flow(model, plan), orbits), tell)
+    loci, missed = machine_loci(model, plan, special_points(machine_period_map(model, plan), orbits), tell)
     return Outcome({"loci": locus_table(loci)}, loci_summary(loci, missed))

@@ -27,5 +27,5 @@ def branches_starts(
     plan = branch_plan(branches, speed_rpm)
     speed = plan.speeds_rpm[number]
     found = random_starts(model, plan, speed, Progress("random starts", plan.starts).step)
-    shares = ", ".join(f"{one.label} {100 * one.share:.1f} +- {100 * one.error:.1f} %" for one in found)
+    shares = ", ".join(f"{one.label} {100 * one.fraction:.1f} +- {100 * one.error:.1f} %" for one in found)
     return Outcome({"found": to_arrays(speed, found)}, f"{speed:g} rpm: {shares}")

@@ -144,5 +144,5 @@ def _state(
         flanks=names[1],
         bodies=layout.body_names,
         loads=loads,
-        found=losses.machine_loss(loaded, loads, speed_rpm * pi / 30),
+        losses=losses.machine_loss(loaded, loads, speed_rpm * pi / 30),
     )

@@ -28,7 +28,7 @@ from facegear.transmission.contact_energy import (
 
 TIE, FIRST_TIE = 1e-10, 1e-1
 """Springs to ground in the matrix only (over the stiffest contact), which give free bodies a next place."""
-MOST_STEPS = 200
+MAX_STEPS = 200
 JUST_CLOSED = 1e-9
 """Part of a whole step's approach by which a flank that stopped the step may still be open."""
 
@@ -57,7 +57,7 @@ def settle_all(
         stiffest = held.stiffness[k].max()
         tie = FIRST_TIE if k == 0 else TIE
         stops[:] = 0.0
-        for _ in range(MOST_STEPS):
+        for _ in range(MAX_STEPS):
             penetrate(springs, gap[k], place, over)
             size = balance(springs, held, k, over, place, gradient)
             worst = np.abs(gradient).max()

@@ -18,7 +18,7 @@ from facegear.transmission.matrices import bearing_matrix, flank_directions, mas
 NOTHING, LOADED = 1e-9, 1e-6
 RIGID = 1e-13
 """Share of the stiffest motion's stiffness below which a motion is free."""
-MOST_SETS = 50
+MAX_SETS = 50
 BALANCED = 1e-9
 
 
@@ -94,7 +94,7 @@ def forces_by_active_sets(machine: Machine) -> Array | None:
     stiffness = machine.stiffness.mean * np.tile(machine.imperfections.stiffness, 2)
     gaps = constant_errors(machine) + flank_gaps(machine)
     closed = np.arange(gaps.size) < len(layout.meshes)
-    for _ in range(MOST_SETS):
+    for _ in range(MAX_SETS):
         pressed = np.where(closed, stiffness, 0.0)
         matrix = bearing + (directions.T * pressed) @ directions
         moved = np.linalg.lstsq(matrix, applied + directions.T @ (pressed * gaps), rcond=RIGID)[0]

@@ -8,11 +8,11 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array
-from facegear.dynamics.branches.continuation import Branch, Run, follow, turned
+from facegear.dynamics.branches.continuation import Branch, ContinuationSettings, follow, turned
 from facegear.dynamics.branches.explore import crossings
 from facegear.dynamics.branches.family import Family, speed_family
 from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import Point, at_parameter
+from facegear.dynamics.branches.points import BranchPoint, at_parameter
 from facegear.dynamics.branches.special import Kind
 from facegear.dynamics.integrator.system import System
 from facegear.dynamics.motion import Settings, State
@@ -40,7 +40,7 @@ BLOCK = 32
 SETTLED = 1e-6
 """Change over a mesh period, in length scales, at which plain running counts as settled."""
 REPEATS = 5
-MOST_PERIODS = 100_000
+MAX_PERIODS = 100_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,8 +49,8 @@ class Case:
 
     name: str
     family: Family
-    begin: Callable[[PeriodMap], Point]
-    run: Run
+    begin: Callable[[PeriodMap], BranchPoint]
+    run: ContinuationSettings
     value: float
 
 
@@ -61,7 +61,7 @@ def oscillator_case() -> Case:
         "oscillator",
         family,
         lambda period_map: at_parameter(period_map, np.array([1.1, 0.0]), float(np.log(0.3))),
-        Run(0.25, 2.6),
+        ContinuationSettings(0.25, 2.6),
         0.75,
     )
 
@@ -75,7 +75,7 @@ def machine_case(machine: Machine, speed_rpm: float) -> Case:
         "machine",
         speed_family(model),
         lambda period_map: at_parameter(period_map, period_map.weighted(state, u), u),
-        Run(0.9 * speed_rpm, 1.3 * speed_rpm),
+        ContinuationSettings(0.9 * speed_rpm, 1.3 * speed_rpm),
         1.05 * speed_rpm,
     )
 
@@ -204,7 +204,7 @@ def _orbits(model: Model, speed_rpm: float) -> dict[float, State]:
     )
     state = steady_state(system, frequency, Settings(tolerance=TOLERANCE), static_start(model)).state
     start = at_parameter(period_map, period_map.weighted(state, 0.0), 0.0)
-    branch = follow(period_map, turned(start), Run(0.99 * DAMPING[-1], 1.0), both=False)
+    branch = follow(period_map, turned(start), ContinuationSettings(0.99 * DAMPING[-1], 1.0), both=False)
     states = {1.0: state}
     for factor in DAMPING[1:]:
         for point in crossings(branch, factor)[:1]:
@@ -217,7 +217,7 @@ def _cost(model: Model, factor: float, speed_rpm: float, state: State) -> dict[s
     u = float(np.log(speed_rpm))
     start = at_parameter(period_map, period_map.weighted(state, u), u)
     begin = time.process_time()
-    branch = follow(period_map, start, Run(0.98 * speed_rpm, 1.02 * speed_rpm))
+    branch = follow(period_map, start, ContinuationSettings(0.98 * speed_rpm, 1.02 * speed_rpm))
     point_seconds = (time.process_time() - begin) / len(branch.points)
     beside = at_parameter(period_map, start.z, float(np.log(0.995 * speed_rpm))).z
     begin = time.process_time()
@@ -246,8 +246,8 @@ def _cost(model: Model, factor: float, speed_rpm: float, state: State) -> dict[s
 def _plain(period_map: PeriodMap, z: Array, u: float) -> tuple[int, float, bool]:
     """Periods and seconds of plain running from z until the state hardly changes over a period."""
     block, begin = period_map.over(BLOCK), time.process_time()
-    for count in range(1, MOST_PERIODS // BLOCK + 1):
+    for count in range(1, MAX_PERIODS // BLOCK + 1):
         z = z + block.gap(z, u)
         if np.abs(period_map.gap(z, u)).max() < SETTLED:
             return count * BLOCK, time.process_time() - begin, True
-    return MOST_PERIODS, time.process_time() - begin, False
+    return MAX_PERIODS, time.process_time() - begin, False

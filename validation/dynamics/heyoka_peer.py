@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.integrator.compiled import LEAST_CLEARANCE, TAU
+from facegear.dynamics.integrator.compiled import MIN_CLEARANCE, TAU
 from facegear.dynamics.integrator.kernel import kernel
 from facegear.dynamics.integrator.system import System
 from validation.dynamics.problems import SAMPLES, Problem
@@ -23,7 +23,7 @@ from validation.dynamics.right_side import linear
 EDGE = 1e-13
 """A deflection this close to an edge, in length scales, stands on it, and its rate decides."""
 NEGLIGIBLE = 1e-13
-MOST_STEPS = 1_000_000
+MAX_STEPS = 1_000_000
 APART = 1e-3
 """Relative distance of the starts of a batch, so that its lanes do not step alike."""
 
@@ -54,7 +54,7 @@ def scaled(system: System) -> Scaled:
         system.mesh_jacobian,
         0.0,
     )
-    closed = system.upper - system.lower <= LEAST_CLEARANCE * system.scale
+    closed = system.upper - system.lower <= MIN_CLEARANCE * system.scale
     return Scaled(
         unit=unit,
         jacobian=kept * unit / system.scale,
@@ -237,7 +237,7 @@ def trajectory(heyoka: Any) -> Callable[[Problem, float], Callable[[], Array]]:
 
         def run() -> Array:
             integrator.reset()
-            outcome, *_, samples = integrator.adaptive.propagate_grid(phases, max_steps=MOST_STEPS)
+            outcome, *_, samples = integrator.adaptive.propagate_grid(phases, max_steps=MAX_STEPS)
             _require(heyoka, outcome)
             return samples[:, : problem.system.size] * integrator.units.unit
 
@@ -256,7 +256,7 @@ def batch(heyoka: Any, lanes: int) -> Callable[[Problem, float], Callable[[], Ar
 
         def run() -> Array:
             integrator.reset()
-            _, samples = integrator.adaptive.propagate_grid(grid, max_steps=MOST_STEPS)
+            _, samples = integrator.adaptive.propagate_grid(grid, max_steps=MAX_STEPS)
             for outcome, *_ in integrator.adaptive.propagate_res:
                 _require(heyoka, outcome)
             return np.ascontiguousarray(samples[:, : problem.system.size, 0]) * integrator.units.unit
@@ -276,7 +276,7 @@ def tangents(heyoka: Any) -> Callable[[Problem, float], Callable[[], Array]]:
 
         def run() -> Array:
             integrator.reset()
-            outcome = integrator.adaptive.propagate_until(TAU * problem.periods, max_steps=MOST_STEPS)[0]
+            outcome = integrator.adaptive.propagate_until(TAU * problem.periods, max_steps=MAX_STEPS)[0]
             _require(heyoka, outcome)
             matrix = integrator.adaptive.state[size:].reshape(size, size)
             return matrix * unit[:, None] / unit

@@ -9,7 +9,7 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.dynamics.branches.locate import locate
 from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import Point, at_parameter, solve_point
+from facegear.dynamics.branches.points import BranchPoint, at_parameter, solve_point
 from facegear.dynamics.branches.segment import reversal
 from facegear.dynamics.branches.special import Kind, Special
 from facegear.dynamics.branches.stepping import next_length, step_along
@@ -19,11 +19,11 @@ JUNCTION = 1e-6
 """Logarithms of the parameter that differ by less belong to one junction of branches."""
 NEAR_JUNCTION = 3.0
 """Fold and branch point of a junction lie within this many steps."""
-PASSED = (Kind.GRAZE, Kind.AFLOAT)
+PASSED = (Kind.GRAZE, Kind.NEUTRAL)
 """Special points at which a motion neither ends nor changes its stability."""
 
 
-class End(StrEnum):
+class BranchEnd(StrEnum):
     """Why a branch ends."""
 
     LIMIT = "limit of the parameter"
@@ -38,19 +38,19 @@ class End(StrEnum):
 
 
 @dataclass(frozen=True)
-class Run:
+class ContinuationSettings:
     """How a branch is followed: range of the parameter, steps in weighted states and logarithms.
 
-    first, least, largest: step lengths. points: most points in each direction. bound: largest weighted state.
-    to_first: end at the first special point that is no graze.
+    first, ds_min, ds_max: step lengths. max_points: most points in each direction. bound: largest weighted
+    state. to_first: end at the first special point that is no graze.
     """
 
-    low: float
-    high: float
+    p_min: float
+    p_max: float
     first: float = 0.02
-    least: float = 1e-7
-    largest: float = 0.3
-    points: int = 4000
+    ds_min: float = 1e-7
+    ds_max: float = 0.3
+    max_points: int = 4000
     bound: float = 1e4
     to_first: bool = False
 
@@ -63,10 +63,10 @@ class Branch:
     next.
     """
 
-    flow: PeriodMap
-    points: list[Point]
+    period_map: PeriodMap
+    points: list[BranchPoint]
     specials: list[Special]
-    ends: tuple[End, End]
+    ends: tuple[BranchEnd, BranchEnd]
     tried: str = ""
 
     @property
@@ -80,168 +80,186 @@ class Branch:
         """Parameter of the points, shape (points,)."""
         return np.array([point.value for point in self.points])
 
-    def of(self, *kinds: str) -> list[Special]:
+    def of(self, *chosen: str) -> list[Special]:
         """Special points of some kinds, in their order along the branch."""
-        return [special for special in self.specials if special.kind in kinds]
+        return [special for special in self.specials if special.kind in chosen]
 
 
 @dataclass(eq=False)
 class _Track:
-    points: list[Point]
+    points: list[BranchPoint]
     specials: list[Special] = field(default_factory=list)
-    end: End = End.POINTS
+    end: BranchEnd = BranchEnd.POINTS
     tried: str = ""
 
 
 def follow(
-    flow: PeriodMap,
-    start: Point,
-    run: Run,
+    period_map: PeriodMap,
+    start: BranchPoint,
+    run: ContinuationSettings,
     both: bool = True,
-    progress: Callable[[Point], None] = lambda point: None,
+    progress: Callable[[BranchPoint], None] = lambda point: None,
 ) -> Branch:
     """The branch through `start`, along its tangent and (with `both`) against it."""
-    ahead = _track(flow, start, run, progress)
-    if not both or ahead.end is End.CLOSED:
-        first = End.CLOSED if ahead.end is End.CLOSED else End.START
-        return Branch(flow, ahead.points, ahead.specials, (first, ahead.end), ahead.tried)
-    behind = _track(flow, turned(start), run, progress)
+    ahead = _track(period_map, start, run, progress)
+    if not both or ahead.end is BranchEnd.CLOSED:
+        first = BranchEnd.CLOSED if ahead.end is BranchEnd.CLOSED else BranchEnd.START
+        return Branch(period_map, ahead.points, ahead.specials, (first, ahead.end), ahead.tried)
+    behind = _track(period_map, turned(start), run, progress)
     count = len(behind.points) - 1
     points = [turned(point) for point in behind.points[:0:-1]] + ahead.points
     specials = [replace(s, after=count - s.after) for s in behind.specials[::-1]]
     specials += [replace(s, after=count + s.after) for s in ahead.specials]
     tried = "; ".join(text for text in (behind.tried, ahead.tried) if text)
-    return Branch(flow, points, specials, (behind.end, ahead.end), tried)
+    return Branch(period_map, points, specials, (behind.end, ahead.end), tried)
 
 
-def turned(point: Point) -> Point:
+def turned(point: BranchPoint) -> BranchPoint:
     """The same point looking the other way."""
     return replace(point, tangent=-point.tangent, parity=-point.parity)
 
 
-def _track(flow: PeriodMap, start: Point, run: Run, progress: Callable[[Point], None]) -> _Track:
+def _track(
+    period_map: PeriodMap,
+    start: BranchPoint,
+    run: ContinuationSettings,
+    progress: Callable[[BranchPoint], None],
+) -> _Track:
     track, step, before = _Track([start]), run.first, None
-    if any(abs(start.u - np.log(limit)) < JUNCTION for limit in (run.low, run.high)) and _outward(start, run):
-        track.end = End.LIMIT
+    if any(abs(start.u - np.log(limit)) < JUNCTION for limit in (run.p_min, run.p_max)) and _outward(
+        start, run
+    ):
+        track.end = BranchEnd.LIMIT
         return track
-    images = _images(flow, start)
-    while len(track.points) < run.points:
+    images = _images(period_map, start)
+    while len(track.points) < run.max_points:
         here = track.points[-1]
         try:
-            there, end = _next(flow, here, before, step, run, images if len(track.points) > 2 else [])
-            found, last, junction = _between_points(flow, here, there)
+            there, end = _next(period_map, here, before, step, run, images if len(track.points) > 2 else [])
+            between, last, junction = _between_points(period_map, here, there)
         except (NotConverged, np.linalg.LinAlgError) as error:
             step *= 0.4
-            if step < run.least:
-                track.end, track.tried = End.STEP, f"{error}; steps down to {run.least:g}"
+            if step < run.ds_min:
+                track.end, track.tried = BranchEnd.STEP, f"{error}; steps down to {run.ds_min:g}"
                 return track
             continue
         base = len(track.points) - 1
-        track.specials += [replace(one, after=base + one.after) for one in found]
+        track.specials += [replace(special, after=base + special.after) for special in between]
         track.points += last or [there]
         progress(there)
         if _cut_at_junction(track):
-            junction = End.SYMMETRY
+            junction = BranchEnd.SYMMETRY
         if junction is not None:
             end = junction
         if end is not None:
             track.end = end
             return track
-        if run.to_first and any(one.kind not in PASSED for one in found):
-            track.end = End.SPECIAL
+        if run.to_first and any(special.kind not in PASSED for special in between):
+            track.end = BranchEnd.SPECIAL
             return track
-        step = min(next_length(step, before, here, there), run.largest)
+        step = min(next_length(step, before, here, there), run.ds_max)
         before = here
     return track
 
 
-def _outward(start: Point, run: Run) -> bool:
+def _outward(start: BranchPoint, run: ContinuationSettings) -> bool:
     """Whether a point at a limit of the parameter looks beyond it."""
-    upper = abs(start.u - np.log(run.high)) < abs(start.u - np.log(run.low))
+    upper = abs(start.u - np.log(run.p_max)) < abs(start.u - np.log(run.p_min))
     return bool(start.tangent[-1] > 0.0) == upper
 
 
 def _next(
-    flow: PeriodMap, here: Point, before: Point | None, step: float, run: Run, images: list[Array]
-) -> tuple[Point, End | None]:
+    period_map: PeriodMap,
+    here: BranchPoint,
+    before: BranchPoint | None,
+    step: float,
+    run: ContinuationSettings,
+    images: list[Array],
+) -> tuple[BranchPoint, BranchEnd | None]:
     """The next point, and why the branch ends there if it does. Raises NotConverged if a step is refused."""
-    there = step_along(flow, here, before, step)
-    limits = np.log([run.low, run.high])
+    there = step_along(period_map, here, before, step)
+    limits = np.log([run.p_min, run.p_max])
     end = None
     if not limits[0] <= there.u <= limits[1]:
-        there, end = _onto_limit(flow, here, there, limits[int(there.u > here.u)]), End.LIMIT
-    closing = _closing(flow, images, here, there)
+        there, end = _onto_limit(period_map, here, there, limits[int(there.u > here.u)]), BranchEnd.LIMIT
+    closing = _closing(period_map, images, here, there)
     if closing is not None:
-        return closing, End.CLOSED
+        return closing, BranchEnd.CLOSED
     if np.abs(there.z).max() > run.bound:
-        end = End.POLE
+        end = BranchEnd.POLE
     return there, end
 
 
-def _onto_limit(flow: PeriodMap, here: Point, there: Point, limit: float) -> Point:
+def _onto_limit(period_map: PeriodMap, here: BranchPoint, there: BranchPoint, limit: float) -> BranchPoint:
     """The point at a limit of the parameter between two points."""
-    share = (limit - here.u) / (there.u - here.u)
-    guess = here.x + share * (there.x - here.x)
+    fraction = (limit - here.u) / (there.u - here.u)
+    guess = here.x + fraction * (there.x - here.x)
     guess[-1] = limit
     row = np.zeros(guess.size)
     row[-1] = 1.0
-    return solve_point(flow, guess, row, here.tangent, here.linear)
+    return solve_point(period_map, guess, row, here.tangent, here.linear)
 
 
-def _images(flow: PeriodMap, start: Point) -> list[Array]:
-    return [np.append(z, start.u) for z in flow.images(start.z, start.u)]
+def _images(period_map: PeriodMap, start: BranchPoint) -> list[Array]:
+    return [np.append(z, start.u) for z in period_map.images(start.z, start.u)]
 
 
-def _closing(flow: PeriodMap, images: list[Array], here: Point, there: Point) -> Point | None:
+def _closing(
+    period_map: PeriodMap, images: list[Array], here: BranchPoint, there: BranchPoint
+) -> BranchPoint | None:
     """The point at which the branch comes back to where it began, at any of its mesh periods."""
     chord = there.x - here.x
     length = np.linalg.norm(chord)
     for image in images:
-        share = (image - here.x) @ chord / length**2
-        off = np.linalg.norm(image - here.x - share * chord)
-        if not 0.0 < share <= 1.0 or off > 0.2 * length:
+        fraction = (image - here.x) @ chord / length**2
+        off = np.linalg.norm(image - here.x - fraction * chord)
+        if not 0.0 < fraction <= 1.0 or off > 0.2 * length:
             continue
         try:
-            point = solve_point(flow, here.x + share * chord, chord / length, here.tangent, here.linear)
+            point = solve_point(
+                period_map, here.x + fraction * chord, chord / length, here.tangent, here.linear
+            )
         except (NotConverged, np.linalg.LinAlgError):
             continue
         row = chord / length
-        target = solve_point(flow, image, row, here.tangent, here.linear)
+        target = solve_point(period_map, image, row, here.tangent, here.linear)
         if np.linalg.norm(point.x - target.x) < 1e-6 + 1e-3 * off:
             return target
     return None
 
 
 def _between_points(
-    flow: PeriodMap, here: Point, there: Point
-) -> tuple[list[Special], list[Point], End | None]:
+    period_map: PeriodMap, here: BranchPoint, there: BranchPoint
+) -> tuple[list[Special], list[BranchPoint], BranchEnd | None]:
     """Special points on the way; where the branch runs into its own image, its last points and that end."""
-    meeting = reversal(flow, here, there)
+    meeting = reversal(period_map, here, there)
     if meeting is not None:
-        found = [one for one in locate(flow, here, meeting[0]) if not _at(one, meeting[1])]
-        return found, list(meeting), End.DOUBLING
-    return locate(flow, here, there), [], None
+        specials = [
+            special for special in locate(period_map, here, meeting[0]) if not _at(special, meeting[1])
+        ]
+        return specials, list(meeting), BranchEnd.DOUBLING
+    return locate(period_map, here, there), [], None
 
 
 def _cut_at_junction(track: _Track) -> bool:
     """Whether the track has just met a branch point at which it turns round: it ends there, where the other
     branch goes through, and what follows is its own mirror image.
     """
-    late = [one for one in track.specials if one.after > len(track.points) - 1 - NEAR_JUNCTION]
-    for one in late:
-        if one.kind is Kind.BRANCH and any(o.kind is Kind.FOLD and _at(o, one.point) for o in late):
-            before = [o for o in track.specials if o.after < one.after and not _at(o, one.point)]
+    late = [special for special in track.specials if special.after > len(track.points) - 1 - NEAR_JUNCTION]
+    for special in late:
+        if special.kind is Kind.BRANCH and any(o.kind is Kind.FOLD and _at(o, special.point) for o in late):
+            before = [o for o in track.specials if o.after < special.after and not _at(o, special.point)]
             track.specials = before
-            track.points = [*track.points[: int(one.after) + 1], one.point]
+            track.points = [*track.points[: int(special.after) + 1], special.point]
             return True
     return False
 
 
-def _at(special: Special, point: Point) -> bool:
+def _at(special: Special, point: BranchPoint) -> bool:
     """Whether a fold or branch point is only how a branch that ends at `point` looks there."""
     return special.kind in (Kind.FOLD, Kind.BRANCH) and abs(special.point.u - point.u) < JUNCTION
 
 
-def branch_at(flow: PeriodMap, z: Array, value: float, run: Run) -> Branch:
+def branch_at(period_map: PeriodMap, z: Array, value: float, run: ContinuationSettings) -> Branch:
     """The whole branch through the orbit next to the weighted state z at a parameter."""
-    return follow(flow, at_parameter(flow, z, float(np.log(value))), run)
+    return follow(period_map, at_parameter(period_map, z, float(np.log(value))), run)

@@ -74,6 +74,6 @@ def changed(model: Model, parameter: str, factor: float) -> System:
     if parameter == "mesh_damping":
         return replace(system, mesh_damping=system.mesh_damping * factor)
     if parameter == "bearing_stiffness":
-        squares = system.omega_squared * factor
-        return replace(system, omega_squared=squares, damping=modal_damping(machine.damping, squares))
+        scaled = system.omega_squared * factor
+        return replace(system, omega_squared=scaled, damping=modal_damping(machine.damping, scaled))
     raise ValueError(f"{parameter!r}: one of {', '.join(MACHINE_PARAMETERS)}")

@@ -7,7 +7,7 @@ import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
 from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import Point
+from facegear.dynamics.branches.points import BranchPoint
 from facegear.dynamics.branches.segment import Segment
 
 EDGES = (-1, 1)
@@ -26,44 +26,44 @@ class Graze:
     edge: int
 
 
-def grazes(flow: PeriodMap, first: Point, second: Point) -> tuple[list[Graze], bool]:
+def grazes(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tuple[list[Graze], bool]:
     """Extremes that have passed an edge; True if some cannot be told apart yet.
 
     Maxima less minima above an edge count its passages. A maximum and a minimum that are born together change
     none. Meshes that symmetry moves alike make one graze.
     """
-    found: dict[tuple, Graze] = {}
+    first_passed: dict[tuple, Graze] = {}
     mixed = False
-    levels = _levels(flow, first.u)
-    one, two = (_above(point.turning, levels) for point in (first, second))
-    for side, mesh in np.argwhere(np.isfinite(levels) & (np.diff(two - one)[..., 0] != 0)):
-        changes = (two - one)[side, mesh]
+    levels = _levels(period_map, first.u)
+    before, after = (_above(point.extrema, levels) for point in (first, second))
+    for side, mesh in np.argwhere(np.isfinite(levels) & (np.diff(after - before)[..., 0] != 0)):
+        changes = (after - before)[side, mesh]
         kind = int(changes[0] == 0)
         mixed = mixed or bool(changes.all()) or abs(changes[kind]) > 1
-        rank = int(min(one[side, mesh, kind], two[side, mesh, kind]))
+        rank = int(min(before[side, mesh, kind], after[side, mesh, kind]))
         test = _distance(float(levels[side, mesh]), int(mesh), kind, rank)
-        alike = (side, kind, *(round(test(point.turning), 7) for point in (first, second)))
-        meshes = (*found[alike].meshes, int(mesh)) if alike in found else (int(mesh),)
-        found[alike] = Graze(test, meshes, EDGES[side])
-    return list(found.values()), mixed
+        alike = (side, kind, *(round(test(point.extrema), 7) for point in (first, second)))
+        meshes = (*first_passed[alike].meshes, int(mesh)) if alike in first_passed else (int(mesh),)
+        first_passed[alike] = Graze(test, meshes, EDGES[side])
+    return list(first_passed.values()), mixed
 
 
-def _levels(flow: PeriodMap, u: float) -> Array:
+def _levels(period_map: PeriodMap, u: float) -> Array:
     """Edges of all meshes, shape (2, m); NaN where a mesh never opens."""
-    levels = np.array(flow.edges(u))
+    levels = np.array(period_map.edges(u))
     return np.where(np.isfinite(levels), levels, np.nan)
 
 
-def _above(turning: Array, levels: Array) -> Integers:
+def _above(extrema: Array, levels: Array) -> Integers:
     """How many maxima and minima lie above each edge, shape (2, m, 2)."""
-    return (turning > levels[:, :, None, None]).sum(axis=-1)
+    return (extrema > levels[:, :, None, None]).sum(axis=-1)
 
 
 def _distance(level: float, mesh: int, kind: int, rank: int) -> Callable[[Array], float]:
     """How far the extreme of a rank, counted from the largest, lies above a level."""
 
-    def test(turning: Array) -> float:
-        value = turning[mesh, kind, rank] if rank < turning.shape[2] else -np.inf
+    def test(extrema: Array) -> float:
+        value = extrema[mesh, kind, rank] if rank < extrema.shape[2] else -np.inf
         return float(value - level) if np.isfinite(value) else -1.0
 
     return test
@@ -76,42 +76,54 @@ def hidden_graze(segment: Segment, low: float, high: float) -> float | None:
     """
     points = segment.at(low), segment.at(high)
     reach = float(np.linalg.norm(points[1].x - points[0].x))
-    levels = _levels(segment.flow, points[0].u)
-    most = min(point.turning.shape[2] for point in points)
-    turning = [point.turning[:, :, :most] for point in points]
-    near = [_near(turning[0], turning[1], level, reach) for level in levels]
-    if not any(one.any() for one in near):
+    levels = _levels(segment.period_map, points[0].u)
+    maxima = min(point.extrema.shape[2] for point in points)
+    extrema = [point.extrema[:, :, :maxima] for point in points]
+    near = [_near(extrema[0], extrema[1], level, reach) for level in levels]
+    if not any(number.any() for number in near):
         return None
-    slopes = [segment.turning_slope(share, high - low)[:, :, :most] for share in (low, high)]
-    passed = _passages(points[0].turning, levels)
-    for look in dict.fromkeys(_dips(turning, slopes, levels, near)):
-        share = low + look * (high - low)
-        if (_passages(segment.turning(share), levels) != passed).any():
-            return share
+    slopes = [segment.extremum_slope(fraction, high - low)[:, :, :maxima] for fraction in (low, high)]
+    passed = _passages(points[0].extrema, levels)
+    for look in dict.fromkeys(_dips(extrema, slopes, levels, near)):
+        fraction = low + look * (high - low)
+        if (_passages(segment.extrema(fraction), levels) != passed).any():
+            return fraction
     return None
 
 
-def _passages(turning: Array, levels: Array) -> Integers:
+def _passages(extrema: Array, levels: Array) -> Integers:
     """Pairs of passages of each finite edge, shape (2, m)."""
-    return np.where(np.isfinite(levels), np.diff(_above(turning, levels))[..., 0], 0)
+    return np.where(np.isfinite(levels), np.diff(_above(extrema, levels))[..., 0], 0)
 
 
 def _near(first: Array, second: Array, level: Array, reach: float) -> Mask:
     """Extremes on one side of an edge at both ends, at one of them no farther from it than `reach`."""
-    one, two = first - level[:, None, None], second - level[:, None, None]
-    return np.isfinite(one) & np.isfinite(two) & (one * two > 0.0) & (np.minimum(abs(one), abs(two)) < reach)
+    first_gap, second_gap = first - level[:, None, None], second - level[:, None, None]
+    return (
+        np.isfinite(first_gap)
+        & np.isfinite(second_gap)
+        & (first_gap * second_gap > 0.0)
+        & (np.minimum(abs(first_gap), abs(second_gap)) < reach)
+    )
 
 
-def _dips(turning: list[Array], slopes: list[Array], levels: Array, near: list[Mask]) -> Iterator[float]:
+def _dips(extrema: list[Array], slopes: list[Array], levels: Array, near: list[Mask]) -> Iterator[float]:
     """Where cubics through the extremes come closest to an edge or beyond it."""
     t = LOOKED_AT
     for level, few in zip(levels, near, strict=True):
         where = np.nonzero(few)
-        one, two = (values[where] - level[where[0]] for values in turning)
-        sign = np.sign(one)
+        first_height, second_height = (values[where] - level[where[0]] for values in extrema)
+        sign = np.sign(first_height)
         first, last = (slope[where] for slope in slopes)
-        bend = np.array([one, first, 3 * (two - one) - 2 * first - last, first + last - 2 * (two - one)])
+        bend = np.array(
+            [
+                first_height,
+                first,
+                3 * (second_height - first_height) - 2 * first - last,
+                first + last - 2 * (second_height - first_height),
+            ]
+        )
         heights = sign[:, None] * (bend.T @ t ** np.arange(4)[:, None])
-        least = heights.min(axis=1, initial=np.inf)
-        for row in np.flatnonzero(least < ALMOST * np.minimum(abs(one), abs(two))):
+        min_height = heights.min(axis=1, initial=np.inf)
+        for row in np.flatnonzero(min_height < ALMOST * np.minimum(abs(first_height), abs(second_height))):
             yield float(t[heights[row].argmin()])

@@ -8,7 +8,7 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.dynamics.branches.grazes import grazes, hidden_graze
 from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import Point
+from facegear.dynamics.branches.points import BranchPoint
 from facegear.dynamics.branches.segment import Segment, zero
 from facegear.dynamics.branches.special import Kind, Special, evidence
 
@@ -33,9 +33,9 @@ class _Event:
     edge: int = 0
 
 
-def locate(flow: PeriodMap, here: Point, there: Point) -> list[Special]:
+def locate(period_map: PeriodMap, here: BranchPoint, there: BranchPoint) -> list[Special]:
     """All special points between two neighbours, in order; `after` is the share of the way."""
-    segment = Segment(flow, here, there)
+    segment = Segment(period_map, here, there)
     return sorted(_between(segment, 0.0, 1.0), key=lambda special: special.after)
 
 
@@ -43,9 +43,9 @@ def _between(
     segment: Segment, low: float, high: float, depth: int = 0, bend: float | None = None
 ) -> list[Special]:
     first, second = segment.at(low), segment.at(high)
-    if first.linear.afloat.shape != second.linear.afloat.shape:
+    if first.linear.neutral.shape != second.linear.neutral.shape:
         return _loosening(segment, low, high)
-    events, mixed = _events(segment.flow, first, second)
+    events, mixed = _events(segment.period_map, first, second)
     if (mixed and high - low > SHORTEST) or (depth < LOOKS and _may_hide(first, second, bend)):
         between: float | None = 0.5 * (low + high)
         bend = _bend(first, segment.at(0.5 * (low + high)), second)
@@ -57,21 +57,25 @@ def _between(
     return left + _between(segment, between, high, depth + 1, bend)
 
 
-def _may_hide(first: Point, second: Point, bend: float | None) -> bool:
+def _may_hide(first: BranchPoint, second: BranchPoint, bend: float | None) -> bool:
     """Whether a multiplier may have left the unit circle and come back between two points.
 
     bend: see _bend(), over a stretch twice as long that holds them.
     """
     if first.outside != second.outside or first.multipliers.size != second.multipliers.size:
         return False
-    one, two = np.abs(first.multipliers), np.abs(second.multipliers)
-    closest = np.minimum(np.abs(one - 1.0), np.abs(two - 1.0))
+    first_size, two = np.abs(first.multipliers), np.abs(second.multipliers)
+    closest = np.minimum(np.abs(first_size - 1.0), np.abs(two - 1.0))
     # A parabola rises above the nearer end of half its stretch by at most a 32nd of its second difference.
-    reach = np.clip(np.abs(one - two), CLOSE, 0.2) if bend is None else np.full(one.size, bend / 8.0)
+    reach = (
+        np.clip(np.abs(first_size - two), CLOSE, 0.2)
+        if bend is None
+        else np.full(first_size.size, bend / 8.0)
+    )
     return bool((closest < reach).any())
 
 
-def _bend(first: Point, middle: Point, second: Point) -> float | None:
+def _bend(first: BranchPoint, middle: BranchPoint, second: BranchPoint) -> float | None:
     """Largest second difference of moduli near the unit circle; None where they cannot be compared."""
     sizes = [np.abs(point.multipliers) for point in (first, middle, second)]
     if len({size.size for size in sizes}) > 1:
@@ -80,9 +84,9 @@ def _bend(first: Point, middle: Point, second: Point) -> float | None:
     return float(np.abs(sizes[0] - 2.0 * sizes[1] + sizes[2])[near].max(initial=0.0))
 
 
-def _events(flow: PeriodMap, first: Point, second: Point) -> tuple[list[_Event], bool]:
+def _events(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tuple[list[_Event], bool]:
     """Changes between two points; True if more than one of a kind is among them."""
-    touched, mixed = grazes(flow, first, second)
+    touched, mixed = grazes(period_map, first, second)
     events = [_Event(Kind.GRAZE, graze.test, graze.meshes, graze.edge) for graze in touched]
     ones, minus, pairs = np.subtract(second.outside, first.outside)
     folds = _turns(first, second)
@@ -112,7 +116,7 @@ def _ranked(values: Array, rank: int, missing: float = 0.0) -> float:
     return float(values[rank]) if rank < values.size else missing
 
 
-def _turns(first: Point, second: Point) -> bool:
+def _turns(first: BranchPoint, second: BranchPoint) -> bool:
     a, b = first.tangent[-1], second.tangent[-1]
     return bool(a * b < 0.0 and max(abs(a), abs(b)) > LEVEL)
 
@@ -121,27 +125,27 @@ def _loosening(segment: Segment, low: float, high: float) -> list[Special]:
     """A body comes loose or is caught: halve until the place is known."""
     while high - low > 1e-9:
         middle = 0.5 * (low + high)
-        if segment.at(middle).linear.afloat.shape == segment.at(low).linear.afloat.shape:
+        if segment.at(middle).linear.neutral.shape == segment.at(low).linear.neutral.shape:
             low = middle
         else:
             high = middle
-    loose = segment.at(high).linear.afloat.shape[1] - segment.at(low).linear.afloat.shape[1]
+    loose = segment.at(high).linear.neutral.shape[1] - segment.at(low).linear.neutral.shape[1]
     proof = f"{abs(loose)} shift(s) {'begin' if loose > 0 else 'cease'} to touch no mesh in contact"
-    return [Special(Kind.AFLOAT, segment.at(high), 1.0 + 0.0j, proof, high)]
+    return [Special(Kind.NEUTRAL, segment.at(high), 1.0 + 0.0j, proof, high)]
 
 
 def _refined(segment: Segment, low: float, high: float, event: _Event) -> Special:
-    def test(share: float) -> float:
+    def test(fraction: float) -> float:
         if event.kind is Kind.GRAZE:
-            return event.test(segment.turning(share))
-        return event.test(segment.at(share))
+            return event.test(segment.extrema(fraction))
+        return event.test(segment.at(fraction))
 
     # At a fold the parameter stands still along the arc, so its place need not be as sharp.
-    tolerance = segment.flow.step_tolerance
+    tolerance = segment.period_map.step_tolerance
     goal = max(1e-3 * np.sqrt(tolerance), 1e-10) if event.kind is Kind.FOLD else max(0.1 * tolerance, 1e-13)
     # Changes that lie closer together than SHORTEST are not told apart, nor is their order known.
-    share = zero(test, low, high, goal) if high - low > SHORTEST else high
-    point = segment.at(share)
-    off = event.test(point.turning) if event.kind is Kind.GRAZE else np.nan
+    fraction = zero(test, low, high, goal) if high - low > SHORTEST else high
+    point = segment.at(fraction)
+    off = event.test(point.extrema) if event.kind is Kind.GRAZE else np.nan
     multiplier, proof = evidence(event.kind, off, segment.at(low), point, segment.at(high))
-    return Special(event.kind, point, multiplier, proof, share, event.meshes, event.edge)
+    return Special(event.kind, point, multiplier, proof, fraction, event.meshes, event.edge)

@@ -7,7 +7,7 @@ from enum import StrEnum
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.branches.continuation import End
+from facegear.dynamics.branches.continuation import BranchEnd
 from facegear.dynamics.branches.family import Plane
 from facegear.dynamics.branches.locus_point import (
     LocusPoint,
@@ -35,12 +35,12 @@ class Corner(StrEnum):
 class LocusRun:
     """Range of both parameters, steps in weighted states and logarithms, most points in each direction."""
 
-    low: tuple[float, float]
-    high: tuple[float, float]
+    p_min: tuple[float, float]
+    p_max: tuple[float, float]
     first: float = 0.02
-    least: float = 1e-5
-    largest: float = 0.2
-    points: int = 400
+    ds_min: float = 1e-5
+    ds_max: float = 0.2
+    max_points: int = 400
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,25 +51,25 @@ class Locus:
     plane: Plane
     points: list[LocusPoint]
     corners: list[tuple[Corner, LocusPoint]]
-    ends: tuple[End, End]
+    ends: tuple[BranchEnd, BranchEnd]
 
 
 def follow_locus(
     plane: Plane,
     second: float,
     kind: Kind,
-    found: Array,
-    flow: PeriodMap,
+    state: Array,
+    period_map: PeriodMap,
     run: LocusRun,
     progress: Callable[[LocusPoint], None] = lambda point: None,
 ) -> Locus:
-    """The locus through a fold or period doubling found on `flow` at the plane's second parameter.
+    """The locus through a fold or period doubling found on `period_map` at the plane's second parameter.
 
     found (2 n + 1,): x of the special point. The locus is followed both ways. Raises NotConverged if the
     special point is not found again in the plane.
     """
-    problem = LocusProblem(kind, plane, flow)
-    x = np.append(found, np.log(second))
+    problem = LocusProblem(kind, plane, period_map)
+    x = np.append(state, np.log(second))
     row = np.zeros(x.size)
     row[-1] = 1.0
     borders = borders_of(problem.matrix(problem.at(x[-1]).linear(x[:-2], x[-2])), None)
@@ -82,32 +82,32 @@ def follow_locus(
 
 def _track(
     problem: LocusProblem, start: LocusPoint, run: LocusRun, progress: Callable[[LocusPoint], None]
-) -> tuple[list[LocusPoint], list[tuple[Corner, LocusPoint]], End]:
+) -> tuple[list[LocusPoint], list[tuple[Corner, LocusPoint]], BranchEnd]:
     points, step = [start], run.first
     corners: list[tuple[Corner, LocusPoint]] = []
-    limits = np.log([run.low, run.high])
-    while len(points) < run.points:
+    limits = np.log([run.p_min, run.p_max])
+    while len(points) < run.max_points:
         here = points[-1]
         try:
             there = _step(problem, here, step)
-            found = _corners(problem, here, there)
+            met = _corners(problem, here, there)
         except (NotConverged, np.linalg.LinAlgError):
             step *= 0.4
-            if step < run.least:
-                return points, corners, End.STEP
+            if step < run.ds_min:
+                return points, corners, BranchEnd.STEP
             continue
         outside = (there.x[-2:] < limits[0]) | (there.x[-2:] > limits[1])
         if outside.any():
             which = int(np.argmax(outside))
             limit = limits[int(there.x[-2 + which] > here.x[-2 + which]), which]
             points.append(_onto_limit(problem, here, there, which, limit))
-            return points, corners, End.LIMIT
-        corners += found
+            return points, corners, BranchEnd.LIMIT
+        corners += met
         points.append(there)
         progress(there)
         angle = np.arccos(np.clip(here.tangent @ there.tangent, -1.0, 1.0))
-        step = min(step * float(np.clip(0.2 / max(float(angle), 1e-6), 0.5, 1.7)), run.largest)
-    return points, corners, End.POINTS
+        step = min(step * float(np.clip(0.2 / max(float(angle), 1e-6), 0.5, 1.7)), run.ds_max)
+    return points, corners, BranchEnd.POINTS
 
 
 def _step(problem: LocusProblem, here: LocusPoint, step: float) -> LocusPoint:
@@ -124,8 +124,8 @@ def _onto_limit(
 ) -> LocusPoint:
     row = np.zeros(here.x.size)
     row[-2 + which] = 1.0
-    share = (limit - here.x[-2 + which]) / (there.x[-2 + which] - here.x[-2 + which])
-    guess = here.x + share * (there.x - here.x)
+    fraction = (limit - here.x[-2 + which]) / (there.x[-2 + which] - here.x[-2 + which])
+    guess = here.x + fraction * (there.x - here.x)
     return solve_on_locus(problem, guess, row, here.borders, here.gradient, here.tangent)
 
 
@@ -139,14 +139,14 @@ def _corners(problem: LocusProblem, here: LocusPoint, there: LocusPoint) -> list
     chord = there.x - here.x
     row = chord / np.linalg.norm(chord)
 
-    def at(share: float) -> LocusPoint:
-        if share in (0.0, 1.0):
-            return here if share == 0.0 else there
-        nearer = here if share < 0.5 else there
-        guess = here.x + share * chord
+    def at(fraction: float) -> LocusPoint:
+        if fraction in (0.0, 1.0):
+            return here if fraction == 0.0 else there
+        nearer = here if fraction < 0.5 else there
+        guess = here.x + fraction * chord
         return solve_on_locus(problem, guess, row, nearer.borders, nearer.gradient, here.tangent, sharp=True)
 
-    def place(test: Callable[[LocusPoint], float]) -> LocusPoint:
-        return at(zero(lambda share: test(at(share)), 0.0, 1.0, 1e-9))
+    def located(test: Callable[[LocusPoint], float]) -> LocusPoint:
+        return at(zero(lambda fraction: test(at(fraction)), 0.0, 1.0, 1e-9))
 
-    return [(corner, place(test)) for corner, test in tests.items() if test(here) * test(there) < 0.0]
+    return [(corner, located(test)) for corner, test in tests.items() if test(here) * test(there) < 0.0]

@@ -24,21 +24,21 @@ class LocusProblem:
 
     kind: Kind
     plane: Plane
-    flow: PeriodMap
+    period_map: PeriodMap
 
     def at(self, v: float) -> PeriodMap:
         """The map at a logarithm of the second parameter."""
-        return replace(self.flow, family=self.plane.line(float(np.exp(v))))
+        return replace(self.period_map, family=self.plane.line(float(np.exp(v))))
 
     def matrix(self, linear: Linear) -> Array:
         """What is singular on the locus: M + I, or M - I without the shifts of bodies afloat."""
         size = len(linear.matrix)
         if self.kind is Kind.DOUBLING:
             return linear.matrix + np.eye(size)
-        loose = linear.afloat.shape[1]
+        loose = linear.neutral.shape[1]
         matrix = np.zeros((size + loose, size + loose))
         matrix[:size, :size] = linear.matrix - np.eye(size)
-        matrix[:size, size:], matrix[size:, :size] = linear.afloat, linear.afloat.T
+        matrix[:size, size:], matrix[size:, :size] = linear.neutral, linear.neutral.T
         return matrix
 
 
@@ -89,11 +89,11 @@ def turned(point: LocusPoint) -> LocusPoint:
 def borders_of(matrix: Array, before: Borders | None) -> Borders:
     """Singular vectors of the smallest singular value, with the signs of those before."""
     left, _, right = np.linalg.svd(matrix)
-    one, two = left[:, -1], right[-1]
-    if before is not None and before.left.shape == one.shape:
-        one = one * np.sign(one @ before.left)
+    left_border, two = left[:, -1], right[-1]
+    if before is not None and before.left.shape == left_border.shape:
+        left_border = left_border * np.sign(left_border @ before.left)
         two = two * np.sign(two @ before.right)
-    return Borders(one, two)
+    return Borders(left_border, two)
 
 
 def solve_on_locus(
@@ -110,7 +110,7 @@ def solve_on_locus(
     The change of the test along the orbits comes from differences of the matrix, once for each point. Raises
     NotConverged naming the two parameters.
     """
-    x, goal = guess.copy(), max(0.1 * problem.flow.step_tolerance, 2e-13)
+    x, goal = guess.copy(), max(0.1 * problem.period_map.step_tolerance, 2e-13)
     before = np.inf
     for count in range(NEWTON_STEPS):
         linear, surface, normal = _surface(problem, x)
@@ -138,10 +138,10 @@ def _surface(problem: LocusProblem, x: Array) -> tuple[Linear, Array, Array]:
     linear = problem.at(v).linear(z, u)
     ahead, back = (problem.at(v + sign * DIFFERENCE).gap(z, u) for sign in (1.0, -1.0))
     slope = (ahead - back) / (2.0 * DIFFERENCE)
-    size, loose = linear.afloat.shape
+    size, loose = linear.neutral.shape
     matrix = np.zeros((size + loose, size + 2))
     matrix[:size] = np.column_stack([linear.matrix - np.eye(size), linear.slope, slope])
-    matrix[size:, :size] = linear.afloat.T
+    matrix[size:, :size] = linear.neutral.T
     left, sizes, right = np.linalg.svd(matrix)
     kept = np.count_nonzero(sizes > SINGULAR * sizes[0])
     gap = np.concatenate([-linear.gap, np.zeros(loose)])

@@ -6,11 +6,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from facegear.dynamics.branches.continuation import PASSED, Branch, Run, follow, turned
+from facegear.dynamics.branches.continuation import PASSED, Branch, ContinuationSettings, follow, turned
 from facegear.dynamics.branches.explore import crossings
 from facegear.dynamics.branches.family import Family
 from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import Point, at_parameter
+from facegear.dynamics.branches.points import BranchPoint, at_parameter
 from facegear.dynamics.branches.special import Kind, Special
 
 ENDING = (Kind.FOLD, Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
@@ -18,7 +18,7 @@ ENDING = (Kind.FOLD, Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
 
 
 @dataclass(frozen=True, eq=False)
-class Loss:
+class StabilityLimit:
     """Where a stable motion first loses its stability or its existence when one parameter changes.
 
     branch, period: of the motion. parameter, start: its name and value there. direction: of the parameter.
@@ -34,7 +34,7 @@ class Loss:
     reached: float
 
 
-def stable_at(branches: Sequence[Branch], value: float) -> list[tuple[int, Point]]:
+def stable_at(branches: Sequence[Branch], value: float) -> list[tuple[int, BranchPoint]]:
     """Stable orbits at a parameter, each with the number of its branch."""
     return [
         (number, point)
@@ -44,32 +44,40 @@ def stable_at(branches: Sequence[Branch], value: float) -> list[tuple[int, Point
     ]
 
 
-def losses(
-    branches: Sequence[Branch], families: Sequence[tuple[Family, float, Run]], value: float
-) -> list[Loss]:
+def stability_limits(
+    branches: Sequence[Branch], families: Sequence[tuple[Family, float, ContinuationSettings]], value: float
+) -> list[StabilityLimit]:
     """For every stable motion at a parameter of the branches, the first special point in each family.
 
     families: with the value at which they pass through the motion, and the range to look through.
     """
-    found = []
+    limits = []
     for number, point in stable_at(branches, value):
-        flow = branches[number].flow
+        period_map = branches[number].period_map
         for family, start, run in families:
-            found += _losses(replace(flow, family=family), number, point, start, run)
-    return found
+            limits += _limits_of(replace(period_map, family=family), number, point, start, run)
+    return limits
 
 
-def _losses(flow: PeriodMap, number: int, point: Point, start: float, run: Run) -> list[Loss]:
-    here = at_parameter(flow, point.z, float(np.log(start)))
+def _limits_of(
+    period_map: PeriodMap, number: int, point: BranchPoint, start: float, run: ContinuationSettings
+) -> list[StabilityLimit]:
+    here = at_parameter(period_map, point.z, float(np.log(start)))
     run = replace(run, to_first=True)
     sides = []
     for direction in ("up", "down"):
         sign = 1.0 if direction == "up" else -1.0
         looking = here if here.tangent[-1] * sign > 0.0 else turned(here)
-        branch = follow(flow, looking, run, both=False)
-        special = next((one for one in branch.specials if one.kind not in PASSED), None)
+        branch = follow(period_map, looking, run, both=False)
+        special = next(
+            (special_point for special_point in branch.specials if special_point.kind not in PASSED), None
+        )
         reached = branch.points[-1].value if special is None else special.point.value
-        sides.append(Loss(number, flow.period, flow.family.name, start, direction, special, float(reached)))
+        sides.append(
+            StabilityLimit(
+                number, period_map.period, period_map.family.name, start, direction, special, float(reached)
+            )
+        )
     return sides
 
 
@@ -94,7 +102,7 @@ def several(branches: Sequence[Branch]) -> list[tuple[float, float, tuple[int, .
             ranges[-1] = (ranges[-1][0], high, numbers)
         else:
             ranges.append((low, high, numbers))
-    return [one for one in ranges if len(one[2]) > 1]
+    return [limits for limits in ranges if len(limits[2]) > 1]
 
 
 def _stable_passages(branch: Branch, u: float) -> int:
@@ -121,7 +129,7 @@ def passed_by(
         (number, special)
         for number, branch in enumerate(branches)
         for special in branch.of(*ENDING)
-        if branch.flow.period == period
+        if branch.period_map.period == period
         and low - slack <= special.point.value <= high + slack
         and _ends_stability(branch, special)
     ]

@@ -6,7 +6,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import Point
+from facegear.dynamics.branches.points import BranchPoint
 from facegear.dynamics.steady_state.mesh_samples import each_deflection, mesh_forces, mesh_shares
 from facegear.dynamics.steady_state.window import run_window
 
@@ -22,26 +22,26 @@ class Measures:
 
     ac_rms: Array
     rms: Array
-    least: Array
-    most: Array
+    minimum: Array
+    maximum: Array
     peak_force: Array
     shares: Array
 
 
-def measures(flow: PeriodMap, point: Point) -> Measures:
+def measures(period_map: PeriodMap, point: BranchPoint) -> Measures:
     """Measures of an orbit, by the same sums as those of a sweep."""
-    integrator = flow.integrator(point.u)
+    integrator = period_map.integrator(point.u)
     system = integrator.system
-    state = integrator.by_phase(flow.state(point.z, point.u))
-    window = run_window(integrator, state, flow.period, SAMPLES)
+    state = integrator.by_phase(period_map.state(point.z, point.u))
+    window = run_window(integrator, state, period_map.period, SAMPLES)
     each = each_deflection(system, window.samples, window.per_period)
     forces = mesh_forces(system, each, window.per_period)
-    found = window.averages.meshes(True)
+    moments = window.averages.meshes(True)
     return Measures(
-        ac_rms=found.ac_rms,
-        rms=found.rms,
-        least=found.least,
-        most=found.most,
+        ac_rms=moments.ac_rms,
+        rms=moments.rms,
+        minimum=moments.minimum,
+        maximum=moments.maximum,
         peak_force=np.abs(forces).max(axis=0),
         shares=mesh_shares(system, window.shares[:, : system.contacts], each),
     )

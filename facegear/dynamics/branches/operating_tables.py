@@ -7,24 +7,24 @@ import pandas as pd
 
 from facegear.dynamics.branches.columns import JUMP_COLUMNS, SWEPT_COLUMNS
 from facegear.dynamics.branches.continuation import Branch
-from facegear.dynamics.branches.explore import Found, lies_on
-from facegear.dynamics.branches.margins import Loss, passed_by
+from facegear.dynamics.branches.explore import SettledMotion, lies_on
+from facegear.dynamics.branches.margins import StabilityLimit, passed_by
 from facegear.dynamics.branches.swept import Swept, nearest_branch
 from facegear.dynamics.motion import Motion
 
 IRREGULAR = "not periodic"
-AFLOAT = "on it but for the place of a body that touches nothing, which is free"
+NEUTRAL = "on it but for the place of a body that touches nothing, which is free"
 
 
 def coexistence_table(
-    found: Sequence[tuple[float, Sequence[Found]]], branches: Sequence[Branch]
+    motions_by_speed: Sequence[tuple[float, Sequence[SettledMotion]]], branches: Sequence[Branch]
 ) -> pd.DataFrame:
     """Columns speed_rpm, motion, branch, share, error, starts: where random starts end.
 
     branch: its number, `not followed`, or what kind of motion it is that no branch holds.
     """
     rows = []
-    for speed, motions in found:
+    for speed, motions in motions_by_speed:
         starts = sum(motion.count for motion in motions)
         for motion in motions:
             rows.append(
@@ -32,7 +32,7 @@ def coexistence_table(
                     "speed_rpm": speed,
                     "motion": motion.label,
                     "branch": _branch_of(motion, speed, branches),
-                    "share": motion.share,
+                    "share": motion.fraction,
                     "error": motion.error,
                     "starts": starts,
                 }
@@ -40,7 +40,7 @@ def coexistence_table(
     return pd.DataFrame(rows, columns=["speed_rpm", "motion", "branch", "share", "error", "starts"])
 
 
-def _branch_of(motion: Found, speed: float, branches: Sequence[Branch]) -> str:
+def _branch_of(motion: SettledMotion, speed: float, branches: Sequence[Branch]) -> str:
     if motion.point is None:
         return IRREGULAR
     for number, branch in enumerate(branches):
@@ -55,7 +55,7 @@ def range_table(ranges: Sequence[tuple[float, float, tuple[int, ...]]]) -> pd.Da
     return pd.DataFrame(rows, columns=["from_rpm", "to_rpm", "motions", "branches"])
 
 
-def margin_table(losses: Sequence[Loss]) -> pd.DataFrame:
+def margin_table(stability_limits: Sequence[StabilityLimit]) -> pd.DataFrame:
     """Columns branch, period, parameter, direction, start, kind, value, margin: how far each stable motion
     at the operating speed is from its end or its loss of stability.
 
@@ -72,7 +72,7 @@ def margin_table(losses: Sequence[Loss]) -> pd.DataFrame:
             "value": loss.reached,
             "margin": loss.reached - loss.start,
         }
-        for loss in losses
+        for loss in stability_limits
     ]
     columns = ["branch", "period", "parameter", "direction", "start", "kind", "value", "margin"]
     return pd.DataFrame(rows, columns=columns)
@@ -90,8 +90,8 @@ def swept_table(swept: Sequence[Swept], branches: Sequence[Branch], longest: int
         note = motion.reason
         if number is None and not note:
             note = _not_followed(motion.period, longest)
-        elif number is not None and motion.point is not None and motion.point.linear.afloat.size:
-            note = AFLOAT
+        elif number is not None and motion.point is not None and motion.point.linear.neutral.size:
+            note = NEUTRAL
         branch = "" if number is None else str(number)
         rows.append(
             (
@@ -154,9 +154,9 @@ def _last_class(
     """Class of the sweep's periodic motion at most one step of the sweep before a jump."""
     onward = np.sign(after - before)
     behind = {
-        onward * (before - one.speed_rpm): one.label
-        for one in swept
-        if one.direction == direction and 0.0 <= onward * (before - one.speed_rpm) <= spacing
+        onward * (before - row.speed_rpm): row.label
+        for row in swept
+        if row.direction == direction and 0.0 <= onward * (before - row.speed_rpm) <= spacing
     }
     return behind[min(behind)] if behind else None
 
@@ -172,9 +172,9 @@ def _named(
         passed = passed_by(branches, before - np.copysign(spacing, after - before), before, period, 0.0)
         hits = sorted(passed, key=lambda hit: abs(hit[1].point.value - before))
     if not hits:
-        followed = any(branch.flow.period == period for branch in branches)
-        told = "no followed branch loses stability in the bracket"
-        return {"note": told if followed else f"no branch of period {period} was followed"}
+        followed = any(branch.period_map.period == period for branch in branches)
+        note = "no followed branch loses stability in the bracket"
+        return {"note": note if followed else f"no branch of period {period} was followed"}
     number, special = hits[0]
     low, high = sorted((before, after))
     speed = special.point.value

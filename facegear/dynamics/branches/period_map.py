@@ -6,8 +6,8 @@ from typing import cast
 import numpy as np
 
 from facegear.arrays import Array, Mask
+from facegear.dynamics.branches.extrema import extrema
 from facegear.dynamics.branches.family import Family
-from facegear.dynamics.branches.turning import turning_points
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.rings import ROWS
 from facegear.dynamics.motion import State
@@ -32,7 +32,7 @@ class Linear:
     matrix: Array
     slope: Array
     contact: Mask
-    afloat: Array
+    neutral: Array
     divergence: float
     inverses: dict[bytes, Array] = field(default_factory=dict, repr=False)
 
@@ -117,7 +117,7 @@ class PeriodMap:
             matrix=matrix,
             slope=slope,
             contact=contact,
-            afloat=self._rigid(integrator, contact, weights),
+            neutral=self._rigid(integrator, contact, weights),
             divergence=result.divergence,
         )
 
@@ -127,8 +127,8 @@ class PeriodMap:
         if key not in self.memory:
             n = integrator.size
             jacobian = integrator.mesh_jacobian
-            directions = jacobian[contact] / np.abs(jacobian).max()
-            held = np.concatenate([directions, np.diag(np.sign(integrator.omega_squared))])
+            jacobian_rows = jacobian[contact] / np.abs(jacobian).max()
+            held = np.concatenate([jacobian_rows, np.diag(np.sign(integrator.omega_squared))])
             _, sizes, rows = np.linalg.svd(held)
             free = rows[np.count_nonzero(sizes > RIGID) :]
             shifts = np.zeros((2 * n, len(free)))
@@ -136,13 +136,13 @@ class PeriodMap:
             self.memory[key] = np.linalg.qr(shifts)[0]
         return cast(Array, self.memory[key])
 
-    def turning(self, z: Array, u: float) -> Array:
+    def extrema(self, z: Array, u: float) -> Array:
         """Maxima and minima of each mesh deflection over the period, over the length scale.
 
         Shape (m, 2, most), each falling, and minus infinity where there are fewer.
         """
         integrator = self.integrator(u)
-        values = turning_points(integrator, self._by_phase(integrator, z), self.period)
+        values = extrema(integrator, self._by_phase(integrator, z), self.period)
         return values / integrator.scale
 
     def edges(self, u: float) -> tuple[Array, Array]:
@@ -154,7 +154,7 @@ class PeriodMap:
 
     def images(self, z: Array, u: float) -> list[Array]:
         """The orbit's states at the starts of its mesh periods, the given one first."""
-        one, found = self.over(1), [z]
+        single, images = self.over(1), [z]
         for _ in range(self.period - 1):
-            found.append(found[-1] + one.gap(found[-1], u))
-        return found
+            images.append(images[-1] + single.gap(images[-1], u))
+        return images

@@ -26,7 +26,7 @@ SINGULAR = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
-class Point:
+class BranchPoint:
     """x (2 n + 1,): weighted state and logarithm of the parameter. tangent (2 n + 1,) of the branch, of
     length one. parity: sign of the bordered determinant, which changes at a branch point only. turning: see
     PeriodMap.turning.
@@ -36,7 +36,7 @@ class Point:
     tangent: Array
     parity: float
     linear: Linear
-    turning: Array
+    extrema: Array
 
     @property
     def z(self) -> Array:
@@ -58,7 +58,7 @@ class Point:
         """Floquet multipliers (2 n - k,), largest first, without the ones of k bodies afloat."""
         values = np.linalg.eigvals(self.linear.matrix).astype(complex)
         near_one = np.argsort(np.abs(values - 1.0))
-        values = np.delete(values, near_one[: self.linear.afloat.shape[1]])
+        values = np.delete(values, near_one[: self.linear.neutral.shape[1]])
         return values[np.argsort(-np.abs(values), kind="stable")]
 
     @cached_property
@@ -91,31 +91,31 @@ class Point:
 
 def bordered(linear: Linear, row: Array) -> Array:
     """[M - I, P_u, V; row, 0; V^T, 0, 0] with the directions V of bodies afloat."""
-    size, loose = linear.afloat.shape
+    size, loose = linear.neutral.shape
     matrix = np.zeros((size + 1 + loose, size + 1 + loose))
     matrix[:size, :size] = linear.matrix - np.eye(size)
     matrix[:size, size] = linear.slope
-    matrix[:size, size + 1 :] = linear.afloat
+    matrix[:size, size + 1 :] = linear.neutral
     matrix[size, : size + 1] = row
-    matrix[size + 1 :, :size] = linear.afloat.T
+    matrix[size + 1 :, :size] = linear.neutral.T
     return matrix
 
 
 def correct(
-    flow: PeriodMap, guess: Array, row: Array, linear: Linear | None = None, farthest: float = np.inf
+    period_map: PeriodMap, guess: Array, row: Array, linear: Linear | None = None, farthest: float = np.inf
 ) -> tuple[Array, Linear]:
     """The orbit next to `guess` (2 n + 1,) with row . (x - guess) = 0, and the map there.
 
     A matrix from nearby serves as long as it gains. Raises NotConverged, also where the orbit would lie
     beyond `farthest` from the guess.
     """
-    x, goal, chord, before = guess.copy(), _goal(flow), linear, np.inf
+    x, goal, chord, before = guess.copy(), _goal(period_map), linear, np.inf
     for _ in range(NEWTON_STEPS):
         if chord is not None:
-            x, _ = _by_chord(flow, x, guess, row, chord, goal)
+            x, _ = _by_chord(period_map, x, guess, row, chord, goal)
         if np.linalg.norm(x - guess) > farthest:
-            raise NotConverged("branches", _place(flow, guess), "correction above the step")
-        chord = flow.linear(x[:-1], x[-1])
+            raise NotConverged("branches", _where(period_map, guess), "correction above the step")
+        chord = period_map.linear(x[:-1], x[-1])
         size = float(np.abs(chord.gap).max())
         if not np.isfinite(size) or size > 1e6:
             break
@@ -128,45 +128,45 @@ def correct(
         if 0.5 * before < size <= STALLED * goal:
             return x, chord
         x, before = x + step, size
-        if np.abs(step).max() <= 1e-3 * np.sqrt(goal) and np.abs(flow.gap(x[:-1], x[-1])).max() <= goal:
+        if np.abs(step).max() <= 1e-3 * np.sqrt(goal) and np.abs(period_map.gap(x[:-1], x[-1])).max() <= goal:
             return x, chord
-    raise NotConverged("branches", _place(flow, guess), "bordered Newton")
+    raise NotConverged("branches", _where(period_map, guess), "bordered Newton")
 
 
-def _place(flow: PeriodMap, x: Array) -> str:
-    return f"{flow.family.name} = {np.exp(x[-1]):.9g}"
+def _where(period_map: PeriodMap, x: Array) -> str:
+    return f"{period_map.family.name} = {np.exp(x[-1]):.9g}"
 
 
-def correct_state(flow: PeriodMap, guess: Array, row: Array, linear: Linear) -> Array:
+def correct_state(period_map: PeriodMap, guess: Array, row: Array, linear: Linear) -> Array:
     """The orbit alone, with a matrix from nearby. Raises NotConverged where that one does not serve."""
-    x, size = _by_chord(flow, guess.copy(), guess, row, linear, _goal(flow))
-    if size > STALLED * _goal(flow):
-        x, _ = correct(flow, guess, row, linear)
+    x, size = _by_chord(period_map, guess.copy(), guess, row, linear, _goal(period_map))
+    if size > STALLED * _goal(period_map):
+        x, _ = correct(period_map, guess, row, linear)
     return x
 
 
-def _goal(flow: PeriodMap) -> float:
+def _goal(period_map: PeriodMap) -> float:
     """Change over the period at which an orbit is found: below the steps' errors."""
-    return max(0.1 * flow.step_tolerance, 2e-13)
+    return max(0.1 * period_map.step_tolerance, 2e-13)
 
 
 def _by_chord(
-    flow: PeriodMap, x: Array, guess: Array, row: Array, linear: Linear, goal: float
+    period_map: PeriodMap, x: Array, guess: Array, row: Array, linear: Linear, goal: float
 ) -> tuple[Array, float]:
     """Broyden's steps from a matrix nearby while they gain: the best point reached and its change."""
     inverse = _bordered_inverse(linear, row)
     right, step = np.zeros(len(inverse)), np.zeros(len(inverse))
-    best, found, before = np.inf, x, np.zeros(len(inverse))
+    best, nearest, before = np.inf, x, np.zeros(len(inverse))
     for count in range(CHORD_STEPS):
-        gap = flow.gap(x[:-1], x[-1])
+        gap = period_map.gap(x[:-1], x[-1])
         size = float(np.abs(gap).max())
         if not size < GAIN * best:
-            return (x, size) if size < best else (found, best)
-        best, found = size, x
+            return (x, size) if size < best else (nearest, best)
+        best, nearest = size, x
         if size <= goal:
             break
         right[: gap.size], right[gap.size] = gap, row @ (x - guess)
-        right[gap.size + 1 :] = linear.afloat.T @ (x - guess)[:-1]
+        right[gap.size + 1 :] = linear.neutral.T @ (x - guess)[:-1]
         if count > 0:
             along = step @ inverse
             changed = inverse @ (right - before)
@@ -176,13 +176,13 @@ def _by_chord(
         if abs(step[x.size - 1]) > FARTHEST:
             break
         x = x + step[: x.size]
-    return found, best
+    return nearest, best
 
 
 def _newton_step(linear: Linear, gap: Array, row: Array, moved: Array) -> Array:
-    right = np.zeros(gap.size + 1 + linear.afloat.shape[1])
+    right = np.zeros(gap.size + 1 + linear.neutral.shape[1])
     right[: gap.size], right[gap.size] = -gap, -row @ moved
-    right[gap.size + 1 :] = -linear.afloat.T @ moved[:-1]
+    right[gap.size + 1 :] = -linear.neutral.T @ moved[:-1]
     return (_bordered_inverse(linear, row) @ right)[: gap.size + 1]
 
 
@@ -207,35 +207,35 @@ def _inverse(matrix: Array) -> Array:
     return np.asarray(np.linalg.pinv(matrix, rcond=SINGULAR), float)
 
 
-def make_point(flow: PeriodMap, x: Array, linear: Linear, forward: Array) -> Point:
+def make_point(period_map: PeriodMap, x: Array, linear: Linear, forward: Array) -> BranchPoint:
     """A point of a branch whose tangent looks along `forward` (2 n + 1,)."""
     matrix = bordered(linear, forward)
     tangent = _bordered_inverse(linear, forward)[: x.size, x.size - 1].copy()
     tangent /= np.linalg.norm(tangent)
-    return Point(
+    return BranchPoint(
         x=x,
         tangent=tangent,
         parity=float(np.linalg.slogdet(matrix)[0]),
         linear=linear,
-        turning=flow.turning(x[:-1], x[-1]),
+        extrema=period_map.extrema(x[:-1], x[-1]),
     )
 
 
 def solve_point(
-    flow: PeriodMap,
+    period_map: PeriodMap,
     guess: Array,
     row: Array,
     forward: Array,
     linear: Linear | None = None,
     farthest: float = np.inf,
-) -> Point:
+) -> BranchPoint:
     """correct() and make_point() in one."""
-    x, found = correct(flow, guess, row, linear, farthest)
-    return make_point(flow, x, found, forward)
+    x, solution = correct(period_map, guess, row, linear, farthest)
+    return make_point(period_map, x, solution, forward)
 
 
-def at_parameter(flow: PeriodMap, z: Array, u: float) -> Point:
+def at_parameter(period_map: PeriodMap, z: Array, u: float) -> BranchPoint:
     """The orbit next to z at a fixed parameter, looking towards larger parameters."""
     upward = np.zeros(z.size + 1)
     upward[-1] = 1.0
-    return solve_point(flow, np.append(z, u), upward, upward)
+    return solve_point(period_map, np.append(z, u), upward, upward)

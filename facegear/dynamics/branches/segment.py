@@ -7,7 +7,7 @@ from scipy.optimize import brentq
 
 from facegear.arrays import Array
 from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import Point, correct_state, solve_point
+from facegear.dynamics.branches.points import BranchPoint, correct_state, solve_point
 from facegear.errors import NotConverged
 
 ALIGNED = 0.3
@@ -18,7 +18,7 @@ EXACT = 1e-13
 """Part of a step down to which a zero is placed."""
 
 
-def cubic(here: Point, there: Point) -> Array:
+def cubic(here: BranchPoint, there: BranchPoint) -> Array:
     """The cubic through two points of a branch along their tangents: coefficients (4, 2 n + 1) of ascending
     powers of the share of their chord.
     """
@@ -37,58 +37,58 @@ def _slope(chord: Array, tangent: Array) -> Array:
 class Segment:
     """Points of a branch between two neighbours, by their share of the chord."""
 
-    def __init__(self, flow: PeriodMap, here: Point, there: Point) -> None:
-        self.flow, self.here, self.there = flow, here, there
+    def __init__(self, period_map: PeriodMap, here: BranchPoint, there: BranchPoint) -> None:
+        self.period_map, self.here, self.there = period_map, here, there
         self.chord = there.x - here.x
         self.length = float(np.linalg.norm(self.chord))
         self.known = {0.0: here, 1.0: there}
 
-    def at(self, share: float) -> Point:
+    def at(self, fraction: float) -> BranchPoint:
         """The point of the branch at a share of the chord."""
-        if share not in self.known:
+        if fraction not in self.known:
             row = self.chord / self.length
-            linear = self._near(share).linear
-            self.known[share] = solve_point(self.flow, self._guess(share), row, row, linear)
-        return self.known[share]
+            linear = self._near(fraction).linear
+            self.known[fraction] = solve_point(self.period_map, self._guess(fraction), row, row, linear)
+        return self.known[fraction]
 
-    def turning(self, share: float) -> Array:
+    def extrema(self, fraction: float) -> Array:
         """Turning points of the deflections at a share, without the matrix of the map."""
-        if share in self.known:
-            return self.known[share].turning
+        if fraction in self.known:
+            return self.known[fraction].extrema
         row = self.chord / self.length
-        x = correct_state(self.flow, self._guess(share), row, self._near(share).linear)
-        return self.flow.turning(x[:-1], x[-1])
+        x = correct_state(self.period_map, self._guess(fraction), row, self._near(fraction).linear)
+        return self.period_map.extrema(x[:-1], x[-1])
 
-    def turning_slope(self, share: float, stretch: float) -> Array:
+    def extremum_slope(self, fraction: float, stretch: float) -> Array:
         """Change of the turning points of a known point with its place on a stretch of the chord, by a small
         step along the tangent.
         """
-        point = self.known[share]
+        point = self.known[fraction]
         along = _slope(stretch * self.chord, point.tangent)
         step = SMALL / float(np.linalg.norm(along))
         x = point.x + step * along
-        ahead = self.flow.turning(x[:-1], x[-1])
-        most = min(ahead.shape[2], point.turning.shape[2])
-        now, then = point.turning[:, :, :most], ahead[:, :, :most]
+        ahead = self.period_map.extrema(x[:-1], x[-1])
+        count = min(ahead.shape[2], point.extrema.shape[2])
+        now, then = point.extrema[:, :, :count], ahead[:, :, :count]
         known = np.isfinite(now) & np.isfinite(then)
         return np.divide(np.subtract(then, now, where=known, out=np.zeros(now.shape)), step)
 
-    def _near(self, share: float) -> Point:
-        return self.known[min(self.known, key=lambda other: abs(other - share))]
+    def _near(self, fraction: float) -> BranchPoint:
+        return self.known[min(self.known, key=lambda other: abs(other - fraction))]
 
-    def _guess(self, share: float) -> Array:
+    def _guess(self, fraction: float) -> Array:
         """Cubic between the nearest known points, with their tangents."""
-        low = max(other for other in self.known if other < share)
-        high = min(other for other in self.known if other > share)
-        t = (share - low) / (high - low)
+        low = max(other for other in self.known if other < fraction)
+        high = min(other for other in self.known if other > fraction)
+        t = (fraction - low) / (high - low)
         return t ** np.arange(4) @ cubic(self.known[low], self.known[high])
 
 
 def zero(test: Callable[[float], float], low: float, high: float, goal: float) -> float:
     """Where a test of the share is zero, to `goal` in the test. Raises NotConverged without a sign change."""
 
-    def rounded(share: float) -> float:
-        value = test(share)
+    def rounded(fraction: float) -> float:
+        value = test(fraction)
         return 0.0 if abs(value) <= goal else value
 
     try:
@@ -97,22 +97,24 @@ def zero(test: Callable[[float], float], low: float, high: float, goal: float) -
         raise NotConverged("branches", f"shares {low:g} to {high:g} of a step", str(error)) from None
 
 
-def reversal(flow: PeriodMap, here: Point, there: Point) -> tuple[Point, Point] | None:
+def reversal(
+    period_map: PeriodMap, here: BranchPoint, there: BranchPoint
+) -> tuple[BranchPoint, BranchPoint] | None:
     """Where a branch of several periods runs into its own image, shifted by half of them: the point shortly
     before, and the orbit of half the period at which another branch doubles.
     """
-    if flow.period % 2:
+    if period_map.period % 2:
         return None
-    half = flow.over(flow.period // 2)
+    half = period_map.over(period_map.period // 2)
     shift = half.gap(here.z, here.u)
     size = np.linalg.norm(shift)
     if shift @ half.gap(there.z, there.u) > -0.5 * size * np.linalg.norm(half.gap(there.z, there.u)):
         return None
-    segment = Segment(flow, here, there)
+    segment = Segment(period_map, here, there)
 
-    def left(share: float) -> float:
-        point = segment.at(share)
+    def left(fraction: float) -> float:
+        point = segment.at(fraction)
         return float((half.gap(point.z, point.u) @ shift) / size**2)
 
-    share = zero(left, 0.0, 1.0, 1e-5)
-    return segment.at(0.95 * share), segment.at(share)
+    fraction = zero(left, 0.0, 1.0, 1e-5)
+    return segment.at(0.95 * fraction), segment.at(fraction)

@@ -6,7 +6,7 @@ from enum import StrEnum
 import numpy as np
 
 from facegear.arrays import ComplexArray
-from facegear.dynamics.branches.points import Point
+from facegear.dynamics.branches.points import BranchPoint
 
 
 class Kind(StrEnum):
@@ -17,7 +17,7 @@ class Kind(StrEnum):
     TORUS = "Neimark-Sacker"
     BRANCH = "branch point"
     GRAZE = "graze"
-    AFLOAT = "body afloat"
+    NEUTRAL = "neutral body"
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +28,7 @@ class Special:
     """
 
     kind: Kind
-    point: Point
+    point: BranchPoint
     multiplier: complex
     proof: str
     after: float
@@ -36,7 +36,9 @@ class Special:
     edge: int = 0
 
 
-def evidence(kind: Kind, off: float, before: Point, here: Point, after: Point) -> tuple[complex, str]:
+def evidence(
+    kind: Kind, off: float, before: BranchPoint, here: BranchPoint, after: BranchPoint
+) -> tuple[complex, str]:
     """The critical multiplier of a point between two neighbours, and what proves it.
 
     off: how far the extreme of a graze lies from the edge, over the length scale.

@@ -4,7 +4,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import Point, solve_point
+from facegear.dynamics.branches.points import BranchPoint, solve_point
 from facegear.errors import NotConverged
 
 STRAIGHT = 0.9
@@ -19,17 +19,19 @@ SURE = 1e-3
 """A change of parity over a longer step is tried again: the other leg of a fold may have been met."""
 
 
-def step_along(flow: PeriodMap, here: Point, before: Point | None, step: float) -> Point:
+def step_along(
+    period_map: PeriodMap, here: BranchPoint, before: BranchPoint | None, step: float
+) -> BranchPoint:
     """One step along the tangent, bent as over the step before. Raises NotConverged if it is refused."""
     guess = _ahead(here, before, step)
-    there = solve_point(flow, guess, here.tangent, here.tangent, here.linear, CORRECTION * step)
+    there = solve_point(period_map, guess, here.tangent, here.tangent, here.linear, CORRECTION * step)
     reason = _refusal(here, there, step)
     if reason:
-        raise NotConverged("branches", f"{flow.family.name} = {there.value:.9g}", reason)
+        raise NotConverged("branches", f"{period_map.family.name} = {there.value:.9g}", reason)
     return there
 
 
-def _ahead(here: Point, before: Point | None, step: float) -> Array:
+def _ahead(here: BranchPoint, before: BranchPoint | None, step: float) -> Array:
     """A guess at a step's length ahead."""
     guess = here.x + step * here.tangent
     if before is None:
@@ -38,11 +40,11 @@ def _ahead(here: Point, before: Point | None, step: float) -> Array:
     return guess + 0.5 * step**2 * bend if np.linalg.norm(bend) * step < 0.5 else guess
 
 
-def _refusal(here: Point, there: Point, step: float) -> str:
+def _refusal(here: BranchPoint, there: BranchPoint, step: float) -> str:
     """Why a step is not accepted, or an empty string."""
     chord = (there.x - here.x) / np.linalg.norm(there.x - here.x)
     straight = min(here.tangent @ there.tangent, chord @ here.tangent, chord @ there.tangent)
-    if here.linear.afloat.shape != there.linear.afloat.shape and step <= SURE:
+    if here.linear.neutral.shape != there.linear.neutral.shape and step <= SURE:
         return ""
     if straight < STRAIGHT:
         return "the branch turns too sharply"
@@ -53,7 +55,7 @@ def _refusal(here: Point, there: Point, step: float) -> str:
     return ""
 
 
-def _drift(here: Point, there: Point) -> float:
+def _drift(here: BranchPoint, there: BranchPoint) -> float:
     """Largest change of a modulus, in sorted order, among those near the unit circle."""
     first, second = np.abs(here.multipliers), np.abs(there.multipliers)
     if first.size != second.size:
@@ -63,7 +65,7 @@ def _drift(here: Point, there: Point) -> float:
     return float((np.abs(first - second) / scale)[near].max(initial=0.0))
 
 
-def next_length(step: float, before: Point | None, here: Point, there: Point) -> float:
+def next_length(step: float, before: BranchPoint | None, here: BranchPoint, there: BranchPoint) -> float:
     """The next step: one that turns by TURN and needs a correction of AIM, as far as the last one tells."""
     angle = float(np.arccos(np.clip(here.tangent @ there.tangent, -1.0, 1.0)))
     off = float(np.linalg.norm(there.x - _ahead(here, before, step))) / step

@@ -6,7 +6,7 @@ import numpy as np
 
 from facegear.arrays import AnyArray, Array, Arrays
 from facegear.dynamics.branches.continuation import Branch
-from facegear.dynamics.branches.explore import Found
+from facegear.dynamics.branches.explore import SettledMotion
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import at_parameter
 from facegear.dynamics.branches.special import Kind
@@ -21,31 +21,33 @@ SHAPES = {
 }
 
 
-def to_arrays(speed_rpm: float, found: Sequence[Found]) -> dict[str, AnyArray]:
+def to_arrays(speed_rpm: float, motions: Sequence[SettledMotion]) -> dict[str, AnyArray]:
     """Arrays of SHAPES."""
     return {
         "speed_rpm": np.array(speed_rpm),
-        "label": np.array([one.label for one in found]),
-        "period": np.array([one.period for one in found]),
-        "count": np.array([one.count for one in found]),
-        "has_orbit": np.array([one.point is not None for one in found]),
-        "state": np.array([one.z for one in found]),
+        "label": np.array([motion.label for motion in motions]),
+        "period": np.array([motion.period for motion in motions]),
+        "count": np.array([motion.count for motion in motions]),
+        "has_orbit": np.array([motion.point is not None for motion in motions]),
+        "state": np.array([motion.z for motion in motions]),
     }
 
 
-def from_arrays(flow: PeriodMap, arrays: Arrays) -> tuple[float, list[Found]]:
+def from_arrays(period_map: PeriodMap, arrays: Arrays) -> tuple[float, list[SettledMotion]]:
     """Speed and motions of to_arrays(). Raises NotConverged if an orbit is not found again."""
     speed = float(arrays["speed_rpm"])
     counts = arrays["count"].astype(int)
-    found = []
+    motions = []
     for i, count in enumerate(counts):
-        period, z, share = int(arrays["period"][i]), arrays["state"][i], count / counts.sum()
+        period, z, fraction = int(arrays["period"][i]), arrays["state"][i], count / counts.sum()
         point = None
         if arrays["has_orbit"][i]:
-            point = at_parameter(flow.over(period), z, float(np.log(speed)))
-        error = float(np.sqrt(share * (1.0 - share) / counts.sum()))
-        found.append(Found(str(arrays["label"][i]), period, z, point, int(count), float(share), error))
-    return speed, found
+            point = at_parameter(period_map.over(period), z, float(np.log(speed)))
+        error = float(np.sqrt(fraction * (1.0 - fraction) / counts.sum()))
+        motions.append(
+            SettledMotion(str(arrays["label"][i]), period, z, point, int(count), float(fraction), error)
+        )
+    return speed, motions
 
 
 SPECIAL_SHAPES = {"kind": (None,), "period": (None,), "x": (None, None), "number": (None,)}
@@ -54,19 +56,19 @@ LOCUS_KINDS = (Kind.FOLD, Kind.DOUBLING)
 
 def special_arrays(branches: Sequence[Branch]) -> dict[str, AnyArray]:
     """Folds and period doublings as arrays of SPECIAL_SHAPES."""
-    found = [(b, n, s) for n, b in enumerate(branches) for s in b.of(*LOCUS_KINDS)]
+    located = [(b, n, s) for n, b in enumerate(branches) for s in b.of(*LOCUS_KINDS)]
     size = branches[0].points[0].x.size
     return {
-        "kind": np.array([LOCUS_KINDS.index(special.kind) for _, _, special in found], dtype=int),
-        "period": np.array([branch.flow.period for branch, _, _ in found], dtype=int),
-        "number": np.array([number for _, number, _ in found], dtype=int),
-        "x": np.array([special.point.x for _, _, special in found]).reshape(-1, size),
+        "kind": np.array([LOCUS_KINDS.index(special.kind) for _, _, special in located], dtype=int),
+        "period": np.array([branch.period_map.period for branch, _, _ in located], dtype=int),
+        "number": np.array([number for _, number, _ in located], dtype=int),
+        "x": np.array([special.point.x for _, _, special in located]).reshape(-1, size),
     }
 
 
-def special_points(flow: PeriodMap, arrays: Arrays) -> list[tuple[PeriodMap, Kind, Array]]:
+def special_points(period_map: PeriodMap, arrays: Arrays) -> list[tuple[PeriodMap, Kind, Array]]:
     """Map, kind and x of the special points of special_arrays()."""
     return [
-        (flow.over(int(period)), LOCUS_KINDS[int(kind)], x)
+        (period_map.over(int(period)), LOCUS_KINDS[int(kind)], x)
         for kind, period, x in zip(arrays["kind"], arrays["period"], arrays["x"], strict=True)
     ]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import pandas as pd
 
 from facegear.dynamics.branches.loci import Locus
-from facegear.dynamics.branches.margins import Loss
+from facegear.dynamics.branches.margins import StabilityLimit
 from facegear.dynamics.branches.survey import Survey
 
 
@@ -19,26 +19,26 @@ def tell(text: str) -> None:
 def survey_summary(
     survey: Survey,
     ranges: Sequence[tuple[float, float, tuple[int, ...]]],
-    losses: Sequence[Loss],
+    stability_limits: Sequence[StabilityLimit],
     swept: pd.DataFrame,
     jumps: pd.DataFrame,
 ) -> str:
     """Branches, special points, coexistence, motions of the sweep, named jumps and margins."""
-    kinds = Counter(s.kind.value for branch in survey.branches for s in branch.specials)
+    counts = Counter(s.kind.value for branch in survey.branches for s in branch.specials)
     points = sum(len(branch.points) for branch in survey.branches)
     parts = [
         f"{len(survey.branches)} branches of {points} points",
-        ", ".join(f"{count} {kind}" for kind, count in kinds.most_common()),
+        ", ".join(f"{count} {kind}" for kind, count in counts.most_common()),
         f"{len(ranges)} speed ranges with several stable motions",
         f"{len(survey.unfollowed)} motions not followed" if survey.unfollowed else "",
         f"{(swept['branch'] != '').sum()} of {len(swept)} periodic motions of the sweep on a branch",
         f"{(jumps['kind'] != '').sum()} of {len(jumps)} jumps named",
     ]
-    parts += [_margin(loss) for loss in losses]
+    parts += [_margin(loss) for loss in stability_limits]
     return "; ".join(part for part in parts if part)
 
 
-def _margin(loss: Loss) -> str:
+def _margin(loss: StabilityLimit) -> str:
     if loss.special is None:
         return f"branch {loss.branch}: no loss up to {loss.parameter} = {loss.reached:.6g}"
     kind = loss.special.kind.value
@@ -49,6 +49,6 @@ def loci_summary(loci: Sequence[Locus], missed: Sequence[str]) -> str:
     """Loci, their points and corners; those that could not be followed."""
     corners = Counter(corner.value for locus in loci for corner, _ in locus.corners)
     points = sum(len(locus.points) for locus in loci)
-    told = ", ".join(f"{count} {corner}" for corner, count in corners.items())
+    text = ", ".join(f"{count} {corner}" for corner, count in corners.items())
     lost = f"; not followed: {'; '.join(missed)}" if missed else ""
-    return f"{len(loci)} loci of {points} points; {told or 'no corners'}{lost}"
+    return f"{len(loci)} loci of {points} points; {text or 'no corners'}{lost}"

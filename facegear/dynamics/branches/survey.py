@@ -4,10 +4,10 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import partial
 
-from facegear.dynamics.branches.continuation import Branch, End, Run, follow
+from facegear.dynamics.branches.continuation import Branch, BranchEnd, ContinuationSettings, follow
 from facegear.dynamics.branches.explore import lies_on
 from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import Point
+from facegear.dynamics.branches.points import BranchPoint
 from facegear.dynamics.branches.special import Kind, Special
 from facegear.dynamics.branches.switching import broken, doubled
 from facegear.errors import NotConverged
@@ -35,40 +35,42 @@ class Survey:
 
 
 def survey(
-    start: tuple[PeriodMap, Point],
-    motions: Iterable[tuple[PeriodMap, Point, str]],
-    run: Run,
+    start: tuple[PeriodMap, BranchPoint],
+    motions: Iterable[tuple[PeriodMap, BranchPoint, str]],
+    run: ContinuationSettings,
     longest_period: int,
-    most: int,
+    max_branches: int,
     progress: Callable[[str], None] = lambda text: None,
 ) -> Survey:
     """The branch through `start`, all that leave it, and those through motions found elsewhere.
 
     motions: each with its map and where it was found. What leaves a branch by period doubling or broken
-    symmetry is followed up to longest_period. At most `most` branches.
+    symmetry is followed up to longest_period. At most `max_branches` branches.
     """
-    search = _Search(run, longest_period, most, progress)
+    search = _Search(run, longest_period, max_branches, progress)
     search.follow(*start, "the first motion")
-    for flow, point, origin in motions:
-        search.follow(flow, point, origin)
+    for period_map, point, origin in motions:
+        search.follow(period_map, point, origin)
     return Survey(search.branches, search.unfollowed)
 
 
 @dataclass(eq=False)
 class _Search:
-    run: Run
+    run: ContinuationSettings
     longest_period: int
-    most: int
+    max_branches: int
     progress: Callable[[str], None]
     branches: list[Branch] = field(default_factory=list)
     unfollowed: list[Unfollowed] = field(default_factory=list)
     met: list[tuple[int, float]] = field(default_factory=list)
 
-    def follow(self, flow: PeriodMap, point: Point, origin: str) -> None:
+    def follow(self, period_map: PeriodMap, point: BranchPoint, origin: str) -> None:
         """Follow a motion that lies on no branch, and all that leaves its branch."""
-        if self._is_known(flow.period, point):
+        if self._is_known(period_map.period, point):
             return
-        branch = self._tried(partial(follow, flow, point, self.run), flow.period, point.value, origin)
+        branch = self._tried(
+            partial(follow, period_map, point, self.run), period_map.period, point.value, origin
+        )
         if branch is None:
             return
         todo = [branch]
@@ -77,26 +79,26 @@ class _Search:
 
     def _children(self, parent: Branch) -> list[Branch]:
         """New branches that leave a branch; a special point that a branch begins or ends at is left once."""
-        found = []
+        children = []
         for special in parent.of(Kind.DOUBLING, Kind.BRANCH):
-            period = parent.flow.period * (2 if special.kind is Kind.DOUBLING else 1)
+            period = parent.period_map.period * (2 if special.kind is Kind.DOUBLING else 1)
             if period > self.longest_period or self._was_met(period, special.point.u):
                 continue
             self.met.append((period, special.point.u))
             child = self._tried(
-                partial(_leave, parent.flow, special, self.run),
+                partial(_leave, parent.period_map, special, self.run),
                 period,
                 special.point.value,
                 f"{special.kind} of branch {self.branches.index(parent)}",
             )
             if child is not None:
-                found.append(child)
-        return found
+                children.append(child)
+        return children
 
     def _tried(self, attempt: Callable[[], Branch], period: int, value: float, origin: str) -> Branch | None:
         """A new branch, kept; None if it is known already, or with a note if it cannot be followed."""
-        if len(self.branches) >= self.most:
-            reason = f"{self.most} branches are followed already"
+        if len(self.branches) >= self.max_branches:
+            reason = f"{self.max_branches} branches are followed already"
             self.unfollowed.append(Unfollowed(period, value, origin, reason))
             return None
         try:
@@ -105,9 +107,9 @@ class _Search:
             self.unfollowed.append(Unfollowed(period, value, origin, str(error)))
             return None
         self.met += [
-            (period, branch.points[place].u)
-            for place, end in zip((0, -1), branch.ends, strict=True)
-            if end in (End.DOUBLING, End.SYMMETRY)
+            (period, branch.points[index].u)
+            for index, end in zip((0, -1), branch.ends, strict=True)
+            if end in (BranchEnd.DOUBLING, BranchEnd.SYMMETRY)
         ]
         if self._is_known(period, branch.points[len(branch.points) // 2]):
             return None
@@ -115,12 +117,16 @@ class _Search:
         self.progress(f"{len(branch.points)} points of period {period}, {len(branch.specials)} special")
         return branch
 
-    def _is_known(self, period: int, point: Point) -> bool:
+    def _is_known(self, period: int, point: BranchPoint) -> bool:
         return any(lies_on(branch, point, period) for branch in self.branches)
 
     def _was_met(self, period: int, u: float) -> bool:
-        return any(other == period and abs(u - place) < MET for other, place in self.met)
+        return any(other == period and abs(u - ended_at) < MET for other, ended_at in self.met)
 
 
-def _leave(flow: PeriodMap, special: Special, run: Run) -> Branch:
-    return doubled(flow, special, run) if special.kind is Kind.DOUBLING else broken(flow, special, run)
+def _leave(period_map: PeriodMap, special: Special, run: ContinuationSettings) -> Branch:
+    return (
+        doubled(period_map, special, run)
+        if special.kind is Kind.DOUBLING
+        else broken(period_map, special, run)
+    )

@@ -9,7 +9,7 @@ from facegear.arrays import Array
 from facegear.dynamics.branches.continuation import Branch
 from facegear.dynamics.branches.explore import distance
 from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import Point, at_parameter
+from facegear.dynamics.branches.points import BranchPoint, at_parameter
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import steady_state
 from facegear.dynamics.sweeps.sweep import Piece
@@ -36,7 +36,7 @@ class Swept:
     speed_rpm: float
     label: str
     period: int
-    point: Point | None
+    point: BranchPoint | None
     error: float
     reason: str = ""
 
@@ -47,14 +47,14 @@ class Swept:
 
 
 def swept_motions(
-    flow: PeriodMap, pieces: Mapping[str, Sequence[Piece]], from_rpm: float, to_rpm: float
+    period_map: PeriodMap, pieces: Mapping[str, Sequence[Piece]], from_rpm: float, to_rpm: float
 ) -> list[Swept]:
     """The periodic motions of a sweep's directions between two speeds, each with its orbit.
 
     flow: the machine's map over its speed in rpm and one mesh period.
     """
     return [
-        _orbit(flow, direction, piece, index)
+        _orbit(period_map, direction, piece, index)
         for direction, chunks in pieces.items()
         for piece in chunks
         for index, speed in enumerate(piece.speeds)
@@ -62,41 +62,43 @@ def swept_motions(
     ]
 
 
-def _orbit(flow: PeriodMap, direction: str, piece: Piece, index: int) -> Swept:
+def _orbit(period_map: PeriodMap, direction: str, piece: Piece, index: int) -> Swept:
     speed, label, period = float(piece.speeds[index]), piece.labels[index], int(piece.period[index])
     u = float(np.log(speed))
-    z = flow.weighted(piece.state(index), u)
+    z = period_map.weighted(piece.state(index), u)
     try:
-        point, least = _next_to(flow, z, u, period)
+        point, shortest = _next_to(period_map, z, u, period)
     except (NotConverged, np.linalg.LinAlgError) as failure:
         return Swept(direction, speed, label, period, None, np.nan, f"no orbit next to it: {failure}")
-    error = min(float(np.abs(image - z).max()) for image in flow.over(least).images(point.z, u))
+    error = min(float(np.abs(image - z).max()) for image in period_map.over(shortest).images(point.z, u))
     if error > ELSEWHERE:
         reason = f"the nearest orbit lies {error:.2g} length scales away"
         return Swept(direction, speed, label, period, None, error, reason)
-    return Swept(direction, speed, label, least, point, error)
+    return Swept(direction, speed, label, shortest, point, error)
 
 
-def _next_to(flow: PeriodMap, z: Array, u: float, period: int) -> tuple[Point, int]:
+def _next_to(period_map: PeriodMap, z: Array, u: float, period: int) -> tuple[BranchPoint, int]:
     """The orbit next to a state and its least period; where a long orbit magnifies the state's error too
     much for Newton's method, that of a run from there at the branches' tolerance.
     """
     try:
-        point = at_parameter(flow.over(period), z, u)
+        point = at_parameter(period_map.over(period), z, u)
     except (NotConverged, np.linalg.LinAlgError):
-        system, frequency = flow.family.at(float(np.exp(u)))
-        settled = steady_state(system, frequency, Settings(tolerance=flow.tolerance), flow.state(z, u))
+        system, frequency = period_map.family.at(float(np.exp(u)))
+        settled = steady_state(
+            system, frequency, Settings(tolerance=period_map.tolerance), period_map.state(z, u)
+        )
         if settled.motion is not Motion.PERIODIC:
-            what = f"at a tolerance of {flow.tolerance:g} a run from it is {settled.label}"
+            what = f"at a tolerance of {period_map.tolerance:g} a run from it is {settled.label}"
             raise NotConverged("branches", f"{np.exp(u):.9g} rpm", what) from None
         period = settled.period
-        point = at_parameter(flow.over(period), flow.weighted(settled.state, u), u)
-    least = _least_period(flow, point, period)
-    return (point if least == period else at_parameter(flow.over(least), point.z, u)), least
+        point = at_parameter(period_map.over(period), period_map.weighted(settled.state, u), u)
+    shortest = _shortest_period(period_map, point, period)
+    return (point if shortest == period else at_parameter(period_map.over(shortest), point.z, u)), shortest
 
 
-def _least_period(flow: PeriodMap, point: Point, period: int) -> int:
-    images = flow.over(period).images(point.z, point.u)
+def _shortest_period(period_map: PeriodMap, point: BranchPoint, period: int) -> int:
+    images = period_map.over(period).images(point.z, point.u)
     return next(
         divisor
         for divisor in range(1, period + 1)

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.branches.continuation import Branch, End, Run, follow
+from facegear.dynamics.branches.continuation import Branch, BranchEnd, ContinuationSettings, follow
 from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import Point, at_parameter, solve_point
+from facegear.dynamics.branches.points import BranchPoint, at_parameter, solve_point
 from facegear.dynamics.branches.special import Special
 from facegear.dynamics.motion import State
 from facegear.errors import NotConverged
@@ -18,44 +18,46 @@ LEFT = 0.3
 """Least share of the distance that must remain along the new direction."""
 
 
-def doubled(flow: PeriodMap, special: Special, run: Run) -> Branch:
+def doubled(period_map: PeriodMap, special: Special, run: ContinuationSettings) -> Branch:
     """The branch of twice the period that leaves a period doubling, followed until it meets itself shifted.
 
     Raises NotConverged where none is found near the point.
     """
-    twice = flow.over(2 * flow.period)
+    twice = period_map.over(2 * period_map.period)
     direction = _direction(special.point.linear.matrix, -1.0)
     start = _aside(twice, special, direction)
-    return _from(twice, special, start, run, End.DOUBLING)
+    return _from(twice, special, start, run, BranchEnd.DOUBLING)
 
 
-def broken(flow: PeriodMap, special: Special, run: Run) -> Branch:
+def broken(period_map: PeriodMap, special: Special, run: ContinuationSettings) -> Branch:
     """The branch that leaves a branch point across the one on which it was found."""
     direction = _direction(special.point.linear.matrix, 1.0)
     across = np.append(direction, 0.0)
     across -= special.point.tangent * (special.point.tangent @ across)
-    start = _aside(flow, special, across[:-1] / np.linalg.norm(across[:-1]))
-    return _from(flow, special, start, run, End.SYMMETRY)
+    start = _aside(period_map, special, across[:-1] / np.linalg.norm(across[:-1]))
+    return _from(period_map, special, start, run, BranchEnd.SYMMETRY)
 
 
-def _from(flow: PeriodMap, special: Special, start: Point, run: Run, end: End) -> Branch:
+def _from(
+    period_map: PeriodMap, special: Special, start: BranchPoint, run: ContinuationSettings, end: BranchEnd
+) -> Branch:
     """The branch through `start`, away from the special point, which becomes its first point."""
-    child = follow(flow, start, run, both=False)
+    child = follow(period_map, start, run, both=False)
     origin = special.point
     away = start.x - origin.x
-    linear = flow.linear(origin.z, origin.u)
+    linear = period_map.linear(origin.z, origin.u)
     root = replace(origin, tangent=away / np.linalg.norm(away), linear=linear)
-    specials = [replace(one, after=one.after + 1.0) for one in child.specials]
+    specials = [replace(special_point, after=special_point.after + 1.0) for special_point in child.specials]
     return replace(child, points=[root, *child.points], specials=specials, ends=(end, child.ends[1]))
 
 
-def through(flow: PeriodMap, state: State, value: float, run: Run) -> Branch:
+def through(period_map: PeriodMap, state: State, value: float, run: ContinuationSettings) -> Branch:
     """The branch through the orbit next to a state (displacement, velocity by time) at a parameter.
 
     Raises NotConverged if Newton's method finds none. flow.period must be the orbit's own.
     """
     u = float(np.log(value))
-    return follow(flow, at_parameter(flow, flow.weighted(state, u), u), run)
+    return follow(period_map, at_parameter(period_map, period_map.weighted(state, u), u), run)
 
 
 def _direction(matrix: Array, goal: float) -> Array:
@@ -65,13 +67,13 @@ def _direction(matrix: Array, goal: float) -> Array:
     return vector / np.linalg.norm(vector)
 
 
-def _aside(flow: PeriodMap, special: Special, direction: Array) -> Point:
+def _aside(period_map: PeriodMap, special: Special, direction: Array) -> BranchPoint:
     """An orbit at some distance along a direction, the parameter free, looking away from the point."""
     row = np.append(direction, 0.0)
     origin = special.point.x
     for distance in ASIDE:
         try:
-            point = solve_point(flow, origin + distance * row, row, row)
+            point = solve_point(period_map, origin + distance * row, row, row)
         except (NotConverged, np.linalg.LinAlgError):
             continue
         away = point.x - origin
@@ -80,6 +82,6 @@ def _aside(flow: PeriodMap, special: Special, direction: Array) -> Point:
             return point
     raise NotConverged(
         "branches",
-        f"{special.kind} at {flow.family.name} = {special.point.value:.9g}",
+        f"{special.kind} at {period_map.family.name} = {special.point.value:.9g}",
         f"another branch at distances {', '.join(f'{d:g}' for d in ASIDE)}",
     )

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.dynamics.branches.columns import BRANCH_COLUMNS, SPECIAL_COLUMNS
-from facegear.dynamics.branches.continuation import Branch, End
+from facegear.dynamics.branches.continuation import Branch, BranchEnd
 from facegear.dynamics.branches.loci import Locus
 from facegear.dynamics.branches.measures import measures
 from facegear.dynamics.branches.special import Special
@@ -22,7 +22,7 @@ def branch_table(layout: Layout, branches: Sequence[Branch]) -> pd.DataFrame:
     frames = []
     for number, branch in enumerate(branches):
         for index, (point, arc) in enumerate(zip(branch.points, branch.arc, strict=True)):
-            found = measures(branch.flow, point)
+            measured = measures(branch.period_map, point)
             leading = point.multipliers[0] if point.multipliers.size else complex(np.nan)
             meshes = len(layout.mesh_names)
             frames.append(
@@ -32,19 +32,19 @@ def branch_table(layout: Layout, branches: Sequence[Branch]) -> pd.DataFrame:
                         "point": index,
                         "arc": arc,
                         "speed_rpm": point.value,
-                        "period": branch.flow.period,
+                        "period": branch.period_map.period,
                         "stable": point.stable,
                         "leading_multiplier_real": leading.real,
                         "leading_multiplier_imaginary": leading.imag,
                         "mesh": layout.mesh_names[:meshes],
-                        "deflection_ac_rms_um": UM * found.ac_rms,
-                        "deflection_rms_um": UM * found.rms,
-                        "deflection_least_um": UM * found.least,
-                        "deflection_most_um": UM * found.most,
-                        "peak_force_n": found.peak_force,
-                        "open_share": found.shares[0],
-                        "drive_share": found.shares[1],
-                        "back_share": found.shares[2],
+                        "deflection_ac_rms_um": UM * measured.ac_rms,
+                        "deflection_rms_um": UM * measured.rms,
+                        "deflection_minimum_um": UM * measured.minimum,
+                        "deflection_maximum_um": UM * measured.maximum,
+                        "peak_force_n": measured.peak_force,
+                        "open_share": measured.shares[0],
+                        "drive_share": measured.shares[1],
+                        "back_share": measured.shares[2],
                     }
                 )
             )
@@ -74,7 +74,7 @@ def special_table(layout: Layout, branches: Sequence[Branch]) -> pd.DataFrame:
             rows.append(
                 {
                     "branch": number,
-                    "period": branch.flow.period,
+                    "period": branch.period_map.period,
                     "kind": special.kind.value,
                     "speed_rpm": special.point.value,
                     "arc": float(np.interp(special.after, np.arange(len(arc)), arc)),
@@ -103,13 +103,13 @@ def end_table(branches: Sequence[Branch]) -> pd.DataFrame:
     rows = [
         {
             "branch": number,
-            "period": branch.flow.period,
+            "period": branch.period_map.period,
             "points": len(branch.points),
             "from_rpm": branch.values.min(),
             "to_rpm": branch.values.max(),
             "first_end": branch.ends[0].value,
             "last_end": branch.ends[1].value,
-            "tried": branch.tried if End.STEP in branch.ends else "",
+            "tried": branch.tried if BranchEnd.STEP in branch.ends else "",
         }
         for number, branch in enumerate(branches)
     ]
@@ -118,7 +118,7 @@ def end_table(branches: Sequence[Branch]) -> pd.DataFrame:
 
 def unfollowed_table(unfollowed: Sequence[Unfollowed]) -> pd.DataFrame:
     """Columns period, speed_rpm, origin, reason: motions that were met and not followed."""
-    rows = [(one.period, one.value, one.origin, one.reason) for one in unfollowed]
+    rows = [(row.period, row.value, row.origin, row.reason) for row in unfollowed]
     return pd.DataFrame(rows, columns=["period", "speed_rpm", "origin", "reason"])
 
 

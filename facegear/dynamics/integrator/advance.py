@@ -15,7 +15,7 @@ from facegear.mesh_law.terms import force_terms, is_curved, piece_terms
 
 ROUNDING = 1e-13
 """A step that ends this close to the end of a period (rad) ends there."""
-MOST_GUESSES = 4
+MAX_GUESSES = 4
 
 
 @inlined
@@ -44,7 +44,7 @@ def advance(
     piece_terms(packed.law, work.law, work.fourier, work.state, s, work.order + 1)
     if packed.push_only:
         find_parting(packed, work)
-    for _ in range(MOST_GUESSES):
+    for _ in range(MAX_GUESSES):
         recurrence(packed, work, work.order, work.error, work.load, work.y, work.deflection, False)
         changed = correct_states(packed, work)
         if packed.push_only:

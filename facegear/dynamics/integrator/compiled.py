@@ -11,7 +11,7 @@ from facegear.machine_code.memory import aligned, divided, padded, whole_lanes
 from facegear.mesh_law.linear import fourier_columns
 
 TAU = 2.0 * np.pi
-LEAST_CLEARANCE = 1e-12
+MIN_CLEARANCE = 1e-12
 ROUNDING = 1e-15
 """Entries of G below this share of the largest are zeros that rounding has left."""
 
@@ -118,7 +118,7 @@ def _packed(system: System) -> Packed:
     mesh_jacobian = aligned(wide_n, wide_m)
     mesh_jacobian[:] = transposed.T
     # A clearance within rounding of the deflections is none: its edges could not be told apart.
-    closed = system.upper - system.lower <= LEAST_CLEARANCE * system.scale
+    closed = system.upper - system.lower <= MIN_CLEARANCE * system.scale
     lower = np.where(closed, system.upper, system.lower)
     return Packed(
         n=n,

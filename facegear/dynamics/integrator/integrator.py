@@ -8,7 +8,7 @@ from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import TAU, Packed, pack
 from facegear.dynamics.integrator.periods import (
     DONE,
-    MOST_STEPS,
+    MAX_STEPS,
     NOT_FINITE,
     TOO_MANY_STEPS,
     Log,
@@ -210,7 +210,7 @@ class Integrator:
 def require(status: int) -> None:
     """Raise NotConverged unless the status of a run is good."""
     reported = {
-        TOO_MANY_STEPS: f"a mesh period took more than {MOST_STEPS} steps",
+        TOO_MANY_STEPS: f"a mesh period took more than {MAX_STEPS} steps",
         NOT_FINITE: "the motion grew beyond all bounds",
     }
     if status != DONE:

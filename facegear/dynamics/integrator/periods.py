@@ -17,7 +17,7 @@ from facegear.dynamics.integrator.taylor import values
 from facegear.dynamics.integrator.work import Work
 from facegear.mesh_law.terms import slope_terms
 
-MOST_STEPS = 2_000_000
+MAX_STEPS = 2_000_000
 DONE, TOO_MANY_STEPS, NOT_FINITE = 0, 1, 2
 
 
@@ -103,7 +103,7 @@ def run_periods(
             move(work, length, displacement, velocity)
             s = after(s, length)
             taken += 1
-            if taken > MOST_STEPS:
+            if taken > MAX_STEPS:
                 return TOO_MANY_STEPS
         log.steps[0] += taken
         for k in range(n):

@@ -14,7 +14,7 @@ from facegear.dynamics.integrator.work import Work
 from facegear.dynamics.motion import Settings, State
 from facegear.errors import NotConverged
 
-MOST_STEPS = 200_000
+MAX_STEPS = 200_000
 
 
 @kernel
@@ -93,7 +93,7 @@ def record(
             polynomial[0] += work.edge[: packed.m]
             deflections.append(polynomial)
             states.append(work.state[: packed.m].copy())
-            if len(starts) > MOST_STEPS or not np.isfinite(length):
+            if len(starts) > MAX_STEPS or not np.isfinite(length):
                 raise NotConverged("dynamics", f"mesh phase {s:.6g} rad", f"{len(starts)} steps")
     return Trajectory(
         frequency,

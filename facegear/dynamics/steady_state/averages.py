@@ -26,8 +26,8 @@ class Moments:
     mean: Array
     rms: Array
     ac_rms: Array
-    least: Array
-    most: Array
+    minimum: Array
+    maximum: Array
     rms_interval: Array
     ac_rms_interval: Array
 
@@ -67,8 +67,8 @@ class Averages:
             mean=mean,
             rms=rms,
             ac_rms=ac_rms,
-            least=self.lowest,
-            most=self.highest,
+            minimum=self.lowest,
+            maximum=self.highest,
             rms_interval=_root_interval(centred + 2.0 * mean * moved, rms, periodic),
             ac_rms_interval=_root_interval(centred, ac_rms, periodic),
         )
@@ -128,11 +128,11 @@ def mean_interval(batches: Array, confidence: float = CONFIDENCE) -> Array:
     return _student(count - 1, confidence) * batches.std(axis=0, ddof=1) / np.sqrt(count)
 
 
-def _root_interval(squares: Array, root: Array, periodic: bool) -> Array:
+def _root_interval(squared: Array, root: Array, periodic: bool) -> Array:
     """95 % half-width (columns,) of a root mean square from batch means of what differs from its square."""
     if periodic:
         return np.zeros(root.size)
-    return mean_interval(squares) / (2.0 * np.where(root > 0.0, root, 1.0))
+    return mean_interval(squared) / (2.0 * np.where(root > 0.0, root, 1.0))
 
 
 @cache

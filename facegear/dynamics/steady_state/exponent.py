@@ -11,9 +11,9 @@ from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.averages import BATCHES, mean_interval
 from facegear.dynamics.steady_state.window import Window, run_window
 
-ALIGN, LEAST_ALIGN = 2, 32
+ALIGN, MIN_ALIGN = 2, 32
 """Batches, and least periods, for which a disturbance turns before its growth counts."""
-LEAST_WINDOW = 8 * BATCHES
+MIN_WINDOW = 8 * BATCHES
 """Growth over batches shorter than this swings from one to the next: its mean says nothing yet."""
 NEUTRAL = 2e-3
 """An exponent known to lie within this of zero, per mesh period, is neutral."""
@@ -51,11 +51,11 @@ def largest_exponent(integrator: Integrator, state: Array, settings: Settings) -
     tangent = np.random.default_rng(0).normal(size=(1, *state.shape))
     tangent /= np.sqrt(((integrator.weights * tangent) ** 2).sum())
     # The vector first turns into the direction of fastest growth.
-    align = max(ALIGN * settings.window // BATCHES, LEAST_ALIGN)
+    align = max(ALIGN * settings.window // BATCHES, MIN_ALIGN)
     run = integrator.run(state, align, tangent, growth=True)
     ends, rates, tangent = run.ends, np.zeros(0), run.tangents
-    if settings.window < LEAST_WINDOW:
-        missing = LEAST_WINDOW - settings.window
+    if settings.window < MIN_WINDOW:
+        missing = MIN_WINDOW - settings.window
         run = integrator.run(ends[-1], missing, tangent, growth=True)
         rates, tangent = run.growth, run.tangents
         ends = np.concatenate([ends, run.ends])

@@ -11,7 +11,7 @@ NEWTON_STEPS, MATRICES = 12, 3
 """Steps that Newton's method may take, and matrices for them: what needs more is nowhere near an orbit."""
 NEUTRAL = 1e-9
 """Directions in which the change over a period moves less than this, relatively, are left alone by Newton."""
-AFLOAT = 1e-6
+UNIT_TOLERANCE = 1e-6
 """A multiplier may exceed one by this: it is one for a body afloat inside its backlash."""
 RETURNS = 3
 """Returns in succession that must follow an orbit's multipliers."""
@@ -39,7 +39,7 @@ class Orbit:
     @property
     def moving(self) -> Mask:
         """Which multipliers (2 n,) lie off the unit circle: all but the neutral ones of bodies afloat."""
-        return np.abs(1.0 - np.abs(self.multipliers)) > AFLOAT
+        return np.abs(1.0 - np.abs(self.multipliers)) > UNIT_TOLERANCE
 
     @property
     def holding(self) -> float:
@@ -49,8 +49,8 @@ class Orbit:
     def parts(self, off: Array) -> ComplexArray:
         """Components (..., 2 n) of states (..., 2, n) off the orbit along its own directions."""
         flat = off.reshape(*off.shape[:-2], -1)
-        found = np.linalg.lstsq(self.vectors, np.atleast_2d(flat).T.astype(complex), rcond=None)[0]
-        return np.reshape(found.T, flat.shape)
+        coefficients = np.linalg.lstsq(self.vectors, np.atleast_2d(flat).T.astype(complex), rcond=None)[0]
+        return np.reshape(coefficients.T, flat.shape)
 
     def distance(self, integrator: Integrator, state: Array, rates: float = 1.0) -> float:
         """How far a state (2, n) is off, as a change(), wherever bodies afloat may be.
@@ -58,9 +58,9 @@ class Orbit:
         rates: by which velocities are divided.
         """
         off = state - self.state
-        afloat = ~self.moving
-        if afloat.any():
-            shifted = self.vectors[:, afloat] @ self.parts(off)[afloat]
+        neutral = ~self.moving
+        if neutral.any():
+            shifted = self.vectors[:, neutral] @ self.parts(off)[neutral]
             off -= shifted.real.reshape(2, -1)
         off[1] /= rates
         return change(integrator, off, 0.0 * off)
@@ -112,7 +112,7 @@ class _Tangent:
     state: Array
     matrix: Array
     multipliers: ComplexArray
-    directions: ComplexArray
+    vectors: ComplexArray
     divergence: float
 
     @property
@@ -122,7 +122,7 @@ class _Tangent:
         The neutral one of a body afloat inside its backlash, which goes nowhere, does not count.
         """
         off = np.abs(1.0 - np.abs(self.multipliers))
-        return max(float(off[off > AFLOAT].min(initial=1.0)), 1e-3)
+        return max(float(off[off > UNIT_TOLERANCE].min(initial=1.0)), 1e-3)
 
     def correction(self, gap: Array) -> Array:
         """Newton's step for a change (2 n,) over the period.
@@ -130,7 +130,7 @@ class _Tangent:
         A body afloat in its backlash has a place of its own choice: least norm leaves it where it is.
         """
         matrix = np.eye(gap.size) - self.matrix
-        if np.abs(1.0 - self.multipliers).min() > AFLOAT:
+        if np.abs(1.0 - self.multipliers).min() > UNIT_TOLERANCE:
             return np.asarray(np.linalg.solve(matrix, gap), np.float64)
         return np.asarray(np.linalg.lstsq(matrix, gap, rcond=NEUTRAL)[0], np.float64)
 
@@ -158,9 +158,9 @@ def shoot(
         residual = change(integrator, here, result.state)
         if not residual < 4.0 * best:
             return None
-        least = least_period(integrator, here, result.ends, max(residual, goal))
-        if residual <= goal and least < period:
-            return shoot(integrator, here, least, goal)
+        shortest = shortest_period(integrator, here, result.ends, max(residual, goal))
+        if residual <= goal and shortest < period:
+            return shoot(integrator, here, shortest, goal)
         # Newton's method cannot do better than the steps and their rounding.
         stalled = residual > 0.5 * best and residual <= max(tolerance * tangent.slowness, ROUNDING)
         if residual <= goal * min(1.0, tangent.slowness) or stalled:
@@ -177,12 +177,12 @@ def shoot(
 def _linearised(integrator: Integrator, state: Array, period: int) -> tuple[RunResult, _Tangent]:
     """The run from a state (2, n) over the period, and the map near it."""
     matrix, result = monodromy(integrator, state, period)
-    multipliers, directions = np.linalg.eig(matrix)
+    multipliers, vectors = np.linalg.eig(matrix)
     order = np.argsort(-np.abs(multipliers))
-    return result, _Tangent(state, matrix, multipliers[order], directions[:, order], result.divergence)
+    return result, _Tangent(state, matrix, multipliers[order], vectors[:, order], result.divergence)
 
 
-def least_period(integrator: Integrator, start: Array, ends: Array, residual: float) -> int:
+def shortest_period(integrator: Integrator, start: Array, ends: Array, residual: float) -> int:
     """Smallest number of mesh periods after which an orbit has closed already, to ten times its residual."""
     for period in range(1, len(ends)):
         if len(ends) % period == 0 and change(integrator, start, ends[period - 1]) <= 10.0 * residual:
@@ -202,7 +202,7 @@ def _orbit(state: Array, period: int, residual: float, tangent: _Tangent) -> Orb
         period=period,
         residual=residual,
         multipliers=multipliers,
-        vectors=tangent.directions,
+        vectors=tangent.vectors,
         liouville=liouville,
     )
 

@@ -49,22 +49,22 @@ def _smallest(play: bool, friction: bool) -> System:
     machine.
     """
     rings = np.ones(int(play))
-    one, rows, nothing = np.ones(1), np.ones(1 + 3 * rings.size), np.zeros((1, 2, 1))
-    kinds = np.zeros(rows.size, dtype=np.int64)
+    unit, rows, nothing = np.ones(1), np.ones(1 + 3 * rings.size), np.zeros((1, 2, 1))
+    row_kinds = np.zeros(rows.size, dtype=np.int64)
     return System(
         mesh_jacobian=rows[:, None],
-        omega_squared=one,
-        damping=one,
+        omega_squared=unit,
+        damping=unit,
         mesh_damping=rows,
         lower=-rows,
         upper=rows,
-        law=LinearLaw(nothing + 1.0, kinds[:1]),
+        law=LinearLaw(nothing + 1.0, row_kinds[:1]),
         error=nothing,
-        error_kind=kinds,
+        error_kind=row_kinds,
         load=nothing,
         ring_stiffness=rings,
         ring_play=rings,
         damping_when_open=True,
         scale=1.0,
-        rubbing=FlankRubbing(kinds[:1], nothing, rows[:1, None]) if friction else None,
+        rubbing=FlankRubbing(row_kinds[:1], nothing, rows[:1, None]) if friction else None,
     )

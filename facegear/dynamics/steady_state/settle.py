@@ -9,7 +9,7 @@ from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.closing import TREND, VERY_SMALL, Closing, closed, closing
-from facegear.dynamics.steady_state.orbits import AFLOAT, MATRICES, Orbit, changes, drawn_in, shoot
+from facegear.dynamics.steady_state.orbits import MATRICES, UNIT_TOLERANCE, Orbit, changes, drawn_in, shoot
 
 NEWTON_COST = 20
 """Mesh periods that cost as much time as one with all tangents."""
@@ -21,7 +21,7 @@ BLOCK, LONG_BLOCK = 16, 128
 """A block is half of what was run before, within these: each call of the kernels has a price."""
 KICK = 0.01
 """How far a run that rests on an unstable orbit is moved along its leading direction, as a change."""
-MOST_KICKS = 2
+MAX_KICKS = 2
 LONGER = 4
 """A run that comes nearer and nearer is watched for so many times as long."""
 CREEP = 0.01
@@ -53,7 +53,7 @@ def settle(integrator: Integrator, state: Array, settings: Settings, ends: Array
     taken only once the run is drawn in by it. An unstable orbit, on which exact symmetry may hold a run, is
     left by a kick. `ends`: states that the run passed through before, oldest first.
     """
-    return Run(integrator, state, settings, ends).settled()
+    return SettlingRun(integrator, state, settings, ends).settled()
 
 
 class Passed:
@@ -84,7 +84,7 @@ class Passed:
         self.filled = 0
 
 
-class Run:
+class SettlingRun:
     """A run under way. `found` is the orbit that Newton's method last came to, `found_at` the period of it.
 
     Newton's method, whose cost is counted in mesh periods, may take as long as the run itself.
@@ -98,8 +98,8 @@ class Run:
             self.passed.room_for(len(ends))[:] = ends
         self.known = len(self.ends)
         self.periods_run = self.kicks = self.newton_cost = 0
-        self.found: Orbit | None = None
-        self.found_at = 0
+        self.orbit: Orbit | None = None
+        self.orbit_at = 0
         self.tried: dict[int, float] = {}
         self.block, self.dwell = _blocks(integrator, settings)
 
@@ -145,16 +145,16 @@ class Run:
             self.tried[near.period] = near.residual
             orbit = self._shot(near.period)
             if orbit is not None:
-                self.found, self.found_at = orbit, self.periods_run
-        if self.found is None:
+                self.orbit, self.orbit_at = orbit, self.periods_run
+        if self.orbit is None:
             return None
-        if abs(self.found.multipliers[0]) > 1.0 + AFLOAT:
+        if abs(self.orbit.multipliers[0]) > 1.0 + UNIT_TOLERANCE:
             self._kick(near)
             return None
-        since = (self.periods_run - self.found_at) % self.found.period
-        at_rest = since == 0 and self._stands_on(self.found, near)
-        if at_rest or drawn_in(self.integrator, self.found, self.ends, since):
-            return self._result(self.found.period, self.found.residual, self.found)
+        since = (self.periods_run - self.orbit_at) % self.orbit.period
+        at_rest = since == 0 and self._stands_on(self.orbit, near)
+        if at_rest or drawn_in(self.integrator, self.orbit, self.ends, since):
+            return self._result(self.orbit.period, self.orbit.residual, self.orbit)
         return None
 
     def _worth_trying(self, near: Closing, last: bool) -> bool:
@@ -180,8 +180,8 @@ class Run:
         if not period:
             return None
         orbit = self._shot(period) if self.settings.refine else None
-        if orbit is not None and abs(orbit.multipliers[0]) > 1.0 + AFLOAT:
-            self.found, self.found_at = orbit, self.periods_run
+        if orbit is not None and abs(orbit.multipliers[0]) > 1.0 + UNIT_TOLERANCE:
+            self.orbit, self.orbit_at = orbit, self.periods_run
             self._kick(near)
             return None
         if orbit is not None and not self._is_here(orbit):
@@ -222,16 +222,16 @@ class Run:
 
     def _kick(self, near: Closing) -> None:
         """Move a run that an unstable orbit holds along the way by which it is leaving already, if it is."""
-        orbit = self.found
+        orbit = self.orbit
         assert orbit is not None
         held = near.period % orbit.period == 0 and near.residual <= 100.0 * self.settings.periodic_residual
-        if not held or self.kicks >= MOST_KICKS:
+        if not held or self.kicks >= MAX_KICKS:
             return
         self.kicks += 1
         off = self.state - orbit.state
         self.state = self.state + KICK * orbit.leaving(self.integrator, off)
         self.passed.forget()
-        self.found, self.tried = None, {}
+        self.orbit, self.tried = None, {}
         self.known = 0
 
     def _result(self, period: int, residual: float, orbit: Orbit | None) -> Settled:

@@ -43,8 +43,8 @@ def order_spectrum(samples: Array, per_period: int, period: int) -> Array:
     window = np.hanning(length + 1)[:length]
     segments -= segments.mean(axis=2, keepdims=True)
     segments *= window
-    found = np.fft.rfft(segments, axis=2)[:, :, : ORDERS.size]
-    power = (found.real**2 + found.imag**2).sum(axis=0) / max(count, 1)
+    amplitudes = np.fft.rfft(segments, axis=2)[:, :, : ORDERS.size]
+    power = (amplitudes.real**2 + amplitudes.imag**2).sum(axis=0) / max(count, 1)
     result[:] = 2.0 * np.sqrt(power) / window.sum()
     result[:, 0] = np.abs(samples.mean(axis=0))
     return result

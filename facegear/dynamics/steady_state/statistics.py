@@ -15,20 +15,20 @@ def moments(samples: Array, per_period: int, periodic: bool) -> Moments:
     """
     mean = samples.mean(axis=0)
     centred = samples - mean
-    squares = centred**2
-    variance = squares.mean(axis=0)
+    squared = centred**2
+    variance = squared.mean(axis=0)
     rms, ac_rms = np.sqrt(variance + mean**2), np.sqrt(variance)
     spread, ac_spread = np.zeros((2, mean.size))
     if not periodic:
-        from_mean, from_squares = (batch_means(values, per_period) for values in (centred, squares))
-        spread = mean_interval(from_squares + 2.0 * mean * from_mean) / (2.0 * np.where(rms > 0.0, rms, 1.0))
-        ac_spread = mean_interval(from_squares) / (2.0 * np.where(ac_rms > 0.0, ac_rms, 1.0))
+        from_mean, from_squared = (batch_means(values, per_period) for values in (centred, squared))
+        spread = mean_interval(from_squared + 2.0 * mean * from_mean) / (2.0 * np.where(rms > 0.0, rms, 1.0))
+        ac_spread = mean_interval(from_squared) / (2.0 * np.where(ac_rms > 0.0, ac_rms, 1.0))
     return Moments(
         mean=mean,
         rms=rms,
         ac_rms=ac_rms,
-        least=samples.min(axis=0),
-        most=samples.max(axis=0),
+        minimum=samples.min(axis=0),
+        maximum=samples.max(axis=0),
         rms_interval=spread,
         ac_rms_interval=ac_spread,
     )

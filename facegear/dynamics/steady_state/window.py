@@ -8,8 +8,8 @@ from facegear.arrays import Array
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.steady_state.averages import BATCHES, Averages, averages
 
-MOST_SAMPLES = 4096
-MOST_IN_ALL = 65_536
+MAX_SAMPLES = 4096
+MAX_IN_ALL = 65_536
 """Samples of a window of many periods; a single period may have MOST_SAMPLES."""
 FINENESS = 3.0
 """Samples per period of the fastest motion that a system can answer with."""
@@ -61,11 +61,11 @@ def run_window(
     )
 
 
-def samples_needed(integrator: Integrator, least: int, periods: int) -> int:
-    """Samples per period that show all that moves: `least` times a power of two, within memory."""
-    wanted = min(FINENESS * integrator.fastest, MOST_SAMPLES)
-    most = max(MOST_IN_ALL // periods, least)
-    doublings = max(0, int(np.ceil(np.log2(wanted / least))))
-    while doublings and least * 2**doublings > most:
+def samples_needed(integrator: Integrator, minimum: int, periods: int) -> int:
+    """Samples per period that show all that moves: `minimum` times a power of two, within memory."""
+    wanted = min(FINENESS * integrator.fastest, MAX_SAMPLES)
+    maximum = max(MAX_IN_ALL // periods, minimum)
+    doublings = max(0, int(np.ceil(np.log2(wanted / minimum))))
+    while doublings and minimum * 2**doublings > maximum:
         doublings -= 1
-    return least * 2**doublings
+    return minimum * 2**doublings

@@ -25,7 +25,7 @@ class Resonance:
     mode: int
     frequency_hz: float
     order: float
-    share: float
+    fraction: float
     predicted_rpm: float
 
     @property
@@ -41,8 +41,8 @@ def resonance(piece: Piece, position: int, modes: Modes, teeth: int) -> Resonanc
     start, _ = modes.groups[int(np.argmax(groups))]
     frequency = float(modes.frequencies[start])
     order = float(piece.modal_order[position])
-    share = float(max(groups) / max(energy.sum(), 1e-300))
-    return Resonance(start + 1, frequency, order, share, 60.0 * frequency / (order * teeth))
+    fraction = float(max(groups) / max(energy.sum(), 1e-300))
+    return Resonance(start + 1, frequency, order, fraction, 60.0 * frequency / (order * teeth))
 
 
 def peaks(piece: Piece) -> list[tuple[str, int, int, float]]:
@@ -50,20 +50,20 @@ def peaks(piece: Piece) -> list[tuple[str, int, int, float]]:
 
     A maximum counts if it stands 15 % over the lowest value on either side before a higher one comes.
     """
-    found = []
+    rows = []
     for mesh, curve in enumerate(piece.deflection_ac_rms.T):
-        found += [("deflection", mesh, i, float(curve[i])) for i in maxima(curve)]
+        rows += [("deflection", mesh, i, float(curve[i])) for i in maxima(curve)]
     moved = piece.translation_ac_rms
     for body in range(moved.shape[1]):
         for axis, letter in enumerate("xyz"):
             curve = moved[:, body, axis]
             if curve.max() > 1e-12:
-                found += [(letter, body, i, float(curve[i])) for i in maxima(curve)]
-    return found
+                rows += [(letter, body, i, float(curve[i])) for i in maxima(curve)]
+    return rows
 
 
 def maxima(curve: Array) -> list[int]:
     """Positions of the maxima that are PROMINENT times the higher of the valleys beside them."""
-    found, facts = scipy.signal.find_peaks(curve, height=SMALL * curve.max(), prominence=0.0)
-    valleys = curve[found] - facts["prominences"]
-    return [int(i) for i in found[curve[found] > PROMINENT * valleys]]
+    indices, facts = scipy.signal.find_peaks(curve, height=SMALL * curve.max(), prominence=0.0)
+    valleys = curve[indices] - facts["prominences"]
+    return [int(i) for i in indices[curve[indices] > PROMINENT * valleys]]

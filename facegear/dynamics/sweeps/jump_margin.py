@@ -15,8 +15,12 @@ def jump_margin(model: Model, speed_rpm: float, within: JumpRange) -> float:
     neither sweep meets. Raises NotConverged naming the speed.
     """
     plan = within.plan(speed_rpm)
-    found = whole_sweep(model, plan, {name: [run_chunk(model, plan, name, 0)] for name in plan.directions})
-    distances = [_distance(jump, speed_rpm) for one in found.values() for jump in one.jumps]
+    by_direction = whole_sweep(
+        model, plan, {name: [run_chunk(model, plan, name, 0)] for name in plan.directions}
+    )
+    distances = [
+        _distance(jump, speed_rpm) for direction in by_direction.values() for jump in direction.jumps
+    ]
     return min([*distances, within.range_rpm])
 
 

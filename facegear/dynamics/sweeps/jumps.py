@@ -10,7 +10,7 @@ from facegear.dynamics.motion import State
 from facegear.dynamics.steady_state.simulate import SteadyState
 from facegear.dynamics.sweeps.sweep import Piece
 
-LEAST_CHANGE = 0.1
+MIN_CHANGE = 0.1
 """Relative change of a mesh's AC RMS between neighbouring speeds that may be a jump."""
 ABRUPT = 3.0
 """A jump is this many times the change over the speeds around it."""
@@ -21,7 +21,7 @@ Respond = Callable[[float, State], SteadyState]
 
 
 @dataclass(frozen=True, eq=False)
-class Side:
+class JumpSide:
     """Response on one side of a jump: AC RMS of the mesh deflections (meshes,), m, its class and state.
 
     period: 0 where the motion is not periodic. multiplier: the leading one, NaN where there is none.
@@ -43,8 +43,8 @@ class Jump:
     sweep's position next to the jump with the larger response.
     """
 
-    before: Side
-    after: Side
+    before: JumpSide
+    after: JumpSide
     mesh: int
     largest: int
 
@@ -53,7 +53,7 @@ class Jump:
         """Whether a jump is left in the refined bracket, and not a steep but smooth change or noise."""
         regular = self.before.period > 0 or self.after.period > 0
         return distance(self.before.ac_rms, self.after.ac_rms) > np.log1p(
-            LEAST_CHANGE if regular else 3.0 * LEAST_CHANGE
+            MIN_CHANGE if regular else 3.0 * MIN_CHANGE
         )
 
 
@@ -68,7 +68,7 @@ def suspects(piece: Piece) -> list[int]:
     around = np.full_like(change, 0.0)
     around[1:] = np.maximum(around[1:], change[:-1])
     around[:-1] = np.maximum(around[:-1], change[1:])
-    abrupt = (change > ABRUPT * around) & (change > np.log1p(LEAST_CHANGE))
+    abrupt = (change > ABRUPT * around) & (change > np.log1p(MIN_CHANGE))
     return [int(i) for i in np.flatnonzero(abrupt.any(axis=1) & (largest > 0.0))]
 
 
@@ -82,9 +82,9 @@ def refine(piece: Piece, position: int, respond: Respond, resolution: float) -> 
     return Jump(before=before, after=after, mesh=mesh, largest=position + int(ratio[mesh] > 0.0))
 
 
-def _stored_side(piece: Piece, position: int) -> Side:
+def _stored_side(piece: Piece, position: int) -> JumpSide:
     """What a sweep has found at one of its speeds."""
-    return Side(
+    return JumpSide(
         speed=float(piece.speeds[position]),
         ac_rms=piece.deflection_ac_rms[position],
         label=piece.labels[position],
@@ -94,7 +94,9 @@ def _stored_side(piece: Piece, position: int) -> Side:
     )
 
 
-def bracket(before: Side, after: Side, respond: Respond, resolution: float) -> tuple[Side, Side]:
+def bracket(
+    before: JumpSide, after: JumpSide, respond: Respond, resolution: float
+) -> tuple[JumpSide, JumpSide]:
     """Halve the interval between two speeds with different responses down to `resolution`."""
     while abs(after.speed - before.speed) > resolution:
         middle = 0.5 * (before.speed + after.speed)
@@ -106,11 +108,11 @@ def bracket(before: Side, after: Side, respond: Respond, resolution: float) -> t
     return before, after
 
 
-def side(speed: float, response: SteadyState) -> Side:
+def side(speed: float, response: SteadyState) -> JumpSide:
     """What bisection compares, from a response."""
     ac_rms = response.moments.ac_rms
     multiplier = np.nan if response.multipliers is None else float(abs(response.multipliers[0]))
-    return Side(
+    return JumpSide(
         speed=speed,
         ac_rms=ac_rms,
         label=response.label,

@@ -15,7 +15,7 @@ from facegear.transmission.layout import DOF_PER_BODY
 from facegear.transmission.loaded_modes import loaded_modes
 from facegear.transmission.matrices import mass_diagonal
 
-DEFLECTION = ("mean", "rms", "ac_rms", "least", "most", "rms_interval", "ac_rms_interval")
+DEFLECTION = ("mean", "rms", "ac_rms", "minimum", "maximum", "rms_interval", "ac_rms_interval")
 TRANSLATION = ("rms", "ac_rms", "ac_rms_interval")
 
 
@@ -40,8 +40,8 @@ class Piece:
     deflection_mean: Array
     deflection_rms: Array
     deflection_ac_rms: Array
-    deflection_least: Array
-    deflection_most: Array
+    deflection_minimum: Array
+    deflection_maximum: Array
     deflection_rms_interval: Array
     deflection_ac_rms_interval: Array
     mean_force: Array

@@ -142,14 +142,14 @@ def resonance_table(layout: Layout, direction: str, piece: Piece, modes: Modes) 
     return pd.DataFrame(rows, columns=list(RESONANCE_COLUMNS))
 
 
-def _belongs(found: Resonance) -> dict[str, str | int | float]:
+def _belongs(resonance: Resonance) -> dict[str, str | int | float]:
     """Columns that name a resonance."""
     return {
-        "resonance": found.name,
-        "resonance_rpm": found.predicted_rpm,
-        "energy_share": found.share,
-        "mode": found.mode,
-        "order": found.order,
+        "resonance": resonance.name,
+        "resonance_rpm": resonance.predicted_rpm,
+        "energy_share": resonance.fraction,
+        "mode": resonance.mode,
+        "order": resonance.order,
     }
 
 

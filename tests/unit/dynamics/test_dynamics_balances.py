@@ -70,9 +70,9 @@ def ring_dissipation(model, coordinates, velocity):
     rows = system.mesh_jacobian[system.contacts :].reshape(-1, 3, system.size)[:, :2]
     speed = np.einsum("rcn,kn->krc", rows, velocity)
     radial = (along * speed).sum(axis=-1)
-    turning = (speed**2).sum(axis=-1) - radial**2
+    extrema = (speed**2).sum(axis=-1) - radial**2
     share = beyond / np.maximum(np.hypot(place[..., 0], place[..., 1]), 1e-300)
-    power = system.ring_lag * system.ring_stiffness * (radial**2 * (beyond > 0.0) + share * turning)
+    power = system.ring_lag * system.ring_stiffness * (radial**2 * (beyond > 0.0) + share * extrema)
     return power.sum(axis=1)
 
 

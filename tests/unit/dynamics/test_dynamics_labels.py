@@ -43,7 +43,7 @@ def test_at_low_damping_the_orbit_is_the_one_that_the_run_comes_to(refine):
     alone = closed_form_run(LOW_DAMPING, 3000)[-1]
     assert found.label == "period-1"
     np.testing.assert_allclose([found.state.displacement[0], found.state.velocity[0]], alone, atol=1e-5)
-    assert found.moments.least[0] > 1.0, "the lower orbit keeps contact"
+    assert found.moments.minimum[0] > 1.0, "the lower orbit keeps contact"
 
 
 @pytest.mark.parametrize("number", [230, 248])
@@ -103,7 +103,7 @@ def test_averages_and_extremes_do_not_depend_on_how_densely_the_motion_is_sample
     np.testing.assert_allclose(coarse.mean_forces[0], fine.forces.mean(axis=0), rtol=1e-5, atol=1e-2)
     run = record(model.system, coarse.frequency, coarse.state, coarse.period, Settings(tolerance=1e-6))
     for mesh in range(3):
-        extremes = coarse.moments.least[mesh], coarse.moments.most[mesh]
+        extremes = coarse.moments.minimum[mesh], coarse.moments.maximum[mesh]
         np.testing.assert_allclose(extremes, run.extremes(mesh), atol=2e-6 * model.system.scale)
 
 
@@ -116,9 +116,9 @@ def test_averages_and_extremes_of_meshes_with_two_flanks_come_from_polynomials_t
     least = rtol * moments.ac_rms.max()
     np.testing.assert_allclose(moments.mean, fine.deflections.mean(axis=0), rtol=rtol, atol=least)
     np.testing.assert_allclose(moments.ac_rms, fine.deflections.std(axis=0), rtol=rtol)
-    np.testing.assert_allclose(moments.least, fine.deflections.min(axis=0), atol=1e-5 * model.system.scale)
-    np.testing.assert_allclose(moments.most, fine.deflections.max(axis=0), atol=1e-5 * model.system.scale)
-    assert (moments.most >= fine.deflections.max(axis=0) - 1e-9 * model.system.scale).all()
+    np.testing.assert_allclose(moments.minimum, fine.deflections.min(axis=0), atol=1e-5 * model.system.scale)
+    np.testing.assert_allclose(moments.maximum, fine.deflections.max(axis=0), atol=1e-5 * model.system.scale)
+    assert (moments.maximum >= fine.deflections.max(axis=0) - 1e-9 * model.system.scale).all()
     np.testing.assert_allclose(fine.mean_forces[0], fine.forces.mean(axis=0), rtol=1e-4, atol=1e-2)
     # The magnitude of what two wedged flanks transmit has a corner inside a step.
     np.testing.assert_allclose(fine.mean_forces[1], np.abs(fine.forces).mean(axis=0), rtol=2e-3)

@@ -52,7 +52,7 @@ def test_the_resonance_of_mode_17_hardens_with_a_jump_up_beyond_the_jump_down(mo
     assert up.before.multiplier > 0.95 or up.before.label == "not settled"
     found = resonance(whole["up"].piece, up.largest, modes, 23)
     assert (found.mode, found.order) == (17, 1.0)
-    assert found.share > 0.8
+    assert found.fraction > 0.8
 
 
 @pytest.mark.parametrize(("speed", "direction"), [(4950.0, "down"), (5200.0, "up")])

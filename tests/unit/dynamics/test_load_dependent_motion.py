@@ -11,7 +11,7 @@ import pytest
 from force_tables import power_table, two_pairs
 from oscillators import one_degree
 
-from facegear.dynamics.branches.continuation import Run, branch_at
+from facegear.dynamics.branches.continuation import ContinuationSettings, branch_at
 from facegear.dynamics.branches.family import Family
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import at_parameter
@@ -78,7 +78,7 @@ def test_the_motion_keeps_its_order_where_it_passes_levels_of_the_table():
     assert (errors < 50.0 * tolerances).all()
 
 
-def flow(table, damping, amplitude=0.0, tolerance=1e-12, mean=1.0):
+def period_map(table, damping, amplitude=0.0, tolerance=1e-12, mean=1.0):
     system = oscillator(table, damping, amplitude, mean)
     return PeriodMap(Family("W", lambda speed: (system, speed)), 1, tolerance)
 
@@ -95,7 +95,7 @@ def off(flow_, found, place, rate):
 
 def test_an_unstable_orbit_on_a_table_has_place_and_multipliers_of_the_power_law():
     """Damping .02, load 1 + .1 cos W t, W 1.1; contact is lost."""
-    flow_ = flow(power_table(1000), 0.02, 0.1)
+    flow_ = period_map(power_table(1000), 0.02, 0.1)
     found = orbit(flow_, 1.1, 1.79379722656, 0.68475098448)
     assert off(flow_, found, 1.79379722656, 0.68475098448) < 1e-9
     np.testing.assert_allclose(np.sort(found.multipliers.real), [0.51611544, 1.54179196], rtol=0, atol=2e-8)
@@ -104,8 +104,8 @@ def test_an_unstable_orbit_on_a_table_has_place_and_multipliers_of_the_power_law
 
 def test_branches_on_a_table_fold_where_the_power_law_does():
     """Damping .02, load 1 + .1 cos W t: the upper fold keeps contact, the lower one has lost it."""
-    flow_ = flow(power_table(300), 0.02, 0.1, 1e-11)
-    branch = branch_at(flow_, np.array([1.2, 0.0]), 1.0, Run(0.8, 1.2))
+    flow_ = period_map(power_table(300), 0.02, 0.1, 1e-11)
+    branch = branch_at(flow_, np.array([1.2, 0.0]), 1.0, ContinuationSettings(0.8, 1.2))
     folds = sorted(special.point.value for special in branch.of(Kind.FOLD))
     assert folds == pytest.approx([0.81612741138, 1.13889845103], abs=1e-6)
 
@@ -113,7 +113,7 @@ def test_branches_on_a_table_fold_where_the_power_law_does():
 def test_a_parametric_table_doubles_its_period_where_the_power_law_does():
     """Damping .03, depth .25, no other load."""
     for speed in (2.28318159363, 2.60138748211):
-        found = orbit(flow(power_table(300, 0.25), 0.03), speed, 1.0, 0.0)
+        found = orbit(period_map(power_table(300, 0.25), 0.03), speed, 1.0, 0.0)
         assert found.multipliers.real.min() == pytest.approx(-1.0, abs=1e-6)
 
 
@@ -133,7 +133,7 @@ def test_two_pairs_that_take_over_from_each_other_are_met_as_well_as_their_corne
     """
     found = []
     for levels, orders in ((12, 12), (192, 48)):
-        flow_ = flow(two_pairs(levels, orders, exponent), 0.03, tolerance=1e-11, mean=0.3)
+        flow_ = period_map(two_pairs(levels, orders, exponent), 0.03, tolerance=1e-11, mean=0.3)
         point = orbit(flow_, speed, place, rate)
         found.append((off(flow_, point, place, rate), np.abs(point.multipliers - multiplier).min()))
     assert (np.array(found[1]) < errors).all()

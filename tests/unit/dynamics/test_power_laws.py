@@ -12,7 +12,7 @@ from lumped_machines import make_layout, make_machine
 from oscillators import one_degree
 from power_laws import PowerLaw
 
-from facegear.dynamics.branches.continuation import Run, branch_at
+from facegear.dynamics.branches.continuation import ContinuationSettings, branch_at
 from facegear.dynamics.branches.family import Family
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import at_parameter
@@ -70,7 +70,7 @@ def test_the_motion_keeps_its_order_where_it_passes_the_level_of_a_law():
     assert np.polyfit(length, error, 1)[0] > 7.5
 
 
-def flow(law, damping, amplitude=0.0, tolerance=1e-12):
+def period_map(law, damping, amplitude=0.0, tolerance=1e-12):
     system = oscillator(law, damping, amplitude)
     return PeriodMap(Family("W", lambda speed: (system, speed)), 1, tolerance)
 
@@ -82,7 +82,7 @@ def orbit(flow_, speed, place, rate):
 
 def test_an_unstable_orbit_that_loses_contact_has_the_multipliers_of_the_power_law():
     """Damping .02, load 1 + .1 cos W t, W 1.1; the place is the reference's as well."""
-    flow_ = flow(PowerLaw(level=1e-4), 0.02, 0.1)
+    flow_ = period_map(PowerLaw(level=1e-4), 0.02, 0.1)
     found = orbit(flow_, 1.1, 1.79379722656, 0.68475098448)
     np.testing.assert_allclose(np.sort(found.multipliers.real), [0.51611544, 1.54179196], rtol=0, atol=8e-9)
     place = flow_.state(found.z, found.u)
@@ -94,16 +94,18 @@ def test_an_unstable_orbit_that_loses_contact_has_the_multipliers_of_the_power_l
 def test_a_parametric_power_law_doubles_its_period_where_the_taylor_series_say():
     """Damping .03, depth .25, no other load."""
     for speed in (2.28318159363, 2.60138748211):
-        found = orbit(flow(PowerLaw(depth=0.25), 0.03), speed, 1.0, 0.0)
+        found = orbit(period_map(PowerLaw(depth=0.25), 0.03), speed, 1.0, 0.0)
         assert found.multipliers.real.min() == pytest.approx(-1.0, abs=1e-8)
 
 
 def test_a_branch_on_the_power_law_folds_while_it_keeps_contact():
     """Damping .02, load 1 + .1 cos W t: no linear law has a fold without a loss of contact."""
-    branch = branch_at(flow(PowerLaw(), 0.02, 0.1, 1e-11), np.array([1.2, 0.0]), 1.0, Run(0.95, 1.2))
+    branch = branch_at(
+        period_map(PowerLaw(), 0.02, 0.1, 1e-11), np.array([1.2, 0.0]), 1.0, ContinuationSettings(0.95, 1.2)
+    )
     folds = [special.point for special in branch.of(Kind.FOLD)]
     assert [point.value for point in folds] == pytest.approx([1.13889845103], rel=1e-9)
-    assert folds[0].turning[0, 1].max() == pytest.approx(0.267231, abs=1e-5)
+    assert folds[0].extrema[0, 1].max() == pytest.approx(0.267231, abs=1e-5)
 
 
 def test_tangents_of_the_law_are_differences_of_its_motions():

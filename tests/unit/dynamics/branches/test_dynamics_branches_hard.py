@@ -7,7 +7,14 @@ import pytest
 from lumped_machines import make_machine
 from oscillators import backlash_oscillator, one_degree, square_wave
 
-from facegear.dynamics.branches.continuation import Branch, End, Run, branch_at, follow, turned
+from facegear.dynamics.branches.continuation import (
+    Branch,
+    BranchEnd,
+    ContinuationSettings,
+    branch_at,
+    follow,
+    turned,
+)
 from facegear.dynamics.branches.explore import crossings, distance
 from facegear.dynamics.branches.family import Family, speed_family
 from facegear.dynamics.branches.period_map import PeriodMap
@@ -18,7 +25,7 @@ from facegear.mesh_law.linear import LinearLaw
 
 EXACT = [0.828463984388, 0.820631087712, 0.708031618722, 1.407088466023]
 """Two folds and two grazes of oracle (a)."""
-WIDE = Run(0.25, 2.6)
+WIDE = ContinuationSettings(0.25, 2.6)
 
 
 def flow_of(at, tolerance=1e-12) -> PeriodMap:
@@ -29,11 +36,11 @@ def listed(branch: Branch):
     return [(special.kind, special.point.value) for special in branch.specials]
 
 
-def assert_same_from_the_other_end(branch: Branch, run: Run):
+def assert_same_from_the_other_end(branch: Branch, run: ContinuationSettings):
     """The same special points by another way along the branch, and no turning round on either."""
-    assert branch.ends == (End.LIMIT, End.LIMIT)
-    back = follow(branch.flow, turned(branch.points[-1]), replace(run, largest=0.11), both=False)
-    assert back.ends[1] is End.LIMIT
+    assert branch.ends == (BranchEnd.LIMIT, BranchEnd.LIMIT)
+    back = follow(branch.period_map, turned(branch.points[-1]), replace(run, ds_max=0.11), both=False)
+    assert back.ends[1] is BranchEnd.LIMIT
     assert back.points[-1].value == pytest.approx(branch.points[0].value, rel=1e-12)
     there, again = sorted(listed(branch)), sorted(listed(back))
     assert [kind for kind, _ in there] == [kind for kind, _ in again]
@@ -65,7 +72,7 @@ def test_mirrored_meshes_that_switch_at_one_instant_graze_at_one_speed():
         assert sorted(pair) == [((0,), 1), ((1,), -1)]
 
 
-def afloat(speed):
+def neutral(speed):
     """Oracle (a) beside a second body that no bearing holds and whose mesh never closes."""
     one = backlash_oscillator(speed)
     return replace(
@@ -83,27 +90,27 @@ def afloat(speed):
 
 
 def test_a_floating_body_changes_no_special_point_and_its_one_is_no_fold():
-    branch = branch_at(flow_of(afloat), np.array([1.1, 0.0, 0.0, 0.0]), 0.3, WIDE)
+    branch = branch_at(flow_of(neutral), np.array([1.1, 0.0, 0.0, 0.0]), 0.3, WIDE)
     assert sorted(value for _, value in listed(branch)) == pytest.approx(sorted(EXACT), rel=1e-9)
-    assert branch.points[0].linear.afloat.shape == (4, 1)
+    assert branch.points[0].linear.neutral.shape == (4, 1)
     assert branch.points[0].multipliers.size == 3
     assert branch.points[0].stable
 
 
 def test_the_place_of_a_floating_body_makes_no_other_motion():
     """Nothing holds the body, so a sweep finds it anywhere; the rest of the motion must agree."""
-    branch = branch_at(flow_of(afloat), np.array([1.1, 0.0, 0.0, 0.0]), 0.3, WIDE)
+    branch = branch_at(flow_of(neutral), np.array([1.1, 0.0, 0.0, 0.0]), 0.3, WIDE)
     found = crossings(branch, 1.2)[0]
-    shift = np.append(found.linear.afloat[:, 0], 0.0)
+    shift = np.append(found.linear.neutral[:, 0], 0.0)
     assert distance(branch, replace(found, x=found.x + 3.0 * shift), 1) < 1e-12
     aside = replace(found, x=found.x + 1e-3 * np.array([1.0, 0.0, 0.0, 0.0, 0.0]))
     assert distance(branch, aside, 1) > 1e-4
 
 
 def test_a_graze_within_a_hundred_thousandth_of_a_fold_is_told_apart_from_it():
-    run = Run(0.33, 0.47)
-    flow = flow_of(lambda speed: backlash_oscillator(speed, mean=0.0106))
-    branch = branch_at(flow, np.array([1.01, 0.0]), 0.335, run)
+    run = ContinuationSettings(0.33, 0.47)
+    period_map = flow_of(lambda speed: backlash_oscillator(speed, mean=0.0106))
+    branch = branch_at(period_map, np.array([1.01, 0.0]), 0.335, run)
     folds, grazes = ([special.point.value for special in branch.of(kind)] for kind in (Kind.FOLD, Kind.GRAZE))
     nearest = min(abs(fold / graze - 1.0) for fold in folds for graze in grazes)
     assert 1e-7 < nearest < 1e-5
@@ -112,15 +119,15 @@ def test_a_graze_within_a_hundred_thousandth_of_a_fold_is_told_apart_from_it():
 
 def test_two_folds_a_hundred_thousandth_apart_are_both_found():
     """As 0.1 rpm at 11 000 rpm."""
-    flow = flow_of(lambda speed: backlash_oscillator(speed, mean=0.4), 1e-14)
-    branch = branch_at(flow, np.array([1.4, 0.0]), 0.5, Run(0.45, 2.1))
+    period_map = flow_of(lambda speed: backlash_oscillator(speed, mean=0.4), 1e-14)
+    branch = branch_at(period_map, np.array([1.4, 0.0]), 0.5, ContinuationSettings(0.45, 2.1))
     folds = [special.point.value for special in branch.of(Kind.FOLD)]
     assert folds == pytest.approx([0.968919631757, 0.968911121069], rel=1e-9)
-    assert branch.ends == (End.LIMIT, End.LIMIT)
+    assert branch.ends == (BranchEnd.LIMIT, BranchEnd.LIMIT)
 
 
 def test_contact_only_damping_with_a_square_wave_stiffness_gives_one_list_from_both_ends():
-    flow = flow_of(
+    period_map = flow_of(
         lambda speed: one_degree(
             0.02,
             stiffness=((0.0,), (0.0,)),
@@ -131,34 +138,34 @@ def test_contact_only_damping_with_a_square_wave_stiffness_gives_one_list_from_b
             contact_damping=0.08,
         )
     )
-    run = Run(0.6, 1.3)
-    branch = branch_at(flow, np.array([2.714052622869, 1.718419252155 / 0.78]), 0.78, run)
+    run = ContinuationSettings(0.6, 1.3)
+    branch = branch_at(period_map, np.array([2.714052622869, 1.718419252155 / 0.78]), 0.78, run)
     assert branch.of(Kind.GRAZE)
     assert_same_from_the_other_end(branch, run)
 
 
 def test_multipliers_of_an_undamped_oscillator_multiply_to_one():
-    run = Run(1.2, 2.4)
-    flow = flow_of(lambda speed: backlash_oscillator(speed, 0.0))
-    branch = branch_at(flow, np.array([1.0, 0.0]), 2.35, run)
+    run = ContinuationSettings(1.2, 2.4)
+    period_map = flow_of(lambda speed: backlash_oscillator(speed, 0.0))
+    branch = branch_at(period_map, np.array([1.0, 0.0]), 2.35, run)
     assert branch.points[-1].value == pytest.approx(2.4)
     for point in branch.points:
         assert np.prod(point.multipliers).real == pytest.approx(1.0, abs=1e-9)
 
 
 def test_without_any_damping_a_branch_ends_for_a_named_reason_at_orbits_that_are_right():
-    run = Run(0.3, 2.4, points=10)
-    flow = flow_of(lambda speed: backlash_oscillator(speed, 0.0))
-    branch = branch_at(flow, np.array([1.1, 0.0]), 0.4, run)
-    assert set(branch.ends) <= {End.LIMIT, End.POLE, End.POINTS}
+    run = ContinuationSettings(0.3, 2.4, max_points=10)
+    period_map = flow_of(lambda speed: backlash_oscillator(speed, 0.0))
+    branch = branch_at(period_map, np.array([1.1, 0.0]), 0.4, run)
+    assert set(branch.ends) <= {BranchEnd.LIMIT, BranchEnd.POLE, BranchEnd.POINTS}
     for point in branch.points:
-        assert np.abs(flow.gap(point.z, point.u)).max() < 1e-8
+        assert np.abs(period_map.gap(point.z, point.u)).max() < 1e-8
 
 
 def test_a_machine_whose_meshes_damp_nothing_gives_one_list_from_both_ends():
     model = build_model(make_machine(torque=1300.0, mesh_damping=0.0))
-    flow = PeriodMap(speed_family(model), 1, 1e-9)
+    period_map = PeriodMap(speed_family(model), 1, 1e-9)
     state = simulate(model, 5000.0, Settings(tolerance=1e-7)).state
-    run = Run(4900.0, 5200.0)
-    branch = branch_at(flow, flow.weighted(state, float(np.log(5000.0))), 5000.0, run)
+    run = ContinuationSettings(4900.0, 5200.0)
+    branch = branch_at(period_map, period_map.weighted(state, float(np.log(5000.0))), 5000.0, run)
     assert_same_from_the_other_end(branch, run)

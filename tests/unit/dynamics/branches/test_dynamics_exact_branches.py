@@ -10,7 +10,14 @@ import numpy as np
 import pytest
 from oscillators import backlash_oscillator, meissner, one_degree, two_coordinates
 
-from facegear.dynamics.branches.continuation import Branch, End, Run, branch_at, follow, turned
+from facegear.dynamics.branches.continuation import (
+    Branch,
+    BranchEnd,
+    ContinuationSettings,
+    branch_at,
+    follow,
+    turned,
+)
 from facegear.dynamics.branches.family import Family
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import at_parameter
@@ -18,7 +25,7 @@ from facegear.dynamics.branches.special import Kind
 from facegear.dynamics.branches.switching import broken, doubled
 from facegear.dynamics.motion import State
 
-WIDE = Run(0.5, 2.2)
+WIDE = ContinuationSettings(0.5, 2.2)
 
 
 def backlash(amplitude=0.05, in_gap=None, mean=0.1, tolerance=1e-14):
@@ -39,13 +46,13 @@ def two_sided():
     return PeriodMap(Family("W", at), 1, 1e-14)
 
 
-def orbit(flow, speed, place, velocity):
+def orbit(period_map, speed, place, velocity):
     u = float(np.log(speed))
-    return at_parameter(flow, flow.weighted(State(np.array([place]), np.array([velocity])), u), u)
+    return at_parameter(period_map, period_map.weighted(State(np.array([place]), np.array([velocity])), u), u)
 
 
-def state_of(flow, point):
-    state = flow.state(point.z, point.u)
+def state_of(period_map, point):
+    state = period_map.state(point.z, point.u)
     return float(state.displacement[0]), float(state.velocity[0])
 
 
@@ -55,8 +62,8 @@ def places(branch: Branch, *kinds: Kind):
 
 @cache
 def branch_a(amplitude=0.05, in_gap=None) -> Branch:
-    flow = backlash(amplitude, in_gap)
-    return branch_at(flow, np.array([1.1, 0.0]), 0.3, Run(0.25, 2.6))
+    period_map = backlash(amplitude, in_gap)
+    return branch_at(period_map, np.array([1.1, 0.0]), 0.3, ContinuationSettings(0.25, 2.6))
 
 
 def test_oracle_a_has_two_folds_and_two_grazes():
@@ -64,13 +71,13 @@ def test_oracle_a_has_two_folds_and_two_grazes():
     assert places(branch, Kind.FOLD) == pytest.approx([0.828463984388, 0.708031618722], rel=1e-9)
     assert places(branch, Kind.GRAZE) == pytest.approx([0.820631087712, 1.407088466023], rel=1e-9)
     assert len(branch.specials) == 4
-    assert branch.ends == (End.LIMIT, End.LIMIT)
+    assert branch.ends == (BranchEnd.LIMIT, BranchEnd.LIMIT)
     for special, expected in zip(
         branch.of(Kind.FOLD),
         [(1.212219045727, 0.028689520565), (1.003241047571, 0.246715686858)],
         strict=True,
     ):
-        assert state_of(branch.flow, special.point) == pytest.approx(expected, abs=1e-8)
+        assert state_of(branch.period_map, special.point) == pytest.approx(expected, abs=1e-8)
         assert special.multiplier == pytest.approx(1.0, abs=1e-7)
 
 
@@ -94,7 +101,7 @@ def test_oracle_a_has_two_folds_and_two_grazes():
 def test_unstable_orbits_of_oracle_a(speed, state, extremes, multipliers):
     point = orbit(backlash(), speed, round(state[0], 2), round(state[1], 2))
     assert state_of(backlash(), point) == pytest.approx(state, abs=1e-10)
-    maxima, minima = point.turning[0]
+    maxima, minima = point.extrema[0]
     assert (minima[0], maxima[0]) == pytest.approx(extremes, abs=1e-10)
     assert point.multipliers.real == pytest.approx(multipliers, abs=1e-9)
     assert not point.stable
@@ -107,14 +114,14 @@ def test_oracle_b_has_its_folds_and_doublings():
     assert len(branch.specials) == 4 + len(branch.of(Kind.GRAZE)) == 5
     expected = [(0.886008149142, 0.031390598949), (0.964001267987, 0.016454373324)]
     for special, state in zip(branch.of(Kind.DOUBLING), expected, strict=True):
-        assert state_of(branch.flow, special.point) == pytest.approx(state, abs=1e-8)
+        assert state_of(branch.period_map, special.point) == pytest.approx(state, abs=1e-8)
 
 
 @pytest.mark.parametrize("start", [0, 1])
 def test_period_two_curve_of_oracle_b_joins_both_doublings(start):
     parent = branch_a(0.1)
-    branch = doubled(parent.flow, parent.of(Kind.DOUBLING)[start], WIDE)
-    assert branch.ends == (End.DOUBLING, End.DOUBLING)
+    branch = doubled(parent.period_map, parent.of(Kind.DOUBLING)[start], WIDE)
+    assert branch.ends == (BranchEnd.DOUBLING, BranchEnd.DOUBLING)
     assert sorted(branch.values[[0, -1]]) == pytest.approx([1.226700634663, 1.952684741709], rel=1e-7)
     assert sorted(places(branch, Kind.FOLD)) == pytest.approx([1.030052101340, 1.404839759900], rel=1e-9)
     assert sorted(places(branch, Kind.DOUBLING)) == pytest.approx([1.400378957838, 1.846195450789], rel=1e-9)
@@ -132,36 +139,36 @@ def test_oracle_c_contact_only_damping():
     branch = branch_a(0.05, 0.01)
     assert places(branch, Kind.FOLD) == pytest.approx([0.828196556373, 0.625813889165], rel=1e-9)
     assert not branch.of(Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
-    point = orbit(branch.flow, 0.75, 1.27, 0.12)
-    assert state_of(branch.flow, point) == pytest.approx((1.265801278624, 0.122418658071), abs=1e-9)
+    point = orbit(branch.period_map, 0.75, 1.27, 0.12)
+    assert state_of(branch.period_map, point) == pytest.approx((1.265801278624, 0.122418658071), abs=1e-9)
     assert point.multipliers.real == pytest.approx((2.2526746161, 0.2628816387), abs=1e-8)
 
 
 def test_saltation_matters_where_damping_in_contact_meets_variable_stiffness():
-    flow = square_wave(0.01)
-    point = orbit(flow, 0.78, 2.714052622869, 1.718419252155)
-    assert state_of(flow, point) == pytest.approx((2.714052622869, 1.718419252155), abs=1e-9)
+    period_map = square_wave(0.01)
+    point = orbit(period_map, 0.78, 2.714052622869, 1.718419252155)
+    assert state_of(period_map, point) == pytest.approx((2.714052622869, 1.718419252155), abs=1e-9)
     assert point.pairs[0] == pytest.approx(0.25659969 + 0.75302207j, abs=1e-7)
 
 
 def test_oracle_d_breaks_its_symmetry_at_a_branch_point():
-    flow = two_sided()
-    start = orbit(flow, 0.4, *SYMMETRIC)
-    branch = follow(flow, start, Run(0.3, 0.6))
+    period_map = two_sided()
+    start = orbit(period_map, 0.4, *SYMMETRIC)
+    branch = follow(period_map, start, ContinuationSettings(0.3, 0.6))
     assert places(branch, Kind.BRANCH) == pytest.approx([0.348540186191], rel=1e-8)
     assert len(branch.specials) == 1
     special = branch.specials[0]
-    assert state_of(flow, special.point) == pytest.approx((1.674260831215, 0.364887573423), abs=1e-8)
+    assert state_of(period_map, special.point) == pytest.approx((1.674260831215, 0.364887573423), abs=1e-8)
     assert abs(special.point.tangent[-1]) > 0.1
-    aside = broken(flow, special, Run(0.345, 0.6))
+    aside = broken(period_map, special, ContinuationSettings(0.345, 0.6))
     point = aside.points[-1]
-    deepest, shallowest = point.turning[0][0][0], point.turning[0][1][0]
+    deepest, shallowest = point.extrema[0][0][0], point.extrema[0][1][0]
     assert abs(deepest + shallowest) > 1e-3
-    assert np.abs(flow.gap(point.z, point.u)).max() < 1e-9
+    assert np.abs(period_map.gap(point.z, point.u)).max() < 1e-9
     middle = aside.points[len(aside.points) // 2]
     for largest in (0.3, 0.05, 0.011):
-        again = follow(flow, middle, Run(0.345, 0.6, largest=largest))
-        assert again.ends[0] is End.SYMMETRY, "its mirror image is a branch of its own"
+        again = follow(period_map, middle, ContinuationSettings(0.345, 0.6, ds_max=largest))
+        assert again.ends[0] is BranchEnd.SYMMETRY, "its mirror image is a branch of its own"
         assert again.points[0].value == pytest.approx(0.348540186191, rel=1e-8)
         assert not again.of(Kind.FOLD, Kind.BRANCH)
 
@@ -170,18 +177,20 @@ SYMMETRIC = (1.674260831215, 0.364887573423)
 
 
 def test_oracle_e_square_wave_folds_and_unstable_orbit():
-    flow = square_wave()
-    branch = follow(flow, orbit(flow, 0.75, 2.901723445814, -1.084165628890), Run(0.6, 1.3))
+    period_map = square_wave()
+    branch = follow(
+        period_map, orbit(period_map, 0.75, 2.901723445814, -1.084165628890), ContinuationSettings(0.6, 1.3)
+    )
     assert sorted(places(branch, Kind.FOLD)) == pytest.approx([0.688016103000, 0.871223996023], rel=1e-9)
     assert not branch.of(Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
-    point = orbit(flow, 0.75, 2.9, -1.08)
-    assert state_of(flow, point) == pytest.approx((2.901723445814, -1.084165628890), abs=1e-9)
+    point = orbit(period_map, 0.75, 2.9, -1.08)
+    assert state_of(period_map, point) == pytest.approx((2.901723445814, -1.084165628890), abs=1e-9)
     assert point.multipliers.real == pytest.approx((1.7914031721, 0.2415310486), abs=1e-8)
 
 
 def test_two_coordinates_lose_stability_to_a_torus_and_regain_it():
-    flow = PeriodMap(Family("W", lambda speed: (two_coordinates(), speed)), 1, 1e-14)
-    branch = branch_at(flow, np.zeros(4), 2.0, Run(1.95, 2.6))
+    period_map = PeriodMap(Family("W", lambda speed: (two_coordinates(), speed)), 1, 1e-14)
+    branch = branch_at(period_map, np.zeros(4), 2.0, ContinuationSettings(1.95, 2.6))
     assert places(branch, Kind.TORUS) == pytest.approx([2.199391673612, 2.374997781329], rel=1e-9)
     assert len(branch.specials) == 2
     for special in branch.specials:
@@ -193,7 +202,9 @@ def test_a_brief_loss_of_contact_at_resonance_is_met_by_long_steps():
     """At the peak of a linear resonance the amplitude exceeds the mean deflection by 1 in 4000 only."""
     amplitude, mean, damping = 0.00999, 0.1, 0.1
     squares = np.roots([1.0 - (amplitude / mean) ** 2, damping**2 - 2.0, 1.0])
-    branch = branch_at(backlash(amplitude, mean=mean), np.array([1.1, 0.0]), 0.5, Run(0.5, 2.0))
+    branch = branch_at(
+        backlash(amplitude, mean=mean), np.array([1.1, 0.0]), 0.5, ContinuationSettings(0.5, 2.0)
+    )
     assert places(branch, Kind.GRAZE) == pytest.approx(np.sqrt(np.sort(squares)), rel=1e-9)
     between = (branch.values**2 > squares.min()) & (branch.values**2 < squares.max())
     assert not between.any()
@@ -202,17 +213,19 @@ def test_a_brief_loss_of_contact_at_resonance_is_met_by_long_steps():
 
 @pytest.mark.parametrize("largest", [1.2, 0.075])
 def test_same_points_with_other_steps_from_either_end(largest):
-    flow = backlash()
+    period_map = backlash()
     expected = branch_a()
-    start = turned(orbit(flow, 2.2, *state_of(flow, expected.points[-1])))
-    branch = follow(flow, start, Run(0.25, 2.6, largest=largest, first=0.005))
+    start = turned(orbit(period_map, 2.2, *state_of(period_map, expected.points[-1])))
+    branch = follow(period_map, start, ContinuationSettings(0.25, 2.6, ds_max=largest, first=0.005))
     again = [(s.kind, pytest.approx(s.point.value, rel=1e-9)) for s in branch.specials[::-1]]
     assert [(s.kind, s.point.value) for s in expected.specials] == again
 
 
 def test_tolerance_moves_special_points_by_no_more_than_a_millionth():
     lists = [
-        branch_at(backlash(tolerance=tolerance), np.array([1.1, 0.0]), 0.3, Run(0.25, 2.6)).specials
+        branch_at(
+            backlash(tolerance=tolerance), np.array([1.1, 0.0]), 0.3, ContinuationSettings(0.25, 2.6)
+        ).specials
         for tolerance in (1e-6, 1e-10)
     ]
     assert [s.kind for s in lists[0]] == [s.kind for s in lists[1]]
@@ -221,16 +234,16 @@ def test_tolerance_moves_special_points_by_no_more_than_a_millionth():
 
 
 def test_multipliers_over_two_periods_are_squares():
-    flow = backlash()
-    point = orbit(flow, 0.75, 1.2287, 0.1647)
-    twice = at_parameter(flow.over(2), point.z, point.u)
+    period_map = backlash()
+    point = orbit(period_map, 0.75, 1.2287, 0.1647)
+    twice = at_parameter(period_map.over(2), point.z, point.u)
     assert np.sort(twice.multipliers.real) == pytest.approx(np.sort(point.multipliers.real) ** 2, rel=1e-9)
 
 
 def test_a_period_two_orbit_may_be_started_at_its_other_phase():
-    flow = backlash(0.1)
-    point = orbit(flow.over(2), 1.2, 0.4151, -0.0089)
-    other = flow.over(2).images(point.z, point.u)[1]
-    again = at_parameter(flow.over(2), other, point.u)
+    period_map = backlash(0.1)
+    point = orbit(period_map.over(2), 1.2, 0.4151, -0.0089)
+    other = period_map.over(2).images(point.z, point.u)[1]
+    again = at_parameter(period_map.over(2), other, point.u)
     assert np.abs(again.z - point.z).max() > 0.1
     assert again.multipliers.real == pytest.approx(point.multipliers.real, rel=1e-8)

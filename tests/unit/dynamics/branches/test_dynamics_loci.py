@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from oscillators import backlash_oscillator
 
-from facegear.dynamics.branches.continuation import Run, branch_at
+from facegear.dynamics.branches.continuation import ContinuationSettings, branch_at
 from facegear.dynamics.branches.family import Plane
 from facegear.dynamics.branches.loci import Corner, LocusRun, follow_locus
 from facegear.dynamics.branches.period_map import PeriodMap
@@ -14,8 +14,8 @@ from facegear.dynamics.branches.special import Kind
 
 
 def parent(plane, second):
-    flow = PeriodMap(plane.line(second), 1, 1e-14)
-    return flow, branch_at(flow, np.array([1.1, 0.0]), 0.5, Run(0.45, 2.1))
+    period_map = PeriodMap(plane.line(second), 1, 1e-14)
+    return period_map, branch_at(period_map, np.array([1.1, 0.0]), 0.5, ContinuationSettings(0.45, 2.1))
 
 
 @pytest.mark.parametrize(
@@ -28,9 +28,11 @@ def parent(plane, second):
 )
 def test_fold_locus_passes_the_folds_at_other_loads(mean, up, down):
     plane = Plane(("W", "Fm"), lambda speed, load: (backlash_oscillator(speed, 0.05, load), speed))
-    flow, branch = parent(plane, 0.1)
+    period_map, branch = parent(plane, 0.1)
     for fold, expected in zip(branch.of(Kind.FOLD), (up, down), strict=True):
-        locus = follow_locus(plane, 0.1, fold.kind, fold.point.x, flow, LocusRun((0.5, 0.099), (1.2, mean)))
+        locus = follow_locus(
+            plane, 0.1, fold.kind, fold.point.x, period_map, LocusRun((0.5, 0.099), (1.2, mean))
+        )
         speed, load = locus.points[-1].values
         assert load == pytest.approx(mean, rel=1e-12)
         assert speed == pytest.approx(expected, rel=1e-8)
@@ -38,9 +40,9 @@ def test_fold_locus_passes_the_folds_at_other_loads(mean, up, down):
 
 def test_fold_locus_passes_its_cusp():
     plane = Plane(("W", "Fm"), lambda speed, load: (backlash_oscillator(speed, 0.05, load), speed))
-    flow, branch = parent(plane, 0.1)
+    period_map, branch = parent(plane, 0.1)
     fold = branch.of(Kind.FOLD)[0]
-    locus = follow_locus(plane, 0.1, fold.kind, fold.point.x, flow, LocusRun((0.6, 0.09), (1.2, 0.6)))
+    locus = follow_locus(plane, 0.1, fold.kind, fold.point.x, period_map, LocusRun((0.6, 0.09), (1.2, 0.6)))
     ((corner, cusp),) = locus.corners
     assert corner is Corner.CUSP
     assert cusp.values == pytest.approx((0.969082427114, 0.400569274852), rel=1e-8)
@@ -51,9 +53,9 @@ def test_fold_locus_passes_its_cusp():
 
 def test_two_period_doublings_meet_where_their_locus_turns():
     plane = Plane(("W", "Fa"), lambda speed, load: (backlash_oscillator(speed, 0.05, 0.1, load), speed))
-    flow, branch = parent(plane, 0.1)
+    period_map, branch = parent(plane, 0.1)
     first, second = branch.of(Kind.DOUBLING)
-    locus = follow_locus(plane, 0.1, first.kind, first.point.x, flow, LocusRun((1.0, 0.05), (2.1, 0.1)))
+    locus = follow_locus(plane, 0.1, first.kind, first.point.x, period_map, LocusRun((1.0, 0.05), (2.1, 0.1)))
     ((corner, turn),) = locus.corners
     assert corner is Corner.TURN
     assert turn.values == pytest.approx((1.793395595815, 0.074934624334), rel=1e-8)
@@ -71,9 +73,9 @@ def test_scaling_clearance_and_load_together_moves_no_fold():
         return replace(system, load=scale * system.load, **edges), speed
 
     plane = Plane(("W", "s"), at)
-    flow, branch = parent(plane, 1.0)
+    period_map, branch = parent(plane, 1.0)
     fold = branch.of(Kind.FOLD)[1]
-    locus = follow_locus(plane, 1.0, fold.kind, fold.point.x, flow, LocusRun((0.5, 0.8), (1.2, 1.3)))
+    locus = follow_locus(plane, 1.0, fold.kind, fold.point.x, period_map, LocusRun((0.5, 0.8), (1.2, 1.3)))
     speeds = np.array([point.values[0] for point in locus.points])
     assert np.ptp(np.array([point.values[1] for point in locus.points])) > 0.49
     assert speeds == pytest.approx(branch.of(Kind.FOLD)[1].point.value, rel=1e-10)

@@ -8,10 +8,10 @@ import pytest
 from lumped_machines import make_machine
 from oscillators import backlash_oscillator
 
-from facegear.dynamics.branches.continuation import End, Run, branch_at, follow, turned
+from facegear.dynamics.branches.continuation import BranchEnd, ContinuationSettings, branch_at, follow, turned
 from facegear.dynamics.branches.explore import box, crossings, explore, lies_on
 from facegear.dynamics.branches.family import Family, machine_plane, speed_family
-from facegear.dynamics.branches.margins import losses, passed_by, several
+from facegear.dynamics.branches.margins import passed_by, several, stability_limits
 from facegear.dynamics.branches.operating_tables import jump_table
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import at_parameter
@@ -23,7 +23,7 @@ from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.errors import NotConverged
 
 QUICK = Settings(tolerance=1e-8, settle=256, window=32, extensions=0, longest_period=4)
-WIDE = Run(0.25, 2.6)
+WIDE = ContinuationSettings(0.25, 2.6)
 
 
 def oscillator(amplitude=0.05):
@@ -33,9 +33,11 @@ def oscillator(amplitude=0.05):
 
 @pytest.fixture(scope="module")
 def starts():
-    flow = oscillator()
+    period_map = oscillator()
     half = np.array([1.0, 0.5 / 0.75])
-    return flow, explore(flow, 0.75, box(flow, 0.75, np.array([1.0, 0.0]), half, 800, 1), QUICK)
+    return period_map, explore(
+        period_map, 0.75, box(period_map, 0.75, np.array([1.0, 0.0]), half, 800, 1), QUICK
+    )
 
 
 def test_share_of_starts_on_the_lower_orbit_of_oracle_a(starts):
@@ -48,10 +50,10 @@ def test_share_of_starts_on_the_lower_orbit_of_oracle_a(starts):
 
 
 def test_every_orbit_that_starts_find_lies_on_the_one_branch(starts):
-    flow, found = starts
-    start = at_parameter(flow, np.array([1.1, 0.0]), np.log(0.3))
-    motions = [(flow.over(one.period), one.point, "starts") for one in found]
-    seen = survey((flow, start), motions, WIDE, 2, 9)
+    period_map, found = starts
+    start = at_parameter(period_map, np.array([1.1, 0.0]), np.log(0.3))
+    motions = [(period_map.over(one.period), one.point, "starts") for one in found]
+    seen = survey((period_map, start), motions, WIDE, 2, 9)
     assert len(seen.branches) == 1
     ((low, high, numbers),) = several(seen.branches)
     assert (low, high) == pytest.approx((0.708031618722, 0.828463984388), rel=1e-8)
@@ -60,8 +62,8 @@ def test_every_orbit_that_starts_find_lies_on_the_one_branch(starts):
 
 
 def test_an_orbit_off_the_branch_does_not_lie_on_it():
-    flow = oscillator(0.1)
-    branch = branch_at(flow, np.array([1.1, 0.0]), 0.3, Run(0.25, 1.5))
+    period_map = oscillator(0.1)
+    branch = branch_at(period_map, np.array([1.1, 0.0]), 0.3, ContinuationSettings(0.25, 1.5))
     point = crossings(branch, 1.3)[0]
     aside = replace(point, x=point.x + 0.05 * np.array([1.0, 1.0, 0.0]))
     assert lies_on(branch, point, 1)
@@ -70,9 +72,9 @@ def test_an_orbit_off_the_branch_does_not_lie_on_it():
 
 
 def test_margins_are_the_distances_to_the_folds():
-    flow = oscillator()
-    branch = branch_at(flow, np.array([1.1, 0.0]), 0.3, WIDE)
-    found = losses([branch], [(flow.family, 0.75, WIDE)], 0.75)
+    period_map = oscillator()
+    branch = branch_at(period_map, np.array([1.1, 0.0]), 0.3, WIDE)
+    found = stability_limits([branch], [(period_map.family, 0.75, WIDE)], 0.75)
     reached = {(loss.direction, round(loss.reached, 6)) for loss in found if loss.special}
     assert reached == {("up", 0.828464), ("down", 0.708032)}
     assert all(loss.special is None or loss.special.kind is Kind.FOLD for loss in found)
@@ -102,21 +104,23 @@ def test_a_jump_from_a_motion_that_has_not_settled_is_named_by_the_sweeps_last_p
 @pytest.fixture(scope="module")
 def machine_branch():
     model = build_model(make_machine(torque=1300.0))
-    flow = PeriodMap(speed_family(model), 1, 1e-9)
+    period_map = PeriodMap(speed_family(model), 1, 1e-9)
     response = simulate(model, 5000.0, Settings(tolerance=1e-7))
-    start = at_parameter(flow, flow.weighted(response.state, np.log(5000.0)), np.log(5000.0))
-    return model, flow, follow(flow, start, Run(5000.0, 9000.0))
+    start = at_parameter(period_map, period_map.weighted(response.state, np.log(5000.0)), np.log(5000.0))
+    return model, period_map, follow(period_map, start, ContinuationSettings(5000.0, 9000.0))
 
 
 def test_matrix_of_the_map_agrees_with_differences_of_the_map(machine_branch):
     """The determinant alone is blind to errors of stiffness (Liouville)."""
-    _, flow, branch = machine_branch
+    _, period_map, branch = machine_branch
     point = branch.points[len(branch.points) // 2]
     step = 1e-5
     for column in range(0, point.z.size, 5):
         shift = np.zeros(point.z.size)
         shift[column] = step
-        slope = (flow.gap(point.z + shift, point.u) - flow.gap(point.z - shift, point.u)) / (2 * step)
+        slope = (period_map.gap(point.z + shift, point.u) - period_map.gap(point.z - shift, point.u)) / (
+            2 * step
+        )
         slope[column] += 1.0
         assert slope == pytest.approx(point.linear.matrix[:, column], abs=2e-4)
 
@@ -129,11 +133,11 @@ def without_grazes(branch):
 
 @pytest.mark.parametrize("factor", [4.0, 0.25])
 def test_machine_has_the_same_points_from_the_other_end_with_other_steps(machine_branch, factor):
-    _, flow, branch = machine_branch
-    run = Run(5000.0, 9000.0)
-    run = replace(run, first=factor * run.first, largest=factor * run.largest)
-    back = follow(flow, turned(branch.points[-1]), run, both=False)
-    assert (branch.ends, back.ends[1]) == ((End.LIMIT, End.LIMIT), End.LIMIT)
+    _, period_map, branch = machine_branch
+    run = ContinuationSettings(5000.0, 9000.0)
+    run = replace(run, first=factor * run.first, ds_max=factor * run.ds_max)
+    back = follow(period_map, turned(branch.points[-1]), run, both=False)
+    assert (branch.ends, back.ends[1]) == ((BranchEnd.LIMIT, BranchEnd.LIMIT), BranchEnd.LIMIT)
     first, second = without_grazes(branch), without_grazes(back)
     assert first[0] == second[0]
     assert first[1] == pytest.approx(second[1], rel=1e-7)
@@ -142,34 +146,36 @@ def test_machine_has_the_same_points_from_the_other_end_with_other_steps(machine
 
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
 def test_machine_has_the_same_points_at_other_tolerances(machine_branch, tolerance):
-    _, flow, branch = machine_branch
-    other = replace(flow, tolerance=tolerance, memory={})
+    _, period_map, branch = machine_branch
+    other = replace(period_map, tolerance=tolerance, memory={})
     start = at_parameter(other, branch.points[0].z, branch.points[0].u)
-    again = follow(other, start, Run(5000.0, 9000.0), both=False)
+    again = follow(other, start, ContinuationSettings(5000.0, 9000.0), both=False)
     first, second = without_grazes(branch), without_grazes(again)
     assert first[0] == second[0]
     assert first[1] == pytest.approx(second[1], rel=4e-7), "so the lists at 1e-6 and 1e-10 agree to 1e-6"
 
 
 def test_scaling_torque_backlash_and_error_together_moves_no_special_point(machine_branch):
-    model, flow, branch = machine_branch
+    model, period_map, branch = machine_branch
     system = model.system
     scaled = replace(
         system, load=2 * system.load, lower=2 * system.lower, upper=2 * system.upper, error=2 * system.error
     )
     family = Family("speed_rpm", lambda speed: (scaled, speed_family(model).at(speed)[1]))
-    twice = replace(flow, family=family, memory={})
+    twice = replace(period_map, family=family, memory={})
     fold = branch.of(Kind.FOLD)[0]
     point = at_parameter(twice, 2 * crossings(branch, fold.point.value * 0.999)[0].z, fold.point.u - 1e-3)
-    again = follow(twice, point, Run(fold.point.value * 0.998, fold.point.value * 1.001), both=False)
+    again = follow(
+        twice, point, ContinuationSettings(fold.point.value * 0.998, fold.point.value * 1.001), both=False
+    )
     assert again.of(Kind.FOLD)[0].point.value == pytest.approx(fold.point.value, rel=1e-7)
 
 
 def test_torque_that_ends_a_motion_is_found_in_the_plane(machine_branch):
-    model, flow, branch = machine_branch
+    model, period_map, branch = machine_branch
     fold = branch.of(Kind.FOLD)[0]
     plane = machine_plane(model, "torque")
-    across = replace(flow, family=plane.across(fold.point.value))
+    across = replace(period_map, family=plane.across(fold.point.value))
     with pytest.raises(NotConverged):
         # At the fold itself the orbit does not go on at a fixed speed: M - I is singular.
         at_parameter(across, fold.point.z + 0.5, 0.0)

@@ -7,28 +7,28 @@ from facegear.dynamics.integrator.advance import advance, after, move
 from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.integrator import Integrator, require
 from facegear.dynamics.integrator.kernel import kernel
-from facegear.dynamics.integrator.periods import DONE, MOST_STEPS, TOO_MANY_STEPS
+from facegear.dynamics.integrator.periods import DONE, MAX_STEPS, TOO_MANY_STEPS
 from facegear.dynamics.integrator.roots import refine_root
 from facegear.dynamics.integrator.work import Work
 
-MOST = 64
+MAX_EXTREMA = 64
 """Turning points of a mesh kept for each mesh period."""
 PARTS = 4
 """A step is looked through in this many parts, each for one change of direction."""
 
 
-def turning_points(integrator: Integrator, state: Array, periods: int) -> Array:
+def extrema(integrator: Integrator, state: Array, periods: int) -> Array:
     """Maxima and minima (m, 2, most) of each deflection over a run from a state (2, n), each falling, and
     minus infinity where there are fewer. Raises NotConverged where a step fails.
     """
-    wide, rows = integrator.padded(state), integrator.rows
-    values = np.full((rows, 2, MOST * periods), -np.inf)
+    padded, rows = integrator.padded(state), integrator.rows
+    values = np.full((rows, 2, MAX_EXTREMA * periods), -np.inf)
     counts = np.zeros((rows, 2), dtype=np.int64)
     status = _find(
         integrator.packed,
         integrator.work,
-        wide[0],
-        wide[1],
+        padded[0],
+        padded[1],
         periods,
         integrator.tolerance,
         integrator.longest_step(),
@@ -53,8 +53,8 @@ def _find(
 ) -> int:
     """Move displacement and velocity over the periods; write the deflection at every change of its direction.
 
-    values (m, 2, most), counts (m, 2): maxima, then minima; those beyond `most` are counted only. Returns a
-    status of the integration.
+    values (m, 2, most), counts (m, 2): maxima, then minima; those beyond `maximum` are counted only. Returns
+    a status of the integration.
     """
     order = work.order
     for _ in range(periods):
@@ -88,6 +88,6 @@ def _find(
             move(work, length, displacement, velocity)
             s = after(s, length)
             taken += 1
-            if taken > MOST_STEPS:
+            if taken > MAX_STEPS:
                 return TOO_MANY_STEPS
     return DONE
