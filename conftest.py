@@ -26,6 +26,19 @@ def pytest_configure(config):
         providers._get_local_constants = providers.Constants
 
 
+def pytest_collection_modifyitems(items):
+    """Tests that share a fixture of their module go to one process, which makes it once."""
+    for item in items:
+        shared = item.getparent(pytest.Module) and _has_module_fixture(item)
+        if shared and item.get_closest_marker("xdist_group") is None:
+            item.add_marker(pytest.mark.xdist_group(item.path.stem))
+
+
+def _has_module_fixture(item):
+    known = getattr(item, "_fixtureinfo", None)
+    return known and any(found[-1].scope == "module" for found in known.name2fixturedefs.values())
+
+
 @pytest.fixture
 def layout_of():
     return make_layout

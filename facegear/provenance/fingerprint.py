@@ -7,6 +7,7 @@ reruns when, and only when, code that it can reach has changed. Comments, docstr
 import ast
 import hashlib
 import json
+import os
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
@@ -110,19 +111,20 @@ def reached_modules(script: str | Path, root: str | Path) -> tuple[str, ...]:
 
 
 def _source(path: Path, root: Path) -> _Source:
-    status = path.stat()
-    return _looked_up(path, root, status.st_size, status.st_mtime_ns)
+    status = os.stat(path)
+    return _looked_up(str(path), str(root), status.st_size, status.st_mtime_ns)
 
 
 @cache
-def _looked_up(path: Path, root: Path, size: int, modified: int) -> _Source:
-    key = f"{path.relative_to(root).as_posix()} {size} {modified}"
+def _looked_up(path: str, root: str, size: int, modified: int) -> _Source:
+    """Texts, as they are compared faster than paths: a start of the workflow asks ten thousand times."""
+    key = f"{Path(path).relative_to(root).as_posix()} {size} {modified}"
     if key not in _known:
-        _known[key] = _parsed(path, root)
+        _known[key] = _parsed(Path(path))
     return _known[key]
 
 
-def _parsed(path: Path, root: Path) -> _Source:
+def _parsed(path: Path) -> _Source:
     tree = ast.parse(path.read_text(encoding="utf-8"))
     modules: set[str] = set()
     for node in _executed(tree):
@@ -153,12 +155,20 @@ def _names(node: ast.Import | ast.ImportFrom) -> list[str]:
     return [node.module] + [f"{node.module}.{alias.name}" for alias in node.names]
 
 
-@cache
 def _exists(module: str, root: Path) -> bool:
-    return _file(module, root).is_file()
+    return _known_file(module, str(root))[1]
+
+
+def _file(module: str, root: Path) -> Path:
+    return _known_file(module, str(root))[0]
 
 
 @cache
-def _file(module: str, root: Path) -> Path:
-    base = root.joinpath(*module.split("."))
-    return base.with_suffix(".py") if base.with_suffix(".py").is_file() else base / "__init__.py"
+def _known_file(module: str, root: str) -> tuple[Path, bool]:
+    """The file of a module, and whether there is one."""
+    base = Path(root, *module.split("."))
+    alone = base.with_suffix(".py")
+    if alone.is_file():
+        return alone, True
+    package = base / "__init__.py"
+    return package, package.is_file()

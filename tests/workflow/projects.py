@@ -9,7 +9,10 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from facegear.provenance.fingerprint import fingerprint, remember
+from dry_runs import dry_run
+
+from facegear.pipeline.table import STAGES
+from facegear.provenance.fingerprint import fingerprint, remember, stage_fingerprint
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("workflow", "profiles", "facegear", "paper", "validation", "config")
@@ -48,8 +51,11 @@ class Project:
         ]
 
     def run(self, *arguments: str, check: bool = True) -> subprocess.CompletedProcess[str]:
-        done = subprocess.run(
-            self.command(*arguments), capture_output=True, text=True, env=environment(), check=False
+        command = self.command(*arguments)
+        done = (
+            dry_run(command[3:], environment())
+            if "-n" in arguments
+            else subprocess.run(command, capture_output=True, text=True, env=environment(), check=False)
         )
         if check:
             assert done.returncode == 0, f"{arguments}\n{done.stdout[-3000:]}\n{done.stderr[-6000:]}"
@@ -66,6 +72,9 @@ def parsed_sources() -> bytes:
     """What `remember` stores of this checkout's sources."""
     for script in SCRIPTS:
         fingerprint(script, ROOT)
+    for stage in STAGES.values():
+        drawn = (stage.figures.draw.partition(":")[0],) if stage.figures else ()
+        stage_fingerprint((*stage.modules, *drawn), ROOT)
     with tempfile.TemporaryDirectory() as folder:
         remember(Path(folder) / PARSED)
         return (Path(folder) / PARSED).read_bytes()
