@@ -30,9 +30,9 @@ def duty_loads(
     """
     if strength is None:
         raise ConfigError("strength", None, "given for the loads of its duty cycle")
-    section, known = strength, settings(accuracy)
-    progress, loads, spectrum = Progress("duty cycle", len(section.duty)), [], []
-    for number, one in enumerate(section.duty, start=1):
+    known = settings(accuracy)
+    progress, loads, spectrum = Progress("duty cycle", len(strength.duty)), [], []
+    for number, one in enumerate(strength.duty, start=1):
         loaded = at_mesh_torque(transmission, one.torque_n_m)
         machine = wired_machine(loaded, teeth, harmonics, friction=friction)
         history = history_of(machine, one.speed_rpm, known)

@@ -105,13 +105,12 @@ def _states(
     yield _state(loaded, machine, (0, np.nan, speed_rpm), names, torque, torque)
     if duty_loads is None or strength is None:
         return
-    section = strength
-    for number, one in enumerate(section.duty, start=1):
+    for number, one in enumerate(strength.duty, start=1):
         rows = duty_loads[duty_loads["bin"] == number]
         machine = wired_machine(at_mesh_torque(transmission, one.torque_n_m), teeth, harmonics)
         arm = machine.layout.pinion_arm
         mean = arm * rows["mean_force_n"].to_numpy()
-        peak = arm * section.application_factor * rows["largest_force_n"].to_numpy()
+        peak = arm * strength.application_factor * rows["largest_force_n"].to_numpy()
         names = rows["mesh"].tolist(), rows["flank"].tolist()
         yield _state(loaded, machine, (number, one.hours, one.speed_rpm), names, mean, peak)
 

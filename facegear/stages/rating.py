@@ -37,8 +37,8 @@ def rating(
     """
     if strength is None:
         raise ConfigError("strength", None, "given for safety and life")
-    section, design = strength, pair(tooth_pair).design
-    request, bins = rating_request(section, design, duty_spectrum), duty_bins(section)
+    design = pair(tooth_pair).design
+    request, bins = rating_request(strength, design, duty_spectrum), duty_bins(strength)
     contacts = flank_contacts(stress, by_flank)
     found: list[Rated] = []
     tables: dict[str, list[pd.DataFrame]] = {}

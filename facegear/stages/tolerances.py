@@ -30,13 +30,12 @@ def tolerances(
     `sampling`: what the mesh cycles taken from the hunting cycle miss, in the samples that were computed over
     the whole of it.
     """
-    section = tolerances
-    causes = [cause.name for cause in section.causes]
+    causes = [cause.name for cause in tolerances.causes]
     every = pd.concat(samples, ignore_index=True)
     found = every.drop(columns=list(MISSED.values()), errors="ignore")
     design = pd.concat(indices, ignore_index=True) if indices else every.iloc[:0]
-    percentiles = percentile_table(found, causes, section.confidence)
-    shares = share_table(every, SHARES, section.confidence)
+    percentiles = percentile_table(found, causes, tolerances.confidence)
+    shares = share_table(every, SHARES, tolerances.confidence)
     top = percentiles[(percentiles["percentile"] == 99.0) & percentiles["quantity"].str.startswith("k_gamma")]
     worst = top.nlargest(1, "value")
     told = ", ".join(f"99 of 100 stay below {row.quantity} = {row.value:.3f}" for row in worst.itertuples())
@@ -51,7 +50,7 @@ def tolerances(
             "percentiles": percentiles,
             "shares": shares,
             "importance": importance_table(found, causes),
-            "indices": index_table(design, causes, section.confidence),
+            "indices": index_table(design, causes, tolerances.confidence),
             "sampling": sampling,
         },
         f"{len(every)} samples, {failed} failed; {told}",

@@ -15,7 +15,6 @@ from facegear.errors import ConfigErrors, FacegearError
 from facegear.io import tables
 from facegear.load_sharing import quantities
 from facegear.load_sharing.hunting import hunting_cycle
-from facegear.pipeline.needs import stage_needs
 from facegear.stages.tolerances import tolerances
 from facegear.stages.tolerances_chunk import chunk_of
 from facegear.variants.sampled import SampledMachine
@@ -258,9 +257,9 @@ def test_the_last_chunk_of_the_design_for_indices_holds_no_sample_beyond_it():
 
 
 def test_statistics_do_not_depend_on_how_the_samples_were_cut(gearbox):
-    needs = stage_needs("tolerances", gearbox.values)
-    one = tolerances([chunk(gearbox, 0, 15)], [], **needs)
-    two = tolerances([chunk(gearbox, 0, 7), chunk(gearbox, 8, 15)], [], **needs)
+    section = gearbox.config.tolerances
+    one = tolerances([chunk(gearbox, 0, 15)], [], section)
+    two = tolerances([chunk(gearbox, 0, 7), chunk(gearbox, 8, 15)], [], section)
     for name, table in one.content.items():
         pd.testing.assert_frame_equal(two.content[name], table, check_exact=True)
 
