@@ -8,8 +8,6 @@ from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.steady_state.simulate import Model, SteadyState
 from facegear.dynamics.steady_state.statistics import moments
-from facegear.transmission.layout import DOF_PER_BODY
-from facegear.transmission.matrices import bearing_matrix
 from facegear.transmission.statics import static_bearing_forces
 
 DIRECTIONS = ("x", "y", "z", "radial")
@@ -27,23 +25,25 @@ BEARING_COLUMNS = (
 
 
 def bearing_history(model: Model, response: SteadyState) -> Array:
-    """Force of every body on its bearing along x, y, z, shape (K, bodies, 3), N: K q + beta K q'.
+    """Force of every body on its bearing along x, y, z, shape (K, bodies, 3), N.
 
-    Springs and their damping, equation (21); mass damping acts from outside and is no bearing's. With play
-    the spring acts beyond it, F = k (1 - c / r) (x, y), and its damping is beta dF/dt.
+    Springs, their damping of equation (21) and dampers: K q + beta K q' + D q'. Mass damping acts from
+    outside and is no bearing's. With play the spring acts beyond it, F = k (1 - c / r) (x, y), and its
+    damping is beta dF/dt.
     """
     machine, basis = model.machine, model.reduced.basis
-    layout, lag = machine.layout, machine.damping.bearing
-    bodies = len(layout.bodies)
-    rate = velocities(response)
-    stiffness = bearing_matrix(layout)[:, : DOF_PER_BODY * bodies]
-    forces = (response.coordinates + lag * rate) @ (basis.T @ stiffness)
-    forces = forces.reshape(len(forces), bodies, DOF_PER_BODY)[..., :3]
-    for i in np.flatnonzero(machine.imperfections.clearance > 0.0):
-        rows = basis[DOF_PER_BODY * i : DOF_PER_BODY * i + 2].T
-        play, spring = machine.imperfections.clearance[i], layout.pinions[i].body.bearing[0]
-        place, speed = response.coordinates @ rows, rate @ rows
-        forces[:, i, :2] = _ring_force(place, speed, spring, play, lag)
+    linear = machine.linear
+    lag, rings = linear.bearing_damping, linear.rings
+    rate, held = velocities(response), linear.translations
+    forces = (response.coordinates + lag * rate) @ (basis.T @ linear.stiffness[:, held.ravel()])
+    if linear.dampers.any():
+        forces += rate @ (basis.T @ linear.dampers[held.ravel()].T)
+    forces = forces.reshape(-1, *held.shape)
+    for places, i, spring, play in zip(
+        linear.ring_places, rings.body, rings.stiffness, rings.play, strict=True
+    ):
+        rows = basis[places].T
+        forces[:, i, :2] = _ring_force(response.coordinates @ rows, rate @ rows, spring, play, lag)
     return forces
 
 

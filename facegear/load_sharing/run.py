@@ -13,9 +13,7 @@ from facegear.load_sharing.options import SharingOptions
 from facegear.load_sharing.sampling import densely_sampled, same_orbit
 from facegear.load_sharing.statistics import Average, average, defined_mean
 from facegear.transmission.flanks import carried
-from facegear.transmission.layout import DOF_PER_BODY
 from facegear.transmission.machine import Machine
-from facegear.transmission.matrices import mass_diagonal
 
 WATCHED, TORUS_WATCHED = 2, 8
 """Times the cycles averaged for which a motion is watched, and again before it is called quasi-periodic."""
@@ -105,15 +103,9 @@ def watched_motion(
 
 def disturb(model: Model, start: State, spread: float, random: np.random.Generator) -> State:
     """A start moved by normal displacements of size `spread` (m; rotations at the mesh radius)."""
-    layout = model.machine.layout
-    moved = spread * random.normal(size=layout.dof)
-    pinions, bodies = DOF_PER_BODY * len(layout.pinions), DOF_PER_BODY * len(layout.bodies)
-    moved[3:pinions:DOF_PER_BODY] /= layout.pinion_radius
-    moved[pinions + 3 : bodies : DOF_PER_BODY] /= layout.gear_radius
-    moved[bodies:] /= layout.mesh_radius
-    return replace(
-        start, displacement=start.displacement + model.reduced.basis.T @ (mass_diagonal(layout) * moved)
-    )
+    linear = model.machine.linear
+    moved = spread * random.normal(size=linear.size) / linear.lengths
+    return replace(start, displacement=start.displacement + model.reduced.basis.T @ linear.momentum(moved))
 
 
 def cycle_forces(response: SteadyState) -> Array:

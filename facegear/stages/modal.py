@@ -36,13 +36,13 @@ def modal(
         raise ConfigError("mesh_stiffness.mean_n_per_m", None, "given where k(t) is not computed")
     constant, none = Harmonics(np.zeros(1), np.array([mean])), Harmonics(np.zeros(1), np.zeros(1))
     machine = wired_machine(transmission, teeth, constant, unloaded=none)
-    shape, found = machine.layout, vibrating_machine(machine)
+    found = vibrating_machine(machine)
     modes, contacts = found.modes, contact_table(machine, found, told)
     rigid = int((modes.frequencies == 0.0).sum())
     elastic = modes.frequencies[rigid:]
     content = {
-        "frequencies": frequency_table(found, name_modes(shape, modes)),
-        "shapes": shape_table(shape, modes),
+        "frequencies": frequency_table(found, name_modes(machine.layout, machine.linear, modes)),
+        "shapes": shape_table(machine.linear.labels, modes),
         "contacts": contacts,
     }
     summary = (

@@ -1,7 +1,7 @@
 """Compiled: derivatives of the energy of one-sided flanks, bearings (with play or without) and torques.
 
-Pinions touch each other through the gears only, which the second derivatives keep to: a block for each pinion
-and one for the gears.
+Pinions touch each other through the other unknowns only, which the second derivatives keep to: a block for
+each pinion and one, the core, for the gears and all else.
 """
 
 from pathlib import Path
@@ -23,8 +23,9 @@ class Springs(NamedTuple):
     """F flanks, P pinions, n unknowns: x, y, turn of every pinion, then w of every gear; all are lengths.
 
     jacobian (F, 3 + w) by the unknowns of its pinion and its gear, which start at pinion and gear (F,);
-    pinion_bearing (P, 3): xx, xy, yy; clearance (P,), where positive with xx = yy and xy = 0; gear_bearing
-    (n - 3 P,), gear_coupling (gears,) between x and y of a gear; applied (n,) forces. N, m.
+    pinion_bearing (P, 3): xx, xy, yy; clearance (P,), where positive with xx = yy and xy = 0. core: entries
+    of the symmetric stiffness among the other n - 3 P unknowns, row (E,) <= column (E,), counted from the
+    first of them, value (E,). applied (n,) forces. N, m.
     """
 
     jacobian: Array
@@ -32,8 +33,9 @@ class Springs(NamedTuple):
     gear: Integers
     pinion_bearing: Array
     clearance: Array
-    gear_bearing: Array
-    gear_coupling: Array
+    core_row: Integers
+    core_column: Integers
+    core_value: Array
     applied: Array
 
 
@@ -86,12 +88,11 @@ def balance(springs: Springs, held: Held, position: int, over: Array, place: Arr
         x, y = _bearing(springs, i, place[3 * i], place[3 * i + 1])
         gradient[3 * i] += x
         gradient[3 * i + 1] += y
-    for j in range(first, gradient.size):
-        gradient[j] += springs.gear_bearing[j - first] * place[j]
-    for g in range(springs.gear_coupling.size):
-        x = first + g * (springs.jacobian.shape[1] - 3)
-        gradient[x] += springs.gear_coupling[g] * place[x + 1]
-        gradient[x + 1] += springs.gear_coupling[g] * place[x]
+    for e in range(springs.core_value.size):
+        x, y = first + springs.core_row[e], first + springs.core_column[e]
+        gradient[x] += springs.core_value[e] * place[y]
+        if x != y:
+            gradient[y] += springs.core_value[e] * place[x]
     for f in range(over.size):
         if over[f] > 0.0:
             force, _ = held_force(held, position, f, over[f])
@@ -136,11 +137,10 @@ def assemble(
         for r in range(3):
             block[r, wide - 1] = -gradient[3 * i + r]
     for a in range(gears):
-        core[a, a] = springs.gear_bearing[a] + tie
+        core[a, a] = tie
         core[a, gears] = -gradient[first + a]
-    for g in range(springs.gear_coupling.size):
-        x = g * (springs.jacobian.shape[1] - 3)
-        core[x, x + 1] = springs.gear_coupling[g]
+    for e in range(springs.core_value.size):
+        core[springs.core_row[e], springs.core_column[e]] += springs.core_value[e]
     for f in range(closed.size):
         if closed[f] > 0.0:
             _, stiffness = held_force(held, position, f, max(over[f], 0.0))
@@ -186,15 +186,15 @@ def slope_along(
             ahead, square = (x * dx + y * dy), x * x + y * y
             turned = 1.0 - springs.clearance[i] / np.sqrt(square)
             curvature += xx * (turned * (dx * dx + dy * dy) + (1.0 - turned) * ahead * ahead / square)
-    for j in range(first, step.size):
-        stiff = springs.gear_bearing[j - first] * step[j]
-        slope += stiff * (place[j] + share * step[j])
-        curvature += stiff * step[j]
-    for g in range(springs.gear_coupling.size):
-        x = first + g * (springs.jacobian.shape[1] - 3)
-        dx, dy = springs.gear_coupling[g] * step[x + 1], springs.gear_coupling[g] * step[x]
-        slope += dx * (place[x] + share * step[x]) + dy * (place[x + 1] + share * step[x + 1])
-        curvature += dx * step[x] + dy * step[x + 1]
+    for e in range(springs.core_value.size):
+        x, y = first + springs.core_row[e], first + springs.core_column[e]
+        stiff = springs.core_value[e] * step[y]
+        slope += stiff * (place[x] + share * step[x])
+        curvature += stiff * step[x]
+        if x != y:
+            stiff = springs.core_value[e] * step[x]
+            slope += stiff * (place[y] + share * step[y])
+            curvature += stiff * step[y]
     for f in range(over.size):
         depth = over[f] + share * rate[f]
         if depth > 0.0:

@@ -180,6 +180,13 @@ class Layout:
         return tuple((i, g) for g in range(len(self.gears)) for i in range(len(self.pinions)))
 
     @property
+    def contacts(self) -> int:
+        """How many contacts move by themselves: both flanks of every mesh, which share one line of action and
+        are one contact in equation (13) as printed. Drive flanks come first.
+        """
+        return len(self.meshes) * (2 if self.is_geometric else 1)
+
+    @property
     def mesh_names(self) -> tuple[str, ...]:
         """`pinion/side` of each mesh."""
         return tuple(f"{self.pinions[i].name}/{self.gears[g].side.value}" for i, g in self.meshes)

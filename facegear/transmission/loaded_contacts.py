@@ -11,9 +11,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.transmission.flanks import constant_errors, flank_gaps
-from facegear.transmission.layout import DOF_PER_BODY
 from facegear.transmission.machine import Machine
-from facegear.transmission.matrices import bearing_matrix, flank_directions, mass_diagonal
 
 NOTHING, LOADED = 1e-9, 1e-6
 RIGID = 1e-13
@@ -64,17 +62,15 @@ def loaded_contacts(machine: Machine) -> LoadedContacts:
     """Contacts of geometric meshes at mean stiffness with constant errors. Raises NotConverged."""
     pinions = len(machine.layout.pinions)
     rings, places = np.full(pinions, np.nan), np.full((pinions, 2), np.nan)
-    play = machine.imperfections.clearance
     forces = forces_by_active_sets(machine)
     if forces is not None:
         return LoadedContacts(forces, rings, places)
     from facegear.transmission.statics import bearing_forces, mean_equilibrium  # compiled
 
     found = mean_equilibrium(machine)
-    held = np.hypot(*bearing_forces(machine, found)[0, :pinions, :2].T)
-    moved = found.displacements[0, : DOF_PER_BODY * pinions].reshape(pinions, DOF_PER_BODY)[:, :2]
-    ringed = play > 0.0
-    rings[ringed], places[ringed] = held[ringed], moved[ringed]
+    ringed = machine.linear.rings.body
+    rings[ringed] = np.hypot(*bearing_forces(machine, found)[0, ringed, :2].T)
+    places[ringed] = found.displacements[0, machine.linear.ring_places]
     return LoadedContacts(found.flank_forces[0], rings, places)
 
 
@@ -84,16 +80,16 @@ def forces_by_active_sets(machine: Machine) -> Array | None:
     Each step solves the springs of the flanks that were closed after the last one. None for bearings with
     play, and where the flanks do not settle or leave a loaded body free.
     """
-    layout = machine.layout
-    if (machine.imperfections.clearance > 0.0).any():
+    linear = machine.linear
+    if linear.rings.body.size:
         return None
-    scale = 1.0 / np.sqrt(mass_diagonal(layout))
-    directions = flank_directions(layout) * scale
-    bearing = bearing_matrix(layout) * np.outer(scale, scale)
-    applied = machine.applied * scale
+    scale = 1.0 / np.sqrt(linear.mass.diagonal())
+    directions = linear.rows * scale
+    bearing = linear.stiffness * np.outer(scale, scale)
+    applied = linear.loads * scale
     stiffness = machine.stiffness.mean * np.tile(machine.imperfections.stiffness, 2)
     gaps = constant_errors(machine) + flank_gaps(machine)
-    closed = np.arange(gaps.size) < len(layout.meshes)
+    closed = np.arange(gaps.size) < len(machine.layout.meshes)
     for _ in range(MAX_SETS):
         pressed = np.where(closed, stiffness, 0.0)
         matrix = bearing + (directions.T * pressed) @ directions

@@ -5,11 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Mask
-from facegear.transmission.layout import Layout
+from facegear.transmission.linear_model import LinearModel
 from facegear.transmission.loaded_contacts import Contact, LoadedContacts, loaded_contacts
 from facegear.transmission.machine import Machine
-from facegear.transmission.matrices import flank_directions
-from facegear.transmission.modes import Modes, modes_of, natural_modes
+from facegear.transmission.modes import Modes, drive_flanks, modes_of
 
 SAME = 1e-6
 """Relative difference of a frequency, undecided contacts open or closed, that counts as none."""
@@ -27,54 +26,56 @@ class VibratingMachine:
     decided: Mask
 
 
-def loaded_modes(machine: Machine) -> Modes:
-    """Modes with mean mesh stiffness on the flanks that carry load, bearings with play as they are pressed.
+def loaded_modes(machine: Machine, speed_rpm: float = 0.0) -> Modes:
+    """Modes at a pinion speed with mean mesh stiffness on the flanks that carry load.
 
-    An open mesh stays open, a wedged one has both flanks; undecided contacts count as open. Raises
-    NotConverged.
+    Bearings with play are as they are pressed. An open mesh stays open, a wedged one has both flanks;
+    undecided contacts count as open. Raises NotConverged.
     """
-    return vibrating_machine(machine).modes
+    return vibrating_machine(machine, speed_rpm).modes
 
 
-def vibrating_machine(machine: Machine) -> VibratingMachine:
+def vibrating_machine(machine: Machine, speed_rpm: float = 0.0) -> VibratingMachine:
     """loaded_modes() with what is known of the contacts. Raises NotConverged."""
+    speed = speed_rpm * np.pi / 30.0
     if not machine.layout.is_geometric:
-        modes = natural_modes(machine.layout, machine.stiffness.mean)
+        meshes = drive_flanks(machine.layout, machine.linear, machine.stiffness.mean)
+        modes = modes_of(machine.linear, meshes, speed)
         return VibratingMachine(modes, None, np.ones(modes.frequencies.size, bool))
     contacts = loaded_contacts(machine)
-    modes = _modes(machine, contacts, (Contact.CLOSED,))
+    modes = _modes(machine, contacts, (Contact.CLOSED,), speed)
     if not contacts.any_undecided():
         return VibratingMachine(modes, contacts, np.ones(modes.frequencies.size, bool))
-    other = _modes(machine, contacts, (Contact.CLOSED, Contact.UNDECIDED)).frequencies
+    holding = (Contact.CLOSED, Contact.UNDECIDED)
+    other = _modes(machine, contacts, holding, speed).frequencies
     return VibratingMachine(modes, contacts, np.abs(other - modes.frequencies) <= SAME * other)
 
 
-def _modes(machine: Machine, contacts: LoadedContacts, holding: tuple[Contact, ...]) -> Modes:
+def _modes(machine: Machine, contacts: LoadedContacts, holding: tuple[Contact, ...], speed: float) -> Modes:
     """Modes with the contacts whose state is among `holding`."""
     stiffness = machine.stiffness.mean * np.tile(machine.imperfections.stiffness, 2)
     pressed = np.where([state in holding for state in contacts.flank_states()], stiffness, 0.0)
-    directions = flank_directions(machine.layout)
-    layout = _pressed_bearings(machine, contacts, holding)
-    return modes_of(layout, (pressed * directions.T) @ directions)
+    meshes = (pressed * machine.linear.rows.T) @ machine.linear.rows
+    return modes_of(_pressed_bearings(machine, contacts, holding), meshes, speed)
 
 
-def _pressed_bearings(machine: Machine, contacts: LoadedContacts, holding: tuple[Contact, ...]) -> Layout:
-    """The layout with every ring of play replaced by its tangent.
+def _pressed_bearings(
+    machine: Machine, contacts: LoadedContacts, holding: tuple[Contact, ...]
+) -> LinearModel:
+    """The linear model with every bearing that has play replaced by its tangent.
 
     A bearing pressed against its ring is stiff along its load, k, and less across it, k (1 - play / way); one
     that floats inside carries nothing.
     """
-    pinions = list(machine.layout.pinions)
-    for i, state in enumerate(contacts.ring_states()):
-        if state is None:
-            continue
-        body, tangent = pinions[i].body, np.zeros((2, 2))
-        if state in holding:
+    linear, states = machine.linear, contacts.ring_states()
+    if not linear.rings.body.size:
+        return linear
+    stiffness, rings = linear.stiffness_without_rings.copy(), linear.rings
+    for at, i, spring, play in zip(linear.ring_places, rings.body, rings.stiffness, rings.play, strict=True):
+        if states[i] in holding:
             distance = float(np.hypot(*contacts.places[i]))
-            stiffness = body.bearing[0]
-            across = stiffness * (1.0 - machine.imperfections.clearance[i] / distance)
+            across = spring * (1.0 - play / distance)
             direction = contacts.places[i] / distance
-            tangent = across * np.eye(2) + (stiffness - across) * np.outer(direction, direction)
-        bearing = (float(tangent[0, 0]), float(tangent[1, 1]), body.bearing[2])
-        pinions[i] = replace(pinions[i], body=replace(body, bearing=bearing, bearing_xy=float(tangent[0, 1])))
-    return replace(machine.layout, pinions=tuple(pinions))
+            tangent = across * np.eye(2) + (spring - across) * np.outer(direction, direction)
+            stiffness[np.ix_(at, at)] += tangent
+    return replace(linear, stiffness=stiffness)

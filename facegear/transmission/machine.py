@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cached_property
 
 import numpy as np
 
@@ -10,8 +11,10 @@ from facegear.errors import InvalidInput
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.law import MeshLaw
 from facegear.transmission.imperfections import Imperfections, perfect
-from facegear.transmission.layout import DOF_PER_BODY, Layout, Role, Side
-from facegear.transmission.mesh_friction import MeshFriction
+from facegear.transmission.layout import Layout, Role, Side
+from facegear.transmission.linear_model import Bodies, LinearModel
+from facegear.transmission.lumped import lumped_model
+from facegear.transmission.mesh_friction import MeshFriction, friction_rows
 from facegear.transmission.phases import PhaseConvention, mesh_phases
 
 TORQUE_BALANCE = 1e-9
@@ -48,7 +51,7 @@ class Machine:
     (bodies, 3): external ones on the bodies along x, y, z, N, none by default. `law`: of all contacts, see
     facegear.transmission.flanks.contact_law; without one their force is the stiffness times how far they are
     pressed in, and with one `stiffness` is only the scale of it. `friction` of the meshes disturbs the
-    motion, and nothing at rest.
+    motion, and nothing at rest. `bodies`: what makes more of them than rigid masses on springs.
     """
 
     layout: Layout
@@ -63,6 +66,7 @@ class Machine:
     forces: Array = None  # type: ignore[assignment]
     law: MeshLaw | None = None
     friction: MeshFriction | None = None
+    bodies: Bodies | None = None
 
     def __post_init__(self) -> None:
         if self.imperfections is None:
@@ -81,13 +85,23 @@ class Machine:
         if lowest <= 0.0:
             raise InvalidInput("mesh stiffness", f"{lowest:.3g} N/m", "positive everywhere in the mesh cycle")
 
+    @cached_property
+    def linear(self) -> LinearModel:
+        """Masses, bearings, loads and the directions of the contacts."""
+        damping = (self.damping.mass, self.damping.bearing)
+        lumped = lumped_model(self.layout, self.torques, self.forces, damping, self.imperfections.clearance)
+        return lumped if self.bodies is None else self.bodies(lumped)
+
     @property
-    def applied(self) -> Array:
-        """External forces and torques on all degrees of freedom, shape (dof,), N and N m."""
-        loads = np.zeros(self.layout.dof)
-        bodies = loads[: DOF_PER_BODY * len(self.layout.bodies)].reshape(-1, DOF_PER_BODY)
-        bodies[:, :3], bodies[:, 3] = self.forces, self.torques
-        return loads
+    def pushes(self) -> Array:
+        """Directions (rows, n) of all forces beside those of the flanks: external ones, and friction."""
+        linear = self.linear
+        pushes = [np.zeros((0, linear.size))]
+        if linear.forces.any():
+            pushes.append(linear.forces[None] / np.linalg.norm(linear.forces))
+        if self.friction is not None:
+            pushes.append(linear.over_all(friction_rows(self.layout)).reshape(-1, linear.size))
+        return np.concatenate(pushes)
 
     @property
     def phases(self) -> Array:

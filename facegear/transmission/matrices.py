@@ -27,20 +27,6 @@ def bearing_matrix(layout: Layout) -> Array:
     return matrix
 
 
-def bearing_axes(layout: Layout) -> Array:
-    """Orthogonal columns (dof, dof) along which each body's bearing acts by itself.
-
-    The unit matrix, but for the x and y of a body whose bearing couples them.
-    """
-    axes = np.eye(layout.dof)
-    for k, body in enumerate(layout.bodies):
-        if body.bearing_xy != 0.0:
-            x = DOF_PER_BODY * k
-            coupled = [[body.bearing[0], body.bearing_xy], [body.bearing_xy, body.bearing[1]]]
-            axes[x : x + 2, x : x + 2] = np.linalg.eigh(coupled)[1]
-    return axes
-
-
 def mesh_directions(layout: Layout) -> Array:
     """Derivative of the drive flanks' deflections by the DOF, shape (meshes, dof).
 

@@ -1,9 +1,10 @@
 """The modal stage's csv tables."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
 
-from facegear.transmission.layout import Layout
 from facegear.transmission.loaded_contacts import Contact
 from facegear.transmission.loaded_modes import VibratingMachine
 from facegear.transmission.machine import Machine
@@ -70,10 +71,10 @@ def _mesh_state(drive: Contact, back: Contact) -> str:
     return "back" if back is Contact.CLOSED else "open"
 
 
-def shape_table(layout: Layout, modes: Modes) -> pd.DataFrame:
+def shape_table(labels: Sequence[str], modes: Modes) -> pd.DataFrame:
     """Columns order, body, dof, amplitude_m_or_rad (unit modal mass), relative (to the mode's largest)."""
     rows = []
-    names = [name.rsplit(":", 1) for name in layout.dof_names]
+    names = [name.rsplit(":", 1) for name in labels]
     for order, shape in enumerate(modes.shapes.T, start=1):
         largest = shape[abs(shape).argmax()]
         for (body, letter), amplitude in zip(names, shape, strict=True):

@@ -4,14 +4,15 @@ Both are taken over all modes of one frequency together, so they do not depend o
 eigenvalue solver returns for a repeated frequency.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
 
-from facegear.arrays import Array, Mask
-from facegear.transmission.layout import DOF_PER_BODY, Layout, Role
-from facegear.transmission.matrices import mass_diagonal
+from facegear.arrays import Array
+from facegear.transmission.layout import DOF_LETTERS, TILT_LETTERS, Layout, Role
+from facegear.transmission.linear_model import LinearModel
 from facegear.transmission.modes import Modes
 
 ENERGY_SHARE = 0.01
@@ -38,19 +39,19 @@ class ModeName:
     pinion_share: float
 
 
-def name_modes(layout: Layout, modes: Modes) -> tuple[ModeName, ...]:
+def name_modes(layout: Layout, linear: LinearModel, modes: Modes) -> tuple[ModeName, ...]:
     """One name for each mode, in the order of the frequencies."""
     names: list[ModeName] = []
     for start, stop in modes.groups:
-        names += [_name(layout, modes.frequencies[start], modes.shapes[:, start:stop])] * (stop - start)
+        name = _name(layout, linear, modes.frequencies[start], modes.shapes[:, start:stop])
+        names += [name] * (stop - start)
     return tuple(names)
 
 
-def _name(layout: Layout, frequency: float, shapes: Array) -> ModeName:
-    squares = (shapes**2).sum(axis=1)
-    energy = mass_diagonal(layout) * squares
-    first_gear = DOF_PER_BODY * len(layout.pinions)
-    share = float(energy[:first_gear].sum() / energy.sum())
+def _name(layout: Layout, linear: LinearModel, frequency: float, shapes: Array) -> ModeName:
+    energy = np.real(shapes.conj() * linear.momentum(shapes)).sum(axis=1)
+    pinions = np.concatenate([linear.of_body(pinion.name) for pinion in layout.pinions])
+    share = float(energy[pinions].sum() / energy.sum())
     if frequency == 0.0:
         mode_class = ModeClass.RIGID
     elif share >= 1.0 - ENERGY_SHARE:
@@ -59,38 +60,37 @@ def _name(layout: Layout, frequency: float, shapes: Array) -> ModeName:
         mode_class = ModeClass.GEAR
     else:
         mode_class = ModeClass.COUPLED
-    return ModeName(mode_class, _symbols(layout, squares), share)
+    squares = (np.abs(shapes) ** 2).sum(axis=1)
+    return ModeName(mode_class, _symbols(layout, linear.labels, np.sqrt(squares) * linear.lengths), share)
 
 
-def _symbols(layout: Layout, squares: Array) -> str:
-    """Who moves and how, from the squared amplitudes of all DOF, shape (dof,)."""
-    reach = np.ones_like(squares)
-    pinions, last = len(layout.pinions), DOF_PER_BODY * len(layout.bodies)
-    reach[3 : 4 * pinions : 4] = layout.pinion_radius
-    reach[4 * pinions + 3 : last : 4] = layout.gear_radius
-    reach[last:] = layout.mesh_radius
-    amplitudes = np.sqrt(squares) * reach
-    above = amplitudes > AMPLITUDE_SHARE * amplitudes.max()
-    moves = above[:last].reshape(-1, DOF_PER_BODY)
+def _symbols(layout: Layout, labels: Sequence[str], amplitudes: Array) -> str:
+    """Who moves and how, from the amplitudes of all DOF as lengths, shape (dof,)."""
+    moving: dict[str, set[str]] = {name: set() for name in layout.body_names}
+    for label in np.array(labels)[amplitudes > AMPLITUDE_SHARE * amplitudes.max()]:
+        body, _, letter = label.rpartition(":")
+        moving[body].add(letter)
     parts: dict[str, list[str]] = {}
     for role in Role:
-        rows = [i for i, pinion in enumerate(layout.pinions) if pinion.role is role]
-        if motion := _motion(moves[rows].any(axis=0)):
+        names = [pinion.name for pinion in layout.pinions if pinion.role is role]
+        if motion := _motion(set().union(*(moving[name] for name in names))):
             parts.setdefault(motion, []).append(role.value)
-    motion = _motion(moves[pinions:].any(axis=0))
-    if motion := "-".join(filter(None, (motion, "tilt" if above[last:].any() else ""))):
+    if motion := _motion(set().union(*(moving[gear.name] for gear in layout.gears))):
         parts.setdefault(f"{motion} ", []).append("face gear")
     return "; ".join(f"{', '.join(who)} {motion.strip()}" for motion, who in parts.items())
 
 
-def _motion(moves: Mask) -> str:
-    """`T-R-A` from which of x, y, z, theta move; a single direction of translation is named."""
-    x, y, z, theta = moves
+def _motion(moves: set[str]) -> str:
+    """`T-R-A-tilt` from the letters of the coordinates that move; a single direction of translation is named,
+    and so is what is neither a motion nor a tilt of the rigid body.
+    """
     letters = []
-    if x or y:
-        letters.append("T" if x and y else "T(x)" if x else "T(y)")
-    if theta:
+    if moves & {"x", "y"}:
+        letters.append("T" if {"x", "y"} <= moves else "T(x)" if "x" in moves else "T(y)")
+    if "theta" in moves:
         letters.append("R")
-    if z:
+    if "z" in moves:
         letters.append("A")
-    return "-".join(letters)
+    if moves & set(TILT_LETTERS):
+        letters.append("tilt")
+    return "-".join([*letters, *sorted(moves - {*DOF_LETTERS, *TILT_LETTERS})])

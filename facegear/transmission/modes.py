@@ -6,22 +6,25 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg
 
-from facegear.arrays import Array
+from facegear.arrays import AnyArray, Array
+from facegear.errors import NotConverged
 from facegear.transmission.layout import Layout
-from facegear.transmission.matrices import bearing_matrix, mass_diagonal, mesh_directions
+from facegear.transmission.linear_model import LinearModel
+from facegear.transmission.lumped import lumped_model
 
 EQUAL = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """Frequencies in Hz, shape (n,), ascending; shapes (n, n) by column with unit modal mass.
+    """Frequencies in Hz, shape (n,), ascending; shapes (n, n) by column with unit modal mass. Of turning
+    bodies shapes are complex, their largest entry real: displacements are the real part of shape e^(i w t).
 
     `groups` holds runs of equal frequencies as (start, stop); shapes within a run are one basis of many.
     """
 
     frequencies: Array
-    shapes: Array
+    shapes: AnyArray
     groups: tuple[tuple[int, int], ...]
 
 
@@ -30,20 +33,68 @@ def natural_modes(layout: Layout, mesh_stiffness: float) -> Modes:
 
     Rigid body modes come out as 0 Hz exactly.
     """
-    directions = mesh_directions(layout)
-    return modes_of(layout, mesh_stiffness * directions.T @ directions)
+    linear = lumped_model(layout)
+    return modes_of(linear, drive_flanks(layout, linear, mesh_stiffness))
 
 
-def modes_of(layout: Layout, meshes: Array) -> Modes:
-    """All modes with the stiffness matrix (dof, dof) of the meshes, SI units."""
-    mass = mass_diagonal(layout)
-    stiffness = bearing_matrix(layout) + meshes
-    root = np.sqrt(mass)
-    squares, vectors = scipy.linalg.eigh(stiffness / np.outer(root, root))
+def drive_flanks(layout: Layout, linear: LinearModel, mesh_stiffness: float) -> Array:
+    """Stiffness (n, n) of the meshes with every drive flank closed, N/m each."""
+    directions = linear.rows[: len(layout.meshes)]
+    return np.asarray(mesh_stiffness * directions.T @ directions)
+
+
+def modes_of(linear: LinearModel, meshes: Array, speed: float = 0.0) -> Modes:
+    """All modes with the stiffness matrix (n, n) of the meshes, SI units, at a speed of the pinions in rad/s.
+
+    Raises NotConverged where the machine has no place to vibrate about at the speed.
+    """
+    stiffness = linear.stiffness + meshes
+    if linear.spin is not None and speed != 0.0:
+        return _turning(linear, stiffness, speed)
+    if linear.masses is None:
+        squares, shapes = scipy.linalg.eigh(stiffness, linear.mass)
+    else:
+        root = np.sqrt(linear.masses)
+        squares, vectors = scipy.linalg.eigh(stiffness / np.outer(root, root))
+        shapes = vectors / root[:, None]
+    frequencies = np.sqrt(_without_noise(squares)) / (2.0 * np.pi)
+    return Modes(frequencies, shapes, _equal_runs(frequencies))
+
+
+def _without_noise(squares: Array) -> Array:
+    """Ascending squares of frequencies with those that are rounding as zero."""
     noise = squares.size * np.finfo(float).eps * squares[-1]
-    squares[np.abs(squares) < 10.0 * noise] = 0.0
-    frequencies = np.sqrt(squares) / (2.0 * np.pi)
-    return Modes(frequencies, vectors / root[:, None], _equal_runs(frequencies))
+    return np.where(np.abs(squares) < 10.0 * noise, 0.0, squares)
+
+
+def _turning(linear: LinearModel, stiffness: Array, speed: float) -> Modes:
+    """Modes of turning bodies: x'' + G x' + K x = 0 in mass-normalised coordinates x.
+
+    With u = K^(1/2) x and v = x' this is (u, v)' = S (u, v), S = [[0, K^(1/2)], [-K^(1/2), -G]], which is
+    skew-symmetric: all motions are harmonic, with complex shapes (Meirovitch, AIAA Journal 12, 1974).
+    """
+    assert linear.spin is not None
+    inverse = np.linalg.inv(np.linalg.cholesky(linear.mass))
+    whole = stiffness + speed**2 * linear.spin.centrifugal
+    squares, vectors = scipy.linalg.eigh(inverse @ whole @ inverse.T)
+    squares = _without_noise(squares)
+    if squares[0] < 0.0:
+        tried = f"the stiffness is not positive, as little as {squares[0]:.3g} 1/s2 in its softest motion"
+        raise NotConverged("modes", f"{speed:.6g} rad/s", tried)
+    size, half = linear.size, (vectors * np.sqrt(squares)) @ vectors.T
+    gyroscopic = speed * inverse @ linear.spin.gyroscopic @ inverse.T
+    system = np.block([[np.zeros_like(half), half], [-half, -gyroscopic]])
+    speeds, states = scipy.linalg.eigh(-1j * system)
+    speeds, velocities = speeds[size:], states[size:, size:]
+    speeds[speeds < 10.0 * size * np.finfo(float).eps * speeds[-1]] = 0.0
+    # Kinetic and potential energy together are those of unit modal mass at rest.
+    shapes = -1j * np.sqrt(2.0) * velocities
+    resting = np.count_nonzero(speeds == 0.0)
+    shapes[:, :resting] = vectors[:, :resting]
+    shapes = inverse.T @ shapes
+    largest = np.take_along_axis(shapes, np.abs(shapes).argmax(axis=0)[None], axis=0)
+    frequencies = speeds / (2.0 * np.pi)
+    return Modes(frequencies, shapes * np.abs(largest) / largest, _equal_runs(frequencies))
 
 
 def _equal_runs(frequencies: Array) -> tuple[tuple[int, int], ...]:

@@ -9,23 +9,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from facegear.arrays import Array, Integers
+from facegear.arrays import Array
 from facegear.harmonics.series import stacked, stacked_values
-from facegear.mesh_law.law import Held
+from facegear.mesh_law.law import Held, MeshLaw
 from facegear.transmission.balance import balance, bearing_loads
-from facegear.transmission.contact_energy import Springs
 from facegear.transmission.contact_kernel import settle_all
+from facegear.transmission.dense_statics import RESIDUAL, Contacts, dense_equilibrium
 from facegear.transmission.flanks import (
     constant_errors,
     error_series,
     flank_gaps,
     flank_law,
+    line_law,
     slow_errors,
 )
-from facegear.transmission.layout import DOF_PER_BODY, Layout
 from facegear.transmission.machine import Machine
-from facegear.transmission.matrices import bearing_diagonal, bearing_matrix, flank_directions
-from facegear.transmission.printed_statics import RESIDUAL, printed_equilibrium
+from facegear.transmission.static_springs import has_blocks, static_springs, unknowns
 
 TOLERANCE = 1e-13
 ACCEPTED = 1e-12
@@ -75,9 +74,22 @@ def static_equilibrium(machine: Machine, cycles: float | None = None) -> Equilib
         return Equilibrium(
             found.displacements[0], found.deflections[0], found.forces[0], float(found.residual[0])
         )
-    displacements, deflections, forces, stiffness = printed_equilibrium(machine, cycles)
+    return _printed_equilibrium(machine, cycles)
+
+
+def _printed_equilibrium(machine: Machine, cycles: float | None) -> Equilibrium:
+    """Of meshes whose two flanks share one line of action."""
+    law = line_law(machine)
+    law = law.mean() if cycles is None else law.at_phase(cycles)
+    error = np.zeros(law.contacts) if cycles is None else machine.error(cycles - machine.error_phases)
+    half = np.full(law.contacts, machine.half_backlash)
+    # Rotations are scaled by the pinion radius so that all unknowns are lengths of one order.
+    lengths = np.ones(machine.linear.size)
+    lengths[machine.layout.spins] = machine.layout.pinion_radius
+    contacts = Contacts(law, error, -half, half)
+    displacements, deflections, forces = dense_equilibrium(machine.linear, contacts, lengths)
     gaps = machine.half_backlash + np.abs(deflections)
-    checked = balance(machine, displacements[None], forces[None], stiffness[None], gaps[None])
+    checked = balance(machine, displacements[None], forces[None], law.steepest[None], gaps[None])
     checked.require(RESIDUAL, ["mean stiffness" if cycles is None else f"mesh position {cycles:.4f}"])
     return Equilibrium(displacements, deflections, forces, float(checked.residual[0]))
 
@@ -87,61 +99,50 @@ def equilibria(machine: Machine, cycles: Array) -> Equilibria:
     errors = constant_errors(machine) + stacked_values(stacked(error_series(machine)), cycles)
     if machine.imperfections.any_slow:
         errors += slow_errors(machine, cycles)
-    held = flank_law(machine).held(cycles)
-    return settle(machine, held, errors, [f"mesh position {at:.4f}" for at in cycles])
+    return settle(machine, flank_law(machine), cycles, errors, [f"mesh position {at:.4f}" for at in cycles])
 
 
 def mean_equilibrium(machine: Machine) -> Equilibria:
     """Equilibrium with the mean law and constant errors alone. Raises NotConverged."""
-    held = flank_law(machine).mean().held(np.zeros(1))
-    return settle(machine, held, constant_errors(machine)[None], ["mean stiffness"])
+    law, errors = flank_law(machine).mean(), constant_errors(machine)[None]
+    return settle(machine, law, np.zeros(1), errors, ["mean stiffness"])
 
 
-def settle(machine: Machine, held: Held, errors: Array, names: list[str]) -> Equilibria:
-    """Equilibrium for the law of the flanks held at K phases, see facegear.mesh_law.law.MeshLaw.held, and
-    errors (K, 2 meshes) of theirs. Raises NotConverged.
+def settle(machine: Machine, law: MeshLaw, cycles: Array, errors: Array, names: list[str]) -> Equilibria:
+    """Equilibrium with the law of the flanks at `cycles` (K,) and errors (K, 2 meshes) of theirs.
+
+    Where every pinion has a bearing of its own the compiled solver takes all positions together. Raises
+    NotConverged.
     """
-    springs, kept, scale = static_springs(machine)
-    gaps = errors + flank_gaps(machine)
-    start = np.zeros(kept.size)
-    places, forces, _ = settle_all(springs, held, np.ascontiguousarray(gaps), TOLERANCE, start)
-    displacements = np.zeros((len(gaps), machine.layout.dof))
-    np.add.at(displacements.T, kept, (places * scale).T)
+    held, gaps = law.held(cycles), errors + flank_gaps(machine)
+    if has_blocks(machine):
+        displacements, forces = _by_blocks(machine, held, gaps)
+    else:
+        displacements, forces = _one_by_one(machine, law, cycles, gaps)
     checked = balance(machine, displacements, forces, held.stiffness, gaps)
     checked.require(ACCEPTED, names)
-    drive, back = np.split(displacements @ flank_directions(machine.layout).T - errors, 2, axis=1)
+    drive, back = np.split(displacements @ machine.linear.rows.T - errors, 2, axis=1)
     return Equilibria(displacements, 0.5 * (drive - back), forces, checked.residual)
 
 
-def static_springs(machine: Machine) -> tuple[Springs, Integers, Array]:
-    """The compiled problem, which degrees of freedom it keeps (n,), and the m or rad of its unknowns (n,).
+def _by_blocks(machine: Machine, held: Held, gaps: Array) -> tuple[Array, Array]:
+    """Displacements (K, dof) and flank forces (K, flanks) by the compiled solver."""
+    kept, scale = unknowns(machine)
+    springs, start = static_springs(machine), np.zeros(kept.size)
+    places, forces, _ = settle_all(springs, held, np.ascontiguousarray(gaps), TOLERANCE, start)
+    displacements = np.zeros((len(gaps), machine.linear.size))
+    np.add.at(displacements.T, kept, (places * scale).T)
+    return displacements, forces
 
-    Left out is the pinions' motion along their own axes, which no mesh feels.
-    """
-    layout = machine.layout
-    kept, scale = _unknowns(layout)
-    bearing = bearing_matrix(layout)
-    pinions = len(layout.pinions)
-    first = 3 * pinions
-    wide = (kept.size - first) // len(layout.gears)
-    x = DOF_PER_BODY * np.arange(pinions)
-    touched = np.array(layout.meshes * 2) * [3, wide] + [0, first]
-    columns = np.concatenate([touched[:, :1] + np.arange(3), touched[:, 1:] + np.arange(wide)], axis=1)
-    directions = flank_directions(layout)[:, kept] * scale
-    return (
-        Springs(
-            jacobian=np.take_along_axis(directions, columns, axis=1),
-            pinion=touched[:, 0].copy(),
-            gear=touched[:, 1].copy(),
-            pinion_bearing=np.stack([bearing[x, x], bearing[x, x + 1], bearing[x + 1, x + 1]], axis=1),
-            clearance=machine.imperfections.clearance,
-            gear_bearing=bearing_diagonal(layout)[kept[first:]] * scale[first:] ** 2,
-            gear_coupling=np.array([gear.body.bearing_xy for gear in layout.gears]),
-            applied=machine.applied[kept] * scale,
-        ),
-        kept,
-        scale,
-    )
+
+def _one_by_one(machine: Machine, law: MeshLaw, cycles: Array, gaps: Array) -> tuple[Array, Array]:
+    """The same in dense algebra."""
+    linear, never = machine.linear, np.full(gaps.shape[1], -np.inf)
+    found = [
+        dense_equilibrium(linear, Contacts(law.at_phase(at), 0.0 * gap, never, gap), linear.lengths)
+        for at, gap in zip(cycles, gaps, strict=True)
+    ]
+    return np.array([one[0] for one in found]), np.array([one[2] for one in found])
 
 
 def static_bearing_forces(machine: Machine) -> Array:
@@ -151,33 +152,10 @@ def static_bearing_forces(machine: Machine) -> Array:
     """
     if machine.layout.is_geometric:
         return bearing_forces(machine, mean_equilibrium(machine))[0]
-    forces = bearing_matrix(machine.layout) @ static_equilibrium(machine).displacements
-    return forces.reshape(-1, DOF_PER_BODY)[:, :3]
+    forces = bearing_loads(machine, static_equilibrium(machine).displacements[None])
+    return forces[0, machine.linear.translations]
 
 
 def bearing_forces(machine: Machine, found: Equilibria) -> Array:
     """Force of every body on its bearing along x, y, z, shape (K, bodies, 3), N."""
-    bodies = DOF_PER_BODY * len(machine.layout.bodies)
-    forces = bearing_loads(machine, found.displacements)
-    return forces[:, :bodies].reshape(len(forces), -1, DOF_PER_BODY)[..., :3]
-
-
-def _unknowns(layout: Layout) -> tuple[Integers, Array]:
-    """Kept degrees of freedom and their lengths: turns at the mesh, tilts at the mesh radius.
-
-    If one gear may rock, another that may not is given tilts of no length.
-    """
-    kept: list[int] = []
-    scale: list[float] = []
-    pinions, bodies = len(layout.pinions), len(layout.bodies)
-    for body in range(bodies):
-        letters = (0, 1, 3) if body < pinions else (0, 1, 2, 3)
-        arm = layout.pinion_arm if body < pinions else layout.gear_arm
-        kept += [DOF_PER_BODY * body + letter for letter in letters]
-        scale += [1.0 / arm if letter == 3 else 1.0 for letter in letters]
-        if body >= pinions and layout.tilting:
-            rocks = body - pinions in layout.tilting
-            at = DOF_PER_BODY * bodies + 2 * (layout.tilting.index(body - pinions) if rocks else 0)
-            kept += [at, at + 1]
-            scale += 2 * [1.0 / layout.mesh_radius if rocks else 0.0]
-    return np.array(kept), np.array(scale)
+    return bearing_loads(machine, found.displacements)[:, machine.linear.translations]

@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.reduction import modal_damping
 from facegear.dynamics.integrator.system import System
@@ -61,13 +59,12 @@ def changed(model: Model, parameter: str, factor: float) -> System:
     """The system of a machine with all torques, the backlash, the mesh damping or all bearing stiffnesses
     multiplied, in the same coordinates. Raises ValueError for another parameter.
     """
-    system, machine = model.system, model.machine
+    system, linear = model.system, model.machine.linear
     if factor == 1.0:
         return system
     if parameter == "torque":
         load = system.load.copy()
-        torques = replace(machine, forces=np.zeros_like(machine.forces)).applied
-        load[:, 1, 0] += (factor - 1.0) * (model.reduced.basis.T @ torques)
+        load[:, 1, 0] += (factor - 1.0) * (model.reduced.basis.T @ linear.torques)
         return replace(system, load=load)
     if parameter == "backlash":
         return replace(system, lower=system.lower * factor, upper=system.upper * factor)
@@ -75,5 +72,6 @@ def changed(model: Model, parameter: str, factor: float) -> System:
         return replace(system, mesh_damping=system.mesh_damping * factor)
     if parameter == "bearing_stiffness":
         scaled = system.omega_squared * factor
-        return replace(system, omega_squared=scaled, damping=modal_damping(machine.damping, scaled))
+        own = system.damping - modal_damping(linear, system.omega_squared)
+        return replace(system, omega_squared=scaled, damping=modal_damping(linear, scaled) + own)
     raise ValueError(f"{parameter!r}: one of {', '.join(MACHINE_PARAMETERS)}")

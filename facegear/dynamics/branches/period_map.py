@@ -66,6 +66,7 @@ class PeriodMap:
         law = system.law
         key = (
             type(law),
+            system.coupling is None,
             *system.mesh_jacobian.shape,
             system.contacts,
             None if system.rubbing is None else system.rubbing.ratios.shape,
@@ -127,8 +128,14 @@ class PeriodMap:
         if key not in self.memory:
             n = integrator.size
             jacobian = integrator.mesh_jacobian
-            jacobian_rows = jacobian[contact] / np.abs(jacobian).max()
-            held = np.concatenate([jacobian_rows, np.diag(np.sign(integrator.omega_squared))])
+            coupling = integrator.system.coupling
+            held = np.concatenate(
+                [
+                    jacobian[contact] / np.abs(jacobian).max(),
+                    np.diag(np.sign(integrator.omega_squared)),
+                    *([coupling.place_terms(integrator.frequency)] if coupling else []),
+                ]
+            )
             _, sizes, rows = np.linalg.svd(held)
             free = rows[np.count_nonzero(sizes > RIGID) :]
             shifts = np.zeros((2 * n, len(free)))

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from facegear.arrays import Array, Integers
+from facegear.dynamics.integrator.coupling import Coupling
 from facegear.dynamics.integrator.system import System
 from facegear.machine_code.memory import aligned, divided, padded, whole_lanes
 from facegear.mesh_law.linear import fourier_columns
@@ -60,8 +61,9 @@ class Packed(NamedTuple):
     (m,) names. drift (terms, m): polynomial in s added to the error of this period, or none. leverage (m,):
     sum of squares of a row of mesh_jacobian. pairs: meshes whose two flanks stand at j and j + pairs; 0 where
     every mesh stands for itself. contacts: rows of the m that are meshes or flanks; the others belong to the
-    rings of bearings with play. Without any, `rings` is None, and the kernels are compiled without them, and
-    so is `rubbing` without friction: another type, of rings, friction or the law, is another machine code.
+    rings of bearings with play. coupled (2 n, n): transposed matrices of what couples coordinates beside the
+    meshes, by derivative, then by place. Without any, `rings`, `rubbing` (friction) and `coupled` are None,
+    and the kernels are compiled without them: another type, of these or of the law, is another machine code.
     """
 
     n: int
@@ -91,20 +93,23 @@ class Packed(NamedTuple):
     contacts: int
     rings: Rings | None
     rubbing: Rubbing | None
+    coupled: Array | None
 
 
 def pack(system: System, frequency: float) -> Packed:
     """Pack a system at an angular mesh frequency w in rad/s."""
     one, square = _packed(system), frequency**2
     natural, harmonics = _fastest(system)
+    coupling = system.coupling
     return one._replace(
         omega_squared=divided(one.omega_squared, square),
         damping=divided(one.damping, frequency),
         mesh_damping=divided(one.mesh_damping, frequency),
         law=system.law.terms(frequency, len(one.mesh_damping)),
         load=divided(one.load, square),
-        fastest=natural / frequency + harmonics,
+        fastest=natural / frequency + harmonics + (coupling.fastest(frequency) if coupling else 0.0),
         rings=_rings(system, frequency),
+        coupled=_coupled(coupling, frequency, one.omega_squared.size) if coupling else None,
     )
 
 
@@ -148,6 +153,7 @@ def _packed(system: System) -> Packed:
         contacts=system.contacts,
         rings=None,
         rubbing=_rubbing(system),
+        coupled=None,
     )
 
 
@@ -185,6 +191,13 @@ def _rings(system: System, frequency: float) -> Rings | None:
         play=padded(system.ring_play, whole_lanes(count)),
         lag=system.ring_lag * frequency,
     )
+
+
+def _coupled(coupling: Coupling, frequency: float, width: int) -> Array:
+    wide = aligned(2 * width, width)
+    for at, matrix in ((0, coupling.velocity_terms(frequency)), (width, coupling.place_terms(frequency))):
+        wide[at : at + len(matrix), : len(matrix)] = matrix.T
+    return wide
 
 
 @lru_cache(maxsize=16)

@@ -3,38 +3,37 @@
 Degrees of freedom with the same bearing frequency (and so, with C = lambda M + beta K, the same damping) may
 be combined freely; of each such group only the combinations that appear in a mesh deflection move together
 with the others. The rest (pinion axial motions, the rigid rotation, one translation of each pinion) are
-decoupled.
+decoupled. Further dampers and what turning bodies add couple coordinates too: what they couple to a motion
+that is kept is kept with it.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
+import scipy
+from scipy.sparse.csgraph import connected_components
 
-from facegear.arrays import Array, Integers
-from facegear.transmission.layout import DOF_PER_BODY, Layout
-from facegear.transmission.machine import Damping, Machine
-from facegear.transmission.matrices import (
-    bearing_axes,
-    bearing_diagonal,
-    bearing_matrix,
-    flank_directions,
-    mass_diagonal,
-    mesh_directions,
-)
-from facegear.transmission.mesh_friction import friction_rows
+from facegear.arrays import Array
+from facegear.dynamics.integrator.coupling import Coupling
+from facegear.transmission.linear_model import LinearModel
 
 SAME_FREQUENCY = 1e-12
 RANK = 1e-10
+RIGID = 1e-13
+"""Part of the stiffest motion's omega^2, among coordinates that masses couple, that is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
 class Reduced:
     """The moving part in n mass-normalised coordinates y, displacements = basis y.
 
-    basis (dof, n), mesh_jacobian (meshes, n), or (2 meshes, n) by flank where meshes are geometric, followed
-    by x, y and a row of zeros of each pinion whose bearing has play: those bearings are not in omega_squared,
-    omega_squared (n,) bearing frequencies squared in 1/s2,
-    damping (n,) in 1/s, load (n,) from the torques, `free` the names of the DOF that nothing touches.
+    - basis (dof, n).
+    - mesh_jacobian (contacts, n), followed by x, y and a row of zeros of each bearing with play: those
+      bearings are not in omega_squared.
+    - omega_squared (n,): bearing frequencies squared, 1/s2.
+    - damping (n,): 1/s. load (n,): from torques and forces.
+    - free: the names of the coordinates that nothing touches.
+    - coupling: what couples the n beside the meshes, for a speed of the pinions of 1 rad/s; or None.
     """
 
     basis: Array
@@ -43,66 +42,36 @@ class Reduced:
     damping: Array
     load: Array
     free: tuple[str, ...]
+    coupling: Coupling | None
 
 
-def reduce(machine: Machine) -> Reduced:
-    """Reduced coordinates of a machine; torques are in balance, so the rigid rotation stays at rest."""
-    rings = np.flatnonzero(machine.imperfections.clearance > 0.0)
-    layout = without_bearings(machine.layout, rings)
-    mass = mass_diagonal(layout)
-    mesh_jacobian = flank_directions(layout) if layout.is_geometric else mesh_directions(layout)
-    mesh_jacobian = np.concatenate([mesh_jacobian, *(_ring_rows(layout, int(i)) for i in rings)])
-    applied = machine.applied
+def reduce(linear: LinearModel, contacts: int, pushes: Array) -> Reduced:
+    """Reduced coordinates with the first `contacts` rows of the linear model, see Layout.contacts.
+
+    pushes (rows, dof): directions of other forces. Torques are in balance, so the rigid rotation stays at
+    rest.
+    """
+    stiffness = linear.stiffness_without_rings
+    mesh_jacobian = np.concatenate([linear.rows[:contacts], *_ring_rows(linear)])
+    whole = _coupling(linear)
     # What forces move belongs to the motion, though no mesh may feel it: bearings carry it.
-    pushes = [_push_row(machine)] if machine.forces.any() else []
-    if machine.friction is not None:
-        pushes.append(friction_rows(layout).reshape(-1, layout.dof))
-    felt = np.concatenate([mesh_jacobian, *pushes])
-    bearing = bearing_diagonal(layout)
-    if any(body.bearing_xy != 0.0 for body in layout.bodies):
-        axes = bearing_axes(layout)
-        principal = np.einsum("ij,ij->j", axes, bearing_matrix(layout) @ axes)
-        basis, omega_squared = coupled_basis(felt @ axes, mass, principal)
-        basis = axes @ basis
-    else:
-        basis, omega_squared = coupled_basis(felt, mass, bearing)
-    touched = (mesh_jacobian != 0.0).any(axis=0) | (bearing != 0.0) | (applied != 0.0)
-    names = np.array(layout.dof_names)
+    basis, omega_squared = _basis(linear, stiffness, np.concatenate([mesh_jacobian, pushes]), whole)
+    touched = (mesh_jacobian != 0.0).any(axis=0) | (stiffness.diagonal() != 0.0) | (linear.loads != 0.0)
+    own, coupling = (np.zeros_like(omega_squared), None) if whole is None else whole.among(basis).split()
     return Reduced(
         basis=basis,
         mesh_jacobian=mesh_jacobian @ basis,
         omega_squared=omega_squared,
-        damping=modal_damping(machine.damping, omega_squared),
-        load=basis.T @ applied,
-        free=tuple(names[~touched].tolist()),
+        damping=modal_damping(linear, omega_squared) + own,
+        load=basis.T @ linear.loads,
+        free=tuple(np.array(linear.labels)[~touched].tolist()),
+        coupling=coupling,
     )
 
 
-def without_bearings(layout: Layout, pinions: Integers) -> Layout:
-    """The layout with some pinions free in x and y."""
-    changed = list(layout.pinions)
-    for i in pinions:
-        body = changed[i].body
-        changed[i] = replace(changed[i], body=replace(body, bearing=(0.0, 0.0, body.bearing[2])))
-    return replace(layout, pinions=tuple(changed))
-
-
-def _push_row(machine: Machine) -> Array:
-    """Direction of the external forces without the torques, (1, dof)."""
-    loads = machine.applied
-    loads[machine.layout.spins] = 0.0
-    return (loads / np.linalg.norm(loads))[None]
-
-
-def _ring_rows(layout: Layout, pinion: int) -> Array:
-    rows = np.zeros((3, layout.dof))
-    rows[[0, 1], DOF_PER_BODY * pinion + np.arange(2)] = 1.0
-    return rows
-
-
-def modal_damping(damping: Damping, omega_squared: Array) -> Array:
+def modal_damping(linear: LinearModel, omega_squared: Array) -> Array:
     """lambda + beta omega^2 of each coordinate, equation (21), 1/s."""
-    return damping.mass + damping.bearing * omega_squared
+    return linear.mass_damping + linear.bearing_damping * omega_squared
 
 
 def coupled_basis(mesh_jacobian: Array, mass: Array, bearing: Array) -> tuple[Array, Array]:
@@ -125,3 +94,59 @@ def coupled_basis(mesh_jacobian: Array, mass: Array, bearing: Array) -> tuple[Ar
             columns.append(column)
             kept.append(value)
     return np.array(columns).T.reshape(mass.size, len(columns)), np.array(kept)
+
+
+def _basis(
+    linear: LinearModel, stiffness: Array, felt: Array, coupling: Coupling | None
+) -> tuple[Array, Array]:
+    """Basis and omega^2 of the motions that the directions `felt` (rows, dof) excite, and of those to which
+    the coupling hands them on.
+    """
+    axes, mass, principal = _principal_axes(linear, stiffness)
+    while True:
+        basis, omega_squared = coupled_basis(felt if axes is None else felt @ axes, mass, principal)
+        basis = basis if axes is None else axes @ basis
+        if coupling is None:
+            return basis, omega_squared
+        handed_on = coupling.directions(basis)
+        missing = handed_on - handed_on @ basis @ linear.momentum(basis).T
+        if np.abs(missing).max(initial=0.0) <= RANK * np.abs(handed_on).max(initial=0.0):
+            return basis, omega_squared
+        size = np.linalg.norm(felt) / np.linalg.norm(handed_on)
+        felt = np.concatenate([felt, size * handed_on])
+
+
+def _principal_axes(linear: LinearModel, stiffness: Array) -> tuple[Array | None, Array, Array]:
+    """Columns (dof, dof) along which masses and bearings act by themselves, or None for the coordinates as
+    they are; masses and stiffnesses (dof,) along them.
+    """
+    joined = (linear.mass != 0.0) | (stiffness != 0.0)
+    count, group = connected_components(joined, directed=False)
+    if count == linear.size:
+        return None, linear.mass.diagonal(), stiffness.diagonal()
+    axes, mass = np.eye(linear.size), linear.mass.diagonal().copy()
+    rigid = np.zeros(linear.size, dtype=bool)
+    for number in np.flatnonzero(np.bincount(group) > 1):
+        own = np.flatnonzero(group == number)
+        at = np.ix_(own, own)
+        if (linear.mass[at] == linear.mass[own[0], own[0]] * np.eye(own.size)).all():
+            axes[at] = np.linalg.eigh(stiffness[at])[1]
+        else:
+            values, axes[at] = scipy.linalg.eigh(stiffness[at], linear.mass[at])
+            rigid[own], mass[own] = np.abs(values) <= RIGID * np.abs(values).max(), 1.0
+    return axes, mass, np.where(rigid, 0.0, np.einsum("ij,ij->j", axes, stiffness @ axes))
+
+
+def _coupling(linear: LinearModel) -> Coupling | None:
+    """Of all coordinates, for a speed of the pinions of 1 rad/s."""
+    spin, none = linear.spin, np.zeros_like(linear.dampers)
+    turning = (none, none, none) if spin is None else (spin.gyroscopic, spin.circulatory, spin.centrifugal)
+    coupling = Coupling(linear.dampers, *turning)
+    return coupling if coupling.any else None
+
+
+def _ring_rows(linear: LinearModel) -> list[Array]:
+    rows = np.zeros((len(linear.ring_places), 3, linear.size))
+    for row, places in zip(rows, linear.ring_places, strict=True):
+        row[[0, 1], places] = 1.0
+    return list(rows)

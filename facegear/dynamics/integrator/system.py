@@ -1,6 +1,6 @@
 """What the compiled integrator sees: unit-mass oscillators coupled by meshes with clearance.
 
-    y'' + damping y' + omega_squared y + G^T F = load(t),   F = law(s, x) + c d',   d = G y - e(t),
+    y'' + damping y' + omega_squared y + coupling + G^T F = load(t),   F = law(s, x) + c d',   d = G y - e(t),
 
 x = d - upper above `upper`, d - lower below `lower`, zero between. e and load are Fourier series in the mesh
 phase s = 2 pi t / T, the law is any of facegear.mesh_law. Bearings with play are rings (rings.py). Friction
@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from facegear.arrays import Array, Integers
+from facegear.dynamics.integrator.coupling import Coupling
 from facegear.dynamics.integrator.reduction import Reduced
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.law import MeshLaw
@@ -33,7 +34,8 @@ class System:
     `push_only`: spring and damper of a contact together never pull, F >= 0, damping acts in contact only. The
     last 3 R of the m rows belong to the rings: x, y of the body, and a row of zeros. ring_stiffness and
     ring_play (R,); ring_lag: damping over stiffness of the rings, s. rubbing: friction of the flanks, or
-    none.
+    none. coupling: forces that couple coordinates beside the meshes, for a mesh frequency of 1 rad/s, or
+    None; the diagonal of its dampers is in `damping` and not in them.
     """
 
     mesh_jacobian: Array
@@ -54,6 +56,7 @@ class System:
     ring_play: Array = field(default_factory=lambda: np.zeros(0))
     ring_lag: float = 0.0
     rubbing: "FlankRubbing | None" = None
+    coupling: Coupling | None = None
 
     @property
     def size(self) -> int:
@@ -106,6 +109,7 @@ def machine_system(machine: Machine, reduced: Reduced) -> System:
         load=load,
         damping_when_open=machine.damping.open_flanks is OpenFlanks.ALWAYS,
         scale=length_scale(machine),
+        coupling=_coupling(machine, reduced),
     )
 
 
@@ -141,13 +145,19 @@ def _flank_system(machine: Machine, reduced: Reduced) -> System:
         ring_stiffness=np.array([machine.layout.pinions[i].body.bearing[0] for i in rings]),
         ring_play=play[rings],
         ring_lag=machine.damping.bearing,
+        coupling=_coupling(machine, reduced),
         rubbing=None if machine.friction is None else _rubbing(machine, machine.friction, reduced),
     )
 
 
+def _coupling(machine: Machine, reduced: Reduced) -> Coupling | None:
+    """For a mesh frequency of 1 rad/s."""
+    return reduced.coupling and reduced.coupling.per_speed(machine.layout.pinion_teeth)
+
+
 def _rubbing(machine: Machine, friction: MeshFriction, reduced: Reduced) -> FlankRubbing:
     """Friction of all flanks in reduced coordinates, without directions in which nothing moves."""
-    rows = np.tile(friction_rows(machine.layout), (2, 1, 1))
+    rows = np.tile(machine.linear.over_all(friction_rows(machine.layout)), (2, 1, 1))
     flank, part = np.nonzero(rows.any(axis=2))
     ratios = flank_ratios(friction.ratios, machine.phases)
     return FlankRubbing(flank, ratios[flank, part], rows[flank, part] @ reduced.basis)

@@ -2,7 +2,7 @@
 
 A single tangent goes coordinate by coordinate, in the vectors that the motion itself uses. Many go in blocks
 of ABREAST, side by side in the innermost place: then every entry of G is read once for all of them, and those
-that are zero are left out.
+that are zero are left out. Rings, and coordinates that are coupled beside the meshes, go one by one.
 """
 
 import numpy as np
@@ -59,7 +59,7 @@ def tangent_step(packed: Packed, work: Work, length: float, tolerance: float) ->
 def move_tangents(packed: Packed, work: Work, length: float, tangents: Array, tolerance: float) -> None:
     """Move tangents (columns, 2, n) over the step whose polynomials `work` holds."""
     order = work.order if is_curved(packed.law) else _order_needed(packed, work.order, length, tolerance)
-    if packed.rings is None and packed.rubbing is None:
+    if packed.rings is None and packed.rubbing is None and packed.coupled is None:
         if tangents.shape[0] > 1:
             for first in range(0, tangents.shape[0], ABREAST):
                 _move_block(packed, work, order, length, tangents, first)

@@ -117,8 +117,22 @@ def recurrence(
             store(y, (i + 2) * n + c, multiply(factor, total))
         accumulate(packed.transposed, packed.m + packed.m % 2, force, 0, y, (i + 2) * n)
         rub(packed.rubbing, work.rubbing, work.side, i, 1.0 / ((i + 1) * (i + 2)), y, i + 2)
+        _couple(packed.coupled, work.coupled, y, i)
         deflect(packed, y, i + 2, error, deflection)
         _ring(packed, work, i + 2, deflection, tangent)
+
+
+@inlined
+def _couple(coupled: Array | None, factors: Array, y: Array, i: int) -> None:
+    """Add what couples coordinates beside the meshes to row i + 2 of y from the two rows before it."""
+    if coupled is None:
+        return
+    n = y.shape[1]
+    by_rate, by_place = splat(-1.0 / (i + 2)), splat(-1.0 / ((i + 1) * (i + 2)))
+    for c in range(0, n, LANES):
+        store(factors, c, multiply(by_rate, load(y, (i + 1) * n + c)))
+        store(factors, n + c, multiply(by_place, load(y, i * n + c)))
+    accumulate(coupled, 2 * n, factors, 0, y, (i + 2) * n)
 
 
 @inlined

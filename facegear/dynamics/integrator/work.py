@@ -55,8 +55,8 @@ class Work(NamedTuple):
     fourier and kinds are used by Fourier series. bernstein holds the deflections' Bernstein coefficients over
     the step, least and most their bounds. block, block_deflection (rows, coordinates or meshes times ABREAST)
     and block_force: of tangents side by side. nodes: of the rule that integrates products of polynomials.
-    rings: None without play; rubbing: None without friction. Tables that hang on sizes alone (conversion,
-    nodes) are shared and only read.
+    rings: None without play; rubbing: None without friction. coupled: what the matrices of Packed.coupled are
+    multiplied by. Tables that hang on sizes alone (conversion, nodes) are shared and only read.
     """
 
     order: int
@@ -95,6 +95,7 @@ class Work(NamedTuple):
     nodes: Array
     rings: RingSeries | None
     rubbing: RubbingSeries | None
+    coupled: Array
 
 
 def make_work(system: System, packed: Packed, order: int) -> Work:
@@ -141,6 +142,7 @@ def make_work(system: System, packed: Packed, order: int) -> Work:
         nodes=_gauss(order // 4 + 1),
         rings=_ring_series(rows, packed.rings.play.size) if packed.rings else None,
         rubbing=RubbingSeries(aligned(rows, rubbing.ratios.shape[2]), aligned(rows, m)) if rubbing else None,
+        coupled=aligned(2 * n),
     )
 
 

@@ -23,7 +23,6 @@ from facegear.dynamics.steady_state.statistics import drifts
 from facegear.dynamics.steady_state.window import Window, run_window
 from facegear.errors import NotConverged
 from facegear.transmission.machine import Machine, mesh_frequency
-from facegear.transmission.matrices import mass_diagonal
 from facegear.transmission.statics import static_equilibrium
 
 CLASSES = {Growth.GROWS: Motion.CHAOTIC, Growth.NEUTRAL: Motion.QUASI_PERIODIC}
@@ -104,14 +103,14 @@ class Model:
 
 def build_model(machine: Machine) -> Model:
     """Reduce a machine once for all speeds."""
-    reduced = reduce(machine)
+    reduced = reduce(machine.linear, machine.layout.contacts, machine.pushes)
     return Model(machine, reduced, machine_system(machine, reduced))
 
 
 def static_start(model: Model) -> State:
     """At rest in the static equilibrium with mean stiffness."""
     standing = static_equilibrium(model.machine).displacements
-    displacement = model.reduced.basis.T @ (mass_diagonal(model.machine.layout) * standing)
+    displacement = model.reduced.basis.T @ model.machine.linear.momentum(standing)
     return State(displacement, np.zeros_like(displacement))
 
 

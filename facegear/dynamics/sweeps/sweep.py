@@ -11,9 +11,7 @@ from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.simulate import Model, SteadyState, simulate, static_start
 from facegear.dynamics.steady_state.spectra import order_spectrum, spectrum
 from facegear.dynamics.sweeps.plan import SweepPlan
-from facegear.transmission.layout import DOF_PER_BODY
 from facegear.transmission.loaded_modes import loaded_modes
-from facegear.transmission.matrices import mass_diagonal
 
 DEFLECTION = ("mean", "rms", "ac_rms", "minimum", "maximum", "rms_interval", "ac_rms_interval")
 TRANSLATION = ("rms", "ac_rms", "ac_rms_interval")
@@ -127,10 +125,9 @@ def collect(model: Model, responses: Iterator[tuple[float, SteadyState]]) -> Pie
     """Reduce responses to the numbers that a sweep keeps."""
     machine = model.machine
     modes = loaded_modes(machine)
-    to_modal = mass_diagonal(machine.layout)[:, None] * modes.shapes * (2.0 * np.pi * modes.frequencies)
+    to_modal = machine.linear.momentum(modes.shapes) * (2.0 * np.pi * modes.frequencies)
     basis = model.reduced.basis
-    bodies = basis[: DOF_PER_BODY * len(machine.layout.bodies)]
-    translations = bodies.reshape(-1, DOF_PER_BODY, basis.shape[1])[:, :3].reshape(-1, basis.shape[1]).T
+    translations = basis[machine.linear.translations.ravel()].T
     views = np.hstack([translations, basis.T @ to_modal])
     rows = [_row(views, translations.shape[1], speed, response) for speed, response in responses]
     return Piece(**{name: np.array([row[name] for row in rows]) for name in Piece.__dataclass_fields__})

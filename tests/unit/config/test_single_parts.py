@@ -304,7 +304,7 @@ def test_an_external_force_is_carried_by_the_bearings_and_noted():
     own = {"single_pinions": {"two": {"force_n": {"x": 300, "y": -200}}}}
     parts = parse(Transmission, section(**own))
     loaded = machine(parts, TEETH, STIFFNESS)
-    np.testing.assert_array_equal(loaded.applied[4:8], [300.0, -200.0, 0.0, 800.0])
+    np.testing.assert_array_equal(loaded.linear.loads[4:8], [300.0, -200.0, 0.0, 800.0])
     values = {"transmission": parts.model_dump(mode="json"), "reproduction": None}
     assert "external forces on two" in notes(values)[0]
 

@@ -63,9 +63,9 @@ def chain(own):
     machine = case_machine(case, given_series(parse(MeshStiffness, case["mesh_stiffness"])))
     vibrating = vibrating_machine(machine)
     modes = vibrating.modes
-    frequencies = frequency_table(vibrating, name_modes(machine.layout, modes))
+    frequencies = frequency_table(vibrating, name_modes(machine.layout, machine.linear, modes))
     assert len(frequencies) == 4 * len(machine.layout.bodies)
-    assert len(shape_table(machine.layout, modes)) == len(frequencies) ** 2
+    assert len(shape_table(machine.linear.labels, modes)) == len(frequencies) ** 2
     settings = accuracy(parse(Dynamics, case["dynamics"]).accuracy)
     options = sharing_options(parse(LoadSharing, case["load_sharing"]))
     sharing = load_sharing(machine, case["dynamics"]["speed_rpm"], settings, options)

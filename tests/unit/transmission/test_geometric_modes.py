@@ -18,6 +18,7 @@ from facegear.transmission.imperfections import perfect
 from facegear.transmission.layout import MeshKinematics, Role, Side, Tilt
 from facegear.transmission.loaded_contacts import forces_by_active_sets, loaded_contacts
 from facegear.transmission.loaded_modes import loaded_modes, vibrating_machine
+from facegear.transmission.lumped import lumped_model
 from facegear.transmission.matrices import bearing_matrix, mass_diagonal, mesh_parts
 from facegear.transmission.modal_tables import contact_table
 from facegear.transmission.mode_classes import ModeClass, name_modes
@@ -80,7 +81,7 @@ def test_pinions_float_in_one_direction_less_and_the_rigid_modes_stay():
     machine = make_machine(LAYOUT, torque=2000.0, tail_share=0.03)
     modes = loaded_modes(machine)
     assert (modes.frequencies[:6] == 0.0).all() and modes.frequencies[6] > 100.0
-    names = name_modes(LAYOUT, modes)
+    names = name_modes(LAYOUT, lumped_model(LAYOUT), modes)
     assert [name.mode_class for name in names[:6]] == 6 * [ModeClass.RIGID]
     # As printed, each pinion has a translation that no mesh feels: five modes at 1171.8 Hz.
     free = np.sqrt(6.5e7 / 1.199) / (2.0 * np.pi)
@@ -107,7 +108,7 @@ def test_tilting_gears_add_two_modes_each_and_stiff_tilt_adds_nothing_else():
     soft = loaded_modes(tilting(1e6))
     # More freedom with its own inertia lowers every frequency (interlacing).
     assert (soft.frequencies[:-4] <= square + 1e-6).all()
-    assert any("tilt" in name.symbols for name in name_modes(tilting(1e6).layout, soft))
+    assert any("tilt" in name.symbols for name in name_modes(tilting(1e6).layout, tilting(1e6).linear, soft))
 
 
 def test_inputs_float_along_one_line_and_idlers_along_none():
@@ -117,7 +118,7 @@ def test_inputs_float_along_one_line_and_idlers_along_none():
     printed, geometric = both_modes()
     assert multiplicities(printed) == [6, 1, 1, 2, 1, 5, 1, 1, 1, 1, 1, 1, 2, 1, 1, 1, 1]
     assert multiplicities(geometric) == [6, 1, 1, 1, 1, 2] + 16 * [1]
-    classes = [name.mode_class for name in name_modes(LAYOUT, geometric)]
+    classes = [name.mode_class for name in name_modes(LAYOUT, lumped_model(LAYOUT), geometric)]
     coupled = [ModeClass.COUPLED]
     expected = 6 * [ModeClass.RIGID] + coupled + 2 * [ModeClass.PINION] + coupled + 2 * [ModeClass.PINION]
     assert classes == expected + 16 * coupled
@@ -150,7 +151,7 @@ def table_lines() -> Iterator[str]:
 
 
 def cells(modes):
-    names = name_modes(LAYOUT, modes)
+    names = name_modes(LAYOUT, lumped_model(LAYOUT), modes)
     for start, stop in modes.groups:
         for order in range(start, stop):
             cell = f"{modes.frequencies[order]:.1f} | {stop - start} | {names[order].mode_class.value}"

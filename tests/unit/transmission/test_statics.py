@@ -9,11 +9,11 @@ from lumped_machines import make_machine
 from facegear.errors import InvalidInput
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.linear import linear_law
+from facegear.transmission.dense_statics import Contacts, Line
 from facegear.transmission.imperfections import perfect
 from facegear.transmission.layout import Role, Side
 from facegear.transmission.machine import Machine, balanced_torques
 from facegear.transmission.phases import PhaseConvention, mesh_phases
-from facegear.transmission.printed_statics import Line
 from facegear.transmission.statics import static_equilibrium
 
 
@@ -92,8 +92,10 @@ def test_phases_of_other_meshes_than_the_layouts_are_refused_before_a_kernel_rea
 NUMBERS = st.floats(-10.0, 10.0).filter(lambda x: x == 0.0 or abs(x) > 1e-3)
 
 
-def constant_law(stiffness):
-    return linear_law([Harmonics(np.zeros(1), np.array([k])) for k in stiffness])
+def dead_zones(stiffness, half_width):
+    law = linear_law([Harmonics(np.zeros(1), np.array([k])) for k in stiffness])
+    half = np.full(stiffness.size, half_width)
+    return Contacts(law, np.zeros(stiffness.size), -half, half)
 
 
 @given(
@@ -106,7 +108,7 @@ def test_the_line_search_of_the_statics_stops_where_the_slope_comes_to_zero(
     meshes, rise, constant, half_width
 ):
     deflections, rates, stiffness = np.array(meshes).T
-    line = Line(constant, rise, deflections, rates, constant_law(stiffness), half_width)
+    line = Line(constant, rise, deflections, rates, dead_zones(stiffness, half_width))
     best = line.minimum()
     before, at, after = line.slopes(best * np.array([1.0 - 1e-9, 1.0, 1.0 + 1e-9]))
     largest = abs(constant) + stiffness @ (np.abs(rates) * (np.abs(deflections) + np.abs(rates) * best))
@@ -119,5 +121,5 @@ def test_the_line_search_of_the_statics_stops_where_the_slope_comes_to_zero(
 
 @pytest.mark.filterwarnings("error")
 def test_a_mesh_that_next_to_never_moves_leaves_the_line_search_to_the_others():
-    line = Line(-1.0, 1.0, np.zeros(1), np.array([1e-320]), constant_law(np.ones(1)), half_width=1e-4)
+    line = Line(-1.0, 1.0, np.zeros(1), np.array([1e-320]), dead_zones(np.ones(1), 1e-4))
     assert line.minimum() == pytest.approx(1.0)

@@ -1,18 +1,18 @@
-"""Static equilibrium of equation (13) as printed, whose two flanks share one line of action.
+"""Static equilibrium of any linear model with contacts of any kind: one position at a time, in dense algebra.
 
-Kept apart from the contact problem of geometric meshes, where each flank has a gap of its own: here one
-deflection of either sign passes a dead zone.
+Contacts may have an edge on either side, as the meshes of equation (13) as printed, where one deflection of
+either sign passes a dead zone; stiffness may couple any coordinates. Where each pinion has a bearing of its
+own and contacts push, facegear.transmission.contact_kernel is far faster.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from facegear.arrays import Array
-from facegear.mesh_law.law import MeshLaw
-from facegear.transmission.flanks import line_law
-from facegear.transmission.machine import Machine
-from facegear.transmission.matrices import bearing_matrix, mesh_directions
+from facegear.arrays import Array, Integers
+from facegear.mesh_law.law import MeshLaw, beyond_edges
+from facegear.transmission.linear_model import LinearModel
 
 MAX_ITERATIONS = 200
 RESIDUAL = 1e-10
@@ -26,108 +26,142 @@ NO_PHASE = np.zeros(1)
 """The phase at which a law is asked that depends on none."""
 
 
-def _beyond(deflections: Array, half_width: float) -> Array:
-    """f(d) of equation (19), any shape."""
-    return np.asarray(deflections - np.minimum(np.maximum(deflections, -half_width), half_width))
-
-
-def _forces(law: MeshLaw, deflections: Array, half_width: float) -> Array:
-    """Forces of deflections (..., meshes), with a law that depends on no phase."""
-    return law.force(NO_PHASE, _beyond(deflections, half_width)[..., None, :])[..., 0, :]
-
-
-def printed_equilibrium(machine: Machine, cycles: float | None) -> tuple[Array, Array, Array, Array]:
-    """Displacements (dof,), deflections, elastic forces and stiffness (meshes,) where it is looked for.
-
-    Minimises the elastic energy less the work of the torques (convex: the dead zone only flattens it).
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """Contacts at one position: law, which does not depend on the phase; error, lower and upper edge of each
+    deflection (contacts,), m. A contact that only pushes has its lower edge at minus infinity.
     """
-    directions = mesh_directions(machine.layout)
-    law = line_law(machine)
-    if cycles is None:
-        law = law.mean()
-        error = np.zeros(len(directions))
-    else:
-        law = law.at_phase(cycles)
-        error = machine.error(cycles - machine.error_phases)
-    bearing = bearing_matrix(machine.layout)
-    applied = machine.applied
-    # Rotations are scaled by the pinion radius so that all unknowns are lengths of one order.
-    scale = np.ones(len(bearing))
-    scale[machine.layout.spins] = 1.0 / machine.layout.pinion_radius
+
+    law: MeshLaw
+    error: Array
+    lower: Array
+    upper: Array
+
+    def forces(self, deflections: Array) -> Array:
+        """Forces of deflections (..., contacts), N."""
+        beyond = beyond_edges(deflections, self.lower, self.upper)
+        return self.law.force(NO_PHASE, beyond[..., None, :])[..., 0, :]
+
+    def slopes(self, deflections: Array) -> Array:
+        """Their derivatives (contacts,) at deflections (contacts,), N/m."""
+        return self.law.slope(NO_PHASE, beyond_edges(deflections, self.lower, self.upper)[None])[0]
+
+
+def dense_equilibrium(linear: LinearModel, contacts: Contacts, lengths: Array) -> tuple[Array, Array, Array]:
+    """Displacements (n,), deflections (contacts,) without errors, elastic forces (contacts,).
+
+    Minimises the elastic energy less the work of the loads (convex: gaps only flatten it). lengths (n,): of
+    one unit of each coordinate, so that all unknowns are lengths of one order.
+    """
+    scale = 1.0 / lengths
+    places = linear.ring_places
     scaled = _Springs(
-        directions * scale,
-        law,
-        error,
-        bearing * np.outer(scale, scale),
-        applied * scale,
-        machine.half_backlash,
+        linear.rows[: contacts.upper.size] * scale,
+        contacts,
+        linear.stiffness_without_rings * np.outer(scale, scale),
+        linear.loads * scale,
+        _Rings(places, linear.rings.stiffness, linear.rings.play),
     )
     solution = _minimise(scaled)
-    return scale * solution, scaled.deflections(solution), scaled.forces(solution), law.steepest
+    return scale * solution, scaled.deflections(solution), scaled.forces(solution)
+
+
+@dataclass(frozen=True, eq=False)
+class _Rings:
+    """Bearings with play: which unknowns are x and y (R, 2), stiffness and play (R,)."""
+
+    places: Integers
+    stiffness: Array
+    play: Array
+
+    def push(self, q: Array) -> Array:
+        """Forces (..., n) of the bearings at places (..., n)."""
+        forces = np.zeros_like(q)
+        moved = q[..., self.places]
+        distance = np.maximum(np.hypot(moved[..., 0], moved[..., 1]), self.play)
+        share = self.stiffness * (1.0 - self.play / distance)
+        forces[..., self.places] = share[..., None] * moved
+        return forces
+
+    def add_tangents(self, q: Array, matrix: Array) -> None:
+        """Add their derivatives at places (n,) to a matrix (n, n)."""
+        for at, stiffness, play in zip(self.places, self.stiffness, self.play, strict=True):
+            distance = float(np.hypot(*q[at]))
+            if distance > play:
+                along = q[at] / distance
+                across = stiffness * (1.0 - play / distance)
+                matrix[np.ix_(at, at)] += across * np.eye(2) + (stiffness - across) * np.outer(along, along)
 
 
 @dataclass(frozen=True, eq=False)
 class _Springs:
-    """Meshes and bearings in scaled displacements: directions (meshes, q), bearing (q, q), others by one. The
-    law does not depend on the phase.
-    """
+    """Contacts and bearings in scaled displacements: directions (contacts, q), bearing (q, q), rings."""
 
     directions: Array
-    law: MeshLaw
-    error: Array
+    contacts: Contacts
     bearing: Array
     applied: Array
-    half_width: float
+    rings: _Rings
 
     def deflections(self, q: Array) -> Array:
-        return self.directions @ q - self.error
+        return self.directions @ q - self.contacts.error
 
     def forces(self, q: Array) -> Array:
-        return _forces(self.law, self.deflections(q), self.half_width)
+        return self.contacts.forces(self.deflections(q))
 
     def balance(self, q: Array) -> Array:
-        return self.bearing @ q + self.directions.T @ self.forces(q) - self.applied
+        balance = self.bearing @ q + self.directions.T @ self.forces(q) - self.applied
+        return balance + self.rings.push(q) if self.rings.play.size else balance
 
     def curvature(self, q: Array) -> Array:
-        slope = self.law.slope(NO_PHASE, _beyond(self.deflections(q), self.half_width)[None])[0]
-        return self.bearing + (self.directions.T * slope) @ self.directions
+        slope = self.contacts.slopes(self.deflections(q))
+        curvature = self.bearing + (self.directions.T * slope) @ self.directions
+        self.rings.add_tangents(q, curvature)
+        return curvature
 
     def along(self, q: Array, step: Array, tie: float, anchor: Array) -> "Line":
         """The energy's slope along a step, with a spring `tie` to the anchor."""
         at_start = self.bearing @ q + tie * (q - anchor) - self.applied
+
+        def bearings(s: Array) -> Array:
+            return np.asarray(self.rings.push(q + s[:, None] * step) @ step)
+
         return Line(
             constant=float(at_start @ step),
             rise=float((self.bearing @ step + tie * step) @ step),
             deflections=self.deflections(q),
             rates=self.directions @ step,
-            law=self.law,
-            half_width=self.half_width,
+            contacts=self.contacts,
+            bearings=bearings if self.rings.play.size else None,
         )
 
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """Slope of the energy along a line: constant + rise s + sum of rates F(deflections + s rates)."""
+    """Slope of the energy along a line: constant + rise s + sum of rates F(deflections + s rates), and what
+    `bearings` with play add at places (K,) of the line.
+    """
 
     constant: float
     rise: float
     deflections: Array
     rates: Array
-    law: MeshLaw
-    half_width: float
+    contacts: Contacts
+    bearings: Callable[[Array], Array] | None = None
 
     def slopes(self, s: Array) -> Array:
         """The slope at some places (K,)."""
-        forces = _forces(self.law, self.deflections + s[:, None] * self.rates, self.half_width)
-        return np.asarray(self.constant + self.rise * s + forces @ self.rates)
+        forces = self.contacts.forces(self.deflections + s[:, None] * self.rates)
+        slopes = np.asarray(self.constant + self.rise * s + forces @ self.rates)
+        return slopes if self.bearings is None else slopes + self.bearings(s)
 
     def corners(self) -> Array:
         """Where a mesh passes a level of its law ahead, in order, with the two ends of the line: between two
         of them the slope is smooth, and straight if the law is linear.
         """
         moving = self.rates != 0.0
-        levels = self.half_width + self.law.levels[:, moving]
-        edges = np.concatenate([levels, -levels])
+        levels, contacts = self.contacts.law.levels[:, moving], self.contacts
+        edges = np.concatenate([contacts.upper[moving] + levels, contacts.lower[moving] - levels])
         with np.errstate(over="ignore"):  # an edge that is met at infinity is not ahead
             at = ((edges - self.deflections[moving]) / self.rates[moving]).ravel()
         inside = np.sort(at[(at > 0.0) & (at < FARTHEST)])
@@ -152,7 +186,7 @@ class Line:
         side = 0
         for _ in range(MAX_ITERATIONS):
             s = float(low + (high - low) * (below / (below - above)))
-            if self.law.straight:
+            if self.contacts.law.straight and self.bearings is None:
                 break
             value = float(self.slopes(np.array([s]))[0])
             if abs(value) <= close + self._noise(s) or not low < s < high:
@@ -167,7 +201,7 @@ class Line:
 
     def _noise(self, s: float) -> float:
         """What rounding makes of the slope at a point."""
-        forces = _forces(self.law, self.deflections + s * self.rates, self.half_width)
+        forces = self.contacts.forces(self.deflections + s * self.rates)
         size = abs(self.constant) + abs(self.rise * s) + np.abs(forces * self.rates).sum()
         return 100.0 * float(np.finfo(float).eps * size)
 
@@ -179,7 +213,7 @@ def _minimise(springs: _Springs) -> Array:
     the force in the springs goes to zero as the rounds settle.
     """
     size = np.abs(springs.applied).max()
-    stiffest = max(springs.law.steepest.max(), springs.bearing.max())
+    stiffest = max(springs.contacts.law.steepest.max(), springs.bearing.max())
     place = np.zeros(springs.applied.size)
     for tie in stiffest * np.geomspace(FIRST_SPRING, LAST_SPRING, ROUNDS):
         last = place
@@ -209,7 +243,8 @@ def _newton(springs: _Springs, tie: float, anchor: Array) -> Array:
         gradient = springs.balance(place) + tie * (place - anchor)
         step = -np.asarray(np.linalg.solve(springs.curvature(place) + ties, gradient), np.float64)
         moved = place + step * springs.along(place, step, tie, anchor).minimum()
-        if np.abs(moved - place).max() <= 1e-15 * max(np.abs(place).max(), springs.half_width):
+        size = max(np.abs(place).max(), np.abs(springs.contacts.upper).max())
+        if np.abs(moved - place).max() <= 1e-15 * size:
             return moved
         place = moved
     return place

@@ -1,0 +1,127 @@
+"""The linear part of a machine: its bodies, their bearings, and along what the contacts act on them.
+
+    M q'' + (D + W G) q' + (K + W N + W^2 P) q = torques + forces - rows^T F,   D = a M + b K + dampers
+
+W is the angular speed of the pinions (rad/s) and F the forces of the flanks.
+"""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+
+from facegear.arrays import Array, Integers
+
+
+@dataclass(frozen=True, eq=False)
+class Spin:
+    """What turning bodies add, for a speed of the pinions of 1 rad/s; each (n, n), SI units.
+
+    - gyroscopic: G, skew-symmetric, force by velocity.
+    - circulatory: N, force by displacement, from damping that turns with a body.
+    - centrifugal: P, symmetric, force by displacement for the square of the speed.
+    """
+
+    gyroscopic: Array
+    circulatory: Array
+    centrifugal: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Rings:
+    """Bearings with play, R of them: body (R,) in the order of the bodies, stiffness (R,) beyond the play
+    (N/m), play (R,), m.
+    """
+
+    body: Integers
+    stiffness: Array
+    play: Array
+
+
+@dataclass(frozen=True, eq=False)
+class LinearModel:
+    """n coordinates; m flanks; SI units.
+
+    - labels (n): `body:letter`. The coordinates of the layout come first, as it orders them.
+    - mass, stiffness (n, n): symmetric; stiffness holds all bearings, those with play as if they had none.
+    - rows (m, n): derivative of the flanks' deflections by the coordinates, drive flanks first.
+    - torques (n,): those that the flanks hold in balance; forces (n,): all other external loads.
+    - lengths (n,): length (m) that one unit of a coordinate counts as: 1 for a displacement, an arm for a
+      rotation.
+    - translations (bodies, 3): which coordinates are x, y, z of each body.
+    - mass_damping (1/s), bearing_damping (s): factors of M and K in equation (21); dampers (n, n): all other
+      damping, N s/m.
+    - rings: bearings with play. spin: what turning bodies add, None for nothing.
+    """
+
+    labels: tuple[str, ...]
+    mass: Array
+    stiffness: Array
+    rows: Array
+    torques: Array
+    forces: Array
+    lengths: Array
+    translations: Integers
+    mass_damping: float
+    bearing_damping: float
+    dampers: Array
+    rings: Rings
+    spin: Spin | None = field(default=None)
+
+    @property
+    def size(self) -> int:
+        """The number n of coordinates."""
+        return len(self.labels)
+
+    @property
+    def loads(self) -> Array:
+        """Torques and forces (n,)."""
+        return self.torques + self.forces
+
+    @property
+    def damping(self) -> Array:
+        """C without gyroscopic terms, (n, n), N s/m."""
+        return self.mass_damping * self.mass + self.bearing_damping * self.stiffness + self.dampers
+
+    @cached_property
+    def masses(self) -> Array | None:
+        """The diagonal (n,) of a mass matrix that has no other entries, else None."""
+        diagonal = np.diagonal(self.mass)
+        return diagonal.copy() if np.count_nonzero(self.mass) == np.count_nonzero(diagonal) else None
+
+    @cached_property
+    def stiffness_without_rings(self) -> Array:
+        """Stiffness (n, n) without the bearings that have play."""
+        stiffness = self.stiffness.copy()
+        for places, spring in zip(self.ring_places, self.rings.stiffness, strict=True):
+            stiffness[places, places] -= spring
+        return stiffness
+
+    @property
+    def ring_places(self) -> Integers:
+        """Which coordinates are x and y of each bearing with play, (R, 2)."""
+        return self.translations[self.rings.body, :2]
+
+    def momentum(self, velocities: Array) -> Array:
+        """M times vectors (n, ...)."""
+        if self.masses is None:
+            return self.mass @ velocities
+        return self.masses.reshape(-1, *(1,) * (velocities.ndim - 1)) * velocities
+
+    def over_all(self, rows: Array) -> Array:
+        """Rows (..., dof) over the coordinates of the layout as rows (..., n) over all."""
+        added = self.size - rows.shape[-1]
+        return np.concatenate([rows, np.zeros((*rows.shape[:-1], added))], axis=-1)
+
+    def of_body(self, name: str) -> Integers:
+        """Which coordinates belong to a body."""
+        owners = [label.rpartition(":")[0] for label in self.labels]
+        return np.flatnonzero(np.array(owners) == name)
+
+
+class Bodies(Protocol):
+    """What makes more of the bodies than rigid masses on springs."""
+
+    def __call__(self, lumped: LinearModel) -> LinearModel:
+        """The model with coordinates added behind those of the lumped one, or with other matrices."""

@@ -1,0 +1,55 @@
+"""The lumped model: rigid bodies on springs, four coordinates each, and the tilts of face gears that rock."""
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.transmission.layout import DOF_PER_BODY, Layout
+from facegear.transmission.linear_model import LinearModel, Rings
+from facegear.transmission.matrices import bearing_matrix, flank_directions, mass_diagonal
+
+
+def lumped_model(
+    layout: Layout,
+    torques: Array | None = None,
+    forces: Array | None = None,
+    damping: tuple[float, float] = (0.0, 0.0),
+    clearance: Array | None = None,
+) -> LinearModel:
+    """The linear part of a layout; what is left out is zero.
+
+    torques (bodies,), N m; forces (bodies, 3), N; damping: of the masses (1/s) and of the bearings (s);
+    clearance (pinions,): radial play of the bearings, m.
+    """
+    bodies = len(layout.bodies)
+    turning, pushing = np.zeros((2, layout.dof))
+    turning[layout.spins] = 0.0 if torques is None else torques
+    translations = DOF_PER_BODY * np.arange(bodies)[:, None] + np.arange(3)
+    pushing[translations] = 0.0 if forces is None else forces
+    return LinearModel(
+        labels=layout.dof_names,
+        mass=np.diag(mass_diagonal(layout)),
+        stiffness=bearing_matrix(layout),
+        rows=flank_directions(layout),
+        torques=turning,
+        forces=pushing,
+        lengths=_lengths(layout),
+        translations=translations,
+        mass_damping=damping[0],
+        bearing_damping=damping[1],
+        dampers=np.zeros((layout.dof, layout.dof)),
+        rings=_rings(layout, np.zeros(len(layout.pinions)) if clearance is None else clearance),
+    )
+
+
+def _rings(layout: Layout, clearance: Array) -> Rings:
+    body = np.flatnonzero(clearance > 0.0)
+    return Rings(body, np.array([layout.pinions[i].body.bearing[0] for i in body]), clearance[body])
+
+
+def _lengths(layout: Layout) -> Array:
+    """Turns count at the mesh, tilts at the mesh radius."""
+    lengths = np.ones(layout.dof)
+    radii = [layout.pinion_radius] * len(layout.pinions) + [layout.gear_radius] * len(layout.gears)
+    lengths[layout.spins] = radii
+    lengths[DOF_PER_BODY * len(layout.bodies) :] = layout.mesh_radius
+    return lengths

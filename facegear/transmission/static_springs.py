@@ -1,0 +1,85 @@
+"""Statics as the compiled solver takes it: three unknowns for each pinion, and a core for all else."""
+
+import numpy as np
+
+from facegear.arrays import Array, Integers
+from facegear.transmission.contact_energy import Springs
+from facegear.transmission.layout import DOF_PER_BODY, Layout
+from facegear.transmission.machine import Machine
+
+
+def has_blocks(machine: Machine) -> bool:
+    """Whether bearings join no pinion with anything else, and each flank touches one pinion alone."""
+    layout, linear = machine.layout, machine.linear
+    kept, _ = unknowns(machine)
+    pinions = len(layout.pinions)
+    group = np.full(linear.size, -1)
+    group[kept[: 3 * pinions]] = np.repeat(np.arange(pinions), 3)
+    left_out = np.setdiff1d(np.arange(linear.size), kept)
+    group[left_out] = pinions + np.arange(left_out.size)
+    turns = kept[2 : 3 * pinions : 3]
+    joined = (linear.stiffness != 0.0) & (group[:, None] != group)
+    own = np.array([i for i, _ in layout.meshes] * 2)[:, None]
+    strange = (linear.rows != 0.0) & (group != -1) & (group != own)
+    held = linear.stiffness[turns].any() or linear.loads[left_out].any()
+    return not (joined.any() or strange.any() or held)
+
+
+def static_springs(machine: Machine) -> Springs:
+    """The compiled problem in the unknowns of `unknowns`."""
+    layout, linear = machine.layout, machine.linear
+    kept, scale = unknowns(machine)
+    first, directions = 3 * len(layout.pinions), linear.rows[:, kept] * scale
+    touched, columns = _windows(layout, kept.size, linear.size == layout.dof)
+    if np.count_nonzero(np.take_along_axis(directions, columns, axis=1)) < np.count_nonzero(directions):
+        touched, columns = _windows(layout, kept.size, False)
+    x, y = kept[0:first:3], kept[1:first:3]
+    bearing = linear.stiffness
+    core = bearing[np.ix_(kept[first:], kept[first:])] * np.outer(scale[first:], scale[first:])
+    row, column = np.nonzero(np.triu(core))
+    return Springs(
+        jacobian=np.take_along_axis(directions, columns, axis=1),
+        pinion=touched[:, 0].copy(),
+        gear=touched[:, 1].copy(),
+        pinion_bearing=np.stack([bearing[x, x], bearing[x, y], bearing[y, y]], axis=1),
+        clearance=machine.imperfections.clearance,
+        core_row=row,
+        core_column=column,
+        core_value=core[row, column],
+        applied=linear.loads[kept] * scale,
+    )
+
+
+def unknowns(machine: Machine) -> tuple[Integers, Array]:
+    """Degrees of freedom (n,) that the compiled problem keeps, and the m or rad of its unknowns (n,).
+
+    Left out is the pinions' motion along their own axes, which no mesh feels. If one gear may
+    rock, another that may not is given tilts of no length. Coordinates beside those of the layout come last.
+    """
+    layout, linear = machine.layout, machine.linear
+    kept: list[int] = []
+    lengths: list[float] = []
+    pinions, bodies = len(layout.pinions), len(layout.bodies)
+    for body in range(bodies):
+        own = DOF_PER_BODY * body + np.array([0, 1, 3] if body < pinions else [0, 1, 2, 3])
+        kept += own.tolist()
+        lengths += linear.lengths[own].tolist()
+        if body >= pinions and layout.tilting:
+            rocks = body - pinions in layout.tilting
+            at = DOF_PER_BODY * bodies + 2 * (layout.tilting.index(body - pinions) if rocks else 0)
+            kept += [at, at + 1]
+            lengths += 2 * [linear.lengths[at] if rocks else np.inf]
+    added = np.arange(layout.dof, linear.size)
+    return np.append(kept, added), 1.0 / np.append(lengths, linear.lengths[added])
+
+
+def _windows(layout: Layout, size: int, by_gear: bool) -> tuple[Integers, Integers]:
+    """Where the unknowns that each flank touches start, of its pinion and beside the pinions (flanks, 2), and
+    all of them (flanks, ...): those of its own gear, or the whole core.
+    """
+    first = 3 * len(layout.pinions)
+    width = (size - first) // len(layout.gears) if by_gear else size - first
+    starts = [(3 * i, first + (width * g if by_gear else 0)) for i, g in layout.meshes]
+    touched = np.array(starts * 2)
+    columns = [touched[:, :1] + np.arange(3), touched[:, 1:] + np.arange(width)]
+    return touched, np.concatenate(columns, axis=1)
