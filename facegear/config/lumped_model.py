@@ -17,7 +17,8 @@ from facegear.config.transmission_error import error_series
 from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.imperfections import Imperfections, Runout
-from facegear.transmission.layout import Body, FaceGear, Layout, MeshKinematics, Pinion, Role, Side, Tilt
+from facegear.transmission.kinematics import KINEMATICS
+from facegear.transmission.layout import Body, FaceGear, Layout, Pinion, Role, Side, Tilt
 from facegear.transmission.machine import Damping, Machine, OpenFlanks, balanced_torques, pinion_torques
 from facegear.transmission.phases import PhaseConvention, mesh_phases
 
@@ -63,8 +64,7 @@ def wired_layout(transmission: Mapping[str, Any], teeth: Mapping[str, Any]) -> L
 
 def layout(section: Transmission, teeth: ToothNumbers) -> Layout:
     """The layout that a config describes."""
-    printed = section.mesh_kinematics == "printed"
-    radius_mm = section.pinion.base_radius_mm
+    radius_mm, given_mm = section.pinion.base_radius_mm, section.face_gear.mesh_radius_mm
     sides = [side for side in Side if side.value in section.face_gears]
     pinion_radius = teeth.pinion_base_radius if radius_mm is None else 1e-3 * radius_mm
     conjugate = pinion_radius * teeth.gear_teeth / teeth.pinion_teeth
@@ -85,8 +85,8 @@ def layout(section: Transmission, teeth: ToothNumbers) -> Layout:
         gear_teeth=teeth.gear_teeth,
         pressure_angle=teeth.pressure_angle,
         pinion_radius=pinion_radius,
-        gear_radius=1e-3 * (section.face_gear.mesh_radius_mm or 0.0) if printed else conjugate,
-        kinematics=MeshKinematics(section.mesh_kinematics),
+        gear_radius=conjugate if given_mm is None else 1e-3 * given_mm,
+        kinematics=KINEMATICS[section.mesh_kinematics],
     )
 
 

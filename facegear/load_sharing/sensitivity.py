@@ -17,7 +17,8 @@ from facegear.load_sharing.hunting import (
     largest,
 )
 from facegear.transmission.imperfections import Imperfections, Runout, perfect
-from facegear.transmission.layout import Layout, MeshKinematics, Role
+from facegear.transmission.kinematics import KINEMATICS
+from facegear.transmission.layout import Kinematics, Layout, Role
 from facegear.transmission.machine import Machine, balanced_torques
 
 STEP = 1e-10
@@ -91,13 +92,13 @@ def bearing_scan(machine: Machine) -> pd.DataFrame:
     meshes only. A kind whose paths have no even share has no K_gamma and no row.
     """
     rows = []
-    for kinematics in MeshKinematics:
+    for name, kinematics in KINEMATICS.items():
         based = _with_kinematics(machine, kinematics)
         for varied, roles in (("inputs", (Role.INPUT,)), ("idlers", (Role.IDLER, Role.TAIL))):
             for stiffness in BEARINGS:
                 run = hunting_cycle(_with_bearings(based, roles, float(stiffness)), POSITIONS)
                 for kind in dict.fromkeys(group.kind.value for group in run.groups):
-                    rows.append((kinematics.value, varied, stiffness, kind, worst_factor(run, kind)))
+                    rows.append((name, varied, stiffness, kind, worst_factor(run, kind)))
     columns = ["kinematics", "varied", "stiffness_n_per_m", "kind", "k_gamma"]
     return pd.DataFrame(rows, columns=columns).dropna(ignore_index=True)
 
@@ -149,15 +150,13 @@ def _with_runout(base: Imperfections, key: str, body: int, amplitude: float) -> 
     return replace(base, **changed)
 
 
-def _with_kinematics(machine: Machine, kinematics: MeshKinematics) -> Machine:
+def _with_kinematics(machine: Machine, kinematics: Kinematics) -> Machine:
     """The machine with the other way of counting deflections, keeping mesh errors, backlash and stiffness."""
     layout = machine.layout
     conjugate = layout.pinion_radius * layout.gear_teeth / layout.pinion_teeth
-    radius = conjugate / np.cos(layout.pressure_angle)
-    if kinematics is MeshKinematics.GEOMETRIC:
-        radius = conjugate
+    radius = kinematics.gear_radius(conjugate, layout.pressure_angle)
     gears = tuple(replace(gear, body=replace(gear.body, tilt=None)) for gear in layout.gears)
-    other = replace(layout, gear_radius=float(radius), kinematics=kinematics, gears=gears)
+    other = replace(layout, gear_radius=radius, kinematics=kinematics, gears=gears)
     kept = machine.imperfections
     errors = replace(
         perfect(other), error=kept.error, half_backlash=kept.half_backlash, stiffness=kept.stiffness

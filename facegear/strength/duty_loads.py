@@ -46,7 +46,7 @@ def history_of(machine: Machine, speed_rpm: float, known: Settings) -> History:
     """
     model, cycles, even = build_model(machine), hunting_length(machine), even_shares(machine)
     layout, flanks = machine.layout, 2 * len(machine.layout.meshes)
-    if layout.is_geometric and cycles > 1:
+    if layout.kinematics.flanks_apart and cycles > 1:
         run = follow(model, speed_rpm, 0, cycles, POSITIONS, known)
         kept = run.memory <= FORGOTTEN
         forces = run.flank_forces.reshape(-1, POSITIONS, flanks)

@@ -7,6 +7,8 @@ would. A tooth's own error and stiffness are the drive flank's mirror image on t
 f_drive(-p), p the place of the pinion's tooth past the pitch line.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from facegear.arrays import Array
@@ -15,7 +17,7 @@ from facegear.mesh_law.law import MeshLaw
 from facegear.mesh_law.linear import linear_law
 from facegear.transmission.assembly import assembly
 from facegear.transmission.layout import Layout, Side
-from facegear.transmission.machine import Machine
+from facegear.transmission.machine import Machine, OpenFlanks
 
 NO_LOAD = 1e-9
 """Part of the largest force of all meshes below which a force is rounding and counts as none."""
@@ -38,11 +40,49 @@ def stiffness_series(machine: Machine) -> list[Harmonics]:
     return _both([machine.stiffness.scaled(float(factor)) for factor in factors], machine.phases)
 
 
-def contact_law(machine: Machine) -> MeshLaw:
-    """The law of every contact: of all drive flanks, then all back flanks, or of the meshes whose two flanks
-    share one line of action.
+@dataclass(frozen=True, eq=False)
+class MeshContacts:
+    """The contacts of all meshes, see Layout.contacts.
+
+    law; error: e(t) of each over the mesh cycle, m; lower, upper (contacts,): edges of the deflection, m,
+    where a flank that only pushes has no lower one; damping (contacts,), N s/m.
     """
-    return flank_law(machine) if machine.layout.is_geometric else line_law(machine)
+
+    law: MeshLaw
+    error: list[Harmonics]
+    lower: Array
+    upper: Array
+    damping: Array
+
+
+def mesh_contacts(machine: Machine) -> MeshContacts:
+    """Without errors that change from one mesh cycle to the next."""
+    return _flank_contacts(machine) if machine.layout.kinematics.flanks_apart else _line_contacts(machine)
+
+
+def _flank_contacts(machine: Machine) -> MeshContacts:
+    """Errors that never change stand in the edges of the flanks.
+
+    Damping across open flanks is shared by the two, so that turning alone meets the whole of it.
+    """
+    upper = flank_gaps(machine) + constant_errors(machine)
+    share = 0.5 if machine.damping.open_flanks is OpenFlanks.ALWAYS else 1.0
+    damping = np.full(upper.size, machine.damping.mesh * share)
+    never = np.full(upper.size, -np.inf)
+    return MeshContacts(flank_law(machine), error_series(machine), never, upper, damping)
+
+
+def _line_contacts(machine: Machine) -> MeshContacts:
+    """Of meshes whose two flanks share one line of action."""
+    phases = np.round(machine.error_phases, 12) % 1.0
+    half = np.full(phases.size, machine.half_backlash)
+    return MeshContacts(
+        law=line_law(machine),
+        error=[machine.error.shifted(float(phase)) for phase in phases],
+        lower=-half,
+        upper=half,
+        damping=np.full(phases.size, machine.damping.mesh),
+    )
 
 
 def flank_law(machine: Machine) -> MeshLaw:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Protocol
 
 import numpy as np
 
@@ -11,7 +12,6 @@ from facegear.errors import InvalidInput
 DOF_PER_BODY = 4
 DOF_LETTERS = ("x", "y", "z", "theta")
 TILT_LETTERS = ("tilt_x", "tilt_y")
-SAME_ARM = 1e-9
 
 
 class Role(StrEnum):
@@ -27,13 +27,6 @@ class Side(StrEnum):
 
     LOWER = "lower"
     UPPER = "upper"
-
-
-class MeshKinematics(StrEnum):
-    """How bodies deflect a mesh: `geometric` as gears do, `printed` equation (13) to the letter."""
-
-    GEOMETRIC = "geometric"
-    PRINTED = "printed"
 
 
 @dataclass(frozen=True)
@@ -86,13 +79,45 @@ class FaceGear:
         return -1.0 if self.side is Side.LOWER else 1.0
 
 
+class Kinematics(Protocol):
+    """How motions of the bodies deflect the meshes, and at what arms forces of the meshes turn the bodies."""
+
+    @property
+    def name(self) -> str:
+        """As a config has it."""
+
+    @property
+    def flanks_apart(self) -> bool:
+        """Whether each flank is a contact with a normal and a gap of its own, or both flanks of a mesh share
+        one line of action.
+        """
+
+    @property
+    def follows_rotation(self) -> bool:
+        """Whether the teeth of a lower face gear that is alone pass the pinions the other way round."""
+
+    def require(self, layout: "Layout") -> None:
+        """Raise ConfigError for radii that do not fit the teeth."""
+
+    def arm(self, radius: float, pressure_angle: float) -> float:
+        """Torque over the mesh force that balances it, m, for the radius that a layout gives to a body."""
+
+    def mesh_radius(self, layout: "Layout") -> float:
+        """Distance of the meshes from the face gears' axis, m."""
+
+    def gear_radius(self, base_radius: float, pressure_angle: float) -> float:
+        """The radius (m) that a layout gives to a face gear with a base radius."""
+
+    def flank_rows(self, layout: "Layout") -> Array:
+        """Derivative of the flanks' deflections by the DOF, (2 meshes, dof), drive flanks first."""
+
+
 @dataclass(frozen=True)
 class Layout:
     """Bodies and mesh geometry, in m and rad. Bodies are ordered pinions, then gears, as in equation (1).
 
     Meshes are ordered gear by gear and within a gear pinion by pinion: (1,6) .. (n,6), (1,7) .. (n,7).
-    `pinion_radius` and `gear_radius` are base radii where `kinematics` is geometric; equation (13) as printed
-    takes any, and multiplies both by the cosine of the pressure angle.
+    `kinematics` says what `pinion_radius` and `gear_radius` are.
     """
 
     pinions: tuple[Pinion, ...]
@@ -102,7 +127,7 @@ class Layout:
     pressure_angle: float
     pinion_radius: float
     gear_radius: float
-    kinematics: MeshKinematics = MeshKinematics.GEOMETRIC
+    kinematics: Kinematics
 
     def __post_init__(self) -> None:
         if not self.pinions:
@@ -112,30 +137,22 @@ class Layout:
         names = [pinion.name for pinion in self.pinions]
         if len(set(names)) != len(names):
             raise InvalidInput("pinions", names, "names that differ from pinion to pinion")
-        conjugate = self.pinion_radius * self.gear_teeth / self.pinion_teeth
-        if self.is_geometric and abs(self.gear_radius - conjugate) > SAME_ARM * conjugate:
-            allowed = f"{conjugate:.9g} m, as the tooth numbers say, where mesh_kinematics is geometric"
-            raise InvalidInput("gear_radius", self.gear_radius, allowed)
-
-    @property
-    def is_geometric(self) -> bool:
-        """Whether meshes follow the gears' geometry and not equation (13) as printed."""
-        return self.kinematics is MeshKinematics.GEOMETRIC
+        self.kinematics.require(self)
 
     @property
     def pinion_arm(self) -> float:
-        """Torque on a pinion over the mesh force that balances it, m: the base radius, if geometric."""
-        return self.pinion_radius * (1.0 if self.is_geometric else float(np.cos(self.pressure_angle)))
+        """Torque on a pinion over the mesh force that balances it, m: the base radius, as teeth have it."""
+        return self.kinematics.arm(self.pinion_radius, self.pressure_angle)
 
     @property
     def gear_arm(self) -> float:
         """Torque on a face gear over the mesh force that balances it, m."""
-        return self.gear_radius * (1.0 if self.is_geometric else float(np.cos(self.pressure_angle)))
+        return self.kinematics.arm(self.gear_radius, self.pressure_angle)
 
     @property
     def mesh_radius(self) -> float:
-        """Distance of the meshes from the face gears' axis, m: m N2 / 2, if geometric."""
-        return self.gear_radius / (float(np.cos(self.pressure_angle)) if self.is_geometric else 1.0)
+        """Distance of the meshes from the face gears' axis, m: m N2 / 2, as teeth have it."""
+        return self.kinematics.mesh_radius(self)
 
     @property
     def base_pitch(self) -> float:
@@ -184,7 +201,7 @@ class Layout:
         """How many contacts move by themselves: both flanks of every mesh, which share one line of action and
         are one contact in equation (13) as printed. Drive flanks come first.
         """
-        return len(self.meshes) * (2 if self.is_geometric else 1)
+        return len(self.meshes) * (2 if self.kinematics.flanks_apart else 1)
 
     @property
     def mesh_names(self) -> tuple[str, ...]:

@@ -38,7 +38,7 @@ def loaded_modes(machine: Machine, speed_rpm: float = 0.0) -> Modes:
 def vibrating_machine(machine: Machine, speed_rpm: float = 0.0) -> VibratingMachine:
     """loaded_modes() with what is known of the contacts. Raises NotConverged."""
     speed = speed_rpm * np.pi / 30.0
-    if not machine.layout.is_geometric:
+    if not machine.layout.kinematics.flanks_apart:
         meshes = drive_flanks(machine.layout, machine.linear, machine.stiffness.mean)
         modes = modes_of(machine.linear, meshes, speed)
         return VibratingMachine(modes, None, np.ones(modes.frequencies.size, bool))

@@ -48,10 +48,10 @@ class Machine:
 
     `error` is a Fourier series in m on the reference mesh; each mesh lags by its `error_lags` (meshes,), in
     mesh periods, or by its stiffness phase if there are none. `imperfections` default to none. `forces`
-    (bodies, 3): external ones on the bodies along x, y, z, N, none by default. `law`: of all contacts, see
-    facegear.transmission.flanks.contact_law; without one their force is the stiffness times how far they are
-    pressed in, and with one `stiffness` is only the scale of it. `friction` of the meshes disturbs the
-    motion, and nothing at rest. `bodies`: what makes more of them than rigid masses on springs.
+    (bodies, 3): external ones on the bodies along x, y, z, N, none by default. `law`: of all contacts, as
+    facegear.transmission.flanks.mesh_contacts orders them; without one their force is the stiffness times how
+    far they are pressed in, and with one `stiffness` is only the scale of it. `friction` of the meshes
+    disturbs the motion, and nothing at rest. `bodies`: what makes more of them than rigid masses on springs.
     """
 
     layout: Layout

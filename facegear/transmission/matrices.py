@@ -1,4 +1,4 @@
-"""Matrices of the lumped model: bodies, bearings, and meshes as they are or as equation (13) says."""
+"""Matrices of the lumped model: bodies, bearings, meshes."""
 
 import numpy as np
 
@@ -27,53 +27,13 @@ def bearing_matrix(layout: Layout) -> Array:
     return matrix
 
 
-def mesh_directions(layout: Layout) -> Array:
-    """Derivative of the drive flanks' deflections by the DOF, shape (meshes, dof).
+def flank_directions(layout: Layout) -> Array:
+    """Derivative of the flanks' deflections by the DOF, (2 meshes, dof): drive flanks, then back flanks.
 
     The deflection along the line of action is this times q, minus the transmission error. A pinion's x is
     tangential to the face gear and its y is along the face gear's axis.
     """
-    if layout.is_geometric:
-        tangential, separating = mesh_parts(layout)
-        return tangential + separating
-    return _printed(layout)
-
-
-def flank_directions(layout: Layout) -> Array:
-    """The same for both flanks, shape (2 meshes, dof): all drive flanks, then all back flanks.
-
-    The back flank's normal has the same separating part and the opposite tangential part; as printed it is
-    the drive flank's line of action, pulled.
-    """
-    if layout.is_geometric:
-        tangential, separating = mesh_parts(layout)
-        return np.concatenate([separating + tangential, separating - tangential])
-    printed = _printed(layout)
-    return np.concatenate([printed, -printed])
-
-
-def mesh_parts(layout: Layout) -> tuple[Array, Array]:
-    """Tangential and separating motion at the flanks by the DOF, each (meshes, dof), from the geometry.
-
-    A pinion sees the lower gear as the upper one turned half round the pinion's own axis, so its x and y
-    change sign there. Gears turn positively as the pinions drive them, and share one axial direction.
-    """
-    cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
-    tangential, separating = np.zeros((2, len(layout.meshes), layout.dof))
-    angles = layout.angles
-    tilted = {g: DOF_PER_BODY * len(layout.bodies) + 2 * k for k, g in enumerate(layout.tilting)}
-    for row, (i, g) in enumerate(layout.meshes):
-        side = layout.gears[g].sign
-        along = np.array([np.cos(angles[i]), np.sin(angles[i])])
-        pinion, gear = DOF_PER_BODY * i, DOF_PER_BODY * (len(layout.pinions) + g)
-        tangential[row, pinion] = side * cosine
-        tangential[row, gear : gear + 2] = -side * cosine * along
-        tangential[row, [pinion + 3, gear + 3]] = layout.pinion_arm, -layout.gear_arm
-        separating[row, [pinion + 1, gear + 2]] = side * sine, -side * sine
-        if g in tilted:
-            # Tilts about x and y lift the rim at the mesh by its distance from the diameter.
-            separating[row, tilted[g] : tilted[g] + 2] = side * sine * layout.mesh_radius * along
-    return tangential, separating
+    return layout.kinematics.flank_rows(layout)
 
 
 def rigid_rotation(layout: Layout) -> Array:
@@ -83,23 +43,6 @@ def rigid_rotation(layout: Layout) -> Array:
     motion[3 : 4 * pinions : 4] = 1.0 / layout.pinion_radius
     motion[4 * pinions + 3 : 4 * bodies : 4] = 1.0 / layout.gear_radius
     return motion
-
-
-def _printed(layout: Layout) -> Array:
-    """Equation (13) to the letter, shape (meshes, dof)."""
-    cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
-    angles = layout.angles
-    directions = np.zeros((len(layout.meshes), layout.dof))
-    for row, (i, g) in zip(directions, layout.meshes, strict=True):
-        pinion = DOF_PER_BODY * i
-        gear = DOF_PER_BODY * (len(layout.pinions) + g)
-        axial = -layout.gears[g].sign
-        row[pinion : pinion + 4] = cosine, sine, 0.0, layout.pinion_radius * cosine
-        row[gear] = -np.cos(angles[i]) * cosine
-        row[gear + 1] = -np.sin(angles[i]) * cosine
-        row[gear + 2] = axial * sine
-        row[gear + 3] = -layout.gear_radius * cosine
-    return directions
 
 
 def _tilts(layout: Layout) -> list[Tilt]:

@@ -21,10 +21,12 @@ def mesh_phases(layout: Layout, convention: PhaseConvention, clocking: Array | N
     The reference is the first pinion's mesh with the upper gear, or with the only gear. The upper gear's
     teeth pass the pinions in the order of their angles, counted from the first pinion: equation (7). The
     other side of a pinion is half a turn of it away, and turned by `clocking` (pinions,) in pitches. Where
-    the lower gear is alone its teeth come round the other way. Equation (13) as printed knows no direction of
+    the lower gear is alone its teeth come round the other way. Equation (13) as printed knows no sense of
     rotation.
     """
-    upper_first = any(gear.side is Side.UPPER for gear in layout.gears) or not layout.is_geometric
+    upper_first = (
+        any(gear.side is Side.UPPER for gear in layout.gears) or not layout.kinematics.follows_rotation
+    )
     turned = np.zeros(len(layout.pinions)) if clocking is None else clocking
     lags = layout.pitches_from_first * (1.0 if upper_first else -1.0)
     phases = np.empty(len(layout.meshes))

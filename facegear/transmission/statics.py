@@ -69,15 +69,15 @@ def static_equilibrium(machine: Machine, cycles: float | None = None) -> Equilib
 
     A body that is free inside its backlash is left at one of its possible positions. Raises NotConverged.
     """
-    if machine.layout.is_geometric:
+    if machine.layout.kinematics.flanks_apart:
         found = mean_equilibrium(machine) if cycles is None else equilibria(machine, np.array([cycles]))
         return Equilibrium(
             found.displacements[0], found.deflections[0], found.forces[0], float(found.residual[0])
         )
-    return _printed_equilibrium(machine, cycles)
+    return _line_equilibrium(machine, cycles)
 
 
-def _printed_equilibrium(machine: Machine, cycles: float | None) -> Equilibrium:
+def _line_equilibrium(machine: Machine, cycles: float | None) -> Equilibrium:
     """Of meshes whose two flanks share one line of action."""
     law = line_law(machine)
     law = law.mean() if cycles is None else law.at_phase(cycles)
@@ -150,7 +150,7 @@ def static_bearing_forces(machine: Machine) -> Array:
 
     Mean stiffness, constant errors, either kinematics. Raises NotConverged.
     """
-    if machine.layout.is_geometric:
+    if machine.layout.kinematics.flanks_apart:
         return bearing_forces(machine, mean_equilibrium(machine))[0]
     forces = bearing_loads(machine, static_equilibrium(machine).displacements[None])
     return forces[0, machine.linear.translations]

@@ -11,8 +11,10 @@ from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.simulate import Model, static_start
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import MeshKinematics, Role, Side, Tilt
+from facegear.transmission.kinematics import KINEMATICS
+from facegear.transmission.layout import Role, Side, Tilt
 from facegear.transmission.machine import OpenFlanks, mesh_frequency
+from facegear.transmission.printed import PRINTED
 
 FINE = Settings(tolerance=1e-14)
 
@@ -29,7 +31,7 @@ def machines(draw, **fixed):
         role = Role.INPUT if i == 0 else draw(st.sampled_from(list(Role)))
         places.append((f"p{i}", role, draw(st.integers(0, 285)) / 2.0))
     sides = draw(st.sampled_from([(Side.LOWER, Side.UPPER), (Side.UPPER,)]))
-    kinematics = fixed.pop("kinematics", None) or draw(st.sampled_from(list(MeshKinematics)))
+    kinematics = fixed.pop("kinematics", None) or draw(st.sampled_from(list(KINEMATICS.values())))
     bearings = draw(st.floats(1e7, 1e9)), draw(st.floats(1e8, 1e10))
     layout = make_layout(tuple(places), sides, *bearings, kinematics)
     swing = draw(st.floats(0.0, 0.25))
@@ -45,7 +47,7 @@ def machines(draw, **fixed):
         "open_flanks": draw(st.sampled_from(list(OpenFlanks))),
     }
     symmetric = fixed.pop("symmetric", False)
-    if kinematics is MeshKinematics.PRINTED:
+    if kinematics is PRINTED:
         return make_machine(layout, **(options | fixed))
     if draw(st.booleans()):
         tilt = Tilt(0.3, draw(st.floats(1e6, 1e8)))

@@ -18,7 +18,7 @@ from facegear.dynamics.integrator.reduction import Reduced
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.law import MeshLaw
 from facegear.mesh_law.linear import different
-from facegear.transmission.flanks import constant_errors, contact_law, error_series, flank_gaps
+from facegear.transmission.flanks import mesh_contacts
 from facegear.transmission.machine import Machine, OpenFlanks
 from facegear.transmission.mesh_friction import MeshFriction, flank_ratios, friction_rows
 
@@ -88,71 +88,33 @@ class FlankRubbing:
 
 def machine_system(machine: Machine, reduced: Reduced) -> System:
     """The system of a machine in its reduced coordinates; runouts and pitch deviations are left out."""
-    if machine.layout.is_geometric:
-        return _flank_system(machine, reduced)
-    meshes = len(machine.layout.meshes)
-    phases = np.round(machine.error_phases, 12) % 1.0
-    error, error_kind = different([machine.error.shifted(float(phase)) for phase in phases])
+    contacts, rings = mesh_contacts(machine), machine.linear.rings
+    nothing = 3 * rings.body.size * [0.0]
+    none = len(nothing) * [Harmonics(np.zeros(1), np.zeros(1))]
+    error, error_kind = different([*contacts.error, *none])
     load = np.zeros((reduced.omega_squared.size, 2, 1))
     load[:, 1, 0] = reduced.load
     return System(
         mesh_jacobian=reduced.mesh_jacobian,
         omega_squared=reduced.omega_squared,
         damping=reduced.damping,
-        push_only=machine.damping.open_flanks is OpenFlanks.PUSH_ONLY,
-        mesh_damping=np.full(meshes, machine.damping.mesh),
-        lower=np.full(meshes, -machine.half_backlash),
-        upper=np.full(meshes, machine.half_backlash),
-        law=contact_law(machine),
+        mesh_damping=np.append(contacts.damping, nothing),
+        lower=np.append(contacts.lower, np.tile([0.0, 0.0, -np.inf], rings.body.size)),
+        upper=np.append(contacts.upper, nothing),
+        law=contacts.law,
         error=error,
         error_kind=error_kind,
         load=load,
         damping_when_open=machine.damping.open_flanks is OpenFlanks.ALWAYS,
         scale=length_scale(machine),
-        coupling=_coupling(machine, reduced),
-    )
-
-
-def _flank_system(machine: Machine, reduced: Reduced) -> System:
-    """Every flank a one-sided mesh of its own; errors that never change stand in its edge.
-
-    Damping across open flanks is shared by the two, so that turning alone meets the whole of it.
-    """
-    play = machine.imperfections.clearance
-    rings = np.flatnonzero(play > 0.0)
-    none = 3 * rings.size * [Harmonics(np.zeros(1), np.zeros(1))]
-    error, error_kind = different([*error_series(machine), *none])
-    load = np.zeros((reduced.omega_squared.size, 2, 1))
-    load[:, 1, 0] = reduced.load
-    flanks = 2 * len(machine.layout.meshes)
-    nothing = np.zeros(3 * rings.size)
-    always = machine.damping.open_flanks is OpenFlanks.ALWAYS
-    return System(
-        mesh_jacobian=reduced.mesh_jacobian,
-        omega_squared=reduced.omega_squared,
-        damping=reduced.damping,
-        mesh_damping=np.append(np.full(flanks, machine.damping.mesh * (0.5 if always else 1.0)), nothing),
-        lower=np.append(np.full(flanks, -np.inf), np.tile([0.0, 0.0, -np.inf], rings.size)),
-        upper=np.append(flank_gaps(machine) + constant_errors(machine), nothing),
-        law=contact_law(machine),
-        error=error,
-        error_kind=error_kind,
-        load=load,
-        damping_when_open=always,
-        scale=length_scale(machine),
-        two_flanks=True,
+        two_flanks=machine.layout.kinematics.flanks_apart,
         push_only=machine.damping.open_flanks is OpenFlanks.PUSH_ONLY,
-        ring_stiffness=np.array([machine.layout.pinions[i].body.bearing[0] for i in rings]),
-        ring_play=play[rings],
-        ring_lag=machine.damping.bearing,
-        coupling=_coupling(machine, reduced),
+        ring_stiffness=rings.stiffness,
+        ring_play=rings.play,
+        ring_lag=machine.linear.bearing_damping,
+        coupling=reduced.coupling and reduced.coupling.per_speed(machine.layout.pinion_teeth),
         rubbing=None if machine.friction is None else _rubbing(machine, machine.friction, reduced),
     )
-
-
-def _coupling(machine: Machine, reduced: Reduced) -> Coupling | None:
-    """For a mesh frequency of 1 rad/s."""
-    return reduced.coupling and reduced.coupling.per_speed(machine.layout.pinion_teeth)
 
 
 def _rubbing(machine: Machine, friction: MeshFriction, reduced: Reduced) -> FlankRubbing:

@@ -17,12 +17,14 @@ from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.harmonics.series import Harmonics, stacked_values
 from facegear.report.case import case_report
 from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import MeshKinematics, Role
+from facegear.transmission.kinematics import KINEMATICS
+from facegear.transmission.layout import Role
 from facegear.transmission.machine import OpenFlanks
 from facegear.transmission.matrices import bearing_matrix, flank_directions, mass_diagonal
+from facegear.transmission.printed import PRINTED
 from facegear.transmission.statics import static_equilibrium
+from facegear.transmission.teeth import GEOMETRIC
 
-GEOMETRIC = MeshKinematics.GEOMETRIC
 COSINE = np.cos(np.radians(25.0))
 
 
@@ -67,7 +69,7 @@ def test_at_mean_an_input_leaves_its_bearing_alone_and_an_idler_pulls_it_with_tw
 
 @settings(max_examples=12, deadline=None)
 @given(
-    st.sampled_from(list(MeshKinematics)),
+    st.sampled_from(list(KINEMATICS.values())),
     st.floats(0.0, 4e-5),
     st.floats(3e7, 1e9),
     st.floats(500.0, 6000.0),
@@ -84,7 +86,7 @@ def test_mean_forces_on_bearings_balance_torques_and_meshes(kinematics, error, b
     np.testing.assert_allclose(mean, -pulls.reshape(-1, 4)[:, :3], atol=1e-4 * np.abs(pulls).max())
 
 
-@pytest.mark.parametrize("kinematics", MeshKinematics)
+@pytest.mark.parametrize("kinematics", KINEMATICS.values(), ids=KINEMATICS)
 def test_external_forces_stand_in_the_bearings_of_the_running_machine(kinematics):
     """Across the mesh force as well, where no mesh feels the body's motion."""
     layout = make_layout(kinematics=kinematics)
@@ -99,7 +101,7 @@ def test_external_forces_stand_in_the_bearings_of_the_running_machine(kinematics
     np.testing.assert_allclose(mean, forces - pulls, atol=1e-4 * np.abs(pulls).max())
 
 
-@pytest.mark.parametrize(("kinematics", "backlash"), [(GEOMETRIC, 20e-6), (MeshKinematics.PRINTED, 0.0)])
+@pytest.mark.parametrize(("kinematics", "backlash"), [(GEOMETRIC, 20e-6), (PRINTED, 0.0)])
 def test_bearings_masses_and_meshes_take_no_more_power_than_is_brought_in(kinematics, backlash):
     steady = {"stiffness": FLAT, "error": 8e-6, "backlash": backlash, "open_flanks": OpenFlanks.CONTACT_ONLY}
     model, found = loaded(kinematics, samples=1024, **steady)
@@ -107,7 +109,7 @@ def test_bearings_masses_and_meshes_take_no_more_power_than_is_brought_in(kinema
     assert found.motion is Motion.PERIODIC and found.periods == 1
     error = stacked_values(system.error, found.phases)[:, system.error_kind]
     closed = found.coordinates @ system.mesh_jacobian.T - error - system.upper
-    touches = (closed > 0.0).all(axis=0) | (kinematics is MeshKinematics.PRINTED)
+    touches = (closed > 0.0).all(axis=0) | (kinematics is PRINTED)
     assert ((closed < 0.0).all(axis=0) | touches).all()
     time = np.append(found.phases, 1.0) * TAU / found.frequency
     error_rate = CubicSpline(time, np.vstack([error, error[:1]]), bc_type="periodic")(time[:-1], 1)
@@ -123,7 +125,7 @@ def test_bearings_masses_and_meshes_take_no_more_power_than_is_brought_in(kinema
     assert by_meshes + by_masses + by_bearings == pytest.approx(0.0, abs=1e-5 * abs(by_meshes))
 
 
-@pytest.mark.parametrize("kinematics", list(MeshKinematics))
+@pytest.mark.parametrize("kinematics", list(KINEMATICS.values()))
 def test_without_excitation_the_response_has_the_static_forces(kinematics):
     model, found = loaded(kinematics, error=0.0, stiffness=FLAT)
     table = bearing_table(model, found)

@@ -7,13 +7,13 @@ from lumped_machines import make_layout, make_machine
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.mesh_samples import each_deflection, mesh_shares
 from facegear.dynamics.steady_state.simulate import build_model, simulate
-from facegear.transmission.layout import MeshKinematics
+from facegear.transmission.teeth import GEOMETRIC
 
 
 @pytest.mark.parametrize("error", [10e-6, 25e-6])
 def test_a_mesh_is_open_while_neither_flank_touches_though_both_do_at_other_times(error):
     """With 5 um of backlash and 10 um of e(t): 0.000 / 0.011 were written, 0.127 / 0.260 are true."""
-    layout = make_layout(kinematics=MeshKinematics.GEOMETRIC)
+    layout = make_layout(kinematics=GEOMETRIC)
     model = build_model(make_machine(layout, 800.0, backlash=5e-6, error=error, tail_share=0.05))
     found = simulate(model, 6000.0, Settings(samples=1024, settle=64, window=32))
     each = each_deflection(found.system, found.coordinates, found.per_period)
@@ -25,7 +25,7 @@ def test_a_mesh_is_open_while_neither_flank_touches_though_both_do_at_other_time
 
 
 def test_a_flank_that_rounding_alone_presses_is_open():
-    layout = make_layout(kinematics=MeshKinematics.GEOMETRIC)
+    layout = make_layout(kinematics=GEOMETRIC)
     system = build_model(make_machine(layout, 800.0)).system
     depths = np.zeros((16, 20)) - 1e-6
     depths[:, 0] = 40e-6  # the drive flank of the first mesh carries the load

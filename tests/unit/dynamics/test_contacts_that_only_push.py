@@ -12,7 +12,7 @@ from facegear.dynamics.integrator.trajectory import record
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import build_model, simulate, steady_state
-from facegear.transmission.layout import MeshKinematics
+from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.machine import OpenFlanks
 
 SPEED, DAMPING, SLOW = 0.7, 0.4, 0.02
@@ -133,7 +133,7 @@ def contact_forces(model, response, periods=2):
     return np.concatenate(forces)
 
 
-@pytest.mark.parametrize("kinematics", MeshKinematics)
+@pytest.mark.parametrize("kinematics", KINEMATICS.values(), ids=KINEMATICS)
 def test_a_machine_says_how_far_its_dampers_pull_and_never_pulls_where_it_may_only_push(kinematics):
     speed = 9000.0
     settings = Settings(settle=256, window=128)

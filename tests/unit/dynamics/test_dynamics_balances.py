@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from lumped_machines import make_layout, make_machine
+from lumped_machines import drive_rows, make_layout, make_machine
 from random_machines import FINE, frequency, kicked, machines, speeds
 
 from facegear.dynamics.integrator.compiled import TAU
@@ -16,13 +16,14 @@ from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import Model, build_model, simulate
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.flanks import error_series, stiffness_series
-from facegear.transmission.layout import MeshKinematics
-from facegear.transmission.matrices import flank_directions, mass_diagonal, mesh_directions
+from facegear.transmission.kinematics import KINEMATICS
+from facegear.transmission.matrices import flank_directions, mass_diagonal
+from facegear.transmission.printed import PRINTED
 
 
 def contacts(machine):
     """k and e of each contact of the system: meshes as printed, flanks where meshes are geometric."""
-    if machine.layout.is_geometric:
+    if machine.layout.kinematics.flanks_apart:
         return stiffness_series(machine), error_series(machine)
     stiffness = [machine.stiffness.shifted(float(phase)) for phase in machine.phases]
     return stiffness, [machine.error.shifted(float(phase)) for phase in machine.error_phases]
@@ -162,7 +163,7 @@ def test_torques_less_mesh_forces_change_the_spin_of_every_body(machine, speed):
     (angle, spin), (later_angle, later_spin) = ((q[layout.spins], v[layout.spins]) for q, v in ends)
     inertia = mass_diagonal(layout)[layout.spins]
     gained = inertia * (later_spin - spin + machine.damping.mass * (later_angle - angle))
-    directions = flank_directions(layout) if layout.is_geometric else mesh_directions(layout)
+    directions = flank_directions(layout) if layout.kinematics.flanks_apart else drive_rows(layout)
     impulses = directions[:, layout.spins] * (times @ force)[:, None]
     given_ = machine.torques * times.sum()
     size = np.abs(given_).max() + np.abs(impulses).max() + np.abs(inertia * spin).max()
@@ -185,10 +186,10 @@ def mesh_forces(model: Model, run: Trajectory, omega: float) -> tuple[np.ndarray
     return contact_forces(system, stiffness, beyond, omega * slope, state), weights / omega
 
 
-@pytest.mark.parametrize("kinematics", MeshKinematics)
+@pytest.mark.parametrize("kinematics", KINEMATICS.values(), ids=KINEMATICS)
 def test_mean_mesh_forces_balance_the_torques_of_a_periodic_motion(kinematics):
     for torque, speed in ((800.0, 4500.0), (1500.0, 9000.0), (1500.0, 12_000.0)):
-        error = 50e-6 if kinematics is MeshKinematics.PRINTED else 5e-6
+        error = 50e-6 if kinematics is PRINTED else 5e-6
         machine = make_machine(make_layout(kinematics=kinematics), torque=torque, error=error)
         settings_ = Settings(tolerance=1e-12, periodic_residual=1e-9)
         model = build_model(machine)
@@ -204,6 +205,6 @@ def test_mean_mesh_forces_balance_the_torques_of_a_periodic_motion(kinematics):
         # Open and closed alike the damper's mean is nought; in contact only, the two flanks share it.
         assert np.ptp(damping) == 0.0
         layout = machine.layout
-        directions = flank_directions(layout) if layout.is_geometric else mesh_directions(layout)
+        directions = flank_directions(layout) if layout.kinematics.flanks_apart else drive_rows(layout)
         carried = (mean @ directions)[3:20:4]
         np.testing.assert_allclose(carried, machine.torques[:5], atol=1e-7 * torque)

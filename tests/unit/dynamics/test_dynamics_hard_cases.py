@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lumped_machines import make_layout, make_machine
+from lumped_machines import drive_rows, make_layout, make_machine
 from oscillators import one_degree
 from scipy.integrate import solve_ivp
 
@@ -18,7 +18,7 @@ from facegear.dynamics.steady_state.statistics import moments
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.layout import Role, Side
 from facegear.transmission.machine import balanced_torques, mesh_frequency
-from facegear.transmission.matrices import bearing_diagonal, mass_diagonal, mesh_directions
+from facegear.transmission.matrices import bearing_diagonal, mass_diagonal
 
 FINE = Settings(tolerance=1e-13)
 TWENTY = Harmonics(np.r_[0.0, 3e7 / np.arange(1, 21) ** 1.5], np.r_[4.1e8, -2e7 / np.arange(1, 21) ** 1.5])
@@ -61,7 +61,7 @@ SLOW = {"50 rpm", "stiff bearings"}
 def full_run(machine, speed, start, end):
     """Mesh deflections after a time of the full M q'' + C q' + K q = F - NF, equations (14) to (22)."""
     layout = machine.layout
-    mass, bearing, directions = mass_diagonal(layout), bearing_diagonal(layout), mesh_directions(layout)
+    mass, bearing, directions = mass_diagonal(layout), bearing_diagonal(layout), drive_rows(layout)
     damping = machine.damping.mass * mass + machine.damping.bearing * bearing
     applied = np.zeros(mass.size)
     applied[3::4] = machine.torques

@@ -14,7 +14,7 @@ from facegear.dynamics.integrator.trajectory import record
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate, steady_state
 from facegear.harmonics.series import Harmonics
-from facegear.transmission.layout import MeshKinematics
+from facegear.transmission.teeth import GEOMETRIC
 from validation.dynamics.oscillators import (
     Oscillator,
     closed_form_run,
@@ -109,7 +109,7 @@ def test_averages_and_extremes_do_not_depend_on_how_densely_the_motion_is_sample
 
 @pytest.mark.parametrize("speed", [400.0, 15000.0])
 def test_averages_and_extremes_of_meshes_with_two_flanks_come_from_polynomials_too(speed):
-    model = build_model(make_machine(make_layout(kinematics=MeshKinematics.GEOMETRIC), torque=100.0))
+    model = build_model(make_machine(make_layout(kinematics=GEOMETRIC), torque=100.0))
     fine = simulate(model, speed, Settings(tolerance=1e-6, settle=256, window=16, samples=4096))
     moments = fine.moments
     rtol = 1e-6 if fine.motion is Motion.PERIODIC else 1e-3

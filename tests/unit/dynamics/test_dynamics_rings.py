@@ -16,14 +16,15 @@ from facegear.dynamics.steady_state.simulate import build_model, simulate, stati
 from facegear.harmonics.series import stacked_values
 from facegear.load_sharing.hunting import hunting_cycle
 from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import MeshKinematics, Role, Side
+from facegear.transmission.layout import Role, Side
+from facegear.transmission.teeth import GEOMETRIC
 
 ONE = (("engine", Role.INPUT, 0.0),)
 TWO = (("engine", Role.INPUT, 0.0), ("idler", Role.IDLER, 35.5))
 
 
 def machine_with(play, places=TWO, sides=tuple(Side), torque=900.0, **options):
-    layout = make_layout(places, sides, kinematics=MeshKinematics.GEOMETRIC)
+    layout = make_layout(places, sides, kinematics=GEOMETRIC)
     errors = options.pop("errors", {})
     flaws = replace(perfect(layout), clearance=np.full(len(places), play), **errors)
     return make_machine(layout, torque, 0.0, error=8e-6, imperfections=flaws, **options)

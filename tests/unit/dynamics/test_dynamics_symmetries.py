@@ -15,9 +15,12 @@ from facegear.dynamics.steady_state.simulate import Model, build_model, static_s
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.flanks import mirrored as backwards
 from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import Body, MeshKinematics, Role, Side, Tilt
+from facegear.transmission.kinematics import KINEMATICS
+from facegear.transmission.layout import Body, Role, Side, Tilt
 from facegear.transmission.machine import OpenFlanks
 from facegear.transmission.matrices import mass_diagonal
+from facegear.transmission.printed import PRINTED
+from facegear.transmission.teeth import GEOMETRIC
 
 
 @settings(max_examples=12, deadline=None)
@@ -47,7 +50,7 @@ def test_scaling_torques_backlash_and_error_scales_the_motion(machine, speed, fa
 
 
 @settings(max_examples=12, deadline=None)
-@given(machine=machines(kinematics=MeshKinematics.PRINTED), speed=speeds)
+@given(machine=machines(kinematics=PRINTED), speed=speeds)
 def test_negated_torques_and_error_negate_the_motion(machine, speed):
     model = build_model(machine)
     start = kicked(model)
@@ -62,7 +65,7 @@ def test_negated_torques_and_error_negate_the_motion(machine, speed):
 
 def standing_on_an_edge():
     """A gear without load at rest where its flank just touches, from where only the jerk moves it."""
-    layout = make_layout((("p0", Role.INPUT, 0.0),), kinematics=MeshKinematics.GEOMETRIC)
+    layout = make_layout((("p0", Role.INPUT, 0.0),), kinematics=GEOMETRIC)
     layout = replace(
         layout,
         pinions=(replace(layout.pinions[0], body=Body(1.199, 0.002, (1e7, 1e7, 0.0))),),
@@ -83,7 +86,7 @@ def resting_on_rings():
     roles = (Role.INPUT, Role.TAIL, Role.IDLER, Role.INPUT, Role.TAIL, Role.IDLER)
     pitches = (117.0, 128.0, 88.5, 84.5, 62.0, 117.0)
     places = tuple((f"p{i}", *place) for i, place in enumerate(zip(roles, pitches, strict=True)))
-    layout = make_layout(places, (Side.UPPER,), 1e7, 6329249313.423762, MeshKinematics.GEOMETRIC)
+    layout = make_layout(places, (Side.UPPER,), 1e7, 6329249313.423762, GEOMETRIC)
     tilting = tuple(replace(gear, body=replace(gear.body, tilt=Tilt(0.3, 1e7))) for gear in layout.gears)
     layout = replace(layout, gears=tilting)
     swing = Harmonics(
@@ -109,7 +112,7 @@ def mirrored_start(model: Model, mirrored: Model) -> State:
 
 
 @settings(max_examples=12, deadline=None)
-@given(machine=machines(kinematics=MeshKinematics.GEOMETRIC, symmetric=True), speed=speeds)
+@given(machine=machines(kinematics=GEOMETRIC, symmetric=True), speed=speeds)
 @example(machine=standing_on_an_edge(), speed=3000.0)
 @example(machine=resting_on_rings(), speed=6836.269395264446)
 def test_in_a_mirror_drive_and_back_flanks_change_places(machine, speed):
@@ -140,7 +143,7 @@ def test_in_a_mirror_drive_and_back_flanks_change_places(machine, speed):
     torque=st.floats(100, 2000),
     speed=speeds,
     backlash=st.floats(0, 2e-4),
-    kinematics=st.sampled_from(list(MeshKinematics)),
+    kinematics=st.sampled_from(list(KINEMATICS.values())),
 )
 def test_left_and_right_move_alike_where_the_machine_is_symmetric(torque, speed, backlash, kinematics):
     model = build_model(make_machine(make_layout(kinematics=kinematics), torque=torque, backlash=backlash))

@@ -12,8 +12,9 @@ from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.flanks import error_series, stiffness_series
-from facegear.transmission.layout import MeshKinematics, Role, Side, Tilt
+from facegear.transmission.layout import Role, Side, Tilt
 from facegear.transmission.machine import OpenFlanks
+from facegear.transmission.teeth import GEOMETRIC
 
 K = 4.1e8
 FLAT = Harmonics(np.zeros(1), np.array([K]))
@@ -29,7 +30,7 @@ def tilting(layout, stiffness, inertia=INERTIA):
 
 def test_a_gear_that_rocks_answers_an_error_as_a_lever():
     """One mesh kept in contact: the linear response, with the rim's lift R sin a times the tilt by hand."""
-    layout = make_layout(ONE, (Side.UPPER,), kinematics=MeshKinematics.GEOMETRIC)
+    layout = make_layout(ONE, (Side.UPPER,), kinematics=GEOMETRIC)
     options = {"error": 3e-6, "stiffness": FLAT, "open_flanks": OpenFlanks.CONTACT_ONLY}
     machine = make_machine(tilting(layout, 4e6), 1500.0, 0.0, **options)
     model = build_model(machine)
@@ -53,7 +54,7 @@ def test_a_gear_that_rocks_answers_an_error_as_a_lever():
 
 
 def test_a_gear_that_hardly_tilts_moves_as_one_that_cannot():
-    layout = make_layout(kinematics=MeshKinematics.GEOMETRIC)
+    layout = make_layout(kinematics=GEOMETRIC)
     omega, phases = TAU * 1400.0, np.linspace(0.0, TAU, 40)
     model = build_model(make_machine(layout, 1500.0))
     square = record(model.system, omega, static_start(model), 1, Settings(tolerance=1e-13)).at(phases)[1]
@@ -69,7 +70,7 @@ def test_a_gear_that_hardly_tilts_moves_as_one_that_cannot():
 
 def test_moments_about_both_diameters_are_balanced_in_motion():
     """I dw + (lambda I + beta k) dtilt + k integral of tilt = integral of r x F over the rim."""
-    layout = tilting(make_layout(kinematics=MeshKinematics.GEOMETRIC), 2e7)
+    layout = tilting(make_layout(kinematics=GEOMETRIC), 2e7)
     machine = make_machine(layout, 800.0, error=20e-6)
     model = build_model(machine)
     system, omega = model.system, TAU * 2300.0

@@ -21,10 +21,12 @@ from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import simulate
-from facegear.transmission.layout import MeshKinematics, Role, Side
+from facegear.transmission.layout import Role, Side
 from facegear.transmission.machine import mesh_frequency
 from facegear.transmission.matrices import bearing_diagonal, flank_directions, mass_diagonal
+from facegear.transmission.printed import PRINTED
 from facegear.transmission.statics import static_equilibrium
+from facegear.transmission.teeth import GEOMETRIC
 
 C, N = 2.4e11, 1.5
 
@@ -120,7 +122,7 @@ def test_tangents_of_the_law_are_differences_of_its_motions():
         np.testing.assert_allclose(matrix[:, column], (ends[0] - ends[1]).ravel() / 2e-5, atol=1e-7)
 
 
-def one_mesh(kinematics=MeshKinematics.GEOMETRIC, torque=600.0, flanks=2):
+def one_mesh(kinematics=GEOMETRIC, torque=600.0, flanks=2):
     layout = make_layout((("engine", Role.INPUT, 0.0),), (Side.UPPER,), kinematics=kinematics)
     machine = make_machine(layout, torque, 0.0, error=0.0)
     return replace(machine, law=PowerLaw(C, N, 2e-6, contacts=flanks, largest=4e-4))
@@ -138,7 +140,7 @@ def test_statics_press_a_mesh_in_by_the_inverse_of_its_law(torque):
 
 @pytest.mark.parametrize("torque", [600.0, -600.0])
 def test_statics_on_one_line_of_action_take_the_law_on_both_flanks(torque):
-    machine = one_mesh(MeshKinematics.PRINTED, torque, 1)
+    machine = one_mesh(PRINTED, torque, 1)
     found = static_equilibrium(machine)
     force = torque / machine.layout.pinion_arm
     assert found.forces[0] == pytest.approx(force, rel=1e-9)

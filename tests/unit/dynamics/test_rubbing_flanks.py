@@ -14,17 +14,18 @@ from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
 from facegear.harmonics.series import stacked_values
-from facegear.transmission.layout import FaceGear, MeshKinematics, Role, Side, Tilt
+from facegear.transmission.layout import FaceGear, Role, Side, Tilt
 from facegear.transmission.machine import OpenFlanks, mesh_frequency
 from facegear.transmission.matrices import bearing_matrix, flank_directions, mass_diagonal, rigid_rotation
 from facegear.transmission.mesh_friction import PARTS, MeshFriction, flank_ratios, friction_rows
+from facegear.transmission.teeth import GEOMETRIC
 
 TWO = (("engine", Role.INPUT, 0.0), ("idler", Role.IDLER, 35.5))
 
 
 def layout_with_axial_bearings():
     """Two pinions held along their axes, two gears of which one rocks."""
-    shape = make_layout(TWO, kinematics=MeshKinematics.GEOMETRIC)
+    shape = make_layout(TWO, kinematics=GEOMETRIC)
     held = [replace(one, body=replace(one.body, bearing=(6.5e7, 6.5e7, 3e7))) for one in shape.pinions]
     lower, upper = shape.gears
     rocking = FaceGear(Side.UPPER, replace(upper.body, tilt=Tilt(0.3, 5e7)))

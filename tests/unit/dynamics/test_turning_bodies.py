@@ -12,8 +12,9 @@ from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
 from facegear.harmonics.series import Harmonics
-from facegear.transmission.layout import MeshKinematics, Role, Side
+from facegear.transmission.layout import Role, Side
 from facegear.transmission.machine import OpenFlanks
+from facegear.transmission.teeth import GEOMETRIC
 
 BODY, J, STIFFNESS, POLAR = "one", 0.003, 5e4, 0.005
 PLACES = ((BODY, Role.INPUT, 0.0), ("two", Role.INPUT, 40.25))
@@ -23,7 +24,7 @@ LEVERS = np.array([[0.02, -0.008], [0.0, 0.0], [0.015, 0.01], [0.0, 0.0]])
 
 
 def machine_with(bodies):
-    layout = make_layout(PLACES, (Side.UPPER,), kinematics=MeshKinematics.GEOMETRIC)
+    layout = make_layout(PLACES, (Side.UPPER,), kinematics=GEOMETRIC)
     constant = Harmonics(np.zeros(1), np.array([K]))
     options = {"stiffness": constant, "error": ERROR, "open_flanks": OpenFlanks.CONTACT_ONLY}
     return replace(make_machine(layout, **options), bodies=bodies)

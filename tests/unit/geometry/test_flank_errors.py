@@ -12,8 +12,9 @@ from lumped_machines import make_layout
 from facegear.geometry.design import AssemblyErrors
 from facegear.geometry.flank_errors import FLANKS, GEARS, distinct_errors, errors_at
 from facegear.geometry.unloaded import unloaded_contact
-from facegear.transmission.layout import MeshKinematics, Side
+from facegear.transmission.layout import Side
 from facegear.transmission.matrices import flank_directions
+from facegear.transmission.teeth import GEOMETRIC
 
 PATHS = [
     ((120e-6, 0.0, radians(0.03)), 264.388284, 269.136890),
@@ -43,7 +44,7 @@ def test_contact_of_either_flank_stands_where_the_closed_form_has_it(pair, error
 @pytest.mark.parametrize("flank", FLANKS)
 def test_a_displaced_pinion_closes_each_flank_as_the_machine_s_directions_say(pair, gear, flank):
     """A pinion moved along x by 1 um, in the frame of the machine, on both flanks of both gears."""
-    step, layout = 1e-6, make_layout(kinematics=MeshKinematics.GEOMETRIC)
+    step, layout = 1e-6, make_layout(kinematics=GEOMETRIC)
     sides = [Side(gear) == layout.gears[g].side for _, g in layout.meshes]
     mesh = sides.index(True)
     pinion = 4 * layout.meshes[mesh][0]

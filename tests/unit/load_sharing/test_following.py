@@ -12,11 +12,10 @@ from facegear.load_sharing.following import running, running_table
 from facegear.load_sharing.hunting import hunting_cycle
 from facegear.transmission.flanks import slow_errors
 from facegear.transmission.imperfections import Imperfections, Runout, perfect
-from facegear.transmission.layout import MeshKinematics, Role
+from facegear.transmission.layout import Role
+from facegear.transmission.teeth import GEOMETRIC
 
-LAYOUT = make_layout(
-    (("engine", Role.INPUT, 0.0), ("idler", Role.IDLER, 35.5)), kinematics=MeshKinematics.GEOMETRIC
-)
+LAYOUT = make_layout((("engine", Role.INPUT, 0.0), ("idler", Role.IDLER, 35.5)), kinematics=GEOMETRIC)
 TURNING = {
     "pinion_runout": (Runout(9e-6, 0.4), Runout(7e-6, 2.0)),
     "gear_runout": (Runout(15e-6, 1.0), Runout()),

@@ -13,10 +13,10 @@ from facegear.load_sharing.hunting import hunting_cycle, hunting_length
 from facegear.load_sharing.hunting_tables import bearing_table, cycle_table, group_table, mesh_table
 from facegear.load_sharing.sensitivity import bearing_scan, sensitivities
 from facegear.transmission.imperfections import Runout, perfect
-from facegear.transmission.layout import MeshKinematics, Role
+from facegear.transmission.layout import Role
 from facegear.transmission.machine import balanced_torques
+from facegear.transmission.teeth import GEOMETRIC
 
-GEOMETRIC = MeshKinematics.GEOMETRIC
 LAYOUT = make_layout(kinematics=GEOMETRIC)
 
 
@@ -81,9 +81,7 @@ def unloaded_part(seed):
         (f"p{i}", role, float(angle)) for i, (role, angle) in enumerate(zip(roles, angles, strict=True))
     )
     bearings = 10.0 ** random.uniform(8, 11), 10.0 ** random.uniform(9, 12)
-    layout = make_layout(
-        places, pinion_bearing=bearings[0], gear_bearing=bearings[1], kinematics=MeshKinematics.GEOMETRIC
-    )
+    layout = make_layout(places, pinion_bearing=bearings[0], gear_bearing=bearings[1], kinematics=GEOMETRIC)
     runout = tuple(Runout(random.uniform(5e-6, 4e-5), random.uniform(0.0, 6.28)) for _ in range(2))
     position = random.normal(0.0, 1e-5, (count, 2)) * (seed % 2)
     flaws = replace(perfect(layout), gear_runout=runout, position=position)

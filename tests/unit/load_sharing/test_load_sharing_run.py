@@ -16,7 +16,7 @@ from facegear.load_sharing.sampling import between, same_orbit
 from facegear.load_sharing.statics import static_forces
 from facegear.load_sharing.tables import CURVE_COLUMNS, SUMMARY_COLUMNS, curve_table, summary_table
 from facegear.transmission.imperfections import Runout, perfect
-from facegear.transmission.layout import MeshKinematics
+from facegear.transmission.teeth import GEOMETRIC
 
 OPTIONS = SharingOptions(64, 24, 2, 2e-5, 0, 0.95, 60.0, SpeedRange(2000.0, 9000.0, 3))
 SETTINGS = Settings(tolerance=1e-4, settle=128)
@@ -42,7 +42,7 @@ def test_quasi_static_coefficient_tends_to_the_static_one_as_speed_falls(tight):
 
 def test_what_a_run_is_held_against_leaves_out_what_it_says_of_every_mesh():
     """Runouts are in neither static nor slow motion; own e(t) and backlash go with the common ones."""
-    layout = make_layout(kinematics=MeshKinematics.GEOMETRIC)
+    layout = make_layout(kinematics=GEOMETRIC)
     loose = np.full(10, np.nan)
     loose[2] = 40e-6
     flaws = replace(
@@ -63,7 +63,7 @@ def test_what_a_run_is_held_against_leaves_out_what_it_says_of_every_mesh():
 
 def test_without_errors_no_constant_error_and_no_pinion_out_of_place_is_left():
     """`no_error` kept both."""
-    layout = make_layout(kinematics=MeshKinematics.GEOMETRIC)
+    layout = make_layout(kinematics=GEOMETRIC)
     flaws = replace(perfect(layout), error=np.linspace(-8e-6, 8e-6, 10), position=np.full((5, 2), 5e-6))
     plain = make_machine(layout, 1500.0, 0.05, error=4e-6)
     clean, flawed = (

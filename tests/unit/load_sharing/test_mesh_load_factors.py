@@ -12,10 +12,10 @@ from facegear.load_sharing.even_shares import even_shares
 from facegear.load_sharing.hunting import hunting_cycle
 from facegear.load_sharing.hunting_tables import group_table, mesh_table
 from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import MeshKinematics, Role, Side
+from facegear.transmission.layout import Role, Side
 from facegear.transmission.machine import balanced_torques
+from facegear.transmission.teeth import GEOMETRIC
 
-GEOMETRIC = MeshKinematics.GEOMETRIC
 LAYOUT = make_layout(kinematics=GEOMETRIC)
 ARM = LAYOUT.pinion_arm
 torques = st.floats(50.0, 5000.0)

@@ -9,11 +9,10 @@ from lumped_machines import make_layout, make_machine
 from facegear.load_sharing.hunting import at_cycles, hunting_cycle, largest
 from facegear.load_sharing.sensitivity import sensitivities
 from facegear.transmission.imperfections import Runout, perfect
-from facegear.transmission.layout import MeshKinematics, Role
+from facegear.transmission.layout import Role
+from facegear.transmission.teeth import GEOMETRIC
 
-LAYOUT = make_layout(
-    (("engine", Role.INPUT, 0.0), ("idler", Role.IDLER, 35.5)), kinematics=MeshKinematics.GEOMETRIC
-)
+LAYOUT = make_layout((("engine", Role.INPUT, 0.0), ("idler", Role.IDLER, 35.5)), kinematics=GEOMETRIC)
 STEP = 0.02e-6
 
 
@@ -54,7 +53,7 @@ def test_a_runout_that_no_mesh_feels_changes_nothing():
     layout = make_layout(
         (("one", Role.INPUT, 0.0), ("two", Role.INPUT, 40.0)),
         (LAYOUT.gears[1].side,),
-        kinematics=MeshKinematics.GEOMETRIC,
+        kinematics=GEOMETRIC,
     )
     machine = make_machine(layout, 800.0, 0.0)
     table = sensitivities(hunting_cycle(machine, 8))

@@ -12,10 +12,10 @@ from facegear.harmonics.series import Harmonics, stacked, stacked_values
 from facegear.transmission.assembly import assembly
 from facegear.transmission.flanks import constant_errors, stiffness_series
 from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import MeshKinematics, Role, Side
+from facegear.transmission.layout import Role, Side
 from facegear.transmission.phases import PhaseConvention, mesh_phases
+from facegear.transmission.teeth import GEOMETRIC
 
-GEOMETRIC = MeshKinematics.GEOMETRIC
 HALF = np.full(10, 50e-6)
 
 

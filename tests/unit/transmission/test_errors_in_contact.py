@@ -13,7 +13,8 @@ from facegear.geometry.placement import mirrored
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.transmission.flanks import constant_errors
 from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import MeshKinematics, Role
+from facegear.transmission.layout import Role
+from facegear.transmission.teeth import GEOMETRIC
 
 SHIFT = 1e-6
 PHI = [0.02]
@@ -37,7 +38,7 @@ def closed_by(design, **assembly):
 
 def lumped(x=0.0, y=0.0):
     """The same of the lumped model's upper and lower mesh: (drive, back) each."""
-    layout = make_layout((("one", Role.INPUT, 0.0),), kinematics=MeshKinematics.GEOMETRIC)
+    layout = make_layout((("one", Role.INPUT, 0.0),), kinematics=GEOMETRIC)
     flaws = replace(perfect(layout), position=np.array([[x, y]]))
     lower_drive, upper_drive, lower_back, upper_back = -constant_errors(
         make_machine(layout, imperfections=flaws, tail_share=0.0)

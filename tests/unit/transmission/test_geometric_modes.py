@@ -15,19 +15,20 @@ from lumped_machines import make_layout, make_machine
 from scipy.linalg import eigh
 
 from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import MeshKinematics, Role, Side, Tilt
+from facegear.transmission.layout import Role, Side, Tilt
 from facegear.transmission.loaded_contacts import forces_by_active_sets, loaded_contacts
 from facegear.transmission.loaded_modes import loaded_modes, vibrating_machine
 from facegear.transmission.lumped import lumped_model
-from facegear.transmission.matrices import bearing_matrix, mass_diagonal, mesh_parts
+from facegear.transmission.matrices import bearing_matrix, mass_diagonal
 from facegear.transmission.modal_tables import contact_table
 from facegear.transmission.mode_classes import ModeClass, name_modes
 from facegear.transmission.modes import natural_modes
 from facegear.transmission.statics import mean_equilibrium
+from facegear.transmission.teeth import GEOMETRIC, mesh_parts
 
 ROOT = Path(__file__).parents[3]
 
-LAYOUT = make_layout(kinematics=MeshKinematics.GEOMETRIC)
+LAYOUT = make_layout(kinematics=GEOMETRIC)
 
 
 def working_flanks(machine):
@@ -183,7 +184,7 @@ def test_bearings_with_play_vibrate_along_and_across_their_load_as_they_are_pres
 def idle_machine(torque, clearance=0.0, turned=1.0, **options):
     """One face gear driven by two of three pinions: the third carries nothing. `turned` -1: in a mirror."""
     places = (("a", Role.INPUT, 0.0), ("b", Role.INPUT, turned * 45.0), ("idle", Role.IDLER, turned * 80.5))
-    layout = make_layout(places, (Side.UPPER,), kinematics=MeshKinematics.GEOMETRIC)
+    layout = make_layout(places, (Side.UPPER,), kinematics=GEOMETRIC)
     flaws = replace(perfect(layout), clearance=np.full(3, clearance))
     return make_machine(layout, turned * torque, 0.0, imperfections=flaws, **options)
 
@@ -235,7 +236,7 @@ def test_no_mode_of_a_pinion_in_its_play_hangs_on_the_last_digits_of_a_torque(
 
 def test_a_wedged_mesh_has_both_flanks_and_the_table_names_it():
     """A pinion set too deep presses both flanks of a tooth: 2 k along its way, 2 k along the gears' axis."""
-    layout = make_layout((("a", Role.INPUT, 0.0),), kinematics=MeshKinematics.GEOMETRIC)
+    layout = make_layout((("a", Role.INPUT, 0.0),), kinematics=GEOMETRIC)
     flaws = replace(perfect(layout), position=np.array([[0.0, 30e-6]]))
     machine = make_machine(layout, 100.0, 0.0, backlash=0.0, imperfections=flaws)
     found = vibrating_machine(machine)
@@ -265,7 +266,7 @@ def test_the_table_says_what_every_mesh_and_every_bearing_with_play_does():
 @pytest.mark.parametrize(("share", "state"), [(1e-11, "open"), (1e-8, "undecided"), (1e-3, "closed")])
 def test_a_contact_that_carries_next_to_nothing_is_undecided_and_so_are_the_modes_it_changes(share, state):
     places = (("a", Role.INPUT, 0.0), ("tail", Role.TAIL, 45.0))
-    layout = make_layout(places, (Side.UPPER,), kinematics=MeshKinematics.GEOMETRIC)
+    layout = make_layout(places, (Side.UPPER,), kinematics=GEOMETRIC)
     found = vibrating_machine(make_machine(layout, 800.0, share))
     states = [str(one) for one in found.contacts.flank_states()]
     assert states == ["closed", "open", "open", state]

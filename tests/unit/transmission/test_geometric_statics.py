@@ -16,7 +16,7 @@ from facegear.transmission.contact_energy import Springs
 from facegear.transmission.contact_kernel import settle_all
 from facegear.transmission.flanks import constant_errors, flank_gaps
 from facegear.transmission.imperfections import Runout, perfect
-from facegear.transmission.layout import Body, MeshKinematics, Role, Side, Tilt
+from facegear.transmission.layout import Body, Role, Side, Tilt
 from facegear.transmission.matrices import bearing_matrix, flank_directions, rigid_rotation
 from facegear.transmission.static_springs import static_springs
 from facegear.transmission.statics import (
@@ -26,6 +26,7 @@ from facegear.transmission.statics import (
     mean_equilibrium,
     static_equilibrium,
 )
+from facegear.transmission.teeth import GEOMETRIC
 
 K = 4.1e8
 FLAT = Harmonics(np.zeros(1), np.array([K]))
@@ -37,7 +38,7 @@ HELD = 1e22
 def layout_with(bearings, roles, sides=(Side.LOWER, Side.UPPER), gear_bearing=HELD, coupled=0.0):
     """Pinions with bearings of their own, 45 pitches apart."""
     places = tuple((f"p{i}", role, 45.0 * i) for i, role in enumerate(roles))
-    layout = make_layout(places, sides, 1.0, gear_bearing, MeshKinematics.GEOMETRIC)
+    layout = make_layout(places, sides, 1.0, gear_bearing, GEOMETRIC)
     pinions = tuple(
         replace(pinion, body=Body(1.2, 0.002, (k, k, 0.0), coupled * k))
         for pinion, k in zip(layout.pinions, bearings, strict=True)
@@ -114,9 +115,7 @@ def test_an_input_leaves_its_bearing_alone_and_an_idler_pulls_it_with_twice_the_
 
 
 def test_one_torque_is_one_mesh_force_over_the_base_radius_and_ratios_are_the_teeths():
-    layout = make_layout(
-        (("one", Role.INPUT, 0.0),), (Side.UPPER,), kinematics=MeshKinematics.GEOMETRIC, pinion_bearing=1e8
-    )
+    layout = make_layout((("one", Role.INPUT, 0.0),), (Side.UPPER,), kinematics=GEOMETRIC, pinion_bearing=1e8)
     machine = machine_with(layout, 664.0)
     base_radius = 3.75e-3 * 23 / 2 * COSINE
     assert mean_equilibrium(machine).forces[0, 0] == pytest.approx(664.0 / base_radius, rel=1e-12)
@@ -236,7 +235,7 @@ def test_every_force_is_balanced_and_no_flank_pulls_or_penetrates(data):
 
 def test_moving_the_whole_gearbox_loads_nothing():
     """Sideways, along the axis, round the axis, and turning as the gears turn."""
-    layout = make_layout(kinematics=MeshKinematics.GEOMETRIC)
+    layout = make_layout(kinematics=GEOMETRIC)
     directions = flank_directions(layout)
     pinions = len(layout.pinions)
     sideways, lifted, turned = np.zeros((3, layout.dof))
@@ -251,7 +250,7 @@ def test_moving_the_whole_gearbox_loads_nothing():
 
 def test_the_contact_problem_of_printed_meshes_is_the_dead_zone():
     machine = make_machine(make_layout(), error=0.0, stiffness=FLAT)
-    assert not machine.layout.is_geometric
+    assert not machine.layout.kinematics.flanks_apart
     found = mean_equilibrium(machine)
     np.testing.assert_allclose(found.forces[0], static_equilibrium(machine).forces, rtol=1e-7, atol=1e-4)
 
@@ -280,7 +279,7 @@ def test_a_gear_with_one_mesh_rocks_as_a_lever():
 
 
 def test_tilt_of_no_give_is_the_gear_that_cannot_tilt():
-    layout = make_layout(kinematics=MeshKinematics.GEOMETRIC)
+    layout = make_layout(kinematics=GEOMETRIC)
     stiff = tuple(replace(gear, body=replace(gear.body, tilt=Tilt(0.3, 1e21))) for gear in layout.gears)
     square, rocking = (
         mean_equilibrium(machine_with(one, 1300.0, 0.1)) for one in (layout, replace(layout, gears=stiff))
@@ -300,7 +299,7 @@ def test_a_pinion_inside_its_play_floats_and_beyond_it_is_held():
 
 
 def test_springs_hold_no_hidden_state():
-    machine = machine_with(make_layout(kinematics=MeshKinematics.GEOMETRIC), 900.0, 0.1)
+    machine = machine_with(make_layout(kinematics=GEOMETRIC), 900.0, 0.1)
     assert isinstance(static_springs(machine), Springs)
     cycles = np.array([3.3, 0.2, 1700.1])
     together = equilibria(machine, cycles).flank_forces
@@ -311,7 +310,7 @@ def test_springs_hold_no_hidden_state():
 @pytest.mark.parametrize("share", [1e-16, 1e-14, 1e-13, 1e-11, 1e-8])
 def test_next_to_no_torque_on_a_free_pinion_does_not_keep_the_others_from_balance(share):
     places = (("engine", Role.INPUT, 0.0), ("tail", Role.TAIL, 0.0))
-    layout = make_layout(places, (Side.UPPER,), 1e7, 1e8, MeshKinematics.GEOMETRIC)
+    layout = make_layout(places, (Side.UPPER,), 1e7, 1e8, GEOMETRIC)
     found = mean_equilibrium(machine_with(layout, 50.0, share, 7.9e-5))
     assert found.residual[0] < 1e-12
     assert found.forces[0, 0] == pytest.approx(50.0 / layout.pinion_arm, rel=1e-12)
@@ -329,7 +328,7 @@ def test_next_to_no_torque_against_a_ring_of_play_is_balanced_or_refused_by_name
     """Below 1e-7 of the others' load the force that turns a free pinion in its ring is lost in rounding."""
     count, pinion, gear, backlash, clearance = RINGS_OF_PLAY[name]
     places = [(f"p{i}", Role.INPUT if i < count - 1 else Role.TAIL, 20.0 * i) for i in range(count)]
-    layout = make_layout(tuple(places), (Side.LOWER, Side.UPPER), pinion, gear, MeshKinematics.GEOMETRIC)
+    layout = make_layout(tuple(places), (Side.LOWER, Side.UPPER), pinion, gear, GEOMETRIC)
     flaws = replace(perfect(layout), clearance=np.array(clearance))
     machine = make_machine(
         layout, torque=50.0, tail_share=share, backlash=backlash, error=0.0, imperfections=flaws

@@ -6,8 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 
-from facegear.transmission.layout import MeshKinematics, Role, Side
+from facegear.transmission.layout import Role, Side
 from facegear.transmission.ratings import body_table, mesh_table, rated
+from facegear.transmission.teeth import GEOMETRIC
 
 ROLES = st.lists(st.sampled_from([Role.INPUT, Role.IDLER, Role.TAIL]), min_size=0, max_size=4)
 SIDES = st.sampled_from([(Side.LOWER, Side.UPPER), (Side.UPPER,), (Side.LOWER,)])
@@ -16,7 +17,7 @@ SIDES = st.sampled_from([(Side.LOWER, Side.UPPER), (Side.UPPER,), (Side.LOWER,)]
 def geometric(roles, sides, torque, tail_share):
     places = [(f"p{i}", role, 10.5 * i) for i, role in enumerate(roles)]
     return make_machine(
-        make_layout(places, sides, kinematics=MeshKinematics.GEOMETRIC), torque=torque, tail_share=tail_share
+        make_layout(places, sides, kinematics=GEOMETRIC), torque=torque, tail_share=tail_share
     )
 
 

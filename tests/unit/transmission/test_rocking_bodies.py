@@ -12,7 +12,8 @@ from rocking_bodies import InOtherCoordinates, Rocking, whirl
 from facegear.errors import NotConverged
 from facegear.transmission import statics
 from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import MeshKinematics, Role, Side
+from facegear.transmission.kinematics import KINEMATICS
+from facegear.transmission.layout import Role, Side
 from facegear.transmission.loaded_modes import loaded_modes
 from facegear.transmission.mode_classes import name_modes
 from facegear.transmission.static_springs import has_blocks
@@ -22,13 +23,14 @@ from facegear.transmission.statics import (
     static_bearing_forces,
     static_equilibrium,
 )
+from facegear.transmission.teeth import GEOMETRIC
 
 BODY, J, STIFFNESS, POLAR = "one", 0.003, 5e4, 0.005
 PLACES = ((BODY, Role.INPUT, 0.0), ("two", Role.TAIL, 40.25))
-KINEMATICS = tuple(MeshKinematics)
+KINEMATICS = tuple(KINEMATICS.values())
 
 
-def machine_with(bodies, kinematics=MeshKinematics.GEOMETRIC, **more):
+def machine_with(bodies, kinematics=GEOMETRIC, **more):
     layout = make_layout(PLACES, (Side.UPPER,), kinematics=kinematics)
     return replace(make_machine(layout, tail_share=0.3, **more), bodies=bodies)
 
@@ -122,7 +124,7 @@ def test_a_shaft_that_couples_displacement_and_tilt_bends_by_its_whole_complianc
 
 @pytest.mark.parametrize("play", [0.0, 20e-6])
 def test_both_solvers_of_statics_agree(play, monkeypatch):
-    layout = make_layout(kinematics=MeshKinematics.GEOMETRIC)
+    layout = make_layout(kinematics=GEOMETRIC)
     machine = make_machine(layout, imperfections=replace(perfect(layout), clearance=np.full(5, play)))
     cycles = np.array([0.0, 0.4])
     by_blocks = equilibria(machine, cycles)

@@ -6,16 +6,19 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from lumped_machines import make_layout, make_machine
+from lumped_machines import drive_rows, make_layout, make_machine
 
 from facegear.errors import NotConverged
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.balance import balance, bearing_loads
 from facegear.transmission.flanks import constant_errors, flank_gaps
 from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import Layout, MeshKinematics, Role, Side
-from facegear.transmission.matrices import bearing_matrix, flank_directions, mesh_directions
+from facegear.transmission.kinematics import KINEMATICS
+from facegear.transmission.layout import Layout, Role, Side
+from facegear.transmission.matrices import bearing_matrix, flank_directions
+from facegear.transmission.printed import PRINTED
 from facegear.transmission.statics import mean_equilibrium, static_bearing_forces, static_equilibrium
+from facegear.transmission.teeth import GEOMETRIC
 
 K = 4.1e8
 FLAT = Harmonics(np.zeros(1), np.array([K]))
@@ -57,7 +60,7 @@ def external_forces(layout: Layout, on_bearings, torques):
 
 
 @settings(max_examples=10, deadline=None)
-@given(coupled_machines(MeshKinematics.GEOMETRIC))
+@given(coupled_machines(GEOMETRIC))
 def test_what_the_bearings_of_a_gearbox_take_balances_its_torques_however_they_couple_x_and_y(machine):
     layout = machine.layout
     size = np.abs(machine.torques[:5]).max() / layout.pinion_arm
@@ -67,7 +70,7 @@ def test_what_the_bearings_of_a_gearbox_take_balances_its_torques_however_they_c
 
 
 @settings(max_examples=10, deadline=None)
-@given(coupled_machines(MeshKinematics.GEOMETRIC), st.integers(0, 2**31))
+@given(coupled_machines(GEOMETRIC), st.integers(0, 2**31))
 def test_external_forces_on_any_bodies_end_in_the_bearings(machine, seed):
     layout = machine.layout
     forces = 2000.0 * np.random.default_rng(seed).normal(size=(7, 3))
@@ -82,7 +85,7 @@ def test_external_forces_on_any_bodies_end_in_the_bearings(machine, seed):
 
 def test_a_pinion_set_too_deep_presses_both_flanks_as_the_closed_form_says():
     """Bearing k_b and both flanks along the gear's axis, held gear: k_b (d - u) = 2 k u sin^2 a."""
-    layout = make_layout((("a", Role.INPUT, 0.0),), (Side.UPPER,), 6.5e7, 1e19, MeshKinematics.GEOMETRIC)
+    layout = make_layout((("a", Role.INPUT, 0.0),), (Side.UPPER,), 6.5e7, 1e19, GEOMETRIC)
     deep = 20e-6
     flaws = replace(perfect(layout), position=np.array([[0.0, deep]]))
     machine = make_machine(layout, 0.001, 0.0, 0.0, 0.0, FLAT, imperfections=flaws)
@@ -94,9 +97,9 @@ def test_a_pinion_set_too_deep_presses_both_flanks_as_the_closed_form_says():
 
 
 @settings(max_examples=10, deadline=None)
-@given(coupled_machines(MeshKinematics.PRINTED, backlash=0.0))
+@given(coupled_machines(PRINTED, backlash=0.0))
 def test_printed_statics_with_coupled_bearings_are_the_linear_solution(machine):
-    directions = mesh_directions(machine.layout)
+    directions = drive_rows(machine.layout)
     applied = np.zeros(28)
     applied[3::4] = machine.torques
     stiffness = bearing_matrix(machine.layout) + K * directions.T @ directions
@@ -107,7 +110,7 @@ def test_printed_statics_with_coupled_bearings_are_the_linear_solution(machine):
 
 def test_a_coupled_bearing_of_the_lower_gear_carries_in_statics_what_it_carries_in_motion():
     """The bearing pulled along x by a part of the idlers' forces gives way along y, too."""
-    layout = make_layout(kinematics=MeshKinematics.GEOMETRIC)
+    layout = make_layout(kinematics=GEOMETRIC)
     lower, upper = layout.gears
     body = replace(lower.body, bearing=(2e8, 2e8, 8.7e9), bearing_xy=1.6e8)
     machine = make_machine(replace(layout, gears=(replace(lower, body=body), upper)), tail_share=0.1)
@@ -119,11 +122,11 @@ def test_a_coupled_bearing_of_the_lower_gear_carries_in_statics_what_it_carries_
     np.testing.assert_allclose(forces, 0.0, atol=1e-6)
 
 
-@pytest.mark.parametrize("kinematics", MeshKinematics)
+@pytest.mark.parametrize("kinematics", KINEMATICS.values(), ids=KINEMATICS)
 def test_a_static_result_whose_forces_do_not_balance_is_refused(kinematics):
     machine = make_machine(make_layout(kinematics=kinematics), stiffness=FLAT, error=0.0)
     found = static_equilibrium(machine)
-    if kinematics is MeshKinematics.GEOMETRIC:
+    if kinematics is GEOMETRIC:
         forces = mean_equilibrium(machine).flank_forces
         gaps = (constant_errors(machine) + flank_gaps(machine))[None]
     else:
@@ -138,7 +141,7 @@ def test_a_static_result_whose_forces_do_not_balance_is_refused(kinematics):
 
 def test_the_balance_counts_every_degree_of_freedom():
     """A force that one bearing takes and no contact gives is left over, whatever the body and direction."""
-    layout = make_layout(kinematics=MeshKinematics.GEOMETRIC)
+    layout = make_layout(kinematics=GEOMETRIC)
     machine = make_machine(layout, stiffness=FLAT, error=0.0, imperfections=perfect(layout))
     found = mean_equilibrium(machine)
     held = np.flatnonzero(np.diag(bearing_matrix(layout)))

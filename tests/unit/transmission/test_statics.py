@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from lumped_machines import make_machine
+from lumped_machines import drive_rows, make_machine
 
 from facegear.errors import InvalidInput
 from facegear.harmonics.series import Harmonics
@@ -37,10 +37,10 @@ def test_static_mesh_forces_balance_the_torques_on_every_pinion(torque, share, b
 
 
 def test_without_backlash_statics_is_the_linear_solution(machine_of):
-    from facegear.transmission.matrices import bearing_diagonal, mesh_directions
+    from facegear.transmission.matrices import bearing_diagonal
 
     machine = machine_of(backlash=0.0)
-    directions = mesh_directions(machine.layout)
+    directions = drive_rows(machine.layout)
     stiffness = np.diag(bearing_diagonal(machine.layout)) + 4.1e8 * directions.T @ directions
     applied = np.zeros(28)
     applied[3::4] = machine.torques

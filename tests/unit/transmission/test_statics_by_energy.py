@@ -11,9 +11,10 @@ from scipy.optimize import minimize
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.flanks import constant_errors, flank_gaps
 from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import Body, MeshKinematics, Role, Side
+from facegear.transmission.layout import Body, Role, Side
 from facegear.transmission.matrices import bearing_diagonal, flank_directions
 from facegear.transmission.statics import bearing_forces, mean_equilibrium
+from facegear.transmission.teeth import GEOMETRIC
 
 K = 4.1e8
 FLAT = Harmonics(np.zeros(1), np.array([K]))
@@ -26,7 +27,7 @@ def machines(draw):
     roles = [Role.INPUT, *(draw(st.sampled_from(list(Role))) for _ in range(count - 1))]
     places = tuple((f"p{i}", role, 45.0 * i) for i, role in enumerate(roles))
     sides = draw(st.sampled_from([(Side.LOWER, Side.UPPER), (Side.UPPER,)]))
-    layout = make_layout(places, sides, 1.0, 10.0 ** draw(st.floats(8, 10)), MeshKinematics.GEOMETRIC)
+    layout = make_layout(places, sides, 1.0, 10.0 ** draw(st.floats(8, 10)), GEOMETRIC)
     bearings = [10.0 ** draw(st.floats(7, 10)) for _ in range(count)]
     pinions = tuple(
         replace(pinion, body=Body(1.2, 0.002, (k, k, 0.0)))

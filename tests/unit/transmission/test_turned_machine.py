@@ -14,12 +14,11 @@ import facegear
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.flanks import slow_errors
 from facegear.transmission.imperfections import Runout, perfect
-from facegear.transmission.layout import MeshKinematics, Role, Side
-from facegear.transmission.matrices import mesh_parts
+from facegear.transmission.layout import Role, Side
 from facegear.transmission.phases import PhaseConvention
 from facegear.transmission.statics import equilibria, static_equilibrium
+from facegear.transmission.teeth import GEOMETRIC, mesh_parts
 
-GEOMETRIC = MeshKinematics.GEOMETRIC
 WAVY = Harmonics(np.array([0.0, 3e-6, 1e-6]), np.array([0.0, 5e-6, -2e-6]))
 TWO_ENGINES = (("one", Role.INPUT, 0.0), ("two", Role.INPUT, 37.3))
 CYCLES = np.array([0.0, 0.4, 31.7, 1500.2])

@@ -1,0 +1,9 @@
+"""The kinematics of meshes by the names that a config gives them."""
+
+from collections.abc import Mapping
+
+from facegear.transmission.layout import Kinematics
+from facegear.transmission.printed import PRINTED
+from facegear.transmission.teeth import GEOMETRIC
+
+KINEMATICS: Mapping[str, Kinematics] = {one.name: one for one in (GEOMETRIC, PRINTED)}

@@ -1,0 +1,71 @@
+"""How gears deflect their meshes: the kinematics of the teeth themselves."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.errors import InvalidInput
+from facegear.transmission.layout import DOF_PER_BODY, Layout
+
+SAME_ARM = 1e-9
+
+
+@dataclass(frozen=True)
+class Teeth:
+    """Forces act along the normals of the flanks: `pinion_radius` and `gear_radius` are base radii."""
+
+    name: str = "geometric"
+    flanks_apart: bool = True
+    follows_rotation: bool = True
+
+    def require(self, layout: Layout) -> None:
+        """Raise InvalidInput unless the radii are those of the tooth numbers."""
+        conjugate = layout.pinion_radius * layout.gear_teeth / layout.pinion_teeth
+        if abs(layout.gear_radius - conjugate) > SAME_ARM * conjugate:
+            allowed = f"{conjugate:.9g} m, as the tooth numbers say, where mesh_kinematics is geometric"
+            raise InvalidInput("gear_radius", layout.gear_radius, allowed)
+
+    def arm(self, radius: float, pressure_angle: float) -> float:
+        """The radius itself."""
+        return radius
+
+    def mesh_radius(self, layout: Layout) -> float:
+        """m N2 / 2."""
+        return layout.gear_radius / float(np.cos(layout.pressure_angle))
+
+    def gear_radius(self, base_radius: float, pressure_angle: float) -> float:
+        """The base radius."""
+        return base_radius
+
+    def flank_rows(self, layout: Layout) -> Array:
+        """The back flank's normal has the same separating part and the opposite tangential part."""
+        tangential, separating = mesh_parts(layout)
+        return np.concatenate([separating + tangential, separating - tangential])
+
+
+GEOMETRIC = Teeth()
+
+
+def mesh_parts(layout: Layout) -> tuple[Array, Array]:
+    """Tangential and separating motion at the flanks by the DOF, each (meshes, dof), from the geometry.
+
+    A pinion sees the lower gear as the upper one turned half round the pinion's own axis, so its x and y
+    change sign there. Gears turn positively as the pinions drive them, and share one axial direction.
+    """
+    cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
+    tangential, separating = np.zeros((2, len(layout.meshes), layout.dof))
+    angles = layout.angles
+    tilted = {g: DOF_PER_BODY * len(layout.bodies) + 2 * k for k, g in enumerate(layout.tilting)}
+    for row, (i, g) in enumerate(layout.meshes):
+        side = layout.gears[g].sign
+        along = np.array([np.cos(angles[i]), np.sin(angles[i])])
+        pinion, gear = DOF_PER_BODY * i, DOF_PER_BODY * (len(layout.pinions) + g)
+        tangential[row, pinion] = side * cosine
+        tangential[row, gear : gear + 2] = -side * cosine * along
+        tangential[row, [pinion + 3, gear + 3]] = layout.pinion_arm, -layout.gear_arm
+        separating[row, [pinion + 1, gear + 2]] = side * sine, -side * sine
+        if g in tilted:
+            # Tilts about x and y lift the rim at the mesh by its distance from the diameter.
+            separating[row, tilted[g] : tilted[g] + 2] = side * sine * layout.mesh_radius * along
+    return tangential, separating
