@@ -203,7 +203,7 @@ def test_power_in_less_power_out_less_friction_less_damping_is_the_change_of_ene
         on_each = force[:, :, None] * stacked_values(ratios, cycles).reshape(len(cycles), 8, len(PARTS))
         rubbing = np.einsum("kfp,fpd->kd", on_each, np.tile(kept, (2, 1, 1)))
         # The output's torque gives way by the moments that friction takes.
-        torque = np.tile(machine.applied, (len(cycles), 1))
+        torque = np.tile(machine.linear.loads, (len(cycles), 1))
         torque[:, output] -= layout.gear_arm * on_each[:, :, 3:].sum(axis=(1, 2))
         ahead = 1e-6
         stiffer = (system.law.stiffness(cycles + ahead) - system.law.stiffness(cycles - ahead)) / (
