@@ -45,8 +45,8 @@ def test_share_of_starts_on_the_lower_orbit_of_oracle_a(starts):
     _, found = starts
     assert len(found) == 2
     lower = next(one for one in found if one.z[0] > 1.0)
-    assert lower.error == pytest.approx(np.sqrt(lower.share * (1 - lower.share) / 800))
-    assert abs(lower.share - 0.3651) < 3.0 * lower.error
+    assert lower.error == pytest.approx(np.sqrt(lower.fraction * (1 - lower.fraction) / 800))
+    assert abs(lower.fraction - 0.3651) < 3.0 * lower.error
 
 
 def test_every_orbit_that_starts_find_lies_on_the_one_branch(starts):
