@@ -253,13 +253,13 @@ def test_undefined_instants_win_no_comparison():
     assert not CRITERIA["steeper"](tables, point="gap", **asked).holds
     assert not CRITERIA["steeper"](tables, point="half", **asked).holds
     assert not CRITERIA["flat_region"](tables, point="half", **asked).holds
-    assert CRITERIA["lowest_at"](tables, point="steep", **asked).holds
-    assert not CRITERIA["lowest_at"](tables, point="gap", **asked).holds
+    assert CRITERIA["minimum_at"](tables, point="steep", **asked).holds
+    assert not CRITERIA["minimum_at"](tables, point="gap", **asked).holds
 
 
 def test_nothing_is_lowest_where_nothing_is_defined():
     tables = sharing(a=np.nan, b=np.nan)
-    assert not CRITERIA["lowest_at"](tables, study="s", kind="idlers", point="a").holds
+    assert not CRITERIA["minimum_at"](tables, study="s", kind="idlers", point="a").holds
     assert not CRITERIA["differ"](tables, study="s", kind="idlers", column="mean", by=0.1).holds
 
 
@@ -285,8 +285,8 @@ def sharing(undefined=0.0, **means):
 def test_orders_and_extremes_of_a_study_follow_its_means():
     tables = sharing(soft=1.6, mid=1.9, stiff=1.8)
     asked = {"study": "s", "kind": "idlers"}
-    assert CRITERIA["lowest_at"](tables, point="soft", **asked).holds
-    assert not CRITERIA["lowest_at"](tables, point="mid", **asked).holds
+    assert CRITERIA["minimum_at"](tables, point="soft", **asked).holds
+    assert not CRITERIA["minimum_at"](tables, point="mid", **asked).holds
     assert CRITERIA["orders"](tables, points=["soft", "stiff", "mid"], **asked).holds
     assert not CRITERIA["orders"](tables, points=["soft", "mid", "stiff"], **asked).holds
     assert CRITERIA["differ"](tables, column="mean", by=0.1, **asked).holds
