@@ -153,7 +153,7 @@ def test_stored_answers_are_small_the_same_bytes_each_time_and_compare_equal_to_
 ):
     """Tables too large to be stored counted as added, so that no stored answer was equal to its source."""
     sizes = sorted((nominal / name).stat().st_size for name in answer_tables(nominal))
-    monkeypatch.setattr(answers, "MOST_BYTES", sizes[-2])
+    monkeypatch.setattr(answers, "MAX_BYTES", sizes[-2])
     for name in ("a.zip", "b.zip"):
         answers.store(nominal, tmp_path / name)
     assert (tmp_path / "a.zip").read_bytes() == (tmp_path / "b.zip").read_bytes()

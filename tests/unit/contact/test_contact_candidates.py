@@ -57,7 +57,7 @@ def test_contact_sought_in_a_strip_is_that_among_all_candidates(model_of, errors
     model = misaligned(model_of(), **errors)
     positions, torques = [0.05, 0.4, 0.7], [50.0, 300.0, 1000.0]
     narrow = loaded_contact(model, positions, torques)
-    monkeypatch.setattr(strip, "LOWEST", np.inf)
+    monkeypatch.setattr(strip, "GAP", np.inf)
     monkeypatch.setattr(strip, "BAND", np.inf)
     for one, other in zip(narrow, loaded_contact(model, positions, torques), strict=True):
         assert one.candidates == other.candidates
