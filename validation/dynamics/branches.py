@@ -94,7 +94,7 @@ def accuracy(machine: Machine, speed_rpm: float, step: Callable[[], None] = lamb
         expected = exact or _found(case, *_followed(case, REFERENCE)[:2])
         for tolerance in TOLERANCES:
             period_map, branch, seconds = _followed(case, tolerance)
-            found = _found(case, period_map, branch)
+            answers = _found(case, period_map, branch)
             rows.append(
                 {
                     "case": case.name,
@@ -102,7 +102,7 @@ def accuracy(machine: Machine, speed_rpm: float, step: Callable[[], None] = lamb
                     "points": len(branch.points),
                     "seconds": seconds,
                     "special_points": len(branch.specials),
-                    **_errors(found, expected),
+                    **_errors(answers, expected),
                 }
             )
             step()
