@@ -27,6 +27,9 @@ LTCA_FINITE = tuple(
 """Columns whose numbers are always finite: teeth that interfere have no average stiffness, and edges may
 carry all load, where pressure has no limit."""
 
+FILLET_CONTACT = 1e-3
+"""Fraction of the torque in fillets, in column `fillet_share`, from which on it is reported and judged."""
+
 PRESSURE_ARRAYS = {
     "torque_n_m": (None,),
     "position": (None,),

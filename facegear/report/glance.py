@@ -6,6 +6,7 @@ from typing import Any
 
 import pandas as pd
 
+from facegear.contact.columns import FILLET_CONTACT
 from facegear.contact.hertz import DENTED
 from facegear.report.machine import BALANCED, key_numbers, rated
 from facegear.report.page import Chapter, Picture, Table, scientific
@@ -13,8 +14,6 @@ from facegear.report.page import Chapter, Picture, Table, scientific
 POSITIONS_MATTER = 0.05
 """Relative change of a peak-to-peak value with half of the positions that is worth a warning."""
 BACKLASH_DIFFERS_UM = 1.0
-FILLETS_MATTER = 0.005
-"""Share of the torque in fillets that is worth a warning."""
 LISTED = 6
 """Names that a warning lists at most."""
 
@@ -207,7 +206,7 @@ def _contact_warnings(
     if "by_torque" not in tables:
         return
     by_torque = tables["by_torque"]
-    for row in by_torque[by_torque["fillet_share"] > FILLETS_MATTER].itertuples():
+    for row in by_torque[by_torque["fillet_share"] >= FILLET_CONTACT].itertuples():
         yield (
             f"contact at {row.torque_n_m:g} N m",
             f"tips press into fillets and carry up to {100 * row.fillet_share:.1f} % of the torque there, "

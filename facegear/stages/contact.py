@@ -9,11 +9,9 @@ from facegear.arrays import Arrays
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.tooth_pair import ToothPair, pair
 from facegear.contact.analysis import ContactAnalysis, contact_analysis
+from facegear.contact.columns import FILLET_CONTACT
 from facegear.contact.gear_flank import from_arrays
 from facegear.stages.outcome import Outcome
-
-WORTH_A_WORD = 0.005
-"""Share of the torque in fillets that the stage's line names."""
 
 
 def contact(
@@ -49,13 +47,13 @@ def contents(found: ContactAnalysis) -> dict[str, Any]:
 
 
 def _mean_stiffness(table: pd.DataFrame) -> str:
-    """The mean, or why there is none, and what fillets carry where that is worth a word."""
+    """The mean, or why there is none, and what fillets carry from FILLET_CONTACT on."""
     mean, row = table["k_average_n_per_m"].mean(skipna=False), table.loc[table["fillet_share"].idxmax()]
     told = f"mean stiffness {mean:.4g} N/m"
     if np.isnan(mean):
         depth = table["interference_um"].max()
         told = f"no mean stiffness as the teeth interfere, by {depth:.3g} um along the line of action"
-    if row["fillet_share"] < WORTH_A_WORD:
+    if row["fillet_share"] < FILLET_CONTACT:
         return told
-    carried = f"{100 * row['fillet_share']:.0f} % of the torque at {row['torque_n_m']:g} N m"
+    carried = f"{100 * row['fillet_share']:.2g} % of the torque at {row['torque_n_m']:g} N m"
     return f"{told}, fillets carry up to {carried}, kept out of pressure and root stress"

@@ -7,6 +7,7 @@ from math import pi, sqrt, tan
 import numpy as np
 
 from facegear.arrays import Array
+from facegear.contact.columns import FILLET_CONTACT
 from facegear.errors import FacegearError
 from facegear.geometry.design import PairDesign
 from facegear.strength.contact_pressure import ContactPressure
@@ -31,8 +32,6 @@ Stress = Callable[[float], float]
 HALVINGS = 60
 EDGE = 1e3
 """Line load (N/m) on tip edges that counts as none."""
-FILLET = 1e-3
-"""Share of the torque in fillets that counts as none."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +104,7 @@ class Rated:
         reasons = []
         if self.failure == "pitting" and self.edge_load >= EDGE:
             reasons.append(f"tip edges carry {1e-3 * self.edge_load:.0f} N/mm, where pressure has no limit")
-        if self.fillet_share >= FILLET:
+        if self.fillet_share >= FILLET_CONTACT:
             carried = f"fillets carry up to {100 * self.fillet_share:.2g} % of the torque"
             reasons.append(f"{carried}, kept out of pressure and root stress")
         return tuple(reasons)

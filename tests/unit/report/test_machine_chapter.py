@@ -95,6 +95,9 @@ def test_the_first_screen_warns_of_what_the_results_hide(example):
     told = [" ".join(row) for row in warnings(values, found | {"by_torque": pressed}, pair)]
     words = "contact at 600 N m tips press into fillets and carry up to 15.2 % of the torque there"
     assert any(words in one for one in told)
+    light = pd.DataFrame(contact).assign(fillet_share=[0.0009, 0.002])
+    told = [row for row in warnings(values, found | {"by_torque": light}, pair) if "into fillets" in row[1]]
+    assert [about for about, _ in told] == ["contact at 600 N m"], "as the rating judges it"
     known = dict(verdicts(found | {"by_torque": pressed}, pair))
     assert known["contact at 600 N m"].startswith("no mean stiffness, ")
     most = tables["meshes"]["pinion_torque_n_m"].abs().max()
