@@ -6,7 +6,7 @@ from math import pi, radians
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse, require_all
-from facegear.errors import ConfigError, GeometryError, NotConverged
+from facegear.errors import ConfigError, NotConverged
 from facegear.geometry.design import (
     AssemblyErrors,
     FaceGearGeometry,
@@ -118,8 +118,6 @@ class ToothPair(Section):
             refuse(missing[0], None, "given: pinion, face_gear and shaper go together")
         try:
             check(pair_design(self))
-        except GeometryError as error:
-            refuse(error.quantity, error.value, error.allowed)
         except NotConverged as error:
             refuse("face_gear", self.face_gear_teeth, f"other teeth or radii: {error}")
 

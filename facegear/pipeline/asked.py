@@ -13,11 +13,10 @@ from facegear.load_sharing.quantity_names import of_contact
 from facegear.pipeline.stage import Case, Wildcards
 
 BODIES = ("pinion", "face_gear")
-PAIR_SECTIONS = ("tooth_pair", "mesh", "contact", "mesh_stiffness")
-"""What a contact analysis of machines among many takes."""
-
 CONTACT = ("tooth_pair", "mesh", "contact")
-"""What the contact analysis itself takes."""
+"""What a contact analysis takes."""
+PAIR_SECTIONS = (*CONTACT, "mesh_stiffness")
+"""What a contact analysis of machines among many takes."""
 
 LOADING = (
     *("torques_n_m", "positions_per_pitch"),

@@ -34,7 +34,7 @@ def mesh(tooth_pair: ToothPair, mesh: Mesh) -> Outcome:
 
 def meshes(tooth_pair: ToothPair, mesh: Mesh) -> dict[str, SectorMesh]:
     """Sectors of `pinion` and `face_gear` with the teeth that the config exports."""
-    design, section = pair(tooth_pair).design, mesh
-    sizes = mesh_sizes(section, design.module)
+    design = pair(tooth_pair).design
+    sizes = mesh_sizes(mesh, design.module)
     teeth = {"pinion": pinion_tooth(design, sizes), "face_gear": gear_tooth(design, sizes)}
-    return {body: sector(tooth, min(section.exported_teeth, tooth.teeth)) for body, tooth in teeth.items()}
+    return {body: sector(tooth, min(mesh.exported_teeth, tooth.teeth)) for body, tooth in teeth.items()}
