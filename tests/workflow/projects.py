@@ -9,8 +9,6 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from dry_runs import dry_run
-
 from facegear.pipeline.table import STAGES
 from facegear.provenance.fingerprint import fingerprint, remember, stage_fingerprint
 
@@ -51,11 +49,8 @@ class Project:
         ]
 
     def run(self, *arguments: str, check: bool = True) -> subprocess.CompletedProcess[str]:
-        command = self.command(*arguments)
-        done = (
-            dry_run(command[3:], environment())
-            if "-n" in arguments
-            else subprocess.run(command, capture_output=True, text=True, env=environment(), check=False)
+        done = subprocess.run(
+            self.command(*arguments), capture_output=True, text=True, env=environment(), check=False
         )
         if check:
             assert done.returncode == 0, f"{arguments}\n{done.stdout[-3000:]}\n{done.stderr[-6000:]}"
