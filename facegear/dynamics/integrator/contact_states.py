@@ -28,6 +28,12 @@ def flank_of(state: int) -> int:
 
 
 @inlined
+def edge_margin(packed: Packed, rate: float) -> float:
+    """How far a deflection with this rate may be from an edge and still counts as standing on it."""
+    return EDGE * packed.scale + BRIEFEST * abs(rate)
+
+
+@inlined
 def _set_state(packed: Packed, work: Work, m: int, state: int) -> None:
     """Give mesh m a contact state and what follows from it; row 0 of its deflection counts from the level at
     which the piece of the law begins.
@@ -73,7 +79,7 @@ def find_states(packed: Packed, work: Work) -> None:
         work.edge[m] = 0.0
         lower, upper = packed.lower[m], packed.upper[m]
         deflection, rate = work.deflection[0, m], work.deflection[1, m]
-        margin = EDGE * packed.scale + BRIEFEST * abs(rate)
+        margin = edge_margin(packed, rate)
         state, level = OPEN, 0
         if lower >= upper:
             state = DRIVE

@@ -8,7 +8,7 @@ unchanged; it jumps only where flanks meet, by c x'.
 """
 
 from facegear.dynamics.integrator.compiled import Packed
-from facegear.dynamics.integrator.contact_states import SHORTEST
+from facegear.dynamics.integrator.contact_states import SHORTEST, edge_margin
 from facegear.dynamics.integrator.kernel import inlined
 from facegear.dynamics.integrator.roots import first_root, root_after
 from facegear.dynamics.integrator.work import Work
@@ -28,9 +28,18 @@ def find_parting(packed: Packed, work: Work) -> None:
             continue
         spring = work.side[m] * force_of(packed.law, work.law, work.state, work.deflection, 0, m)
         damper = work.side[m] * packed.mesh_damping[m] * work.deflection[1, m]
-        if abs(spring + damper) <= NO_FORCE * (abs(spring) + abs(damper)):
+        # Overlap, and with it the spring's force, is known to the rounding of the deflection.
+        unknown = edge_margin(packed, work.deflection[1, m]) / _overlap(packed, work, m)
+        if abs(spring + damper) <= NO_FORCE * (abs(spring) + abs(damper)) + unknown * abs(spring):
             work.at_parting[m] = 1
         _act(packed, work, m, spring + damper > 0.0)
+
+
+@inlined
+def _overlap(packed: Packed, work: Work, m: int) -> float:
+    """How far the flanks of contact m overlap."""
+    bound = packed.upper[m] if work.side[m] > 0.0 else packed.lower[m]
+    return abs(work.deflection[0, m] + work.edge[m] - bound)
 
 
 @inlined

@@ -20,13 +20,13 @@ FINE = Settings(tolerance=1e-14)
 STARTS = ((0.5, 0.4), (-1.3, 0.2), (1.4, -0.6))
 
 
-def oscillator(push_only):
+def oscillator(push_only, damping=DAMPING):
     """x'' + .02 x' + F = .1 + .6 cos .7 t, backlash of +-1, k = 1 + .3 cos .7 t and a damper in contact."""
     return one_degree(
         SLOW,
         stiffness=((0.0, 0.0), (1.0, 0.3)),
         load=((0.0, 0.0), (0.1, 0.6)),
-        contact_damping=DAMPING,
+        contact_damping=damping,
         push_only=push_only,
     )
 
@@ -72,6 +72,15 @@ def test_a_contact_that_only_pushes_moves_as_scipy_says_through_cutting_parting_
     assert kinds == {0, 1} and pull < 1e-9
     run = record(oscillator(True), SPEED, State(*(np.array([value]) for value in start)), 3, FINE)
     assert run.at(np.array([3 * TAU]))[0][0, 0] == pytest.approx(state[0], abs=1e-8)
+
+
+@pytest.mark.parametrize("damping", 10.0 ** -np.arange(5.0, 17.0))
+def test_flanks_part_with_a_damper_however_weak_as_they_do_without(damping):
+    """Its cut and the edge lie so close together that rounding moves the zero of the force between them."""
+    start = np.array([[1.4], [-0.6 / SPEED]])
+    damped, undamped = (Integrator(oscillator(True, of), SPEED, 1e-14).run(start, 3) for of in (damping, 0.0))
+    assert damped.steps < 2 * undamped.steps
+    np.testing.assert_allclose(damped.state, undamped.state, rtol=0, atol=100.0 * damping + 1e-11)
 
 
 def test_the_largest_pull_of_a_damper_is_what_scipy_meets():
