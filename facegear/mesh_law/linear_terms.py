@@ -48,6 +48,25 @@ def product_terms(first: Array, second: Array, i: int, c: int) -> terms.Lanes:
     return total
 
 
+@inlined
+def product_of(first: Array, second: Array, i: int, m: int) -> float:
+    """Coefficient i of the product of two series (rows, width) of contact m alone."""
+    total = 0.0
+    for j in range(i + 1):
+        total += first[j, m] * second[i - j, m]
+    return total
+
+
+@inlined
+def values_ahead(series: Array, order: int, step: terms.Lanes, c: int) -> terms.Lanes:
+    """Values of series (rows, width) at a step ahead, of the contacts from number c on."""
+    width = series.shape[1]
+    total = splat(0.0)
+    for i in range(order, -1, -1):
+        total = multiply_add(total, step, load(series, i * width + c))
+    return total
+
+
 @terms.phase_terms.of(LinearTerms)
 def phase_terms(
     law: LinearTerms,
@@ -94,10 +113,7 @@ def force_of(
     law: LinearTerms, series: LinearSeries, state: Integers, deflection: Array, i: int, m: int
 ) -> float:
     """k times the deflection."""
-    total = 0.0
-    for j in range(i + 1):
-        total += series.slope[j, m] * deflection[i - j, m]
-    return total
+    return product_of(series.slope, deflection, i, m)
 
 
 @terms.slope_terms.of(LinearTerms)
@@ -118,11 +134,7 @@ def force_ahead(
     law: LinearTerms, series: LinearSeries, deflection: terms.Lanes, order: int, step: terms.Lanes, c: int
 ) -> terms.Lanes:
     """k ahead times the deflection."""
-    width = series.slope.shape[1]
-    stiffness = splat(0.0)
-    for i in range(order, -1, -1):
-        stiffness = multiply_add(stiffness, step, load(series.slope, i * width + c))
-    return multiply(stiffness, deflection)
+    return multiply(values_ahead(series.slope, order, step, c), deflection)
 
 
 @terms.piece_of.of(LinearTerms)

@@ -9,7 +9,7 @@ from facegear.machine_code.compiler import FAST, for_callers
 from facegear.machine_code.fourier import FourierScratch, fourier_terms
 from facegear.machine_code.lanes import add, load, multiply, multiply_add, splat, store
 from facegear.mesh_law import terms
-from facegear.mesh_law.linear_terms import product_terms
+from facegear.mesh_law.linear_terms import product_of, product_terms, values_ahead
 
 inlined = for_callers(**FAST)
 
@@ -122,14 +122,6 @@ def force_terms(
     return add(total, product_terms(series.third, series.cube, i, c))
 
 
-@inlined
-def _product(first: Array, two: Array, i: int, m: int) -> float:
-    total = 0.0
-    for j in range(i + 1):
-        total += first[j, m] * two[i - j, m]
-    return total
-
-
 @terms.force_of.of(LoadDependentTerms)
 def force_of(
     law: LoadDependentTerms,
@@ -140,11 +132,11 @@ def force_of(
     m: int,
 ) -> float:
     """The cubic of the deflection."""
-    series.square[i, m] = _product(deflection, deflection, i, m)
-    series.cube[i, m] = _product(series.square, deflection, i, m)
-    total = series.zeroth[i, m] + _product(series.first, deflection, i, m)
-    total += _product(series.second, series.square, i, m)
-    return total + _product(series.third, series.cube, i, m)
+    series.square[i, m] = product_of(deflection, deflection, i, m)
+    series.cube[i, m] = product_of(series.square, deflection, i, m)
+    total = series.zeroth[i, m] + product_of(series.first, deflection, i, m)
+    total += product_of(series.second, series.square, i, m)
+    return total + product_of(series.third, series.cube, i, m)
 
 
 @terms.slope_terms.of(LoadDependentTerms)
@@ -172,16 +164,6 @@ def is_curved(law: LoadDependentTerms) -> bool:
     return True
 
 
-@inlined
-def _ahead(table: Array, order: int, step: terms.Lanes, c: int) -> terms.Lanes:
-    """Values of series at a step ahead."""
-    width = table.shape[1]
-    total = splat(0.0)
-    for i in range(order, -1, -1):
-        total = multiply_add(total, step, load(table, i * width + c))
-    return total
-
-
 @terms.force_ahead.of(LoadDependentTerms)
 def force_ahead(
     law: LoadDependentTerms,
@@ -192,10 +174,10 @@ def force_ahead(
     c: int,
 ) -> terms.Lanes:
     """The cubic of the deflection, with its coefficients ahead."""
-    total = multiply(_ahead(series.third, order, step, c), deflection)
-    total = multiply(add(total, _ahead(series.second, order, step, c)), deflection)
-    total = multiply(add(total, _ahead(series.first, order, step, c)), deflection)
-    return add(total, _ahead(series.zeroth, order, step, c))
+    total = multiply(values_ahead(series.third, order, step, c), deflection)
+    total = multiply(add(total, values_ahead(series.second, order, step, c)), deflection)
+    total = multiply(add(total, values_ahead(series.first, order, step, c)), deflection)
+    return add(total, values_ahead(series.zeroth, order, step, c))
 
 
 @terms.piece_of.of(LoadDependentTerms)

@@ -64,7 +64,6 @@ def test_no_slope_exceeds_the_bound_and_the_force_of_a_power_law_never_falls(cyc
     slope = LAW.slope(np.array([cycle]), np.full((1, 2), amount))[0]
     assert (slope <= LAW.steepest * (1.0 + 1e-12)).all()
     assert (slope >= 0.0).all()
-    assert LAW.tables[0].min_slope >= 0.0
 
 
 def test_mean_and_fixed_phase_are_those_of_the_forces():
