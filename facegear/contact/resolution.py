@@ -104,7 +104,7 @@ def along_the_ellipse(
     """The plan with as many cuts along the face as the contact ellipse of a crowned pinion asks for.
 
     At the smallest torque its half-length holds PLANES planes of nodes. Raises InvalidInput where that takes
-    more than MOST_CUTS cuts.
+    more than MAX_CUTS cuts.
     """
     torque = min(plan.torques)
     half = ellipse_half_length(design, materials, torque)

@@ -56,7 +56,7 @@ def follow(
 ) -> Followed:
     """Follow a machine with geometric meshes through `count` mesh cycles from cycle `first` on.
 
-    The lead is doubled until two starts agree, up to MOST_LEAD cycles. Raises NotConverged if a step fails.
+    The lead is doubled until two starts agree, up to MAX_LEAD cycles. Raises NotConverged if a step fails.
     """
     prepare(model.system.ring_play.size > 0, model.system.rubbing is not None)
     settings = settings or Settings()

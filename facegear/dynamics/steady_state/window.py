@@ -10,7 +10,7 @@ from facegear.dynamics.steady_state.averages import BATCHES, Averages, averages
 
 MAX_SAMPLES = 4096
 MAX_IN_ALL = 65_536
-"""Samples of a window of many periods; a single period may have MOST_SAMPLES."""
+"""Samples of a window of many periods; a single period may have MAX_SAMPLES."""
 FINENESS = 3.0
 """Samples per period of the fastest motion that a system can answer with."""
 
