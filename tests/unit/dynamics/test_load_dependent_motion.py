@@ -4,37 +4,16 @@ The exact answers are those of the formulas that the tables are made from: close
 digits, forced orbits by Taylor series of high order, confirmed by DOP853 with located events.
 """
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from force_tables import power_table, two_pairs
-from oscillators import one_degree
+from law_oscillators import closing_error, law_period_map, orbit, oscillator
 
 from facegear.dynamics.branches.continuation import ContinuationSettings, branch_at
-from facegear.dynamics.branches.family import Family
-from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import at_parameter
 from facegear.dynamics.branches.special import Kind
 from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.motion import State
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.mesh_law.load_dependent import load_dependent_law
-
-
-def oscillator(table, damping=0.0, amplitude=0.0, mean=1.0, lower=-np.inf, upper=0.0):
-    """x'' + 2 z x' + F(phase, x) = mean + Fa cos W t."""
-    load = ((0.0, 0.0), (mean, amplitude))
-    system = one_degree(2.0 * damping, load=load, lower=lower, upper=upper)
-    return replace(system, law=load_dependent_law([table]))
-
-
-def closing_error(table, start, period, least):
-    """How far a free motion from rest at `start` is from there after a period, or its lowest point is off."""
-    integrator = Integrator(oscillator(table), 2.0 * np.pi / period, 1e-14)
-    state = np.array([[start], [0.0]])
-    run = integrator.run(state, 1, batches=1)
-    return max(np.abs(run.state - state).max(), abs(run.sums.lowest[0] - least))
 
 
 @pytest.mark.parametrize(
@@ -48,7 +27,7 @@ def closing_error(table, start, period, least):
 def test_free_motions_converge_to_the_closed_form_with_the_fourth_power_of_the_number_of_levels(
     start, period, least
 ):
-    errors = np.array([closing_error(power_table(n), start, period, least) for n in (100, 200, 400, 800)])
+    errors = np.array([closing_error(power_table_law(n), start, period, least) for n in (100, 200, 400, 800)])
     assert errors[-1] < 2e-10
     assert (errors[:-1] > 6.0 * errors[1:]).all()
     assert errors[0] > 500.0 * errors[-1]
@@ -56,7 +35,7 @@ def test_free_motions_converge_to_the_closed_form_with_the_fourth_power_of_the_n
 
 def test_a_body_between_two_flanks_swings_with_the_period_of_the_closed_form():
     """Law x^1.5 on both sides of a gap of +-0.3, speed 0.8 in it."""
-    system = oscillator(power_table(800), mean=0.0, lower=-0.3, upper=0.3)
+    system = oscillator(power_table_law(800), mean=0.0, lower=-0.3, upper=0.3)
     state = np.array([[0.0], [0.8 * 8.2298730550201 / (2.0 * np.pi)]])
     run = Integrator(system, 2.0 * np.pi / 8.2298730550201, 1e-14).run(state, 1, batches=1)
     np.testing.assert_allclose(run.state, state, rtol=0, atol=1e-9)
@@ -68,7 +47,7 @@ def test_a_body_between_two_flanks_swings_with_the_period_of_the_closed_form():
 
 def test_the_motion_keeps_its_order_where_it_passes_levels_of_the_table():
     """Levels that were not located would leave jumps in the motion's fourth derivative inside the steps."""
-    system, state = oscillator(power_table(12, 0.2, 0.05)), np.array([[2.0], [0.0]])
+    system, state = oscillator(power_table_law(12, 0.2, 0.05)), np.array([[2.0], [0.0]])
     exact = Integrator(system, 1.1, 1e-15).run(state, 2).state
     rows = []
     for tolerance in 10.0 ** -np.arange(6.0, 11.0):
@@ -78,34 +57,32 @@ def test_the_motion_keeps_its_order_where_it_passes_levels_of_the_table():
     assert (errors < 50.0 * tolerances).all()
 
 
-def period_map(table, damping, amplitude=0.0, tolerance=1e-12, mean=1.0):
-    system = oscillator(table, damping, amplitude, mean)
-    return PeriodMap(Family("W", lambda speed: (system, speed)), 1, tolerance)
+def power_table_law(*args, **kwargs):
+    return load_dependent_law([power_table(*args, **kwargs)])
 
 
-def orbit(flow_, speed, place, rate):
-    u = float(np.log(speed))
-    return at_parameter(flow_, flow_.weighted(State(np.array([place]), np.array([rate])), u), u)
+def two_pairs_law(*args):
+    return load_dependent_law([two_pairs(*args)])
 
 
-def off(flow_, found, place, rate):
-    state = flow_.state(found.z, found.u)
+def off(period_map, found, place, rate):
+    state = period_map.state(found.z, found.u)
     return max(abs(state.displacement[0] - place), abs(state.velocity[0] - rate))
 
 
 def test_an_unstable_orbit_on_a_table_has_place_and_multipliers_of_the_power_law():
     """Damping .02, load 1 + .1 cos W t, W 1.1; contact is lost."""
-    flow_ = period_map(power_table(1000), 0.02, 0.1)
-    found = orbit(flow_, 1.1, 1.79379722656, 0.68475098448)
-    assert off(flow_, found, 1.79379722656, 0.68475098448) < 1e-9
+    period_map = law_period_map(power_table_law(1000), 0.02, 0.1)
+    found = orbit(period_map, 1.1, 1.79379722656, 0.68475098448)
+    assert off(period_map, found, 1.79379722656, 0.68475098448) < 1e-9
     np.testing.assert_allclose(np.sort(found.multipliers.real), [0.51611544, 1.54179196], rtol=0, atol=2e-8)
     assert found.multipliers.prod().real == pytest.approx(np.exp(-0.04 * 2 * np.pi / 1.1), rel=1e-9)
 
 
 def test_branches_on_a_table_fold_where_the_power_law_does():
     """Damping .02, load 1 + .1 cos W t: the upper fold keeps contact, the lower one has lost it."""
-    flow_ = period_map(power_table(300), 0.02, 0.1, 1e-11)
-    branch = branch_at(flow_, np.array([1.2, 0.0]), 1.0, ContinuationSettings(0.8, 1.2))
+    period_map = law_period_map(power_table_law(300), 0.02, 0.1, 1e-11)
+    branch = branch_at(period_map, np.array([1.2, 0.0]), 1.0, ContinuationSettings(0.8, 1.2))
     folds = sorted(special.point.value for special in branch.of(Kind.FOLD))
     assert folds == pytest.approx([0.81612741138, 1.13889845103], abs=1e-6)
 
@@ -113,7 +90,7 @@ def test_branches_on_a_table_fold_where_the_power_law_does():
 def test_a_parametric_table_doubles_its_period_where_the_power_law_does():
     """Damping .03, depth .25, no other load."""
     for speed in (2.28318159363, 2.60138748211):
-        found = orbit(period_map(power_table(300, 0.25), 0.03), speed, 1.0, 0.0)
+        found = orbit(law_period_map(power_table_law(300, 0.25), 0.03), speed, 1.0, 0.0)
         assert found.multipliers.real.min() == pytest.approx(-1.0, abs=1e-6)
 
 
@@ -133,16 +110,16 @@ def test_two_pairs_that_take_over_from_each_other_are_met_as_well_as_their_corne
     """
     found = []
     for levels, orders in ((12, 12), (192, 48)):
-        flow_ = period_map(two_pairs(levels, orders, exponent), 0.03, tolerance=1e-11, mean=0.3)
-        point = orbit(flow_, speed, place, rate)
-        found.append((off(flow_, point, place, rate), np.abs(point.multipliers - multiplier).min()))
+        period_map = law_period_map(two_pairs_law(levels, orders, exponent), 0.03, tolerance=1e-11, mean=0.3)
+        point = orbit(period_map, speed, place, rate)
+        found.append((off(period_map, point, place, rate), np.abs(point.multipliers - multiplier).min()))
     assert (np.array(found[1]) < errors).all()
     assert (np.array(found[0]) > 10.0 * np.array(found[1])).all()
 
 
 def test_tangents_of_a_table_are_differences_of_its_motions():
     """Liouville's theorem alone is blind to the slopes."""
-    integrator = Integrator(oscillator(power_table(8, 0.3, 0.1), 0.02, 0.1), 1.1, 1e-14)
+    integrator = Integrator(oscillator(power_table_law(8, 0.3, 0.1), 0.02, 0.1), 1.1, 1e-14)
     start = np.array([[2.2], [0.1]])
     matrix, run = monodromy(integrator, start, 1)
     assert 0.0 < run.fractions[0, 0] < 1.0
@@ -156,9 +133,8 @@ def test_tangents_of_a_table_are_differences_of_its_motions():
 
 def test_a_free_motion_keeps_its_energy_through_all_levels():
     """The force of a table at a fixed phase has a potential: its cubics, integrated."""
-    table = power_table(12, first=0.05)
-    law = load_dependent_law([table])
-    integrator = Integrator(oscillator(table), 1.0, 1e-14)
+    law = power_table_law(12, first=0.05)
+    integrator = Integrator(oscillator(law), 1.0, 1e-14)
 
     def energy(state):
         x, w = np.linspace(0.0, max(state[0, 0], 0.0), 200_001), 1.0

@@ -8,17 +8,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from law_oscillators import closing_error, law_period_map, orbit, oscillator
 from lumped_machines import make_layout, make_machine
-from oscillators import one_degree
 from power_laws import PowerLaw
 
 from facegear.dynamics.branches.continuation import ContinuationSettings, branch_at
-from facegear.dynamics.branches.family import Family
-from facegear.dynamics.branches.period_map import PeriodMap
-from facegear.dynamics.branches.points import at_parameter
 from facegear.dynamics.branches.special import Kind
 from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.motion import Settings, State
+from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import simulate
 from facegear.transmission.layout import Role, Side
@@ -29,20 +26,6 @@ from facegear.transmission.statics import static_equilibrium
 from facegear.transmission.teeth import GEOMETRIC
 
 C, N = 2.4e11, 1.5
-
-
-def oscillator(law, damping=0.0, amplitude=0.0):
-    """x'' + 2 z x' + F(phase, x) = 1 + Fa cos W t, F = 0 for x < 0."""
-    system = one_degree(2.0 * damping, load=((0.0, 0.0), (1.0, amplitude)), lower=-np.inf, upper=0.0)
-    return replace(system, law=law)
-
-
-def closing_error(law, start, period, least):
-    """How far a free motion from rest at `start` is from there after a period, and its lowest point off."""
-    integrator = Integrator(oscillator(law), 2.0 * np.pi / period, 1e-14)
-    state = np.array([[start], [0.0]])
-    run = integrator.run(state, 1, batches=1)
-    return max(np.abs(run.state - state).max(), abs(run.sums.lowest[0] - least))
 
 
 @pytest.mark.parametrize(
@@ -72,22 +55,12 @@ def test_the_motion_keeps_its_order_where_it_passes_the_level_of_a_law():
     assert np.polyfit(length, error, 1)[0] > 7.5
 
 
-def period_map(law, damping, amplitude=0.0, tolerance=1e-12):
-    system = oscillator(law, damping, amplitude)
-    return PeriodMap(Family("W", lambda speed: (system, speed)), 1, tolerance)
-
-
-def orbit(flow_, speed, place, rate):
-    u = float(np.log(speed))
-    return at_parameter(flow_, flow_.weighted(State(np.array([place]), np.array([rate])), u), u)
-
-
 def test_an_unstable_orbit_that_loses_contact_has_the_multipliers_of_the_power_law():
     """Damping .02, load 1 + .1 cos W t, W 1.1; the place is the reference's as well."""
-    flow_ = period_map(PowerLaw(level=1e-4), 0.02, 0.1)
-    found = orbit(flow_, 1.1, 1.79379722656, 0.68475098448)
+    period_map = law_period_map(PowerLaw(level=1e-4), 0.02, 0.1)
+    found = orbit(period_map, 1.1, 1.79379722656, 0.68475098448)
     np.testing.assert_allclose(np.sort(found.multipliers.real), [0.51611544, 1.54179196], rtol=0, atol=8e-9)
-    place = flow_.state(found.z, found.u)
+    place = period_map.state(found.z, found.u)
     assert place.displacement[0] == pytest.approx(1.79379722656, abs=2e-11)
     assert place.velocity[0] == pytest.approx(0.68475098448, abs=2e-11)
     assert found.multipliers.prod().real == pytest.approx(np.exp(-0.04 * 2 * np.pi / 1.1), rel=1e-9)
@@ -96,14 +69,17 @@ def test_an_unstable_orbit_that_loses_contact_has_the_multipliers_of_the_power_l
 def test_a_parametric_power_law_doubles_its_period_where_the_taylor_series_say():
     """Damping .03, depth .25, no other load."""
     for speed in (2.28318159363, 2.60138748211):
-        found = orbit(period_map(PowerLaw(depth=0.25), 0.03), speed, 1.0, 0.0)
+        found = orbit(law_period_map(PowerLaw(depth=0.25), 0.03), speed, 1.0, 0.0)
         assert found.multipliers.real.min() == pytest.approx(-1.0, abs=1e-8)
 
 
 def test_a_branch_on_the_power_law_folds_while_it_keeps_contact():
     """Damping .02, load 1 + .1 cos W t: no linear law has a fold without a loss of contact."""
     branch = branch_at(
-        period_map(PowerLaw(), 0.02, 0.1, 1e-11), np.array([1.2, 0.0]), 1.0, ContinuationSettings(0.95, 1.2)
+        law_period_map(PowerLaw(), 0.02, 0.1, 1e-11),
+        np.array([1.2, 0.0]),
+        1.0,
+        ContinuationSettings(0.95, 1.2),
     )
     folds = [special.point for special in branch.of(Kind.FOLD)]
     assert [point.value for point in folds] == pytest.approx([1.13889845103], rel=1e-9)
