@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lumped_machines import make_layout, make_machine
-from scipy.integrate import solve_ivp
+from scipy_motions import gap_to_scipy, kicked
 
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.trajectory import record
 from facegear.dynamics.motion import Settings, State
 from facegear.dynamics.steady_state.orbits import monodromy
-from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
+from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.harmonics.series import stacked_values
 from facegear.load_sharing.hunting import hunting_cycle
 from facegear.transmission.imperfections import perfect
@@ -28,13 +28,6 @@ def machine_with(play, places=TWO, sides=tuple(Side), torque=900.0, **options):
     errors = options.pop("errors", {})
     flaws = replace(perfect(layout), clearance=np.full(len(places), play), **errors)
     return make_machine(layout, torque, 0.0, error=8e-6, imperfections=flaws, **options)
-
-
-def kicked(model, size=0.03):
-    start = static_start(model)
-    random = np.random.default_rng(3)
-    reach = np.abs(model.reduced.mesh_jacobian).max()
-    return replace(start, velocity=size / reach * random.normal(size=start.velocity.size))
 
 
 def slope(model, omega):
@@ -77,19 +70,7 @@ def test_a_bearing_with_play_moves_as_scipy_says_through_touching_and_leaving(pl
     rim = run.states[:, model.system.contacts + 2 :: 3]
     assert (rim == 0).any() and (rim == 1).any()
     phases = np.linspace(0.0, 2.0 * TAU, 21)
-    initial = np.concatenate([start.displacement, start.velocity])
-    scale = np.abs(model.reduced.mesh_jacobian).max()
-    found = solve_ivp(
-        slope(model, omega),
-        (0.0, phases[-1] / omega),
-        initial,
-        "DOP853",
-        phases / omega,
-        rtol=1e-11,
-        atol=1e-13 / scale,
-        max_step=2e-6,
-    )
-    gap = np.abs(found.y[: model.system.size].T - run.at(phases)[0]).max() * scale
+    gap = gap_to_scipy(model, omega, slope(model, omega), start, run, phases, 1e-11)
     assert gap < 2e-6 * model.system.scale
 
 

@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lumped_machines import make_layout, make_machine
-from scipy.integrate import solve_ivp
+from scipy_motions import gap_to_scipy, kicked
 
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.trajectory import record
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.orbits import monodromy
-from facegear.dynamics.steady_state.simulate import build_model, simulate, static_start
+from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.harmonics.series import stacked_values
 from facegear.transmission.layout import FaceGear, Role, Side, Tilt
 from facegear.transmission.machine import OpenFlanks, mesh_frequency
@@ -76,13 +76,6 @@ def test_the_back_flank_rubs_as_the_mirror_image_that_turns_the_other_way():
         np.testing.assert_allclose(here, sign * mirrored, atol=1e-15)
 
 
-def kicked(model, size):
-    start = static_start(model)
-    reach = np.abs(model.reduced.mesh_jacobian).max()
-    kick = np.random.default_rng(3).normal(size=start.velocity.size)
-    return replace(start, velocity=size / reach * kick)
-
-
 def right_side(model, omega):
     """y', y'' written out once more, with the friction of each flank on all bodies."""
     system, machine = model.system, model.machine
@@ -116,18 +109,7 @@ def test_rubbing_flanks_move_as_scipy_says_through_parting_and_both_flanks():
     run = record(model.system, omega, start, 1, Settings(tolerance=1e-13))
     assert (run.states == 0).any() and (run.states[:, :4] == 1).any() and (run.states[:, 4:] == 1).any()
     phases = np.linspace(0.0, TAU, 11)
-    scale = np.abs(model.reduced.mesh_jacobian).max()
-    found = solve_ivp(
-        right_side(model, omega),
-        (0.0, TAU / omega),
-        np.concatenate([start.displacement, start.velocity]),
-        "DOP853",
-        phases / omega,
-        rtol=1e-10,
-        atol=1e-12 / scale,
-        max_step=2e-6,
-    )
-    gap = np.abs(found.y[: model.system.size].T - run.at(phases)[0]).max() * scale
+    gap = gap_to_scipy(model, omega, right_side(model, omega), start, run, phases, 1e-10)
     assert gap < 2e-6 * model.system.scale
 
 
