@@ -10,6 +10,7 @@ from facegear.config.base import Section, refuse, require_all
 from facegear.config.cards import read_card
 from facegear.config.csv_file import CsvFault, read_numbers
 from facegear.config.material_card import CARDS, Card, limits_of
+from facegear.geometry.bodies import BODIES
 from facegear.geometry.design import PairDesign
 from facegear.strength.duty import DutyBin, given_duty, machine_duty
 from facegear.strength.rating import RatedBody, RatingRequest
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 BIN_COLUMNS = ("torque_n_m", "speed_rpm", "hours")
-BODIES = ("pinion", "face_gear")
 
 
 class DutySection(Section):

@@ -1,5 +1,7 @@
 """Columns of the contact table, apart from what computes it, so that readers need no solver."""
 
+from facegear.geometry.bodies import BODIES
+
 SHARES = tuple(f"load_share_pair_{name}" for name in ("m2", "m1", "0", "p1", "p2"))
 """Load shares of the tooth pairs -2..2 (numbers as in `facegear.geometry.design`)."""
 
@@ -60,11 +62,7 @@ LOAD_ARRAYS = {
     "flank_variant": (2, 2),
     "torque_n_m": (None,),
     "position": (None,),
-    **{
-        f"{body}_{name}": (None,)
-        for body in ("pinion", "face_gear")
-        for name in ("case", "tooth", "node", "force_n")
-    },
+    **{f"{body}_{name}": (None,) for body in BODIES for name in ("case", "tooth", "node", "force_n")},
     "nodes": (2,),
 }
 """Arrays of the loads file: an entry a case, a row a loaded node of a body, and the numbers of nodes.

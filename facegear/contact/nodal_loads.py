@@ -7,8 +7,7 @@ import scipy.sparse as sp
 
 from facegear.arrays import AnyArray, Arrays, Integers
 from facegear.contact.position import LoadedPosition
-
-BODIES = ("pinion", "face_gear")
+from facegear.geometry.bodies import BODIES
 
 
 def load_arrays(variants: Sequence[Sequence[LoadedPosition]], flank_variant: Integers) -> dict[str, AnyArray]:

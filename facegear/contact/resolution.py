@@ -5,6 +5,7 @@ from math import ceil, inf, pi, sin, sqrt
 
 from facegear.contact.options import ContactPlan
 from facegear.errors import InvalidInput
+from facegear.geometry.bodies import BODIES
 from facegear.geometry.design import Material, PairDesign
 from facegear.geometry.fillets import smallest_radius
 from facegear.mesh.sizes import MeshSizes
@@ -147,7 +148,7 @@ def check_fillet(design: PairDesign, sizes: MeshSizes, plan: ContactPlan) -> Non
 
     Raises InvalidInput.
     """
-    radius = min(smallest_radius(design, body) for body in ("pinion", "face_gear"))
+    radius = min(smallest_radius(design, body) for body in BODIES)
     depth = sizes.fillet_depth or sizes.profile
     if plan.root_stress and depth > DEEPEST * radius:
         allowed = (

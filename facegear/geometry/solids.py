@@ -10,18 +10,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import pi
-from typing import Literal
 
 import numpy as np
 
 from facegear.arrays import Array
 from facegear.geometry import face_gear, pinion
+from facegear.geometry.bodies import Body
 from facegear.geometry.design import PairDesign, Relief
 from facegear.geometry.pinion_surface import fillet_points, flank_points
 from facegear.geometry.placement import body_rotation
-
-Body = Literal["pinion", "face_gear"]
-BODIES: tuple[Body, ...] = ("pinion", "face_gear")
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,8 +8,9 @@ import pandas as pd
 
 from facegear.arrays import AnyArray, Array, Arrays, Mask
 from facegear.contact.columns import EDGES, SHARES
+from facegear.geometry.bodies import BODIES, Body
 from facegear.geometry.design import PairDesign
-from facegear.geometry.solids import BODIES, Body, solid, teeth_of
+from facegear.geometry.solids import solid, teeth_of
 from facegear.report.page import View
 
 COLOURS = (

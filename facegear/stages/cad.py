@@ -6,7 +6,8 @@ from tempfile import TemporaryDirectory
 from facegear.config.mesh import Mesh
 from facegear.config.tooth_pair import ToothPair, pair
 from facegear.errors import FacegearError, chosen
-from facegear.geometry.solids import BODIES, Body, solid, teeth_of, triangles
+from facegear.geometry.bodies import BODIES, Body
+from facegear.geometry.solids import solid, teeth_of, triangles
 from facegear.io.cad import write_step, write_stl
 from facegear.stages.outcome import Outcome
 

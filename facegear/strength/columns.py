@@ -1,6 +1,7 @@
 """Columns of the tables of root stress, apart from what computes them."""
 
-BODIES = ("pinion", "face_gear")
+from facegear.geometry.bodies import BODIES
+
 FILLETS = ("loaded", "other")
 """Below the flank that is loaded when the pinion drives, and below the other flank of the same tooth."""
 

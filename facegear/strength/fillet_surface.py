@@ -3,7 +3,8 @@
 import numpy as np
 
 from facegear.arrays import Array, Arrays, Integers
-from facegear.strength.columns import BODIES, FILLETS
+from facegear.geometry.bodies import BODIES
+from facegear.strength.columns import FILLETS
 
 
 def stress_surface(

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from facegear.arrays import Arrays
+from facegear.geometry.bodies import BODIES
 from facegear.geometry.flank_errors import FLANKS, GEARS
-from facegear.strength.columns import BODIES
 from facegear.strength.contact_pressure import ContactPressure, contact_pressure
 from facegear.strength.root_stress import RootStress, largest_tension
 from facegear.strength.root_tables import root_from_arrays
@@ -61,7 +61,9 @@ def flank_contacts(stress: Arrays, by_flank: "pd.DataFrame") -> dict[tuple[str, 
         for column, flank in enumerate(FLANKS):
             variant = int(stress["flank_variant"][row, column])
             if variant not in by_variant:
-                roots = {body: root_from_arrays(stress, body, gear, flank) for body in BODIES}
+                roots: dict[str, RootStress] = {
+                    body: root_from_arrays(stress, body, gear, flank) for body in BODIES
+                }
                 by_variant[variant] = FlankContact(roots, contact_pressure(tables[gear, flank]))
             contacts[gear, flank] = by_variant[variant]
     return contacts

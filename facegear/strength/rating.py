@@ -9,6 +9,7 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.contact.columns import FILLET_CONTACT
 from facegear.errors import FacegearError
+from facegear.geometry.bodies import BODIES
 from facegear.geometry.design import PairDesign
 from facegear.strength.contact_pressure import ContactPressure
 from facegear.strength.duty import FlankDuty
@@ -258,7 +259,7 @@ def hertz_stress(design: PairDesign, contact_ratio: float, request: RatingReques
 
     The pinion is judged at its inner point of single contact where that is worse than the pitch point.
     """
-    cards = [request.bodies[name].card for name in ("pinion", "face_gear")]
+    cards = [request.bodies[name].card for name in BODIES]
     first, second = ((card.young_modulus, card.poisson_ratio) for card in cards)
     base, pitch = design.pinion_base_radius, tan(design.pressure_angle)
     inner = design.pinion_tip_roll - 2.0 * pi / design.pinion.teeth

@@ -6,7 +6,8 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Array
-from facegear.strength.columns import BODIES, STRESS_OVER_SPEED_COLUMNS
+from facegear.geometry.bodies import BODIES
+from facegear.strength.columns import STRESS_OVER_SPEED_COLUMNS
 from facegear.strength.flank_contacts import FlankContact, largest_pressure
 
 ALIKE = 1e-3

@@ -15,9 +15,9 @@ from facegear.config.stiffness import MeshStiffness, stiffness_request
 from facegear.config.tooth_pair import ToothPair, materials, pair_design
 from facegear.contact.analysis import ContactAnalysis, contact_analysis
 from facegear.contact.gear_flank import GearFlank
-from facegear.contact.nodal_loads import BODIES
 from facegear.contact.pair import gear_flank
 from facegear.contact.resolution import check_resolution
+from facegear.geometry.bodies import BODIES
 from facegear.stiffness.curve import load_table
 from facegear.stiffness.request import StiffnessRequest
 from facegear.stiffness.source import stiffness_from_contact
@@ -90,7 +90,7 @@ def _bodies(pair: Values, flanks: Flanks) -> Callable[[Values, ToothPair], tuple
         if key not in known:
             setup = contact_setup(section, mesh, contact)
             check_resolution(setup.pair.design, setup.pair.materials, setup.sizes, setup.plan)
-            made = {
+            made: dict[str, GearFlank] = {
                 body: gear_flank(setup.pair.design, body, setup.sizes, setup.pair.material(body), setup.plan)
                 for body in BODIES
             }

@@ -18,6 +18,7 @@ from facegear.config.transmission import Transmission
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.sweeps.jump_margin import jump_margin
 from facegear.dynamics.sweeps.plan import JumpRange
+from facegear.geometry.bodies import BODIES
 from facegear.load_sharing.quantities import dynamic_quantities, quasi_static_quantities
 from facegear.load_sharing.quantity_names import JUMP_MARGIN, PEAK, quantity_names
 from facegear.scenarios.chunks import identity
@@ -110,7 +111,6 @@ def stored_flanks(arrays: Sequence[Arrays]) -> Flanks:
     if not arrays:
         return {}
     from facegear.contact.gear_flank import from_arrays
-    from facegear.contact.nodal_loads import BODIES
 
     return {body: from_arrays(one) for body, one in zip(BODIES, arrays, strict=True)}
 

@@ -7,9 +7,10 @@ import pytest
 
 from facegear.errors import NotConverged
 from facegear.geometry import face_gear
+from facegear.geometry.bodies import BODIES
 from facegear.geometry.design import Relief
 from facegear.geometry.pinion_surface import flank_points
-from facegear.geometry.solids import BODIES, solid, triangles, volume
+from facegear.geometry.solids import solid, triangles, volume
 from facegear.io.cad import write_step, write_stl
 
 TEETH = 2

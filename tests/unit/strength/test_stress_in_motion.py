@@ -10,9 +10,9 @@ from root_readings import POSITIONS, TORQUES, passing
 
 import facegear
 from facegear.config.machines import case_machine
+from facegear.geometry.bodies import BODIES
 from facegear.geometry.flank_errors import FLANKS
 from facegear.harmonics.series import Harmonics
-from facegear.strength.columns import BODIES
 from facegear.strength.contact_pressure import ContactPressure
 from facegear.strength.dynamic_stress import dynamic_stress_table
 from facegear.strength.flank_contacts import FlankContact
