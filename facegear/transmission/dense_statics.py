@@ -37,14 +37,17 @@ class Contacts:
     lower: Array
     upper: Array
 
-    def forces(self, deflections: Array) -> Array:
-        """Forces of deflections (..., contacts), N."""
-        beyond = beyond_edges(deflections, self.lower, self.upper)
+    def beyond(self, deflections: Array) -> Array:
+        """How far deflections (..., contacts) lie beyond the edges, m."""
+        return beyond_edges(deflections, self.lower, self.upper)
+
+    def forces(self, beyond: Array) -> Array:
+        """Forces of contacts pressed in by `beyond` (..., contacts), N."""
         return self.law.force(NO_PHASE, beyond[..., None, :])[..., 0, :]
 
-    def slopes(self, deflections: Array) -> Array:
-        """Their derivatives (contacts,) at deflections (contacts,), N/m."""
-        return self.law.slope(NO_PHASE, beyond_edges(deflections, self.lower, self.upper)[None])[0]
+    def slopes(self, beyond: Array) -> Array:
+        """Their derivatives (contacts,) at `beyond` (contacts,), N/m."""
+        return self.law.slope(NO_PHASE, beyond[None])[0]
 
 
 def dense_equilibrium(linear: LinearModel, contacts: Contacts, lengths: Array) -> tuple[Array, Array, Array]:
@@ -63,7 +66,8 @@ def dense_equilibrium(linear: LinearModel, contacts: Contacts, lengths: Array) -
         _Rings(places, linear.rings.stiffness, linear.rings.play),
     )
     solution = _minimise(scaled)
-    return scale * solution, scaled.deflections(solution), scaled.forces(solution)
+    deflections = scaled.deflections(solution)
+    return scale * solution, deflections, contacts.forces(contacts.beyond(deflections))
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,20 +111,22 @@ class _Springs:
         return self.directions @ q - self.contacts.error
 
     def forces(self, q: Array) -> Array:
-        return self.contacts.forces(self.deflections(q))
+        return self.contacts.forces(self.contacts.beyond(self.deflections(q)))
 
-    def balance(self, q: Array) -> Array:
-        balance = self.bearing @ q + self.directions.T @ self.forces(q) - self.applied
+    def balance(self, q: Array, forces: Array) -> Array:
+        """What is left over at q with these forces of the contacts."""
+        balance = self.bearing @ q + self.directions.T @ forces - self.applied
         return balance + self.rings.push(q) if self.rings.play.size else balance
 
-    def curvature(self, q: Array) -> Array:
-        slope = self.contacts.slopes(self.deflections(q))
+    def curvature(self, q: Array, slope: Array) -> Array:
+        """Second derivatives of the energy at q with these slopes of the contacts' forces."""
         curvature = self.bearing + (self.directions.T * slope) @ self.directions
-        self.rings.add_tangents(q, curvature)
+        if self.rings.play.size:
+            self.rings.add_tangents(q, curvature)
         return curvature
 
-    def along(self, q: Array, step: Array, tie: float, anchor: Array) -> "Line":
-        """The energy's slope along a step, with a spring `tie` to the anchor."""
+    def along(self, q: Array, deflections: Array, step: Array, tie: float, anchor: Array) -> "Line":
+        """The energy's slope along a step from q, with a spring `tie` to the anchor."""
         at_start = self.bearing @ q + tie * (q - anchor) - self.applied
 
         def bearings(s: Array) -> Array:
@@ -129,7 +135,7 @@ class _Springs:
         return Line(
             constant=float(at_start @ step),
             rise=float((self.bearing @ step + tie * step) @ step),
-            deflections=self.deflections(q),
+            deflections=deflections,
             rates=self.directions @ step,
             contacts=self.contacts,
             bearings=bearings if self.rings.play.size else None,
@@ -149,9 +155,12 @@ class Line:
     contacts: Contacts
     bearings: Callable[[Array], Array] | None = None
 
+    def _forces(self, s: Array | float) -> Array:
+        return self.contacts.forces(self.contacts.beyond(self.deflections + s * self.rates))
+
     def slopes(self, s: Array) -> Array:
         """The slope at some places (K,)."""
-        forces = self.contacts.forces(self.deflections + s[:, None] * self.rates)
+        forces = self._forces(s[:, None])
         slopes = np.asarray(self.constant + self.rise * s + forces @ self.rates)
         return slopes if self.bearings is None else slopes + self.bearings(s)
 
@@ -201,7 +210,7 @@ class Line:
 
     def _noise(self, s: float) -> float:
         """What rounding makes of the slope at a point."""
-        forces = self.contacts.forces(self.deflections + s * self.rates)
+        forces = self._forces(s)
         size = abs(self.constant) + abs(self.rise * s) + np.abs(forces * self.rates).sum()
         return 100.0 * float(np.finfo(float).eps * size)
 
@@ -227,23 +236,29 @@ def _minimise(springs: _Springs) -> Array:
 def _pushed_on(springs: _Springs, tie: float, last: Array, place: Array) -> Array:
     """A body that a force next to nothing has not yet moved through its backlash goes on as far as it can."""
     for _ in range(MORE_ROUNDS):
-        size = max(np.abs(springs.applied).max(), np.abs(springs.forces(place)).max())
-        if np.abs(springs.balance(place)).max() <= RESIDUAL * size:
+        deflections = springs.deflections(place)
+        forces = springs.contacts.forces(springs.contacts.beyond(deflections))
+        size = max(np.abs(springs.applied).max(), np.abs(forces).max())
+        if np.abs(springs.balance(place, forces)).max() <= RESIDUAL * size:
             break
         step = place - last
-        last = place + step * springs.along(place, step, 0.0, place).minimum()
+        last = place + step * springs.along(place, deflections, step, 0.0, place).minimum()
         place = _newton(springs, tie, last)
     return place
 
 
 def _newton(springs: _Springs, tie: float, anchor: Array) -> Array:
     """Newton's method with an exact line search on the piecewise quadratic energy of one round."""
-    place, ties = anchor, tie * np.eye(len(anchor))
+    place, ties, contacts = anchor, tie * np.eye(len(anchor)), springs.contacts
+    widest = np.abs(contacts.upper).max()
     for _ in range(MAX_ITERATIONS):
-        gradient = springs.balance(place) + tie * (place - anchor)
-        step = -np.asarray(np.linalg.solve(springs.curvature(place) + ties, gradient), np.float64)
-        moved = place + step * springs.along(place, step, tie, anchor).minimum()
-        size = max(np.abs(place).max(), np.abs(springs.contacts.upper).max())
+        deflections = springs.deflections(place)
+        beyond = contacts.beyond(deflections)
+        gradient = springs.balance(place, contacts.forces(beyond)) + tie * (place - anchor)
+        curvature = springs.curvature(place, contacts.slopes(beyond)) + ties
+        step = -np.asarray(np.linalg.solve(curvature, gradient), np.float64)
+        moved = place + step * springs.along(place, deflections, step, tie, anchor).minimum()
+        size = max(np.abs(place).max(), widest)
         if np.abs(moved - place).max() <= 1e-15 * size:
             return moved
         place = moved

@@ -8,6 +8,7 @@ f_drive(-p), p the place of the pinion's tooth past the pitch line.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -90,6 +91,7 @@ def flank_law(machine: Machine) -> MeshLaw:
     return linear_law(stiffness_series(machine)) if machine.law is None else machine.law
 
 
+@lru_cache(maxsize=16)
 def line_law(machine: Machine) -> MeshLaw:
     """The law of meshes whose two flanks share one line of action, as equation (13) is printed."""
     if machine.law is not None:
