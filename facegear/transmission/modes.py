@@ -57,14 +57,20 @@ def modes_of(linear: LinearModel, meshes: Array, speed: float = 0.0) -> Modes:
         root = np.sqrt(linear.masses)
         squares, vectors = scipy.linalg.eigh(stiffness / np.outer(root, root))
         shapes = vectors / root[:, None]
-    frequencies = np.sqrt(_without_noise(squares)) / (2.0 * np.pi)
+    frequencies = np.sqrt(_stable(squares, speed)) / (2.0 * np.pi)
     return Modes(frequencies, shapes, _equal_runs(frequencies))
 
 
-def _without_noise(squares: Array) -> Array:
-    """Ascending squares of frequencies with those that are rounding as zero."""
+def _stable(squares: Array, speed: float) -> Array:
+    """Ascending squares of frequencies with those that are rounding as zero. Raises NotConverged if one is
+    negative.
+    """
     noise = squares.size * np.finfo(float).eps * squares[-1]
-    return np.where(np.abs(squares) < 10.0 * noise, 0.0, squares)
+    squares = np.where(np.abs(squares) < 10.0 * noise, 0.0, squares)
+    if squares[0] < 0.0:
+        tried = f"the stiffness is not positive, as little as {squares[0]:.3g} 1/s2 in its softest motion"
+        raise NotConverged("modes", f"{speed:.6g} rad/s", tried)
+    return squares
 
 
 def _turning(linear: LinearModel, stiffness: Array, speed: float) -> Modes:
@@ -77,10 +83,7 @@ def _turning(linear: LinearModel, stiffness: Array, speed: float) -> Modes:
     inverse = np.linalg.inv(np.linalg.cholesky(linear.mass))
     whole = stiffness + speed**2 * linear.spin.centrifugal
     squares, vectors = scipy.linalg.eigh(inverse @ whole @ inverse.T)
-    squares = _without_noise(squares)
-    if squares[0] < 0.0:
-        tried = f"the stiffness is not positive, as little as {squares[0]:.3g} 1/s2 in its softest motion"
-        raise NotConverged("modes", f"{speed:.6g} rad/s", tried)
+    squares = _stable(squares, speed)
     size, half = linear.size, (vectors * np.sqrt(squares)) @ vectors.T
     gyroscopic = speed * inverse @ linear.spin.gyroscopic @ inverse.T
     system = np.block([[np.zeros_like(half), half], [-half, -gyroscopic]])

@@ -27,7 +27,7 @@ from facegear.transmission.teeth import GEOMETRIC
 
 BODY, J, STIFFNESS, POLAR = "one", 0.003, 5e4, 0.005
 PLACES = ((BODY, Role.INPUT, 0.0), ("two", Role.TAIL, 40.25))
-KINEMATICS = tuple(KINEMATICS.values())
+BOTH_KINEMATICS = pytest.mark.parametrize("kinematics", KINEMATICS.values(), ids=KINEMATICS)
 
 
 def machine_with(bodies, kinematics=GEOMETRIC, **more):
@@ -42,7 +42,7 @@ def levers(machine, size=0.02):
     return rows
 
 
-@pytest.mark.parametrize("kinematics", KINEMATICS)
+@BOTH_KINEMATICS
 @pytest.mark.parametrize("speed_rpm", [0.0, 1200.0, 30000.0, -30000.0])
 def test_a_turning_body_whirls_at_the_roots_of_its_quadratic_equation(kinematics, speed_rpm):
     machine = machine_with(Rocking(BODY, J, STIFFNESS, POLAR), kinematics)
@@ -77,6 +77,11 @@ def test_modes_of_a_body_that_turning_has_made_unstable_are_refused():
         loaded_modes(machine, beyond)
 
 
+def test_modes_of_a_body_that_its_stiffness_drives_away_are_refused_at_rest_too():
+    with pytest.raises(NotConverged, match="not positive"):
+        loaded_modes(machine_with(Rocking(BODY, J, -STIFFNESS)))
+
+
 def test_modes_of_bodies_that_lean_and_rock_have_unit_mass_and_name_the_tilt():
     machine = machine_with(Rocking(BODY, J, STIFFNESS, POLAR, leaning=5e5))
     modes, linear = loaded_modes(machine), machine.linear
@@ -88,7 +93,7 @@ def test_modes_of_bodies_that_lean_and_rock_have_unit_mass_and_name_the_tilt():
     np.testing.assert_allclose(energies[turning.frequencies > 0.0], 1.0, rtol=1e-6)
 
 
-@pytest.mark.parametrize("kinematics", KINEMATICS)
+@BOTH_KINEMATICS
 def test_moments_tilt_a_body_as_far_as_its_stiffness_says(kinematics):
     moments = np.array([30.0, -80.0])
     machine = machine_with(Rocking(BODY, J, STIFFNESS, moments=tuple(moments)), kinematics)
