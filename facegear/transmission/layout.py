@@ -97,7 +97,7 @@ class Kinematics(Protocol):
         """Whether the teeth of a lower face gear that is alone pass the pinions the other way round."""
 
     def require(self, layout: "Layout") -> None:
-        """Raise ConfigError for radii that do not fit the teeth."""
+        """Raise InvalidInput for radii that do not fit the teeth."""
 
     def arm(self, radius: float, pressure_angle: float) -> float:
         """Torque over the mesh force that balances it, m, for the radius that a layout gives to a body."""
@@ -163,6 +163,17 @@ class Layout:
     def tilting(self) -> tuple[int, ...]:
         """The gears that may rock."""
         return tuple(g for g, gear in enumerate(self.gears) if gear.body.tilt is not None)
+
+    @property
+    def first_tilts(self) -> dict[int, int]:
+        """Where the two tilts of every gear that may rock begin among the degrees of freedom, by gear."""
+        return {g: DOF_PER_BODY * len(self.bodies) + 2 * k for k, g in enumerate(self.tilting)}
+
+    @property
+    def output(self) -> int:
+        """The gear that gives the power out: the upper one, else the only one."""
+        sides = [gear.side for gear in self.gears]
+        return sides.index(Side.UPPER) if Side.UPPER in sides else 0
 
     @property
     def dof(self) -> int:

@@ -11,7 +11,7 @@ from facegear.errors import InvalidInput
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.law import MeshLaw
 from facegear.transmission.imperfections import Imperfections, perfect
-from facegear.transmission.layout import Layout, Role, Side
+from facegear.transmission.layout import Layout, Role
 from facegear.transmission.linear_model import Bodies, LinearModel
 from facegear.transmission.lumped import lumped_model
 from facegear.transmission.mesh_friction import MeshFriction, friction_rows
@@ -135,15 +135,13 @@ def pinion_torques(layout: Layout, per_input: float, tail_share: float) -> Array
 
 
 def balanced_torques(layout: Layout, on_pinions: Array, on_other_gear: float = 0.0) -> Array:
-    """Torques on all bodies with the output face gear (upper, else the only one) in static balance, N m.
+    """Torques on all bodies with the output face gear in static balance, N m.
 
     `on_other_gear`: torque on the one that is not the output, where there are two.
     """
-    sides = [gear.side for gear in layout.gears]
-    output = sides.index(Side.UPPER) if Side.UPPER in sides else 0
     on_gears = np.full(len(layout.gears), float(on_other_gear))
-    on_gears[output] = 0.0
-    on_gears[output] = -on_pinions.sum() * layout.gear_radius / layout.pinion_radius - on_gears.sum()
+    on_gears[layout.output] = 0.0
+    on_gears[layout.output] = -on_pinions.sum() * layout.gear_radius / layout.pinion_radius - on_gears.sum()
     return np.concatenate([on_pinions, on_gears])
 
 

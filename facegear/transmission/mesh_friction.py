@@ -14,7 +14,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.harmonics.series import Harmonics, stacked_values
-from facegear.transmission.layout import DOF_PER_BODY, Layout, Side
+from facegear.transmission.layout import DOF_PER_BODY, Layout
 
 PARTS = ("tangential", "along_pinion_axis", "along_gear_axis", "pinion_lever", "face_gear_lever")
 """Ratios of friction to the elastic force of a flank.
@@ -52,8 +52,8 @@ def friction_rows(layout: Layout, at_output: bool = True) -> Array:
     pinion without a bearing along its axis stays where it is. Equal for both flanks.
     """
     rows = np.zeros((len(layout.meshes), len(PARTS), layout.dof))
-    tilted = {g: DOF_PER_BODY * len(layout.bodies) + 2 * k for k, g in enumerate(layout.tilting)}
-    output = DOF_PER_BODY * (len(layout.pinions) + _output(layout)) + 3
+    tilted = layout.first_tilts
+    output = DOF_PER_BODY * (len(layout.pinions) + layout.output) + 3
     for row, (i, g) in zip(rows, layout.meshes, strict=True):
         side = layout.gears[g].sign
         cosine, sine = np.cos(layout.angles[i]), np.sin(layout.angles[i])
@@ -84,9 +84,3 @@ def flank_ratios(ratios: Array, phases: Array) -> Array:
         one = Harmonics(*both[flank]).shifted(float(lag))
         shifted[flank] = one.a, one.b
     return shifted
-
-
-def _output(layout: Layout) -> int:
-    """The face gear that gives the power out, as `balanced_torques` has it."""
-    sides = [gear.side for gear in layout.gears]
-    return sides.index(Side.UPPER) if Side.UPPER in sides else 0

@@ -66,7 +66,7 @@ def unknowns(machine: Machine) -> tuple[Integers, Array]:
         lengths += linear.lengths[own].tolist()
         if body >= pinions and layout.tilting:
             rocks = body - pinions in layout.tilting
-            at = DOF_PER_BODY * bodies + 2 * (layout.tilting.index(body - pinions) if rocks else 0)
+            at = layout.first_tilts[body - pinions if rocks else layout.tilting[0]]
             kept += [at, at + 1]
             lengths += 2 * [linear.lengths[at] if rocks else np.inf]
     added = np.arange(layout.dof, linear.size)

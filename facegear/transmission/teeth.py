@@ -56,7 +56,7 @@ def mesh_parts(layout: Layout) -> tuple[Array, Array]:
     cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
     tangential, separating = np.zeros((2, len(layout.meshes), layout.dof))
     angles = layout.angles
-    tilted = {g: DOF_PER_BODY * len(layout.bodies) + 2 * k for k, g in enumerate(layout.tilting)}
+    tilted = layout.first_tilts
     for row, (i, g) in enumerate(layout.meshes):
         side = layout.gears[g].sign
         along = np.array([np.cos(angles[i]), np.sin(angles[i])])

@@ -57,8 +57,6 @@ def held_forces(machine):
     springs = static_springs(machine)
     core = np.arange(springs.applied.size - 3 * len(machine.layout.pinions))
     springs = springs._replace(core_row=core, core_column=core, core_value=np.full(core.size, HELD))
-    from facegear.transmission.flanks import constant_errors, flank_gaps
-
     gaps = (constant_errors(machine) + flank_gaps(machine))[None]
     law = linear_law(gaps.size * [FLAT])
     start = np.zeros(springs.applied.size)
