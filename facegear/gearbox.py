@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from facegear.results.geometry import GeometryResult
     from facegear.results.load_sharing import LoadSharingResult
     from facegear.results.machine_loss import MachineLossResult
+    from facegear.results.mesh_law import MeshLawResult
     from facegear.results.modal import ModesResult
     from facegear.results.rating import RatingResult
     from facegear.results.response import ResponseResult
@@ -251,6 +252,15 @@ class Gearbox:
         from facegear.results.stiffness import StiffnessResult
 
         return self._chain.result(StiffnessResult)
+
+    def mesh_law(self) -> "MeshLawResult":
+        """Forces of the flanks over phase and deflection, of which `mesh_law: load_dependent` makes use.
+
+        Raises ConfigError for a pair without bodies, and what `contact` raises.
+        """
+        from facegear.results.mesh_law import MeshLawResult
+
+        return self._chain.result(MeshLawResult)
 
     def modes(self) -> "ModesResult":
         """Natural frequencies, classes and shapes; needs neither mesh nor contact.

@@ -10,7 +10,9 @@ from pydantic import Field, model_validator
 from facegear.config.base import Section, require_all
 from facegear.config.branches import Branches
 from facegear.config.buildable import require_buildable
+from facegear.config.changes import moves_pair
 from facegear.config.checks import (
+    CONTACT_ASKED,
     check_load,
     check_machine_strain,
     check_places,
@@ -87,6 +89,7 @@ class Config(Section):
     def _buildable(self) -> "Config":
         require_all(
             self._check_branches,
+            self._check_law,
             self._check_friction,
             self._check_reproduction,
             lambda: check_load(self.mesh_stiffness, self.contact),
@@ -103,6 +106,21 @@ class Config(Section):
         if self.transmission is None or self.transmission.mesh_kinematics == "printed":
             allowed = "loss_only without a transmission whose mesh_kinematics are geometric"
             raise ConfigError("lubrication.friction.effect", self.lubrication.friction.effect, allowed)
+
+    def _check_law(self) -> None:
+        if self.mesh_stiffness.mesh_law == "constant_load":
+            return
+        if self.transmission is not None and self.transmission.mesh_kinematics == "printed":
+            allowed = "geometric, where mesh_stiffness.mesh_law is load_dependent"
+            raise ConfigError("transmission.mesh_kinematics", "printed", allowed)
+        if self.modal.stiffness == "average":
+            allowed = "local, where mesh_stiffness.mesh_law is load_dependent"
+            raise ConfigError("modal.stiffness", "average", allowed)
+        causes = self.tolerances.causes if self.tolerances is not None else ()
+        keys = [key for cause in causes for key in cause.moves]
+        if self.search is not None or moves_pair(keys) or (self.tolerances and self.tolerances.tooth_contact):
+            allowed = f"constant_load, {CONTACT_ASKED}"
+            raise ConfigError("mesh_stiffness.mesh_law", "load_dependent", allowed)
 
     def _check_branches(self) -> None:
         speed, section = self.dynamics.speed_rpm, self.branches

@@ -54,6 +54,12 @@ class MeshStiffness(Section):
         description="load on the pinion per mesh at which k is taken, within contact.torques_n_m; null: the "
         "largest of them",
     )
+    mesh_law: Literal["constant_load", "load_dependent"] = Field(
+        default="constant_load",
+        description="constant_load: force is k(t) times the deflection, whatever the load; load_dependent: "
+        "as contact gives it at every deflection, up to the largest of contact.torques_n_m, and fem_scaled "
+        "scales all of it",
+    )
     definition: Literal["average", "local"] = Field(
         default="average", description="F / deflection, or its slope dF / d deflection at that load"
     )
@@ -97,6 +103,8 @@ class MeshStiffness(Section):
             refuse("source", self.source, "harmonics, as a table is given")
         if self.source == "fem_scaled" and self.mean_n_per_m is None:
             refuse("mean_n_per_m", None, "given, as source fem_scaled scales the curve to it")
+        if self.mesh_law == "load_dependent":
+            _check_law(self)
         if self.source != "harmonics":
             return self
         if not self.table:
@@ -142,6 +150,14 @@ def stiffness_request(section: MeshStiffness) -> StiffnessRequest:
         variation=section.variation,
         given=given_series(section),
     )
+
+
+def _check_law(section: MeshStiffness) -> None:
+    """Only contact knows the load, and its law has no variation to be changed by itself."""
+    if section.source == "harmonics":
+        refuse("mesh_law", "load_dependent", "constant_load, where source is harmonics")
+    if section.variation != 1.0:
+        refuse("variation", section.variation, "1, where mesh_law is load_dependent")
 
 
 def _check_mean(mean: float | None, first: HarmonicSection) -> None:

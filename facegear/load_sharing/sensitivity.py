@@ -16,6 +16,7 @@ from facegear.load_sharing.hunting import (
     hunting_length,
     largest,
 )
+from facegear.transmission.flanks import flank_law
 from facegear.transmission.imperfections import Imperfections, Runout, perfect
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Kinematics, Layout, Role
@@ -73,7 +74,7 @@ def _may_be_hardest(base: HuntingCycle) -> Mask:
     machine, even = base.machine, even_shares(base.machine)
     factors = np.nan_to_num(base.cycle_means / even, nan=-np.inf)
     bearings = max(max(pinion.body.bearing[:2]) for pinion in machine.layout.pinions)
-    meshes = machine.stiffness.amplitudes.sum() * machine.imperfections.stiffness.max()
+    meshes = float(flank_law(machine).steepest.max())
     stiffest = max(meshes, np.sqrt(meshes * bearings))
     reach = 2.0 * STEP * stiffest * np.sqrt(base.flank_forces.shape[1])
     hard = np.zeros(len(factors), dtype=bool)

@@ -79,6 +79,15 @@ class MeshLaw(Protocol):
         """
 
 
+def past_levels(law: MeshLaw, beyond: Array) -> Array:
+    """How often (M,), as a fraction of the rows, contacts (K, M) are pressed in past the last level of a law;
+    nowhere on one that is straight.
+    """
+    if law.straight:
+        return np.zeros(law.contacts)
+    return np.asarray((np.abs(beyond) > law.levels[-1]).mean(axis=0))
+
+
 def beyond_edges(deflections: Array, lower: Array, upper: Array) -> Array:
     """How far contacts (..., M) are pressed in: above `upper`, or below `lower` as a negative amount.
 

@@ -15,6 +15,9 @@ from facegear.arrays import Array, Integers
 from facegear.machine_code.memory import aligned, divided
 from facegear.mesh_law.law import Held
 
+LOOKS = 8
+"""Phases for each harmonic at which slopes are checked."""
+
 
 @dataclass(frozen=True, eq=False)
 class ForceTable:
@@ -67,6 +70,15 @@ class ForceTable:
     def steepest(self) -> float:
         """Bound of the slope over phase and amount, N/m."""
         return float(np.hypot(self.bounds[:, 0], self.bounds[:, 1]).sum(axis=1).max())
+
+    @cached_property
+    def least_slope(self) -> float:
+        """Smallest slope at LOOKS phases for each harmonic and as many amounts between two levels, N/m."""
+        count = LOOKS * self.forces.shape[2]
+        values = _values(self.coefficients[:, 1:], np.arange(count) / count)
+        first, second, third = np.moveaxis(values, 2, 0)[:, :, None]
+        amounts = np.linspace(0.0, 1.0, LOOKS + 1)[:, None] * np.append(np.diff(self.levels), 0.0)
+        return float((first + amounts * (2.0 * second + 3.0 * amounts * third)).min())
 
     def shifted(self, cycles: float) -> "ForceTable":
         """The table of a contact that comes later by some mesh periods."""

@@ -40,6 +40,11 @@ def computed_stiffness(case: Case) -> bool:
     return case.values["mesh_stiffness"]["source"] != "harmonics"
 
 
+def load_dependent(case: Case) -> bool:
+    """Whether mesh forces depend on the load."""
+    return case.values["mesh_stiffness"]["mesh_law"] == "load_dependent"
+
+
 def modes_from_contact(case: Case) -> bool:
     """Whether modes take their stiffness from the contact analysis."""
     return modes_need_contact(case.values)

@@ -23,9 +23,10 @@ def branches_loci(
     branches: Branches | None,
     speed_rpm: float,
     friction: pd.DataFrame | None = None,
+    law: Arrays | None = None,
 ) -> Outcome:
     """`loci` (table). orbits: arrays of the special points."""
-    model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction))
+    model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction, law=law))
     plan = branch_plan(branches, speed_rpm)
     loci, missed = machine_loci(model, plan, special_points(machine_period_map(model, plan), orbits), tell)
     return Outcome({"loci": locus_table(loci)}, loci_summary(loci, missed))

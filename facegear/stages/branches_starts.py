@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from facegear.arrays import Arrays
 from facegear.config.branches import Branches, branch_plan
 from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
@@ -21,9 +22,10 @@ def branches_starts(
     branches: Branches | None,
     speed_rpm: float,
     friction: pd.DataFrame | None = None,
+    law: Arrays | None = None,
 ) -> Outcome:
     """`found` (arrays) at one of the config's speeds. Raises NotConverged naming the speed."""
-    model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction))
+    model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction, law=law))
     plan = branch_plan(branches, speed_rpm)
     speed = plan.speeds_rpm[number]
     found = random_starts(model, plan, speed, Progress("random starts", plan.starts).step)

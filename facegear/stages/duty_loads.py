@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from facegear.arrays import Arrays
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
@@ -22,6 +23,7 @@ def duty_loads(
     accuracy: Accuracy,
     strength: Strength | None,
     friction: pd.DataFrame | None = None,
+    law: Arrays | None = None,
 ) -> Outcome:
     """`duty_loads` and `duty_spectrum` (tables) from the machine's motion in every bin.
 
@@ -34,7 +36,7 @@ def duty_loads(
     progress, loads, spectrum = Progress("duty cycle", len(strength.duty)), [], []
     for number, one in enumerate(strength.duty, start=1):
         loaded = at_mesh_torque(transmission, one.torque_n_m)
-        machine = wired_machine(loaded, teeth, harmonics, friction=friction)
+        machine = wired_machine(loaded, teeth, harmonics, friction=friction, law=law)
         history = history_of(machine, one.speed_rpm, known)
         place = (number, one.torque_n_m, one.speed_rpm)
         loads += [(*place, *row) for row in load_rows(history)]

@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from facegear.arrays import Arrays
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
@@ -25,12 +26,13 @@ def dynamics_response(
     accuracy: Accuracy,
     speed_rpm: float,
     friction: pd.DataFrame | None = None,
+    law: Arrays | None = None,
 ) -> Outcome:
     """`response`, `spectrum`, `summary`, `multipliers` and `bearings` (tables).
 
     Raises NotConverged naming the speed.
     """
-    model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction))
+    model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction, law=law))
     found = simulate(model, speed_rpm, settings(accuracy))
     layout = model.machine.layout
     content = {

@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from facegear.arrays import Arrays
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
@@ -21,12 +22,13 @@ def dynamics_sweep_chunk(
     teeth: ToothNumbers,
     sweep: Sweep,
     friction: pd.DataFrame | None = None,
+    law: Arrays | None = None,
 ) -> Outcome:
     """`chunk` (arrays). Raises NotConverged naming the speed."""
     plan = sweep_plan(sweep)
     total = sum(map(len, plan.chunk(direction, number)))
     progress = Progress(f"sweep {direction}, chunk {number}", total)
-    model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction))
+    model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction, law=law))
     before, own = run_chunk(model, plan, direction, number, progress.step)
     told = f"{len(own.speeds)} speeds {direction}, {len(before.speeds)} for overlap"
     return Outcome({"chunk": to_arrays(before, own)}, told)

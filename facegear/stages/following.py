@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from facegear.arrays import Arrays
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
@@ -23,12 +24,13 @@ def following(
     positions: int,
     cycles: int | None,
     friction: pd.DataFrame | None = None,
+    law: Arrays | None = None,
 ) -> Outcome:
     """`groups` and `meshes` (tables) over `cycles` mesh cycles, or all of the hunting cycle.
 
     Raises NotConverged naming the position or the mesh phase.
     """
-    machine = wired_machine(transmission, teeth, harmonics, friction=friction)
+    machine = wired_machine(transmission, teeth, harmonics, friction=friction, law=law)
     length = hunting_length(machine)
     part = length if cycles is None else min(cycles, length)
     moving = running(machine, speed_rpm, part, FINER * positions, settings(accuracy))

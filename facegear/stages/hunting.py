@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from facegear.arrays import Arrays
 from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
 from facegear.config.transmission import Transmission
@@ -9,13 +10,18 @@ from facegear.load_sharing.hunting import hunting_cycle
 from facegear.load_sharing.hunting_tables import bearing_table, cycle_table, group_table, mesh_table
 from facegear.load_sharing.sensitivity import bearing_scan, sensitivities
 from facegear.stages.outcome import Outcome
+from facegear.transmission.flanks import past_law
 
 
 def hunting(
-    harmonics: pd.DataFrame, transmission: Transmission, teeth: ToothNumbers, positions: int
+    harmonics: pd.DataFrame,
+    transmission: Transmission,
+    teeth: ToothNumbers,
+    positions: int,
+    law: Arrays | None = None,
 ) -> Outcome:
     """Tables `meshes`, `groups`, `bearings`, `cycles`, `scan`, `sensitivity`. Raises NotConverged."""
-    machine = wired_machine(transmission, teeth, harmonics)
+    machine = wired_machine(transmission, teeth, harmonics, law=law)
     found = hunting_cycle(machine, positions)
     content = {
         "meshes": mesh_table(found),
@@ -28,6 +34,8 @@ def hunting(
     known = groups.dropna(subset="k_gamma")
     if known.empty:
         return Outcome(content, "no path shares a load")
+    past = float(past_law(machine, found.cycles, found.flank_forces).max())
+    beyond = f"; past the mesh law's last level at up to {100.0 * past:.2g} % of positions" if past else ""
     worst = known.loc[known["k_gamma"].idxmax()]
     told = f"K_gamma {worst['k_gamma']:.3f} ({worst['group']}) at {worst['torque_n_m']:g} N m"
-    return Outcome(content, f"{told} over {worst['mesh_cycles']:.0f} mesh cycles")
+    return Outcome(content, f"{told} over {worst['mesh_cycles']:.0f} mesh cycles{beyond}")

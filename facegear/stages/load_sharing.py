@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from facegear.arrays import Arrays
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.load_sharing import LoadSharing, sharing_options
 from facegear.config.lumped_model import ToothNumbers
@@ -20,10 +21,11 @@ def load_sharing(
     speed_rpm: float,
     options: LoadSharing,
     friction: pd.DataFrame | None = None,
+    law: Arrays | None = None,
 ) -> Outcome:
     """`curve` and `summary` (tables). Raises NotConverged naming the speed."""
     found = shared(
-        wired_machine(transmission, teeth, harmonics, friction=friction),
+        wired_machine(transmission, teeth, harmonics, friction=friction, law=law),
         speed_rpm,
         settings(accuracy),
         sharing_options(options),

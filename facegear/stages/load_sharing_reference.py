@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 
+from facegear.arrays import Arrays
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.load_sharing import LoadSharing, sharing_options
 from facegear.config.lumped_model import ToothNumbers
@@ -20,9 +21,10 @@ def load_sharing_reference(
     range_accuracy: Accuracy,
     options: LoadSharing,
     friction: pd.DataFrame | None = None,
+    law: Arrays | None = None,
 ) -> Outcome:
     """`reference` and `speeds` (tables). Raises NotConverged naming the speed."""
-    machine = wired_machine(transmission, teeth, harmonics, friction=friction)
+    machine = wired_machine(transmission, teeth, harmonics, friction=friction, law=law)
     wanted = sharing_options(options)
     reference = reference_table(machine, settings(accuracy), wanted)
     speeds = speed_range_table(machine, settings(range_accuracy), wanted)

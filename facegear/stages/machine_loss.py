@@ -34,6 +34,7 @@ def machine_loss(
     harmonics: pd.DataFrame,
     duty_loads: pd.DataFrame | None = None,
     friction: pd.DataFrame | None = None,
+    law: Arrays | None = None,
     response: pd.DataFrame | None = None,
     *,
     tooth_pair: ToothPair,
@@ -53,14 +54,14 @@ def machine_loss(
     """
     section = lubrication_section(lubrication)
     loaded = loaded_pair(ltca, pressure, section, tooth_pair)
-    found = list(_states(loaded, harmonics, duty_loads, transmission, teeth, strength, speed_rpm))
+    found = list(_states(loaded, harmonics, duty_loads, transmission, teeth, strength, speed_rpm, law))
     content = {
         "meshes": mesh_loss_table(found, loaded.known, limits_of(section)),
         "bodies": body_heat_table(found, loaded.known),
         "machine": machine_loss_table(found),
     }
     if friction is not None and response is not None:
-        machine = wired_machine(transmission, teeth, harmonics, friction=friction)
+        machine = wired_machine(transmission, teeth, harmonics, friction=friction, law=law)
         rest = content["meshes"]["bin"] == 0
         moving = losses_in_motion(machine, response, speed_rpm)
         content["meshes"].loc[rest, "loss_in_motion_w"] = content["meshes"].loc[rest, "mesh"].map(moving)
@@ -95,9 +96,10 @@ def _states(
     teeth: ToothNumbers,
     strength: Strength | None,
     speed_rpm: float,
+    law: Arrays | None,
 ) -> Iterator[MachineState]:
     """The machine at its nominal load at rest, then in every bin of its duty cycle."""
-    machine = wired_machine(transmission, teeth, harmonics)
+    machine = wired_machine(transmission, teeth, harmonics, law=law)
     table = mesh_table(machine, speed_rpm)
     table = table[table["flank"] != "open"]
     torque = table["pinion_torque_n_m"].abs().to_numpy()
@@ -107,7 +109,7 @@ def _states(
         return
     for number, one in enumerate(strength.duty, start=1):
         rows = duty_loads[duty_loads["bin"] == number]
-        machine = wired_machine(at_mesh_torque(transmission, one.torque_n_m), teeth, harmonics)
+        machine = wired_machine(at_mesh_torque(transmission, one.torque_n_m), teeth, harmonics, law=law)
         arm = machine.layout.pinion_arm
         mean = arm * rows["mean_force_n"].to_numpy()
         peak = arm * strength.application_factor * rows["largest_force_n"].to_numpy()

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 
+from facegear.arrays import Arrays
 from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
 from facegear.config.transmission import Transmission
@@ -21,11 +22,13 @@ def modal(
     source: str,
     definition: str,
     harmonics: pd.DataFrame | None = None,
+    law: Arrays | None = None,
 ) -> Outcome:
     """`frequencies`, `shapes` and `contacts` (tables) of the machine with the mean mesh stiffness (N/m).
 
     With the stiffness stage's `harmonics` it is the mean of the `definition` asked for, local or average, at
-    the operating load; without, the config's own mean. Raises ConfigError without either.
+    the operating load; without, the config's own mean. With the arrays `law` of stage mesh_law every mesh has
+    its local stiffness under its own load instead. Raises ConfigError without any.
     """
     if harmonics is None:
         mean = mean_stiffness
@@ -35,7 +38,7 @@ def modal(
     if mean is None:
         raise ConfigError("mesh_stiffness.mean_n_per_m", None, "given where k(t) is not computed")
     constant, none = Harmonics(np.zeros(1), np.array([mean])), Harmonics(np.zeros(1), np.zeros(1))
-    machine = wired_machine(transmission, teeth, constant, unloaded=none)
+    machine = wired_machine(transmission, teeth, constant, unloaded=none, law=law)
     found = vibrating_machine(machine)
     modes, contacts = found.modes, contact_table(machine, found, told)
     rigid = int((modes.frequencies == 0.0).sum())
@@ -45,9 +48,11 @@ def modal(
         "shapes": shape_table(machine.linear.labels, modes),
         "contacts": contacts,
     }
+    closed = contacts.loc[contacts["state"].isin(["drive", "back", "wedged"]), "stiffness_n_per_m"]
+    size = f"{mean:.4g}" if law is None else f"{closed.min():.4g} to {closed.max():.4g}"
     summary = (
         f"{rigid} rigid body modes, {elastic.size} from {elastic[0]:.1f} to {elastic[-1]:.1f} Hz, with a "
-        f"mesh stiffness of {mean:.4g} N/m ({told})"
+        f"mesh stiffness of {size} N/m ({told})"
     )
     return Outcome(content, summary + _remarks(contacts, found.decided))
 

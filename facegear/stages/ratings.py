@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from facegear.arrays import Arrays
 from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
 from facegear.config.transmission import Transmission
@@ -10,10 +11,14 @@ from facegear.transmission.ratings import body_table, mesh_table, number_table, 
 
 
 def ratings(
-    harmonics: pd.DataFrame, transmission: Transmission, teeth: ToothNumbers, speed_rpm: float
+    harmonics: pd.DataFrame,
+    transmission: Transmission,
+    teeth: ToothNumbers,
+    speed_rpm: float,
+    law: Arrays | None = None,
 ) -> Outcome:
     """`ratings`, `bodies` and `meshes` (tables). Raises NotConverged."""
-    machine = wired_machine(transmission, teeth, harmonics)
+    machine = wired_machine(transmission, teeth, harmonics, law=law)
     found = rated(machine, speed_rpm)
     content = {
         "ratings": number_table(found),

@@ -16,6 +16,7 @@ from facegear.arrays import Array
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.law import MeshLaw
 from facegear.mesh_law.linear import linear_law
+from facegear.mesh_law.load_dependent import LoadDependentLaw, load_dependent_law
 from facegear.transmission.assembly import assembly
 from facegear.transmission.layout import Layout, Side
 from facegear.transmission.machine import Machine, OpenFlanks
@@ -88,7 +89,40 @@ def _line_contacts(machine: Machine) -> MeshContacts:
 
 def flank_law(machine: Machine) -> MeshLaw:
     """The law of all drive flanks, then all back flanks: the machine's own, or else its mesh stiffness."""
-    return linear_law(stiffness_series(machine)) if machine.law is None else machine.law
+    if machine.law is not None:
+        return machine.law
+    return linear_law(stiffness_series(machine)) if machine.tables is None else _tables_of_flanks(machine)
+
+
+def past_law(machine: Machine, cycles: Array, flank_forces: Array) -> Array:
+    """Fraction of positions (2 meshes,) at which flanks (K, 2 meshes), N, are pressed by more than their law
+    has at its last level; `cycles` (K,): mesh cycles from the start.
+    """
+    law = flank_law(machine)
+    if law.straight:
+        return np.zeros(law.contacts)
+    places = np.asarray(np.round(np.mod(cycles, 1.0), 9), dtype=np.float64)
+    phases, where = np.unique(places, return_inverse=True)
+    last = law.force(phases, np.repeat(law.levels[-1:], phases.size, axis=0))
+    return np.asarray((flank_forces > last[where]).mean(axis=0))
+
+
+def _tables_of_flanks(machine: Machine) -> LoadDependentLaw:
+    """The tables of all flanks, each as its mesh passes through the cycle."""
+    assert machine.tables is not None
+    gears = [machine.tables[g] for _, g in machine.layout.meshes]
+    factors = machine.imperfections.stiffness.tolist()
+    lags = _lags(machine)
+    drive = [one.drive.scaled(factor) for one, factor in zip(gears, factors, strict=True)]
+    back = [one.back.mirrored().scaled(factor) for one, factor in zip(gears, factors, strict=True)]
+    return load_dependent_law(
+        [table.shifted(lag) for table, lag in zip([*drive, *back], 2 * lags, strict=True)]
+    )
+
+
+def _lags(machine: Machine) -> list[float]:
+    """Lag of every mesh in the mesh cycle, in mesh periods."""
+    return [float(lag) for lag in np.round(machine.phases, 12) % 1.0]
 
 
 @lru_cache(maxsize=16)
@@ -96,8 +130,11 @@ def line_law(machine: Machine) -> MeshLaw:
     """The law of meshes whose two flanks share one line of action, as equation (13) is printed."""
     if machine.law is not None:
         return machine.law
-    lags = np.round(machine.phases, 12) % 1.0
-    return linear_law([machine.stiffness.shifted(float(lag)) for lag in lags])
+    lags = _lags(machine)
+    if machine.tables is None:
+        return linear_law([machine.stiffness.shifted(lag) for lag in lags])
+    drive = [machine.tables[g].drive for _, g in machine.layout.meshes]
+    return load_dependent_law([table.shifted(lag) for table, lag in zip(drive, lags, strict=True)])
 
 
 def error_series(machine: Machine) -> list[Harmonics]:

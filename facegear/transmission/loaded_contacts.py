@@ -9,8 +9,9 @@ from enum import StrEnum
 
 import numpy as np
 
-from facegear.arrays import Array
-from facegear.transmission.flanks import constant_errors, flank_gaps
+from facegear.arrays import Array, Mask
+from facegear.mesh_law.law import past_levels
+from facegear.transmission.flanks import constant_errors, flank_gaps, flank_law
 from facegear.transmission.machine import Machine
 
 NOTHING, LOADED = 1e-9, 1e-6
@@ -32,10 +33,14 @@ class Contact(StrEnum):
 class LoadedContacts:
     """Forces under the mean torques: flanks (2 meshes,), drive flanks first, and rings (pinions,), N.
 
+    stiffness (2 meshes,): slope of each flank's force there, N/m, or what it would be in contact; past_law
+    (2 meshes,): whether it is pressed in past the last level of its law.
     rings and places (pinions, 2), m: nan where a bearing has no play.
     """
 
     flanks: Array
+    stiffness: Array
+    past_law: Mask
     rings: Array
     places: Array
 
@@ -59,29 +64,34 @@ class LoadedContacts:
 
 
 def loaded_contacts(machine: Machine) -> LoadedContacts:
-    """Contacts of geometric meshes at mean stiffness with constant errors. Raises NotConverged."""
+    """Contacts of geometric meshes with the mean law and constant errors. Raises NotConverged."""
     pinions = len(machine.layout.pinions)
     rings, places = np.full(pinions, np.nan), np.full((pinions, 2), np.nan)
     forces = forces_by_active_sets(machine)
+    constant = machine.stiffness.mean * np.tile(machine.imperfections.stiffness, 2)
     if forces is not None:
-        return LoadedContacts(forces, rings, places)
+        return LoadedContacts(forces, constant, np.zeros(constant.size, bool), rings, places)
     from facegear.transmission.statics import bearing_forces, mean_equilibrium  # compiled
 
     found = mean_equilibrium(machine)
     ringed = machine.linear.rings.body
     rings[ringed] = np.hypot(*bearing_forces(machine, found)[0, ringed, :2].T)
     places[ringed] = found.displacements[0, machine.linear.ring_places]
-    return LoadedContacts(found.flank_forces[0], rings, places)
+    over = machine.linear.rows @ found.displacements[0] - constant_errors(machine) - flank_gaps(machine)
+    law, pressed = flank_law(machine).mean(), np.maximum(over, 0.0)[None]
+    stiffness = constant if machine.constant_stiffness else law.slope(np.zeros(1), pressed)[0]
+    return LoadedContacts(found.flank_forces[0], stiffness, past_levels(law, pressed) > 0.0, rings, places)
 
 
 def forces_by_active_sets(machine: Machine) -> Array | None:
     """Flank forces (2 meshes,) at mean stiffness, N: the statics of one position without compiled code.
 
     Each step solves the springs of the flanks that were closed after the last one. None for bearings with
-    play, and where the flanks do not settle or leave a loaded body free.
+    play or a stiffness that depends on the load, and where the flanks do not settle or leave a loaded body
+    free.
     """
     linear = machine.linear
-    if linear.rings.body.size:
+    if linear.rings.body.size or not machine.constant_stiffness:
         return None
     scale = 1.0 / np.sqrt(linear.mass.diagonal())
     directions = linear.rows * scale

@@ -27,7 +27,8 @@ class VibratingMachine:
 
 
 def loaded_modes(machine: Machine, speed_rpm: float = 0.0) -> Modes:
-    """Modes at a pinion speed with mean mesh stiffness on the flanks that carry load.
+    """Modes at a pinion speed with the flanks that carry load at their mean stiffness, or at its slope under
+    their load where it depends on that.
 
     Bearings with play are as they are pressed. An open mesh stays open, a wedged one has both flanks;
     undecided contacts count as open. Raises NotConverged.
@@ -53,8 +54,8 @@ def vibrating_machine(machine: Machine, speed_rpm: float = 0.0) -> VibratingMach
 
 def _modes(machine: Machine, contacts: LoadedContacts, holding: tuple[Contact, ...], speed: float) -> Modes:
     """Modes with the contacts whose state is among `holding`."""
-    stiffness = machine.stiffness.mean * np.tile(machine.imperfections.stiffness, 2)
-    pressed = np.where([state in holding for state in contacts.flank_states()], stiffness, 0.0)
+    closed = [state in holding for state in contacts.flank_states()]
+    pressed = np.where(closed, contacts.stiffness, 0.0)
     meshes = (pressed * machine.linear.rows.T) @ machine.linear.rows
     return modes_of(_pressed_bearings(machine, contacts, holding), meshes, speed)
 

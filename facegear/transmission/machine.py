@@ -10,6 +10,7 @@ from facegear.arrays import Array
 from facegear.errors import InvalidInput
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.law import MeshLaw
+from facegear.mesh_law.load_dependent import ForceTable
 from facegear.transmission.imperfections import Imperfections, perfect
 from facegear.transmission.layout import Layout, Role
 from facegear.transmission.linear_model import Bodies, LinearModel
@@ -43,6 +44,16 @@ class Damping:
 
 
 @dataclass(frozen=True, eq=False)
+class FlankTables:
+    """Load-dependent forces of the flanks in a face gear's meshes over the reference's mesh cycle, each as
+    those of a drive flank: the back flank is the drive flank of the pair in a mirror.
+    """
+
+    drive: ForceTable
+    back: ForceTable
+
+
+@dataclass(frozen=True, eq=False)
 class Machine:
     """Layout, torques on the bodies (N m), reference mesh stiffness and error, half backlash (m).
 
@@ -50,8 +61,9 @@ class Machine:
     mesh periods, or by its stiffness phase if there are none. `imperfections` default to none. `forces`
     (bodies, 3): external ones on the bodies along x, y, z, N, none by default. `law`: of all contacts, as
     facegear.transmission.flanks.mesh_contacts orders them; without one their force is the stiffness times how
-    far they are pressed in, and with one `stiffness` is only the scale of it. `friction` of the meshes
-    disturbs the motion, and nothing at rest. `bodies`: what makes more of them than rigid masses on springs.
+    far they are pressed in, and with one `stiffness` is only the scale of it. `tables`: of the flanks at each
+    gear, from which that law is made where it depends on the load. `friction` of the meshes disturbs the
+    motion, and nothing at rest. `bodies`: what makes more of them than rigid masses on springs.
     """
 
     layout: Layout
@@ -65,6 +77,7 @@ class Machine:
     imperfections: Imperfections = None  # type: ignore[assignment]
     forces: Array = None  # type: ignore[assignment]
     law: MeshLaw | None = None
+    tables: tuple[FlankTables, ...] | None = None
     friction: MeshFriction | None = None
     bodies: Bodies | None = None
 
@@ -91,6 +104,11 @@ class Machine:
         damping = (self.damping.mass, self.damping.bearing)
         lumped = lumped_model(self.layout, self.torques, self.forces, damping, self.imperfections.clearance)
         return lumped if self.bodies is None else self.bodies(lumped)
+
+    @property
+    def constant_stiffness(self) -> bool:
+        """Whether the force of every contact is proportional to how far it is pressed in."""
+        return self.law is None and self.tables is None
 
     @property
     def pushes(self) -> Array:

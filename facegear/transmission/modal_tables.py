@@ -51,8 +51,12 @@ def contact_table(machine: Machine, found: VibratingMachine, told: str) -> pd.Da
         return pd.DataFrame(rows, columns=list(CONTACT_COLUMNS))
     count = len(layout.mesh_names)
     states, drive, back = contacts.flank_states(), *np.split(contacts.flanks, 2)
+    on_drive, on_back = np.split(contacts.stiffness, 2)
+    past = contacts.past_law.reshape(2, count).any(axis=0)
+    ways = np.where(past, f"{told}, past the law's last level", told)
+    stiffness = np.where(back > drive, on_back, on_drive)
     rows = [
-        (name, _mesh_state(states[m], states[count + m]), drive[m] - back[m], stiffness[m], told)
+        (name, _mesh_state(states[m], states[count + m]), drive[m] - back[m], stiffness[m], ways[m])
         for m, name in enumerate(layout.mesh_names)
     ]
     rows += [

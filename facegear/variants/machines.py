@@ -14,6 +14,7 @@ from facegear.config.dynamics import Accuracy, settings
 from facegear.config.keys import keys_named
 from facegear.config.load_sharing import LoadSharing, sharing_options
 from facegear.config.lumped_model import ToothNumbers, machine
+from facegear.config.mesh_law import flank_tables
 from facegear.config.transmission import Transmission
 from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.sweeps.jump_margin import jump_margin
@@ -60,7 +61,8 @@ class VariedMachine:
     """The machine that many are made from, as plain config values: what samples and designs share.
 
     With `pair`, the sections that contact needs, and `flanks`, the compliance of its bodies, every tooth pair
-    that differs is put into contact; without, all have the stiffness of `harmonics`.
+    that differs is put into contact; without, all have the stiffness of `harmonics`, or the arrays `law` of
+    stage mesh_law where it depends on the load.
     """
 
     harmonics: pd.DataFrame
@@ -71,6 +73,7 @@ class VariedMachine:
     tolerances: Values | None
     pair: Values | None = None
     flanks: Flanks = field(default_factory=dict)
+    law: Arrays | None = None
 
     @classmethod
     def of_stage(cls, flanks: Sequence[Arrays] = (), **given: Any) -> Self:
@@ -80,7 +83,7 @@ class VariedMachine:
     @cached_property
     def meshes(self) -> Meshes:
         """The mesh of each one's tooth pair."""
-        return tooth_meshes(self.harmonics, self.pair, self.flanks)
+        return tooth_meshes(self.harmonics, self.pair, self.flanks, self.law)
 
     def columns(self, layout: Layout, question: Question, jumps: bool = False) -> tuple[str, ...]:
         """Names of what a machine is judged by."""
@@ -90,10 +93,13 @@ class VariedMachine:
     def identity(self, *parts: object) -> str:
         """Text that differs whenever one of the parts or a value of the machine does."""
         plain = {one.name: getattr(self, one.name) for one in fields(self) if one.name != "flanks"}
-        return identity(*parts, {**plain, "harmonics": self.harmonics.to_csv()})
+        law = {name: values.tolist() for name, values in (self.law or {}).items()}
+        return identity(*parts, {**plain, "harmonics": self.harmonics.to_csv(), "law": law})
 
 
-def tooth_meshes(harmonics: pd.DataFrame, pair: Values | None, flanks: Flanks) -> Meshes:
+def tooth_meshes(
+    harmonics: pd.DataFrame, pair: Values | None, flanks: Flanks, law: Arrays | None = None
+) -> Meshes:
     """One mesh for all, of `harmonics`; or by contact where `pair` holds the sections that it needs.
 
     `pair`: tooth_pair, mesh, contact, mesh_stiffness; `flanks`: the compliance of its bodies by name.
@@ -103,7 +109,7 @@ def tooth_meshes(harmonics: pd.DataFrame, pair: Values | None, flanks: Flanks) -
 
         return meshes_in_contact(pair, flanks)
     series, error = series_of(harmonics), unloaded_error(harmonics)
-    return lambda values: ToothMesh(ToothNumbers.of_config(values), series, error)
+    return lambda values: ToothMesh(ToothNumbers.of_config(values), series, error, law=law)
 
 
 def stored_flanks(arrays: Sequence[Arrays]) -> Flanks:
@@ -126,6 +132,8 @@ def judge(question: Question, meshes: Meshes, told: str) -> Judge:
         require_buildable(section, mesh.numbers)
         require_room(section, mesh.numbers)
         built = machine(section, mesh.numbers, mesh.stiffness, mesh.unloaded)
+        if mesh.law is not None:
+            built = replace(built, tables=flank_tables(mesh.law, built.layout))
         speed = values["dynamics"]["speed_rpm"]
         found = ask(built, speed)
         found |= mesh.quantities(found[PEAK])

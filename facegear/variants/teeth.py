@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from facegear.arrays import Arrays
 from facegear.config.lumped_model import ToothNumbers
 from facegear.harmonics.series import Harmonics
 from facegear.load_sharing.quantity_names import ERROR_HARMONIC, ERROR_RANGE, PRESSURE, ROOTS
@@ -22,7 +23,7 @@ class ToothMesh:
     """What a tooth pair means for its machine: k and e over a pitch, and the teeth's numbers.
 
     `backlash_added` (um): what the pair has more than the one of the config. `answers` where it was put into
-    contact.
+    contact. law: arrays of stage mesh_law where k depends on the load.
     """
 
     numbers: ToothNumbers
@@ -30,6 +31,7 @@ class ToothMesh:
     unloaded: Harmonics | None
     backlash_added: float = 0.0
     answers: PairAnswers | None = None
+    law: Arrays | None = None
 
     def in_machine(self, transmission: Values) -> dict[str, Any]:
         """Section `transmission` with the backlash of all meshes as this pair has it."""

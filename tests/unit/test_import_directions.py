@@ -19,14 +19,14 @@ MAY_IMPORT = {
     "harmonics": {"errors"},
     "mesh": {"geometry"},
     "contact": {"geometry", "mesh", "harmonics"},
-    "stiffness": {"harmonics"},
+    "stiffness": {"harmonics", "mesh_law"},
     "mesh_law": {"harmonics"},
     "transmission": {"harmonics", "mesh_law"},
     "dynamics": {"transmission", "harmonics", "mesh_law"},
     "load_sharing": {"dynamics", "transmission", "harmonics"},
     "config": {
         *("geometry", "mesh", "contact", "harmonics", "stiffness", "transmission", "dynamics"),
-        *("load_sharing", "scenarios", "strength", "lubrication"),
+        *("load_sharing", "scenarios", "strength", "lubrication", "mesh_law"),
     },
     "plots": {
         *("config", "geometry", "contact", "stiffness", "harmonics", "transmission"),

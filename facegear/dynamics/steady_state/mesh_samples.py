@@ -5,7 +5,7 @@ import numpy as np
 from facegear.arrays import Array, Mask
 from facegear.dynamics.integrator.system import System
 from facegear.harmonics.series import stacked_values
-from facegear.mesh_law.law import beyond_edges
+from facegear.mesh_law.law import beyond_edges, past_levels
 from facegear.transmission.flanks import NO_LOAD
 
 
@@ -48,6 +48,12 @@ def mesh_forces(system: System, each: Array, per_period: int) -> Array:
         return forces
     drive, back = np.split(forces, 2, axis=1)
     return drive - back
+
+
+def past_law(system: System, each: Array) -> Array:
+    """Fraction of samples (contacts,) at which a contact is pressed in past the last level of its law."""
+    contacts = system.contacts
+    return past_levels(system.law, beyond_edges(each, system.lower[:contacts], system.upper[:contacts]))
 
 
 def mesh_shares(system: System, shares: Array, each: Array) -> Array:

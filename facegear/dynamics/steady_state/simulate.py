@@ -16,7 +16,13 @@ from facegear.dynamics.motion import Motion, Settings, State
 from facegear.dynamics.steady_state.averages import Averages, Moments
 from facegear.dynamics.steady_state.closing import FALLING, SMALL, closing, wanders
 from facegear.dynamics.steady_state.exponent import Exponent, Growth, largest_exponent
-from facegear.dynamics.steady_state.mesh_samples import by_mesh, each_deflection, mesh_forces, mesh_shares
+from facegear.dynamics.steady_state.mesh_samples import (
+    by_mesh,
+    each_deflection,
+    mesh_forces,
+    mesh_shares,
+    past_law,
+)
 from facegear.dynamics.steady_state.prepare import prepare
 from facegear.dynamics.steady_state.settle import Settled, settle
 from facegear.dynamics.steady_state.statistics import drifts
@@ -71,6 +77,11 @@ class SteadyState:
         if self.system.two_flanks:
             each = each_deflection(self.system, self.coordinates, self.per_period)
         return mesh_forces(self.system, each, self.per_period)
+
+    @property
+    def past_law(self) -> Array:
+        """Fraction of samples (contacts,) at which a contact is pressed in past the last level of its law."""
+        return past_law(self.system, each_deflection(self.system, self.coordinates, self.per_period))
 
     @property
     def moments(self) -> Moments:

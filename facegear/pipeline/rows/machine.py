@@ -1,7 +1,7 @@
 """The machine at rest: ratings and modes."""
 
 from facegear.pipeline import asked
-from facegear.pipeline.rows.shared import HARMONICS, MACHINE, SPEED
+from facegear.pipeline.rows.shared import HARMONICS, LAW, MACHINE, SPEED
 from facegear.pipeline.stage import Figures, File, From, Stage, from_stage
 
 ROWS = (
@@ -23,7 +23,7 @@ ROWS = (
             "source": "mesh_stiffness.source",
             "definition": "modal.stiffness",
         },
-        upstream={"harmonics": From("stiffness", "harmonics", when=asked.modes_from_contact)},
+        upstream={"harmonics": From("stiffness", "harmonics", when=asked.modes_from_contact), **LAW},
         files={
             "frequencies": File("modal/frequencies.csv", ("order", "frequency_hz", "symbols", "class")),
             "shapes": File("modal/shapes.csv", ("order", "body", "dof", "relative")),

@@ -12,6 +12,8 @@ SWEEP: Needs = {"sweep": "dynamics.sweep"}
 SHARING: Needs = {**MACHINE, **ACCURACY, **SPEED, "options": "load_sharing"}
 
 FLANKS = {name: From("compliance", "arrays", where={"body": name}) for name in asked.BODIES}
-HARMONICS = from_stage("stiffness", "harmonics")
+LAW = {"law": From("mesh_law", "law", when=asked.load_dependent)}
+HARMONICS = {**from_stage("stiffness", "harmonics"), **LAW}
+"""What meshes transmit."""
 MOVING = {**HARMONICS, "friction": From("lubrication", "excitation", when=asked.friction_in_motion)}
 """What stages take that set the machine in motion."""

@@ -120,6 +120,20 @@ ROWS = (
         priority=75,
     ),
     Stage(
+        name="mesh_law",
+        title="Load-dependent mesh law",
+        needs={**PAIR, "contact": "contact", "mesh_stiffness": "mesh_stiffness"},
+        upstream={**FLANKS, **from_stage("contact", "ltca")},
+        files={
+            "law": File("stiffness/law.npz", "facegear.stiffness.load_dependent:LAW_ARRAYS"),
+            "levels": File("stiffness/law.csv", "facegear.stiffness.load_dependent:LEVEL_COLUMNS"),
+        },
+        asked=asked.load_dependent,
+        memory_mb=4000,
+        minutes=30,
+        priority=74,
+    ),
+    Stage(
         name="load_dependence",
         title="Stiffness against load",
         upstream=from_stage("contact", "ltca"),

@@ -1,0 +1,22 @@
+"""The load-dependent law of the meshes."""
+
+from typing import ClassVar
+
+import pandas as pd
+
+from facegear.arrays import AnyArray
+from facegear.results.base import Result
+
+
+class MeshLawResult(Result):
+    """Force of every flank over phase and deflection, as contact gives it."""
+
+    STAGE: ClassVar = "mesh_law"
+
+    def table(self) -> pd.DataFrame:
+        """Mean force and slope at every level, with the error of the table against contact between levels."""
+        return self.content["levels"].copy()
+
+    def arrays(self) -> dict[str, AnyArray]:
+        """Fourier series of force and slope at every level, as `stiffness/law.npz` holds them."""
+        return {name: values.copy() for name, values in self.content["law"].items()}

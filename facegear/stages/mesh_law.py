@@ -1,0 +1,86 @@
+"""The load-dependent mesh law: contact at many torques, from light touch to the largest, as a table."""
+
+import numpy as np
+import pandas as pd
+
+from facegear.arrays import Arrays
+from facegear.config.contact import Contact, contact_plan
+from facegear.config.stiffness import MeshStiffness, stiffness_request
+from facegear.config.tooth_pair import ToothPair, pair
+from facegear.contact.gear_flank import from_arrays
+from facegear.contact.ltca import ContactModel, even_positions, loaded_contact
+from facegear.contact.options import ContactPlan
+from facegear.contact.pair import contact_model
+from facegear.contact.position import LoadedPosition
+from facegear.errors import FacegearError
+from facegear.geometry.flank_errors import distinct_errors
+from facegear.stages.outcome import Outcome
+from facegear.stiffness.curve import load_table
+from facegear.stiffness.load_dependent import (
+    FlankContacts,
+    fitted_tables,
+    law_arrays,
+    law_torques,
+    level_table,
+)
+from facegear.stiffness.request import StiffnessRequest
+
+
+def mesh_law(
+    pinion: Arrays,
+    face_gear: Arrays,
+    ltca: pd.DataFrame,
+    tooth_pair: ToothPair,
+    contact: Contact,
+    mesh_stiffness: MeshStiffness,
+) -> Outcome:
+    """`law` (arrays) and `levels` (table) of every flank that assembly errors part from the others.
+
+    ltca: table of stage contact, which says what source fem_scaled scales by. Raises NotConverged naming
+    position and torque, FacegearError where teeth interfere.
+    """
+    plan = contact_plan(contact)
+    request = stiffness_request(mesh_stiffness)
+    design = pair(tooth_pair).design
+    model = contact_model(design, from_arrays(pinion), from_arrays(face_gear))
+    different, numbers = distinct_errors(design.assembly)
+    scale = _scale(ltca, request)
+    solved = [_contacts(model.assembled(one), plan, plan.torques[-1] / scale) for one in different]
+    tables, errors = fitted_tables(solved, request.kept)
+    tables = [table.scaled(scale) for table in tables]
+    levels = level_table(tables, errors, numbers, design.pinion_base_radius)
+    rms, largest = (100.0 * max(getattr(one, name) for one in errors) for name in ("rms", "largest"))
+    told = (
+        f"{tables[0].levels.size - 1} levels up to {1e6 * tables[0].levels[-1]:.3g} um, "
+        f"{tables[0].forces.shape[2] - 1} orders, times {scale:.4f}; against contact between the levels "
+        f"{rms:.2g} % rms, {largest:.2g} % at most of the largest mean force"
+    )
+    return Outcome({"law": law_arrays(tables, numbers), "levels": levels}, told)
+
+
+def _contacts(model: ContactModel, plan: ContactPlan, largest: float) -> FlankContacts:
+    torques = law_torques(largest)
+    found = loaded_contact(model, even_positions(plan.positions), torques, plan.options)
+    if any(np.isnan(one.k_average) for one in found):
+        raise FacegearError("mesh law: there is none, as the teeth interfere")
+
+    def by_torque(values: list[float]) -> np.ndarray:
+        return np.array(values).reshape(plan.positions, len(torques)).T
+
+    def approach(one: LoadedPosition) -> float:
+        return one.ste - one.unloaded
+
+    return FlankContacts(
+        np.array(torques) / model.design.pinion_base_radius,
+        by_torque([approach(one) for one in found]),
+        by_torque([one.k_local for one in found]),
+    )
+
+
+def _scale(ltca: pd.DataFrame, request: StiffnessRequest) -> float:
+    """What source fem_scaled multiplies forces and slopes by: as stage stiffness multiplies k."""
+    if request.source != "fem_scaled":
+        return 1.0
+    assert request.mean is not None
+    assert request.torque is not None
+    return request.mean / float(load_table(ltca).at(request.torque, request.definition).mean())

@@ -1,0 +1,87 @@
+"""Tables of forces from contact solutions, here of a formula: what they meet, and what they say of errors."""
+
+import numpy as np
+import pytest
+
+from facegear.arrays import Array
+from facegear.errors import FacegearError
+from facegear.mesh_law.load_dependent import load_dependent_law
+from facegear.stiffness.load_dependent import (
+    FlankContacts,
+    fitted_tables,
+    force_table,
+    law_arrays,
+    law_torques,
+    level_table,
+    table_error,
+)
+
+PHASES = np.arange(32) / 32
+C, N = 2.4e11, 1.5
+
+
+def contacts(largest=24e3, depth=0.05, bump=0.0) -> FlankContacts:
+    """C (1 + depth cos) x^N solved for x at the forces of `law_torques`; `bump` scatters the deflections."""
+    forces = np.array(law_torques(largest))
+    factor = C * (1.0 + depth * np.cos(2.0 * np.pi * PHASES))
+    deflections = (forces[:, None] / factor) ** (1.0 / N)
+    deflections[1::2] *= 1.0 + bump
+    return FlankContacts(forces, deflections, N * forces[:, None] / deflections)
+
+
+def exact(amounts: Array) -> Array:
+    return C * (1.0 + 0.05 * np.cos(2.0 * np.pi * PHASES)) * amounts**N
+
+
+def test_torques_begin_with_a_light_touch_and_end_beyond_what_the_law_is_to_reach():
+    torques = np.array(law_torques(1000.0))
+    assert torques[-1] > 1000.0
+    assert torques[0] < 0.05 * torques[-1]
+    assert (np.diff(torques) > 0.0).all()
+
+
+def test_a_table_meets_the_law_that_its_contacts_come_from_and_reaches_the_torque_at_every_phase():
+    (table,), (error,) = fitted_tables([contacts()], 8)
+    assert error.meets_aim
+    law = load_dependent_law([table])
+    for amount in np.linspace(table.levels[4], table.levels[-1], 23):
+        found = law.force(PHASES, np.full((32, 1), amount))[:, 0]
+        np.testing.assert_allclose(found, exact(np.full(32, amount)), rtol=0, atol=1e-3 * error.force)
+    reached = law.force(PHASES, np.full((32, 1), table.levels[-1]))
+    assert reached.min() >= 24e3
+
+
+def test_below_the_first_solution_the_force_falls_with_the_exponent_that_it_has_there():
+    (table,), _ = fitted_tables([contacts()], 8)
+    law = load_dependent_law([table])
+    for part in (0.5, 0.25, 0.14):
+        amount = np.full(32, part * table.levels[4])
+        found = law.force(PHASES, amount[:, None])[:, 0]
+        np.testing.assert_allclose(found, exact(amount), rtol=1e-2)
+
+
+def test_a_table_of_more_levels_is_taken_only_where_fewer_miss_the_aim():
+    fine, coarse = contacts(depth=0.1), contacts(depth=0.1, bump=0.004)
+    counts = [fitted_tables([one], 8)[0][0].levels.size for one in (fine, coarse)]
+    assert counts[0] < counts[1]
+    error = table_error(force_table(coarse.every(2), 8), coarse)
+    assert not error.meets_aim
+    assert error.largest > error.rms > 1e-4
+
+
+def test_contacts_whose_force_falls_are_refused():
+    wrong = contacts()
+    with pytest.raises(FacegearError, match="falls"):
+        force_table(FlankContacts(wrong.forces, wrong.deflections, -wrong.slopes), 8)
+
+
+def test_every_flank_has_its_table_in_arrays_and_in_csv():
+    tables, errors = fitted_tables([contacts(), contacts(depth=0.2)], 4)
+    numbers = np.array([[0, 1], [0, 0]])
+    arrays = law_arrays(tables, numbers)
+    np.testing.assert_array_equal(arrays["level_m"][1], tables[1].levels)
+    rows = level_table(tables, errors, numbers, 0.04)
+    assert len(rows) == 4 * tables[0].levels.size
+    back = rows.query("gear == 'upper' and flank == 'back'")
+    np.testing.assert_allclose(back["force_n"], tables[1].forces[:, 1, 0])
+    np.testing.assert_allclose(back["torque_n_m"], 0.04 * tables[1].forces[:, 1, 0])
