@@ -13,6 +13,13 @@ def power_table(levels=400, depth=0.0, first=1e-5, last=4.0, size=1.0, exponent=
     return ForceTable(x, np.multiply.outer(size * x**exponent, factor), np.multiply.outer(slopes, factor))
 
 
+def linear_table(intervals, last, size=1.0):
+    """size x at even levels."""
+    x = np.linspace(0.0, last, intervals + 1)
+    mean = np.array([[0.0], [size]])
+    return ForceTable(x, np.multiply.outer(x, mean), np.multiply.outer(np.ones(x.size), mean))
+
+
 def two_pairs(levels, orders, exponent=1.0, last=2.2):
     """sum max(x - g, 0)^exponent of two pairs, g = (1 -+ cos(phase / 2)) / 2, at even levels.
 
