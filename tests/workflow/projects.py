@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from snakemake_server import Server
+
 from facegear.pipeline.table import STAGES
 from facegear.provenance.fingerprint import fingerprint, remember, stage_fingerprint
 
@@ -42,16 +44,17 @@ class Project:
         return Project(folder, self.sources)
 
     def command(self, *arguments: str) -> list[str]:
+        """Of a process for itself, to be watched or killed."""
+        return [sys.executable, "-m", "snakemake", *self._all(*arguments)]
+
+    def _all(self, *arguments: str) -> list[str]:
         return [
-            *(sys.executable, "-m", "snakemake", "--cores", "2", "--nocolor"),
-            *("--snakefile", str(self.sources / "Snakefile"), "--directory", str(self.folder)),
-            *arguments,
+            *("--cores", "2", "--nocolor", "--snakefile", str(self.sources / "Snakefile")),
+            *("--directory", str(self.folder), *arguments),
         ]
 
     def run(self, *arguments: str, check: bool = True) -> subprocess.CompletedProcess[str]:
-        done = subprocess.run(
-            self.command(*arguments), capture_output=True, text=True, env=environment(), check=False
-        )
+        done = server().start(self._all(*arguments), environment())
         if check:
             assert done.returncode == 0, f"{arguments}\n{done.stdout[-3000:]}\n{done.stderr[-6000:]}"
         return done
@@ -60,6 +63,11 @@ class Project:
         """Names of the rules that a dry run would execute."""
         done = self.run("-n", *arguments)
         return rules_in(done.stdout + done.stderr) - {"all"}
+
+
+@cache
+def server() -> Server:
+    return Server(ROOT)
 
 
 @cache

@@ -1,0 +1,80 @@
+"""Snakemake started in children of a process that has imported it, since the imports are most of a dry run.
+
+`Server` is for the tests; as a program this file is the process that they ask. It serves until its standard
+input is closed, and it is no child of the tests, some of which end or await all of theirs.
+"""
+
+import atexit
+import gc
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from importlib import import_module
+from pathlib import Path
+
+MODULES = ("snakemake.cli", "nbformat", "smart_open", "facegear.config.cases", "facegear.pipeline.needs")
+"""What every start imports. The Snakefile of another checkout imports its own `facegear` instead."""
+
+
+class Server:
+    """The process that starts Snakemake, for the tests of one worker."""
+
+    def __init__(self, root: Path) -> None:
+        command = [sys.executable, __file__]
+        self._process = subprocess.Popen(
+            command, cwd=root, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
+        self._process.wait()  # for the parent of the one that serves
+        atexit.register(self._process.stdin.close)
+
+    def start(
+        self, arguments: Sequence[str], environment: Mapping[str, str]
+    ) -> subprocess.CompletedProcess[str]:
+        """What `python -m snakemake` with these arguments gives, started in the present folder."""
+        with tempfile.TemporaryDirectory() as folder:
+            out, error = Path(folder, "out"), Path(folder, "error")
+            asked = (arguments, dict(environment), os.getcwd(), str(out), str(error))
+            print(json.dumps(asked), file=self._process.stdin, flush=True)
+            code = int(self._process.stdout.readline())
+            return subprocess.CompletedProcess(arguments, code, out.read_text(), error.read_text())
+
+
+def serve() -> list[str]:
+    """Answer each request with the exit code of a child; returns the arguments in that child alone."""
+    for request in sys.stdin:
+        arguments, environment, folder, out, error = json.loads(request)
+        child = os.fork()
+        if not child:
+            for number, file in enumerate((os.devnull, out, error)):
+                opened = os.open(file, os.O_RDWR | os.O_CREAT)
+                os.dup2(opened, number)
+                os.close(opened)
+            os.chdir(folder)
+            os.environ.clear()
+            os.environ.update(environment)
+            return arguments
+        print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
+    sys.exit()
+
+
+def main() -> None:
+    """Serve, and in each child be what `python -m snakemake` is."""
+    sys.path[0] = os.getcwd()
+    for module in MODULES:
+        import_module(module)
+    from snakemake import cli
+
+    cli.get_argument_parser()  # finds the plugins
+    gc.freeze()
+    arguments = serve()
+    sys.path[0] = os.getcwd()
+    sys.argv = [str(Path(cli.__file__).with_name("__main__.py")), *arguments]
+    sys.orig_argv = [sys.executable, "-m", "snakemake", *arguments]
+    cli.main()
+
+
+if __name__ == "__main__" and os.fork() == 0:
+    main()
