@@ -9,6 +9,8 @@ from facegear.errors import ConfigError
 SPEED = "dynamics.speed_rpm"
 MACHINE = "transmission."
 PAIR = "tooth_pair."
+TEETH = ("pinion_teeth", "face_gear_teeth", "module_mm", "pressure_angle_deg")
+"""Keys of the tooth pair that the lumped model needs; its other data must not rerun modes or dynamics."""
 GAPS = ("assembly", "pinion.tip_relief", "pinion.root_relief", "pinion.lead_crowning")
 """Keys of the tooth pair that move unloaded flanks, and no node of the bodies."""
 MODULI = tuple(f"{body}material.young_modulus_gpa" for body in ("", "pinion.", "face_gear."))

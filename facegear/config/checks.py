@@ -12,13 +12,14 @@ from facegear.config.changes import (
     MACHINE,
     PAIR,
     SPEED,
+    TEETH,
     WITHOUT_MESHING,
     movable,
     moves_pair,
     variable_part,
 )
 from facegear.config.contact import Contact
-from facegear.config.lumped_model import TEETH, ToothNumbers, given_torques, layout, other_gear_torque
+from facegear.config.lumped_model import ToothNumbers, given_torques, layout, other_gear_torque
 from facegear.config.search import Search
 from facegear.config.stiffness import MeshStiffness
 from facegear.config.studies import Study

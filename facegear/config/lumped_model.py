@@ -12,6 +12,7 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.config.bodies import GearBody, PinionBody, RunoutSection, SingleGear, SinglePinion
+from facegear.config.changes import TEETH
 from facegear.config.transmission import PinionPlace, SingleMesh, Transmission
 from facegear.config.transmission_error import error_series
 from facegear.errors import ConfigError
@@ -21,9 +22,6 @@ from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Body, FaceGear, Layout, Pinion, Role, Side, Tilt
 from facegear.transmission.machine import Damping, Machine, OpenFlanks, balanced_torques, pinion_torques
 from facegear.transmission.phases import PhaseConvention, mesh_phases
-
-TEETH = ("pinion_teeth", "face_gear_teeth", "module_mm", "pressure_angle_deg")
-"""Keys of tooth_pair that the lumped model needs; its other data must not rerun modes or dynamics."""
 
 
 @dataclass(frozen=True)

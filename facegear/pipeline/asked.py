@@ -1,16 +1,16 @@
-"""What a case asks for, and what of a stage's needs and inputs depends on the case: plain functions of it."""
+"""What a case asks for, and what of a stage's needs and inputs depends on the case: plain functions of it.
+
+The config is imported where it is asked: every job reads the table of stages, and few jobs need the config.
+"""
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from facegear.config.arguments import typed_arguments
 from facegear.config.changes import GAPS, moves_pair, without
-from facegear.config.modal import modes_need_contact
-from facegear.config.notes import turns
-from facegear.config.sharing_groups import group_kinds
-from facegear.config.tolerances import Design, Tolerances, chunks
-from facegear.load_sharing.quantity_names import of_contact
 from facegear.pipeline.stage import Case, Wildcards
+
+if TYPE_CHECKING:
+    from facegear.config.tolerances import Design
 
 BODIES = ("pinion", "face_gear")
 CONTACT = ("tooth_pair", "mesh", "contact")
@@ -47,6 +47,8 @@ def load_dependent(case: Case) -> bool:
 
 def modes_from_contact(case: Case) -> bool:
     """Whether modes take their stiffness from the contact analysis."""
+    from facegear.config.modal import modes_need_contact
+
     return modes_need_contact(case.values)
 
 
@@ -102,6 +104,8 @@ def branches(case: Case) -> bool:
 
 def shares_load(case: Case) -> bool:
     """Whether some meshes share a load."""
+    from facegear.config.sharing_groups import group_kinds
+
     return machine(case) and bool(group_kinds(case.values))
 
 
@@ -112,6 +116,8 @@ def hunting(case: Case) -> bool:
 
 def following(case: Case) -> bool:
     """Whether meshes are geometric and something has a runout or a cumulative pitch deviation."""
+    from facegear.config.notes import turns
+
     return hunting(case) and turns(case.values["transmission"])
 
 
@@ -143,10 +149,12 @@ def random_starts(case: Case) -> list[Wildcards]:
     return [{"number": str(number)} for number in range(max(len(speeds), 1))]
 
 
-def tolerance_chunks(design: Design) -> Callable[[Case], list[Wildcards]]:
+def tolerance_chunks(design: "Design") -> Callable[[Case], list[Wildcards]]:
     """Chunks of a design, named by the samples they hold."""
 
     def places(case: Case) -> list[Wildcards]:
+        from facegear.config.tolerances import Tolerances, chunks
+
         section = Tolerances.of_config(case.values["tolerances"])
         numbered = chunks(section, design)
         return [{"design": design, "first": str(first), "last": str(last)} for first, last in numbered]
@@ -181,6 +189,7 @@ def without_loads(case: Case) -> Any:
     pinion = case.values["tooth_pair"]["pinion"]
     if pinion is None or not pinion["lead_crowning"]["amount_um"]:
         return section
+    from facegear.config.arguments import typed_arguments
     from facegear.config.contact_setup import contact_setup
 
     plan = contact_setup(**typed_arguments(contact_setup, {key: case.values[key] for key in CONTACT})).plan
@@ -205,6 +214,8 @@ def searched_contact(case: Case) -> bool:
     They have where a variable, or a cause of a percentile, moves the tooth pair, or an objective asks for
     what contact alone tells.
     """
+    from facegear.load_sharing.quantity_names import of_contact
+
     section = case.values["search"]
     if section is None:
         return False

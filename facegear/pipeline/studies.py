@@ -3,12 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
-from facegear.config.cases import study_points
-from facegear.config.sharing_groups import group_kinds
-from facegear.config.studies import Study
 from facegear.pipeline import asked
 from facegear.pipeline.stage import Case, Wildcards
-from facegear.report.inputs import inputs_caption
 
 NOMINAL = ("nominal", "nominal", "as configured")
 """Study, point and label of the machine itself."""
@@ -17,6 +13,9 @@ Points = list[tuple[str, str, str]]
 
 def points(case: Case) -> Points:
     """Study, point and label of every point of the studies."""
+    from facegear.config.cases import study_points
+    from facegear.config.studies import Study
+
     studies = [Study.of_config(study) for study in case.values["studies"]]
     return [
         (planned.name, name, point.label)
@@ -47,6 +46,8 @@ def sharing_figures(case: Case) -> list[str]:
 
 def kinds_of_groups(case: Case) -> list[str]:
     """Kinds of groups that share a load; none without a machine."""
+    from facegear.config.sharing_groups import group_kinds
+
     return group_kinds(case.values) if asked.machine(case) else []
 
 
@@ -57,6 +58,8 @@ def titles(case: Case) -> list[str]:
 
 def captions(case: Case) -> list[str]:
     """What stands below the figures of each study: the inputs of the machine."""
+    from facegear.report.inputs import inputs_caption
+
     return [inputs_caption(case.values, study["figures"] is not None) for study in case.values["studies"]]
 
 

@@ -1,6 +1,6 @@
 """What stages of several chapters take: slices of the config, and files of earlier stages."""
 
-from facegear.config.lumped_model import TEETH
+from facegear.config.changes import TEETH
 from facegear.pipeline import asked
 from facegear.pipeline.stage import From, Needs, from_stage
 

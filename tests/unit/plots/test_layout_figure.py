@@ -6,7 +6,8 @@ import pandas as pd
 import pytest
 
 import facegear
-from facegear.config.lumped_model import TEETH, wired_layout
+from facegear.config.changes import TEETH
+from facegear.config.lumped_model import wired_layout
 from facegear.plots.gearbox_layout import HALF_FACE, layout_figure
 
 
