@@ -6,7 +6,7 @@ TOOLS := $(VENV)/.tools
 CLUSTER := $(VENV)/.cluster
 CORES ?= 2
 
-.PHONY: all env tools check test random lint docs release audit ci notebooks benchmarks peers lock clean
+.PHONY: all env tools check test random lint docs release audit ci notebooks benchmarks peers verification platforms lock clean
 
 all: check
 	$(BIN)/snakemake --cores $(CORES)
@@ -82,6 +82,14 @@ benchmarks: check tools
 
 peers: check tools
 	$(BIN)/snakemake --cores $(CORES) peers
+
+# The table of what was checked against which reference, for docs/verification.md.
+verification: check tools
+	$(BIN)/python -m pytest -n $(CORES) --dist loadgroup -m reference --references=validation/references.csv
+
+# How far these references move without MKL, on two threads and with old kernels.
+platforms: check tools
+	$(BIN)/python -m validation.platforms
 
 LOCK := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes pyproject.toml
 lock: env

@@ -4,6 +4,8 @@ import importlib.metadata
 import sys
 from pathlib import Path
 
+from sphinx.application import Sphinx
+
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
@@ -30,3 +32,21 @@ html_theme = "alabaster"
 html_theme_options = {"page_width": "1100px", "sidebar_width": "240px"}
 html_static_path = ["static"]
 html_css_files = ["tables.css"]
+
+
+def _with_references(app: Sphinx, name: str, source: list[str]) -> None:
+    """Put the stored references into the page that shows them."""
+    if name == "verification":
+        from validation import platforms, references
+
+        tables = {
+            "{references}": references.verification_table(references.read()),
+            "{platforms}": platforms.platform_table(platforms.read()),
+        }
+        for mark, table in tables.items():
+            source[0] = source[0].replace(mark, table)
+
+
+def setup(app: Sphinx) -> None:
+    """What Sphinx calls before it reads a page."""
+    app.connect("source-read", _with_references)

@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pandas as pd
 
+from facegear.pipeline.table import STAGES
+
 ROOT = Path(__file__).parents[1]
 STORED = Path(__file__).with_suffix(".csv")
 TESTS = ("tests", "validation/tests", "paper/tests")
@@ -30,6 +32,8 @@ class Kind(StrEnum):
 INDEPENDENT = tuple(kind for kind in Kind if kind is not Kind.CONVERGENCE)
 DECLARED = ("kind", "source", "capability", "module")
 """Columns that a test declares in its decorator `against`."""
+METHOD_TITLES = {"export": "Exact teeth for other programs", "loosest_tolerances": "Loosest tolerances"}
+"""Methods of the Gearbox that are no stage of their own."""
 EQUAL, NO_LESS = "equal", "at least"
 """Relations of a computed value to the expected one."""
 COLUMNS = (
@@ -99,3 +103,40 @@ def merged(stored: pd.DataFrame, fresh: pd.DataFrame, declared: set[str]) -> pd.
     """Fresh rows in place of the stored ones of the same tests, without rows of tests that are gone."""
     kept = stored[~stored["test"].isin(fresh["test"]) & stored["test"].isin(declared)]
     return pd.concat([kept, fresh], ignore_index=True) if len(kept) else fresh
+
+
+def verification_table(rows: pd.DataFrame) -> str:
+    """All references as Markdown: how many of each kind a stage has, then one table a stage.
+
+    A row that checks several stages stands below the first. Tests that declare a reference and have no
+    stored row are named at the end.
+    """
+    titles = {name: stage.title for name, stage in STAGES.items()}
+    several = rows["capability"].str.split()
+    names = [*titles, *sorted({name for names in several for name in names} - set(titles))]
+    counts = ["| capability | " + " | ".join(Kind) + " |", "|---" * (len(Kind) + 1) + "|"]
+    parts = []
+    for name in names:
+        checked = rows[[name in names for names in several]]
+        by_kind = checked["kind"].value_counts()
+        counts.append(f"| {name} | " + " | ".join(str(by_kind.get(kind, "-")) for kind in Kind) + " |")
+        own = rows[[name == names[0] for names in several]]
+        if len(own):
+            parts += ["", f"## {titles.get(name, METHOD_TITLES.get(name, name))} (`{name}`)", "", *_rows(own)]
+    missing = sorted(set(declarations()) - set(rows["test"]))
+    if missing:
+        parts += ["", "## Declared, and not stored yet", "", *(f"- `{test}`" for test in missing)]
+    return "\n".join([*counts, *parts, ""])
+
+
+def _rows(rows: pd.DataFrame) -> Iterator[str]:
+    yield "| quantity | kind: source | expected | computed | error | tolerance | module and test | made |"
+    yield "|---|---|---|---|---|---|---|---|"
+    for row in rows.sort_values(["module", "test", "quantity"]).itertuples():
+        sign = "at least " if row.relation == NO_LESS else ""
+        module, test = row.module.removeprefix("facegear."), row.test.partition("::")[2].removeprefix("test_")
+        yield (
+            f"| {row.quantity} | {row.kind}: {row.source} | {sign}{row.expected:.6g} | {row.computed:.6g} "
+            f"| {row.error:.1e} | {row.tolerance:.1e} | `{module}`: {test.replace('_', ' ')} "
+            f"| {row.date} {row.commit} |"
+        )

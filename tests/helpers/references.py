@@ -4,9 +4,11 @@
     def test_...():
         agrees("largest pressure, Pa", computed, expected, relative=1e-3)
 
-`pytest -m reference --references FILE` stores all comparisons that were made (`make verification`).
+`pytest -m reference --references=FILE` stores all comparisons that were made (`make verification`), and
+`--numbers=FILE` every number that was compared (`make platforms`).
 """
 
+import json
 import subprocess
 from datetime import date
 from pathlib import Path
@@ -21,6 +23,8 @@ ROWS = "reference"
 """Name of the rows in what a worker of xdist reports of a test."""
 _rows: dict[str, dict[str, float | str]] = {}
 """Quantities that the running test has compared, each at its largest error relative to the tolerance."""
+_numbers: list[tuple[str, list[float], list[float], list[float]]] = []
+"""All comparisons of the running test: quantity, computed and expected values, tolerances."""
 
 
 def against(kind: str, source: str, *, capability: str, module: str) -> pytest.MarkDecorator:
@@ -40,17 +44,20 @@ def agrees(
     """Assert that numbers or arrays agree, and record the element that agrees worst.
 
     `quantity`: name and unit; shapes broadcast; the larger of both tolerances holds for each element.
-    `at_least`: a computed value may exceed the expected one by any amount.
+    `at_least`: a computed value may exceed the expected one by any amount. Of complex numbers the record
+    holds the magnitude of the difference.
     """
-    given = np.broadcast_arrays(np.asarray(computed, dtype=float), np.asarray(expected, dtype=float))
-    values, references = (np.ravel(array) for array in given)
+    values, references = (np.ravel(given) for given in np.broadcast_arrays(computed, expected))
     assert values.size, f"{quantity}: nothing was compared"
     allowed = np.maximum(relative * np.abs(references), absolute)
+    if np.iscomplexobj(values) or np.iscomplexobj(references):
+        values, references = np.abs(values - references), np.zeros(values.shape)
     error = np.maximum(references - values, 0.0) if at_least else np.abs(values - references)
     parts = np.divide(error, allowed, out=np.where(error == 0.0, 0.0, np.inf), where=allowed > 0.0)
     worst = int(np.argmax(np.where(np.isnan(parts), np.inf, parts)))
     shown = f"computed {values[worst]:.12g}, expected {references[worst]:.12g} +- {allowed[worst]:.3g}"
     assert error[worst] <= allowed[worst], f"{quantity}: {shown}"
+    _numbers.append((quantity, values.tolist(), references.tolist(), allowed.tolist()))
     if quantity not in _rows or parts[worst] > float(_rows[quantity]["part"]):
         _rows[quantity] = {
             "relation": NO_LESS if at_least else EQUAL,
@@ -64,6 +71,7 @@ def agrees(
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--references", type=Path, help="file that takes the comparisons with references")
+    parser.addoption("--numbers", type=Path, help="file that takes all numbers compared, without xdist")
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -71,12 +79,15 @@ def pytest_configure(config: pytest.Config) -> None:
     path = config.getoption("--references")
     if path and not hasattr(config, "workerinput"):
         config.pluginmanager.register(Collector(path))
+    if config.getoption("--numbers"):
+        config.pluginmanager.register(Numbers(config.getoption("--numbers")))
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item: pytest.Item):
     """Hand what a test compared to its report, which xdist passes on; a reference unused is a failure."""
     _rows.clear()
+    _numbers.clear()
     result = yield
     mark = item.get_closest_marker("reference")
     if mark is None:
@@ -90,7 +101,7 @@ def pytest_runtest_call(item: pytest.Item):
 
 
 class Collector:
-    """Gathers the rows of all workers and stores them at the end of a session without failures."""
+    """Gathers the rows of all workers and stores those of tests that passed at the end of a session."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -100,14 +111,32 @@ class Collector:
         if report.when == "call" and report.passed:
             self.rows += [row for name, row in report.user_properties if name == ROWS]
 
-    def pytest_sessionfinish(self, exitstatus: int) -> None:
-        if exitstatus or not self.rows:
+    def pytest_sessionfinish(self) -> None:
+        if not self.rows:
             return
         fresh = pd.DataFrame(self.rows).sort_values("part", ascending=False)
         fresh = fresh.drop_duplicates(["test", "quantity"])
         fresh = fresh.assign(date=date.today().isoformat(), commit=_commit())
         stored = read(self.path) if self.path.exists() else fresh.iloc[:0]
         write(merged(stored, fresh, set(declarations())), self.path)
+
+
+class Numbers:
+    """Stores all numbers compared, by test and quantity, but for those of random examples."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.tests: dict[str, list[tuple[str, list[float], list[float], list[float]]]] = {}
+
+    @pytest.hookimpl(wrapper=True, tryfirst=True)
+    def pytest_runtest_call(self, item: pytest.Item):
+        result = yield
+        if not item.get_closest_marker("hypothesis"):
+            self.tests[item.nodeid] = list(_numbers)
+        return result
+
+    def pytest_sessionfinish(self) -> None:
+        self.path.write_text(json.dumps(self.tests), encoding="utf-8")
 
 
 def _commit() -> str:

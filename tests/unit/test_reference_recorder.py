@@ -17,6 +17,7 @@ DECLARED = {"capability": "geometry", "module": "facegear.geometry.limits"}
         (np.nan, 1.0, {"absolute": 1.0}),
         (1.0, np.nan, {"absolute": 1.0}),
         (1.7, 2.0, {"absolute": 0.2, "at_least": True}),
+        (1.0 + 0.1j, 1.0, {"absolute": 0.05}),
         ([], [], {"absolute": 1.0}),
     ],
 )

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from lumped_machines import make_machine
+from references import against, agrees
 
 from facegear.dynamics.integrator.integrator import Integrator
 from validation.dynamics.heyoka_peer import batch, scaled, trajectory
@@ -32,6 +33,12 @@ def problems():
     return [*machine_problems(make_machine(), 7500.0), oscillator_problem()]
 
 
+@against(
+    "other program",
+    "the equations of motion written plainly with NumPy",
+    capability="machine_code dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 def test_compiled_and_plain_right_hand_sides_agree(problems):
     for problem in (problems[1], problems[3]):
         integrator = Integrator(problem.system, problem.frequency, order=2)
@@ -40,7 +47,9 @@ def test_compiled_and_plain_right_hand_sides_agree(problems):
         width, z = wide.shape[1], wide.ravel()
         first = compiled_right_side(integrator)(1.3, z)
         second = plain_right_side(problem.system, problem.frequency, width)(1.3, z)
-        np.testing.assert_allclose(first, second, rtol=1e-12, atol=1e-13 * np.abs(second).max())
+        agrees(
+            "right-hand side, scaled", first, second, relative=1e-12, absolute=1e-13 * np.abs(second).max()
+        )
 
 
 def test_every_method_converges_to_ours(problems):
@@ -75,21 +84,33 @@ def test_the_table_lists_failures_and_interpolates_times(problems):
     assert table["seconds"].min() <= time <= table["seconds"].max()
 
 
+@against(
+    "other program",
+    "heyoka: Taylor's method with located events",
+    capability="dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 def test_heyoka_follows_the_same_motion_through_every_switch(problems):
     heyoka = pytest.importorskip("heyoka", reason="heyoka.py is not installed (extra `benchmark`)")
     lost, oscillator = problems[1], problems[3]
     runs = [(lost, trajectory(heyoka)), (oscillator, trajectory(heyoka)), (oscillator, batch(heyoka, 2))]
     for problem, prepare in runs:
         error, _ = error_of(problem, prepare(problem, 1e-9)(), reference(problem))
-        assert error < 1e-9, problem.name
+        agrees("largest error of the motion, scaled", error, 0.0, absolute=1e-9)
 
 
+@against(
+    "other program",
+    "heyoka: Taylor's method with located events",
+    capability="dynamics_response branches",
+    module="facegear.dynamics.integrator.integrator",
+)
 def test_heyoka_carries_the_same_tangents(problems):
     pytest.importorskip("heyoka", reason="heyoka.py is not installed (extra `benchmark`)")
     for problem in tangent_problems([problems[1], problems[3]]):
         for method in tangent_methods():
             error, _ = error_of(problem, method.prepare(problem, 1e-9)(), reference(problem))
-            assert error < 1e-8, (problem.name, method.name)
+            agrees("largest error of the tangents, scaled", error, 0.0, absolute=1e-8)
 
 
 def test_heyoka_is_refused_what_its_setup_leaves_out(problems):

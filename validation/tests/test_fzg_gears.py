@@ -5,6 +5,7 @@ from math import pi, tan
 import numpy as np
 import pytest
 from contact_bodies import STEEL
+from references import against, agrees
 from spur_gears import fzg_c, slab_design
 
 from facegear.contact.hertz import contact_modulus, strip_pressure
@@ -17,6 +18,12 @@ FORCE = 5912.1 / 14e-3
 """Published normal force over the width, N/m."""
 
 
+@against(
+    "external source",
+    "published stresses of FZG type C gears",
+    capability="contact",
+    module="facegear.contact.ltca",
+)
 def test_pressure_at_the_pitch_point_is_the_published_one():
     """Half-width and pressure from the spread of the loads on the flank, no formula of contact in between."""
     mesh = fzg_c()
@@ -38,14 +45,20 @@ def test_pressure_at_the_pitch_point_is_the_published_one():
     arc = 0.5 * base * roll**2
     spread = np.sqrt(np.average((arc - np.average(arc, weights=spot.force)) ** 2, weights=spot.force))
     half_width = 2 * spread  # a semi-ellipse's variance is a quarter of its half-width squared
-    assert half_width == pytest.approx(199.6e-6, rel=0.01)
-    assert 2 * FORCE / (pi * half_width) == pytest.approx(1347.3e6, rel=0.01)
+    agrees("half-width of the contact, m", half_width, 199.6e-6, relative=0.01)
+    agrees("pressure at the pitch point, Pa", 2 * FORCE / (pi * half_width), 1347.3e6, relative=0.01)
 
 
+@against(
+    "external source",
+    "published stresses of FZG type C gears",
+    capability="contact",
+    module="facegear.contact.hertz",
+)
 def test_pressure_of_a_line_load_at_the_pitch_point_is_the_published_one():
     mesh = fzg_c()
     pressure, width = strip_pressure(
         FORCE, 1 / mesh.pitch_curvature_radius(), contact_modulus((STEEL, STEEL))
     )
-    assert float(pressure) == pytest.approx(1347.3e6, rel=1e-3)
-    assert float(width) == pytest.approx(199.6e-6, rel=1e-3)
+    agrees("pressure at the pitch point, Pa", float(pressure), 1347.3e6, relative=1e-3)
+    agrees("half-width of the contact, m", float(width), 199.6e-6, relative=1e-3)

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from contact_bodies import STEEL, pair_design
+from references import against, agrees
 
 from facegear.errors import FacegearError
 from facegear.mesh.sizes import MeshSizes, named_sizes, thin_fillet
@@ -30,13 +31,19 @@ def largest(body, sizes):
     return down_the_fillet(loaded_tooth(SHARP, body, sizes, STEEL, 3).stress[0]).max()
 
 
+@against(
+    "own convergence",
+    "mesh twice as fine",
+    capability="root_stress",
+    module="facegear.strength.root_stress",
+)
 def test_default_mesh_gives_the_gears_root_stress_of_one_twice_as_fine_within_three_percent():
     # as many elements along the fillet as the whole face has, whose inner end sets their number
     default, finer = (
         largest("face_gear", thin_fillet(replace(named_sizes(name, M), width=4e-3, fillet=along), name))
         for name, along in (("coarse", 0.1 * M), ("medium", 0.05 * M))
     )
-    assert default == pytest.approx(finer, rel=0.03)
+    agrees("largest tension at the fillet, Pa", default, finer, relative=0.03)
 
 
 def test_line_load_is_one_newton_along_the_normals():
@@ -44,12 +51,28 @@ def test_line_load_is_one_newton_along_the_normals():
     assert np.linalg.norm(tooth.load, axis=-1).sum() == pytest.approx(1.0)
 
 
+@against(
+    "other program",
+    "CalculiX on the same mesh",
+    capability="root_stress",
+    module="facegear.contact.root_gauges",
+)
 @pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed")
 def test_fillet_stress_agrees_with_calculix_on_the_same_mesh(tmp_path):
     sizes = thin_fillet(MeshSizes(0.2 * M, 4e-3, 0.6 * M, 0.1 * M))
     table = stress_peer_study(SHARP, {"small": sizes}, (STEEL, STEEL), tmp_path, 1)
-    assert table["difference_percent"].abs().max() < 1.0
-    assert table["nodal_difference_percent"].abs().max() < 5.0
+    agrees(
+        "largest tension at the fillet less CalculiX', percent",
+        table["difference_percent"].abs().max(),
+        0.0,
+        absolute=1.0,
+    )
+    agrees(
+        "nodal stress less CalculiX', percent",
+        table["nodal_difference_percent"].abs().max(),
+        0.0,
+        absolute=5.0,
+    )
 
 
 def test_a_result_without_stress_is_refused(tmp_path):

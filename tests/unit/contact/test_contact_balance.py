@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 from contact_bodies import STEEL, pair_design
+from references import against, agrees
 
 from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.bodies.factor import solve_sparse
@@ -57,6 +58,12 @@ def answer(system, nodal):
     return -force, moved.reshape(force.shape), np.where(system.held, reaction, 0.0)
 
 
+@against(
+    "analytic",
+    "balance of forces and moments of a body",
+    capability="contact compliance",
+    module="facegear.contact.ltca",
+)
 @pytest.mark.parametrize("body", [0, 1], ids=["pinion", "face gear"])
 def test_contact_forces_and_reactions_of_a_body_balance_in_all_six_components(pressed_teeth, body):
     systems, _, pair, contact = pressed_teeth
@@ -65,16 +72,22 @@ def test_contact_forces_and_reactions_of_a_body_balance_in_all_six_components(pr
     points = systems[body].points
     scale = np.linalg.norm(force.sum(axis=0))
     assert scale > 5e3
-    np.testing.assert_allclose((force + reaction).sum(axis=0), 0.0, atol=1e-10 * scale)
+    agrees("force on a body, N", (force + reaction).sum(axis=0), 0.0, relative=1e-7, absolute=1e-10 * scale)
     moment = np.cross(points, force + reaction).sum(axis=0)
-    np.testing.assert_allclose(moment, 0.0, atol=1e-10 * scale * np.abs(points).max())
+    agrees("moment on a body, N m", moment, 0.0, relative=1e-7, absolute=1e-10 * scale * np.abs(points).max())
 
 
+@against(
+    "analytic",
+    "balance of torque",
+    capability="contact",
+    module="facegear.contact.ltca",
+)
 def test_bore_feels_the_torque_that_the_contact_was_solved_for(pressed_teeth):
     systems, _, pair, contact = pressed_teeth
     _, _, reaction = answer(systems[0], pair.pinion.T @ contact.force)
     moment = np.cross(systems[0].points, reaction)[:, 1].sum()
-    assert abs(moment) == pytest.approx(TORQUE, rel=1e-3)
+    agrees("torque at the bore, N m", abs(moment), TORQUE, relative=1e-3)
 
 
 def test_flanks_displaced_by_the_finite_elements_just_touch_where_pressed(pressed_teeth):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from contact_bodies import STEEL, block, hats_of
+from references import against, agrees
 
 from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.bodies.layer import tied_system
@@ -47,18 +48,30 @@ def pressed_blocks(lower, upper, cuts):
     return contact.force / area / PRESSURE, contact.rotation / exact
 
 
+@against(
+    "manufactured",
+    "patch test of contact: uniform pressure",
+    capability="contact",
+    module="facegear.contact.solver",
+)
 @pytest.mark.parametrize("cuts", [Refinement(), Refinement(2, 3, 2, 2.0)])
 def test_matching_blocks_pass_a_uniform_pressure_to_rounding(cuts):
     pressure, approach = pressed_blocks((2, 3), (2 * cuts.profile, 3 * cuts.width), cuts)
-    np.testing.assert_allclose(pressure, 1.0, atol=1e-9)
-    assert approach == pytest.approx(1.0, rel=1e-11)
+    agrees("pressure over the applied one", pressure, 1.0, relative=1e-7, absolute=1e-9)
+    agrees("approach over the exact one", approach, 1.0, relative=1e-11)
 
 
+@against(
+    "manufactured",
+    "patch test of contact: uniform pressure",
+    capability="contact",
+    module="facegear.contact.solver",
+)
 def test_blocks_that_do_not_match_pass_a_uniform_pressure_ever_better():
     worst = []
     for cuts in (Refinement(), Refinement(2, 2), Refinement(4, 4)):
         pressure, approach = pressed_blocks((3, 2), (4, 3), cuts)
         worst.append(np.abs(pressure - 1).max())
-        assert approach == pytest.approx(1.0, rel=1e-3)
+        agrees("approach over the exact one", approach, 1.0, relative=1e-3)
     assert max(worst) < 0.03
     assert worst[2] < 0.4 * worst[0]

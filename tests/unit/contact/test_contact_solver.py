@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from references import against, agrees
 
 from facegear.contact import solver
 from facegear.contact.solver import kkt_residual, solve_contact
@@ -53,6 +54,12 @@ def test_exchanging_one_point_at_a_time_leads_to_the_same_solution(seed, size):
     assert slow.residual < 1e-12
 
 
+@against(
+    "other program",
+    "enumeration of all active sets",
+    capability="contact",
+    module="facegear.contact.solver",
+)
 @settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 10**6))
 def test_solution_is_the_best_of_all_active_sets(seed):
@@ -76,22 +83,39 @@ def test_solution_is_the_best_of_all_active_sets(seed):
             force[rows] = np.linalg.solve(system, np.append(-gap[rows], 0.7))[:-1]
             if force.min() >= 0:
                 best = min(best, energy(force))
-    assert energy(contact.force) == pytest.approx(best, rel=1e-10, abs=1e-12)
+    agrees("energy of the contact", energy(contact.force), best, relative=1e-10, absolute=1e-12)
 
 
+@against(
+    "other program",
+    "difference of two solutions",
+    capability="contact",
+    module="facegear.contact.solver",
+)
 def test_slope_is_the_change_of_rotation_with_torque():
     compliance, gap, lever_arm = random_problem(7, 40)
     contact, more = (solve_contact(compliance, gap, lever_arm, torque) for torque in (2.0, 2.0 + 1e-6))
     assert np.array_equal(contact.active, more.active)
-    assert (more.rotation - contact.rotation) / 1e-6 == pytest.approx(contact.slope, rel=1e-6)
+    agrees(
+        "slope of rotation over torque",
+        (more.rotation - contact.rotation) / 1e-6,
+        contact.slope,
+        relative=1e-6,
+    )
 
 
+@against(
+    "analytic",
+    "linear elasticity",
+    capability="contact",
+    module="facegear.contact.solver",
+)
 def test_without_gaps_rotation_grows_in_proportion_to_torque():
     compliance, _, lever_arm = random_problem(3, 30)
     one, many = (
         solve_contact(compliance, np.zeros(30), lever_arm, torque).rotation for torque in (1.0, 1000.0)
     )
-    assert many == pytest.approx(1000.0 * one, rel=1e-12)
+    agrees("rotation at a thousand times the torque", many, 1000.0 * one, relative=1e-12)
 
 
 @settings(max_examples=40, deadline=None)

@@ -3,8 +3,8 @@
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
-import pytest
 from contact_patterns import line_arrays
+from references import against, agrees
 
 from facegear.contact.columns import LTCA_COLUMNS
 from facegear.contact.studies import StudiedContact, study_table
@@ -36,12 +36,28 @@ def case(name, moved_mm, torques=TORQUES):
     return StudiedContact("s", name, name, pair, ltca, by_torque(ltca, pressure), pressure)
 
 
+@against(
+    "manufactured",
+    "a pattern moved by a known length",
+    capability="contact_studies",
+    module="facegear.contact.studies",
+)
 def test_shifts_of_both_paths_are_from_the_machine_itself():
     table = study_table([case("machine", 0.0), case("offset", 1.5), case("tilt", -0.25, TORQUES[:1])])
     assert table["label"].to_list() == ["machine"] * 2 + ["offset"] * 2 + ["tilt"]
-    assert table["path_shift_mm"].to_list() == pytest.approx([0.0, 0.0, 1.5, 1.5, -0.25], abs=1e-12)
-    assert table["unloaded_path_shift_mm"].to_list() == pytest.approx([0.0, 0.0, 1.5, 1.5, -0.25])
-    assert table["backlash_um"].to_list() == [100.0, 100.0, 98.5, 98.5, 100.25]
+    agrees(
+        "shift of the loaded path, mm",
+        table["path_shift_mm"].to_list(),
+        [0.0, 0.0, 1.5, 1.5, -0.25],
+        absolute=1e-12,
+    )
+    agrees(
+        "shift of the unloaded path, mm",
+        table["unloaded_path_shift_mm"].to_list(),
+        [0.0, 0.0, 1.5, 1.5, -0.25],
+        relative=1e-6,
+    )
+    agrees("backlash, um", table["backlash_um"].to_list(), [100.0, 100.0, 98.5, 98.5, 100.25])
 
 
 def test_a_torque_that_the_machine_was_not_solved_at_has_no_shift():
@@ -50,9 +66,15 @@ def test_a_torque_that_the_machine_was_not_solved_at_has_no_shift():
     assert table["unloaded_path_shift_mm"].notna().all()
 
 
+@against(
+    "manufactured",
+    "two forces at known places",
+    capability="contact_studies",
+    module="facegear.contact.summary",
+)
 def test_the_path_at_a_position_is_the_centroid_of_its_forces():
     found = path_by_position(case("machine", 0.0).pressure)
-    assert found["path_radius_mm"].to_list() == pytest.approx([260.0, 259.5] * 2)
+    agrees("radius of the path, mm", found["path_radius_mm"].to_list(), [260.0, 259.5] * 2, relative=1e-6)
 
 
 def test_figures_show_every_case_and_say_where_the_torque_differs():

@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from references import against, agrees
 
 from facegear.contact.columns import LTCA_COLUMNS
 from facegear.contact.summary import contact_summary, path_radii
@@ -18,12 +19,28 @@ def table(positions, size_um, phase=0.0, torque=300.0):
     return frame.assign(ste_um=60.0 + 0.5 * size_um * wave, unloaded_ste_um=50.0 + 0.1 * wave)
 
 
+@against(
+    "manufactured",
+    "a wave of known size",
+    capability="contact",
+    module="facegear.contact.summary",
+)
 def test_peak_to_peak_of_a_wave_sampled_at_its_extremes_is_its_size():
     rows = pd.concat([table(8, 3.0), table(8, 5.0, torque=900.0)]).sample(frac=1.0, random_state=1)
     found = contact_summary(rows)
     assert found["torque_n_m"].to_list() == [300.0, 900.0]
-    assert found["ste_peak_to_peak_um"].to_list() == pytest.approx([3.0, 5.0])
-    assert found["unloaded_peak_to_peak_um"].to_list() == pytest.approx([0.2, 0.2])
+    agrees(
+        "peak to peak of the loaded error, um",
+        found["ste_peak_to_peak_um"].to_list(),
+        [3.0, 5.0],
+        relative=1e-6,
+    )
+    agrees(
+        "peak to peak of the unloaded error, um",
+        found["unloaded_peak_to_peak_um"].to_list(),
+        [0.2, 0.2],
+        relative=1e-6,
+    )
 
 
 @given(st.integers(4, 40), st.floats(0.0, 1.0))

@@ -7,6 +7,7 @@ import pytest
 from contact_bodies import STEEL, pair_design, pressed, quarter_space
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from references import against, agrees
 from scipy.integrate import quad
 from scipy.special import ellipe, ellipk
 
@@ -30,6 +31,12 @@ from validation.contact.strip_study import strip_at
 PLANE = STEEL.young_modulus / (1 - STEEL.poisson_ratio**2)
 
 
+@against(
+    "analytic",
+    "Hertz: elliptic contact",
+    capability="contact",
+    module="facegear.contact.hertz",
+)
 @settings(max_examples=30, deadline=None)
 @given(st.floats(1e-4, 0.98), st.floats(1e8, 3e9))
 def test_pressure_of_a_strip_is_that_of_hertz_for_every_ellipse(ratio, pressure):
@@ -46,18 +53,32 @@ def test_pressure_of_a_strip_is_that_of_hertz_for_every_ellipse(ratio, pressure)
     )
     curvature = pressure * a * integral / (PLANE * b * b)
     found, width = strip_pressure(0.5 * np.pi * pressure * b, curvature, PLANE, a)
-    assert found == pytest.approx(pressure, rel=2e-6)
-    assert width == pytest.approx(b, rel=2e-6)
+    agrees("pressure of an ellipse, Pa", found, pressure, relative=2e-6)
+    agrees("half-width of an ellipse, m", width, b, relative=2e-6)
 
 
+@against(
+    "analytic",
+    "Hertz: line and sphere",
+    capability="contact",
+    module="facegear.contact.hertz",
+)
 def test_long_strips_and_spheres_meet_their_closed_forms():
     load, curvature, radius = 5e5, 60.0, 0.01
-    assert strip_pressure(load, curvature, PLANE)[0] == pytest.approx(
-        np.sqrt(load * PLANE * curvature / np.pi), rel=1e-6
+    agrees(
+        "pressure of a line contact, Pa",
+        strip_pressure(load, curvature, PLANE)[0],
+        np.sqrt(load * PLANE * curvature / np.pi),
+        relative=1e-6,
     )
     b = 2e-4
     peak = 2 * PLANE * b / (np.pi * radius)
-    assert strip_pressure(0.5 * np.pi * peak * b, 1 / radius, PLANE, b)[0] == pytest.approx(peak, rel=1e-4)
+    agrees(
+        "pressure of a sphere, Pa",
+        strip_pressure(0.5 * np.pi * peak * b, 1 / radius, PLANE, b)[0],
+        peak,
+        relative=1e-4,
+    )
 
 
 def spot_of(hats, force):
@@ -114,6 +135,12 @@ def test_the_error_of_a_short_ellipse_covers_what_few_planes_miss_of_its_pressur
         assert pressure == pytest.approx(1.0, abs=0.035)
 
 
+@against(
+    "analytic",
+    "Hertz: elliptic contact",
+    capability="contact",
+    module="facegear.contact.hertz",
+)
 @pytest.mark.parametrize("ratio", [0.003, 0.02, 0.15])
 def test_the_length_of_a_crowned_pinion_s_contact_is_that_of_hertz(ratio):
     """Semi-axes belong to curvatures and force by construction: 7 to 330 times longer than wide."""
@@ -129,9 +156,15 @@ def test_the_length_of_a_crowned_pinion_s_contact_is_that_of_hertz(ratio):
     found = ellipse_half_length(
         replace(design, pinion=crowned), (STEEL, STEEL), 2 * force * design.pinion_base_radius
     )
-    assert found == pytest.approx(b / ratio, rel=1e-6)
+    agrees("length of the ellipse, m", found, b / ratio, relative=1e-6)
 
 
+@against(
+    "analytic",
+    "Hertz: sphere on a half space",
+    capability="contact",
+    module="facegear.contact.pressure",
+)
 def test_sphere_pressed_on_finite_elements_has_hertz_pressure_within_a_percent():
     radius, b = 0.01, 2e-4
     force = 4 * PLANE * b**3 / (3 * radius)
@@ -146,10 +179,16 @@ def test_sphere_pressed_on_finite_elements_has_hertz_pressure_within_a_percent()
     hats = np.arange(y.size)
     loads = line_loads([spot_of(hats, whole)], [0], flat_lines(y, 1 / radius), PLANE)
     pressure, error = loads.largest()
-    assert pressure == pytest.approx(1.5 * force / (np.pi * b**2), rel=0.01)
+    agrees("pressure of a sphere, Pa", pressure, 1.5 * force / (np.pi * b**2), relative=0.01)
     assert error < 0.03 * pressure
 
 
+@against(
+    "other program",
+    "polynomial through gaps beside the line",
+    capability="contact",
+    module="facegear.contact.pressure",
+)
 @pytest.mark.parametrize("errors", [{}, {"offset": 2e-4, "shaft_angle_error": 2e-3, "axial_shift": 5e-5}])
 @pytest.mark.parametrize("teeth", [23, 26])
 def test_contact_lines_lie_where_the_gap_is_least_and_curved_as_it_is(teeth, errors):
@@ -170,7 +209,7 @@ def test_contact_lines_lie_where_the_gap_is_least_and_curved_as_it_is(teeth, err
                 bent = np.polynomial.Polynomial.fit((around - roll) * arc, gap, 4).convert()
                 assert abs(bent.coef[1] / (2 * bent.coef[2])) < 1e-6
                 across = lines.curvature[row, j] * np.cos(lines.slope[row, j]) ** 2
-                assert 2 * bent.coef[2] == pytest.approx(across, rel=0.02)
+                agrees("curvature across the line, 1/m", 2 * bent.coef[2], across, relative=0.02)
 
 
 def test_line_contact_pair_touches_along_its_lines_with_the_path_s_curvature():
@@ -234,6 +273,12 @@ def test_flank_pressure_grows_with_the_root_of_a_line_load():
     assert twice == pytest.approx(np.sqrt(2) * once)
 
 
+@against(
+    "analytic",
+    "Hertz: elliptic contact; half space",
+    capability="contact",
+    module="facegear.contact.pressure",
+)
 @pytest.mark.parametrize("slope", [0.0, 0.21])
 def test_crossed_bodies_aslant_to_the_planes_meet_hertz_and_the_half_space_within_a_percent(slope):
     """An ellipse 18 times longer than wide; Hertz' semi-axes belong to the curvatures by construction."""
@@ -253,11 +298,11 @@ def test_crossed_bodies_aslant_to_the_planes_meet_hertz_and_the_half_space_withi
     carried = np.pi * a * b * peak / (2 * half) * np.maximum(1 - (y / half) ** 2, 1e-9)
     step = x[1] - x[0], y[1] - y[0]
     found = pressures(half_space(gap.shape, step, PLANE), gap, carried / step[0])
-    assert found.max() == pytest.approx(peak, rel=0.01)
+    agrees("pressure of crossed bodies, Pa", found.max(), peak, relative=0.01)
     loaded = np.abs(y) < half
     spot = spot_of(np.arange(y.size), np.where(loaded, carried * step[1], 0.0))
     loads = line_loads([spot], [0], flat_lines(y, across, slope), PLANE)
-    assert loads.largest()[0] == pytest.approx(peak, rel=0.01)
+    agrees("pressure from the line loads, Pa", loads.largest()[0], peak, relative=0.01)
 
 
 def test_strip_fine_in_both_directions_has_the_pressure_of_the_line_load(pressed_pair):

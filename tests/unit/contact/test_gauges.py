@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from contact_bodies import STEEL
+from references import against, agrees
 from skfem import MeshHex1, MeshHex2
 
 from facegear.contact.bodies.assembly import Part, stiffness_matrix
@@ -85,6 +86,12 @@ def kirsch(radius, angle):
     return radial, hoop
 
 
+@against(
+    "analytic",
+    "stress around a hole in closed form",
+    capability="root_stress",
+    module="facegear.contact.root_gauges",
+)
 @pytest.mark.parametrize(
     ("field", "exact"),
     [(ring, lambda angle: 2.0 + 0.0 * angle), (kirsch, lambda angle: 1.0 - 2.0 * np.cos(2 * angle))],
@@ -96,7 +103,7 @@ def test_stress_of_a_free_hole_converges_with_order_three_or_better(field, exact
         angle, found = stresses(cuts, cuts, plane_strain(field))
         errors.append(np.abs(found - exact(angle)).max())
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
-    assert errors[-1] < 4e-3, errors
+    agrees("error of the stress at the hole, relative", errors[-1], 0.0, absolute=4e-3)
     assert orders.min() > 2.5, (errors, orders)
 
 
@@ -112,6 +119,12 @@ def strip(columns, rows, mapping):
     return replace(mesh, doflocs=bent), *sides
 
 
+@against(
+    "analytic",
+    "moment of a cantilever",
+    capability="root_stress",
+    module="facegear.contact.root_gauges",
+)
 def test_moment_of_the_gauges_over_a_section_is_the_one_applied():
     length, height, force = 5.0, 1.0, 2.0
     mesh, top, bottom = strip(
@@ -132,9 +145,15 @@ def test_moment_of_the_gauges_over_a_section_is_the_one_applied():
     at = gauges.position[:, 0, 0]
     middle = np.abs(at - length / 2) < 0.3 * length
     moment = 0.1 * height**2 / 6 * 0.5 * (readings[1] - readings[0])
-    np.testing.assert_allclose(moment[middle], force * (length - at[middle]), rtol=5e-3)
+    agrees("bending moment, N m", moment[middle], force * (length - at[middle]), relative=5e-3)
 
 
+@against(
+    "external source",
+    "charts of stress concentration of a notched strip",
+    capability="root_stress",
+    module="facegear.contact.root_gauges",
+)
 def test_notched_strip_has_the_stress_concentration_of_the_charts():
     """Opposite half-round notches in tension, each a quarter of the width deep: Peterson, net section."""
     radius, half, length = 0.5, 1.0, 4.0
@@ -166,4 +185,4 @@ def test_notched_strip_has_the_stress_concentration_of_the_charts():
     nominal = force / (0.1 * (half - radius))
     part = radius / half
     chart = 3.065 - 3.472 * part + 1.009 * part**2 + 0.405 * part**3
-    assert largest / nominal == pytest.approx(chart, rel=0.015)
+    agrees("stress concentration", largest / nominal, chart, relative=0.015)

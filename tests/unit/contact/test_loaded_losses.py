@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from contact_bodies import STEEL
 from oils import oil
+from references import against, agrees
 
 from facegear.contact.hertz import contact_modulus
 from facegear.contact.ltca import even_positions, loaded_contact
@@ -59,17 +60,31 @@ def lubrication(design, friction, bulk=None):
     )
 
 
+@against(
+    "other program",
+    "another quadrature of the loads of the default mesh",
+    capability="lubrication machine_loss",
+    module="facegear.lubrication.loss",
+)
 def test_loss_factors_are_the_reference_s_within_a_percent(loaded):
     """The reference: another quadrature of the default mesh, 32 positions."""
     _, hats, _ = loaded
     found = loss_factors(hats)
-    assert found.mean == pytest.approx([0.112617, 0.124134], rel=0.01)
-    assert found.at.min(axis=1) == pytest.approx([0.0548, 0.0881], rel=0.04)
-    assert found.at.max(axis=1) == pytest.approx([0.1388, 0.1395], rel=0.01)
+    agrees("mean loss factor", found.mean, [0.112617, 0.124134], relative=0.01)
+    agrees("smallest loss factor", found.at.min(axis=1), [0.0548, 0.0881], relative=0.04)
+    agrees("largest loss factor", found.at.max(axis=1), [0.1388, 0.1395], relative=0.01)
     largest = [1e3 * hats.sliding[hats.torque == torque].max() for torque in TORQUES]
-    assert largest == pytest.approx([13.137, 16.453], rel=0.03)  # at the outermost loaded hat
+    agrees(
+        "largest sliding, mm per rad", largest, [13.137, 16.453], relative=0.03
+    )  # at the outermost loaded hat
 
 
+@against(
+    "analytic",
+    "balance of power",
+    capability="lubrication",
+    module="facegear.lubrication.loss",
+)
 def test_power_in_less_power_out_is_the_friction_and_the_closing_work(loaded):
     design, _, contacts = loaded
     pinion, gear = spins(design)
@@ -86,9 +101,15 @@ def test_power_in_less_power_out_is_the_friction_and_the_closing_work(loaded):
             given = gear.torque(point, force) * gear.speed
             closing = float((one.force * one.closing)[at].sum())
             lost = mu * factor.at[0, number] * torque
-            assert taken - given == pytest.approx(lost + closing, abs=1e-12 * torque)
+            agrees("power lost, W per rad/s", taken - given, lost + closing, absolute=1e-12 * torque)
 
 
+@against(
+    "analytic",
+    "base radius of an involute",
+    capability="lubrication",
+    module="facegear.lubrication.kinematics",
+)
 def test_normal_forces_alone_carry_the_torque_of_the_pinion(loaded):
     """To the last digits on the involute; a hat at the fillet has an arm of its own within a tenth."""
     design, hats, _ = loaded
@@ -96,7 +117,7 @@ def test_normal_forces_alone_carry_the_torque_of_the_pinion(loaded):
     arm = np.cross(hats.point - pinion.through, hats.normal) @ pinion.axis
     involute = np.abs(arm - design.pinion_base_radius) < 1e-9
     assert involute.mean() > 0.95
-    assert arm[involute] == pytest.approx(design.pinion_base_radius, rel=1e-11)
+    agrees("lever arm of the normal force, m", arm[involute], design.pinion_base_radius, relative=1e-11)
     carried = hats.force * arm
     end = np.linalg.norm(hats.point[~involute][:, [0, 2]], axis=1).max(initial=0.0)
     near = np.linalg.norm(hats.point[:, [0, 2]], axis=1) < end + 2e-4
@@ -107,6 +128,12 @@ def test_normal_forces_alone_carry_the_torque_of_the_pinion(loaded):
             assert carried[at].sum() == pytest.approx(torque, rel=0, abs=allowed)
 
 
+@against(
+    "other program",
+    "another quadrature of the loads of the default mesh",
+    capability="lubrication",
+    module="facegear.lubrication.heat",
+)
 @pytest.mark.parametrize(
     ("torque", "largest", "place", "thinnest", "kept", "ratio"),
     [
@@ -125,17 +152,23 @@ def test_largest_flash_and_thinnest_film_are_the_reference_s(
     one = contacts[torque].places
     state = running(contacts[torque], SPEED, lubrication(design, Constant(0.05)))
     hottest = np.flatnonzero(one.inside)[state.flash[one.inside].argmax()]
-    assert state.flash[hottest] == pytest.approx(largest, rel=0.04)
+    agrees("largest flash temperature, K", state.flash[hottest], largest, relative=0.04)
     stage, y = one.position[hottest] + one.tooth[hottest], 1e3 * one.y[hottest]
     assert stage == pytest.approx(place[0] + place[1], abs=0.05) and y == pytest.approx(place[2], abs=1.5)
     unsheared = (state.film / state.sheared)[one.inside]
     if thinnest is not None:
-        assert 1e6 * unsheared.min() == pytest.approx(thinnest, rel=0.02)
+        agrees("smallest film, um", 1e6 * unsheared.min(), thinnest, relative=0.02)
     sheared = state.sheared[one.inside]
-    assert [sheared.min(), sheared.max()] == pytest.approx(kept, abs=0.01)
-    assert state.micropitting[one.inside].min() == pytest.approx(ratio, rel=0.02)
+    agrees("factor of shear heating", [sheared.min(), sheared.max()], kept, absolute=0.01)
+    agrees("smallest specific film", state.micropitting[one.inside].min(), ratio, relative=0.02)
 
 
+@against(
+    "other program",
+    "another quadrature of the loads of the default mesh",
+    capability="lubrication",
+    module="facegear.lubrication.friction",
+)
 def test_models_of_friction_differ_as_much_as_the_reference_says(loaded):
     """Means weighted with loss: Schlenk 0.029 and 0.035; Xu 0.009 and 0.012 with one flank's roughness."""
     design, hats, contacts = loaded
@@ -143,26 +176,46 @@ def test_models_of_friction_differ_as_much_as_the_reference_says(loaded):
     for model, means, bound in ((Schlenk(), (0.029, 0.035), 0.02), (Xu(), (0.009, 0.012), 0.35)):
         for torque, factor, mean in zip(TORQUES, factors, means, strict=True):
             state = running(contacts[torque], SPEED, lubrication(design, model))
-            assert state.loss / (factor * torque * SPEED) == pytest.approx(mean, rel=bound)
+            agrees(
+                f"mean friction, {type(model).__name__}",
+                state.loss / (factor * torque * SPEED),
+                mean,
+                relative=bound,
+            )
 
 
+@against(
+    "analytic",
+    "Coulomb friction",
+    capability="lubrication",
+    module="facegear.lubrication.heat",
+)
 def test_loss_is_linear_in_a_constant_coefficient_and_none_without(loaded):
     design, _, contacts = loaded
     one = contacts[300.0]
     losses = [running(one, SPEED, lubrication(design, Constant(mu))).loss for mu in (0.0, 0.02, 0.06)]
     assert losses[0] == 0.0
-    assert losses[2] == pytest.approx(3 * losses[1], rel=1e-13)
+    agrees("loss at three times the friction, W", losses[2], 3 * losses[1], relative=1e-13)
     slow = running(one, 0.1 * SPEED, lubrication(design, Constant(0.02))).loss
-    assert slow == pytest.approx(0.1 * losses[1], rel=1e-13)
+    agrees("loss at a tenth of the speed, W", slow, 0.1 * losses[1], relative=1e-13)
 
 
+@against(
+    "analytic",
+    "balance of heat",
+    capability="lubrication",
+    module="facegear.lubrication.heat",
+)
 def test_heat_of_both_bodies_is_the_loss_and_warms_them_until_it_settles(loaded):
     design, _, contacts = loaded
     one = contacts[1000.0]
     state = running(one, SPEED, lubrication(design, Xu(), Cooling(60.0, 200.0)))
-    assert sum(state.heat) == pytest.approx(state.loss, rel=1e-12)
-    assert state.bulk == pytest.approx(
-        [100.0 + state.heat[0] / 60.0, 100.0 + state.heat[1] / 200.0], abs=1e-4
+    agrees("heat of both bodies, W", sum(state.heat), state.loss, relative=1e-12)
+    agrees(
+        "bulk temperature, C",
+        state.bulk,
+        [100.0 + state.heat[0] / 60.0, 100.0 + state.heat[1] / 200.0],
+        absolute=1e-4,
     )
     assert state.bulk[0] > 105.0
     with pytest.raises(TooHot, match=r"a body reaches 2\d+ C at 1000 N m and 7500 rpm, above .* 246 C"):

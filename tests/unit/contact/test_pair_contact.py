@@ -6,6 +6,7 @@ from math import radians
 import numpy as np
 import pytest
 from contact_bodies import COARSE, STEEL, sound
+from references import against, agrees
 
 from facegear.config.base import parse
 from facegear.config.stiffness import MeshStiffness, stiffness_request
@@ -70,10 +71,22 @@ def test_result_does_not_depend_on_the_order_of_loads_or_positions(model_of):
         np.testing.assert_allclose(other.load_share, expected.load_share, atol=1e-8)
 
 
+@against(
+    "analytic",
+    "periodicity of a pitch",
+    capability="contact",
+    module="facegear.contact.ltca",
+)
 def test_result_repeats_after_a_pitch_with_the_next_tooth(model_of):
     first, second = loaded_contact(model_of(), [0.0, 1.0], [600.0])
-    assert second.ste == pytest.approx(first.ste, rel=1e-8)
-    np.testing.assert_allclose(second.load_share[:-1], first.load_share[1:], atol=1e-8)
+    agrees("transmission error a pitch later, m", second.ste, first.ste, relative=1e-8)
+    agrees(
+        "share of a pair a pitch later",
+        second.load_share[:-1],
+        first.load_share[1:],
+        relative=1e-7,
+        absolute=1e-8,
+    )
 
 
 @pytest.fixture(scope="module")
@@ -88,16 +101,34 @@ def back_sides(model_of):
     return found
 
 
+@against(
+    "analytic",
+    "mirror symmetry",
+    capability="compliance",
+    module="facegear.contact.bodies.compliance",
+)
 @pytest.mark.parametrize("body", [0, 1], ids=list(BUILDERS))
 def test_opposite_flank_is_as_compliant_by_mirror_symmetry(model_of, back_sides, body):
     model = model_of(coarse=True)
     loaded, other = (model.pinion, model.gear)[body], back_sides[body]
     scale = loaded.own.max()
-    np.testing.assert_allclose(other.own, loaded.own, atol=1e-8 * scale)
+    agrees("influence matrix, m/N", other.own, loaded.own, relative=1e-7, absolute=1e-8 * scale)
     for apart in (1, 2):
-        np.testing.assert_allclose(other.block(apart), loaded.block(-apart), atol=1e-8 * scale)
+        agrees(
+            "influence of another tooth, m/N",
+            other.block(apart),
+            loaded.block(-apart),
+            relative=1e-7,
+            absolute=1e-8 * scale,
+        )
 
 
+@against(
+    "analytic",
+    "mirror symmetry",
+    capability="contact",
+    module="facegear.contact.ltca",
+)
 def test_contact_of_the_opposite_flanks_is_the_mirror_image_s(model_of, back_sides):
     # seen in the mirror, the tooth to the right is the one to the left
     back = [replace(body, others=body.others[::-1]) for body in back_sides]
@@ -105,9 +136,9 @@ def test_contact_of_the_opposite_flanks_is_the_mirror_image_s(model_of, back_sid
         here = misaligned(model_of(coarse=True), **errors)
         there = replace(here, pinion=back[0], gear=back[1])
         for one, other in zip(*(loaded_contact(m, [0.1, 0.7], TORQUES) for m in (here, there)), strict=True):
-            assert other.ste == pytest.approx(one.ste, rel=1e-8)
-            assert other.k_local == pytest.approx(one.k_local, rel=1e-8)
-            np.testing.assert_allclose(other.load_share, one.load_share, atol=1e-8)
+            agrees("transmission error, m", other.ste, one.ste, relative=1e-8)
+            agrees("local stiffness, N/m", other.k_local, one.k_local, relative=1e-8)
+            agrees("share of a pair", other.load_share, one.load_share, relative=1e-7, absolute=1e-8)
             for here_spot, there_spot in zip(one.spots, other.spots, strict=True):
                 assert there_spot.force.max() == pytest.approx(here_spot.force.max(), rel=1e-6)
 
@@ -227,6 +258,12 @@ def test_linear_elements_on_the_same_nodes_are_too_stiff(model_of):
     assert 1.03 < stiffness["tet4"] / stiffness["hex27"] < 1.15
 
 
+@against(
+    "other program",
+    "geometry's own unloaded contact",
+    capability="contact",
+    module="facegear.contact.ltca",
+)
 def test_a_long_tip_relief_shows_in_the_unloaded_error_that_the_dynamics_takes_from_contact(model_of):
     plain = model_of()
     relieved = replace(plain.design.pinion, tip_relief=Relief(20e-6, 0.0, 9e-3))
@@ -240,7 +277,13 @@ def test_a_long_tip_relief_shows_in_the_unloaded_error_that_the_dynamics_takes_f
     exact = -unloaded_contact(model.design, (positions - 0.5) * pitch).transmission_error
     assert np.ptp(exact) > 1e-6
     # Eight positions carry three orders; what they miss stands in the table.
-    np.testing.assert_allclose(series(positions), exact - exact.mean(), atol=0.2 * np.ptp(exact))
+    agrees(
+        "unloaded transmission error, m",
+        series(positions),
+        exact - exact.mean(),
+        relative=1e-7,
+        absolute=0.2 * np.ptp(exact),
+    )
 
 
 def test_conjugate_flanks_give_no_error_from_contact_however_they_are_assembled(model_of):

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
+from references import against, agrees
 from scipy.interpolate import CubicSpline
 
 import facegear
@@ -67,6 +68,12 @@ def test_at_mean_an_input_leaves_its_bearing_alone_and_an_idler_pulls_it_with_tw
             assert abs(row.loc["y", "mean_n"]) < 1e-4 * force
 
 
+@against(
+    "analytic",
+    "balance of mean forces",
+    capability="dynamics_response",
+    module="facegear.dynamics.bearing_forces",
+)
 @settings(max_examples=12, deadline=None)
 @given(
     st.sampled_from(list(KINEMATICS.values())),
@@ -83,9 +90,21 @@ def test_mean_forces_on_bearings_balance_torques_and_meshes(kinematics, error, b
     assume(found.motion is Motion.PERIODIC and found.shares.sum(axis=0).max() <= 1.0)
     pulls = flank_means(found) @ flank_directions(layout)
     mean = bearing_history(model, found).mean(axis=0)
-    np.testing.assert_allclose(mean, -pulls.reshape(-1, 4)[:, :3], atol=1e-4 * np.abs(pulls).max())
+    agrees(
+        "mean bearing force, N",
+        mean,
+        -pulls.reshape(-1, 4)[:, :3],
+        relative=1e-7,
+        absolute=1e-4 * np.abs(pulls).max(),
+    )
 
 
+@against(
+    "analytic",
+    "balance of mean forces",
+    capability="dynamics_response",
+    module="facegear.dynamics.bearing_forces",
+)
 @pytest.mark.parametrize("kinematics", KINEMATICS.values(), ids=KINEMATICS)
 def test_external_forces_stand_in_the_bearings_of_the_running_machine(kinematics):
     """Across the mesh force as well, where no mesh feels the body's motion."""
@@ -98,9 +117,15 @@ def test_external_forces_stand_in_the_bearings_of_the_running_machine(kinematics
     assert found.motion is Motion.PERIODIC
     pulls = (flank_means(found) @ flank_directions(layout)).reshape(-1, 4)[:, :3]
     mean = bearing_history(model, found).mean(axis=0)
-    np.testing.assert_allclose(mean, forces - pulls, atol=1e-4 * np.abs(pulls).max())
+    agrees("mean bearing force, N", mean, forces - pulls, relative=1e-7, absolute=1e-4 * np.abs(pulls).max())
 
 
+@against(
+    "analytic",
+    "balance of power",
+    capability="dynamics_response",
+    module="facegear.dynamics.bearing_forces",
+)
 @pytest.mark.parametrize(("kinematics", "backlash"), [(GEOMETRIC, 20e-6), (PRINTED, 0.0)])
 def test_bearings_masses_and_meshes_take_no_more_power_than_is_brought_in(kinematics, backlash):
     steady = {"stiffness": FLAT, "error": 8e-6, "backlash": backlash, "open_flanks": OpenFlanks.CONTACT_ONLY}
@@ -122,19 +147,42 @@ def test_bearings_masses_and_meshes_take_no_more_power_than_is_brought_in(kinema
     by_bearings = at_bodies.sum(axis=(1, 2)).mean()
     # The torques' work over a period is none, as the rigid rotation is left out.
     assert by_bearings > 1e-3 * abs(by_meshes)
-    assert by_meshes + by_masses + by_bearings == pytest.approx(0.0, abs=1e-5 * abs(by_meshes))
+    agrees(
+        "power of meshes, masses and bearings, W",
+        by_meshes + by_masses + by_bearings,
+        0.0,
+        absolute=1e-5 * abs(by_meshes),
+    )
 
 
+@against(
+    "analytic",
+    "static equilibrium",
+    capability="dynamics_response",
+    module="facegear.dynamics.bearing_forces",
+)
 @pytest.mark.parametrize("kinematics", list(KINEMATICS.values()))
 def test_without_excitation_the_response_has_the_static_forces(kinematics):
     model, found = loaded(kinematics, error=0.0, stiffness=FLAT)
     table = bearing_table(model, found)
     largest = table["static_n"].abs().max()
     for column in ("mean_n", "rms_n"):
-        np.testing.assert_allclose(table[column].abs(), table["static_n"].abs(), atol=1e-6 * largest)
+        agrees(
+            "bearing force, N",
+            table[column].abs(),
+            table["static_n"].abs(),
+            relative=1e-7,
+            absolute=1e-6 * largest,
+        )
     standing = static_equilibrium(model.machine).displacements
     exact = (bearing_matrix(model.machine.layout) @ standing).reshape(-1, 4)[:, :3]
-    np.testing.assert_allclose(bearing_history(model, found)[0], exact, atol=1e-6 * largest)
+    agrees(
+        "bearing force at an instant, N",
+        bearing_history(model, found)[0],
+        exact,
+        relative=1e-7,
+        absolute=1e-6 * largest,
+    )
 
 
 def test_a_bearing_with_play_carries_its_static_force_where_nothing_excites():
@@ -143,6 +191,12 @@ def test_a_bearing_with_play_carries_its_static_force_where_nothing_excites():
     np.testing.assert_allclose(table["mean_n"], table["static_n"], atol=1e-6 * table["static_n"].abs().max())
 
 
+@against(
+    "own convergence",
+    "512 samples a cycle",
+    capability="dynamics_response",
+    module="facegear.dynamics.bearing_forces",
+)
 def test_forces_on_bearings_converge_with_the_samples():
     model, _ = loaded(error=20e-6)
     coarse, fine = (
@@ -151,7 +205,7 @@ def test_forces_on_bearings_converge_with_the_samples():
     )
     largest = fine["peak_n"].max()
     for column, tolerance in (("mean_n", 1e-6), ("rms_n", 1e-6), ("peak_n", 5e-3)):
-        np.testing.assert_allclose(coarse[column], fine[column], atol=tolerance * largest)
+        agrees("bearing force, N", coarse[column], fine[column], relative=1e-7, absolute=tolerance * largest)
 
 
 def test_the_report_shows_the_forces_on_the_bearings_at_the_nominal_speed():

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from lumped_machines import make_layout, make_machine
 from oscillators import one_degree
+from references import against, agrees
 from scipy.integrate import solve_ivp
 
 from facegear.dynamics.integrator.compiled import TAU
@@ -66,12 +67,18 @@ def by_pieces(start, end, push_only):
     return state, pull, kinds
 
 
+@against(
+    "other program",
+    "SciPy's DOP853 with located events",
+    capability="dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 @pytest.mark.parametrize("start", STARTS)
 def test_a_contact_that_only_pushes_moves_as_scipy_says_through_cutting_parting_and_meeting(start):
     state, pull, kinds = by_pieces(start, 3 * TAU / SPEED, push_only=True)
     assert kinds == {0, 1} and pull < 1e-9
     run = record(oscillator(True), SPEED, State(*(np.array([value]) for value in start)), 3, FINE)
-    assert run.at(np.array([3 * TAU]))[0][0, 0] == pytest.approx(state[0], abs=1e-8)
+    agrees("displacement after three periods", run.at(np.array([3 * TAU]))[0][0, 0], state[0], absolute=1e-8)
 
 
 @pytest.mark.parametrize("damping", 10.0 ** -np.arange(5.0, 17.0))
@@ -83,6 +90,12 @@ def test_flanks_part_with_a_damper_however_weak_as_they_do_without(damping):
     np.testing.assert_allclose(damped.state, undamped.state, rtol=0, atol=100.0 * damping + 1e-11)
 
 
+@against(
+    "other program",
+    "SciPy's DOP853 with located events",
+    capability="dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 def test_the_largest_pull_of_a_damper_is_what_scipy_meets():
     settings = Settings(tolerance=1e-10, periodic_residual=1e-9)
     start = State(np.array([1.4]), np.array([-0.6]))
@@ -93,7 +106,7 @@ def test_the_largest_pull_of_a_damper_is_what_scipy_meets():
     first = (found.state.displacement[0], found.state.velocity[0])
     _, pull, _ = by_pieces(first, found.period * TAU / SPEED, push_only=False)
     assert pull > 0.05
-    assert found.averages.pull[0] == pytest.approx(pull, rel=1e-6)
+    agrees("largest pull", found.averages.pull[0], pull, relative=1e-6)
 
 
 def simulate_system(system, settings, start):

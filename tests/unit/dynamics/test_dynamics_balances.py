@@ -6,6 +6,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from lumped_machines import drive_rows, make_layout, make_machine
 from random_machines import FINE, frequency, kicked, machines, speeds
+from references import against, agrees
 
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
@@ -95,6 +96,12 @@ def weak_dampers_that_only_push():
     )
 
 
+@against(
+    "analytic",
+    "Liouville's formula",
+    capability="dynamics_response branches",
+    module="facegear.dynamics.integrator.integrator",
+)
 @settings(max_examples=12, deadline=None)
 @given(machine=machines(), speed=st.floats(8000, 20_000))
 @example(machine=weak_dampers_that_only_push(), speed=8000.0)
@@ -106,9 +113,15 @@ def test_liouville_across_contact_switches(machine, speed):
     assert sign > 0
     # The determinant is known to the rounding of its smallest factor.
     accuracy = 1e-13 * np.linalg.cond(matrix)
-    assert abs(volume - run.divergence) < 1e-9 + accuracy
+    agrees("logarithm of the volume of disturbances", volume, run.divergence, absolute=1e-9 + accuracy)
 
 
+@against(
+    "analytic",
+    "balance of energy",
+    capability="dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 @settings(max_examples=12, deadline=None)
 @given(machine=machines(), speed=speeds)
 def test_energy_audit_over_a_period(machine, speed):
@@ -156,7 +169,7 @@ def test_energy_audit_over_a_period(machine, speed):
     ends = run.starts[-1] + run.lengths[-1]
     change = energy(ends) - energy(0.0)
     exchanged = np.abs(power) @ times + abs(energy(0.0))
-    assert abs(times @ power - change) < 1e-8 * exchanged
+    agrees("work less the change of energy, J", times @ power, change, absolute=1e-8 * exchanged)
 
 
 def derivative(series: Harmonics, cycles: np.ndarray, omega: float) -> np.ndarray:
@@ -164,6 +177,12 @@ def derivative(series: Harmonics, cycles: np.ndarray, omega: float) -> np.ndarra
     return omega * Harmonics(np.r_[0.0, (-order * series.b)[1:]], order * series.a)(cycles)
 
 
+@against(
+    "analytic",
+    "angular momentum of every body",
+    capability="dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 @settings(max_examples=12, deadline=None)
 @given(machine=machines(), speed=speeds)
 def test_torques_less_mesh_forces_change_the_spin_of_every_body(machine, speed):
@@ -186,7 +205,13 @@ def test_torques_less_mesh_forces_change_the_spin_of_every_body(machine, speed):
     impulses = directions[:, layout.spins] * (times @ force)[:, None]
     given_ = machine.torques * times.sum()
     size = np.abs(given_).max() + np.abs(impulses).max() + np.abs(inertia * spin).max()
-    np.testing.assert_allclose(gained, given_ - impulses.sum(axis=0), atol=1e-9 * size)
+    agrees(
+        "change of angular momentum over the base radius, N s",
+        gained,
+        given_ - impulses.sum(axis=0),
+        relative=1e-7,
+        absolute=1e-9 * size,
+    )
 
 
 def mesh_forces(model: Model, run: Trajectory, omega: float) -> tuple[np.ndarray, np.ndarray]:
@@ -205,6 +230,12 @@ def mesh_forces(model: Model, run: Trajectory, omega: float) -> tuple[np.ndarray
     return contact_forces(system, stiffness, beyond, omega * slope, state), weights / omega
 
 
+@against(
+    "analytic",
+    "balance of mean torques",
+    capability="dynamics_response",
+    module="facegear.dynamics.steady_state.simulate",
+)
 @pytest.mark.parametrize("kinematics", KINEMATICS.values(), ids=KINEMATICS)
 def test_mean_mesh_forces_balance_the_torques_of_a_periodic_motion(kinematics):
     for torque, speed in ((800.0, 4500.0), (1500.0, 9000.0), (1500.0, 12_000.0)):
@@ -226,4 +257,10 @@ def test_mean_mesh_forces_balance_the_torques_of_a_periodic_motion(kinematics):
         layout = machine.layout
         directions = flank_directions(layout) if layout.kinematics.flanks_apart else drive_rows(layout)
         carried = (mean @ directions)[3:20:4]
-        np.testing.assert_allclose(carried, machine.torques[:5], atol=1e-7 * torque)
+        agrees(
+            "mean torque of a pinion, N m",
+            carried,
+            machine.torques[:5],
+            relative=1e-7,
+            absolute=1e-7 * torque,
+        )

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from lumped_machines import drive_rows, make_layout, make_machine
 from oscillators import one_degree
+from references import against, agrees
 from scipy.integrate import solve_ivp
 
 from facegear.dynamics.integrator.compiled import TAU
@@ -92,6 +93,12 @@ def full_run(machine, speed, start, end):
     return directions @ solution.y[: mass.size, -1] - error
 
 
+@against(
+    "other program",
+    "scipy.integrate.solve_ivp on the full equations",
+    capability="dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 @pytest.mark.parametrize("name", CASES)
 def test_short_run_agrees_with_the_full_equations(name):
     machine, speed = CASES[name]
@@ -105,7 +112,13 @@ def test_short_run_agrees_with_the_full_equations(name):
     expected = full_run(machine, speed, full, end / omega)
     run = record(model.system, omega, start, 1, FINE)
     found = run.at(np.array([end]))[1][0]
-    np.testing.assert_allclose(found, expected, atol=2e-8 * max(model.system.scale, np.abs(expected).max()))
+    agrees(
+        "displacement, m",
+        found,
+        expected,
+        relative=1e-7,
+        absolute=2e-8 * max(model.system.scale, np.abs(expected).max()),
+    )
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -130,6 +143,12 @@ def test_motion_is_named_and_its_rms_holds_at_a_tighter_tolerance(name):
     np.testing.assert_allclose(first.ac_rms, second.ac_rms, atol=1e-5 * first.rms.max())
 
 
+@against(
+    "analytic",
+    "linear oscillator that misses the edge by a millionth",
+    capability="dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 @pytest.mark.parametrize("miss", [1e-6, -1e-6])
 def test_grazing_within_a_millionth_of_the_edge(miss):
     """Contact kept or lost by a millionth of the dead zone: closed form above, agreement with it below."""
@@ -144,8 +163,8 @@ def test_grazing_within_a_millionth_of_the_edge(miss):
     assert response.label == "period-1"
     least, most = record(system, speed, response.state, 1, fine).extremes(0)
     if miss > 0:
-        assert least == pytest.approx(1.0 + miss, abs=1e-11)
-        assert most == pytest.approx(1.0 + 2 * mean - miss, abs=1e-11)
+        agrees("smallest displacement", least, 1.0 + miss, absolute=1e-11)
+        agrees("largest displacement", most, 1.0 + 2 * mean - miss, absolute=1e-11)
         assert response.shares[0, 0] == 0.0
     else:
         assert 1.0 - 1.2e-6 < least < 1.0
@@ -154,12 +173,24 @@ def test_grazing_within_a_millionth_of_the_edge(miss):
         assert response.shares[0, 0] == pytest.approx(share, rel=0.02)
 
 
+@against(
+    "analytic",
+    "scaling of the equation of motion",
+    capability="dynamics_response",
+    module="facegear.dynamics.steady_state.simulate",
+)
 def test_without_error_and_backlash_only_the_scale_depends_on_torque():
     for speed in (5000.0, 9000.0):
         small = simulate(make_machine(torque=200.0, error=0.0, backlash=0.0), speed)
         large = simulate(make_machine(torque=2000.0, error=0.0, backlash=0.0), speed)
         assert small.label == large.label
-        np.testing.assert_allclose(10.0 * small.deflections, large.deflections, rtol=1e-6, atol=1e-12)
+        agrees(
+            "deflection of a mesh, m",
+            10.0 * small.deflections,
+            large.deflections,
+            relative=1e-6,
+            absolute=1e-12,
+        )
 
 
 def test_a_body_afloat_in_its_backlash_is_periodic_with_a_neutral_multiplier():

@@ -3,6 +3,7 @@
 import numpy as np
 from hypothesis import given, settings
 from random_machines import FINE, frequency, machines, speeds
+from references import against, agrees
 
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
@@ -14,6 +15,12 @@ from facegear.harmonics.series import Harmonics
 from facegear.transmission.printed import PRINTED
 
 
+@against(
+    "analytic",
+    "Hill's equations solved by harmonic balance to rounding",
+    capability="dynamics_response dynamics_sweep_chunk",
+    module="facegear.dynamics.steady_state.simulate",
+)
 @settings(max_examples=12, deadline=None)
 @given(machine=machines(kinematics=PRINTED, backlash=0.0, mass_damping=800.0), speed=speeds)
 def test_without_backlash_the_response_is_hills(machine, speed):
@@ -48,11 +55,16 @@ def test_without_backlash_the_response_is_hills(machine, speed):
     close = 1e-9 * max(system.scale, np.abs(exact).max() * reach)
     # Started on it, the motion follows it for a period, whether it is stable or not.
     run = record(system, omega, State(exact[0], rate), 1, FINE)
-    assert np.abs(run.at(TAU * cycles)[0] - exact).max() * reach < close
+    agrees(
+        "motion over one period, m",
+        np.abs(run.at(TAU * cycles)[0] - exact).max() * reach,
+        0.0,
+        absolute=close,
+    )
     settings_ = Settings(tolerance=1e-14, periodic_residual=1e-12)
     response = simulate(model, speed, settings_)
     if response.period == 1:
-        assert np.abs(response.coordinates - exact).max() * reach < close
+        agrees("steady state, m", np.abs(response.coordinates - exact).max() * reach, 0.0, absolute=close)
     else:  # only a parametric resonance keeps a motion with this damping from settling
         rest = np.zeros((2, system.size))
         matrix, _ = monodromy(Integrator(system, omega, 1e-14, 20), rest, 1)

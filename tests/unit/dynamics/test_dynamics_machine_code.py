@@ -10,6 +10,7 @@ import numba
 import numpy as np
 import pytest
 from oscillators import backlash_oscillator
+from references import against, agrees
 
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.machine_code.compiler import for_callers
@@ -110,6 +111,12 @@ print(*run.state.ravel().tolist(), *run.tangents.ravel().tolist(), run.steps)
 """
 
 
+@against(
+    "other program",
+    "the same functions run by Python itself",
+    capability="machine_code dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 def test_without_numbas_private_parts_the_motion_is_the_same():
     """The plain functions are run by Python itself here: compiling them takes minutes."""
     folder = Path(__file__).parents[2] / "helpers"
@@ -118,7 +125,7 @@ def test_without_numbas_private_parts_the_motion_is_the_same():
     done = subprocess.run(
         [sys.executable, "-c", MOTION], env=environment, capture_output=True, text=True, check=False
     )
-    assert done.returncode == 0, done.stderr
+    agrees("motion, tangents and steps", done.returncode, 0)
     integrator = Integrator(backlash_oscillator(0.75), 0.75, 1e-4)
     run = integrator.run(np.array([[0.9], [0.2]]), 1, np.ones((1, 2, 1)))
     expected = [*run.state.ravel(), *run.tangents.ravel(), run.steps]

@@ -3,6 +3,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from oscillators import backlash_oscillator, mathieu, meissner
+from references import against, agrees
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
@@ -22,21 +23,27 @@ def state(displacement, velocity):
     return State(np.array([displacement]), np.array([velocity]))
 
 
+@against(
+    "other program",
+    "oscillator with backlash, computed twice by independent means",
+    capability="dynamics_response",
+    module="facegear.dynamics.steady_state.simulate",
+)
 @pytest.mark.parametrize("branch", [LOWER, UPPER])
 def test_backlash_oscillator_has_both_orbits_of_oracle_a(branch):
     displacement, velocity, least, most, mean, ac_rms = branch
     system = backlash_oscillator(0.75)
     response = steady_state(system, 0.75, FINE, state(round(displacement, 2), round(velocity, 2)))
     assert response.label == "period-1"
-    assert response.coordinates[0, 0] == pytest.approx(displacement, abs=2e-10)
-    assert response.state.velocity[0] == pytest.approx(velocity, abs=2e-10)
+    agrees("displacement of the orbit", response.coordinates[0, 0], displacement, absolute=2e-10)
+    agrees("velocity of the orbit", response.state.velocity[0], velocity, absolute=2e-10)
     orbit = record(system, 0.75, response.state, 1, FINE)
-    assert orbit.extremes(0) == pytest.approx((least, most), abs=1e-8)
+    agrees("extremes of the orbit", orbit.extremes(0), (least, most), absolute=1e-8)
     phases, weights = orbit.quadrature()
     values = orbit.at(phases)[1][:, 0]
     found = weights @ values / (2 * np.pi)
-    assert found == pytest.approx(mean, abs=1e-8)
-    assert np.sqrt(weights @ (values - found) ** 2 / (2 * np.pi)) == pytest.approx(ac_rms, abs=1e-8)
+    agrees("mean of the orbit", found, mean, absolute=1e-8)
+    agrees("RMS of the orbit", np.sqrt(weights @ (values - found) ** 2 / (2 * np.pi)), ac_rms, absolute=1e-8)
 
 
 def exact_multipliers(speed, displacement, velocity):
@@ -75,12 +82,19 @@ def exact_multipliers(speed, displacement, velocity):
     return np.sort_complex(np.linalg.eigvals(product))
 
 
+@against(
+    "other program",
+    "scipy.linalg.expm between the switches of contact",
+    capability="dynamics_response branches",
+    module="facegear.dynamics.steady_state.orbits",
+)
 @pytest.mark.parametrize("branch", [LOWER, UPPER])
 def test_multipliers_agree_with_matrix_exponentials_between_switches(branch):
     response = steady_state(backlash_oscillator(0.75), 0.75, FINE, state(*branch[:2]))
     exact = exact_multipliers(0.75, *branch[:2])
-    np.testing.assert_allclose(np.sort_complex(response.multipliers), exact, atol=2e-9)
-    assert response.liouville == pytest.approx(0.0, abs=1e-9)
+    difference = np.abs(np.sort_complex(response.multipliers) - exact)
+    agrees("difference of the multipliers", difference, 0.0, absolute=2e-9)
+    agrees("logarithm of the determinant, less Liouville's", response.liouville, 0.0, absolute=1e-9)
 
 
 def jump(make, approach, first, last):
@@ -100,42 +114,87 @@ def jump(make, approach, first, last):
     return bracket(sides[position], sides[position + 1], respond, 2e-6)
 
 
+@against(
+    "analytic",
+    "fold speeds of the oscillator with backlash in closed pieces",
+    capability="dynamics_sweep",
+    module="facegear.dynamics.sweeps.jumps",
+)
 @pytest.mark.parametrize(
     ("approach", "first", "last", "speed"),
     [((), 0.80, 0.84, 0.82846394), ((0.9, 0.85, 0.8), 0.76, 0.69, 0.70803163)],
 )
 def test_fold_speeds_of_oracle_a(approach, first, last, speed):
     before, after = jump(backlash_oscillator, approach, first, last)
-    assert 0.5 * (before.speed + after.speed) == pytest.approx(speed, abs=1e-5)
+    agrees(
+        "speed of the jump, over the natural frequency",
+        0.5 * (before.speed + after.speed),
+        speed,
+        absolute=1e-5,
+    )
     assert before.multiplier > 0.95
 
 
+@against(
+    "analytic",
+    "jump speeds of the square-wave oscillator in closed pieces",
+    capability="dynamics_sweep",
+    module="facegear.dynamics.sweeps.jumps",
+)
 @pytest.mark.parametrize(
     ("approach", "first", "last", "speed"),
     [((), 0.84, 0.90, 0.871224), ((0.95, 0.9, 0.85, 0.8, 0.77), 0.74, 0.66, 0.688016)],
 )
 def test_jump_speeds_of_oracle_b(approach, first, last, speed):
     before, after = jump(lambda w: meissner(0.05, one_sided=True), approach, first, last)
-    assert 0.5 * (before.speed + after.speed) == pytest.approx(speed, abs=1e-5)
+    agrees(
+        "speed of the jump, over the natural frequency",
+        0.5 * (before.speed + after.speed),
+        speed,
+        absolute=1e-5,
+    )
 
 
 def matrix_of(system, speed, tolerance=1e-15):
     return monodromy(Integrator(system, speed, tolerance, 20), np.zeros((2, system.size)), 1)[0]
 
 
+@against(
+    "analytic",
+    "Liouville: exp(-2 z T)",
+    capability="dynamics_response branches",
+    module="facegear.dynamics.steady_state.orbits",
+)
 def test_determinant_of_the_monodromy_matrix_is_the_damping_alone():
     matrix = matrix_of(meissner(0.05), 0.8)
-    assert np.linalg.det(matrix) == pytest.approx(np.exp(-0.1 * 2 * np.pi / 0.8), rel=1e-12)
+    agrees(
+        "determinant of the monodromy matrix",
+        np.linalg.det(matrix),
+        np.exp(-0.1 * 2 * np.pi / 0.8),
+        relative=1e-12,
+    )
 
 
 def radius(system, speed):
     return np.abs(np.linalg.eigvals(matrix_of(system, speed))).max()
 
 
+@against(
+    "analytic",
+    "Meissner's equation in closed pieces",
+    capability="dynamics_response branches",
+    module="facegear.dynamics.steady_state.orbits",
+)
 def test_meissner_spectral_radius():
-    assert radius(meissner(0.05), 2.0) == pytest.approx(1.043579854635, abs=1e-11)
+    agrees("spectral radius", radius(meissner(0.05), 2.0), 1.043579854635, absolute=1e-11)
 
 
+@against(
+    "analytic",
+    "edges of the principal tongues of Meissner's and Mathieu's equations",
+    capability="dynamics_response branches",
+    module="facegear.dynamics.steady_state.orbits",
+)
 @pytest.mark.parametrize(
     ("make", "edges"),
     [
@@ -152,16 +211,33 @@ def test_undamped_tongue_edges(make, edges):
         return np.trace(matrix_of(system, speed)) + 2.0
 
     for edge in edges:
-        assert brentq(beyond, edge - 0.02, edge + 0.02, xtol=1e-12) == pytest.approx(edge, abs=1e-7)
+        agrees(
+            "edge of the tongue, over the natural frequency",
+            brentq(beyond, edge - 0.02, edge + 0.02, xtol=1e-12),
+            edge,
+            absolute=1e-7,
+        )
 
 
+@against(
+    "analytic",
+    "edges of Meissner's principal tongue with damping, in closed pieces",
+    capability="dynamics_response branches",
+    module="facegear.dynamics.steady_state.orbits",
+)
 def test_damped_tongue_edges():
     system = meissner(0.05)
     for edge in (1.9169701716, 2.0743382093):
         found = brentq(lambda w: radius(system, w) - 1.0, edge - 0.01, edge + 0.01, xtol=1e-12)
-        assert found == pytest.approx(edge, abs=1e-9)
+        agrees("edge of the tongue, over the natural frequency", found, edge, absolute=1e-9)
 
 
+@against(
+    "other program",
+    "scipy.special.mathieu_a and mathieu_b",
+    capability="dynamics_response branches",
+    module="facegear.dynamics.steady_state.orbits",
+)
 def test_mathieu_edges_agree_with_scipys_characteristic_values():
     from scipy.special import mathieu_a, mathieu_b
 
@@ -172,4 +248,4 @@ def test_mathieu_edges_agree_with_scipys_characteristic_values():
         system = mathieu(depth)
         for edge in (low, high):
             trace = np.trace(matrix_of(system, edge))
-            assert trace == pytest.approx(-2.0, abs=1e-6)
+            agrees("trace of the monodromy matrix", trace, -2.0, absolute=1e-6)

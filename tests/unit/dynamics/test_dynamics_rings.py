@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lumped_machines import make_layout, make_machine
+from references import against, agrees
 from scipy_motions import gap_to_scipy, kicked
 
 from facegear.dynamics.integrator.compiled import TAU
@@ -61,6 +62,12 @@ def slope(model, omega):
     return right
 
 
+@against(
+    "other program",
+    "scipy.integrate.solve_ivp",
+    capability="dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 @pytest.mark.parametrize("play", [3e-6, 40e-6])
 def test_a_bearing_with_play_moves_as_scipy_says_through_touching_and_leaving(play):
     model = build_model(machine_with(play, ONE, torque=20.0, backlash=20e-6))
@@ -71,9 +78,15 @@ def test_a_bearing_with_play_moves_as_scipy_says_through_touching_and_leaving(pl
     assert (rim == 0).any() and (rim == 1).any()
     phases = np.linspace(0.0, 2.0 * TAU, 21)
     gap = gap_to_scipy(model, omega, slope(model, omega), start, run, phases, 1e-11)
-    assert gap < 2e-6 * model.system.scale
+    agrees("largest difference of the motion, m", gap, 0.0, absolute=2e-6 * model.system.scale)
 
 
+@against(
+    "analytic",
+    "Liouville's formula",
+    capability="dynamics_response branches",
+    module="facegear.dynamics.integrator.integrator",
+)
 def test_liouville_holds_while_bearings_touch_and_leave_their_rings():
     model = build_model(machine_with(40e-6, ONE, torque=20.0, backlash=20e-6))
     omega = TAU * 1500.0
@@ -85,7 +98,7 @@ def test_liouville_holds_while_bearings_touch_and_leave_their_rings():
     assert ((rim > 0.0) & (rim < 1.0)).any()
     sign, volume = np.linalg.slogdet(matrix)
     assert sign > 0
-    assert volume == pytest.approx(run.divergence, abs=1e-8)
+    agrees("logarithm of the determinant", volume, run.divergence, absolute=1e-8)
     # The matrix itself, against differences of neighbouring runs.
     for column in range(0, 2 * n, 5):
         moved = []

@@ -7,6 +7,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
 from random_machines import FINE, frequency, kicked, machines, speeds
+from references import against, agrees
 
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.trajectory import record
@@ -23,6 +24,12 @@ from facegear.transmission.printed import PRINTED
 from facegear.transmission.teeth import GEOMETRIC
 
 
+@against(
+    "analytic",
+    "scaling of the equation of motion",
+    capability="dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 @settings(max_examples=12, deadline=None)
 @given(machine=machines(), speed=speeds, factor=st.floats(0.01, 100))
 def test_scaling_torques_backlash_and_error_scales_the_motion(machine, speed, factor):
@@ -46,9 +53,15 @@ def test_scaling_torques_backlash_and_error_scales_the_motion(machine, speed, fa
     )
     phases = np.linspace(0.0, 2 * TAU, 50)
     one, two = first.at(phases)[1], second.at(phases)[1]
-    np.testing.assert_allclose(two / factor, one, atol=1e-9 * model.system.scale)
+    agrees("deflection of a mesh, m", two / factor, one, relative=1e-7, absolute=1e-9 * model.system.scale)
 
 
+@against(
+    "analytic",
+    "symmetry of the equation of motion",
+    capability="dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 @settings(max_examples=12, deadline=None)
 @given(machine=machines(kinematics=PRINTED), speed=speeds)
 def test_negated_torques_and_error_negate_the_motion(machine, speed):
@@ -60,7 +73,13 @@ def test_negated_torques_and_error_negate_the_motion(machine, speed):
         mirrored.system, frequency(model, speed), State(-start.displacement, -start.velocity), 2, FINE
     )
     phases = np.linspace(0.0, 2 * TAU, 50)
-    np.testing.assert_allclose(second.at(phases)[1], -first.at(phases)[1], atol=1e-9 * model.system.scale)
+    agrees(
+        "deflection of a mesh, m",
+        second.at(phases)[1],
+        -first.at(phases)[1],
+        relative=1e-7,
+        absolute=1e-9 * model.system.scale,
+    )
 
 
 def standing_on_an_edge():
@@ -111,6 +130,12 @@ def mirrored_start(model: Model, mirrored: Model) -> State:
     return State(start, np.zeros_like(start))
 
 
+@against(
+    "analytic",
+    "mirror symmetry",
+    capability="dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 @settings(max_examples=12, deadline=None)
 @given(machine=machines(kinematics=GEOMETRIC, symmetric=True), speed=speeds)
 @example(machine=standing_on_an_edge(), speed=3000.0)
@@ -135,7 +160,13 @@ def test_in_a_mirror_drive_and_back_flanks_change_places(machine, speed):
     flanks = slice(0, model.system.contacts)
     drive, back = np.split(run.at(phases)[1][:, flanks], 2, axis=1)
     swapped = np.concatenate([back, drive], axis=1)
-    np.testing.assert_allclose(other.at(phases)[1][:, flanks], swapped, atol=1e-9 * model.system.scale)
+    agrees(
+        "deflection of a flank, m",
+        other.at(phases)[1][:, flanks],
+        swapped,
+        relative=1e-7,
+        absolute=1e-9 * model.system.scale,
+    )
 
 
 @settings(max_examples=8, deadline=None)

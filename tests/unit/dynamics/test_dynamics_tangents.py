@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_machine
+from references import against, agrees
 
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
@@ -35,6 +36,12 @@ def test_disturbances_side_by_side_move_as_each_does_alone(losing_contact, count
     np.testing.assert_allclose(together.tangents, alone, rtol=0.0, atol=1e-12 * np.abs(alone).max())
 
 
+@against(
+    "other program",
+    "differences of two motions",
+    capability="dynamics_response branches",
+    module="facegear.dynamics.integrator.integrator",
+)
 def test_a_disturbance_is_the_difference_of_two_motions(losing_contact):
     integrator, start = losing_contact
     tangents = np.zeros((2, *start.shape))
@@ -42,7 +49,7 @@ def test_a_disturbance_is_the_difference_of_two_motions(losing_contact):
     off = [integrator.run(start + sign * 1e-4 * tangents[0], 1, fine=True).state for sign in (1.0, -1.0)]
     found = integrator.run(start, 1, tangents).tangents[0]
     expected = (off[0] - off[1]) / 2e-4
-    np.testing.assert_allclose(found, expected, atol=2e-3 * np.abs(expected).max())
+    agrees("tangent", found, expected, relative=1e-7, absolute=2e-3 * np.abs(expected).max())
 
 
 @settings(max_examples=100, deadline=None)

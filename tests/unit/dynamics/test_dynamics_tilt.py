@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lumped_machines import make_layout, make_machine
+from references import against, agrees
 
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.trajectory import record
@@ -28,6 +29,12 @@ def tilting(layout, stiffness, inertia=INERTIA):
     return replace(layout, gears=gears)
 
 
+@against(
+    "analytic",
+    "linear response with the rim's lever, by hand",
+    capability="dynamics_response",
+    module="facegear.dynamics.steady_state.simulate",
+)
 def test_a_gear_that_rocks_answers_an_error_as_a_lever():
     """One mesh kept in contact: the linear response, with the rim's lift R sin a times the tilt by hand."""
     layout = make_layout(ONE, (Side.UPPER,), kinematics=GEOMETRIC)
@@ -50,7 +57,7 @@ def test_a_gear_that_rocks_answers_an_error_as_a_lever():
     moved = np.linalg.solve(dynamic, row * (K + 1200.0j * omega) * 3e-6)
     swing = K * (row @ moved - 3e-6)
     by_hand = 1500.0 / layout.pinion_radius + (swing * np.exp(TAU * 1j * found.phases)).real
-    np.testing.assert_allclose(found.forces[:, 0], by_hand, atol=2e-7 * by_hand.max())
+    agrees("mesh force, N", found.forces[:, 0], by_hand, relative=1e-7, absolute=2e-7 * by_hand.max())
 
 
 def test_a_gear_that_hardly_tilts_moves_as_one_that_cannot():
@@ -68,6 +75,12 @@ def test_a_gear_that_hardly_tilts_moves_as_one_that_cannot():
     assert gaps[2] < 1e-9
 
 
+@against(
+    "analytic",
+    "impulse and moment of momentum of the rim",
+    capability="dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 def test_moments_about_both_diameters_are_balanced_in_motion():
     """I dw + (lambda I + beta k) dtilt + k integral of tilt = integral of r x F over the rim."""
     layout = tilting(make_layout(kinematics=GEOMETRIC), 2e7)
@@ -102,4 +115,10 @@ def test_moments_about_both_diameters_are_balanced_in_motion():
         rim = layout.mesh_radius * np.stack([np.sin(layout.angles), -np.cos(layout.angles)])
         lift = gear.sign * axial[5 * g : 5 * g + 5]
         moments = np.array([rim[1] @ lift, -rim[0] @ lift])
-        np.testing.assert_allclose(held, moments, atol=1e-8 * layout.mesh_radius * np.abs(axial).max())
+        agrees(
+            "moment over two periods, N m s",
+            held,
+            moments,
+            relative=1e-7,
+            absolute=1e-8 * layout.mesh_radius * np.abs(axial).max(),
+        )

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from force_tables import power_table, two_pairs
 from law_oscillators import closing_error, law_period_map, orbit, oscillator
+from references import against, agrees
 from scipy.integrate import simpson
 from scipy.interpolate import CubicHermiteSpline
 
@@ -20,6 +21,12 @@ from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.mesh_law.load_dependent import load_dependent_law
 
 
+@against(
+    "analytic",
+    "period of an oscillator with a power law",
+    capability="dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 @pytest.mark.parametrize(
     ("start", "period", "least"),
     [
@@ -32,21 +39,32 @@ def test_free_motions_converge_to_the_closed_form_with_the_fourth_power_of_the_n
     start, period, least
 ):
     errors = np.array([closing_error(power_table_law(n), start, period, least) for n in (100, 200, 400, 800)])
-    assert errors[-1] < 2e-10
+    agrees("distance from the start after a period", errors[-1], 0.0, absolute=2e-10)
     assert (errors[:-1] > 6.0 * errors[1:]).all()
     assert errors[0] > 500.0 * errors[-1]
 
 
+@against(
+    "analytic",
+    "period of an oscillator between two flanks",
+    capability="dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 def test_a_body_between_two_flanks_swings_with_the_period_of_the_closed_form():
     """Law x^1.5 on both sides of a gap of +-0.3, speed 0.8 in it."""
     system = oscillator(power_table_law(800), mean=0.0, lower=-0.3, upper=0.3)
     state = np.array([[0.0], [0.8 * 8.2298730550201 / (2.0 * np.pi)]])
     run = Integrator(system, 2.0 * np.pi / 8.2298730550201, 1e-14).run(state, 1, batches=1)
-    np.testing.assert_allclose(run.state, state, rtol=0, atol=1e-9)
-    assert run.sums.highest[0] == pytest.approx(0.3 + 0.91461010385465, abs=1e-9)
-    assert run.sums.lowest[0] == pytest.approx(-0.3 - 0.91461010385465, abs=1e-9)
+    agrees("distance from the start after a period", run.state, state, absolute=1e-9)
+    agrees("largest displacement", run.sums.highest[0], 0.3 + 0.91461010385465, absolute=1e-9)
+    agrees("smallest displacement", run.sums.lowest[0], -0.3 - 0.91461010385465, absolute=1e-9)
     open_share = 4.0 * 0.3 / 0.8 / 8.2298730550201
-    assert run.fractions[:, 0] == pytest.approx([open_share, *2 * [0.5 - 0.5 * open_share]], abs=1e-9)
+    agrees(
+        "fractions of the time on the flanks",
+        run.fractions[:, 0],
+        [open_share, *2 * [0.5 - 0.5 * open_share]],
+        absolute=1e-9,
+    )
 
 
 def test_the_motion_keeps_its_order_where_it_passes_levels_of_the_table():
@@ -74,21 +92,45 @@ def off(period_map, found, place, rate):
     return max(abs(state.displacement[0] - place), abs(state.velocity[0] - rate))
 
 
+@against(
+    "other program",
+    "power law of force: Taylor series of high order",
+    capability="branches",
+    module="facegear.dynamics.branches.points",
+)
 def test_an_unstable_orbit_on_a_table_has_place_and_multipliers_of_the_power_law():
     """Damping .02, load 1 + .1 cos W t, W 1.1; contact is lost."""
     period_map = law_period_map(power_table_law(1000), 0.02, 0.1)
     found = orbit(period_map, 1.1, 1.79379722656, 0.68475098448)
-    assert off(period_map, found, 1.79379722656, 0.68475098448) < 1e-9
-    np.testing.assert_allclose(np.sort(found.multipliers.real), [0.51611544, 1.54179196], rtol=0, atol=2e-8)
-    assert found.multipliers.prod().real == pytest.approx(np.exp(-0.04 * 2 * np.pi / 1.1), rel=1e-9)
+    agrees(
+        "distance from the orbit", off(period_map, found, 1.79379722656, 0.68475098448), 0.0, absolute=1e-9
+    )
+    agrees(
+        "multipliers of the unstable orbit",
+        np.sort(found.multipliers.real),
+        [0.51611544, 1.54179196],
+        absolute=2e-8,
+    )
+    agrees(
+        "product of the multipliers",
+        found.multipliers.prod().real,
+        np.exp(-0.04 * 2 * np.pi / 1.1),
+        relative=1e-9,
+    )
 
 
+@against(
+    "other program",
+    "power law of force: Taylor series of high order",
+    capability="branches",
+    module="facegear.dynamics.branches.continuation",
+)
 def test_branches_on_a_table_fold_where_the_power_law_does():
     """Damping .02, load 1 + .1 cos W t: the upper fold keeps contact, the lower one has lost it."""
     period_map = law_period_map(power_table_law(300), 0.02, 0.1, 1e-11)
     branch = branch_at(period_map, np.array([1.2, 0.0]), 1.0, ContinuationSettings(0.8, 1.2))
     folds = sorted(special.point.value for special in branch.of(Kind.FOLD))
-    assert folds == pytest.approx([0.81612741138, 1.13889845103], abs=1e-6)
+    agrees("speed of a fold", folds, [0.81612741138, 1.13889845103], absolute=1e-6)
 
 
 def test_a_parametric_table_doubles_its_period_where_the_power_law_does():
@@ -121,18 +163,30 @@ def test_two_pairs_that_take_over_from_each_other_are_met_as_well_as_their_corne
     assert (np.array(found[0]) > 10.0 * np.array(found[1])).all()
 
 
+@against(
+    "other program",
+    "central differences of the motion; Liouville's formula",
+    capability="branches",
+    module="facegear.dynamics.integrator.integrator",
+)
 def test_tangents_of_a_table_are_differences_of_its_motions():
     """Liouville's theorem alone is blind to the slopes."""
     integrator = Integrator(oscillator(power_table_law(8, 0.3, 0.1), 0.02, 0.1), 1.1, 1e-14)
     start = np.array([[2.2], [0.1]])
     matrix, run = monodromy(integrator, start, 1)
     assert 0.0 < run.fractions[0, 0] < 1.0
-    assert np.linalg.det(matrix) == pytest.approx(np.exp(run.divergence), rel=1e-11)
+    agrees("determinant of the tangents", np.linalg.det(matrix), np.exp(run.divergence), relative=1e-11)
     for column in range(2):
         shift = np.zeros((2, 1))
         shift[column] = 1e-5
         ends = [integrator.run(start + sign * shift, 1, fine=True).state for sign in (1.0, -1.0)]
-        np.testing.assert_allclose(matrix[:, column], (ends[0] - ends[1]).ravel() / 2e-5, atol=1e-7)
+        agrees(
+            "column of the tangents",
+            matrix[:, column],
+            (ends[0] - ends[1]).ravel() / 2e-5,
+            relative=1e-7,
+            absolute=1e-7,
+        )
 
 
 def potential_of(table):
@@ -141,6 +195,12 @@ def potential_of(table):
     return CubicHermiteSpline(table.levels, forces, slopes).antiderivative()
 
 
+@against(
+    "analytic",
+    "conservation of energy",
+    capability="dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 def test_a_free_motion_keeps_its_energy_through_all_levels():
     """The force of a table at a fixed phase has a potential: its cubics, integrated."""
     potential = potential_of(power_table(12, first=0.05))
@@ -148,7 +208,7 @@ def test_a_free_motion_keeps_its_energy_through_all_levels():
     start = np.array([[2.5], [0.0]])
     ends = np.concatenate([start[None], integrator.run(start, 5).ends])[..., 0]
     energies = 0.5 * ends[:, 1] ** 2 + potential(np.maximum(ends[:, 0], 0.0)) - ends[:, 0]
-    np.testing.assert_allclose(energies, energies[0], rtol=0, atol=1e-12)
+    agrees("energy", energies, energies[0], absolute=1e-12)
 
 
 def test_the_work_of_the_moving_phase_closes_the_balance_of_energy():

@@ -11,6 +11,7 @@ import pytest
 from law_oscillators import closing_error, law_period_map, orbit, oscillator
 from lumped_machines import make_layout, make_machine
 from power_laws import PowerLaw
+from references import against, agrees
 
 from facegear.dynamics.branches.continuation import ContinuationSettings, branch_at
 from facegear.dynamics.branches.special import Kind
@@ -28,19 +29,41 @@ from facegear.transmission.teeth import GEOMETRIC
 C, N = 2.4e11, 1.5
 
 
+@against(
+    "analytic",
+    "period of an oscillator with a power law",
+    capability="dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 @pytest.mark.parametrize(
     ("start", "period", "least"),
     [(1.60460120203, 5.229541362450, 0.32387905595), (1.5, 5.1936418419845, 0.45296577331444)],
 )
 def test_a_body_on_a_power_law_swings_with_the_period_of_the_closed_form(start, period, least):
-    assert closing_error(PowerLaw(), start, period, least) < 3e-11
+    agrees(
+        "distance from the start after a period",
+        closing_error(PowerLaw(), start, period, least),
+        0.0,
+        absolute=3e-11,
+    )
 
 
+@against(
+    "analytic",
+    "period of an oscillator with a power law and flight",
+    capability="dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 def test_a_body_that_leaves_contact_returns_on_time_the_better_the_earlier_the_power_law_begins():
     start, period, least = 2.0, 5.6280728407732, -0.26274169979695
     errors = [closing_error(PowerLaw(level=level), start, period, least) for level in (0.16, 0.04, 0.01)]
     assert (np.array(errors[:-1]) > 16.0 * np.array(errors[1:])).all()
-    assert closing_error(PowerLaw(level=1e-4), start, period, least) < 1e-9
+    agrees(
+        "distance from the start after a period",
+        closing_error(PowerLaw(level=1e-4), start, period, least),
+        0.0,
+        absolute=1e-9,
+    )
 
 
 def test_the_motion_keeps_its_order_where_it_passes_the_level_of_a_law():
@@ -55,15 +78,31 @@ def test_the_motion_keeps_its_order_where_it_passes_the_level_of_a_law():
     assert np.polyfit(length, error, 1)[0] > 7.5
 
 
+@against(
+    "other program",
+    "power law of force: closed form and Taylor series of high order",
+    capability="branches",
+    module="facegear.dynamics.branches.points",
+)
 def test_an_unstable_orbit_that_loses_contact_has_the_multipliers_of_the_power_law():
     """Damping .02, load 1 + .1 cos W t, W 1.1; the place is the reference's as well."""
     period_map = law_period_map(PowerLaw(level=1e-4), 0.02, 0.1)
     found = orbit(period_map, 1.1, 1.79379722656, 0.68475098448)
-    np.testing.assert_allclose(np.sort(found.multipliers.real), [0.51611544, 1.54179196], rtol=0, atol=8e-9)
+    agrees(
+        "multipliers of the unstable orbit",
+        np.sort(found.multipliers.real),
+        [0.51611544, 1.54179196],
+        absolute=8e-9,
+    )
     place = period_map.state(found.z, found.u)
-    assert place.displacement[0] == pytest.approx(1.79379722656, abs=2e-11)
-    assert place.velocity[0] == pytest.approx(0.68475098448, abs=2e-11)
-    assert found.multipliers.prod().real == pytest.approx(np.exp(-0.04 * 2 * np.pi / 1.1), rel=1e-9)
+    agrees("displacement of the unstable orbit", place.displacement[0], 1.79379722656, absolute=2e-11)
+    agrees("velocity of the unstable orbit", place.velocity[0], 0.68475098448, absolute=2e-11)
+    agrees(
+        "product of the multipliers",
+        found.multipliers.prod().real,
+        np.exp(-0.04 * 2 * np.pi / 1.1),
+        relative=1e-9,
+    )
 
 
 def test_a_parametric_power_law_doubles_its_period_where_the_taylor_series_say():
@@ -73,6 +112,12 @@ def test_a_parametric_power_law_doubles_its_period_where_the_taylor_series_say()
         assert found.multipliers.real.min() == pytest.approx(-1.0, abs=1e-8)
 
 
+@against(
+    "other program",
+    "power law of force: closed form and Taylor series of high order",
+    capability="branches",
+    module="facegear.dynamics.branches.continuation",
+)
 def test_a_branch_on_the_power_law_folds_while_it_keeps_contact():
     """Damping .02, load 1 + .1 cos W t: no linear law has a fold without a loss of contact."""
     branch = branch_at(
@@ -82,8 +127,8 @@ def test_a_branch_on_the_power_law_folds_while_it_keeps_contact():
         ContinuationSettings(0.95, 1.2),
     )
     folds = [special.point for special in branch.of(Kind.FOLD)]
-    assert [point.value for point in folds] == pytest.approx([1.13889845103], rel=1e-9)
-    assert folds[0].extrema[0, 1].max() == pytest.approx(0.267231, abs=1e-5)
+    agrees("speed of the fold", [point.value for point in folds], [1.13889845103], relative=1e-9)
+    agrees("amplitude at the fold", folds[0].extrema[0, 1].max(), 0.267231, absolute=1e-5)
 
 
 def test_tangents_of_the_law_are_differences_of_its_motions():
@@ -104,14 +149,20 @@ def one_mesh(kinematics=GEOMETRIC, torque=600.0, flanks=2):
     return replace(machine, law=PowerLaw(C, N, 2e-6, contacts=flanks, largest=4e-4))
 
 
+@against(
+    "analytic",
+    "inverse of the power law",
+    capability="load_sharing_reference",
+    module="facegear.transmission.statics",
+)
 @pytest.mark.parametrize("torque", [60.0, 600.0, 3000.0])
 def test_statics_press_a_mesh_in_by_the_inverse_of_its_law(torque):
     machine = one_mesh(torque=torque)
     found = static_equilibrium(machine)
     force = torque / machine.layout.pinion_arm
-    assert found.forces[0] == pytest.approx(force, rel=1e-11)
+    agrees("mesh force, N", found.forces[0], force, relative=1e-11)
     amount = (flank_directions(machine.layout) @ found.displacements)[0] - machine.half_backlash
-    assert amount == pytest.approx((force / C) ** (1.0 / N), rel=1e-10)
+    agrees("deflection, m", amount, (force / C) ** (1.0 / N), relative=1e-10)
 
 
 @pytest.mark.parametrize("torque", [600.0, -600.0])

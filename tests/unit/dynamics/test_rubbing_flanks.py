@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lumped_machines import make_layout, make_machine
+from references import against, agrees
 from scipy_motions import gap_to_scipy, kicked
 
 from facegear.dynamics.integrator.compiled import TAU
@@ -102,6 +103,12 @@ def right_side(model, omega):
     return right
 
 
+@against(
+    "other program",
+    "scipy.integrate.solve_ivp",
+    capability="dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 def test_rubbing_flanks_move_as_scipy_says_through_parting_and_both_flanks():
     model = build_model(rubbing_machine(torque=60.0, backlash=20e-6))
     omega = TAU * 6000.0
@@ -110,9 +117,15 @@ def test_rubbing_flanks_move_as_scipy_says_through_parting_and_both_flanks():
     assert (run.states == 0).any() and (run.states[:, :4] == 1).any() and (run.states[:, 4:] == 1).any()
     phases = np.linspace(0.0, TAU, 11)
     gap = gap_to_scipy(model, omega, right_side(model, omega), start, run, phases, 1e-10)
-    assert gap < 2e-6 * model.system.scale
+    agrees("largest difference of the motion, m", gap, 0.0, absolute=2e-6 * model.system.scale)
 
 
+@against(
+    "other program",
+    "central differences of the motion; Liouville's formula",
+    capability="dynamics_response branches",
+    module="facegear.dynamics.integrator.integrator",
+)
 @pytest.mark.parametrize("open_flanks", [OpenFlanks.CONTACT_ONLY, OpenFlanks.PUSH_ONLY])
 def test_disturbances_of_rubbing_flanks_are_differences_and_keep_their_volume(open_flanks):
     model = build_model(rubbing_machine(torque=60.0, backlash=20e-6, open_flanks=open_flanks))
@@ -122,7 +135,12 @@ def test_disturbances_of_rubbing_flanks_are_differences_and_keep_their_volume(op
     state = integrator.by_phase(start)
     matrix, run = monodromy(integrator, state, 1)
     assert ((run.fractions[0] > 0.0) & (run.fractions[0] < 1.0)).any()
-    assert np.linalg.slogdet(matrix)[1] == pytest.approx(run.divergence, abs=1e-7)
+    agrees(
+        "logarithm of the determinant of the tangents",
+        np.linalg.slogdet(matrix)[1],
+        run.divergence,
+        absolute=1e-7,
+    )
     for column in range(0, 2 * n, 7):
         ends = []
         for sign in (-1.0, 1.0):
@@ -130,9 +148,21 @@ def test_disturbances_of_rubbing_flanks_are_differences_and_keep_their_volume(op
             change[divmod(column, n)] = sign * 1e-9
             ends.append(integrator.run(state + change, 1, fine=True).state[0])
         slope = (ends[1] - ends[0]) / 2e-9
-        np.testing.assert_allclose(matrix[:n, column], slope, atol=2e-4 * np.abs(matrix).max())
+        agrees(
+            "column of the tangents",
+            matrix[:n, column],
+            slope,
+            relative=1e-7,
+            absolute=2e-4 * np.abs(matrix).max(),
+        )
 
 
+@against(
+    "analytic",
+    "balance of energy",
+    capability="dynamics_response",
+    module="facegear.dynamics.integrator.integrator",
+)
 def test_power_in_less_power_out_less_friction_less_damping_is_the_change_of_energy():
     """Of the whole machine that turns evenly, along a motion that parts and strikes back.
 
@@ -208,7 +238,9 @@ def test_power_in_less_power_out_less_friction_less_damping_is_the_change_of_ene
         change += high - low
     left_over = sums["power"] - sums["friction"] - sums["damping"] + sums["rotation"] - change
     assert abs(sums["friction"]) > 1e-2 * abs(change)
-    assert abs(left_over) < 1e-8 * (abs(sums["friction"]) + abs(sums["damping"]))
+    agrees(
+        "work left over, J", left_over, 0.0, absolute=1e-8 * (abs(sums["friction"]) + abs(sums["damping"]))
+    )
     # Of the even rotation alone: what goes in and does not come out is what friction takes.
     assert even > 0.0
 

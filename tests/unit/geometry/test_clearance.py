@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from references import against, agrees
 
 from facegear.geometry.analysis import analyse
 from facegear.geometry.clearance import smallest_gaps
@@ -26,24 +27,42 @@ def test_default_pair_clears_by_eight_micrometres(pair):
     assert result.smallest.pinion_part == "fillet"
 
 
+@against(
+    "own convergence",
+    "finer sampling",
+    capability="geometry",
+    module="facegear.geometry.clearance",
+)
 def test_gaps_do_not_depend_on_sampling(pair):
     design = pair(26, rack_tip_radius=0.25)
     found = []
     for count in (32, 128):
         phi1 = (np.arange(count) / count - 0.5) * 2 * np.pi / 23
         found.append(smallest_gaps(design, phi1, phi1 * 23 / 143)[("fillet", "tip edge")].gap)
-    assert found[0] == pytest.approx(found[1], abs=5e-7)
+    agrees("smallest gap, m", found[0], found[1], absolute=5e-7)
 
 
+@against(
+    "analytic",
+    "backlash of a thinned pinion",
+    capability="geometry",
+    module="facegear.geometry.analysis",
+)
 def test_backlash_is_the_thinning(pair):
     for thinning in (0.0, 1e-4):
         result = analyse(pair(26, thinning=thinning), positions=8)
-        np.testing.assert_allclose(result.backlash, thinning, atol=1e-11)
+        agrees("backlash, m", result.backlash, thinning, relative=1e-7, absolute=1e-11)
 
 
+@against(
+    "analytic",
+    "twice the normal part of a displacement",
+    capability="geometry",
+    module="facegear.geometry.analysis",
+)
 def test_pulling_the_gear_back_opens_both_flanks(pair):
     result = analyse(pair(26, axial_shift=1e-6, thinning=1e-4), positions=8)
-    np.testing.assert_allclose(result.backlash - 1e-4, 2e-6 * np.sin(np.radians(25)), rtol=0.02)
+    agrees("backlash, m", result.backlash - 1e-4, 2e-6 * np.sin(np.radians(25)), relative=0.02)
 
 
 def test_pushing_the_gear_in_beyond_the_backlash_is_interference(pair):

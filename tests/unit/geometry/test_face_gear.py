@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from references import against, agrees
 
 from facegear.geometry import face_gear
 from facegear.geometry.design import involute
@@ -15,6 +16,12 @@ def flank_grid(design):
     return radius, roll, face_gear.psi_at(design, radius, roll)
 
 
+@against(
+    "analytic",
+    "law of gearing: flanks slide in their tangent plane",
+    capability="geometry",
+    module="facegear.geometry.face_gear",
+)
 @pytest.mark.parametrize("teeth", [23, 24, 26])
 def test_relative_velocity_at_generation_lies_in_the_tangent_plane(pair, teeth):
     design = pair(teeth)
@@ -33,11 +40,16 @@ def test_relative_velocity_at_generation_lies_in_the_tangent_plane(pair, teeth):
     shaper_velocity = np.cross([0, -1.0, 0], arm)
     gear_velocity = design.shaper_ratio * np.cross([0, 0, -1.0], fixed)
     residual = np.sum(normal * (shaper_velocity - gear_velocity), axis=-1)
-    assert np.max(np.abs(residual)) <= 1e-12 * design.gear_pitch_radius
+    agrees(
+        "normal velocity of shaper and gear, m per rad",
+        residual,
+        0.0,
+        absolute=1e-12 * design.gear_pitch_radius,
+    )
     # the same point lies on the shaper's involute
     angle = np.arctan2(fixed[..., 0], design.shaper_lift - fixed[..., 2]) - turn_s
     expected = design.shaper_half_space_angle + roll - np.arctan(roll)
-    assert np.max(np.abs(angle - expected)) < 1e-13
+    agrees("angle on the shaper's involute, rad", angle, expected, absolute=1e-13)
 
 
 def test_normal_is_orthogonal_to_exact_tangents_and_tangents_to_differences(pair):
@@ -56,6 +68,12 @@ def test_normal_is_orthogonal_to_exact_tangents_and_tangents_to_differences(pair
     np.testing.assert_allclose(np.linalg.norm(normal, axis=-1), 1, atol=1e-15)
 
 
+@against(
+    "analytic",
+    "cos a_L = m N2 cos a0 / (2 L)",
+    capability="geometry",
+    module="facegear.geometry.face_gear",
+)
 def test_local_pressure_angle_is_the_flank_slope_on_the_pitch_plane(pair):
     """Where the flank crosses the pitch plane its normal leans by a_L, cos a_L = m N2 cos a0 / (2 L)."""
     design = pair()
@@ -65,10 +83,18 @@ def test_local_pressure_angle_is_the_flank_slope_on_the_pitch_plane(pair):
         point = face_gear.flank_point(design, roll, angle)
         radius = np.hypot(point[0], point[1])
         expected = design.module * 143 * np.cos(design.pressure_angle) / (2 * radius)
-        assert np.cos(angle) == pytest.approx(expected, abs=1e-14)
-        assert face_gear.local_pressure_angle(design, radius) == pytest.approx(angle, abs=1e-12)
+        agrees("cosine of the local pressure angle", np.cos(angle), expected, absolute=1e-14)
+        agrees(
+            "local pressure angle, rad", face_gear.local_pressure_angle(design, radius), angle, absolute=1e-12
+        )
 
 
+@against(
+    "analytic",
+    "rack of the pitch plane: half a pitch",
+    capability="geometry",
+    module="facegear.geometry.face_gear",
+)
 @pytest.mark.parametrize("shift", [-0.1, 0.0, 0.3])
 def test_tooth_thickness_on_the_pitch_plane_at_the_pitch_radius(pair, shift):
     """At L = m N2 / 2 the planar tooth is the rack's, pi m / 2 wide on its datum plane whatever the shift."""
@@ -76,7 +102,7 @@ def test_tooth_thickness_on_the_pitch_plane_at_the_pitch_radius(pair, shift):
     radius = design.gear_pitch_radius
     roll, psi = face_gear.roll_and_psi_at_height(design, radius, design.pitch_plane)
     width = 2 * face_gear.flank_point(design, roll, psi)[0]
-    assert width == pytest.approx(np.pi * design.module / 2, abs=5e-3 * design.module)
+    agrees("tooth thickness, m", width, np.pi * design.module / 2, absolute=5e-3 * design.module)
 
 
 ROUNDINGS = [0.0, 0.1, 0.14]
@@ -108,6 +134,12 @@ def test_fillet_ends_tangent_to_the_root_plane(pair, rounding):
     assert face_gear.root_half_angle(design) > 0
 
 
+@against(
+    "analytic",
+    "envelope: no velocity along the normal, distance of the tip's centre",
+    capability="geometry",
+    module="facegear.geometry.face_gear",
+)
 @pytest.mark.parametrize("rounding", ROUNDINGS)
 def test_the_fillet_is_the_envelope_of_the_shapers_rounded_tip(pair, rounding):
     """In the frame of generation every fillet point is on the tip's arc, and the tool slides along it there.
@@ -131,12 +163,20 @@ def test_the_fillet_is_the_envelope_of_the_shapers_rounded_tip(pair, rounding):
     fixed, normal = to_fixed(point), to_fixed(normal)
     lift, ratio = design.shaper_lift, design.shaper_ratio
     velocity = np.cross([0, -1.0, 0], fixed - [0, 0, lift]) - ratio * np.cross([0, 0, -1.0], fixed)
-    assert np.max(np.abs(np.sum(normal * velocity, axis=-1))) < 1e-9 * design.gear_pitch_radius
+    agrees(
+        "normal velocity of shaper and fillet, m per rad",
+        np.sum(normal * velocity, axis=-1),
+        0.0,
+        absolute=1e-9 * design.gear_pitch_radius,
+    )
     chi = turn / ratio + face_gear.edge_start(design)
     centre = design.shaper_rounding_centre * np.stack([np.sin(chi), -np.cos(chi)], -1)
     arm = fixed[..., [0, 2]] - [0, lift] - centre
-    assert (
-        np.max(np.abs(np.hypot(*np.moveaxis(arm, -1, 0)) - design.shaper.tip_rounding)) < 1e-9 * design.module
+    agrees(
+        "distance from the tip's arc, m",
+        np.hypot(*np.moveaxis(arm, -1, 0)),
+        design.shaper.tip_rounding,
+        absolute=1e-9 * design.module,
     )
     if rounding:
         assert np.max(np.sum(arm * normal[..., [0, 2]], axis=-1)) < 0
@@ -189,6 +229,12 @@ def test_a_rounding_of_nearly_nothing_gives_the_sharp_edges_fillet(pair):
     assert np.max(np.abs(points[1] - points[0])) < 2e-6 * design.module
 
 
+@against(
+    "analytic",
+    "thickness of a shifted involute tooth on its pitch circle",
+    capability="geometry",
+    module="facegear.geometry.design",
+)
 def test_space_width_of_the_shaper_follows_from_its_tooth_thickness(pair):
     design = pair(shift=0.2)
     teeth, angle = design.shaper.teeth, design.pressure_angle
@@ -196,4 +242,9 @@ def test_space_width_of_the_shaper_follows_from_its_tooth_thickness(pair):
     on_pitch = half_tooth - involute(angle)
     thickness = 2 * on_pitch * design.shaper_pitch_radius
     shift = design.pinion.profile_shift
-    assert thickness == pytest.approx(np.pi * design.module / 2 + 2 * shift * np.tan(angle), abs=1e-15)
+    agrees(
+        "tooth thickness of the shaper, m",
+        thickness,
+        np.pi * design.module / 2 + 2 * shift * np.tan(angle),
+        absolute=1e-15,
+    )

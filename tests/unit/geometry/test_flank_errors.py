@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout
+from references import against, agrees
 
 from facegear.geometry.design import AssemblyErrors
 from facegear.geometry.flank_errors import FLANKS, GEARS, distinct_errors, errors_at
@@ -30,6 +31,12 @@ def moved(design, errors):
     return replace(design, assembly=errors)
 
 
+@against(
+    "analytic",
+    "place of the contact of a displaced pair in closed form",
+    capability="contact",
+    module="facegear.geometry.flank_errors",
+)
 @pytest.mark.parametrize(("errors", "drive", "back"), PATHS)
 def test_contact_of_either_flank_stands_where_the_closed_form_has_it(pair, errors, drive, back):
     offset, shift, angle = errors
@@ -37,9 +44,15 @@ def test_contact_of_either_flank_stands_where_the_closed_form_has_it(pair, error
     for flank, radius in zip(FLANKS, (drive, back), strict=True):
         design = moved(pair(26), errors_at(given_errors, "upper", flank))
         _, along_the_pinion = unloaded_contact(design, np.array([0.01, 0.1])).path
-        np.testing.assert_allclose(1e3 * along_the_pinion, radius, atol=1e-5)
+        agrees("radius of the path, mm", 1e3 * along_the_pinion, radius, relative=1e-7, absolute=1e-5)
 
 
+@against(
+    "analytic",
+    "normal part of a displacement",
+    capability="geometry",
+    module="facegear.geometry.unloaded",
+)
 @pytest.mark.parametrize("gear", GEARS)
 @pytest.mark.parametrize("flank", FLANKS)
 def test_a_displaced_pinion_closes_each_flank_as_the_machine_s_directions_say(pair, gear, flank):
@@ -54,7 +67,12 @@ def test_a_displaced_pinion_closes_each_flank_as_the_machine_s_directions_say(pa
         for x in (step, -step)
     ]
     along = (lead[0].transmission_error[0] - lead[1].transmission_error[0]) / (2 * step)
-    assert along == pytest.approx(flank_directions(layout)[row, pinion], rel=1e-3)
+    agrees(
+        "closing of a flank over the displacement",
+        along,
+        flank_directions(layout)[row, pinion],
+        relative=1e-3,
+    )
 
 
 ERRORS = st.builds(

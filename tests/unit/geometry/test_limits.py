@@ -15,7 +15,7 @@ TABLE = {
 
 @against(
     "analytic",
-    "undercut and pointing limits of the generated flank, computed twice by independent means (oracles.md)",
+    "undercut and pointing limits of the generated flank, computed twice by independent means",
     capability="geometry",
     module="facegear.geometry.limits",
 )

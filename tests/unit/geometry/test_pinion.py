@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from references import against, agrees
 
 from facegear.geometry import pinion
 from facegear.geometry.design import Relief
@@ -47,12 +48,20 @@ def test_trochoid_ends_on_the_root_circle_where_the_root_land_begins(pair):
     )
 
 
+@against(
+    "analytic",
+    "thickness of a shifted and thinned involute tooth on its pitch circle",
+    capability="geometry",
+    module="facegear.geometry.pinion",
+)
 def test_thickness_on_the_pitch_circle(pair):
     design = pair(shift=0.2, thinning=1e-4)
     _, angle = pinion.involute_point(design, np.tan(design.pressure_angle))
     expected = np.pi * design.module / 2 + 2 * 0.2 * design.module * np.tan(design.pressure_angle)
     expected -= 1e-4 / np.cos(design.pressure_angle)
-    assert 2 * angle * design.pinion_pitch_radius == pytest.approx(expected, abs=1e-15)
+    agrees(
+        "tooth thickness of the pinion, m", 2 * angle * design.pinion_pitch_radius, expected, absolute=1e-15
+    )
 
 
 def test_rack_tip_circle_never_cuts_into_the_trochoid(pair):

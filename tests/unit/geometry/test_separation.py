@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from references import against, agrees
 from scipy.optimize import root
 
 from facegear.geometry import face_gear, pinion
@@ -23,24 +24,36 @@ def pitch(design, count):
     return (np.arange(count) / count - 0.5) * 2 * np.pi / design.pinion.teeth
 
 
+@against(
+    "analytic",
+    "conjugate flanks: line contact without transmission error",
+    capability="geometry",
+    module="facegear.geometry.unloaded",
+)
 def test_equal_tooth_numbers_touch_in_a_line_without_transmission_error(pair):
     design = pair(23)
     contact = unloaded_contact(design, pitch(design, 24))
-    assert np.max(np.abs(contact.transmission_error)) <= 1e-12
+    agrees("transmission error, rad", contact.transmission_error, 0.0, absolute=1e-12)
     ys = np.linspace(0.2505, 0.2745, 9)
     touching = [
         np.min(separation(design, flank_points(design, np.linspace(0.2, 0.66, 4001), y), 0.0, 0.0).gap)
         for y in ys
     ]
-    assert np.max(np.abs(touching)) < 1e-10
+    agrees("gap along the contact line, m", touching, 0.0, absolute=1e-10)
 
 
+@against(
+    "analytic",
+    "localised contact lies at the pitch radius",
+    capability="geometry",
+    module="facegear.geometry.unloaded",
+)
 @pytest.mark.parametrize("teeth", [24, 25, 26])
 def test_localised_contact_path_lies_at_the_pitch_radius(pair, teeth):
     design = pair(teeth)
     contact = unloaded_contact(design, pitch(design, 16))
     roll, y = contact.path
-    assert np.max(np.abs(contact.transmission_error)) < 1e-12
+    agrees("transmission error, rad", contact.transmission_error, 0.0, absolute=1e-12)
     position = flank_points(design, roll, y).position
     gear = [
         to_left_flank(design, f1, f2, j).points(p[None])[0]
@@ -48,10 +61,22 @@ def test_localised_contact_path_lies_at_the_pitch_radius(pair, teeth):
     ]
     radius = np.hypot(*np.array(gear)[:, :2].T)
     # y is the axial coordinate; the radius differs by the sideways part of the point only
-    np.testing.assert_allclose(y, design.gear_pitch_radius, atol=1e-5)
-    assert np.max(np.abs(radius - design.gear_pitch_radius)) < 2e-4
+    agrees(
+        "place of the path along the pinion's axis, m",
+        y,
+        design.gear_pitch_radius,
+        relative=1e-7,
+        absolute=1e-5,
+    )
+    agrees("radius of the path, m", radius, design.gear_pitch_radius, absolute=2e-4)
 
 
+@against(
+    "analytic",
+    "separation of the generating planes in closed form",
+    capability="geometry",
+    module="facegear.geometry.separation",
+)
 @pytest.mark.parametrize("teeth", [24, 26])
 def test_separation_of_the_generating_planes_has_the_closed_form(pair, teeth):
     """Tangent planes of slope a_x stand (r_ps - r_p1)(sin a + cos a (a_x - a) - sin a_x) apart.
@@ -80,7 +105,7 @@ def test_separation_of_the_generating_planes_has_the_closed_form(pair, teeth):
         point = np.array([c * point[0] - s * point[2], point[1], s * point[0] + c * point[2]])
         lift = design.shaper_lift
         expected = -lift * (np.sin(slope) - np.sin(a) - np.cos(a) * (slope - a))
-        assert (gear - point) @ normal == pytest.approx(expected, abs=1e-12)
+        agrees("separation, m", (gear - point) @ normal, expected, absolute=1e-12)
 
 
 def closed_form(design, y):
@@ -88,6 +113,12 @@ def closed_form(design, y):
     return -design.shaper_lift * (np.sin(slope) - np.sin(a) - np.cos(a) * (slope - a))
 
 
+@against(
+    "analytic",
+    "separation of the generating planes in closed form",
+    capability="geometry contact",
+    module="facegear.geometry.separation",
+)
 @pytest.mark.parametrize("teeth", [24, 26])
 @pytest.mark.parametrize("position", [0.0, 0.1, 0.2])
 def test_smallest_separation_in_a_section_follows_the_closed_form(pair, teeth, position):
@@ -102,9 +133,15 @@ def test_smallest_separation_in_a_section_follows_the_closed_form(pair, teeth, p
             gap = separation(design, flank_points(design, roll, y), phi1, phi2).gap[0]
             best, step = np.argmin(gap), roll[1] - roll[0]
             low, high = max(low, roll[best] - 2 * step), min(high, roll[best] + 2 * step)
-        assert gap.min() == pytest.approx(closed_form(design, y), rel=1e-3)
+        agrees("smallest separation in a section, m", gap.min(), closed_form(design, y), relative=1e-3)
 
 
+@against(
+    "analytic",
+    "separation of the generating planes in closed form",
+    capability="geometry",
+    module="facegear.geometry.separation",
+)
 def test_contours_are_the_closed_form_within_a_fifth_of_a_micrometre(pair):
     """The contours' own error: the parabola over the sampled mesh positions."""
     design = pair(26)
@@ -112,9 +149,15 @@ def test_contours_are_the_closed_form_within_a_fifth_of_a_micrometre(pair):
     facing = contours.facing[4]
     assert facing.sum() >= 8
     expected = closed_form(design, contours.y[4][facing])
-    np.testing.assert_allclose(contours.gap[4][facing], expected, atol=2e-7)
+    agrees("separation, m", contours.gap[4][facing], expected, relative=1e-7, absolute=2e-7)
 
 
+@against(
+    "other program",
+    "nearest point of a dense cloud of the gear",
+    capability="geometry contact",
+    module="facegear.geometry.separation",
+)
 def test_separation_agrees_with_a_dense_cloud_of_the_gear(pair):
     """Brute force: distance along the ray to the nearest of half a million gear points."""
     design = pair(26, offset=1e-4, shaft_angle_error=1e-3, axial_shift=5e-5, thinning=1e-4)
@@ -132,7 +175,7 @@ def test_separation_agrees_with_a_dense_cloud_of_the_gear(pair):
         aside = np.linalg.norm(offset - along[:, None] * normal[number], axis=1)
         nearest = np.argmin(aside)
         assert found.part[0, number] == FLANK
-        assert found.gap[0, number] == pytest.approx(along[nearest], abs=0.05 * aside[nearest] + 1e-7)
+        agrees("separation, m", found.gap[0, number], along[nearest], absolute=0.05 * aside[nearest] + 1e-7)
 
 
 def test_relief_opens_the_gap_by_its_amount(pair):
@@ -166,24 +209,44 @@ def test_assembly_errors_shift_the_path_but_leave_the_motion_conjugate(pair):
         assert abs(contact.path[1].mean() - nominal) > 1e-3
 
 
+@against(
+    "analytic",
+    "normal part of a displacement",
+    capability="geometry",
+    module="facegear.geometry.unloaded",
+)
 def test_axial_shift_opens_each_flank_by_its_normal_part(pair):
     shift = 1e-7
     contact = unloaded_contact(pair(26, axial_shift=shift), [0.0])
-    assert contact.transmission_error[0] == pytest.approx(-shift * np.sin(np.radians(25)), rel=2e-3)
+    agrees(
+        "transmission error, m", contact.transmission_error[0], -shift * np.sin(np.radians(25)), relative=2e-3
+    )
 
 
+@against(
+    "analytic",
+    "thinning of a flank",
+    capability="geometry",
+    module="facegear.geometry.unloaded",
+)
 def test_thinning_turns_the_gear_back_by_half_of_it(pair):
     contact = unloaded_contact(pair(26, thinning=8e-5), pitch(pair(), 4))
-    np.testing.assert_allclose(contact.transmission_error, -4e-5, atol=1e-12)
+    agrees("transmission error, m", contact.transmission_error, -4e-5, relative=1e-7, absolute=1e-12)
 
 
+@against(
+    "analytic",
+    "mirror symmetry",
+    capability="geometry",
+    module="facegear.geometry.unloaded",
+)
 def test_mirrored_pair_has_the_mirrored_contact(pair):
     design = pair(26, offset=8e-5)
     one = unloaded_contact(design, [0.03]).transmission_error
     other = unloaded_contact(mirrored(design), [0.03]).transmission_error
     assert abs(one - other)[0] > 1e-5
     twice = unloaded_contact(mirrored(mirrored(design)), [0.03]).transmission_error
-    assert twice == pytest.approx(one, abs=1e-13)
+    agrees("gap of the mirrored pair, m", twice, one, absolute=1e-13)
 
 
 def test_second_relative_curvature_vanishes_in_line_contact(pair):
@@ -195,6 +258,12 @@ def test_second_relative_curvature_vanishes_in_line_contact(pair):
     assert np.all(large > 0)
 
 
+@against(
+    "other program",
+    "second differences of the gap",
+    capability="geometry contact",
+    module="facegear.geometry.curvature",
+)
 def test_relative_curvatures_are_the_second_derivatives_of_the_gap(pair):
     design = pair(26)
     roll, large, small, slope = (part[16] for part in path_curvatures(design))
@@ -210,9 +279,9 @@ def test_relative_curvatures_are_the_second_derivatives_of_the_gap(pair):
     cross = gap[2, 2] - gap[0, 2] - gap[2, 0] + gap[0, 0]
     hessian = np.array([[second[0], cross / 4], [cross / 4, second[1]]]) / step**2
     values, vectors = np.linalg.eigh(hessian)
-    np.testing.assert_allclose(values, [small, large], rtol=5e-3)
+    agrees("relative curvature, 1/m", values, [small, large], relative=5e-3)
     line = vectors[:, 0]
-    assert np.arctan(line[0] / line[1]) == pytest.approx(slope, abs=2e-3)
+    agrees("angle of the contact line, rad", np.arctan(line[0] / line[1]), slope, absolute=2e-3)
 
 
 def test_contact_ratio_counts_the_pairs_that_touch(pair):

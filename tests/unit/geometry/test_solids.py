@@ -4,6 +4,7 @@ import gmsh
 import meshio
 import numpy as np
 import pytest
+from references import against, agrees
 
 from facegear.errors import NotConverged
 from facegear.geometry import face_gear
@@ -39,12 +40,25 @@ def test_surfaces_close_and_face_outwards(pair, body, teeth):
     assert volume(solid(pair(), body, teeth, profile=7, width=3)) > 0
 
 
+@against(
+    "other program",
+    "OpenCASCADE: volume of the solid and nearest points of its faces",
+    capability="cad export",
+    module="facegear.io.cad",
+)
 def test_step_has_the_volume_and_the_flanks_of_the_exact_teeth(pair, body, tmp_path):
     design = pair(tip_relief=Relief(20e-6, 0.0, 2e-3), thinning=1e-4)
     file = tmp_path / "teeth.step"
     told = write_step(file, solid(design, body, TEETH), body)
-    assert told == pytest.approx(exact_volume(design, body), rel=5e-5)  # OpenCASCADE's quadrature
-    assert _distance(file, _flank(design, body)) < 50e-9
+    agrees(
+        "volume of the solid, m3", told, exact_volume(design, body), relative=5e-5
+    )  # OpenCASCADE's quadrature
+    agrees(
+        "distance of exact flank points from the faces, m",
+        _distance(file, _flank(design, body)),
+        0.0,
+        absolute=50e-9,
+    )
 
 
 def _flank(design, body):
@@ -79,11 +93,23 @@ def _distance(file, points):
         gmsh.finalize()
 
 
+@against(
+    "other program",
+    "meshio reads the file",
+    capability="cad export",
+    module="facegear.io.cad",
+)
 def test_stl_holds_the_triangles_in_millimetres(pair, body, tmp_path):
     corners = triangles(solid(pair(), body, TEETH))
     write_stl(tmp_path / "teeth.stl", corners)
     read = meshio.read(tmp_path / "teeth.stl")
-    np.testing.assert_allclose(read.points[read.cells_dict["triangle"]], 1e3 * corners, atol=2e-5)
+    agrees(
+        "corners of the triangles, mm",
+        read.points[read.cells_dict["triangle"]],
+        1e3 * corners,
+        relative=1e-7,
+        absolute=2e-5,
+    )
 
 
 def test_patches_that_do_not_close_are_refused(pair, tmp_path):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from lumped_machines import make_layout, make_machine
+from references import against, agrees
 
 from facegear.dynamics.following import follow, slow_polynomials
 from facegear.dynamics.integrator.compiled import TAU
@@ -27,6 +28,12 @@ def machine_with(**errors):
     return make_machine(LAYOUT, 1500.0, 0.0, error=4e-6, imperfections=flaws)
 
 
+@against(
+    "analytic",
+    "runouts as sines of the angles of turn",
+    capability="following",
+    module="facegear.dynamics.following",
+)
 def test_the_slow_part_of_the_error_is_that_of_the_statics_and_has_no_jumps():
     model = build_model(machine_with(**TURNING))
     cycles = np.arange(-3, 40)
@@ -34,7 +41,13 @@ def test_the_slow_part_of_the_error_is_that_of_the_statics_and_has_no_jumps():
     for share in (0.0, 0.17, 0.5, 0.93):
         powers = (TAU * share) ** np.arange(table.shape[1])
         exact = slow_errors(model.machine, cycles + share)
-        np.testing.assert_allclose(np.einsum("p,cpf->cf", powers, table), exact, atol=1e-13)
+        agrees(
+            "slow part of the error, m",
+            np.einsum("p,cpf->cf", powers, table),
+            exact,
+            relative=1e-7,
+            absolute=1e-13,
+        )
     ends = np.einsum("p,cpf->cf", TAU ** np.arange(table.shape[1]), table)
     np.testing.assert_allclose(ends[:-1], table[1:, 0], atol=1e-18)
 
@@ -51,6 +64,12 @@ def test_running_slowly_is_the_quasi_static_hunting_cycle():
     assert gaps[1] < 1e-3 and gaps[1] < 0.5 * gaps[0]
 
 
+@against(
+    "analytic",
+    "without anything that turns the motion is the periodic one",
+    capability="following",
+    module="facegear.dynamics.following",
+)
 def test_with_nothing_that_turns_the_followed_motion_is_the_steady_state():
     machine = machine_with()
     model = build_model(machine)
@@ -60,17 +79,29 @@ def test_with_nothing_that_turns_the_followed_motion_is_the_steady_state():
     drive, back = np.split(found.flank_forces, 2, axis=1)
     every = steady.per_period // 16
     expected = np.tile(steady.forces[::every], (3, 1))
-    np.testing.assert_allclose(drive - back, expected, atol=2e-4 * expected.max())
+    agrees("mesh force, N", drive - back, expected, relative=1e-7, absolute=2e-4 * expected.max())
 
 
+@against(
+    "own convergence",
+    "tolerance 1e-11, and the same cycles a turn later",
+    capability="following",
+    module="facegear.dynamics.following",
+)
 def test_the_followed_motion_does_not_depend_on_the_step_and_repeats_after_the_turns():
     machine = machine_with(pinion_runout=TURNING["pinion_runout"])
     model = build_model(machine)
     found = follow(model, 3000.0, 0, 23 + 4)
     one, again = found.flank_forces[: 4 * 16], found.flank_forces[23 * 16 :]
-    np.testing.assert_allclose(one, again, atol=1e-3 * one.max())
+    agrees("flank force a turn later, N", one, again, relative=1e-7, absolute=1e-3 * one.max())
     finer = follow(model, 3000.0, 0, 4, 16, Settings(tolerance=1e-11))
-    np.testing.assert_allclose(finer.flank_forces, one, atol=1e-3 * one.max())
+    agrees(
+        "flank force at a finer tolerance, N",
+        finer.flank_forces,
+        one,
+        relative=1e-7,
+        absolute=1e-3 * one.max(),
+    )
 
 
 def test_the_table_says_what_cutting_the_hunting_cycle_costs():

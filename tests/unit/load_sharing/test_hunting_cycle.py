@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lumped_machines import make_layout, make_machine
+from references import against, agrees
 
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import simulate
@@ -32,13 +33,27 @@ CONSTANT = {
 }
 
 
+@against(
+    "analytic",
+    "least common multiple of the tooth numbers",
+    capability="hunting",
+    module="facegear.load_sharing.hunting",
+)
 def test_the_pattern_repeats_after_the_teeth_in_common():
-    assert hunting_length(machine_with(**CONSTANT)) == 1
-    assert hunting_length(machine_with(pinion_runout=RUNOUTS["pinion_runout"])) == 23
-    assert hunting_length(machine_with(gear_runout=RUNOUTS["gear_runout"])) == 143
-    assert hunting_length(machine_with(**RUNOUTS)) == 23 * 143
+    agrees("mesh cycles without runout", hunting_length(machine_with(**CONSTANT)), 1)
+    agrees(
+        "mesh cycles with pinions that run out",
+        hunting_length(machine_with(pinion_runout=RUNOUTS["pinion_runout"])),
+        23,
+    )
+    agrees(
+        "mesh cycles with gears that run out",
+        hunting_length(machine_with(gear_runout=RUNOUTS["gear_runout"])),
+        143,
+    )
+    agrees("mesh cycles of the hunting cycle", hunting_length(machine_with(**RUNOUTS)), 23 * 143)
     whole = machine_with(gear_pitch={1: np.zeros(143)}, pinion_pitch={0: np.zeros(23)})
-    assert hunting_length(whole) == 3289
+    agrees("mesh cycles with pitch deviations", hunting_length(whole), 3289)
 
 
 def test_paths_that_carry_nothing_have_no_ratio_and_a_mesh_load_factor_of_zero():
@@ -63,12 +78,24 @@ def test_meshes_without_an_even_share_have_no_mesh_load_factor_in_tables(monkeyp
     assert bearing_scan(machine).empty
 
 
+@against(
+    "analytic",
+    "balance of torques",
+    capability="hunting",
+    module="facegear.load_sharing.hunting",
+)
 def test_the_hunting_cycle_balances_every_torque_to_rounding():
     run = hunting_cycle(machine_with(clearance=np.full(5, 20e-6), **RUNOUTS, **CONSTANT), 16, 100)
-    assert run.at_rest.residual.max() < 1e-12
+    agrees("residual of the statics, relative", run.at_rest.residual.max(), 0.0, absolute=1e-12)
     net = run.at_rest.forces.reshape(len(run.cycles), 2, 5).sum(axis=1)
     torques = np.broadcast_to(run.machine.torques[:5], net.shape)
-    np.testing.assert_allclose(net * LAYOUT.pinion_arm, torques, atol=2e-12 * np.abs(torques).max())
+    agrees(
+        "torque of a pinion, N m",
+        net * LAYOUT.pinion_arm,
+        torques,
+        relative=1e-7,
+        absolute=2e-12 * np.abs(torques).max(),
+    )
 
 
 def unloaded_part(seed):
@@ -96,6 +123,12 @@ def test_free_idlers_between_stiff_bearings_come_to_rest_to_rounding_in_every_po
     assert (found.residual <= 2e-13).all()
 
 
+@against(
+    "analytic",
+    "a sine of pitch deviations is an eccentric gear",
+    capability="hunting",
+    module="facegear.load_sharing.hunting",
+)
 def test_a_pitch_curve_that_is_a_runout_gives_the_runouts_shares():
     """A gear's teeth displaced by e sin(angle) along the pitch circle are an eccentric gear."""
     eccentric = hunting_cycle(machine_with(gear_runout=(Runout(), Runout(15e-6, 0.0))), 4)
@@ -103,18 +136,28 @@ def test_a_pitch_curve_that_is_a_runout_gives_the_runouts_shares():
     curve = 15e-6 * np.sin(2.0 * np.pi * teeth / 143)
     pitched = hunting_cycle(machine_with(gear_pitch={1: curve}), 4)
     whole = slice(None, None, 4)
-    np.testing.assert_allclose(
-        pitched.at_rest.forces[whole], eccentric.at_rest.forces[whole], atol=1e-3 * eccentric.loads.max()
+    agrees(
+        "mesh force, N",
+        pitched.at_rest.forces[whole],
+        eccentric.at_rest.forces[whole],
+        relative=1e-7,
+        absolute=1e-3 * eccentric.loads.max(),
     )
 
 
+@against(
+    "analytic",
+    "periodicity of the hunting cycle",
+    capability="hunting",
+    module="facegear.transmission.statics",
+)
 def test_the_same_pattern_returns_after_the_hunting_cycle():
     from facegear.transmission.statics import equilibria
 
     machine = machine_with(**RUNOUTS)
     first = equilibria(machine, np.array([0.3, 11.7])).flank_forces
     again = equilibria(machine, np.array([0.3, 11.7]) + 3289).flank_forces
-    np.testing.assert_allclose(first, again, rtol=1e-9, atol=1e-9 * first.max())
+    agrees("flank force, N", first, again, relative=1e-9, absolute=1e-9 * first.max())
 
 
 def test_statics_is_the_slow_limit_of_the_dynamics():
@@ -130,6 +173,12 @@ def test_statics_is_the_slow_limit_of_the_dynamics():
     assert gaps[1] < 1e-3 and gaps[1] < 0.5 * gaps[0]
 
 
+@against(
+    "analytic",
+    "balance of axial and tangential forces",
+    capability="hunting",
+    module="facegear.load_sharing.hunting_tables",
+)
 def test_tables_tell_loads_factors_and_bearings_of_every_part():
     run = hunting_cycle(machine_with(**CONSTANT), 8)
     meshes, groups, bearings = mesh_table(run), group_table(run), bearing_table(run)
@@ -143,7 +192,12 @@ def test_tables_tell_loads_factors_and_bearings_of_every_part():
     mean = cycle_table(run).drop(columns="cycle").to_numpy()[0]
     np.testing.assert_allclose(mean, meshes["mean_n"])
     # All axial and tangential forces on the bearings come from the torques' meshes and close in themselves.
-    assert bearings["mean_z_n"].sum() == pytest.approx(-bearings["mean_y_n"][:5].sum(), rel=1e-9)
+    agrees(
+        "sum of the axial bearing forces, N",
+        bearings["mean_z_n"].sum(),
+        -bearings["mean_y_n"][:5].sum(),
+        relative=1e-9,
+    )
 
 
 def test_sharing_falls_with_torque_and_floats_only_with_true_signs():
@@ -155,6 +209,12 @@ def test_sharing_falls_with_torque_and_floats_only_with_true_signs():
     assert (np.diff(soft_to_stiff) > -1e-9).all() and soft_to_stiff[-1] > soft_to_stiff[0] + 0.3
 
 
+@against(
+    "analytic",
+    "a pinion out of place closes a mesh by twice its normal part",
+    capability="hunting",
+    module="facegear.load_sharing.sensitivity",
+)
 def test_a_sensitivity_is_the_closed_forms_slope():
     """Between held gears K = 1 + |F_u - F_l| / (F_u + F_l) and d(F_u - F_l)/dm = k / (1 + 2 k / k_in)."""
     table = sensitivities(hunting_cycle(machine_with(6000.0))).set_index(["error", "group"])["per_um"]
@@ -162,6 +222,9 @@ def test_a_sensitivity_is_the_closed_forms_slope():
     total = 6000.0 / LAYOUT.pinion_arm
     closed = 1e-6 * 4.1e8 / (1.0 + 2.0 * 4.1e8 / 6.5e7) / total
     assert 0.3 * closed < own < 1.2 * closed
-    assert table["position x right input", "right input"] == pytest.approx(
-        2.0 * np.cos(np.radians(25)) * table["error right input/lower", "right input"], rel=1e-3
+    agrees(
+        "slope of K_gamma, 1/um",
+        table["position x right input", "right input"],
+        2.0 * np.cos(np.radians(25)) * table["error right input/lower", "right input"],
+        relative=1e-3,
     )

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
+from references import against, agrees
 
 from facegear.dynamics.motion import Settings
 from facegear.harmonics.series import Harmonics
@@ -40,6 +41,12 @@ def test_quasi_static_coefficient_tends_to_the_static_one_as_speed_falls(tight):
     assert off[2] < 0.01
 
 
+@against(
+    "analytic",
+    "runouts and backlash of single meshes are in no standing coefficient",
+    capability="load_sharing_reference",
+    module="facegear.load_sharing.reference",
+)
 def test_what_a_run_is_held_against_leaves_out_what_it_says_of_every_mesh():
     """Runouts are in neither static nor slow motion; own e(t) and backlash go with the common ones."""
     layout = make_layout(kinematics=GEOMETRIC)
@@ -56,9 +63,14 @@ def test_what_a_run_is_held_against_leaves_out_what_it_says_of_every_mesh():
     exact = reference_table(plain, SETTINGS, quick).set_index("quantity")
     only_runout = replace(plain, imperfections=replace(flaws, half_backlash=np.full(10, np.nan), series={}))
     still = reference_table(only_runout, SETTINGS, quick).set_index("quantity")
-    np.testing.assert_allclose(still.loc["static", "mean"], exact.loc["static", "mean"], rtol=1e-12)
+    agrees("static coefficient", still.loc["static", "mean"], exact.loc["static", "mean"], relative=1e-12)
     tight = "no_error_no_backlash"
-    np.testing.assert_allclose(table.loc[tight, "mean"], exact.loc[tight, "mean"], rtol=1e-12)
+    agrees(
+        "coefficient without errors and backlash",
+        table.loc[tight, "mean"],
+        exact.loc[tight, "mean"],
+        relative=1e-12,
+    )
 
 
 def test_without_errors_no_constant_error_and_no_pinion_out_of_place_is_left():
@@ -75,11 +87,17 @@ def test_without_errors_no_constant_error_and_no_pinion_out_of_place_is_left():
     assert not np.allclose(flawed["static"], clean["static"], rtol=1e-4)
 
 
+@against(
+    "analytic",
+    "mirror symmetry",
+    capability="load_sharing",
+    module="facegear.load_sharing.run",
+)
 def test_left_and_right_inputs_share_alike_where_the_machine_is_symmetric(tight):
     sharing = load_sharing(tight, 3000.0, SETTINGS, OPTIONS)
     right, left = (group.average.mean for group in sharing.groups[:2])
     assert sharing.response.label == "period-1"
-    assert right == pytest.approx(left, rel=1e-9)
+    agrees("mean coefficient of an input", right, left, relative=1e-9)
 
 
 def test_static_start_and_disturbed_starts_meet_where_only_one_motion_exists(tight):
@@ -104,6 +122,12 @@ def test_lost_contact_shows_where_a_coefficient_reaches_its_bound(paper_machine)
     np.testing.assert_array_equal(at_bound, inputs.lost & ~np.isnan(inputs.coefficients))
 
 
+@against(
+    "analytic",
+    "143 teeth at 7500 rpm of 23",
+    capability="load_sharing",
+    module="facegear.load_sharing.tables",
+)
 def test_tables_hold_one_cycle_of_each_group_inside_its_envelope(paper_machine):
     sharing = load_sharing(paper_machine, 7500.0, SETTINGS, OPTIONS)
     curve, summary = curve_table(sharing), summary_table(sharing)
@@ -113,14 +137,30 @@ def test_tables_hold_one_cycle_of_each_group_inside_its_envelope(paper_machine):
     defined = curve.dropna()
     assert (defined["envelope_low"] <= defined["coefficient"]).all()
     assert (defined["coefficient"] <= defined["envelope_high"]).all()
-    assert curve["time_s"].max() * 64 / 63 == pytest.approx(3.4783e-4, abs=5e-9)
+    agrees("mesh period, s", curve["time_s"].max() * 64 / 63, 3.4783e-4, absolute=5e-9)
 
 
+@against(
+    "analytic",
+    "limit of no speed: static equilibrium",
+    capability="load_sharing_reference",
+    module="facegear.load_sharing.reference",
+)
 def test_without_backlash_and_error_dynamics_vanish_at_low_speed_in_every_group(tight):
     table = reference_table(tight, SETTINGS, OPTIONS).set_index(["quantity", "group"])["mean"]
     for group in ("right input", "left input", "idlers"):
-        assert table["quasi_static", group] == pytest.approx(table["static", group], abs=1e-4)
-        assert table["no_error_no_backlash", group] == pytest.approx(table["static", group], rel=1e-9)
+        agrees(
+            "coefficient of the machine run slowly",
+            table["quasi_static", group],
+            table["static", group],
+            absolute=1e-4,
+        )
+        agrees(
+            "coefficient without errors and backlash",
+            table["no_error_no_backlash", group],
+            table["static", group],
+            relative=1e-9,
+        )
 
 
 def test_speed_range_holds_every_speed_and_group(tight):
@@ -147,6 +187,12 @@ def test_a_slow_approach_to_an_orbit_is_not_called_a_torus(paper_machine):
     assert not same_orbit(found, replace(later, coordinates=1.01 * later.coordinates))
 
 
+@against(
+    "own convergence",
+    "4096 samples a cycle",
+    capability="load_sharing",
+    module="facegear.load_sharing.sampling",
+)
 @pytest.mark.parametrize("speed", [5000.0, 10_000.0])
 def test_the_mean_of_a_periodic_motion_that_loses_contact_does_not_hang_on_its_samples(paper_machine, speed):
     few, many = (
@@ -155,10 +201,16 @@ def test_the_mean_of_a_periodic_motion_that_loses_contact_does_not_hang_on_its_s
     )
     for one, other in zip(few.groups, many.groups, strict=True):
         assert one.average.half_width == 0.0 < one.average.lost
-        assert one.average.mean == pytest.approx(other.average.mean, abs=1e-3)
+        agrees("mean coefficient", one.average.mean, other.average.mean, absolute=1e-3)
         assert one.coefficients.shape[1] == 64
 
 
+@against(
+    "manufactured",
+    "a sum of sines and cosines",
+    capability="load_sharing",
+    module="facegear.load_sharing.sampling",
+)
 @given(
     waves=st.lists(st.tuples(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)), min_size=1, max_size=7),
     factor=st.integers(1, 8),
@@ -171,4 +223,10 @@ def test_instants_between_the_samples_of_a_band_limited_series_are_exact(waves, 
             for j, (a, b) in enumerate(waves)
         )
 
-    np.testing.assert_allclose(between(series(16), factor), series(16 * factor), atol=1e-13)
+    agrees(
+        "value between the samples",
+        between(series(16), factor),
+        series(16 * factor),
+        relative=1e-7,
+        absolute=1e-13,
+    )

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
+from references import against, agrees
 
 from facegear.load_sharing.even_shares import even_shares
 from facegear.load_sharing.hunting import hunting_cycle
@@ -21,17 +22,29 @@ ARM = LAYOUT.pinion_arm
 torques = st.floats(50.0, 5000.0)
 
 
+@against(
+    "analytic",
+    "an engine alone on its mesh carries its own torque",
+    capability="hunting",
+    module="facegear.load_sharing.hunting_tables",
+)
 def test_three_engines_of_unequal_torque_that_share_nothing_have_a_mesh_load_factor_of_one():
     places = tuple((name, Role.INPUT, 30.0 * i) for i, name in enumerate("abc"))
     layout = make_layout(places, (Side.UPPER,), kinematics=GEOMETRIC)
     given = balanced_torques(layout, np.array([400.0, 800.0, 1200.0]))
     machine = replace(make_machine(layout, 800.0, 0.0), torques=given)
     table = mesh_table(hunting_cycle(machine, 8))
-    np.testing.assert_allclose(table["k_gamma"], 1.0, rtol=1e-9)
-    np.testing.assert_allclose(table["torque_n_m"], [400.0, 800.0, 1200.0])
+    agrees("mesh load factor", table["k_gamma"], 1.0, relative=1e-9)
+    agrees("torque of a mesh, N m", table["torque_n_m"], [400.0, 800.0, 1200.0], relative=1e-7)
     assert table["group_ratio"].max() == pytest.approx(1.5), "the ratio within the group has its own name"
 
 
+@against(
+    "analytic",
+    "balance of torques with even shares, by hand",
+    capability="hunting duty_loads",
+    module="facegear.load_sharing.even_shares",
+)
 @given(per_input=torques, tail_share=st.floats(0.0, 0.3), lower=st.floats(-500.0, 0.0))
 def test_even_shares_hold_every_body_in_balance(per_input, tail_share, lower):
     base = make_machine(LAYOUT, per_input, tail_share)
@@ -40,11 +53,13 @@ def test_even_shares_hold_every_body_in_balance(per_input, tail_share, lower):
     low, high = np.nan_to_num(shares.reshape(2, 5))
     inputs = np.array([False, False, True, True, False])
     passed = (2.0 * per_input / 2.0 / ARM) + lower / LAYOUT.gear_arm
-    np.testing.assert_allclose(low[inputs], 0.5 * per_input / ARM)
-    np.testing.assert_allclose(high[inputs], 0.5 * per_input / ARM)
-    np.testing.assert_allclose(low[~inputs], abs(passed) / 3.0)
+    agrees("even share of an input's lower mesh, N", low[inputs], 0.5 * per_input / ARM, relative=1e-7)
+    agrees("even share of an input's upper mesh, N", high[inputs], 0.5 * per_input / ARM, relative=1e-7)
+    agrees("even share of an idler, N", low[~inputs], abs(passed) / 3.0, relative=1e-7)
     tail = base.torques[0] / ARM
-    np.testing.assert_allclose(high[0], abs(passed / 3.0 + tail), atol=1e-6 * passed)
+    agrees(
+        "even share at the tail, N", high[0], abs(passed / 3.0 + tail), relative=1e-7, absolute=1e-6 * passed
+    )
 
 
 def test_more_load_on_an_idler_is_a_larger_factor_whatever_the_others_carry():

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lumped_machines import make_layout, make_machine
+from references import against, agrees
 
 from facegear.load_sharing.hunting import at_cycles, hunting_cycle, largest
 from facegear.load_sharing.sensitivity import sensitivities
@@ -20,6 +21,12 @@ def machine_with(**errors):
     return make_machine(LAYOUT, 1500.0, 0.0, error=4e-6, imperfections=replace(perfect(LAYOUT), **errors))
 
 
+@against(
+    "other program",
+    "differences over all positions of the whole hunting cycle",
+    capability="hunting",
+    module="facegear.load_sharing.sensitivity",
+)
 @pytest.mark.parametrize(
     "runouts",
     [
@@ -45,9 +52,15 @@ def test_the_sensitivity_to_a_runout_is_that_of_all_positions_of_the_hunting_cyc
     slopes = np.diff(factors, axis=0)[0] / (1e6 * STEP)
     table = sensitivities(hunting_cycle(machine, 4)).set_index(["error", "group"])["per_um"]
     found = [table[f"runout {name}", group.name] for group in run.groups]
-    np.testing.assert_allclose(found, slopes, rtol=0.02, atol=1e-6)
+    agrees("slope of K_gamma, 1/um", found, slopes, relative=0.02, absolute=1e-6)
 
 
+@against(
+    "analytic",
+    "a pinion alone on a gear carries its torque",
+    capability="hunting",
+    module="facegear.load_sharing.sensitivity",
+)
 def test_a_runout_that_no_mesh_feels_changes_nothing():
     """One pinion on one gear: its load is its torque's, whatever its teeth do; -0.188 per um was written."""
     layout = make_layout(
@@ -59,4 +72,4 @@ def test_a_runout_that_no_mesh_feels_changes_nothing():
     table = sensitivities(hunting_cycle(machine, 8))
     runouts = table[table["error"].str.startswith("runout")]
     assert len(runouts) == 3
-    np.testing.assert_allclose(runouts["per_um"], 0.0, atol=1e-6)
+    agrees("slope of K_gamma, 1/um", runouts["per_um"], 0.0, relative=1e-7, absolute=1e-6)

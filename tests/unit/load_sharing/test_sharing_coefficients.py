@@ -3,6 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
+from references import against, agrees
 
 from facegear.load_sharing.coefficients import lost_contact, sharing_coefficient
 
@@ -38,18 +39,32 @@ def test_coefficient_ignores_flank_and_scale_of_the_load(forces, factor):
     np.testing.assert_allclose(sharing_coefficient(-factor * forces), sharing_coefficient(forces), rtol=1e-13)
 
 
+@against(
+    "analytic",
+    "definition of the coefficient at its limits",
+    capability="load_sharing",
+    module="facegear.load_sharing.coefficients",
+)
 @pytest.mark.parametrize("paths", [2, 3, 7])
 @given(force=st.floats(1e-2, 1e6))
 def test_equal_loads_give_one_and_a_single_carrier_gives_the_number_of_paths(paths, force):
-    assert sharing_coefficient(np.full(paths, force)) == pytest.approx(1.0, abs=1e-15)
+    agrees("coefficient of equal loads", sharing_coefficient(np.full(paths, force)), 1.0, absolute=1e-15)
     alone = np.zeros(paths)
     alone[-1] = -force
-    assert sharing_coefficient(alone) == pytest.approx(paths, rel=1e-15)
+    agrees("coefficient of a single carrier", sharing_coefficient(alone), paths, relative=1e-15)
 
 
+@against(
+    "external source",
+    "the paper, equations 25 and 26",
+    capability="load_sharing",
+    module="facegear.load_sharing.coefficients",
+)
 def test_equations_25_and_26_by_hand():
-    assert sharing_coefficient(np.array([300.0, -100.0])) == pytest.approx(1.5)
-    assert sharing_coefficient(np.array([-30.0, -20.0, 10.0])) == pytest.approx(1.5)
+    agrees("coefficient of two paths", sharing_coefficient(np.array([300.0, -100.0])), 1.5, relative=1e-6)
+    agrees(
+        "coefficient of three paths", sharing_coefficient(np.array([-30.0, -20.0, 10.0])), 1.5, relative=1e-6
+    )
 
 
 def test_lost_contact_counts_a_path_without_force():

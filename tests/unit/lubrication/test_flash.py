@@ -5,6 +5,7 @@ import pytest
 import scipy.sparse as sp
 from hypothesis import given
 from hypothesis import strategies as st
+from references import against, agrees
 from scipy.sparse.linalg import splu
 
 from facegear.lubrication.flash import (
@@ -58,37 +59,75 @@ def _half_disc(at):
     return 0.5 * (s * np.sqrt(1 - s * s) + np.arcsin(s) + np.pi / 2)
 
 
+@against(
+    "external source",
+    "ISO/TS 6336-20: thermal contact coefficient of steel",
+    capability="lubrication",
+    module="facegear.lubrication.flash",
+)
 def test_steel_has_the_contact_coefficient_of_the_standard():
-    assert STEEL.contact_coefficient == pytest.approx(12427.389, abs=5e-4)
+    agrees("thermal contact coefficient, N/(m s^0.5 K)", STEEL.contact_coefficient, 12427.389, absolute=5e-4)
 
 
+@against(
+    "external source",
+    "worked point of Blok's formula",
+    capability="lubrication",
+    module="facegear.lubrication.flash",
+)
 def test_blok_s_temperature_and_share_of_the_heat_are_the_worked_ones():
     rise, share = flash(0.05, 400e3, 7.1, (8.0, 15.0), 0.22e-3, 2 * (STEEL.contact_coefficient,))
-    assert float(rise) == pytest.approx(90.35334994, rel=1e-9)
-    assert float(share) == pytest.approx(0.42206445, rel=1e-8)
+    agrees("flash temperature, K", float(rise), 90.35334994, relative=1e-9)
+    agrees("share of the heat", float(share), 0.42206445, relative=1e-8)
 
 
+@against(
+    "analytic",
+    "Jaeger's moving source at high speed",
+    capability="lubrication",
+    module="facegear.lubrication.flash",
+)
 def test_constant_of_hertz_s_pressure_is_the_limit_of_jaeger_s_integral():
     fast = 1e6
     places = np.linspace(0.6, 0.7, 201)
     rises = np.array([moving_temperature(at, fast) for at in places])
-    assert rises.max() * np.sqrt(fast) * 4 / np.pi == pytest.approx(HERTZ, rel=1e-6)
+    agrees("constant of the flash temperature", rises.max() * np.sqrt(fast) * 4 / np.pi, HERTZ, relative=1e-6)
     assert places[rises.argmax()] == pytest.approx(0.65223, abs=5e-4)
 
 
+@against(
+    "analytic",
+    "Jaeger's moving source",
+    capability="lubrication",
+    module="facegear.lubrication.flash",
+)
 @pytest.mark.parametrize(("number", "rise", "excess"), [(5, 0.388836, 0.0041), (20, 0.195169, 0.0002)])
 def test_slow_strips_heat_less_than_the_closed_form_says(number, rise, excess):
     assert moving_heat(number) == pytest.approx(rise, abs=1e-6)
-    assert 1 / float(slow_factor(number)) - 1 == pytest.approx(excess, abs=5e-5)
+    agrees("excess of the closed form", 1 / float(slow_factor(number)) - 1, excess, absolute=5e-5)
 
 
+@against(
+    "analytic",
+    "Jaeger's moving source",
+    capability="lubrication",
+    module="facegear.lubrication.flash",
+)
 def test_factor_of_slow_flanks_is_jaeger_s_between_the_points_of_its_table():
     for number in (0.0123, 0.37, 2.9, 41.0):
         closed = HERTZ * np.pi / (4 * np.sqrt(number))
-        assert float(slow_factor(number)) == pytest.approx(moving_heat(number) / closed, rel=2e-5)
+        agrees(
+            "factor of slow flanks", float(slow_factor(number)), moving_heat(number) / closed, relative=2e-5
+        )
     assert float(slow_factor(2000.0)) == 1.0
 
 
+@against(
+    "other program",
+    "finite volumes of transient heat conduction",
+    capability="lubrication",
+    module="facegear.lubrication.flash",
+)
 def test_both_flanks_of_a_transient_solution_reach_the_flash_temperature_within_a_percent():
     flanks = STEEL, Heated(30.0, 7700.0, 500.0)
     b, friction, load, sliding = 2e-4, 0.05, 3e5, 6.0
@@ -98,7 +137,7 @@ def test_both_flanks_of_a_transient_solution_reach_the_flash_temperature_within_
     largest = 2 * friction * load * sliding / (np.pi * b)
     for part, number, flank in zip((share, 1 - share), numbers, flanks, strict=True):
         alone = float(part) * largest * b / flank.conductivity * transient_rise(number)
-        assert alone == pytest.approx(float(rise), rel=0.01)
+        agrees("flash temperature, K", alone, float(rise), relative=0.01)
 
 
 @given(st.floats(0.2, 30.0), st.floats(0.2, 30.0), st.floats(2e-5, 5e-4))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from references import against, agrees
 from spur_path import c40
 
 from facegear.lubrication.friction import (
@@ -45,39 +46,68 @@ def rubbing(**changes) -> Rubbing:
     return Rubbing(**{**values, **changes})
 
 
+@against(
+    "external source",
+    "worked point of C40 gears by the formulas of its sources",
+    capability="lubrication",
+    module="facegear.lubrication.friction",
+)
 def test_worked_point_of_a_spur_gear_has_schlenk_s_and_xu_s_coefficient():
     u1, u2, radius, load = 1.690836214, 3.261632541, 6.666287655e-3, 79.62857985e3
-    assert schlenk(load, u1 + u2, radius, ETA, 0.4e-6) == pytest.approx(0.04114243965, rel=1e-8)
-    assert xu(656.017523e6, radius, u1, u2, ETA, 0.5e-6) == pytest.approx(0.02763676115, rel=1e-7)
+    agrees(
+        "coefficient of Schlenk", schlenk(load, u1 + u2, radius, ETA, 0.4e-6), 0.04114243965, relative=1e-8
+    )
+    agrees("coefficient of Xu", xu(656.017523e6, radius, u1, u2, ETA, 0.5e-6), 0.02763676115, relative=1e-7)
 
 
+@against(
+    "external source",
+    "ISO/TS 6336-20 and -22 at the pitch point of C40 gears",
+    capability="lubrication",
+    module="facegear.lubrication.friction",
+)
 def test_pitch_point_of_c40_gears_has_the_coefficients_of_the_standards():
     path = c40()
     radius = path.base[0] * tan(path.angle) * path.base[1] / sum(path.base)
     rolled = 2 * SPEED * path.base[0] * tan(path.angle)
     tangential, normal = TORQUE / 36e-3 / WIDTH, TORQUE / path.base[0] / WIDTH
     at = rolled, radius, ETA, 0.4e-6
-    assert iso_6336_22(150e3, *at) == pytest.approx(0.05340898638, rel=1e-8)
-    assert iso_6336_22(normal, *at) == pytest.approx(0.05405251142, rel=1e-8)
-    assert iso_6336_20(tangential, *at) == pytest.approx(0.05505126344, rel=1e-8)
+    agrees("coefficient of ISO/TS 6336-22 at 150 N/mm", iso_6336_22(150e3, *at), 0.05340898638, relative=1e-8)
+    agrees("coefficient of ISO/TS 6336-22", iso_6336_22(normal, *at), 0.05405251142, relative=1e-8)
+    agrees("coefficient of ISO/TS 6336-20", iso_6336_20(tangential, *at), 0.05505126344, relative=1e-8)
 
 
+@against(
+    "other program",
+    "GEARpie, an open gear code: C40 gears",
+    capability="lubrication",
+    module="facegear.lubrication.friction",
+)
 def test_open_gear_code_has_the_same_schlenk_coefficient_for_c40_gears():
     """GEARpie, REPORT/C40.txt: 0.0256 with the whole load at the pitch point."""
     path = c40()
     radius = path.base[0] * tan(path.angle) * path.base[1] / sum(path.base)
     rolled = 2 * SPEED * path.base[0] / cos(path.angle) * np.sin(path.angle)
     found = schlenk(TORQUE / path.base[0] / WIDTH, rolled, radius, 49.847e-3, 0.355e-6, 0.65)
-    assert found == pytest.approx(0.0256018, abs=5e-7)
+    agrees("coefficient of Schlenk", found, 0.0256018, absolute=5e-7)
 
 
+@against(
+    "external source",
+    "Benedict and Kelley's formula",
+    capability="lubrication",
+    module="facegear.lubrication.friction",
+)
 def test_benedict_and_kelley_s_logarithm_is_cut_on_the_pitch_line_and_says_so():
     model, at = BenedictKelley(), rubbing()
     assert np.isfinite(model.coefficient(at)).all()
     (within,) = model.within(at).values()
     assert within.tolist() == [True, False]
-    assert benedict_kelley(1e5, 20.0, 5.0, 4e-3, 1.2e-6) == pytest.approx(
-        3 * 0.0127 * np.log10(29660 * 100 / (4 * 5 * 400)), rel=1e-12
+    agrees(
+        "coefficient of Benedict and Kelley",
+        benedict_kelley(1e5, 20.0, 5.0, 4e-3, 1.2e-6),
+        3 * 0.0127 * np.log10(29660 * 100 / (4 * 5 * 400)),
+        relative=1e-12,
     )
 
 

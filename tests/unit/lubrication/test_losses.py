@@ -9,6 +9,7 @@ from closed_losses import section_loss_factor, spur_loss_factor
 from contact_bodies import STEEL, pair_design
 from hypothesis import given
 from hypothesis import strategies as st
+from references import against, agrees
 from spur_path import SpurPath, c40
 
 from facegear.contact.hertz import contact_modulus
@@ -17,6 +18,12 @@ from facegear.lubrication.loss import OverTorque, loss_factors
 TORQUE, WIDTH, SPEED = 215.5, 0.040, 1800 * pi / 30
 
 
+@against(
+    "analytic",
+    "Ohlendorf's loss factor of spur gears",
+    capability="lubrication machine_loss",
+    module="facegear.lubrication.loss",
+)
 @pytest.mark.parametrize(("approach", "recess"), [(0.8, 0.7), (0.65, 0.9), (0.5, 0.55)])
 @pytest.mark.parametrize("ratio", [1.5, 5.0])
 def test_spur_twin_has_ohlendorf_s_loss_factor(approach, recess, ratio):
@@ -24,15 +31,21 @@ def test_spur_twin_has_ohlendorf_s_loss_factor(approach, recess, ratio):
     base = 0.04 * np.cos(radians(25.0))
     path = SpurPath((base, ratio * base), radians(25.0), approach, recess, 23)
     found = loss_factors(path.hats(200)).mean[0]
-    assert found == pytest.approx(spur_loss_factor((23, ratio * 23), recess, approach), rel=1e-6)
+    agrees("loss factor", found, spur_loss_factor((23, ratio * 23), recess, approach), relative=1e-6)
 
 
+@against(
+    "other program",
+    "GEARpie, an open gear code: C40 gears; Ohlendorf",
+    capability="lubrication machine_loss",
+    module="facegear.lubrication.loss",
+)
 def test_c40_gears_lose_what_an_open_gear_code_and_ohlendorf_say():
     """GEARpie, REPORT/C40.txt: 827.4 MPa, 122.56 um, 0.1986 (Ohlendorf) and 0.1984 (numeric), 206.31 W."""
     path = c40()
     factor = spur_loss_factor((16, 24), path.recess, path.approach)
     assert factor == pytest.approx(0.1986199318, rel=1e-8)
-    assert loss_factors(path.hats(200_000)).mean[0] == pytest.approx(factor, rel=2e-5)
+    agrees("loss factor", loss_factors(path.hats(200_000)).mean[0], factor, relative=2e-5)
     assert 0.05 * factor * TORQUE * SPEED == pytest.approx(403.4049569, rel=1e-8)
     assert pytest.approx(206.33, abs=0.02) == 0.0256018 * 0.1984 * TORQUE * SPEED
     first, second = path.curvature_radii

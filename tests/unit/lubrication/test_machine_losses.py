@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from references import against, agrees
 
 import facegear
 from facegear.errors import FacegearError
@@ -25,6 +26,12 @@ def gearbox():
     return facegear.example().with_values({"lubrication": OIL})
 
 
+@against(
+    "other program",
+    "loss summed over the meshes by another program",
+    capability="machine_loss",
+    module="facegear.lubrication.loss",
+)
 def test_the_concentric_machine_loses_what_the_power_of_its_meshes_loses():
     """Its ten torques at rest and the loss factors of its pair, both from the reference: 19 123 W."""
     torques = [304.946, 238.714, 383.252, 408.464, 248.056, 214.642, 238.714, 944.748, 919.536, 248.056]
@@ -33,22 +40,33 @@ def test_the_concentric_machine_loses_what_the_power_of_its_meshes_loses():
     )
     power = np.array(torques) * 7500 * pi / 30
     loss = 0.05 * factors.at(torques) * power
-    assert loss.sum() == pytest.approx(19123, rel=1e-3)
-    assert loss[[7, 8, 0]] == pytest.approx([4581, 4448, 1350], rel=1e-3)
-    assert power.sum() / 2086e3 == pytest.approx(1.5622, rel=1e-4)
+    agrees("loss of the machine, W", loss.sum(), 19123, relative=1e-3)
+    agrees("loss of a mesh, W", loss[[7, 8, 0]], [4581, 4448, 1350], relative=1e-3)
+    agrees("power through the meshes over the power brought in", power.sum() / 2086e3, 1.5622, relative=1e-4)
 
 
+@against(
+    "analytic",
+    "balance of heat",
+    capability="machine_loss",
+    module="facegear.stages.machine_loss",
+)
 def test_mesh_losses_machine_loss_and_heat_of_the_bodies_are_one_sum(gearbox):
     found = gearbox.losses()
     meshes, bodies, machine = found.meshes(), found.bodies(), found.table()
     assert (machine["bin"] == 0).all()
     loss = machine["loss_w"].item()
-    assert meshes["loss_w"].sum() == pytest.approx(loss, rel=1e-12)
-    assert bodies["heat_w"].sum() == pytest.approx(loss, rel=1e-12)
-    assert (meshes[["pinion_heat_w", "face_gear_heat_w"]].sum(axis=1) / meshes["loss_w"]).to_numpy() == (
-        pytest.approx(1.0, rel=1e-12)
+    agrees("sum of the mesh losses, W", meshes["loss_w"].sum(), loss, relative=1e-12)
+    agrees("sum of the heat of the bodies, W", bodies["heat_w"].sum(), loss, relative=1e-12)
+    agrees(
+        "heat of both gears over the loss of a mesh",
+        (meshes[["pinion_heat_w", "face_gear_heat_w"]].sum(axis=1) / meshes["loss_w"]).to_numpy(),
+        1.0,
+        relative=1e-12,
     )
-    assert machine["efficiency"].item() == pytest.approx(1 - loss / machine["power_in_w"].item(), rel=1e-12)
+    agrees(
+        "efficiency", machine["efficiency"].item(), 1 - loss / machine["power_in_w"].item(), relative=1e-12
+    )
     assert machine["power_through_meshes"].item() >= 1 - 1e-9
     assert (bodies["bulk_c"] > 90).any()
 

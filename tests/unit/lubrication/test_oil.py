@@ -7,23 +7,51 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from oils import NAMES, oil
+from references import against, agrees
 
 from facegear.errors import FacegearError
 
 ESTER = oil()
 
 
+@against(
+    "external source",
+    "ASTM D341 and the oil's data sheet",
+    capability="lubrication",
+    module="facegear.lubrication.oil",
+)
 def test_ester_turbine_oil_has_the_viscosities_of_astm_d341():
-    assert [ESTER.intercept, ESTER.slope] == pytest.approx([9.3125865871, 3.6665030529], abs=1e-9)
-    assert ESTER.kinematic_viscosity([40, 80, 100, 120]) * 1e6 == pytest.approx(
-        [27.6, 7.896071712, 5.1, 3.569933275], rel=1e-9
+    agrees(
+        "constants of ASTM D341", [ESTER.intercept, ESTER.slope], [9.3125865871, 3.6665030529], absolute=1e-9
     )
-    assert float(ESTER.viscosity(80.0)) == pytest.approx(7.5644367e-3, rel=1e-8)
+    agrees(
+        "kinematic viscosity, mm2/s",
+        ESTER.kinematic_viscosity([40, 80, 100, 120]) * 1e6,
+        [27.6, 7.896071712, 5.1, 3.569933275],
+        relative=1e-9,
+    )
+    agrees("dynamic viscosity, Pa s", float(ESTER.viscosity(80.0)), 7.5644367e-3, relative=1e-8)
 
 
+@against(
+    "external source",
+    "pressure coefficient of the oil's source",
+    capability="lubrication",
+    module="facegear.lubrication.oil",
+)
 def test_ester_turbine_oil_has_the_pressure_coefficient_of_its_source():
-    assert ESTER.pressure_coefficient_at([40, 100, 150]) * 1e9 == pytest.approx([14.4, 11.0, 9.6], abs=0.05)
-    assert float(ESTER.pressure_coefficient_at(80.0)) == pytest.approx(11.76317092e-9, rel=1e-8)
+    agrees(
+        "pressure coefficient, 1/GPa",
+        ESTER.pressure_coefficient_at([40, 100, 150]) * 1e9,
+        [14.4, 11.0, 9.6],
+        absolute=0.05,
+    )
+    agrees(
+        "pressure coefficient at 80 C, 1/Pa",
+        float(ESTER.pressure_coefficient_at(80.0)),
+        11.76317092e-9,
+        relative=1e-8,
+    )
 
 
 @pytest.mark.parametrize("name", NAMES)

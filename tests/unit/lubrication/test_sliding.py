@@ -8,6 +8,7 @@ import pytest
 from contact_bodies import pair_design
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from references import against, agrees
 from spur_path import c40
 
 from facegear.contact.lines import contact_lines
@@ -28,6 +29,12 @@ RATIO = 23 / 143
 places = st.tuples(st.floats(-0.01, 0.01), st.floats(0.25, 0.275), st.floats(-0.05, -0.03))
 
 
+@against(
+    "other program",
+    "differences of points that turn with their body",
+    capability="lubrication",
+    module="facegear.lubrication.kinematics",
+)
 @settings(max_examples=25)
 @given(places, st.floats(-0.1, 0.1), st.floats(-3e-4, 3e-4), st.floats(-3e-3, 3e-3), st.floats(-2e-4, 2e-4))
 def test_velocities_are_those_of_material_points_in_any_assembly(place, phi1, offset, tilt, shift):
@@ -42,7 +49,7 @@ def test_velocities_are_those_of_material_points_in_any_assembly(place, phi1, of
         moves.append((pinion, on_gear @ body_rotation("face_gear", RATIO * phi).T))
     by_difference = [(after - before) / (2 * step) for after, before in zip(*moves, strict=True)]
     for spin, expected in zip(spins(design), by_difference, strict=True):
-        assert spin.velocity(point) == pytest.approx(expected, abs=1e-8)
+        agrees("velocity, m/s", spin.velocity(point), expected, absolute=1e-8)
 
 
 def test_the_pinion_stands_in_the_mesh_frame_as_the_geometry_places_it_on_the_gear():
@@ -53,17 +60,40 @@ def test_the_pinion_stands_in_the_mesh_frame_as_the_geometry_places_it_on_the_ge
     assert back.points(point) == pytest.approx(gear.points(point), abs=1e-15)
 
 
+@against(
+    "analytic",
+    "instant axis of two turning bodies",
+    capability="lubrication",
+    module="facegear.lubrication.kinematics",
+)
 @given(places)
 def test_relative_velocity_grows_with_the_distance_from_the_instant_axis(place):
     first, second = spins(PAIR)
     velocity = first.velocity(np.array(place)) - second.velocity(np.array(place))
     axis = np.array([0.0, 1.0, -RATIO]) / sqrt(1 + RATIO**2)
     distance = np.linalg.norm(np.cross(np.array(place), axis))
-    assert np.linalg.norm(velocity) == pytest.approx(sqrt(1 + RATIO**2) * distance, rel=1e-9, abs=1e-15)
+    agrees(
+        "relative velocity, m/s",
+        np.linalg.norm(velocity),
+        sqrt(1 + RATIO**2) * distance,
+        relative=1e-9,
+        absolute=1e-15,
+    )
     on_axis = place[1] * np.array([0.0, 1.0, -RATIO])
-    assert np.linalg.norm(first.velocity(on_axis) - second.velocity(on_axis)) < 1e-16
+    agrees(
+        "relative velocity on the axis, m/s",
+        np.linalg.norm(first.velocity(on_axis) - second.velocity(on_axis)),
+        0.0,
+        absolute=1e-16,
+    )
 
 
+@against(
+    "analytic",
+    "sliding of a line contact in closed form",
+    capability="lubrication",
+    module="facegear.lubrication.kinematics",
+)
 def test_line_contact_pair_slides_as_its_closed_form_says():
     design = pair_design(shaper_teeth=23)
     position = np.array([0.1, 0.4, 0.8])
@@ -86,18 +116,34 @@ def test_line_contact_pair_slides_as_its_closed_form_says():
         "entrained": rho * k - 0.5 * s * (RATIO * cosine * c + k),
     }
     for name, expected in exact.items():
-        assert getattr(found, name)[on] == pytest.approx(expected[on], abs=1e-5 * np.abs(s).max())
+        agrees(
+            "velocities of the contact, m/s",
+            getattr(found, name)[on],
+            expected[on],
+            absolute=1e-5 * np.abs(s).max(),
+        )
     assert (lines.slope[on] < 0).all()
 
 
+@against(
+    "analytic",
+    "sliding of spur gears",
+    capability="lubrication",
+    module="facegear.lubrication.kinematics",
+)
 def test_spur_gears_slide_in_proportion_to_the_distance_from_the_pitch_point_and_roll_there():
     path, speed = c40(), 188.5
     g = np.linspace(-8e-3, 8e-3, 9)
     velocity, closing = slip(*path.spins(speed), *path.points(g))
     ratio = path.base[0] / path.base[1]
     tangent = np.array([np.sin(path.angle), 0.0, np.cos(path.angle)])
-    assert velocity @ tangent == pytest.approx(speed * g * (1 + ratio), abs=1e-12)
-    assert np.linalg.norm(velocity, axis=1) == pytest.approx(np.abs(speed * g * (1 + ratio)), abs=1e-12)
+    agrees("sliding along the tangent, m/s", velocity @ tangent, speed * g * (1 + ratio), absolute=1e-12)
+    agrees(
+        "sliding speed, m/s",
+        np.linalg.norm(velocity, axis=1),
+        np.abs(speed * g * (1 + ratio)),
+        absolute=1e-12,
+    )
     assert np.linalg.norm(velocity[4]) < 1e-13 and np.abs(closing).max() < 1e-13
 
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from references import against, agrees
 from skfem import ElementHex2
 
 from facegear.errors import InvalidInput
@@ -24,6 +25,12 @@ def surface_points(design, body, name, grid):
     return face_gear.cylindrical(grid.v, *face_gear.fillet_section(design, grid.v, grid.u))
 
 
+@against(
+    "analytic",
+    "equations of flank and fillet",
+    capability="mesh",
+    module="facegear.mesh.tooth",
+)
 @pytest.mark.parametrize("level", RESOLUTIONS)
 @pytest.mark.parametrize("build", [pinion_tooth, gear_tooth])
 def test_flank_and_fillet_nodes_lie_on_the_analytic_surface_at_every_level(design, build, level):
@@ -32,7 +39,7 @@ def test_flank_and_fillet_nodes_lie_on_the_analytic_surface_at_every_level(desig
         for side, sign in (("right", 1), ("left", -1)):
             grid = mesh.surfaces[f"{name}_{side}"]
             exact = surface_points(design, mesh.body, name, grid) * [sign, 1, 1]
-            assert np.max(np.abs(mesh.nodes[grid.nodes] - exact)) < 1e-12
+            agrees("distance of nodes from the surface, m", mesh.nodes[grid.nodes], exact, absolute=1e-12)
     assert scaled_jacobians(mesh.nodes, mesh.hexes).min() > 0
 
 
@@ -82,6 +89,12 @@ def test_one_cut_face_turned_by_a_pitch_is_the_other(tooth):
     assert set(np.unique(tooth.faces["cut_right"])) == set(tooth.cut_right)
 
 
+@against(
+    "analytic",
+    "Gauss' theorem: closed surface and volume",
+    capability="mesh",
+    module="facegear.mesh.tooth",
+)
 def test_boundary_groups_close_the_tooth(tooth):
     """Every boundary face belongs to exactly one group, and the outward area vectors of all cancel."""
     faces = np.concatenate(list(tooth.faces.values()))
@@ -94,10 +107,13 @@ def test_boundary_groups_close_the_tooth(tooth):
     assert set(number[faces[:, 4]]) == set(mesh.dofs.facet_dofs[0, outside])
     basis = facet_basis(mesh, ElementHex2(), outside, 5)
     flux = (basis.normals * basis.dx).sum(axis=(1, 2))
-    assert np.linalg.norm(flux) < 1e-15
+    agrees("sum of the area vectors, m2", np.linalg.norm(flux), 0.0, absolute=1e-15)
     position = np.asarray(basis.global_coordinates())
-    assert (position * basis.normals * basis.dx).sum() / 3 == pytest.approx(
-        volume(tooth.nodes, tooth.hexes), rel=1e-9
+    agrees(
+        "volume of a tooth, m3",
+        (position * basis.normals * basis.dx).sum() / 3,
+        volume(tooth.nodes, tooth.hexes),
+        relative=1e-9,
     )
 
 
@@ -115,6 +131,12 @@ def test_elements_are_conforming(tooth):
             assert seen.setdefault(corners, sorted(face)) == sorted(face)
 
 
+@against(
+    "own convergence",
+    "volume of the next finer level",
+    capability="mesh",
+    module="facegear.mesh.tooth",
+)
 def test_volume_error_falls_eightfold_or_more_from_level_to_rung(design):
     """Only the profile size halves, width and thickness fall less: short of the O(h^4) of the geometry."""
     for build in (pinion_tooth, gear_tooth):
@@ -125,7 +147,7 @@ def test_volume_error_falls_eightfold_or_more_from_level_to_rung(design):
             )
         ]
         assert abs(found[2] - found[1]) < abs(found[1] - found[0]) / 8
-        assert found[2] == pytest.approx(found[1], rel=1e-6)
+        agrees("volume of a tooth, m3", found[2], found[1], relative=1e-6)
 
 
 def test_straight_corner_view_is_right_handed(tooth):
@@ -136,6 +158,12 @@ def test_straight_corner_view_is_right_handed(tooth):
     assert (mesh.mapping().detDF(np.full((3, 1), 0.5)) > 0).all()
 
 
+@against(
+    "analytic",
+    "area between involute and chamfer times the width",
+    capability="mesh",
+    module="facegear.mesh.tooth",
+)
 def test_tip_chamfer_is_part_of_the_outline(design):
     chamfered = replace(design, pinion=replace(design.pinion, tip_chamfer=0.3e-3))
     mesh, plain = (pinion_tooth(d, named_sizes("coarse", design.module)) for d in (chamfered, design))
@@ -146,4 +174,4 @@ def test_tip_chamfer_is_part_of_the_outline(design):
     chamfer = np.linspace(involute[0], pinion.tip_half_angle(chamfered), 2001)
     expected = 2 * np.trapezoid((involute - chamfer) * radius, radius) * design.pinion.width
     removed = volume(plain.nodes, plain.hexes) - volume(mesh.nodes, mesh.hexes)
-    assert removed == pytest.approx(expected, rel=1e-2)
+    agrees("volume that the chamfer takes away, m3", removed, expected, relative=1e-2)

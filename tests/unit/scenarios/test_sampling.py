@@ -5,6 +5,7 @@ import pytest
 import scipy.stats
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from references import against, agrees
 
 from facegear.scenarios.distributions import Distribution, Shape
 from facegear.scenarios.sampling import Cause, Population, changes, index_samples, samples
@@ -41,29 +42,59 @@ def test_correlated_samples_are_the_same_to_the_bit_in_any_chunk():
     assert np.array_equal(np.vstack(parts), whole)
 
 
+@against(
+    "other program",
+    "scipy.stats",
+    capability="tolerances_chunk tolerances",
+    module="facegear.scenarios.sampling",
+)
 def test_samples_have_the_quantiles_of_their_distributions():
     found = samples(population(), 0, 4096)
     exact = [scipy.stats.norm(2.0, 3.0), scipy.stats.uniform(-1.0, 5.0), scipy.stats.rayleigh(scale=2.0)]
     for column, frozen in enumerate(exact):
         for level in (0.05, 0.5, 0.95):
-            assert np.mean(found[:, column] <= frozen.ppf(level)) == pytest.approx(level, abs=2e-3)
+            agrees(
+                "share of samples below a quantile",
+                np.mean(found[:, column] <= frozen.ppf(level)),
+                level,
+                absolute=2e-3,
+            )
     assert {1.0, 2.0, 5.0} == set(found[:, 3])
 
 
+@against(
+    "other program",
+    "scipy.stats.truncnorm",
+    capability="tolerances_chunk tolerances",
+    module="facegear.scenarios.distributions",
+)
 def test_normal_tolerance_cut_at_its_limits_keeps_them_and_its_shape():
     cut = Distribution(Shape.NORMAL, centre=0.0, spread=1.0, limits=(-1.0, 2.0))
     values = cut.quantile(np.linspace(1e-9, 1.0 - 1e-9, 1001))
     exact = scipy.stats.truncnorm(-1.0, 2.0).ppf(np.linspace(1e-9, 1.0 - 1e-9, 1001))
-    assert values == pytest.approx(exact, abs=1e-9)
+    agrees("quantile of a normal distribution that is cut", values, exact, absolute=1e-9)
 
 
+@against(
+    "analytic",
+    "Spearman's rank correlation of a Gaussian copula",
+    capability="tolerances_chunk tolerances",
+    module="facegear.scenarios.sampling",
+)
 def test_rank_correlation_of_the_samples_is_the_one_asked_for():
     correlation = np.eye(4)
     correlation[0, 1] = correlation[1, 0] = 0.8
     found = samples(population(correlation), 0, 4096)
     exact = 6.0 / np.pi * np.arcsin(0.4)  # Spearman's rank correlation of a Gaussian copula
-    assert scipy.stats.spearmanr(found[:, 0], found[:, 1]).statistic == pytest.approx(exact, abs=5e-3)
-    assert abs(scipy.stats.spearmanr(found[:, 0], found[:, 2]).statistic) < 5e-3
+    agrees(
+        "rank correlation", scipy.stats.spearmanr(found[:, 0], found[:, 1]).statistic, exact, absolute=5e-3
+    )
+    agrees(
+        "rank correlation of independent causes",
+        scipy.stats.spearmanr(found[:, 0], found[:, 2]).statistic,
+        0.0,
+        absolute=5e-3,
+    )
 
 
 def test_one_cause_moves_all_its_keys_by_their_gains():

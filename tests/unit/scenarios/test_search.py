@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
+from references import against, agrees
 
 import facegear
 from facegear.errors import ConfigErrors, FacegearError
@@ -106,12 +107,18 @@ def difference(inputs, idlers, clocking):
     return (2 * force + play * k + 4 * force * k * np.cos(pressure) ** 2 / idlers) / (1 + 2 * k / inputs)
 
 
+@against(
+    "analytic",
+    "load sharing of a floating input in closed form, on the whole grid of designs",
+    capability="search",
+    module="facegear.stages.search",
+)
 def test_the_optimum_of_the_closed_form_is_found():
     grid = [np.geomspace(4e7, 2e8, 9), np.geomspace(2e7, 1e9, 9), np.linspace(-0.05, 0.05, 11)]
     values = np.array(np.meshgrid(*grid, indexing="ij")).reshape(3, -1)
     found = machine().search()
     best = found.table()[["inputs", "idlers", "clocking"]].iloc[0]
-    np.testing.assert_allclose(best, values[:, difference(*values).argmin()])
+    agrees("variables of the best design", best, values[:, difference(*values).argmin()], relative=1e-7)
     sharing = found.winners().set_index("design")["k_inputs"]
     assert sharing["least k_inputs"] < sharing["nominal"]
     nominal = found.winners().set_index("design").loc["nominal", ["inputs", "idlers", "clocking"]]
@@ -134,14 +141,26 @@ def islands(folder, seeds, generations=30):
     }
 
 
+@against(
+    "analytic",
+    "front and hypervolume of two spheres in closed form",
+    capability="search_island search",
+    module="facegear.scenarios.evolution",
+)
 def test_the_front_of_two_spheres_is_the_line_between_and_seeds_differ_by_little(tmp_path):
     found = islands(tmp_path, (1, 2, 3))
     best = front(pd.concat(found.values()), SPHERES)
-    np.testing.assert_allclose(np.sqrt(best["f"]) + np.sqrt(best["g"]), 1.0, atol=0.02)
+    agrees(
+        "sqrt(f) + sqrt(g) on the front",
+        np.sqrt(best["f"]) + np.sqrt(best["g"]),
+        1.0,
+        relative=1e-7,
+        absolute=0.02,
+    )
     last = hypervolumes(found, SPHERES).groupby("seed")["hypervolume"].last()
     assert np.ptp(last) / last.mean() < 0.02
     exact = 1.0 - 1.0 / 6.0 / 1.1**2  # the area below sqrt(f) + sqrt(g) = 1 is a sixth
-    assert last.mean() == pytest.approx(exact, abs=0.02)
+    agrees("hypervolume", last.mean(), exact, absolute=0.02)
 
 
 def test_what_is_to_be_large_mirrors_what_is_to_be_small(tmp_path):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import scipy.stats
+from references import against, agrees
 
 from facegear.scenarios.distributions import Distribution, Shape
 from facegear.scenarios.inverse import HALVINGS, loosest
@@ -22,6 +23,12 @@ def linear(seed=1):
     return causes([Distribution(Shape.NORMAL, spread=spread) for spread in SPREADS], seed)
 
 
+@against(
+    "analytic",
+    "normal distribution of a sum",
+    capability="tolerances tolerances_map",
+    module="facegear.scenarios.statistics",
+)
 def test_p95_of_a_linear_machine_with_normal_errors_is_that_of_the_closed_form():
     exact = scipy.stats.norm.ppf(0.95) * np.sqrt((SPREADS**2).sum())
     errors = {count: [] for count in (512, 8192)}
@@ -31,23 +38,35 @@ def test_p95_of_a_linear_machine_with_normal_errors_is_that_of_the_closed_form()
             assert found.low < exact < found.high
             of_count.append(found.value / exact - 1.0)
     spread = {count: np.sqrt(np.mean(np.square(of_count))) for count, of_count in errors.items()}
-    assert max(np.abs(errors[8192])) < 0.02
+    agrees("error of the 95th percentile, relative", errors[8192], 0.0, absolute=0.02)
     assert spread[8192] < spread[512] / np.sqrt(16.0)  # at least as fast as independent samples
 
 
+@against(
+    "analytic",
+    "variance of a sum",
+    capability="tolerances",
+    module="facegear.scenarios.statistics",
+)
 def test_sobol_indices_of_a_linear_machine_are_shares_of_variance():
     values = index_samples(linear(), 0, 5 * 2048).sum(axis=1)
     found, exact = sobol_indices(values, 3), SPREADS**2 / (SPREADS**2).sum()
     for estimates in (found.first, found.total):
-        assert [one.value for one in estimates] == pytest.approx(exact, abs=0.02)
+        agrees("Sobol index of a sum", [one.value for one in estimates], exact, absolute=0.02)
 
 
+@against(
+    "analytic",
+    "Ishigami and Homma's function",
+    capability="tolerances",
+    module="facegear.scenarios.statistics",
+)
 def test_sobol_indices_of_ishigamis_function_are_the_known_ones():
     population = causes([Distribution(Shape.UNIFORM, limits=(-np.pi, np.pi))] * 3)
     x, y, z = index_samples(population, 0, 5 * 2048).T
     found = sobol_indices(np.sin(x) + 7.0 * np.sin(y) ** 2 + 0.1 * z**4 * np.sin(x), 3)
     for estimates, exact in ((found.first, (0.3139, 0.4424, 0.0)), (found.total, (0.5576, 0.4424, 0.2437))):
-        assert [one.value for one in estimates] == pytest.approx(exact, abs=0.02)
+        agrees("Sobol index of Ishigami's function", [one.value for one in estimates], exact, absolute=0.02)
         assert all(one.low < value < one.high for one, value in zip(estimates, exact, strict=True))
 
 
@@ -80,12 +99,18 @@ def test_errors_of_percentiles_and_indices_fall_as_docs_cluster_tells():
     assert few.total_index_error < 0.02 and many.total_index_error < 0.002
 
 
+@against(
+    "manufactured",
+    "a quantity linear in the scale",
+    capability="loosest_tolerances",
+    module="facegear.scenarios.inverse",
+)
 def test_the_interval_of_the_loosest_scale_is_that_of_the_percentile_turned_round():
     deviations = np.random.default_rng(5).standard_normal(400)
     found = loosest(lambda scale: 1.0 + scale * deviations, 3.0, 0.9, 4.0)
     at_one = percentile(deviations, 0.9)
-    assert found.scale == pytest.approx(2.0 / at_one.value, abs=4.0 / 2**HALVINGS)
-    assert found.interval == pytest.approx((2.0 / at_one.high, 2.0 / at_one.low), rel=1e-9)
+    agrees("scale of the tolerances", found.scale, 2.0 / at_one.value, absolute=4.0 / 2**HALVINGS)
+    agrees("interval of the scale", found.interval, (2.0 / at_one.high, 2.0 / at_one.low), relative=1e-9)
     few = loosest(lambda scale: 1.0 + scale * deviations[:20], 3.0, 0.99, 4.0)
     assert few.interval[0] == 0.0, "twenty samples do not bound their 99th percentile from above"
     assert loosest(lambda scale: 1.0 + scale * deviations, 99.0, 0.9, 4.0).interval == (np.inf, np.inf)

@@ -7,6 +7,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
+from references import against, agrees
 
 import facegear
 from facegear.config.machines import case_machine
@@ -136,13 +137,19 @@ TURNING = {
 }
 
 
+@against(
+    "other program",
+    "all 3289 mesh cycles",
+    capability="tolerances_chunk",
+    module="facegear.load_sharing.quantities",
+)
 def test_a_few_mesh_cycles_hold_the_largest_factor_of_the_whole_hunting_cycle():
     """Every 411th mesh cycle alone read K_gamma up to 5 % low."""
     gearbox = machine([RIGHT, Y], samples=3, chunk_samples=3, hunting_cycles=8).with_values(TURNING)
     found = gearbox.tolerances()
     whole = gearbox.with_values({"tolerances.hunting_cycles": 3289}).tolerances()
     factors = [name for name in found.samples() if name.startswith("k_gamma ")]
-    np.testing.assert_allclose(found.samples()[factors], whole.samples()[factors], rtol=1e-9)
+    agrees("largest mesh load factor", found.samples()[factors], whole.samples()[factors], relative=1e-9)
     spread = hunting_cycle(wired(gearbox), 8, 411)
     whole_means = hunting_cycle(wired(gearbox), 8).cycle_means
     assert (spread.cycle_means.max(axis=0) < 0.99 * whole_means.max(axis=0)).any()
@@ -179,6 +186,12 @@ def test_a_load_map_measures_at_every_load_what_the_cycles_taken_miss():
     assert missed[0.1].max() > 0.005
 
 
+@against(
+    "analytic",
+    "a linear machine with normal errors, from its gradient",
+    capability="tolerances",
+    module="facegear.stages.tolerances",
+)
 def test_percentiles_and_indices_of_a_linear_machine_follow_from_its_gradient():
     gearbox = machine(samples=512, chunk_samples=512, index_blocks=128)
     found = gearbox.tolerances()
@@ -195,14 +208,22 @@ def test_percentiles_and_indices_of_a_linear_machine_follow_from_its_gradient():
     for level in (50.0, 95.0, 99.0):
         expected = start + spread * NormalDist().inv_cdf(level / 100.0)
         assert table.loc[level, "low"] - 0.02 * spread <= expected <= table.loc[level, "high"] + 0.02 * spread
-        assert table.loc[level, "value"] == pytest.approx(expected, abs=0.08 * spread)
+        agrees(
+            "percentile of a mesh load factor", table.loc[level, "value"], expected, absolute=0.08 * spread
+        )
     indices = found.indices().query("quantity == @name")
     exact = np.square(slopes) / spread**2
     for kind in ("first", "total"):
         assert (indices[f"{kind}_low"] <= exact).all() and (exact <= indices[f"{kind}_high"]).all()
-    np.testing.assert_allclose(indices["total"], exact, atol=0.08)
+    agrees("total Sobol index", indices["total"], exact, relative=1e-7, absolute=0.08)
 
 
+@against(
+    "analytic",
+    "a linear machine: the scale is the ratio of the deviations",
+    capability="loosest_tolerances",
+    module="facegear.scenarios.inverse",
+)
 def test_the_loosest_tolerances_of_a_linear_machine_are_those_of_the_closed_form():
     gearbox = machine([RIGHT], samples=16, chunk_samples=16)
     name = "k_gamma right input/upper"
@@ -210,7 +231,7 @@ def test_the_loosest_tolerances_of_a_linear_machine_are_those_of_the_closed_form
     usual = np.quantile(gearbox.tolerances().samples()[name], 0.95)
     limit = start + 1.5 * (usual - start)
     found = gearbox.loosest_tolerances(name, limit, percentile=95.0, samples=16)
-    assert found.scale == pytest.approx(1.5, rel=0.01)
+    agrees("scale of the tolerances", found.scale, 1.5, relative=0.01)
     assert found.percentile.value <= limit
     with pytest.raises(FacegearError, match="without any deviation"):
         gearbox.loosest_tolerances(name, 1.0, samples=1)
@@ -218,6 +239,12 @@ def test_the_loosest_tolerances_of_a_linear_machine_are_those_of_the_closed_form
         gearbox.loosest_tolerances("k", limit, samples=1)
 
 
+@against(
+    "analytic",
+    "a linear machine: what lengths add falls with one over torque",
+    capability="tolerances_map",
+    module="facegear.stages.tolerances_map",
+)
 def test_a_map_of_loads_holds_the_machine_of_each_torque_and_the_closed_form():
     gearbox = machine([RIGHT], hunting_cycles=1)
     found = gearbox.load_map([0.01, 0.5, 1.0, 2.0], samples=16)
@@ -231,7 +258,12 @@ def test_a_map_of_loads_holds_the_machine_of_each_torque_and_the_closed_form():
     assert own[2.0, 99.0] == np.quantile(doubled.tolerances(16).samples()[name], 0.99)
     # misfit and play of a linear machine are lengths: what they add to the share falls with one over torque
     spread = [own[factor, 99.0] - own[factor, 50.0] for factor in (0.5, 1.0, 2.0)]
-    np.testing.assert_allclose(np.array(spread) * (0.5, 1.0, 2.0), spread[1], rtol=1e-6)
+    agrees(
+        "spread of a mesh load factor times the torque",
+        np.array(spread) * (0.5, 1.0, 2.0),
+        spread[1],
+        relative=1e-6,
+    )
 
 
 def test_a_map_over_speed_moves_with_what_a_cause_adds_to_it():

@@ -3,6 +3,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from references import against, agrees
 
 from facegear.config.base import parse
 from facegear.config.load import load_config
@@ -38,9 +39,15 @@ def request(**changes):
     return stiffness_request(parse(MeshStiffness, values))
 
 
+@against(
+    "manufactured",
+    "a stiffness that grows with the fourth root of the torque",
+    capability="stiffness",
+    module="facegear.stiffness.curve",
+)
 def test_curve_between_solved_loads_follows_the_load_dependence():
     curve = load_table(contact_table()).at(300.0, "average")
-    np.testing.assert_allclose(curve, stiffness_at(300.0, POSITIONS), rtol=2e-3)
+    agrees("k(t) between the loads solved, N/m", curve, stiffness_at(300.0, POSITIONS), relative=2e-3)
 
 
 @pytest.mark.parametrize("torque", [50.0, 801.0])
@@ -49,28 +56,54 @@ def test_curve_is_never_extrapolated_in_load(torque):
         load_table(contact_table()).at(torque, "average")
 
 
+@against(
+    "manufactured",
+    "a stiffness that grows with the fourth root of the torque",
+    capability="stiffness",
+    module="facegear.stiffness.curve",
+)
 def test_solved_load_is_taken_as_it_is():
     curve = load_table(contact_table()).at(400.0, "local")
-    np.testing.assert_allclose(curve, 1.3 * stiffness_at(400.0, POSITIONS), rtol=1e-14)
+    agrees("k(t) at a load solved, N/m", curve, 1.3 * stiffness_at(400.0, POSITIONS), relative=1e-14)
 
 
+@against(
+    "manufactured",
+    "a mean that is asked for",
+    capability="stiffness",
+    module="facegear.stiffness.source",
+)
 def test_scaled_source_has_the_mean_asked_for_and_the_shape_computed():
     plain = series_of(stiffness_from_contact(contact_table(), request()).harmonics)
     scaled = series_of(stiffness_from_contact(contact_table(), request(source="fem_scaled")).harmonics)
-    assert scaled.mean == pytest.approx(4.1e8, rel=1e-12)
-    np.testing.assert_allclose(
-        scaled.amplitudes / scaled.mean, plain.amplitudes / plain.mean, rtol=1e-12, atol=1e-15
+    agrees("mean stiffness, N/m", scaled.mean, 4.1e8, relative=1e-12)
+    agrees(
+        "amplitudes over the mean",
+        scaled.amplitudes / scaled.mean,
+        plain.amplitudes / plain.mean,
+        relative=1e-12,
+        absolute=1e-15,
     )
 
 
+@against(
+    "manufactured",
+    "a stiffness whose slope is 1.3 times its average",
+    capability="stiffness",
+    module="facegear.stiffness.source",
+)
 @pytest.mark.parametrize(("source", "scale"), [("fem", 1.0), ("fem_scaled", None)])
 def test_both_means_stand_beside_the_harmonics_and_modes_take_the_local_one(source, scale):
     """The contact's slope is 1.3 times its average here, at every load and position."""
     section = {"source": source, "mean_n_per_m": 4.1e8, "torque_n_m": 400.0, "harmonics_kept": 4}
     table = stiffness_from_contact(contact_table(), request(**section)).harmonics
     average = 4e8 if scale else 4.1e8
-    assert table["mean_average_n_per_m"].to_list() == pytest.approx(5 * [average], rel=1e-9)
-    assert table["mean_local_n_per_m"].to_list() == pytest.approx(5 * [1.3 * average], rel=1e-9)
+    agrees(
+        "mean average stiffness, N/m", table["mean_average_n_per_m"].to_list(), 5 * [average], relative=1e-9
+    )
+    agrees(
+        "mean local stiffness, N/m", table["mean_local_n_per_m"].to_list(), 5 * [1.3 * average], relative=1e-9
+    )
     values = load_config(ROOT / "config" / "paper.yaml").model_dump(mode="json")
     needs = stage_needs("modal", values) | {"mean_stiffness": None}
     taken = {}
@@ -96,12 +129,24 @@ def test_modes_ask_for_the_contact_where_the_config_does_not_give_their_stiffnes
     assert modes_need_contact({"mesh_stiffness": section, "modal": {"stiffness": choice}}) is asks
 
 
+@against(
+    "external source",
+    "the paper, Table 2",
+    capability="modal",
+    module="facegear.transmission.modes",
+)
 def test_the_papers_modes_are_those_of_the_mean_that_its_config_gives():
     values = load_config(ROOT / "config" / "paper.yaml").model_dump(mode="json")
     assert not modes_need_contact(values)
     found = call(STAGES["modal"], stage_needs("modal", values))
     elastic = found.content["frequencies"]["frequency_hz"].to_numpy()[6:]
-    np.testing.assert_allclose(elastic[[0, 4, 10, 21]], [756.7, 833.5, 2260.1, 6488.0], atol=0.0501)
+    agrees(
+        "natural frequency, Hz",
+        elastic[[0, 4, 10, 21]],
+        [756.7, 833.5, 2260.1, 6488.0],
+        relative=1e-7,
+        absolute=0.0501,
+    )
     assert "4.1e+08 N/m (average, given)" in found.summary
 
 
@@ -132,12 +177,23 @@ def test_harmonics_given_in_the_config_need_no_contact():
     np.testing.assert_allclose(series.b, [4.1e8, 1e7, 0, -5e6])
 
 
+@against(
+    "manufactured",
+    "a stiffness with a first harmonic of a tenth at every load",
+    capability="load_dependence",
+    module="facegear.stiffness.tables",
+)
 def test_load_dependence_lists_both_stiffnesses_at_every_load():
     table = load_dependence(load_table(contact_table()))
     assert len(table) == 8
     average = table[table["definition"] == "average"]
     assert average["mean_n_per_m"].is_monotonic_increasing
-    np.testing.assert_allclose(average["amplitude_1_n_per_m"] / average["mean_n_per_m"], 0.1, rtol=1e-10)
+    agrees(
+        "first harmonic over the mean",
+        average["amplitude_1_n_per_m"] / average["mean_n_per_m"],
+        0.1,
+        relative=1e-10,
+    )
 
 
 @pytest.mark.parametrize(

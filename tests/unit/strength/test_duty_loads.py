@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from references import against, agrees
 
 import facegear
 from facegear.config.lumped_model import lumped_sections
@@ -33,12 +34,18 @@ def found_by(gearbox, harmonics):
     return call(STAGES["duty_loads"], given).content
 
 
+@against(
+    "analytic",
+    "a mesh of constant stiffness without errors runs at its static force",
+    capability="duty_loads",
+    module="facegear.stages.duty_loads",
+)
 def test_smooth_meshes_run_at_their_mean_force_on_the_flanks_of_the_statics():
     gearbox = facegear.example().with_values(SMOOTH)
     harmonics = gearbox.stiffness().content["harmonics"]
     found = found_by(gearbox, harmonics)
     loads = found["duty_loads"]
-    np.testing.assert_allclose(loads["dynamic_factor"], 1.0, rtol=1e-6)
+    agrees("dynamic factor", loads["dynamic_factor"], 1.0, relative=1e-6)
     assert loads["settled"].all()
     for number, torque in ((1, 600.0), (2, 900.0)):
         section, teeth = lumped_sections(gearbox.values["transmission"], gearbox.values["tooth_pair"])
@@ -48,9 +55,15 @@ def test_smooth_meshes_run_at_their_mean_force_on_the_flanks_of_the_statics():
         assert running["flank"].to_dict() == at_rest["flank"].to_dict()
         even = pd.Series(even_shares(machine), machine.layout.mesh_names)
         expected = at_rest["pinion_torque_n_m"].abs() / machine.layout.pinion_arm / even
-        np.testing.assert_allclose(running["mesh_load_factor"], expected[running.index], rtol=1e-3)
+        agrees("mesh load factor", running["mesh_load_factor"], expected[running.index], relative=1e-3)
 
 
+@against(
+    "analytic",
+    "turns times meshes of a turn",
+    capability="duty_loads rating",
+    module="facegear.strength.duty",
+)
 def test_teeth_of_each_body_meet_its_own_meshes_and_idlers_bend_both_ways():
     gearbox = facegear.example().with_values(SMOOTH)
     harmonics = gearbox.stiffness().content["harmonics"]
@@ -66,9 +79,21 @@ def test_teeth_of_each_body_meet_its_own_meshes_and_idlers_bend_both_ways():
     duty = [DutyBin(600.0, 125.0, 3600.0), DutyBin(900.0, 80.0, 60.0)]
     by_body = {(one.body, one.flank): one for one in machine_duty(spectrum, duty, 23 / 143, 0.04)}
     turns = 125.0 * 3600.0 + 80.0 * 60.0
-    assert by_body["right input", "drive"].cycles.sum() == pytest.approx(2 * turns)
-    assert by_body["right idler", "back"].cycles.sum() == pytest.approx(turns)
-    assert by_body["upper face gear", "drive"].cycles.sum() == pytest.approx(5 * turns * 23 / 143)
+    agrees(
+        "cycles of an input's drive flank",
+        by_body["right input", "drive"].cycles.sum(),
+        2 * turns,
+        relative=1e-6,
+    )
+    agrees(
+        "cycles of an idler's back flank", by_body["right idler", "back"].cycles.sum(), turns, relative=1e-6
+    )
+    agrees(
+        "cycles of the upper face gear's drive flank",
+        by_body["upper face gear", "drive"].cycles.sum(),
+        5 * turns * 23 / 143,
+        relative=1e-6,
+    )
     assert not by_body["right input", "drive"].opposite.any()
     idler = by_body["right idler", "drive"]
     np.testing.assert_allclose(idler.opposite, [by_body["right idler", "back"].torque[n] for n in (0, 1)])
@@ -98,22 +123,34 @@ def test_classes_of_passages_never_do_less_harm_than_the_passages(forces, slope)
     assert harm >= np.mean(np.array(forces) ** slope) * (1.0 - 1e-12)
 
 
+@against(
+    "manufactured",
+    "passages of which one tooth's are the largest",
+    capability="duty_loads",
+    module="facegear.strength.passage_loads",
+)
 def test_the_hardest_tooth_is_the_one_whose_passages_do_most_harm():
     met = np.stack([np.arange(12) % 3, (np.arange(12) + 1) % 3], axis=1)
     passages = np.where(met == 2, 100.0, 90.0) + np.arange(12)[:, None] * 0.01
     for forces, expected in zip(
         hardest_tooth(passages, met), (passages[2::3, 0], passages[1::3, 1]), strict=True
     ):
-        np.testing.assert_allclose(forces, expected)
+        agrees("force of the hardest tooth, N", forces, expected, relative=1e-7)
 
 
+@against(
+    "analytic",
+    "proportion",
+    capability="duty_loads",
+    module="facegear.config.lumped_model",
+)
 def test_all_torques_follow_the_one_in_an_inputs_mesh():
     values = facegear.example().values["transmission"]
     own = {**values["pinions"][1], "torque_n_m": 100.0}
     given = {**values, "pinions": [own, *values["pinions"][2:]]}
     scaled = at_mesh_torque(Transmission.of_config(given), 2 * 1327.6 / 2)
-    assert scaled.torque.per_input_n_m == pytest.approx(2 * 1327.6)
-    assert scaled.pinions[0].torque_n_m == pytest.approx(200.0)
+    agrees("torque of an input, N m", scaled.torque.per_input_n_m, 2 * 1327.6, relative=1e-6)
+    agrees("torque of another pinion, N m", scaled.pinions[0].torque_n_m, 200.0, relative=1e-6)
     assert scaled.pinions[1].torque_n_m is None
     with pytest.raises(ConfigError, match="duty cycle"):
         unloaded = {**given, "torque": {"per_input_n_m": 0.0, "tail_share": 0.0}}

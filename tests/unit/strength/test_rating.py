@@ -9,6 +9,7 @@ import pytest
 from contact_bodies import pair_design
 from hypothesis import given
 from hypothesis import strategies as st
+from references import against, agrees
 
 from facegear.config.base import parse
 from facegear.config.material_card import CARDS, material_card
@@ -69,13 +70,19 @@ def rated(duty, **options):
     return {(one.duty.body, one.failure, one.method): one for one in found}, found
 
 
+@against(
+    "analytic",
+    "definition of safety under one load",
+    capability="rating",
+    module="facegear.strength.rating",
+)
 @given(stress=st.floats(1e8, 1e9), exponent=st.floats(3.5, 9.0), allowed=st.floats(2e8, 2e9))
 def test_safety_of_a_single_load_is_the_allowed_stress_at_its_cycles_over_its_stress(
     stress, exponent, allowed
 ):
     life, cycles = Life((1e3, 3e6, 1e10), (2.5, 1.0, 0.85)), 10.0**exponent
     found = safety(np.array([stress]), np.array([cycles]), allowed, life)
-    assert found == pytest.approx(allowed * float(life.factor(cycles)) / stress, rel=1e-9)
+    agrees("safety", found, allowed * float(life.factor(cycles)) / stress, relative=1e-9)
 
 
 def test_damage_adds_up_over_the_bins_and_an_empty_bin_does_none():
@@ -110,16 +117,32 @@ def test_a_bin_that_lasts_no_time_changes_no_row_of_the_rating():
     assert (never["stress_mpa"] == 0.0).all() and (never["verdict"] == "green").all()
 
 
+@against(
+    "external source",
+    "ISO 6336-3: mean stress influence factor",
+    capability="rating",
+    module="facegear.strength.rating",
+)
 def test_teeth_bent_both_ways_are_allowed_less():
     load = [DutyBin(500.0, 20.0, 3600.0)]
     key = ("pinion", "bending", "finite elements")
     one_way, both_ways = (rated(load, both_ways=flag)[0][key].allowed for flag in (False, True))
     flank = given_duty("pinion", load, 1.0, True)
     assert reversal(root(300e6), flank) == -1.0
-    assert reversal(root(300e6), replace(flank, opposite=np.array([250.0]))) == pytest.approx(-sqrt(0.5))
+    agrees(
+        "stress ratio of unequal loads",
+        reversal(root(300e6), replace(flank, opposite=np.array([250.0]))),
+        -sqrt(0.5),
+        relative=1e-6,
+    )
     assert reversal(root(300e6), given_duty("pinion", load, 1.0, False)) == 0.0
     mean = 0.8 - 0.15 * 2.0  # M of the card with Y_S = 2
-    assert both_ways / one_way == pytest.approx(1.0 / (1.0 + (1.0 - mean) / (1.0 + mean)))
+    agrees(
+        "allowed stress of reversed over pulsating bending",
+        both_ways / one_way,
+        1.0 / (1.0 + (1.0 - mean) / (1.0 + mean)),
+        relative=1e-6,
+    )
 
 
 def test_gear_turns_slower_than_the_pinion_and_its_teeth_see_fewer_cycles():
@@ -128,6 +151,12 @@ def test_gear_turns_slower_than_the_pinion_and_its_teeth_see_fewer_cycles():
     assert cycles == pytest.approx({"pinion": 72000.0, "face_gear": 72000.0 * 23 / 143})
 
 
+@against(
+    "analytic",
+    "Hertz: cylinder on a plane",
+    capability="rating",
+    module="facegear.strength.rating",
+)
 def test_pitting_stress_at_the_pitch_point_is_hertz_of_a_cylinder_on_a_plane():
     design = replace(pair_design())
     ratio, torque = section_contact_ratio(design), 500.0
@@ -136,7 +165,7 @@ def test_pitting_stress_at_the_pitch_point_is_hertz_of_a_cylinder_on_a_plane():
     load = torque / design.pinion_base_radius / min(face, design.pinion.width)
     soft = 2 * (1 - CARD.poisson_ratio**2) / CARD.young_modulus
     hertz = sqrt(load / (pi * soft * design.pinion_base_radius * tan(design.pressure_angle)))
-    assert found == pytest.approx(hertz * sqrt((4 - ratio) / 3), rel=1e-12)
+    agrees("contact stress, Pa", found, hertz * sqrt((4 - ratio) / 3), relative=1e-12)
 
 
 def told(**changes):
@@ -174,9 +203,15 @@ def test_a_duty_cycle_from_a_csv_is_that_of_the_config(tmp_path):
     assert parse(Strength, from_csv.model_dump(mode="json")) == from_csv
 
 
+@against(
+    "analytic",
+    "Weibull distribution through 99 percent",
+    capability="rating",
+    module="facegear.strength.fatigue",
+)
 @given(total=st.floats(1e-2, 3.0), shape=st.floats(0.5, 4.0))
 def test_reliability_is_99_percent_at_the_rated_life_and_falls_with_damage(total, shape):
-    assert reliability(1.0, shape) == pytest.approx(0.99)
+    agrees("reliability at the rated life", reliability(1.0, shape), 0.99, relative=1e-6)
     assert reliability(1.1 * total, shape) < reliability(total, shape) <= 1.0
     assert np.isnan(reliability(total, None)) and np.isnan(reliability(0.0, shape))
 
@@ -238,6 +273,12 @@ def test_a_contact_on_edges_alone_is_judged_by_the_standard():
     assert safety_table(found, bare)["pitting_safety"].isna().all()
 
 
+@against(
+    "analytic",
+    "Hertz: pressure of a line load grows with its root",
+    capability="rating",
+    module="facegear.strength.contact_pressure",
+)
 @given(factor=st.floats(1.0, 5.0))
 def test_beyond_the_torques_solved_pressure_rises_with_the_root_of_the_torque_and_edges_with_it(factor):
     table = pd.DataFrame(
@@ -251,7 +292,12 @@ def test_beyond_the_torques_solved_pressure_rises_with_the_root_of_the_torque_an
         }
     )
     found = contact_pressure(table)
-    assert found.at(1000.0 * factor) == pytest.approx(1200e6 * sqrt(factor))
+    agrees(
+        "pressure beyond the torques solved, Pa",
+        found.at(1000.0 * factor),
+        1200e6 * sqrt(factor),
+        relative=1e-6,
+    )
     assert found.error_at(1000.0 * factor) == pytest.approx(0.02 * found.at(1000.0 * factor))
     assert found.edge_at(1000.0 * factor) == pytest.approx((300e3 * factor, 4e-3))
     assert found.at(500.0) == pytest.approx(1200e6 * 0.5 ** (1 / 3))  # of a point contact: no less than it is

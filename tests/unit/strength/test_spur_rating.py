@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from references import against, agrees
 from spur_gears import fzg_c
 
 from facegear.config.material_card import CARDS, material_card
@@ -25,13 +26,25 @@ STEEL = (206e9, 0.3)
 BENDING = Life((1e3, 3e6, 1e10), (2.5, 1.0, 0.85))
 
 
+@against(
+    "external source",
+    "published form factors and stresses of FZG type C gears",
+    capability="rating",
+    module="facegear.strength.root_form",
+)
 def test_form_and_stress_correction_of_fzg_c_gears_match_the_published_ones():
     mesh = fzg_c()
     found = [root_form(gear, mesh.single_contact_radius(gear)) for gear in (mesh.pinion, mesh.wheel)]
-    assert [form.form_factor for form in found] == pytest.approx([1.689, 1.583], rel=5e-3)
-    assert [form.stress_correction for form in found] == pytest.approx([1.851, 1.917], rel=5e-3)
+    agrees("form factor Y_F", [form.form_factor for form in found], [1.689, 1.583], relative=5e-3)
+    agrees("stress correction Y_S", [form.stress_correction for form in found], [1.851, 1.917], relative=5e-3)
 
 
+@against(
+    "external source",
+    "published form factors and stresses of FZG type C gears",
+    capability="rating",
+    module="facegear.strength.factors",
+)
 def test_stresses_of_fzg_c_gears_match_the_published_ones():
     mesh, torque = fzg_c(), 200.0
     working = mesh.centre_distance / (1.0 + mesh.ratio)
@@ -41,19 +54,24 @@ def test_stresses_of_fzg_c_gears_match_the_published_ones():
         for gear in (mesh.pinion, mesh.wheel)
         for form in [root_form(gear, mesh.single_contact_radius(gear))]
     ]
-    assert bending == pytest.approx([271.2e6, 263.2e6], rel=5e-3)
+    agrees("root stress at the working circle's force, Pa", bending, [271.2e6, 263.2e6], relative=5e-3)
     reference = working / (0.5 * mesh.pinion.module * mesh.pinion.teeth)  # the standard's force is larger
-    assert [reference * stress for stress in bending] == pytest.approx([271.2e6, 263.2e6], rel=0.0135)
+    agrees(
+        "root stress at the standard's force, Pa",
+        [reference * stress for stress in bending],
+        [271.2e6, 263.2e6],
+        relative=0.0135,
+    )
     angle = mesh.working_angle
     zone = sqrt(2.0 * np.cos(angle) / (np.cos(radians(20.0)) ** 2 * np.sin(angle)))
     diameter = mesh.pinion.module * mesh.pinion.teeth
     line = force / (diameter * mesh.pinion.width) * (mesh.ratio + 1.0) / mesh.ratio
     stress = zone * elasticity_factor(STEEL, STEEL) * contact_ratio_factor(mesh.contact_ratio) * sqrt(line)
-    assert stress == pytest.approx(1228.9e6, rel=1e-3)
+    agrees("contact stress, Pa", stress, 1228.9e6, relative=1e-3)
     normal = torque / mesh.pinion.base_radius
-    assert normal == pytest.approx(5912.1, rel=1e-4)
+    agrees("normal force, N", normal, 5912.1, relative=1e-4)
     hertz = elasticity_factor(STEEL, STEEL) * sqrt(normal / mesh.pinion.width / mesh.pitch_curvature_radius())
-    assert hertz == pytest.approx(1347.3e6, rel=1e-3)
+    agrees("pressure at the pitch point, Pa", hertz, 1347.3e6, relative=1e-3)
 
 
 def din_3990_11() -> SpurMesh:
@@ -74,6 +92,12 @@ def din_3990_11() -> SpurMesh:
     return SpurMesh(pinion, wheel, 248.506843355171e-3)
 
 
+@against(
+    "other program",
+    "DIN 3990-11 example of a public code that prints every factor (hanslhansl/din3990)",
+    capability="rating",
+    module="facegear.strength.root_form",
+)
 def test_form_and_stress_correction_of_the_din_3990_11_example_for_a_load_at_the_tip():
     """To 1e-4: that code stops the iteration for the 30 degree tangent earlier."""
     mesh = din_3990_11()
@@ -86,10 +110,16 @@ def test_form_and_stress_correction_of_the_din_3990_11_example_for_a_load_at_the
         "stress_correction": [1.914726, 2.008782],
     }
     for name, values in printed.items():
-        assert [getattr(form, name) for form in found] == pytest.approx(values, rel=1e-4), name
-    assert mesh.contact_ratio == pytest.approx(1.536323594583, rel=1e-9)
+        agrees(f"root form: {name}", [getattr(form, name) for form in found], values, relative=1e-4)
+    agrees("contact ratio", mesh.contact_ratio, 1.536323594583, relative=1e-9)
 
 
+@against(
+    "other program",
+    "DIN 3990-11 example of a public code that prints every factor (hanslhansl/din3990)",
+    capability="rating",
+    module="facegear.strength.factors",
+)
 def test_safety_of_the_din_3990_11_example_with_its_load_factors():
     """Load factors, Z_B and Y_epsilon are the example's; its notch, surface and size factors are 1."""
     mesh, card = din_3990_11(), material_card(CARDS / "case_carburised_din3990_11.yaml")
@@ -100,21 +130,24 @@ def test_safety_of_the_din_3990_11_example_with_its_load_factors():
     diameter = mesh.pinion.module * mesh.pinion.teeth
     pitting = zone * elasticity_factor(STEEL, STEEL) * contact_ratio_factor(mesh.contact_ratio)
     pitting *= sqrt(line / diameter * (mesh.ratio + 1.0) / mesh.ratio)
-    assert pitting == pytest.approx(875.3827378988e6, rel=1e-3)  # Z_E is rounded there, 189.8
+    agrees("contact stress, Pa", pitting, 875.3827378988e6, relative=1e-3)  # Z_E is rounded there, 189.8
     loads = 1.75 * 1.0278576 * 1.1064273
     (limit, life), bending = (card.pitting.limit, card.pitting.life), card.bending
     endurance, static = float(life.factor(5e7)), float(life.factor(1.0))
     found = limit / (pitting * 1.0055470 * sqrt(loads))
-    assert found * endurance == pytest.approx(1.20793605, rel=1e-3)
+    agrees("safety against pitting", found * endurance, 1.20793605, relative=1e-3)
     statically = 2.5 * 1.0278576 * 1.1064273
     at_rest = static * limit / (pitting * 1.0055470 * sqrt(statically))
-    assert at_rest == pytest.approx(1.61701090, rel=1e-3)
+    agrees("static safety against pitting", at_rest, 1.61701090, relative=1e-3)
     form = root_form(mesh.pinion, mesh.pinion.tip_radius)
     stress = line / mesh.pinion.module * form.form_factor * form.stress_correction * 0.7381784
-    assert stress == pytest.approx(230.1514e6, rel=1e-4)
+    agrees("root stress, Pa", stress, 230.1514e6, relative=1e-4)
     bent = 1.75 * 1.0278576 * 1.0864854
-    assert bending.limit * STRESS_CORRECTION_REFERENCE / (stress * bent) == pytest.approx(
-        1.91200876, rel=1e-4
+    agrees(
+        "safety against bending",
+        bending.limit * STRESS_CORRECTION_REFERENCE / (stress * bent),
+        1.91200876,
+        relative=1e-4,
     )
 
 

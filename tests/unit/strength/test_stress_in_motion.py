@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import scipy.sparse as sp
+from references import against, agrees
 from root_readings import POSITIONS, TORQUES, passing
 
 import facegear
@@ -26,6 +27,12 @@ PRESSURE = ContactPressure(TORQUES, np.sqrt(TORQUES), *np.zeros((4, 2)))
 EDGES_ALONE = replace(PRESSURE, pressure=np.full(2, np.nan))
 
 
+@against(
+    "manufactured",
+    "mesh forces of two instants",
+    capability="dynamic_root_stress",
+    module="facegear.strength.dynamic_stress",
+)
 def test_running_machine_is_judged_by_the_magnitude_of_each_mesh_force():
     _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
     forces = {
@@ -37,15 +44,27 @@ def test_running_machine_is_judged_by_the_magnitude_of_each_mesh_force():
     roots = {"pinion": found, "face_gear": found}
     contacts = dict.fromkeys(places, dict.fromkeys(FLANKS, FlankContact(roots, PRESSURE)))
     table = dynamic_stress_table(forces, places, 0.1, contacts).set_index("mesh")
-    assert table["dynamic_factor"].iloc[:2].tolist() == pytest.approx([1.5, 1.0])
+    agrees("dynamic factor", table["dynamic_factor"].iloc[:2].tolist(), [1.5, 1.0], relative=1e-6)
     assert np.isnan(table.loc["open", "dynamic_factor"])
     assert table.loc["pulsing", "pinion_mean_mpa"] == pytest.approx(table.loc["back", "pinion_bound_mpa"])
     solved = root_tables({"pinion": found})["summary"]
     largest = solved[solved["torque_n_m"] == 300.0]["largest_mpa"].max()
-    assert table.loc["pulsing", "face_gear_bound_mpa"] == pytest.approx(largest)
+    agrees(
+        "bound of the root stress, MPa", table.loc["pulsing", "face_gear_bound_mpa"], largest, relative=1e-6
+    )
     assert table["within_torques_solved"].all()
-    assert table.loc["pulsing", "pressure_bound_mpa"] == pytest.approx(1e-6 * np.sqrt(300.0))
-    assert table.loc["pulsing", "pressure_mean_mpa"] == pytest.approx(1e-6 * np.sqrt(200.0))
+    agrees(
+        "bound of the pressure, MPa",
+        table.loc["pulsing", "pressure_bound_mpa"],
+        1e-6 * np.sqrt(300.0),
+        relative=1e-6,
+    )
+    agrees(
+        "pressure at the mean force, MPa",
+        table.loc["pulsing", "pressure_mean_mpa"],
+        1e-6 * np.sqrt(200.0),
+        relative=1e-6,
+    )
     beyond = dynamic_stress_table({"high": np.array([4000.0, 0.0])}, places, 0.1, contacts)
     assert not beyond["within_torques_solved"].any()
 
@@ -64,6 +83,12 @@ def test_stress_in_motion_is_that_of_the_force_and_the_place_of_the_moment():
     np.testing.assert_allclose(history(torques, places + 1e-12), history(torques, places), rtol=1e-9)
 
 
+@against(
+    "manufactured",
+    "contacts of which one has twice the stress",
+    capability="dynamic_root_stress",
+    module="facegear.strength.dynamic_stress",
+)
 def test_each_flank_of_each_gear_in_motion_has_the_stress_of_its_own_contact():
     """Assembly errors part the flanks; every flank was read as the drive flank."""
     _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
@@ -77,11 +102,21 @@ def test_each_flank_of_each_gear_in_motion_has_the_stress_of_its_own_contact():
     contacts = {key: {"drive": drive, "back": back} for key in forces}
     table = dynamic_stress_table(forces, places, 0.1, contacts).set_index("mesh")
     for column in ("pinion_mean_mpa", "pinion_running_mpa", "face_gear_bound_mpa"):
-        assert table.loc["a/lower", column] == pytest.approx(2.0 * table.loc["a/upper", column])
-    assert table.loc["a/lower", "pressure_bound_mpa"] == pytest.approx(2e-6 * np.sqrt(300.0))
+        agrees(
+            "stress of the back flank, MPa",
+            table.loc["a/lower", column],
+            2.0 * table.loc["a/upper", column],
+            relative=1e-6,
+        )
+    agrees(
+        "pressure of the back flank, MPa",
+        table.loc["a/lower", "pressure_bound_mpa"],
+        2e-6 * np.sqrt(300.0),
+        relative=1e-6,
+    )
     both = table.loc["b/lower", "face_gear_bound_mpa"]
     alone = [contact.history["face_gear"].over_passage(at) for contact, at in ((drive, 300.0), (back, 100.0))]
-    assert both == pytest.approx(1e-6 * max(alone))
+    agrees("bound of a flank loaded from both sides, MPa", both, 1e-6 * max(alone), relative=1e-6)
     swept = pd.DataFrame([("sweep up", "period-1", 1000.0, "a/lower", 3000.0)], columns=list(FORCE_COLUMNS))
     over = stress_table(swept, 1.0, 0.1, {"a/lower": [drive, back]})
     assert over["pinion_mpa"].iloc[0] == pytest.approx(1e-6 * back.tension["pinion"](300.0))
@@ -114,6 +149,12 @@ def test_stress_in_motion_stays_below_its_bound_where_another_gauge_leads_at_eac
     assert (table["pinion_bound_mpa"] >= table["pinion_running_mpa"]).all()
 
 
+@against(
+    "analytic",
+    "phase of a mesh",
+    capability="dynamic_root_stress",
+    module="facegear.transmission.flanks",
+)
 def test_the_place_of_a_flank_is_where_its_stiffness_is_that_of_the_reference():
     machine = case_machine(
         facegear.example().values, Harmonics(np.array([0, 3e7, 1e7]), np.array([4e8, 2e7, -1e7]))
@@ -121,7 +162,9 @@ def test_the_place_of_a_flank_is_where_its_stiffness_is_that_of_the_reference():
     cycles = np.linspace(0.0, 2.0, 23)
     places = flank_places(machine.phases, cycles)
     for flank, series in enumerate(stiffness_series(machine)):
-        np.testing.assert_allclose(series(cycles), machine.stiffness(places[:, flank]), rtol=1e-9)
+        agrees(
+            "stiffness of a flank, N/m", series(cycles), machine.stiffness(places[:, flank]), relative=1e-9
+        )
 
 
 SWEPT = pd.DataFrame(
@@ -136,6 +179,12 @@ SWEPT = pd.DataFrame(
 )
 
 
+@against(
+    "manufactured",
+    "a branch whose force is twice the speed",
+    capability="stress_over_speed",
+    module="facegear.strength.stress_over_speed",
+)
 @pytest.mark.parametrize("way", [1, -1])
 def test_a_stable_stretch_counts_at_both_its_ends_and_once_where_its_pieces_meet(way):
     """A path that is followed to its limit comes there but for rounding."""
@@ -144,13 +193,19 @@ def test_a_stable_stretch_counts_at_both_its_ends_and_once_where_its_pieces_meet
     path = pd.DataFrame({**one, "point": range(3), "speed_rpm": speed, "peak_force_n": 2.0 * speed})
     found = branch_forces(path, np.array([1000.0, 1200.0, 1400.0, 1700.0, 2000.0]))
     assert sorted(found["speed_rpm"]) == [1000.0, 1200.0, 1400.0, 1700.0, 2000.0]
-    np.testing.assert_allclose(found["largest_force_n"], 2.0 * found["speed_rpm"])
+    agrees("largest force, N", found["largest_force_n"], 2.0 * found["speed_rpm"], relative=1e-7)
     torn = path.assign(stable=[True, True, False])
     assert sorted(branch_forces(torn, np.array([1000.0, 1400.0, 2000.0]))["speed_rpm"]) == (
         [1000.0, 1400.0] if way == 1 else [1400.0, 2000.0]
     )
 
 
+@against(
+    "manufactured",
+    "a sweep and a branch of known forces",
+    capability="stress_over_speed",
+    module="facegear.strength.stress_over_speed",
+)
 def test_stress_over_speed_takes_the_hardest_of_coexisting_motions():
     _, found = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
     branches = pd.DataFrame(
@@ -171,15 +226,25 @@ def test_stress_over_speed_takes_the_hardest_of_coexisting_motions():
     table = stress_table(forces.reset_index(drop=True), 750.0, 0.1, contacts)
     at_1000 = table[table["speed_rpm"] == 1000.0].set_index("motion")
     assert at_1000.loc["sweep up", "mesh"] == "b/upper"
-    assert at_1000.loc["branch 3", "largest_force_n"] == pytest.approx(1500.0)
+    agrees(
+        "force between two points of a branch, N",
+        at_1000.loc["branch 3", "largest_force_n"],
+        1500.0,
+        relative=1e-6,
+    )
     assert at_1000.loc["branch 3", "class"] == "period-2"
     assert at_1000["worst"].to_dict() == {"branch 3": True, "sweep up": False}
     at_2000 = table[table["speed_rpm"] == 2000.0]
     assert at_2000["motion"].tolist() == ["sweep up"]  # the branch is not stable there
-    assert at_2000["dynamic_factor"].iloc[0] == pytest.approx(2000.0 / 750.0)
+    agrees("dynamic factor", at_2000["dynamic_factor"].iloc[0], 2000.0 / 750.0, relative=1e-6)
     expected = down_the_fillet(found.at_torque(200.0)).max()
-    assert at_2000["pinion_mpa"].iloc[0] == pytest.approx(1e-6 * expected)
-    assert at_2000["pressure_mpa"].iloc[0] == pytest.approx(500.0 * 2.0 ** (np.log(1.8) / np.log(3.0)))
+    agrees("root stress, MPa", at_2000["pinion_mpa"].iloc[0], 1e-6 * expected, relative=1e-6)
+    agrees(
+        "pressure, MPa",
+        at_2000["pressure_mpa"].iloc[0],
+        500.0 * 2.0 ** (np.log(1.8) / np.log(3.0)),
+        relative=1e-6,
+    )
     assert pressure.at(1200.0) == pytest.approx(2.0 * 9e8)
     nowhere = {key: [FlankContact(roots, EDGES_ALONE)] for key in forces["mesh"]}
     idle = stress_table(forces.reset_index(drop=True), 0.0, 0.1, nowhere)

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import event, given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
+from references import against, agrees
 from scipy.linalg import eigh
 
 from facegear.transmission.imperfections import perfect
@@ -48,6 +49,12 @@ def test_with_a_large_tail_torque_the_tail_idlers_upper_mesh_changes_flank():
     assert back[5] and not drive[5]
 
 
+@against(
+    "other program",
+    "active sets with NumPy beside the compiled statics",
+    capability="modal",
+    module="facegear.transmission.loaded_modes",
+)
 @settings(max_examples=40, deadline=None)
 @given(
     st.integers(0, 2**31), st.floats(50.0, 4000.0), st.floats(0.0, 0.9), st.floats(1e-6, 2e-4), st.booleans()
@@ -66,7 +73,7 @@ def test_active_sets_find_the_flank_forces_of_the_compiled_statics(seed, torque,
     forces, exact = forces_by_active_sets(machine), mean_equilibrium(machine).flank_forces[0]
     event("settled" if forces is not None else "left to the compiled statics")
     if forces is not None:
-        np.testing.assert_allclose(forces, exact, atol=1e-9 * exact.max())
+        agrees("flank force, N", forces, exact, relative=1e-7, absolute=1e-9 * exact.max())
 
 
 def test_modes_of_geometric_meshes_need_no_compiled_code():
@@ -201,6 +208,12 @@ def test_a_mesh_that_carries_nothing_stays_open_in_the_modes():
     assert (modes.frequencies == 0.0).sum() == 5
 
 
+@against(
+    "analytic",
+    "mirror symmetry",
+    capability="modal",
+    module="facegear.transmission.loaded_modes",
+)
 @settings(max_examples=20, deadline=None)
 @given(torque=st.floats(50.0, 4000.0), backlash=st.floats(0.0, 2e-4), clearance=st.sampled_from([0.0, 2e-5]))
 def test_a_machine_and_its_mirror_image_have_the_same_modes(torque, backlash, clearance):
@@ -208,7 +221,7 @@ def test_a_machine_and_its_mirror_image_have_the_same_modes(torque, backlash, cl
         loaded_modes(idle_machine(torque, clearance, turned, backlash=backlash)).frequencies
         for turned in (1.0, -1.0)
     )
-    np.testing.assert_allclose(one, other, rtol=1e-6, atol=1e-6)
+    agrees("natural frequency, Hz", one, other, relative=1e-6, absolute=1e-6)
 
 
 @settings(max_examples=30, deadline=None)
@@ -234,6 +247,12 @@ def test_no_mode_of_a_pinion_in_its_play_hangs_on_the_last_digits_of_a_torque(
     assert firm.all() or any(machine.contacts.any_undecided() for machine in found)
 
 
+@against(
+    "analytic",
+    "eigenvalues of the machine with both flanks, by hand",
+    capability="modal",
+    module="facegear.transmission.loaded_modes",
+)
 def test_a_wedged_mesh_has_both_flanks_and_the_table_names_it():
     """A pinion set too deep presses both flanks of a tooth: 2 k along its way, 2 k along the gears' axis."""
     layout = make_layout((("a", Role.INPUT, 0.0),), kinematics=GEOMETRIC)
@@ -245,7 +264,13 @@ def test_a_wedged_mesh_has_both_flanks_and_the_table_names_it():
     tangential, separating = (parts[1] for parts in mesh_parts(layout))
     squares = np.outer(tangential, tangential) + np.outer(separating, separating)
     exact = eigh(bearing_matrix(layout) + 2.0 * 4.1e8 * squares, np.diag(mass_diagonal(layout)))[0]
-    np.testing.assert_allclose((2.0 * np.pi * found.modes.frequencies) ** 2, exact, atol=1e-9 * exact.max())
+    agrees(
+        "square of an angular frequency, 1/s2",
+        (2.0 * np.pi * found.modes.frequencies) ** 2,
+        exact,
+        relative=1e-7,
+        absolute=1e-9 * exact.max(),
+    )
 
 
 def test_the_table_says_what_every_mesh_and_every_bearing_with_play_does():

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
+from references import against, agrees
 
 from facegear.errors import NotConverged
 from facegear.harmonics.series import Harmonics
@@ -66,6 +67,12 @@ def held_forces(machine):
     return drive - back
 
 
+@against(
+    "analytic",
+    "load sharing of a floating input in closed form",
+    capability="hunting load_sharing_reference",
+    module="facegear.transmission.statics",
+)
 @pytest.mark.parametrize("bearing", 10.0 ** np.arange(5, 13))
 @pytest.mark.parametrize("misfit", [12e-6, -7e-6])
 def test_a_floating_input_between_held_gears_shares_as_the_closed_form_says(bearing, misfit):
@@ -73,22 +80,44 @@ def test_a_floating_input_between_held_gears_shares_as_the_closed_form_says(bear
     forces = held_forces(machine_with(layout, error=[misfit, 0.0]))
     exact = K * misfit / (1.0 + 2.0 * K / bearing)
     total = 800.0 / layout.pinion_arm
-    np.testing.assert_allclose(forces[1] - forces[0], exact, rtol=1e-10, atol=1e-10 * total)
-    np.testing.assert_allclose(forces.sum(), total, rtol=1e-12)
+    agrees(
+        "difference of an input's mesh forces, N",
+        forces[1] - forces[0],
+        exact,
+        relative=1e-10,
+        absolute=1e-10 * total,
+    )
+    agrees("sum of an input's mesh forces, N", forces.sum(), total, relative=1e-12)
 
 
+@against(
+    "analytic",
+    "load sharing of a floating input in closed form",
+    capability="hunting load_sharing_reference",
+    module="facegear.transmission.statics",
+)
 def test_both_limits_of_an_inputs_bearing():
     layout = layout_with([1e-6], [Role.INPUT])
     floating = held_forces(machine_with(layout, error=[10e-6, 0.0]))
-    assert floating[1] - floating[0] == pytest.approx(0.0, abs=1e-6)
+    agrees(
+        "difference of the mesh forces on a soft bearing, N", floating[1] - floating[0], 0.0, absolute=1e-6
+    )
     fixed = held_forces(machine_with(layout_with([1e20], [Role.INPUT]), error=[10e-6, 0.0]))
-    assert fixed[1] - fixed[0] == pytest.approx(K * 10e-6, rel=1e-10)
+    agrees(
+        "difference of the mesh forces on a stiff bearing, N", fixed[1] - fixed[0], K * 10e-6, relative=1e-10
+    )
 
 
 LOOPS = [(k_in, 1e11) for k_in in 10.0 ** np.arange(5, 13)]
 LOOPS += [(3e7, k_id) for k_id in 2.0 * 10.0 ** np.arange(9, 16)]
 
 
+@against(
+    "analytic",
+    "loop of input, idler and both gears in closed form",
+    capability="hunting load_sharing_reference",
+    module="facegear.transmission.statics",
+)
 @pytest.mark.parametrize(("k_in", "k_id"), LOOPS)
 def test_the_loop_through_the_idlers_loads_the_upper_mesh_as_the_closed_form_says(k_in, k_id):
     machine = machine_with(layout_with([k_in, k_id], [Role.INPUT, Role.IDLER]), 4000.0)
@@ -99,29 +128,59 @@ def test_the_loop_through_the_idlers_loads_the_upper_mesh_as_the_closed_form_say
     lower_in, lower_idler, upper_in, upper_idler = found.forces[0]
     loop = 2.0 * upper_idler + 100e-6 * K + 4.0 * upper_idler * K * COSINE**2 / k_id
     exact = loop / (1.0 + 2.0 * K / k_in)
-    assert upper_in - lower_in == pytest.approx(exact, rel=1e-10, abs=1e-10 * upper_in)
-    assert lower_idler == pytest.approx(-upper_idler, rel=1e-10)
+    agrees(
+        "difference of an input's mesh forces, N",
+        upper_in - lower_in,
+        exact,
+        relative=1e-10,
+        absolute=1e-10 * upper_in,
+    )
+    agrees("mesh forces of an idler, N", lower_idler, -upper_idler, relative=1e-10)
 
 
+@against(
+    "analytic",
+    "balance of forces of a pinion between two gears",
+    capability="hunting load_sharing_reference",
+    module="facegear.transmission.statics",
+)
 def test_an_input_leaves_its_bearing_alone_and_an_idler_pulls_it_with_twice_the_tangential_force():
     machine = machine_with(layout_with([1e3, 1e10], [Role.INPUT, Role.IDLER]), 2000.0, backlash=0.0)
     found = mean_equilibrium(machine)
     reaction = bearing_forces(machine, found)[0]
     idler = found.forces[0, 3]
-    assert np.abs(reaction[0]).max() < 1e-3 * idler
-    np.testing.assert_allclose(-reaction[1], [2.0 * idler * COSINE, 0.0, 0.0], atol=1e-7 * idler)
+    agrees("bearing force of an input, N", reaction[0], 0.0, absolute=1e-3 * idler)
+    agrees(
+        "bearing force of an idler, N",
+        -reaction[1],
+        [2.0 * idler * COSINE, 0.0, 0.0],
+        relative=1e-7,
+        absolute=1e-7 * idler,
+    )
 
 
+@against(
+    "analytic",
+    "base radius and tooth ratio",
+    capability="hunting load_sharing_reference ratings",
+    module="facegear.transmission.statics",
+)
 def test_one_torque_is_one_mesh_force_over_the_base_radius_and_ratios_are_the_teeths():
     layout = make_layout((("one", Role.INPUT, 0.0),), (Side.UPPER,), kinematics=GEOMETRIC, pinion_bearing=1e8)
     machine = machine_with(layout, 664.0)
     base_radius = 3.75e-3 * 23 / 2 * COSINE
-    assert mean_equilibrium(machine).forces[0, 0] == pytest.approx(664.0 / base_radius, rel=1e-12)
-    assert -machine.torques[1] / machine.torques[0] == pytest.approx(143 / 23, rel=1e-12)
+    agrees("mesh force, N", mean_equilibrium(machine).forces[0, 0], 664.0 / base_radius, relative=1e-12)
+    agrees("ratio of torques", -machine.torques[1] / machine.torques[0], 143 / 23, relative=1e-12)
     turn = rigid_rotation(layout)
-    assert turn[3] / turn[7] == pytest.approx(143 / 23, rel=1e-12)
+    agrees("ratio of speeds", turn[3] / turn[7], 143 / 23, relative=1e-12)
 
 
+@against(
+    "analytic",
+    "springs of both flanks and of the bearing in closed form",
+    capability="hunting load_sharing_reference",
+    module="facegear.transmission.statics",
+)
 def test_a_squeezed_pinion_wedges_with_both_flanks_loaded():
     bearing, pushed, half = 2e8, 180e-6, 50e-6
     machine = machine_with(layout_with([bearing], [Role.INPUT]), 0.0, position=[[0.0, pushed]])
@@ -130,9 +189,9 @@ def test_a_squeezed_pinion_wedges_with_both_flanks_loaded():
     gives = -2.0 * K * SINE * (pushed * SINE - half) / (bearing + 2.0 * K * SINE**2)
     each = K * ((pushed + gives) * SINE - half)
     assert each > 1000.0
-    np.testing.assert_allclose([upper_drive, upper_back], each, rtol=1e-10)
+    agrees("force on both flanks, N", [upper_drive, upper_back], each, relative=1e-10)
     assert lower_drive == lower_back == 0.0
-    assert np.abs(found.forces).max() < 1e-9 * each
+    agrees("net mesh force, N", found.forces, 0.0, absolute=1e-9 * each)
 
 
 def random_machine(draw, most_pinions):
@@ -158,6 +217,12 @@ def random_machine(draw, most_pinions):
     )
 
 
+@against(
+    "other program",
+    "enumeration of all states of contact, numpy.linalg.lstsq",
+    capability="hunting load_sharing_reference",
+    module="facegear.transmission.statics",
+)
 @settings(max_examples=25, deadline=None)
 @given(st.data())
 def test_sharing_with_gaps_is_the_one_consistent_state_of_all_contact_states(data):
@@ -189,7 +254,7 @@ def test_sharing_with_gaps_is_the_one_consistent_state_of_all_contact_states(dat
     # Bodies that float free leave states that differ only in where lstsq puts them.
     assert matching or _floats(machine)
     for found in matching:
-        np.testing.assert_allclose(forces, found, atol=1e-6 * size)
+        agrees("flank force, N", forces, found, relative=1e-7, absolute=1e-6 * size)
 
 
 def _floats(machine):
@@ -198,6 +263,12 @@ def _floats(machine):
     return (np.add.reduce(forces.reshape(-1, len(machine.layout.pinions)), axis=0) == 0.0).any()
 
 
+@against(
+    "analytic",
+    "balance of forces and moments of every body",
+    capability="hunting load_sharing_reference",
+    module="facegear.transmission.statics",
+)
 @settings(max_examples=25, deadline=None)
 @given(st.data())
 def test_every_force_is_balanced_and_no_flank_pulls_or_penetrates(data):
@@ -222,15 +293,31 @@ def test_every_force_is_balanced_and_no_flank_pulls_or_penetrates(data):
     size = max(np.abs(machine.torques / layout.pinion_arm).max(), found.flank_forces.max())
     bodies = slice(0, 4 * len(layout.bodies))
     missing = ((applied - on_bodies) / arms)[:, bodies].reshape(len(on_bodies), -1, 4)
-    np.testing.assert_allclose(missing[..., :3], bearing_forces(machine, found), atol=2e-11 * size)
-    assert np.abs(missing[..., 3]).max() < 2e-11 * size
+    agrees(
+        "bearing force, N",
+        missing[..., :3],
+        bearing_forces(machine, found),
+        relative=1e-7,
+        absolute=2e-11 * size,
+    )
+    agrees("torque over the base radius, N", missing[..., 3], 0.0, absolute=2e-11 * size)
     for g, place in zip(layout.tilting, range(4 * len(layout.bodies), layout.dof, 2), strict=True):
         moments = layout.gears[g].body.tilt.stiffness * found.displacements[:, place : place + 2]
-        np.testing.assert_allclose(
-            -on_bodies[:, place : place + 2], moments, atol=1e-10 * size * layout.mesh_radius
+        agrees(
+            "moment of a gear that tilts, N m",
+            -on_bodies[:, place : place + 2],
+            moments,
+            relative=1e-7,
+            absolute=1e-10 * size * layout.mesh_radius,
         )
 
 
+@against(
+    "analytic",
+    "rigid motion",
+    capability="modal hunting load_sharing_reference",
+    module="facegear.transmission.matrices",
+)
 def test_moving_the_whole_gearbox_loads_nothing():
     """Sideways, along the axis, round the axis, and turning as the gears turn."""
     layout = make_layout(kinematics=GEOMETRIC)
@@ -243,7 +330,7 @@ def test_moving_the_whole_gearbox_loads_nothing():
     turned[: 4 * pinions : 4] = layout.mesh_radius
     turned[4 * pinions + 3 :: 4] = -1.0, 1.0
     for motion in (sideways, lifted, turned, rigid_rotation(layout)):
-        assert np.abs(directions @ motion).max() < 1e-15
+        agrees("deflection of a mesh, m", directions @ motion, 0.0, absolute=1e-15)
 
 
 def test_the_contact_problem_of_printed_meshes_is_the_dead_zone():
@@ -253,13 +340,25 @@ def test_the_contact_problem_of_printed_meshes_is_the_dead_zone():
     np.testing.assert_allclose(found.forces[0], static_equilibrium(machine).forces, rtol=1e-7, atol=1e-4)
 
 
+@against(
+    "analytic",
+    "normal part of a displacement",
+    capability="hunting load_sharing_reference",
+    module="facegear.transmission.statics",
+)
 def test_a_pinion_out_of_place_closes_one_mesh_by_what_it_opens_the_other():
     layout = layout_with([1e20], [Role.INPUT])
     moved = held_forces(machine_with(layout, position=[[10e-6, 0.0]]))
     misfit = held_forces(machine_with(layout, error=[2.0 * 10e-6 * COSINE, 0.0]))
-    np.testing.assert_allclose(moved, misfit, rtol=1e-10)
+    agrees("mesh force, N", moved, misfit, relative=1e-10)
 
 
+@against(
+    "analytic",
+    "lever on a tilt spring",
+    capability="hunting load_sharing_reference",
+    module="facegear.transmission.statics",
+)
 def test_a_gear_with_one_mesh_rocks_as_a_lever():
     """k_tilt / (R sin a)^2 in series with the mesh along its separating part."""
     layout = layout_with([1e20], [Role.INPUT], (Side.UPPER,))
@@ -271,9 +370,9 @@ def test_a_gear_with_one_mesh_rocks_as_a_lever():
     machine = machine_with(rocking, 600.0)
     found = mean_equilibrium(machine)
     force = found.forces[0, 0]
-    assert force == pytest.approx(600.0 / layout.pinion_arm, rel=1e-12)
+    agrees("mesh force, N", force, 600.0 / layout.pinion_arm, relative=1e-12)
     turned = -force * layout.mesh_radius * SINE / stiffness
-    np.testing.assert_allclose(found.displacements[0, 8:], [turned, 0.0], rtol=1e-12, atol=1e-18)
+    agrees("tilt, rad", found.displacements[0, 8:], [turned, 0.0], relative=1e-12, absolute=1e-18)
 
 
 def test_tilt_of_no_give_is_the_gear_that_cannot_tilt():
@@ -285,15 +384,21 @@ def test_tilt_of_no_give_is_the_gear_that_cannot_tilt():
     np.testing.assert_allclose(rocking.forces, square.forces, rtol=1e-9, atol=1e-9 * square.forces.max())
 
 
+@against(
+    "analytic",
+    "load sharing of a floating input in closed form, less its play",
+    capability="hunting load_sharing_reference",
+    module="facegear.transmission.statics",
+)
 def test_a_pinion_inside_its_play_floats_and_beyond_it_is_held():
     layout = layout_with([1e9], [Role.INPUT])
     free = held_forces(machine_with(layout, error=[10e-6, 0.0], clearance=[50e-6]))
-    assert free[0] == pytest.approx(free[1], rel=1e-10)
+    agrees("mesh force of a pinion that floats, N", free[0], free[1], relative=1e-10)
     play = 1e-6
     tight = held_forces(machine_with(layout, error=[10e-6, 0.0], clearance=[play]))
     # The pinion leans along (cos a, sin a) F_difference: the play takes 2 play off the misfit of 10 um.
     exact = K * (10e-6 - 2.0 * play) / (1.0 + 2.0 * K / 1e9)
-    assert tight[1] - tight[0] == pytest.approx(exact, rel=1e-9)
+    agrees("difference of the mesh forces beyond the play, N", tight[1] - tight[0], exact, relative=1e-9)
 
 
 def test_springs_hold_no_hidden_state():

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lumped_machines import drive_rows, make_layout, make_machine
+from references import against, agrees
 
 from facegear.errors import NotConverged
 from facegear.harmonics.series import Harmonics
@@ -59,16 +60,28 @@ def external_forces(layout: Layout, on_bearings, torques):
     return np.append(sideways, axial.sum() + on_bearings[pinions:, 2].sum()), moment - turning
 
 
+@against(
+    "analytic",
+    "balance of forces and moments of the gearbox",
+    capability="hunting",
+    module="facegear.transmission.statics",
+)
 @settings(max_examples=10, deadline=None)
 @given(coupled_machines(GEOMETRIC))
 def test_what_the_bearings_of_a_gearbox_take_balances_its_torques_however_they_couple_x_and_y(machine):
     layout = machine.layout
     size = np.abs(machine.torques[:5]).max() / layout.pinion_arm
     forces, moment = external_forces(layout, static_bearing_forces(machine), machine.torques)
-    np.testing.assert_allclose(forces, 0.0, atol=1e-9 * size)
-    assert moment == pytest.approx(0.0, abs=1e-9 * size * layout.mesh_radius)
+    agrees("sum of all forces, N", forces, 0.0, relative=1e-7, absolute=1e-9 * size)
+    agrees("sum of all moments, N m", moment, 0.0, absolute=1e-9 * size * layout.mesh_radius)
 
 
+@against(
+    "analytic",
+    "balance of forces and moments of the gearbox",
+    capability="hunting",
+    module="facegear.transmission.statics",
+)
 @settings(max_examples=10, deadline=None)
 @given(coupled_machines(GEOMETRIC), st.integers(0, 2**31))
 def test_external_forces_on_any_bodies_end_in_the_bearings(machine, seed):
@@ -78,11 +91,17 @@ def test_external_forces_on_any_bodies_end_in_the_bearings(machine, seed):
     pushed = static_bearing_forces(replace(machine, forces=forces))
     taken, moment = external_forces(layout, pushed, machine.torques)
     brought, turning = external_forces(layout, forces, 0.0 * machine.torques)
-    np.testing.assert_allclose(taken, brought, atol=1e-6)
-    assert moment == pytest.approx(turning, abs=1e-6)
+    agrees("sum of the bearing forces, N", taken, brought, relative=1e-7, absolute=1e-6)
+    agrees("moment of the bearing forces, N m", moment, turning, absolute=1e-6)
     assert np.abs(pushed - static_bearing_forces(machine)).max() > 100.0
 
 
+@against(
+    "analytic",
+    "springs of both flanks and of the bearing in closed form",
+    capability="hunting",
+    module="facegear.transmission.statics",
+)
 def test_a_pinion_set_too_deep_presses_both_flanks_as_the_closed_form_says():
     """Bearing k_b and both flanks along the gear's axis, held gear: k_b (d - u) = 2 k u sin^2 a."""
     layout = make_layout((("a", Role.INPUT, 0.0),), (Side.UPPER,), 6.5e7, 1e19, GEOMETRIC)
@@ -92,10 +111,16 @@ def test_a_pinion_set_too_deep_presses_both_flanks_as_the_closed_form_says():
     given_way = deep * 6.5e7 / (6.5e7 + 2.0 * K * np.sin(layout.pressure_angle) ** 2)
     exact = K * given_way * np.sin(layout.pressure_angle)
     found = mean_equilibrium(machine)
-    np.testing.assert_allclose(found.flank_forces[0], 2 * [exact], rtol=1e-4)
+    agrees("flank force, N", found.flank_forces[0], 2 * [exact], relative=1e-4)
     assert found.residual[0] < 1e-12
 
 
+@against(
+    "other program",
+    "dense linear solution with NumPy",
+    capability="load_sharing_reference",
+    module="facegear.transmission.statics",
+)
 @settings(max_examples=10, deadline=None)
 @given(coupled_machines(PRINTED, backlash=0.0))
 def test_printed_statics_with_coupled_bearings_are_the_linear_solution(machine):
@@ -105,7 +130,7 @@ def test_printed_statics_with_coupled_bearings_are_the_linear_solution(machine):
     stiffness = bearing_matrix(machine.layout) + K * directions.T @ directions
     linear = K * directions @ np.linalg.lstsq(stiffness, applied, rcond=1e-14)[0]
     found = static_equilibrium(machine).forces
-    np.testing.assert_allclose(found, linear, atol=1e-8 * np.abs(linear).max())
+    agrees("mesh force, N", found, linear, relative=1e-7, absolute=1e-8 * np.abs(linear).max())
 
 
 def test_a_coupled_bearing_of_the_lower_gear_carries_in_statics_what_it_carries_in_motion():

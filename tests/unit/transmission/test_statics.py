@@ -5,6 +5,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from lumped_machines import drive_rows, make_machine
+from references import against, agrees
 
 from facegear.errors import InvalidInput
 from facegear.harmonics.series import Harmonics
@@ -17,6 +18,12 @@ from facegear.transmission.phases import PhaseConvention, mesh_phases
 from facegear.transmission.statics import static_equilibrium
 
 
+@against(
+    "analytic",
+    "balance of torques",
+    capability="load_sharing_reference",
+    module="facegear.transmission.statics",
+)
 @settings(max_examples=30, deadline=None)
 @given(
     torque=st.floats(-3000, 3000).filter(lambda t: t == 0.0 or abs(t) > 1e-6),
@@ -33,9 +40,21 @@ def test_static_mesh_forces_balance_the_torques_on_every_pinion(torque, share, b
     layout = machine.layout
     lever = layout.pinion_radius * np.cos(layout.pressure_angle)
     on_pinions = state.forces.reshape(2, 5).sum(axis=0) * lever
-    np.testing.assert_allclose(on_pinions, machine.torques[:5], atol=1e-7 * max(abs(torque), 1.0))
+    agrees(
+        "torque of a pinion, N m",
+        on_pinions,
+        machine.torques[:5],
+        relative=1e-7,
+        absolute=1e-7 * max(abs(torque), 1.0),
+    )
 
 
+@against(
+    "other program",
+    "numpy.linalg.lstsq of the linear machine",
+    capability="load_sharing_reference",
+    module="facegear.transmission.statics",
+)
 def test_without_backlash_statics_is_the_linear_solution(machine_of):
     from facegear.transmission.matrices import bearing_diagonal
 
@@ -45,7 +64,7 @@ def test_without_backlash_statics_is_the_linear_solution(machine_of):
     applied = np.zeros(28)
     applied[3::4] = machine.torques
     linear = directions @ np.linalg.lstsq(stiffness, applied, rcond=1e-14)[0] * 4.1e8
-    np.testing.assert_allclose(static_equilibrium(machine).forces, linear, rtol=1e-7, atol=1e-3)
+    agrees("mesh force, N", static_equilibrium(machine).forces, linear, relative=1e-7, absolute=1e-3)
 
 
 def test_idlers_carry_load_on_the_opposite_flank_of_the_lower_gear(machine_of):
@@ -54,9 +73,15 @@ def test_idlers_carry_load_on_the_opposite_flank_of_the_lower_gear(machine_of):
     assert (forces[5:] > 0).all()
 
 
+@against(
+    "analytic",
+    "mirror symmetry",
+    capability="load_sharing_reference",
+    module="facegear.transmission.statics",
+)
 def test_left_and_right_carry_the_same_where_the_machine_is_symmetric(machine_of):
     forces = static_equilibrium(machine_of()).forces
-    np.testing.assert_allclose(forces[[1, 2, 6, 7]], forces[[4, 3, 9, 8]], rtol=1e-9, atol=1e-6)
+    agrees("mesh force, N", forces[[1, 2, 6, 7]], forces[[4, 3, 9, 8]], relative=1e-9, absolute=1e-6)
 
 
 def test_torques_out_of_balance_are_refused_with_the_excess(machine_of):

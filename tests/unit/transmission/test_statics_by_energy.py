@@ -6,6 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
+from references import against, agrees
 from scipy.optimize import minimize
 
 from facegear.harmonics.series import Harmonics
@@ -76,6 +77,12 @@ def potential(machine):
     return energy, 1e-6 * scale
 
 
+@against(
+    "other program",
+    "scipy.optimize.minimize (BFGS) of the elastic energy",
+    capability="hunting load_sharing_reference",
+    module="facegear.transmission.statics",
+)
 @settings(max_examples=25, deadline=None)
 @given(machines())
 def test_with_rings_of_play_the_statics_are_the_least_energy_that_a_general_minimiser_finds(machine):
@@ -91,15 +98,15 @@ def test_with_rings_of_play_the_statics_are_the_least_energy_that_a_general_mini
     )
     assert np.abs(other.jac).max() < 1e-4 * size
     assert least <= other.fun + 1e-9 * abs(least)
-    np.testing.assert_allclose(other.fun, least, rtol=1e-6, atol=1e-6 * size)
+    agrees("elastic energy, uJ", other.fun, least, relative=1e-6, absolute=1e-6 * size)
     over = (
         flank_directions(machine.layout) @ (to_si * other.x) - constant_errors(machine) - flank_gaps(machine)
     )
     forces = K * np.tile(machine.imperfections.stiffness, 2) * np.maximum(over, 0.0)
-    np.testing.assert_allclose(forces, found.flank_forces[0], atol=5e-3 * size)
+    agrees("flank force, N", forces, found.flank_forces[0], relative=1e-7, absolute=5e-3 * size)
     count = len(machine.layout.pinions)
     way = (to_si * other.x)[: 4 * count].reshape(-1, 4)[:, :2]
     beyond = np.maximum(np.hypot(*way.T) - machine.imperfections.clearance, 0.0)
     ring = np.array([pinion.body.bearing[0] for pinion in machine.layout.pinions])
     held = np.hypot(*bearing_forces(machine, found)[0, :count, :2].T)
-    np.testing.assert_allclose(ring * beyond, held, atol=5e-3 * size)
+    agrees("force of a bearing with play, N", ring * beyond, held, relative=1e-7, absolute=5e-3 * size)

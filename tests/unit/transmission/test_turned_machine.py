@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lumped_machines import PLACES, make_layout, make_machine
+from references import against, agrees
 
 import facegear
 from facegear.harmonics.series import Harmonics
@@ -29,6 +30,12 @@ def turned(layout, by):
     return replace(layout, pinions=tuple(replace(one, pitches=one.pitches + by) for one in layout.pinions))
 
 
+@against(
+    "analytic",
+    "symmetry under turning",
+    capability="hunting",
+    module="facegear.transmission.statics",
+)
 @settings(max_examples=25, deadline=None)
 @given(data=st.data(), by=st.floats(-143.0, 143.0), phasing=st.sampled_from(["mesh", "in_step", "given"]))
 def test_turning_the_whole_machine_changes_no_flank_force(data, by, phasing):
@@ -51,18 +58,30 @@ def test_turning_the_whole_machine_changes_no_flank_force(data, by, phasing):
     )
     here = equilibria(machine, CYCLES).flank_forces
     there = equilibria(replace(machine, layout=turned(layout, by)), CYCLES).flank_forces
-    np.testing.assert_allclose(there, here, atol=1e-7 * here.max())
+    agrees("flank force, N", there, here, relative=1e-7, absolute=1e-7 * here.max())
 
 
+@against(
+    "analytic",
+    "symmetry under turning",
+    capability="load_sharing_reference",
+    module="facegear.transmission.statics",
+)
 @pytest.mark.parametrize("convention", PhaseConvention)
 @pytest.mark.parametrize("lags", [None, np.zeros(10)])
 def test_turning_the_printed_machine_changes_no_mesh_force(convention, lags):
     machine = replace(make_machine(error=20e-6), error_lags=lags, phase_convention=convention)
     here = static_equilibrium(machine, 0.3).forces
     there = static_equilibrium(replace(machine, layout=turned(machine.layout, 0.25)), 0.3).forces
-    np.testing.assert_allclose(there, here, atol=1e-7 * np.abs(here).max())
+    agrees("mesh force, N", there, here, relative=1e-7, absolute=1e-7 * np.abs(here).max())
 
 
+@against(
+    "analytic",
+    "symmetry under turning",
+    capability="dynamics_response",
+    module="facegear.dynamics.steady_state.simulate",
+)
 def test_turning_an_in_step_machine_by_a_quarter_pitch_keeps_its_vibration():
     """k(t) counted from angle 0 and e(t) from the first pinion: an RMS of 8.1 um became one of 2.7 um."""
     start = facegear.load("config/harmonics_only.yaml", results=None).with_values(
@@ -77,9 +96,15 @@ def test_turning_an_in_step_machine_by_a_quarter_pitch_keeps_its_vibration():
     here, there = (one.response().table() for one in (start, start.with_values(moved)))
     rms = here["quantity"].str.contains("deflection_ac_rms")
     assert here.loc[rms, "value"].max() > 1.0
-    np.testing.assert_allclose(there.loc[rms, "value"], here.loc[rms, "value"], rtol=1e-6)
+    agrees("RMS of a body's motion", there.loc[rms, "value"], here.loc[rms, "value"], relative=1e-6)
 
 
+@against(
+    "analytic",
+    "an eccentric gear is a gear displaced",
+    capability="hunting following",
+    module="facegear.transmission.flanks",
+)
 @settings(max_examples=25, deadline=None)
 @given(one=runouts, side=st.sampled_from(Side), start=st.floats(-100.0, 100.0))
 def test_an_eccentric_gear_is_a_gear_displaced_towards_its_high_point_as_it_turns(one, side, start):
@@ -99,7 +124,7 @@ def test_an_eccentric_gear_is_a_gear_displaced_towards_its_high_point_as_it_turn
     moved[:, at], moved[:, at + 1] = one.amplitude * np.sin(angle), -one.amplitude * np.cos(angle)
     tangential, separating = mesh_parts(layout)
     expected = -moved @ np.concatenate([separating + tangential, separating - tangential]).T
-    np.testing.assert_allclose(errors, expected, atol=1e-12)
+    agrees("error of a flank, m", errors, expected, relative=1e-7, absolute=1e-12)
 
 
 @pytest.mark.parametrize("side", Side)

@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 from oscillators import backlash_oscillator, meissner, one_degree, two_coordinates
+from references import against, agrees
 
 from facegear.dynamics.branches.continuation import (
     Branch,
@@ -66,10 +67,16 @@ def branch_a(amplitude=0.05, in_gap=None) -> Branch:
     return branch_at(period_map, np.array([1.1, 0.0]), 0.3, ContinuationSettings(0.25, 2.6))
 
 
+@against(
+    "analytic",
+    "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
+    capability="branches",
+    module="facegear.dynamics.branches.continuation",
+)
 def test_oracle_a_has_two_folds_and_two_grazes():
     branch = branch_a()
-    assert places(branch, Kind.FOLD) == pytest.approx([0.828463984388, 0.708031618722], rel=1e-9)
-    assert places(branch, Kind.GRAZE) == pytest.approx([0.820631087712, 1.407088466023], rel=1e-9)
+    agrees("speed of a fold", places(branch, Kind.FOLD), [0.828463984388, 0.708031618722], relative=1e-9)
+    agrees("speed of a graze", places(branch, Kind.GRAZE), [0.820631087712, 1.407088466023], relative=1e-9)
     assert len(branch.specials) == 4
     assert branch.ends == (BranchEnd.LIMIT, BranchEnd.LIMIT)
     for special, expected in zip(
@@ -77,10 +84,16 @@ def test_oracle_a_has_two_folds_and_two_grazes():
         [(1.212219045727, 0.028689520565), (1.003241047571, 0.246715686858)],
         strict=True,
     ):
-        assert state_of(branch.period_map, special.point) == pytest.approx(expected, abs=1e-8)
-        assert special.multiplier == pytest.approx(1.0, abs=1e-7)
+        agrees("orbit at a fold", state_of(branch.period_map, special.point), expected, absolute=1e-8)
+        agrees("multiplier at a fold", special.multiplier, 1.0, absolute=1e-7)
 
 
+@against(
+    "analytic",
+    "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
+    capability="branches",
+    module="facegear.dynamics.branches.points",
+)
 @pytest.mark.parametrize(
     ("speed", "state", "extremes", "multipliers"),
     [
@@ -100,65 +113,140 @@ def test_oracle_a_has_two_folds_and_two_grazes():
 )
 def test_unstable_orbits_of_oracle_a(speed, state, extremes, multipliers):
     point = orbit(backlash(), speed, round(state[0], 2), round(state[1], 2))
-    assert state_of(backlash(), point) == pytest.approx(state, abs=1e-10)
+    agrees("unstable orbit", state_of(backlash(), point), state, absolute=1e-10)
     maxima, minima = point.extrema[0]
-    assert (minima[0], maxima[0]) == pytest.approx(extremes, abs=1e-10)
-    assert point.multipliers.real == pytest.approx(multipliers, abs=1e-9)
+    agrees("extremes of the unstable orbit", (minima[0], maxima[0]), extremes, absolute=1e-10)
+    agrees("multipliers of the unstable orbit", point.multipliers.real, multipliers, absolute=1e-9)
     assert not point.stable
 
 
+@against(
+    "analytic",
+    "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
+    capability="branches",
+    module="facegear.dynamics.branches.continuation",
+)
 def test_oracle_b_has_its_folds_and_doublings():
     branch = branch_a(0.1)
-    assert places(branch, Kind.FOLD) == pytest.approx([0.731361127148, 0.585331569643], rel=1e-9)
-    assert places(branch, Kind.DOUBLING) == pytest.approx([1.226700634663, 1.952684741709], rel=1e-9)
+    agrees("speed of a fold", places(branch, Kind.FOLD), [0.731361127148, 0.585331569643], relative=1e-9)
+    agrees(
+        "speed of a period doubling",
+        places(branch, Kind.DOUBLING),
+        [1.226700634663, 1.952684741709],
+        relative=1e-9,
+    )
     assert len(branch.specials) == 4 + len(branch.of(Kind.GRAZE)) == 5
     expected = [(0.886008149142, 0.031390598949), (0.964001267987, 0.016454373324)]
     for special, state in zip(branch.of(Kind.DOUBLING), expected, strict=True):
-        assert state_of(branch.period_map, special.point) == pytest.approx(state, abs=1e-8)
+        agrees("orbit at a period doubling", state_of(branch.period_map, special.point), state, absolute=1e-8)
 
 
+@against(
+    "analytic",
+    "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
+    capability="branches",
+    module="facegear.dynamics.branches.switching",
+)
 @pytest.mark.parametrize("start", [0, 1])
 def test_period_two_curve_of_oracle_b_joins_both_doublings(start):
     parent = branch_a(0.1)
     branch = doubled(parent.period_map, parent.of(Kind.DOUBLING)[start], WIDE)
     assert branch.ends == (BranchEnd.DOUBLING, BranchEnd.DOUBLING)
-    assert sorted(branch.values[[0, -1]]) == pytest.approx([1.226700634663, 1.952684741709], rel=1e-7)
-    assert sorted(places(branch, Kind.FOLD)) == pytest.approx([1.030052101340, 1.404839759900], rel=1e-9)
-    assert sorted(places(branch, Kind.DOUBLING)) == pytest.approx([1.400378957838, 1.846195450789], rel=1e-9)
-    assert sorted(places(branch, Kind.GRAZE)) == pytest.approx([1.316117205156, 1.843670922641], rel=1e-9)
+    agrees(
+        "ends of the period-two branch",
+        sorted(branch.values[[0, -1]]),
+        [1.226700634663, 1.952684741709],
+        relative=1e-7,
+    )
+    agrees(
+        "speed of a fold", sorted(places(branch, Kind.FOLD)), [1.030052101340, 1.404839759900], relative=1e-9
+    )
+    agrees(
+        "speed of a period doubling",
+        sorted(places(branch, Kind.DOUBLING)),
+        [1.400378957838, 1.846195450789],
+        relative=1e-9,
+    )
+    agrees(
+        "speed of a graze",
+        sorted(places(branch, Kind.GRAZE)),
+        [1.316117205156, 1.843670922641],
+        relative=1e-9,
+    )
     assert len(branch.specials) == 6
 
 
+@against(
+    "analytic",
+    "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
+    capability="branches",
+    module="facegear.dynamics.branches.points",
+)
 def test_unstable_period_two_orbit_of_oracle_b():
     point = orbit(backlash(0.1).over(2), 1.2, 0.4151, -0.0089)
-    assert state_of(backlash(0.1), point) == pytest.approx((0.415105437149, -0.008886017208), abs=1e-9)
-    assert point.multipliers.real == pytest.approx((3.3609216924, 0.1044117773), abs=1e-8)
+    agrees("unstable orbit", state_of(backlash(0.1), point), (0.415105437149, -0.008886017208), absolute=1e-9)
+    agrees(
+        "multipliers of the unstable orbit",
+        point.multipliers.real,
+        (3.3609216924, 0.1044117773),
+        absolute=1e-8,
+    )
 
 
+@against(
+    "analytic",
+    "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
+    capability="branches",
+    module="facegear.dynamics.branches.continuation",
+)
 def test_oracle_c_contact_only_damping():
     branch = branch_a(0.05, 0.01)
-    assert places(branch, Kind.FOLD) == pytest.approx([0.828196556373, 0.625813889165], rel=1e-9)
+    agrees("speed of a fold", places(branch, Kind.FOLD), [0.828196556373, 0.625813889165], relative=1e-9)
     assert not branch.of(Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
     point = orbit(branch.period_map, 0.75, 1.27, 0.12)
-    assert state_of(branch.period_map, point) == pytest.approx((1.265801278624, 0.122418658071), abs=1e-9)
-    assert point.multipliers.real == pytest.approx((2.2526746161, 0.2628816387), abs=1e-8)
+    agrees(
+        "unstable orbit", state_of(branch.period_map, point), (1.265801278624, 0.122418658071), absolute=1e-9
+    )
+    agrees(
+        "multipliers of the unstable orbit",
+        point.multipliers.real,
+        (2.2526746161, 0.2628816387),
+        absolute=1e-8,
+    )
 
 
+@against(
+    "analytic",
+    "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
+    capability="branches",
+    module="facegear.dynamics.branches.points",
+)
 def test_saltation_matters_where_damping_in_contact_meets_variable_stiffness():
     period_map = square_wave(0.01)
     point = orbit(period_map, 0.78, 2.714052622869, 1.718419252155)
-    assert state_of(period_map, point) == pytest.approx((2.714052622869, 1.718419252155), abs=1e-9)
+    agrees("orbit", state_of(period_map, point), (2.714052622869, 1.718419252155), absolute=1e-9)
     assert point.pairs[0] == pytest.approx(0.25659969 + 0.75302207j, abs=1e-7)
 
 
+@against(
+    "analytic",
+    "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
+    capability="branches",
+    module="facegear.dynamics.branches.switching",
+)
 def test_oracle_d_breaks_its_symmetry_at_a_branch_point():
     period_map = two_sided()
     start = orbit(period_map, 0.4, *SYMMETRIC)
     branch = follow(period_map, start, ContinuationSettings(0.3, 0.6))
-    assert places(branch, Kind.BRANCH) == pytest.approx([0.348540186191], rel=1e-8)
+    agrees("speed of the branch point", places(branch, Kind.BRANCH), [0.348540186191], relative=1e-8)
     assert len(branch.specials) == 1
     special = branch.specials[0]
-    assert state_of(period_map, special.point) == pytest.approx((1.674260831215, 0.364887573423), abs=1e-8)
+    agrees(
+        "orbit at the branch point",
+        state_of(period_map, special.point),
+        (1.674260831215, 0.364887573423),
+        absolute=1e-8,
+    )
     assert abs(special.point.tangent[-1]) > 0.1
     aside = broken(period_map, special, ContinuationSettings(0.345, 0.6))
     point = aside.points[-1]
@@ -169,35 +257,65 @@ def test_oracle_d_breaks_its_symmetry_at_a_branch_point():
     for largest in (0.3, 0.05, 0.011):
         again = follow(period_map, middle, ContinuationSettings(0.345, 0.6, ds_max=largest))
         assert again.ends[0] is BranchEnd.SYMMETRY, "its mirror image is a branch of its own"
-        assert again.points[0].value == pytest.approx(0.348540186191, rel=1e-8)
+        agrees("end of the branch without symmetry", again.points[0].value, 0.348540186191, relative=1e-8)
         assert not again.of(Kind.FOLD, Kind.BRANCH)
 
 
 SYMMETRIC = (1.674260831215, 0.364887573423)
 
 
+@against(
+    "analytic",
+    "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
+    capability="branches",
+    module="facegear.dynamics.branches.continuation",
+)
 def test_oracle_e_square_wave_folds_and_unstable_orbit():
     period_map = square_wave()
     branch = follow(
         period_map, orbit(period_map, 0.75, 2.901723445814, -1.084165628890), ContinuationSettings(0.6, 1.3)
     )
-    assert sorted(places(branch, Kind.FOLD)) == pytest.approx([0.688016103000, 0.871223996023], rel=1e-9)
+    agrees(
+        "speed of a fold", sorted(places(branch, Kind.FOLD)), [0.688016103000, 0.871223996023], relative=1e-9
+    )
     assert not branch.of(Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
     point = orbit(period_map, 0.75, 2.9, -1.08)
-    assert state_of(period_map, point) == pytest.approx((2.901723445814, -1.084165628890), abs=1e-9)
-    assert point.multipliers.real == pytest.approx((1.7914031721, 0.2415310486), abs=1e-8)
+    agrees("unstable orbit", state_of(period_map, point), (2.901723445814, -1.084165628890), absolute=1e-9)
+    agrees(
+        "multipliers of the unstable orbit",
+        point.multipliers.real,
+        (1.7914031721, 0.2415310486),
+        absolute=1e-8,
+    )
 
 
+@against(
+    "analytic",
+    "special points of oscillators in closed pieces with 50 digits, or high-order Taylor series",
+    capability="branches",
+    module="facegear.dynamics.branches.continuation",
+)
 def test_two_coordinates_lose_stability_to_a_torus_and_regain_it():
     period_map = PeriodMap(Family("W", lambda speed: (two_coordinates(), speed)), 1, 1e-14)
     branch = branch_at(period_map, np.zeros(4), 2.0, ContinuationSettings(1.95, 2.6))
-    assert places(branch, Kind.TORUS) == pytest.approx([2.199391673612, 2.374997781329], rel=1e-9)
+    agrees(
+        "speed of a torus bifurcation",
+        places(branch, Kind.TORUS),
+        [2.199391673612, 2.374997781329],
+        relative=1e-9,
+    )
     assert len(branch.specials) == 2
     for special in branch.specials:
-        assert abs(special.multiplier) == pytest.approx(1.0, abs=1e-9)
+        agrees("magnitude of the multipliers there", abs(special.multiplier), 1.0, absolute=1e-9)
     assert branch.specials[0].multiplier == pytest.approx(-0.532627694 + 0.846349655j, abs=1e-8)
 
 
+@against(
+    "analytic",
+    "onset of contact loss of the linear oscillator",
+    capability="branches",
+    module="facegear.dynamics.branches.continuation",
+)
 def test_a_brief_loss_of_contact_at_resonance_is_met_by_long_steps():
     """At the peak of a linear resonance the amplitude exceeds the mean deflection by 1 in 4000 only."""
     amplitude, mean, damping = 0.00999, 0.1, 0.1
@@ -205,7 +323,7 @@ def test_a_brief_loss_of_contact_at_resonance_is_met_by_long_steps():
     branch = branch_at(
         backlash(amplitude, mean=mean), np.array([1.1, 0.0]), 0.5, ContinuationSettings(0.5, 2.0)
     )
-    assert places(branch, Kind.GRAZE) == pytest.approx(np.sqrt(np.sort(squares)), rel=1e-9)
+    agrees("speed of a graze", places(branch, Kind.GRAZE), np.sqrt(np.sort(squares)), relative=1e-9)
     between = (branch.values**2 > squares.min()) & (branch.values**2 < squares.max())
     assert not between.any()
     assert np.diff(branch.values).min() > 0.0
@@ -221,6 +339,12 @@ def test_same_points_with_other_steps_from_either_end(largest):
     assert [(s.kind, s.point.value) for s in expected.specials] == again
 
 
+@against(
+    "own convergence",
+    "integration tolerance 1e-10",
+    capability="branches",
+    module="facegear.dynamics.branches.continuation",
+)
 def test_tolerance_moves_special_points_by_no_more_than_a_millionth():
     lists = [
         branch_at(
@@ -230,7 +354,7 @@ def test_tolerance_moves_special_points_by_no_more_than_a_millionth():
     ]
     assert [s.kind for s in lists[0]] == [s.kind for s in lists[1]]
     for loose, tight in zip(*lists, strict=True):
-        assert loose.point.value == pytest.approx(tight.point.value, rel=1e-6)
+        agrees("speed of a special point", loose.point.value, tight.point.value, relative=1e-6)
 
 
 def test_multipliers_over_two_periods_are_squares():

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from oscillators import backlash_oscillator
+from references import against, agrees
 
 from facegear.dynamics.branches.continuation import ContinuationSettings, branch_at
 from facegear.dynamics.branches.family import Plane
@@ -18,6 +19,12 @@ def parent(plane, second):
     return period_map, branch_at(period_map, np.array([1.1, 0.0]), 0.5, ContinuationSettings(0.45, 2.1))
 
 
+@against(
+    "analytic",
+    "folds and cusps of the oscillator with backlash, closed pieces with 50 digits",
+    capability="branches_loci",
+    module="facegear.dynamics.branches.loci",
+)
 @pytest.mark.parametrize(
     ("mean", "up", "down"),
     [
@@ -35,9 +42,15 @@ def test_fold_locus_passes_the_folds_at_other_loads(mean, up, down):
         )
         speed, load = locus.points[-1].values
         assert load == pytest.approx(mean, rel=1e-12)
-        assert speed == pytest.approx(expected, rel=1e-8)
+        agrees("speed of the fold at another load", speed, expected, relative=1e-8)
 
 
+@against(
+    "analytic",
+    "folds and cusps of the oscillator with backlash, closed pieces with 50 digits",
+    capability="branches_loci",
+    module="facegear.dynamics.branches.loci",
+)
 def test_fold_locus_passes_its_cusp():
     plane = Plane(("W", "Fm"), lambda speed, load: (backlash_oscillator(speed, 0.05, load), speed))
     period_map, branch = parent(plane, 0.1)
@@ -45,12 +58,18 @@ def test_fold_locus_passes_its_cusp():
     locus = follow_locus(plane, 0.1, fold.kind, fold.point.x, period_map, LocusRun((0.6, 0.09), (1.2, 0.6)))
     ((corner, cusp),) = locus.corners
     assert corner is Corner.CUSP
-    assert cusp.values == pytest.approx((0.969082427114, 0.400569274852), rel=1e-8)
+    agrees("speed and load of the cusp", cusp.values, (0.969082427114, 0.400569274852), relative=1e-8)
     speed = cusp.values[0]
     expected = np.array([1.572080659769, 0.399187896803 / speed])
-    assert cusp.x[:2] == pytest.approx(expected, abs=1e-8)
+    agrees("orbit at the cusp", cusp.x[:2], expected, absolute=1e-8)
 
 
+@against(
+    "analytic",
+    "folds and cusps of the oscillator with backlash, closed pieces with 50 digits",
+    capability="branches_loci",
+    module="facegear.dynamics.branches.loci",
+)
 def test_two_period_doublings_meet_where_their_locus_turns():
     plane = Plane(("W", "Fa"), lambda speed, load: (backlash_oscillator(speed, 0.05, 0.1, load), speed))
     period_map, branch = parent(plane, 0.1)
@@ -58,12 +77,20 @@ def test_two_period_doublings_meet_where_their_locus_turns():
     locus = follow_locus(plane, 0.1, first.kind, first.point.x, period_map, LocusRun((1.0, 0.05), (2.1, 0.1)))
     ((corner, turn),) = locus.corners
     assert corner is Corner.TURN
-    assert turn.values == pytest.approx((1.793395595815, 0.074934624334), rel=1e-8)
+    agrees(
+        "speed and load where doublings meet", turn.values, (1.793395595815, 0.074934624334), relative=1e-8
+    )
     assert sorted(point.values[0] for point in (locus.points[0], locus.points[-1])) == pytest.approx(
         [first.point.value, second.point.value], rel=1e-9
     )
 
 
+@against(
+    "analytic",
+    "scaling of the equation of motion",
+    capability="branches_loci",
+    module="facegear.dynamics.branches.loci",
+)
 def test_scaling_clearance_and_load_together_moves_no_fold():
     """x / s obeys the same equation: along the locus in the common scale s the speed stays."""
 
@@ -78,4 +105,4 @@ def test_scaling_clearance_and_load_together_moves_no_fold():
     locus = follow_locus(plane, 1.0, fold.kind, fold.point.x, period_map, LocusRun((0.5, 0.8), (1.2, 1.3)))
     speeds = np.array([point.values[0] for point in locus.points])
     assert np.ptp(np.array([point.values[1] for point in locus.points])) > 0.49
-    assert speeds == pytest.approx(branch.of(Kind.FOLD)[1].point.value, rel=1e-10)
+    agrees("speed of the fold", speeds, branch.of(Kind.FOLD)[1].point.value, relative=1e-10)

@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 from lumped_machines import make_machine
 from oscillators import backlash_oscillator
+from references import against, agrees
 
 from facegear.dynamics.branches.continuation import BranchEnd, ContinuationSettings, branch_at, follow, turned
 from facegear.dynamics.branches.explore import box, crossings, explore, lies_on
@@ -40,15 +41,27 @@ def starts():
     )
 
 
+@against(
+    "other program",
+    "share of the same box of starts by another program, 0.3651 +- 0.0005",
+    capability="branches_starts",
+    module="facegear.dynamics.branches.explore",
+)
 def test_share_of_starts_on_the_lower_orbit_of_oracle_a(starts):
     """0.3651 +- 0.0005 of the box x0 in 0 .. 2, v0 in -0.5 .. 0.5."""
     _, found = starts
     assert len(found) == 2
     lower = next(one for one in found if one.z[0] > 1.0)
     assert lower.error == pytest.approx(np.sqrt(lower.fraction * (1 - lower.fraction) / 800))
-    assert abs(lower.fraction - 0.3651) < 3.0 * lower.error
+    agrees("share of starts on the lower orbit", lower.fraction, 0.3651, absolute=3.0 * lower.error)
 
 
+@against(
+    "analytic",
+    "fold speeds of the oscillator with backlash in closed pieces",
+    capability="branches_starts branches",
+    module="facegear.dynamics.branches.survey",
+)
 def test_every_orbit_that_starts_find_lies_on_the_one_branch(starts):
     period_map, found = starts
     start = at_parameter(period_map, np.array([1.1, 0.0]), np.log(0.3))
@@ -56,7 +69,7 @@ def test_every_orbit_that_starts_find_lies_on_the_one_branch(starts):
     seen = survey((period_map, start), motions, WIDE, 2, 9)
     assert len(seen.branches) == 1
     ((low, high, numbers),) = several(seen.branches)
-    assert (low, high) == pytest.approx((0.708031618722, 0.828463984388), rel=1e-8)
+    agrees("range of speeds with two motions", (low, high), (0.708031618722, 0.828463984388), relative=1e-8)
     assert numbers == (0, 0)
     assert len(crossings(seen.branches[0], 0.75)) == 3
 
@@ -110,6 +123,12 @@ def machine_branch():
     return model, period_map, follow(period_map, start, ContinuationSettings(5000.0, 9000.0))
 
 
+@against(
+    "other program",
+    "central differences of the period map",
+    capability="branches",
+    module="facegear.dynamics.branches.period_map",
+)
 def test_matrix_of_the_map_agrees_with_differences_of_the_map(machine_branch):
     """The determinant alone is blind to errors of stiffness (Liouville)."""
     _, period_map, branch = machine_branch
@@ -122,7 +141,7 @@ def test_matrix_of_the_map_agrees_with_differences_of_the_map(machine_branch):
             2 * step
         )
         slope[column] += 1.0
-        assert slope == pytest.approx(point.linear.matrix[:, column], abs=2e-4)
+        agrees("column of the matrix of the period map", slope, point.linear.matrix[:, column], absolute=2e-4)
 
 
 def without_grazes(branch):
@@ -144,6 +163,12 @@ def test_machine_has_the_same_points_from_the_other_end_with_other_steps(machine
     assert branch.of(Kind.FOLD)
 
 
+@against(
+    "own convergence",
+    "integration tolerances 1e-6 and 1e-10",
+    capability="branches",
+    module="facegear.dynamics.branches.continuation",
+)
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
 def test_machine_has_the_same_points_at_other_tolerances(machine_branch, tolerance):
     _, period_map, branch = machine_branch
@@ -152,9 +177,15 @@ def test_machine_has_the_same_points_at_other_tolerances(machine_branch, toleran
     again = follow(other, start, ContinuationSettings(5000.0, 9000.0), both=False)
     first, second = without_grazes(branch), without_grazes(again)
     assert first[0] == second[0]
-    assert first[1] == pytest.approx(second[1], rel=4e-7), "so the lists at 1e-6 and 1e-10 agree to 1e-6"
+    agrees("speed of a special point, rpm", first[1], second[1], relative=4e-7)
 
 
+@against(
+    "analytic",
+    "scaling of the equation of motion",
+    capability="branches",
+    module="facegear.dynamics.branches.continuation",
+)
 def test_scaling_torque_backlash_and_error_together_moves_no_special_point(machine_branch):
     model, period_map, branch = machine_branch
     system = model.system
@@ -168,7 +199,12 @@ def test_scaling_torque_backlash_and_error_together_moves_no_special_point(machi
     again = follow(
         twice, point, ContinuationSettings(fold.point.value * 0.998, fold.point.value * 1.001), both=False
     )
-    assert again.of(Kind.FOLD)[0].point.value == pytest.approx(fold.point.value, rel=1e-7)
+    agrees(
+        "speed of a fold of the machine, rpm",
+        again.of(Kind.FOLD)[0].point.value,
+        fold.point.value,
+        relative=1e-7,
+    )
 
 
 def test_torque_that_ends_a_motion_is_found_in_the_plane(machine_branch):

@@ -1,0 +1,32 @@
+"""The table of platforms: how far numbers moved, and that no test fails anywhere."""
+
+import pytest
+
+from validation.platforms import CASES, PLATFORMS, differences, platform_table, read
+from validation.references import ROOT
+
+TEST = "tests/unit/geometry/test_limits.py::test_undercut_and_pointing_radii_match_the_table"
+
+
+def test_a_number_that_moved_is_measured_by_the_largest_expected_value_and_by_its_tolerance():
+    base = {
+        f"{TEST}[23]": [("radius, mm", [2.0, 4.0], [2.0, 4.0], [0.1, 0.2]), ("zero", [0.0], [0.0], [0.5])]
+    }
+    other = {
+        f"{TEST}[23]": [("radius, mm", [2.0, 4.04], [2.0, 4.0], [0.1, 0.2]), ("zero", [0.1], [0.0], [0.5])]
+    }
+    moved = differences(base, other)
+    assert moved["capability"].tolist() == ["geometry", "geometry"] and moved["numbers"].tolist() == [2, 1]
+    assert moved["relative"].tolist() == pytest.approx([0.01, float("nan")], nan_ok=True)
+    assert moved["of_tolerance"].tolist() == pytest.approx([0.2, 0.2])
+
+
+def test_every_reference_holds_on_every_platform_that_was_measured():
+    measured = read()
+    assert set(measured["platform"]) == set(PLATFORMS) - {next(iter(PLATFORMS))}
+    assert (measured["failures"] == 0).all()
+    assert len(platform_table(measured).splitlines()) == 3 + measured["capability"].nunique()
+
+
+def test_cases_of_platforms_exist():
+    assert all((ROOT / case).exists() for case in CASES)

@@ -1,0 +1,93 @@
+"""Every capability has an independent reference, and the stored references are those of the tests."""
+
+import importlib
+import inspect
+import pkgutil
+import re
+
+import numpy as np
+import pytest
+
+import facegear.results
+from facegear.gearbox import Gearbox
+from facegear.pipeline.table import STAGES
+from facegear.provenance.fingerprint import reached_modules
+from facegear.results.base import Result
+from validation.references import (
+    COLUMNS,
+    DECLARED,
+    INDEPENDENT,
+    METHOD_TITLES,
+    NO_LESS,
+    ROOT,
+    declarations,
+    read,
+    verification_table,
+)
+
+STORED = read()
+DECLARATIONS = declarations()
+WITHOUT_NUMBERS = {"with_values"}
+"""Public methods of the Gearbox that compute nothing."""
+
+
+def methods():
+    """Stage or name of every public method of the Gearbox that computes."""
+    for module in pkgutil.iter_modules(facegear.results.__path__):
+        importlib.import_module(f"facegear.results.{module.name}")
+    stages = {one.__name__: one.STAGE for one in Result.__subclasses__()}
+    public = [name for name in vars(Gearbox) if not name.startswith("_") and callable(vars(Gearbox)[name])]
+    gives = {name: inspect.get_annotations(vars(Gearbox)[name])["return"] for name in public}
+    return {name: stages.get(str(given).strip("\"'"), name) for name, given in gives.items()}
+
+
+METHODS = {name: stage for name, stage in methods().items() if name not in WITHOUT_NUMBERS}
+
+
+@pytest.mark.parametrize("capability", [*STAGES, *METHODS])
+def test_every_stage_and_every_method_of_the_door_has_an_independent_reference(capability):
+    independent = STORED[STORED["kind"].isin(INDEPENDENT)]
+    checked = {name for names in independent["capability"].str.split() for name in names}
+    assert METHODS.get(capability, capability) in checked
+
+
+def test_a_capability_that_is_checked_is_a_stage_or_a_method():
+    checked = {name for one in DECLARATIONS.values() for name in one.capability.split()}
+    assert checked <= {*STAGES, *METHODS}
+    assert set(METHOD_TITLES) == set(METHODS.values()) - set(STAGES)
+
+
+def test_a_stored_reference_is_what_its_test_declares():
+    """Otherwise its test is gone or was changed, and `make verification` stores it anew."""
+    assert tuple(STORED.columns) == COLUMNS
+    declared = {tuple(getattr(one, key) for key in ("test", *DECLARED)) for one in DECLARATIONS.values()}
+    assert {tuple(row) for row in STORED[["test", *DECLARED]].itertuples(index=False)} <= declared
+
+
+def test_stored_values_lie_within_their_tolerances():
+    missed = STORED["expected"] - STORED["computed"]
+    error = np.where(STORED["relation"] == NO_LESS, np.maximum(missed, 0.0), np.abs(missed))
+    assert (error <= STORED["tolerance"] * (1.0 + 1e-5)).all()
+    np.testing.assert_allclose(STORED["error"], error, rtol=6e-3, atol=1e-300)
+    assert not STORED.duplicated(["test", "quantity"]).any()
+    assert STORED["date"].str.fullmatch(r"\d{4}-\d\d-\d\d").all()
+    assert STORED["commit"].str.fullmatch(r"[0-9a-f]{7,}").all()
+
+
+@pytest.mark.parametrize("capability", STAGES)
+def test_a_stage_is_made_with_the_modules_that_its_references_check(capability):
+    stage = ROOT / "facegear" / "stages" / f"{capability}.py"
+    reached = {*reached_modules(stage, ROOT), f"facegear.stages.{capability}"}
+    checked = {one.module for one in DECLARATIONS.values() if capability in one.capability.split()}
+    assert checked <= reached
+
+
+def test_the_page_shows_every_stored_row_and_every_capability():
+    page = verification_table(STORED)
+    missing = set(DECLARATIONS) - set(STORED["test"])
+    assert set(re.findall(r"^- `(.*)`$", page, flags=re.MULTILINE)) == missing
+    shown = re.findall(r"^\| .* \|$", page, flags=re.MULTILINE)
+    headings = re.findall(r"^## .*\(`(\w+)`\)$", page, flags=re.MULTILINE)
+    counts = 1 + len({*STAGES, *METHODS.values()})
+    assert len(shown) == counts + len(headings) + len(STORED)
+    assert len(set(headings)) == len(headings)
