@@ -94,7 +94,7 @@ def pytest_runtest_call(item: pytest.Item):
         assert not _rows, "a test that calls `agrees` must be decorated by `against`"
         return result
     assert _rows, "a test that is decorated by `against` must call `agrees`"
-    test = item.nodeid.partition("[")[0]
+    test = f"{item.nodeid.partition('::')[0]}::{item.originalname}"
     for quantity, row in _rows.items():
         item.user_properties.append((ROWS, {**row, **mark.kwargs, "quantity": quantity, "test": test}))
     return result

@@ -25,7 +25,6 @@ from validation.references import (
     verification_table,
 )
 
-STORED = read()
 DECLARATIONS = declarations()
 WITHOUT_NUMBERS = {"with_values"}
 """Public methods of the Gearbox that compute nothing."""
@@ -41,12 +40,18 @@ def methods():
     return {name: stages.get(str(given).strip("\"'"), name) for name, given in gives.items()}
 
 
+@pytest.fixture(scope="module")
+def stored():
+    """The stored references."""
+    return read()
+
+
 METHODS = {name: stage for name, stage in methods().items() if name not in WITHOUT_NUMBERS}
 
 
 @pytest.mark.parametrize("capability", [*STAGES, *METHODS])
-def test_every_stage_and_every_method_of_the_door_has_an_independent_reference(capability):
-    independent = STORED[STORED["kind"].isin(INDEPENDENT)]
+def test_every_stage_and_every_method_of_the_door_has_an_independent_reference(stored, capability):
+    independent = stored[stored["kind"].isin(INDEPENDENT)]
     checked = {name for names in independent["capability"].str.split() for name in names}
     assert METHODS.get(capability, capability) in checked
 
@@ -57,21 +62,21 @@ def test_a_capability_that_is_checked_is_a_stage_or_a_method():
     assert set(METHOD_TITLES) == set(METHODS.values()) - set(STAGES)
 
 
-def test_a_stored_reference_is_what_its_test_declares():
+def test_a_stored_reference_is_what_its_test_declares(stored):
     """Otherwise its test is gone or was changed, and `make verification` stores it anew."""
-    assert tuple(STORED.columns) == COLUMNS
+    assert tuple(stored.columns) == COLUMNS
     declared = {tuple(getattr(one, key) for key in ("test", *DECLARED)) for one in DECLARATIONS.values()}
-    assert {tuple(row) for row in STORED[["test", *DECLARED]].itertuples(index=False)} <= declared
+    assert {tuple(row) for row in stored[["test", *DECLARED]].itertuples(index=False)} <= declared
 
 
-def test_stored_values_lie_within_their_tolerances():
-    missed = STORED["expected"] - STORED["computed"]
-    error = np.where(STORED["relation"] == NO_LESS, np.maximum(missed, 0.0), np.abs(missed))
-    assert (error <= STORED["tolerance"] * (1.0 + 1e-5)).all()
-    np.testing.assert_allclose(STORED["error"], error, rtol=6e-3, atol=1e-300)
-    assert not STORED.duplicated(["test", "quantity"]).any()
-    assert STORED["date"].str.fullmatch(r"\d{4}-\d\d-\d\d").all()
-    assert STORED["commit"].str.fullmatch(r"[0-9a-f]{7,}").all()
+def test_stored_values_lie_within_their_tolerances(stored):
+    missed = stored["expected"] - stored["computed"]
+    error = np.where(stored["relation"] == NO_LESS, np.maximum(missed, 0.0), np.abs(missed))
+    assert (error <= stored["tolerance"] * (1.0 + 1e-5)).all()
+    np.testing.assert_allclose(stored["error"], error, rtol=6e-3, atol=1e-300)
+    assert not stored.duplicated(["test", "quantity"]).any()
+    assert stored["date"].str.fullmatch(r"\d{4}-\d\d-\d\d").all()
+    assert stored["commit"].str.fullmatch(r"[0-9a-f]{7,}").all()
 
 
 @pytest.mark.parametrize("capability", STAGES)
@@ -82,12 +87,12 @@ def test_a_stage_is_made_with_the_modules_that_its_references_check(capability):
     assert checked <= reached
 
 
-def test_the_page_shows_every_stored_row_and_every_capability():
-    page = verification_table(STORED)
-    missing = set(DECLARATIONS) - set(STORED["test"])
+def test_the_page_shows_every_stored_row_and_every_capability(stored):
+    page = verification_table(stored)
+    missing = set(DECLARATIONS) - set(stored["test"])
     assert set(re.findall(r"^- `(.*)`$", page, flags=re.MULTILINE)) == missing
     shown = re.findall(r"^\| .* \|$", page, flags=re.MULTILINE)
     headings = re.findall(r"^## .*\(`(\w+)`\)$", page, flags=re.MULTILINE)
     counts = 1 + len({*STAGES, *METHODS.values()})
-    assert len(shown) == counts + len(headings) + len(STORED)
+    assert len(shown) == counts + len(headings) + len(stored)
     assert len(set(headings)) == len(headings)
