@@ -108,8 +108,7 @@ def merged(stored: pd.DataFrame, fresh: pd.DataFrame, declared: set[str]) -> pd.
 def verification_table(rows: pd.DataFrame) -> str:
     """All references as Markdown: how many of each kind a stage has, then one table a stage.
 
-    A row that checks several stages stands below the first. Tests that declare a reference and have no
-    stored row are named at the end.
+    A row that checks several stages stands below the first.
     """
     titles = {name: stage.title for name, stage in STAGES.items()}
     several = rows["capability"].str.split()
@@ -123,9 +122,6 @@ def verification_table(rows: pd.DataFrame) -> str:
         own = rows[[name == names[0] for names in several]]
         if len(own):
             parts += ["", f"## {titles.get(name, METHOD_TITLES.get(name, name))} (`{name}`)", "", *_rows(own)]
-    missing = sorted(set(declarations()) - set(rows["test"]))
-    if missing:
-        parts += ["", "## Declared, and not stored yet", "", *(f"- `{test}`" for test in missing)]
     return "\n".join([*counts, *parts, ""])
 
 

@@ -62,11 +62,11 @@ def test_a_capability_that_is_checked_is_a_stage_or_a_method():
     assert set(METHOD_TITLES) == set(METHODS.values()) - set(STAGES)
 
 
-def test_a_stored_reference_is_what_its_test_declares(stored):
-    """Otherwise its test is gone or was changed, and `make verification` stores it anew."""
+def test_the_stored_references_are_those_that_the_tests_declare(stored):
+    """Otherwise `make verification` stores them anew."""
     assert tuple(stored.columns) == COLUMNS
     declared = {tuple(getattr(one, key) for key in ("test", *DECLARED)) for one in DECLARATIONS.values()}
-    assert {tuple(row) for row in stored[["test", *DECLARED]].itertuples(index=False)} <= declared
+    assert {tuple(row) for row in stored[["test", *DECLARED]].itertuples(index=False)} == declared
 
 
 def test_stored_values_lie_within_their_tolerances(stored):
@@ -89,8 +89,6 @@ def test_a_stage_is_made_with_the_modules_that_its_references_check(capability):
 
 def test_the_page_shows_every_stored_row_and_every_capability(stored):
     page = verification_table(stored)
-    missing = set(DECLARATIONS) - set(stored["test"])
-    assert set(re.findall(r"^- `(.*)`$", page, flags=re.MULTILINE)) == missing
     shown = re.findall(r"^\| .* \|$", page, flags=re.MULTILINE)
     headings = re.findall(r"^## .*\(`(\w+)`\)$", page, flags=re.MULTILINE)
     counts = 1 + len({*STAGES, *METHODS.values()})
