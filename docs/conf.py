@@ -37,14 +37,9 @@ html_css_files = ["tables.css"]
 def _with_references(app: Sphinx, name: str, source: list[str]) -> None:
     """Put the stored references into the page that shows them."""
     if name == "verification":
-        from validation import platforms, references
+        from validation.references import read, verification_table
 
-        tables = {
-            "{references}": references.verification_table(references.read()),
-            "{platforms}": platforms.platform_table(platforms.read()),
-        }
-        for mark, table in tables.items():
-            source[0] = source[0].replace(mark, table)
+        source[0] = source[0].replace("{references}", verification_table(read()))
 
 
 def setup(app: Sphinx) -> None:

@@ -114,29 +114,5 @@ def platforms() -> pd.DataFrame:
     return pd.concat(tables)[list(COLUMNS)]
 
 
-def read(path: Path = MEASURED) -> pd.DataFrame:
-    """The stored measurement, COLUMNS."""
-    return pd.read_csv(path)
-
-
-def platform_table(measured: pd.DataFrame) -> str:
-    """Markdown, a row a capability: largest differences on each platform, relative and of the tolerance."""
-    names = list(dict.fromkeys(measured["platform"]))
-    lines = ["| capability | numbers | " + " | ".join(names) + " |", "|---" * (len(names) + 2) + "|"]
-    for capability, rows in measured.groupby("capability", sort=False):
-        by = rows.set_index("platform")
-        cells = [_cell(by.loc[name]) for name in names]
-        lines.append(f"| {capability} | {rows['numbers'].iloc[0]} | " + " | ".join(cells) + " |")
-    failures = measured.drop_duplicates("platform").set_index("platform")["failures"]
-    lines.append("| tests that fail | | " + " | ".join(str(failures[name]) for name in names) + " |")
-    return "\n".join(lines)
-
-
-def _cell(row: pd.Series) -> str:
-    parts = (row["largest_relative"], row["largest_of_tolerance"])
-    shown = ["-" if np.isnan(part) else "0" if part == 0.0 else f"{part:.0e}" for part in parts]
-    return " / ".join(shown)
-
-
 if __name__ == "__main__":
     platforms().to_csv(MEASURED, index=False, float_format="%.3g", lineterminator="\n")

@@ -1,8 +1,8 @@
-"""The table of platforms: how far numbers moved, and that no test fails anywhere."""
+"""How far numbers move between platforms."""
 
 import pytest
 
-from validation.platforms import CASES, PLATFORMS, differences, platform_table, read
+from validation.platforms import CASES, differences
 from validation.references import ROOT
 
 TEST = "tests/unit/geometry/test_limits.py::test_undercut_and_pointing_radii_match_the_table"
@@ -19,13 +19,6 @@ def test_a_number_that_moved_is_measured_by_the_largest_expected_value_and_by_it
     assert moved["capability"].tolist() == ["geometry", "geometry"] and moved["numbers"].tolist() == [2, 1]
     assert moved["relative"].tolist() == pytest.approx([0.01, float("nan")], nan_ok=True)
     assert moved["of_tolerance"].tolist() == pytest.approx([0.2, 0.2])
-
-
-def test_every_reference_holds_on_every_platform_that_was_measured():
-    measured = read()
-    assert set(measured["platform"]) == set(PLATFORMS) - {next(iter(PLATFORMS))}
-    assert (measured["failures"] == 0).all()
-    assert len(platform_table(measured).splitlines()) == 3 + measured["capability"].nunique()
 
 
 def test_cases_of_platforms_exist():
