@@ -1,11 +1,14 @@
 """The recipe for a new stage in CONTRIBUTING.md is followed step by step, in a copy of the sources."""
 
+import os
 import re
 import subprocess
 import sys
 
 import pytest
 from projects import ROOT, Project, copy_sources, environment
+
+from validation.references import INDEPENDENT, declarations
 
 TEXT = (ROOT / "CONTRIBUTING.md").read_text()
 SECTION = re.search(r"^## Add a stage\n(.*?)^## ", TEXT, flags=re.DOTALL | re.MULTILINE)[1]
@@ -55,7 +58,7 @@ def python(sources, *arguments, folder=None):
     return subprocess.run(
         [sys.executable, *arguments],
         cwd=folder or sources,
-        env={**environment(), "PYTHONPATH": str(sources)},
+        env={**environment(), "PYTHONPATH": os.pathsep.join([str(sources), str(ROOT / "tests" / "helpers")])},
         capture_output=True,
         text=True,
         check=False,
@@ -81,7 +84,12 @@ def test_the_recipe_makes_a_stage_that_runs_draws_and_answers(followed, tmp_path
 
 def test_the_test_of_the_recipe_passes_and_its_code_is_formatted(followed):
     names = [name for name, where, _ in STEPS if where.startswith(", new")]
-    tested = ("pytest", "-q", "-p", "no:cacheprovider", "-c", "/dev/null", names[-1])
+    tested = ("pytest", "-q", "-p", "references", "-p", "no:cacheprovider", "-c", "/dev/null", names[-1])
     for command in (tested, ("ruff", "check", "--config", str(ROOT / "pyproject.toml"), *names)):
         done = python(followed, "-m", *command)
         assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_the_recipe_gives_the_new_stage_an_independent_reference(followed):
+    kinds = [one.kind for one in declarations(followed).values() if one.capability == "gear_ratio"]
+    assert kinds and set(kinds) <= set(INDEPENDENT)

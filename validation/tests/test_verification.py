@@ -50,7 +50,7 @@ METHODS = {name: stage for name, stage in methods().items() if name not in WITHO
 
 
 @pytest.mark.parametrize("capability", [*STAGES, *METHODS])
-def test_every_stage_and_every_method_of_the_door_has_an_independent_reference(stored, capability):
+def test_every_stage_and_every_method_of_a_gearbox_has_an_independent_reference(stored, capability):
     independent = stored[stored["kind"].isin(INDEPENDENT)]
     checked = {name for names in independent["capability"].str.split() for name in names}
     assert METHODS.get(capability, capability) in checked
