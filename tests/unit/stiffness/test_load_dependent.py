@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from references import against, agrees
 
 from facegear.arrays import Array
 from facegear.errors import FacegearError
@@ -40,24 +41,36 @@ def test_torques_begin_with_a_light_touch_and_end_beyond_what_the_law_is_to_reac
     assert (np.diff(torques) > 0.0).all()
 
 
+@against(
+    "manufactured",
+    "contacts solved from a formula of the force",
+    capability="mesh_law",
+    module="facegear.stiffness.load_dependent",
+)
 def test_a_table_meets_the_law_that_its_contacts_come_from_and_reaches_the_torque_at_every_phase():
     (table,), (error,) = fitted_tables([contacts()], 8)
     assert error.meets_aim
     law = load_dependent_law([table])
     for amount in np.linspace(table.levels[4], table.levels[-1], 23):
         found = law.force(PHASES, np.full((32, 1), amount))[:, 0]
-        np.testing.assert_allclose(found, exact(np.full(32, amount)), rtol=0, atol=1e-3 * error.force)
+        agrees("force of the table, N", found, exact(np.full(32, amount)), absolute=1e-3 * error.force)
     reached = law.force(PHASES, np.full((32, 1), table.levels[-1]))
     assert reached.min() >= 24e3
 
 
+@against(
+    "manufactured",
+    "contacts solved from a formula of the force",
+    capability="mesh_law",
+    module="facegear.stiffness.load_dependent",
+)
 def test_below_the_first_solution_the_force_falls_with_the_exponent_that_it_has_there():
     (table,), _ = fitted_tables([contacts()], 8)
     law = load_dependent_law([table])
     for part in (0.5, 0.25, 0.14):
         amount = np.full(32, part * table.levels[4])
         found = law.force(PHASES, amount[:, None])[:, 0]
-        np.testing.assert_allclose(found, exact(amount), rtol=1e-2)
+        agrees("force below the first solution, N", found, exact(amount), relative=1e-2)
 
 
 def test_a_table_of_more_levels_is_taken_only_where_fewer_miss_the_aim():

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from force_tables import power_table
 from lumped_machines import make_layout, make_machine
+from references import against, agrees
 
 from facegear.transmission.flanks import constant_errors, flank_gaps, flank_law
 from facegear.transmission.layout import Role, Side
@@ -27,16 +28,22 @@ def made(pinions=PINIONS, sides=(Side.UPPER, Side.LOWER), torque=600.0, table=TA
     return replace(machine, tables=len(sides) * (FlankTables(table, table),))
 
 
+@against(
+    "analytic",
+    "inverse of the power law of the force",
+    capability="load_sharing_reference",
+    module="facegear.transmission.statics",
+)
 @pytest.mark.parametrize("torque", [0.6, 60.0, 600.0, 3000.0])
 def test_a_mesh_stands_where_its_table_has_the_force_at_every_phase(torque):
     machine = made(PINIONS[:1], (Side.UPPER,), torque)
     cycles = np.array([0.0, 0.21, 0.5, 0.9])
     found = equilibria(machine, cycles)
     force = torque / machine.layout.pinion_arm
-    np.testing.assert_allclose(found.forces[:, 0], force, rtol=1e-10)
+    agrees("mesh force, N", found.forces[:, 0], force, relative=1e-10)
     amounts = (found.displacements @ flank_directions(machine.layout).T)[:, 0] - machine.half_backlash
     factor = 1.0 + 0.2 * np.cos(2.0 * np.pi * cycles)
-    np.testing.assert_allclose(amounts, (force / (factor * C)) ** (1.0 / N), rtol=1e-6)
+    agrees("deflection, m", amounts, (force / (factor * C)) ** (1.0 / N), relative=1e-6)
 
 
 def test_a_negative_torque_presses_the_back_flank_by_its_own_table():
@@ -49,6 +56,12 @@ def test_a_negative_torque_presses_the_back_flank_by_its_own_table():
     assert amount == pytest.approx((force / (0.5 * C)) ** (1.0 / N), rel=1e-6)
 
 
+@against(
+    "other program",
+    "eigenvalues of a stiffness matrix of differences",
+    capability="modal",
+    module="facegear.transmission.loaded_modes",
+)
 def test_frequencies_of_a_loaded_machine_are_those_of_differences_of_its_forces():
     """Each mesh has its own load; the stiffness matrix is taken from forces at displacements to either side
     of the equilibrium.
@@ -73,7 +86,7 @@ def test_frequencies_of_a_loaded_machine_are_those_of_differences_of_its_forces(
     exact = np.sqrt(np.maximum(np.linalg.eigvalsh(0.5 * (matrix + matrix.T)), 0.0)) / (2.0 * np.pi)
     found = loaded_modes(machine).frequencies
     elastic = found > 1.0
-    np.testing.assert_allclose(np.sort(found)[-elastic.sum() :], exact[-elastic.sum() :], rtol=1e-6)
+    agrees("natural frequency, Hz", np.sort(found)[-elastic.sum() :], exact[-elastic.sum() :], relative=1e-6)
     stiffness = loaded_contacts(machine).stiffness[: len(layout.meshes)]
     assert stiffness.max() > 1.2 * stiffness.min()
 
