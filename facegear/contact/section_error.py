@@ -25,7 +25,7 @@ from facegear.mesh.tooth import FeTooth
 
 Builder = Callable[[PairDesign, MeshSizes], FeTooth]
 
-HEIGHTS = (0.05, 0.25, 0.5, 0.75)
+HEIGHTS = (0.05, 0.25, 0.5, 0.75, 0.9)
 """Of the loads on the flank, 0 at its tip end to 1 at its root end."""
 FINER, FINER_INSIDE = 6.0, 4.0
 """How many times finer the other mesh is, at the surface and inside."""

@@ -15,7 +15,7 @@ THINNED = 2
 """Rows of elements that are thinner below a fillet where stress is read."""
 GROWTH = 2.0
 """Ratio of their depths there."""
-SHARP = 0.85
+SHARP = 0.6
 """Deepest first row below a fillet in its smallest radius."""
 ROUNDING = 1e-9
 
@@ -65,7 +65,7 @@ def plan_section(outline: Outline, sizes: MeshSizes) -> SectionPlan:
         "fillet_lower": (float(wall), wall + floor_columns - land / 3**floor_levels),
         "root_land": (wall + floor_columns - land / 3**floor_levels, float(wall + floor_columns)),
     }
-    rows = depth_rows(sizes.profile, sizes.thickness, depth, levels)
+    rows = depth_rows(sizes.profile, sizes.thickness, depth, levels, sizes.second_row)
     below = floor - outline.back_height
     block = max(1, round(below / (1.5 * sizes.thickness)))
     column_levels = [levels] * wall + [floor_levels] * floor_columns

@@ -11,7 +11,8 @@ class MeshSizes:
     the tooth and the body below it. Between surface and inside the mesh coarsens three to one per level.
     fillet: along the lower half of the fillet's profile, None as along the flank's; fillet_depth: of the
     first row of elements below the fillet, down to half of it below a sharp one; the second row is at most
-    twice as deep. None as below the flank.
+    twice as deep. None as below the flank. second_row: depth of a second row as fine along the profile as the
+    surface, before the mesh coarsens inwards; None where it coarsens below the first.
     """
 
     profile: float
@@ -19,6 +20,7 @@ class MeshSizes:
     thickness: float
     fillet: float | None = None
     fillet_depth: float | None = None
+    second_row: float | None = None
 
 
 RESOLUTIONS = {
@@ -29,18 +31,23 @@ RESOLUTIONS = {
 }
 """Profile, width and thickness in modules: at m = 3.75 mm the finest resolves 0.1 mm across the profile."""
 
-THIN = {"coarse": 0.4}
-"""First row below the fillet where stress is read, in `profile`, from convergence (docs/strength.md)."""
-THIN_ROW = 0.8
-"""The same of other resolutions."""
+THIN_ROW, SECOND_ROW = 0.4, 0.5
+"""First row below the fillet where stress is read and the row after it, in `profile`, of the named
+resolutions; from convergence (docs/strength.md)."""
+OWN_ROW = 0.8
+"""First row below the fillet of sizes of one's own."""
 THIN_COLUMN = 0.5
 """Elements along the lower half of that fillet, in `profile`."""
 
 
 def thin_fillet(sizes: MeshSizes, name: str = "") -> MeshSizes:
     """Sizes with the elements at the fillet that reading stress there takes, unless they give them."""
-    depth = THIN.get(name, THIN_ROW) * sizes.profile if sizes.fillet_depth is None else sizes.fillet_depth
-    return replace(sizes, fillet=sizes.fillet or THIN_COLUMN * sizes.profile, fillet_depth=depth)
+    return replace(
+        sizes,
+        fillet=sizes.fillet or THIN_COLUMN * sizes.profile,
+        fillet_depth=sizes.fillet_depth or (THIN_ROW if name else OWN_ROW) * sizes.profile,
+        second_row=SECOND_ROW * sizes.profile if name else sizes.second_row,
+    )
 
 
 def named_sizes(name: str, module: float) -> MeshSizes:

@@ -35,18 +35,22 @@ class HalfSection:
     """Coarse columns against the centre line, and against the floor."""
 
 
-def depth_rows(profile: float, thickness: float, depth: float, levels: int) -> list[ElementRow]:
+def depth_rows(
+    profile: float, thickness: float, depth: float, levels: int, second: float | None = None
+) -> list[ElementRow]:
     """Rows from the surface to the centre line for a reference depth; all lengths in one unit.
 
     A plain row and a coarsening row per level, or one plain row where nothing coarsens, then plain coarse
-    rows over what is left. So a smaller `thickness` never makes the first row deeper.
+    rows over what is left. So a smaller `thickness` never makes the first row deeper. A row `second` deep
+    follows the first of the finest level, if given.
     """
     heights: list[tuple[float, int, bool]] = []
     if levels == 0 and profile < thickness and profile <= 0.75 * depth:
         heights = [(profile, 0, False)]
     for level in range(levels, 0, -1):
         size = profile * 3.0 ** (levels - level)
-        heights += [((1.0 if level == levels else 0.8) * size, level, False), (1.5 * size, level, True)]
+        plain = [0.8 * size] if level < levels else [size] if second is None else [size, second]
+        heights += [*((height, level, False) for height in plain), (1.5 * size, level, True)]
     left = depth - sum(height for height, _, _ in heights)
     count = max(1, round(left / thickness))
     heights += [(left / count, 0, False)] * count

@@ -41,7 +41,7 @@ def stress_convergence(
     coarse, seconds = _timed(design, body, sizes, material)
     at, own = _along_the_face(coarse)
     for halved in halvings:
-        changes = {name: 0.5 * getattr(sizes, name) for name in HALVED[halved]}
+        changes = {name: 0.5 * getattr(sizes, name) for name in HALVED[halved] if getattr(sizes, name)}
         fine, fine_seconds = _timed(design, body, replace(sizes, **changes), material)
         reference = np.interp(at, *_along_the_face(fine))
         yield {

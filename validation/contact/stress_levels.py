@@ -1,8 +1,8 @@
 """Meshes of the benchmark of root stress, and which of their sizes are halved beside each."""
 
 HALVED = {
-    "all": ("profile", "fillet_depth", "width", "thickness"),
-    "profile and depth": ("profile", "fillet_depth"),
+    "all": ("profile", "fillet_depth", "second_row", "width", "thickness"),
+    "profile and depth": ("profile", "fillet_depth", "second_row"),
     "width": ("width",),
     "thickness": ("thickness",),
 }
