@@ -53,8 +53,12 @@ class Project:
             *("--directory", str(self.folder), *arguments),
         ]
 
-    def run(self, *arguments: str, check: bool = True) -> subprocess.CompletedProcess[str]:
-        done = server().start(self._all(*arguments), environment())
+    def run(
+        self, *arguments: str, check: bool = True, warm: bool = False
+    ) -> subprocess.CompletedProcess[str]:
+        """warm: jobs begin where their imports were made; those of the quick case are processes of Python."""
+        assert not warm or self.sources == ROOT
+        done = server().start(self._all(*arguments), environment(), warm)
         if check:
             assert done.returncode == 0, f"{arguments}\n{done.stdout[-3000:]}\n{done.stderr[-6000:]}"
         return done

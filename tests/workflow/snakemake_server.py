@@ -15,6 +15,8 @@ from collections.abc import Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 
+from warm_jobs import import_all, serve_jobs
+
 MODULES = ("snakemake.cli", "nbformat", "smart_open", "facegear.config.cases", "facegear.pipeline.needs")
 """What every start imports. The Snakefile of another checkout imports its own `facegear` instead."""
 
@@ -31,12 +33,15 @@ class Server:
         atexit.register(self._process.stdin.close)
 
     def start(
-        self, arguments: Sequence[str], environment: Mapping[str, str]
+        self, arguments: Sequence[str], environment: Mapping[str, str], warm: bool = False
     ) -> subprocess.CompletedProcess[str]:
-        """What `python -m snakemake` with these arguments gives, started in the present folder."""
+        """What `python -m snakemake` with these arguments gives, started in the present folder.
+
+        warm: jobs begin where their imports were made, too, which takes more memory.
+        """
         with tempfile.TemporaryDirectory() as folder:
             out, error = Path(folder, "out"), Path(folder, "error")
-            asked = (arguments, dict(environment), os.getcwd(), str(out), str(error))
+            asked = (arguments, dict(environment), os.getcwd(), str(out), str(error), folder if warm else "")
             print(json.dumps(asked), file=self._process.stdin, flush=True)
             code = int(self._process.stdout.readline())
             return subprocess.CompletedProcess(arguments, code, out.read_text(), error.read_text())
@@ -45,7 +50,9 @@ class Server:
 def serve() -> list[str]:
     """Answer each request with the exit code of a child; returns the arguments in that child alone."""
     for request in sys.stdin:
-        arguments, environment, folder, out, error = json.loads(request)
+        arguments, environment, folder, out, error, jobs = json.loads(request)
+        if jobs:
+            import_all()
         child = os.fork()
         if not child:
             for number, file in enumerate((os.devnull, out, error)):
@@ -55,6 +62,8 @@ def serve() -> list[str]:
             os.chdir(folder)
             os.environ.clear()
             os.environ.update(environment)
+            if jobs:
+                sys.executable = str(serve_jobs(Path(jobs)))
             return arguments
         print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
     sys.exit()
@@ -69,10 +78,11 @@ def main() -> None:
 
     cli.get_argument_parser()  # finds the plugins
     gc.freeze()
+    python = sys.executable
     arguments = serve()
     sys.path[0] = os.getcwd()
     sys.argv = [str(Path(cli.__file__).with_name("__main__.py")), *arguments]
-    sys.orig_argv = [sys.executable, "-m", "snakemake", *arguments]
+    sys.orig_argv = [python, "-m", "snakemake", *arguments]
     cli.main()
 
 

@@ -9,7 +9,7 @@ pytestmark = [pytest.mark.workflow, pytest.mark.xdist_group("second_machine")]
 COARSER = """
 mesh: {resolution: {profile_mm: 2, width_mm: 8, thickness_mm: 5}}
 contact: {torques_n_m: [600, 1200], positions_per_pitch: 6, refinement: {depth: 1}}
-dynamics: {sweep: {points: 8}}
+dynamics: {sweep: {points: 4, directions: [up], chunks: 1}}
 load_sharing: {cycles: 50, starts: 2, speed_range: {points: 4}}
 """
 
@@ -19,7 +19,7 @@ def results(tmp_path_factory):
     project = Project(tmp_path_factory.mktemp("second"))
     coarser = project.folder / "coarser.yaml"
     coarser.write_text(COARSER)
-    project.run("--configfile", str(ROOT / "config" / "two_pinion.yaml"), str(coarser))
+    project.run("--configfile", str(ROOT / "config" / "two_pinion.yaml"), str(coarser), warm=True)
     return project.folder / "results" / "two_pinion"
 
 
