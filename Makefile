@@ -6,7 +6,7 @@ TOOLS := $(VENV)/.tools
 CLUSTER := $(VENV)/.cluster
 CORES ?= 2
 
-.PHONY: all env tools check test random lint docs release audit ci notebooks benchmarks peers verification platforms lock clean
+.PHONY: all env tools check test random lint docs release audit ci notebooks benchmarks peers verification platforms mutation lock clean
 
 all: check
 	$(BIN)/snakemake --cores $(CORES)
@@ -90,6 +90,10 @@ verification: check tools
 # How far these references move without MKL, on two threads and with old kernels.
 platforms: check tools
 	$(BIN)/python -m validation.platforms
+
+# Whether the tests of the core modules notice mutants of them; tried anew are those that survived in the table.
+mutation: check tools
+	$(BIN)/uv tool run --from cosmic-ray==8.7.0 python -m validation.mutation.run docs/measured/mutation.csv --survivors
 
 LOCK := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes pyproject.toml
 lock: env

@@ -35,10 +35,12 @@ html_css_files = ["tables.css"]
 
 
 def _with_references(app: Sphinx, name: str, source: list[str]) -> None:
-    """Put the stored references into the page that shows them."""
+    """Put the stored references and mutants into the page that shows them."""
     if name == "verification":
+        from validation.mutation.modules import mutation_tables, rows
         from validation.references import read, verification_table
 
+        source[0] = source[0].replace("{mutants}", mutation_tables(rows()))
         source[0] = source[0].replace("{references}", verification_table(read()))
 
 

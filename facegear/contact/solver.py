@@ -196,7 +196,6 @@ def _exchange(
             fraction = np.min(force[falling] / (force[falling] - target[falling]))
             force = force + fraction * (target - force)
             leaving = falling & (force <= 1e-14 * force.max())
-            force[leaving] = 0.0
             active &= ~leaving
             continue
         force = target

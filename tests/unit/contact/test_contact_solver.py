@@ -160,3 +160,13 @@ def test_no_point_that_can_carry_the_torque_is_told_with_its_place():
 def test_torque_that_does_not_drive_is_refused():
     with pytest.raises(ValueError, match="torque"):
         solve_contact(np.eye(3), np.zeros(3), np.ones(3), 0.0)
+
+
+@pytest.mark.parametrize("apart", [1e3, 1e6])
+def test_gaps_that_a_common_turn_closes_change_no_force_however_wide_they_are(apart):
+    compliance, gap, lever_arm = random_problem(7, 60)
+    near = solve_contact(compliance, gap, lever_arm, 1.0)
+    far = solve_contact(compliance, gap + apart * lever_arm, lever_arm, 1.0)
+    assert far.rotation - near.rotation == pytest.approx(apart, rel=1e-12)
+    # The gaps themselves are rounded, which the inverse of the compliance enlarges by 20 at most.
+    np.testing.assert_allclose(far.force, near.force, rtol=0, atol=2e-14 * apart)

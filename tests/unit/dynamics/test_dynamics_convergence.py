@@ -85,3 +85,15 @@ def test_a_zero_where_an_interval_is_halved_is_found_whatever_sign_rounding_give
     polynomial = np.polynomial.Polynomial(coefficients) * np.polynomial.Polynomial([-root, 1.0])
     found = first_root(polynomial.coef, 3, bernstein_matrix(3), np.zeros((MAX_DEPTH + 2, 4)))
     assert found == pytest.approx(root, abs=1e-12)
+
+
+def test_a_root_is_found_after_many_places_where_the_polynomial_nearly_touches_zero():
+    """Each such place is halved down to its width, and the search goes on beside it with long intervals."""
+    polynomial = np.polynomial.Polynomial.fromroots([0.91, 0.97])
+    for place in (0.13, 0.29, 0.47, 0.61, 0.83):
+        polynomial *= np.polynomial.Polynomial([place**2 + 3e-9, -2.0 * place, 1.0])
+    degree = polynomial.degree()
+    work = np.zeros((MAX_DEPTH + 2, degree + 1))
+    assert first_root(polynomial.coef, degree, bernstein_matrix(degree), work) == pytest.approx(
+        0.91, abs=1e-7
+    )

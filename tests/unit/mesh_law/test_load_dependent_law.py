@@ -83,3 +83,10 @@ def test_levels_that_do_not_rise_from_zero_and_forces_at_zero_are_refused(levels
     forces[0, 1] = at_first
     with pytest.raises(ValueError, match="must"):
         ForceTable(np.array(levels), forces, forces)
+
+
+def test_a_table_without_any_force_has_no_harmonics_and_no_breaks():
+    nothing = np.zeros((3, 2, 4))
+    law = load_dependent_law([ForceTable(np.array([0.0, 1.0, 2.0]), nothing, nothing)])
+    np.testing.assert_array_equal(law.harmonic_fractions, np.zeros(4))
+    assert law.breaks.size == 0

@@ -16,14 +16,24 @@ from facegear.config.material_card import CARDS, material_card
 from facegear.config.model import Config, resolved
 from facegear.config.strength import Strength, duty_bins
 from facegear.config.yaml_file import read_yaml
-from facegear.errors import ConfigErrors
+from facegear.errors import ConfigErrors, FacegearError
 from facegear.geometry.analysis import section_contact_ratio
 from facegear.plots.strength import damage_by_bin, life
 from facegear.strength.contact_pressure import ContactPressure, contact_pressure
 from facegear.strength.duty import DutyBin, given_duty
 from facegear.strength.fatigue import reliability
 from facegear.strength.materials import Life
-from facegear.strength.rating import RatedBody, RatingRequest, hertz_stress, rate, reversal, safety
+from facegear.strength.rating import (
+    RatedBody,
+    RatingRequest,
+    hertz_stress,
+    permissible_bending,
+    pinion_form,
+    rate,
+    reversal,
+    safety,
+    standard_bending,
+)
 from facegear.strength.rating_tables import curve_table, damage_table, rating_table, safety_table
 from facegear.strength.root_stress import RootStress, down_the_fillet, largest_tension
 
@@ -442,3 +452,43 @@ def test_another_elasticity_in_the_card_than_in_the_body_is_refused():
 def test_a_roughness_outside_the_range_of_the_standards_factor_is_refused(roughness):
     line = told(pinion={**BODY, "root_roughness_um": roughness})
     assert f"pinion.root_roughness_um = {roughness:g}" in line and "\n" not in line
+
+
+def test_only_the_pinion_is_judged_by_the_standard_for_bending():
+    found, _ = rated([DutyBin(500.0, 20.0, 3600.0)])
+    assert {key[0] for key in found if key[2] == "ISO 6336-3"} == {"pinion"}
+
+
+def test_what_fillets_would_carry_at_no_torque_is_no_load_of_the_duty_cycle():
+    idle, used = DutyBin(0.0, 20.0, 3600.0), DutyBin(1000.0, 20.0, 3600.0)
+    pressure = replace(PRESSURE, fillet_share=np.array([0.2, 0.0]))
+    design = pair_design()
+    for one in rate(design, section_contact_ratio(design), ROOTS, pressure, request(idle, used)):
+        assert one.fillet_share == 0.0
+
+
+def test_teeth_bent_one_way_need_no_mean_stress_on_their_card():
+    limits = replace(CARD.bending, mean_stress=None)
+    body = RatedBody(card=replace(CARD, bending=limits), root_roughness=16e-6)
+    assert permissible_bending(pair_design(), body, None, 0.0) > 0.0
+    with pytest.raises(FacegearError, match="lacks bending"):
+        permissible_bending(pair_design(), body, None, -0.1)
+
+
+def test_the_pinions_tooth_form_does_not_depend_on_its_size_and_its_stress_is_that_of_the_standard():
+    design = pair_design()
+    ratio = section_contact_ratio(design)
+    part = replace(
+        design.pinion,
+        **{name: 2.0 * getattr(design.pinion, name) for name in ("width", "addendum", "dedendum")},
+        rack_tip_radius=2.0 * design.pinion.rack_tip_radius,
+        profile_shift=2.0 * design.pinion.profile_shift,
+    )
+    twice = replace(design, module=2.0 * design.module, pinion=part)
+    form, larger = pinion_form(design, ratio), pinion_form(twice, ratio)
+    assert larger.form_factor == pytest.approx(form.form_factor, rel=1e-12)
+    assert larger.chord == pytest.approx(2.0 * form.chord, rel=1e-12)
+    force = 500.0 / design.pinion_pitch_radius
+    face = design.face_gear.outer_radius - design.face_gear.inner_radius
+    stress = force / (face * design.module) * form.form_factor * form.stress_correction
+    assert standard_bending(design, form)(500.0) == pytest.approx(stress, rel=1e-12)

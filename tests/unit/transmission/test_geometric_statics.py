@@ -441,3 +441,13 @@ def test_next_to_no_torque_against_a_ring_of_play_is_balanced_or_refused_by_name
     except NotConverged as error:
         assert share < 1e-7
         assert "static equilibrium did not converge at mean stiffness" in str(error)
+
+
+def test_the_equilibrium_is_that_of_the_mean_law_unless_a_mesh_position_is_given():
+    swinging = Harmonics(np.array([0.0, 0.1 * K]), np.array([K, 0.1 * K]))
+    layout = make_layout((("a", Role.INPUT, 0.0), ("b", Role.INPUT, 30.5)), kinematics=GEOMETRIC)
+    machine = make_machine(layout, stiffness=swinging, error=5e-6)
+    mean, placed = mean_equilibrium(machine), equilibria(machine, np.array([0.3]))
+    np.testing.assert_array_equal(static_equilibrium(machine).forces, mean.forces[0])
+    np.testing.assert_array_equal(static_equilibrium(machine, 0.3).forces, placed.forces[0])
+    assert np.abs(placed.forces - mean.forces).max() > 1e-3 * np.abs(mean.forces).max()

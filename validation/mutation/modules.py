@@ -1,0 +1,90 @@
+"""Core modules whose tests are tried on mutants, the table of how they end, and why survivors may survive."""
+
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+
+TESTS = "tests/unit/"
+EXPLAINED = Path(__file__).with_name("survivors.csv")
+"""Survivors that no test can or should notice: file, before, after, and the reason in one line."""
+TABLE = Path(__file__).parents[2] / "docs/measured/mutation.csv"
+COLUMNS = ("module", "file", "mutants", "line", "operator", "occurrence", "before", "after", "end", "reason")
+"""Of the table: one row a mutant; `mutants`: how many the module has, of which the table holds a sample."""
+SURVIVED, KILLED, ENDLESS = "survived", "killed", "endless"
+"""How a mutant ends: no test fails, one does, or the tests take far longer than usual."""
+
+
+@dataclass(frozen=True)
+class Module:
+    """Files of facegear, the tests that are their own, and whether they run without compiling."""
+
+    files: tuple[str, ...]
+    tests: tuple[str, ...]
+    interpreted: bool = False
+
+
+def _tests(folder: str, *names: str) -> tuple[str, ...]:
+    return tuple(f"{TESTS}{folder}/test_{name}.py" for name in names)
+
+
+ROOTS = f"{TESTS}dynamics/test_dynamics_convergence.py::test_"
+MODULES = {
+    "contact solver": Module(("facegear/contact/solver.py",), _tests("contact", "contact_solver")),
+    "mesh law": Module(
+        ("facegear/mesh_law/linear.py", "facegear/mesh_law/load_dependent.py"),
+        _tests("mesh_law", "linear_law", "load_dependent_law"),
+    ),
+    "roots": Module(
+        ("facegear/dynamics/integrator/roots.py",),
+        (
+            f"{ROOTS}first_root_is_the_first_sign_change",
+            f"{ROOTS}a_zero_where_an_interval_is_halved_is_found_whatever_sign_rounding_gives_it_on_each_side",
+            f"{ROOTS}a_root_is_found_after_many_places_where_the_polynomial_nearly_touches_zero",
+        ),
+        interpreted=True,
+    ),
+    "statics": Module(
+        ("facegear/transmission/statics.py", "facegear/transmission/contact_kernel.py"),
+        _tests("transmission", "statics", "statics_by_energy", "geometric_statics"),
+        interpreted=True,
+    ),
+    "geometry": Module(
+        (
+            "facegear/geometry/closed_forms.py",
+            "facegear/geometry/face_gear.py",
+            "facegear/geometry/pinion.py",
+        ),
+        _tests("geometry", "face_gear", "limits", "pinion", "validate"),
+    ),
+    "rating": Module(("facegear/strength/rating.py",), _tests("strength", "rating")),
+}
+
+
+def reasons() -> dict[tuple[str, str, str], str]:
+    """Why survivors may survive, by file and the line before and after."""
+    with EXPLAINED.open(newline="", encoding="utf-8") as stream:
+        return {(row["file"], row["before"], row["after"]): row["reason"] for row in csv.DictReader(stream)}
+
+
+def rows() -> list[dict[str, str]]:
+    """The stored table."""
+    with TABLE.open(newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def mutation_tables(table: list[dict[str, str]]) -> str:
+    """Markdown: how the mutants of each module ended, and all survivors with their reasons."""
+    ends = (KILLED, ENDLESS, SURVIVED)
+    lines = ["| module | mutants | tried | " + " | ".join(ends) + " |", "|---" * (3 + len(ends)) + "|"]
+    for name in MODULES:
+        own = [row for row in table if row["module"] == name]
+        counts = [str(sum(row["end"] == end for row in own)) for end in ends]
+        lines.append(f"| {name} | {own[0]['mutants']} | {len(own)} | {' | '.join(counts)} |")
+    lines += ["", "| survivor | changed to | why no test notices it |", "|---|---|---|"]
+    for row in table:
+        if row["end"] == SURVIVED:
+            before, after = (f"`` {row[key].replace('|', chr(92) + '|')} ``" for key in ("before", "after"))
+            lines.append(
+                f"| `{row['file'].removeprefix('facegear/')}` {before} | {after} | {row['reason']} |"
+            )
+    return "\n".join(lines)
