@@ -43,8 +43,8 @@ def static_springs(machine: Machine) -> Springs:
         gear=touched[:, 1].copy(),
         pinion_bearing=np.stack([bearing[x, x], bearing[x, y], bearing[y, y]], axis=1),
         clearance=machine.imperfections.clearance,
-        core_row=row,
-        core_column=column,
+        core_row=row.copy(),  # with strides, as np.nonzero gives them, the kernel would be compiled anew
+        core_column=column.copy(),
         core_value=core[row, column],
         applied=linear.loads[kept] * scale,
     )

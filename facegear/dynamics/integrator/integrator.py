@@ -6,6 +6,14 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import TAU, Packed, pack
+from facegear.dynamics.integrator.dense import (
+    NO_STEPS,
+    NO_TURNING_POINTS,
+    Steps,
+    TurningPoints,
+    make_steps,
+    make_turning_points,
+)
 from facegear.dynamics.integrator.periods import (
     DONE,
     MAX_STEPS,
@@ -173,7 +181,7 @@ class Integrator:
         packed = self.packed if drift is None else self.packed._replace(drift=self._drift(drift))
         longest = self.longest_step() if fine or len(moved) else np.inf
         status = run_periods(
-            packed, self.work, wide[0], wide[1], moved, periods, samples, self.tolerance, log, longest
+            packed, self.work, wide[0], wide[1], moved, periods, samples, self.tolerance, log, longest, 0.0
         )
         require(status)
         n, m = self.packed.n, self.packed.m
@@ -189,7 +197,32 @@ class Integrator:
             sums=log.sums,
         )
 
-    def _log(self, periods: int, samples: int, growth: bool, batches: int) -> Log:
+    def steps(self, state: Array, periods: int, count: int, begin: float = 0.0) -> tuple[Array, int, Steps]:
+        """Run whole mesh periods from a state (2, n) at a phase `begin`, in rad, of the first one.
+
+        Returns the state at the end, the number of steps and the first `count` of them. Raises NotConverged.
+        """
+        log = self._log(periods)._replace(kept=make_steps(self.packed, self.order, count))
+        wide = self._run_alone(state, periods, log, np.inf, begin)
+        return wide[:, : self.packed.n], int(log.steps[0]), log.kept
+
+    def turning_points(self, state: Array, periods: int, count: int) -> TurningPoints:
+        """The first `count` maxima and minima of each deflection in a run from a state (2, n).
+
+        Runs whole mesh periods; the steps are no longer than disturbances need. Raises NotConverged.
+        """
+        log = self._log(periods)._replace(turning_points=make_turning_points(self.packed, count))
+        self._run_alone(state, periods, log, self.longest_step())
+        return log.turning_points
+
+    def _run_alone(self, state: Array, periods: int, log: Log, longest: float, begin: float = 0.0) -> Array:
+        """The padded state at the end of a run without tangents and samples."""
+        wide = self.padded(state)
+        moved = (wide[0], wide[1], self._empty)
+        require(run_periods(self.packed, self.work, *moved, periods, 0, self.tolerance, log, longest, begin))
+        return wide
+
+    def _log(self, periods: int, samples: int = 0, growth: bool = False, batches: int = 0) -> Log:
         n = self.packed.omega_squared.size
         return Log(
             samples=np.zeros((periods * samples, n)),
@@ -199,6 +232,8 @@ class Integrator:
             growth=np.zeros(periods if growth else 0),
             steps=np.zeros(1, dtype=np.int64),
             sums=make_sums(self.packed, batches),
+            kept=NO_STEPS,
+            turning_points=NO_TURNING_POINTS,
         )
 
     def _drift(self, drift: Array) -> Array:

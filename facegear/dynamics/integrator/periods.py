@@ -8,6 +8,7 @@ from facegear.arrays import Array, Integers
 from facegear.dynamics.integrator.advance import advance, after, move
 from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.contact_states import flank_of
+from facegear.dynamics.integrator.dense import Steps, TurningPoints, add_turning_points, keep_step
 from facegear.dynamics.integrator.kernel import inlined, kernel
 from facegear.dynamics.integrator.parting import shearing_damping
 from facegear.dynamics.integrator.rings import ring_slopes, ring_trace
@@ -30,6 +31,7 @@ class Log(NamedTuple):
     stand for themselves the third row holds, at its drive flank, how long both touch. divergence
     (1,): integral of the trace, added up with tangents. growth (periods,): logarithm of the first tangent's
     length in each period, brought back to one after it. steps (1,): added up. sums: integrals and extremes.
+    kept: the first steps' polynomials.
     """
 
     samples: Array
@@ -39,6 +41,8 @@ class Log(NamedTuple):
     growth: Array
     steps: Integers
     sums: Sums
+    kept: Steps
+    turning_points: TurningPoints
 
 
 @kernel
@@ -53,23 +57,26 @@ def run_periods(
     tolerance: float,
     log: Log,
     longest: float,
+    begin: float,
 ) -> int:
     """Move displacement and velocity (n,) and the tangents (columns, 2, n) over whole periods.
 
     Returns a status. The step is chosen for the motion alone where `longest` is infinite. Tangents need
-    disturbance_step() there, since a motion at rest says nothing about what its disturbances need.
+    disturbance_step() there, since a motion at rest says nothing about what its disturbances need. The first
+    period is entered at the phase `begin`, which must be 0 where samples are asked for.
     """
     n = packed.omega_squared.size
     sample, acting = work.sample, work.was_acting
     batches = log.sums.coordinates.shape[0]
+    turns = log.turning_points.values.shape[2]
     for period in range(periods):
-        s = 0.0
+        first = period == 0
+        s = begin if first else 0.0
         taken = 0
         next_sample = 0
-        first = period == 0
         while s < TAU:
             length = advance(packed, work, s, min(TAU, s + longest), displacement, velocity, tolerance)
-            if longest < np.inf:
+            if longest < np.inf and turns == 0:
                 slope_terms(packed.law, work.law, work.state, work.deflection, work.order)
                 length = tangent_step(packed, work, length, tolerance)
             if tangents.shape[0] > 0:
@@ -100,6 +107,10 @@ def run_periods(
                 for k in range(n):
                     log.samples[period * per_period + next_sample, k] = sample[k]
                 next_sample += 1
+            if turns > 0:
+                add_turning_points(packed, work, length, log.turning_points)
+            if log.steps[0] + taken < log.kept.starts.size:
+                keep_step(packed, work, s, length, log.kept, log.steps[0] + taken)
             move(work, length, displacement, velocity)
             s = after(s, length)
             taken += 1

@@ -122,7 +122,8 @@ def _rubbing(machine: Machine, friction: MeshFriction, reduced: Reduced) -> Flan
     rows = np.tile(machine.linear.over_all(friction_rows(machine.layout)), (2, 1, 1))
     flank, part = np.nonzero(rows.any(axis=2))
     ratios = flank_ratios(friction.ratios, machine.phases)
-    return FlankRubbing(flank, ratios[flank, part], rows[flank, part] @ reduced.basis)
+    # With strides, as np.nonzero gives them, the kernels would be compiled anew.
+    return FlankRubbing(flank.copy(), ratios[flank, part], rows[flank, part] @ reduced.basis)
 
 
 def length_scale(machine: Machine) -> float:

@@ -5,29 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from facegear.arrays import Array, Integers
-from facegear.dynamics.integrator.advance import advance, after, move
-from facegear.dynamics.integrator.compiled import TAU, Packed
+from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.integrator.integrator import Integrator
-from facegear.dynamics.integrator.kernel import kernel
 from facegear.dynamics.integrator.system import System
-from facegear.dynamics.integrator.work import Work
 from facegear.dynamics.motion import Settings, State
-from facegear.errors import NotConverged
 
-MAX_STEPS = 200_000
-
-
-@kernel
-def step(
-    packed: Packed, work: Work, s: float, stop: float, displacement: Array, velocity: Array, tolerance: float
-) -> tuple[float, float]:
-    """Make one step from s: displacement and velocity (n,) are moved, work holds its polynomials.
-
-    Returns its length and the phase at its end.
-    """
-    length = advance(packed, work, s, stop, displacement, velocity, tolerance)
-    move(work, length, displacement, velocity)
-    return length, after(s, length)
+ROOM = 256
+"""Steps of a period that there is room for before their number is known."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,27 +63,13 @@ def record(
     """Run whole mesh periods from a state and keep every step. Raises NotConverged if a step fails."""
     settings = settings or Settings()
     integrator = Integrator(system, frequency, settings.tolerance, settings.order)
-    packed, work = integrator.packed, integrator.work
-    displacement, velocity = integrator.padded(integrator.by_phase(state))
-    starts, lengths, coordinates, deflections, states = [], [], [], [], []
-    for period in range(periods):
-        s = 0.0
-        while s < TAU:
-            starts.append(period * TAU + s)
-            length, s = step(packed, work, s, TAU, displacement, velocity, settings.tolerance)
-            lengths.append(length)
-            coordinates.append(work.y[:, : packed.n].copy())
-            polynomial = work.deflection[:, : packed.m].copy()
-            polynomial[0] += work.edge[: packed.m]
-            deflections.append(polynomial)
-            states.append(work.state[: packed.m].copy())
-            if len(starts) > MAX_STEPS or not np.isfinite(length):
-                raise NotConverged("dynamics", f"mesh phase {s:.6g} rad", f"{len(starts)} steps")
-    return Trajectory(
-        frequency,
-        np.array(starts),
-        np.array(lengths),
-        np.array(coordinates),
-        np.array(deflections),
-        np.array(states),
-    )
+    moved, runs = integrator.by_phase(state), []
+    for _ in range(periods):
+        end, count, steps = integrator.steps(moved, 1, ROOM)
+        if count > ROOM:
+            end, count, steps = integrator.steps(moved, 1, count)
+        runs.append([part[:count] for part in steps])
+        moved = end
+    starts, *others = zip(*runs, strict=True)
+    phases = [period * TAU + start for period, start in enumerate(starts)]
+    return Trajectory(frequency, np.concatenate(phases), *(np.concatenate(parts) for parts in others))

@@ -3,19 +3,28 @@
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
 import numba
 import numpy as np
 import pytest
+from lumped_machines import PLACES
 from oscillators import backlash_oscillator
 from references import against, agrees
 
+from facegear.dynamics.integrator.compiled import pack
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.steady_state.prepare import _smallest
+from facegear.dynamics.steady_state.simulate import build_model
 from facegear.machine_code.compiler import for_callers
 from facegear.machine_code.versions import KNOWN, is_known
 from facegear.mesh_law.terms import held_force
+from facegear.transmission.layout import Side
+from facegear.transmission.mesh_friction import PARTS, MeshFriction
+from facegear.transmission.static_springs import static_springs
+from facegear.transmission.teeth import GEOMETRIC
 
 CALLED = (
     "from own import inlined, kernel\n\n"
@@ -81,6 +90,19 @@ def test_of_two_processes_that_start_together_one_compiles(tmp_path):
     assert sorted(one.communicate(timeout=60)[0] for one in both) == ["4.0 0\n", "4.0 1\n"]
 
 
+def test_machines_of_any_size_run_the_machine_code_that_was_prepared_for_the_smallest(machine_of, layout_of):
+    """Friction on several flanks, and gears in bearings, had their kernels compiled a second time."""
+    machine = machine_of(layout_of(kinematics=GEOMETRIC))
+    small = machine_of(layout_of(PLACES[2:3], (Side.UPPER,), gear_bearing=0.0), tail_share=0.0)
+    assert numba.typeof(static_springs(machine)) == numba.typeof(static_springs(small))
+    rubs = replace(
+        machine, friction=MeshFriction(np.tile([[0.0, 0.02], [0.02, 0.02]], (10, len(PARTS), 1, 1)))
+    )
+    for one, friction in ((machine, False), (rubs, True)):
+        packed = (pack(system, 1.0) for system in (build_model(one).system, _smallest(False, friction)))
+        assert len({numba.typeof(arrays) for arrays in packed}) == 1
+
+
 def test_importing_the_kernels_leaves_numba_as_it_was():
     code = (
         "import numba; before = numba.config.CACHE_DIR; import facegear.dynamics.integrator.advance; "
@@ -103,7 +125,10 @@ MOTION = """
 import sys
 import numpy as np
 from oscillators import backlash_oscillator
+from facegear.dynamics.integrator.compiled import pack
 from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.steady_state.prepare import _smallest
+from facegear.dynamics.steady_state.simulate import build_model
 from facegear.machine_code import versions
 assert not versions.NUMBA_IS_KNOWN
 run = Integrator(backlash_oscillator(0.75), 0.75, 1e-4).run(np.array([[0.9], [0.2]]), 1, np.ones((1, 2, 1)))
