@@ -13,6 +13,8 @@ import facegear
 from facegear import errors
 from facegear.errors import FacegearError
 
+pytestmark = pytest.mark.xdist_group("notebooks")  # the example's contact is computed once a process
+
 ROOT = Path(__file__).parents[2]
 HEAVY = "{'matplotlib', 'numba', 'skfem', 'gmsh', 'meshio', 'snakemake', 'paper', 'validation'}"
 

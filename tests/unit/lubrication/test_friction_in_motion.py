@@ -6,6 +6,8 @@ import pytest
 import facegear
 from facegear.errors import FacegearError
 
+pytestmark = pytest.mark.xdist_group("notebooks")  # the example's contact is computed once a process
+
 OIL = {
     "oil": "polyol_ester_5_cst",
     "supply_temperature_c": 100,

@@ -11,6 +11,8 @@ import facegear
 from facegear.errors import FacegearError
 from facegear.lubrication.loss import OverTorque
 
+pytestmark = pytest.mark.xdist_group("notebooks")  # the example's contact is computed once a process
+
 CONFIG = Path(__file__).parents[3] / "config"
 OIL = {
     "oil": "polyol_ester_5_cst",

@@ -21,6 +21,8 @@ from facegear.strength.passage_loads import classes, hardest_tooth
 from facegear.transmission.ratings import mesh_table
 from facegear.variants.loads import at_mesh_torque
 
+pytestmark = pytest.mark.xdist_group("notebooks")  # the example's contact is computed once a process
+
 BIN = {"speed_rpm": 7500, "hours": 10}
 SMOOTH = {
     "mesh_stiffness": {"source": "harmonics", "table": [{"order": 0, "b_n_per_m": 4e8}]},

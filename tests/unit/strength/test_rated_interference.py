@@ -1,7 +1,11 @@
 """A rating of teeth whose tips press into fillets, from the config to the report."""
 
+import pytest
+
 import facegear
 from facegear.report.glance import verdicts
+
+pytestmark = pytest.mark.xdist_group("notebooks")  # the example's contact is computed once a process
 
 NARROW = {
     "tooth_pair.face_gear.outer_radius_mm": 262.5,
