@@ -99,3 +99,13 @@ rule calculix_stress_peer:
         **values_of("tooth_pair"),
     script:
         "../scripts/calculix_stress_peer.py"
+
+
+rule kratos_peer:
+    "Hertz's contact by Kratos"
+    output:
+        table="results/{case}/benchmarks/kratos_hertz.csv",
+        manifest="results/{case}/benchmarks/kratos_hertz.provenance.json",
+    threads: 2
+    script:
+        "../scripts/kratos_peer.py"

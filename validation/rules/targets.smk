@@ -23,5 +23,7 @@ rule benchmarks:
 
 rule peers:
     input:
-        expand(f"results/{CASE}/benchmarks/{{name}}.csv", name=["calculix", "calculix_stress"]),
+        expand(
+            f"results/{CASE}/benchmarks/{{name}}.csv", name=["calculix", "calculix_stress", "kratos_hertz"]
+        ),
     localrule: True
