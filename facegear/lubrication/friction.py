@@ -35,7 +35,8 @@ class Rubbing:
     `line_load` N/m, relative `radius` of curvature across the line m, largest `pressure` Pa, rolling
     velocities `u1` and `u2` across the line and the whole `sliding` velocity m/s. `pitch_speed` m/s;
     viscosity (Pa s) of the oil as supplied, `oil_viscosity`, and at the flanks' bulk temperature,
-    `bulk_viscosity`; `film_ratio` lambda. `ra` the mean of both flanks' arithmetic roughness, `rq` the root
+    `bulk_viscosity`; `film_ratio` lambda. The last two may have further axes in front, one bulk temperature
+    each. `ra` the mean of both flanks' arithmetic roughness, `rq` the root
     of the sum of the squares of their root mean square roughness, m.
     """
 
@@ -47,7 +48,7 @@ class Rubbing:
     sliding: Array
     pitch_speed: float
     oil_viscosity: float
-    bulk_viscosity: float
+    bulk_viscosity: Numbers
     film_ratio: Array
     ra: float
     rq: float
@@ -64,6 +65,10 @@ class FrictionModel(Protocol):
     @property
     def name(self) -> str: ...
 
+    @property
+    def by_film(self) -> bool:
+        """Whether the coefficient depends on the film ratio."""
+
     def coefficient(self, at: Rubbing) -> Array:
         """mu (m,)."""
 
@@ -77,6 +82,7 @@ class Constant:
 
     value: float
     name: str = "constant"
+    by_film: ClassVar = False
 
     def coefficient(self, at: Rubbing) -> Array:
         """mu (m,)."""
@@ -93,6 +99,7 @@ class GearTested:
 
     lubricant_factor: float = 1.0
     name: ClassVar[str]
+    by_film: ClassVar = False
 
     def coefficient(self, at: Rubbing) -> Array:
         """mu (m,)."""
@@ -137,6 +144,7 @@ class BenedictKelley:
     """Benedict and Kelley in the form of AGMA 925: low speed, thick oil."""
 
     name: str = "benedict_kelley"
+    by_film: ClassVar = False
 
     def coefficient(self, at: Rubbing) -> Array:
         """mu (m,)."""
@@ -152,6 +160,7 @@ class Xu:
     """Xu's regression of elastohydrodynamic traction (2005): one 75W-90 oil."""
 
     name: str = "xu"
+    by_film: ClassVar = False
 
     def coefficient(self, at: Rubbing) -> Array:
         """mu (m,)."""
@@ -180,6 +189,7 @@ class Doleschel:
     fluid_speed: float
     fluid_viscosity: float
     name: str = "doleschel"
+    by_film: ClassVar = True
 
     def coefficient(self, at: Rubbing) -> Array:
         """mu (m,)."""

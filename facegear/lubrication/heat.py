@@ -1,6 +1,6 @@
 """Friction, heat and film at every place of the loaded contact, and the bulk temperature they bring about."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -32,13 +32,12 @@ class TooHot(FacegearError):
 
 
 @dataclass(frozen=True, eq=False)
-class Running:
-    """The flanks at one torque and speed: m places, h hats.
+class Local:
+    """What holds at m places, all (m,), or (..., m) for as many bulk temperatures.
 
     `friction` mu, `flash` (K) with the pinion's `heat_fraction` of the heat, smallest `film` (m) of the line
     with shear heating, its factor `sheared`, the film of the elliptic form `short_film` (m), `film_ratio`
-    lambda and `micropitting` lambda_GF, all (m,). `bulk` temperatures (C) of pinion and gear; `loss` (W) and
-    the `heat` (W) that goes to each. `hat_loss` (h,) W: of each hat at its position.
+    lambda and `micropitting` lambda_GF.
     """
 
     friction: Array
@@ -49,11 +48,21 @@ class Running:
     short_film: Array
     film_ratio: Array
     micropitting: Array
+    rubbing: Rubbing
+
+
+@dataclass(frozen=True, eq=False)
+class Running(Local):
+    """The flanks at one torque and speed: m places, h hats.
+
+    `bulk` temperatures (C) of pinion and gear; `loss` (W) and the `heat` (W) that goes to each. `hat_loss`
+    (h,) W: of each hat at its position.
+    """
+
     bulk: tuple[float, float]
     loss: float
     heat: tuple[float, float]
     hat_loss: Array
-    rubbing: Rubbing
 
     @property
     def mean_bulk(self) -> float:
@@ -132,12 +141,75 @@ def running_at(
     contact: LoadedContact, speed: float, known: Lubrication, bulk: tuple[float, float]
 ) -> Running:
     """The same with bulk temperatures (C) of pinion and gear as they are given."""
-    spots, hats = contact.places, contact.hats
-    warm, oil = 0.5 * sum(bulk), known.oil
-    viscosity, coefficient = float(oil.viscosity(warm)), float(oil.pressure_coefficient_at(warm))
-    u1, u2, sliding = speed * spots.u1, speed * spots.u2, speed * spots.sliding
-    entrained = 0.5 * (u1 + u2)
-    wet = viscosity, coefficient, known.reduced_modulus
+    hats = contact.hats
+    local = local_state(contact.places, speed, known, 0.5 * sum(bulk))
+    lost = hats.force * speed * hats.sliding
+    hat_loss = contact.at_hats(local.friction) * lost
+    to_pinion = contact.at_hats(local.friction * local.heat_fraction) * lost
+    loss, heat = (float(part.sum()) / contact.positions for part in (hat_loss, to_pinion))
+    return Running(
+        **{field.name: getattr(local, field.name) for field in fields(local)},
+        bulk=bulk,
+        loss=loss,
+        heat=(heat, loss - heat),
+        hat_loss=hat_loss,
+    )
+
+
+def local_state(spots: Places, speed: float, known: Lubrication, warm: float | Array) -> Local:
+    """At the pinion's speed (rad/s) and bulk temperatures (C), a number or an array (..., 1) or (..., m)."""
+    oil = known.oil
+    viscosity, coefficient = oil.viscosity(warm), oil.pressure_coefficient_at(warm)
+    film, sheared = _line_film(spots, speed, known, warm)
+    rubbing = _rubbing(spots, speed, known, viscosity, film / known.composite_rq)
+    friction = known.friction.coefficient(rubbing)
+    rise, fraction = _heated(spots, rubbing, friction, known)
+    short = elliptic_film(
+        spots.radius,
+        0.5 * rubbing.rolled,
+        spots.ellipse_force,
+        spots.half_length / spots.half_width,
+        viscosity,
+        coefficient,
+        known.reduced_modulus,
+    )
+    thin = _products(oil, warm + rise)
+    micro = local_film(
+        spots.radius,
+        rubbing.rolled,
+        spots.pressure,
+        viscosity,
+        coefficient,
+        sliding_factor(thin, (viscosity, coefficient)),
+        known.reduced_modulus,
+    )
+    return Local(
+        friction=friction,
+        flash=rise,
+        heat_fraction=fraction,
+        film=film,
+        sheared=sheared,
+        short_film=sheared * short,
+        film_ratio=rubbing.film_ratio,
+        micropitting=micro / known.mean_ra,
+        rubbing=rubbing,
+    )
+
+
+def rubbed(spots: Places, speed: float, known: Lubrication, warm: float | Array) -> tuple[Array, Array]:
+    """Friction coefficient and the pinion's part of the heat alone, as `local_state` has them."""
+    ratio = np.full(spots.radius.shape, np.nan)
+    if known.friction.by_film:
+        ratio = _line_film(spots, speed, known, warm)[0] / known.composite_rq
+    rubbing = _rubbing(spots, speed, known, known.oil.viscosity(warm), ratio)
+    friction = known.friction.coefficient(rubbing)
+    return friction, _heated(spots, rubbing, friction, known)[1]
+
+
+def _line_film(spots: Places, speed: float, known: Lubrication, warm: float | Array) -> tuple[Array, Array]:
+    """Smallest film (m) of the line with shear heating, and the factor that it brings."""
+    oil, viscosity = known.oil, known.oil.viscosity(warm)
+    u1, u2 = speed * spots.u1, speed * spots.u2
     sheared = shear_heating(
         spots.pressure,
         u1,
@@ -147,50 +219,38 @@ def running_at(
         oil.conductivity_of(warm),
         known.reduced_modulus,
     )
-    film = sheared * line_film(spots.radius, entrained, spots.line_load, *wet)
-    short = elliptic_film(
-        spots.radius, entrained, spots.ellipse_force, spots.half_length / spots.half_width, *wet
-    )
-    rubbing = Rubbing(
-        line_load=spots.line_load,
+    coefficient = oil.pressure_coefficient_at(warm)
+    entrained = 0.5 * (u1 + u2)
+    wet = viscosity, coefficient, known.reduced_modulus
+    return sheared * line_film(spots.radius, entrained, spots.line_load, *wet), sheared
+
+
+def _rubbing(spots: Places, speed: float, known: Lubrication, viscosity: Array, film_ratio: Array) -> Rubbing:
+    return Rubbing(
+        line_load=spots.carried,
         radius=spots.radius,
         pressure=spots.pressure,
-        u1=u1,
-        u2=u2,
-        sliding=sliding,
+        u1=speed * spots.u1,
+        u2=speed * spots.u2,
+        sliding=speed * spots.sliding,
         pitch_speed=speed * known.pitch_radius,
-        oil_viscosity=float(oil.viscosity(known.oil_temperature)),
+        oil_viscosity=float(known.oil.viscosity(known.oil_temperature)),
         bulk_viscosity=viscosity,
-        film_ratio=film / known.composite_rq,
+        film_ratio=film_ratio,
         ra=known.mean_ra,
         rq=known.composite_rq,
     )
-    friction = known.friction.coefficient(rubbing)
-    rise, fraction = flash_at_any_speed(
-        friction, spots.line_load, sliding, (u1, u2), spots.half_width, known.flanks
-    )
-    thin = _products(oil, warm + rise)
-    slid = sliding_factor(thin, (viscosity, coefficient))
-    micro = local_film(
-        spots.radius, u1 + u2, spots.pressure, viscosity, coefficient, slid, known.reduced_modulus
-    )
-    rubbed, parted = (contact.at_hats(values) for values in (friction, fraction))
-    hat_loss = rubbed * hats.force * speed * hats.sliding
-    loss, to_pinion = (float(part.sum()) / contact.positions for part in (hat_loss, parted * hat_loss))
-    return Running(
-        friction=friction,
-        flash=rise,
-        heat_fraction=fraction,
-        film=film,
-        sheared=sheared,
-        short_film=sheared * short,
-        film_ratio=rubbing.film_ratio,
-        micropitting=micro / known.mean_ra,
-        bulk=bulk,
-        loss=loss,
-        heat=(to_pinion, loss - to_pinion),
-        hat_loss=hat_loss,
-        rubbing=rubbing,
+
+
+def _heated(spots: Places, rubbing: Rubbing, friction: Array, known: Lubrication) -> tuple[Array, Array]:
+    """Flash temperature (K) and the pinion's part of the heat."""
+    return flash_at_any_speed(
+        friction,
+        spots.line_load,
+        rubbing.sliding,
+        (rubbing.u1, rubbing.u2),
+        spots.half_width,
+        known.flanks,
     )
 
 

@@ -93,17 +93,18 @@ def loss_factors(hats: HatSlip) -> LossFactors:
 class OverTorque:
     """A quantity known at t torques (N m), between them monotone in the logarithm of the torque.
 
-    Outside the torques it keeps the value of the nearest; `within` says where it is known.
+    `values` (t,), or (t, ...) of many quantities. Outside the torques each keeps the value of the nearest;
+    `within` says where it is known.
     """
 
     torques: Array
     values: Array
 
     def at(self, torque: Numbers) -> Array:
-        """Values at torques of any shape; a torque of 0 counts as the smallest."""
+        """Values at torques of any shape, that shape first; a torque of 0 counts as the smallest."""
         asked = np.clip(np.abs(np.asarray(torque, float)), self.torques[0], self.torques[-1])
         if self.torques.size == 1:
-            return np.full(asked.shape, self.values[0])
+            return np.broadcast_to(self.values[0], (*asked.shape, *self.values.shape[1:]))
         return PchipInterpolator(np.log(self.torques), self.values)(np.log(asked))
 
     def within(self, torque: Numbers) -> Mask:

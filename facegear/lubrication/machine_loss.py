@@ -6,25 +6,76 @@ the drive flank and loses alike. To first order in friction the forces are those
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Protocol
 
 import numpy as np
 
 from facegear.arrays import Array, Integers, Mask
 from facegear.errors import NotConverged
+from facegear.lubrication.fixed_point import fixed_point
 from facegear.lubrication.heat import (
+    SETTLED,
     STEPS,
     Running,
     require_cool,
     running,
     running_at,
-    settled,
     starting_bulk,
-    warmed,
 )
 from facegear.lubrication.loss import OverTorque
+from facegear.lubrication.monotone import monotone_at
 from facegear.lubrication.places import LoadedContact
 from facegear.lubrication.request import Cooling, Lubrication
+
+
+@dataclass(frozen=True, eq=False)
+class LossCurves:
+    """Of n meshes at a speed, at t torques (t,) N m, both (n, t): the part of a mesh's power that is `lost`,
+    and the pinion's `heat_fraction`. Between torques each is what `OverTorque` says.
+    """
+
+    torques: Array
+    lost: Array
+    heat_fraction: Array
+
+    def at(self, torque: Array, *names: str) -> Array:
+        """The quantities named, a row (n,) each, at the torque (n,) of each mesh."""
+        values = np.stack([getattr(self, name) for name in names])
+        if self.torques.size == 1:
+            return values[..., 0]
+        asked = np.log(np.clip(torque, self.torques[0], self.torques[-1]))
+        return monotone_at(np.log(self.torques), values, asked)
+
+
+@dataclass(frozen=True, eq=False)
+class MeshCurves(LossCurves):
+    """The same with the largest `flash` (K), the smallest `film_ratio` and `micropitting` ratio, all (n, t)
+    and away from edges.
+    """
+
+    flash: Array
+    film_ratio: Array
+    micropitting: Array
+
+
+class Pair(Protocol):
+    """A tooth pair whose contact is known at some torques, and how it is lubricated."""
+
+    @property
+    def known(self) -> Lubrication: ...
+
+    @property
+    def torques(self) -> Array: ...
+
+    def losses(self, speed: float, bulk: Array) -> LossCurves:
+        """Of meshes with bulk temperatures (n, 2) C at a pinion's speed (rad/s)."""
+
+    def curves(self, speed: float, bulk: Array) -> MeshCurves:
+        """The same with temperature and film."""
+
+    def own(self, speed: float) -> tuple[MeshCurves, Array]:
+        """Of one mesh (1, t) with the bulk temperatures (t, 2) C that the section gives it at each torque."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,34 +96,36 @@ class LoadedPair:
             return [running(contact, speed, self.known) for contact in self.contacts]
         return [running_at(contact, speed, self.known, bulk) for contact in self.contacts]
 
+    def losses(self, speed: float, bulk: Array) -> LossCurves:
+        """As of Pair."""
+        return self.curves(speed, bulk)
 
-@dataclass(frozen=True, eq=False)
-class MeshCurves:
-    """Of one mesh at a speed, over torque: part of its power `lost`, the pinion's `heat_fraction`, the
-    largest `flash` (K), the smallest `film_ratio` and `micropitting` ratio; the last three away from edges.
-    """
+    def curves(self, speed: float, bulk: Array) -> MeshCurves:
+        """As of Pair; meshes with the same bulk temperatures share theirs."""
+        different, of = np.unique(bulk, axis=0, return_inverse=True)
+        rows = [self._row(self.states(speed, (low, high)), speed) for low, high in different.tolist()]
+        return MeshCurves(self.torques, *np.stack(rows, axis=1)[:, of.ravel()])
 
-    lost: OverTorque
-    heat_fraction: OverTorque
-    flash: OverTorque
-    film_ratio: OverTorque
-    micropitting: OverTorque
+    def own(self, speed: float) -> tuple[MeshCurves, Array]:
+        """As of Pair. Raises TooHot and NotConverged as `running` does."""
+        states = self.states(speed)
+        curves = MeshCurves(self.torques, *self._row(states, speed)[:, None])
+        return curves, np.array([state.bulk for state in states])
 
-
-def _mesh_curves(pair: LoadedPair, states: Sequence[Running], speed: float) -> MeshCurves:
-    """Curves over the torques of the pair in its `states` at a speed (rad/s)."""
-    inside = [contact.places.inside for contact in pair.contacts]
-    rows = [
-        (
-            state.loss / (torque * speed),
-            state.heat[0] / state.loss if state.loss > 0 else 0.5,
-            state.flash[on].max(initial=0.0),
-            state.film_ratio[on].min(initial=np.inf),
-            state.micropitting[on].min(initial=np.inf),
-        )
-        for state, torque, on in zip(states, pair.torques, inside, strict=True)
-    ]
-    return MeshCurves(*(OverTorque(pair.torques, np.array(column)) for column in zip(*rows, strict=True)))
+    def _row(self, states: Sequence[Running], speed: float) -> Array:
+        """Fields of MeshCurves (5, t) of one mesh in its states."""
+        inside = [contact.places.inside for contact in self.contacts]
+        rows = [
+            (
+                state.loss / (torque * speed),
+                state.heat[0] / state.loss if state.loss > 0 else 0.5,
+                state.flash[on].max(initial=0.0),
+                state.film_ratio[on].min(initial=np.inf),
+                state.micropitting[on].min(initial=np.inf),
+            )
+            for state, torque, on in zip(states, self.torques, inside, strict=True)
+        ]
+        return np.array(rows).T
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,74 +169,67 @@ class MachineLoss:
         return float(self.loss.sum())
 
 
-def machine_loss(pair: LoadedPair, loads: MeshLoads, speed: float) -> MachineLoss:
+def machine_loss(pair: Pair, loads: MeshLoads, speed: float) -> MachineLoss:
     """At the pinions' speed (rad/s). Raises TooHot and NotConverged as `running` does.
 
     With cooling given, a body's bulk temperature follows from the heat of all its meshes.
     """
-    known = pair.known
+    known, count = pair.known, loads.torque.size
     if not isinstance(known.bulk, Cooling):
-        states = pair.states(speed)
-        same = [_mesh_curves(pair, states, speed)] * loads.torque.size
-        return _evaluated(loads, same, speed, _own_bulk(pair, states, loads.torque))
-    bulk = np.tile(starting_bulk(known), (loads.torque.size, 1))
-    for _ in range(STEPS):
-        curves = _curves_at(pair, speed, bulk)
-        losses = _evaluated(loads, curves, speed, bulk)
-        after = _machine_bulk(loads, losses.heat, known.bulk, known.oil_temperature)
-        if all(settled(tuple(new), tuple(old)) for new, old in zip(after, bulk, strict=True)):
-            return losses
-        for row, torque in zip(after, loads.torque, strict=True):
-            require_cool((row[0], row[1]), known, float(torque), speed)
-        bulk = after
-    raise NotConverged("bulk temperature", f"{speed:g} rad/s", f"{STEPS} steps of loss and bulk temperature")
-
-
-def _curves_at(pair: LoadedPair, speed: float, bulk: Array) -> list[MeshCurves]:
-    """Of every loaded flank; those with the same bulk temperatures share theirs."""
-    known: dict[tuple[float, float], MeshCurves] = {}
-    for low, high in bulk.tolist():
-        if (low, high) not in known:
-            known[low, high] = _mesh_curves(pair, pair.states(speed, (low, high)), speed)
-    return [known[low, high] for low, high in bulk.tolist()]
-
-
-def _own_bulk(pair: LoadedPair, states: Sequence[Running], torque: Array) -> Array:
-    """Bulk temperatures (n, 2) of meshes under torques (n,) that do not feel each other's heat."""
-    sides = zip(*(state.bulk for state in states), strict=True)
-    return np.stack([OverTorque(pair.torques, np.array(side)).at(torque) for side in sides], axis=1)
-
-
-def _evaluated(loads: MeshLoads, curves: Sequence[MeshCurves], speed: float, bulk: Array) -> MachineLoss:
-    def at(name: str, torques: Array) -> Array:
-        return np.array(
-            [float(getattr(curve, name).at(torque)) for curve, torque in zip(curves, torques, strict=True)]
+        one, own = pair.own(speed)
+        curves = MeshCurves(
+            pair.torques,
+            *(np.repeat(getattr(one, field.name), count, axis=0) for field in fields(one)[1:]),
         )
+        return _evaluated(loads, curves, speed, OverTorque(pair.torques, own).at(loads.torque))
+    cooling = known.bulk
 
-    loss = at("lost", loads.torque) * loads.torque * speed
-    warm = at("heat_fraction", loads.torque) * loss
+    def step(bulk: Array) -> Array:
+        heat = _heat(loads, *_losses(loads, pair.losses(speed, bulk), speed))
+        after = _machine_bulk(loads, heat, cooling, known.oil_temperature)
+        for row, torque in zip(after.tolist(), loads.torque.tolist(), strict=True):
+            require_cool((row[0], row[1]), known, torque, speed)
+        return after
+
+    bulk = fixed_point(step, np.tile(starting_bulk(known), (count, 1)), SETTLED, STEPS)
+    if bulk is None:
+        what = f"{STEPS} steps of loss and bulk temperature"
+        raise NotConverged("bulk temperature", f"{speed:g} rad/s", what)
+    return _evaluated(loads, pair.curves(speed, bulk), speed, bulk)
+
+
+def _losses(loads: MeshLoads, curves: LossCurves, speed: float) -> tuple[Array, Array]:
+    """Loss (n,) W of every loaded flank, and the part of it that heats the pinion."""
+    lost, fraction = curves.at(loads.torque, "lost", "heat_fraction")
+    loss = lost * loads.torque * speed
+    return loss, fraction * loss
+
+
+def _heat(loads: MeshLoads, loss: Array, warm: Array) -> Array:
+    """Heat (bodies,) W."""
     heat = np.zeros(loads.bodies)
     np.add.at(heat, loads.pinion, warm)
     np.add.at(heat, loads.pinions + loads.gear, loss - warm)
-    within = [
-        bool(curve.lost.within(low)) and bool(curve.lost.within(high))
-        for curve, low, high in zip(curves, loads.torque, loads.peak, strict=True)
-    ]
+    return heat
+
+
+def _evaluated(loads: MeshLoads, curves: MeshCurves, speed: float, bulk: Array) -> MachineLoss:
+    loss, warm = _losses(loads, curves, speed)
+    flash, film_ratio, micropitting = curves.at(loads.peak, "flash", "film_ratio", "micropitting")
+    solved = OverTorque(curves.torques, curves.torques)
     return MachineLoss(
         loss=loss,
         pinion_heat=warm,
         bulk=bulk,
-        flash=at("flash", loads.peak),
-        film_ratio=at("film_ratio", loads.peak),
-        micropitting=at("micropitting", loads.peak),
-        within=np.array(within),
-        heat=heat,
+        flash=flash,
+        film_ratio=film_ratio,
+        micropitting=micropitting,
+        within=solved.within(loads.torque) & solved.within(loads.peak),
+        heat=_heat(loads, loss, warm),
     )
 
 
 def _machine_bulk(loads: MeshLoads, heat: Array, cooling: Cooling, oil_temperature: float) -> Array:
-    rows = [
-        warmed((heat[i], heat[loads.pinions + g]), cooling, oil_temperature)
-        for i, g in zip(loads.pinion.tolist(), loads.gear.tolist(), strict=True)
-    ]
-    return np.array(rows)
+    """Bulk temperatures (n, 2) C of the bodies of every loaded flank."""
+    rises = heat[loads.pinion] / cooling.pinion, heat[loads.pinions + loads.gear] / cooling.face_gear
+    return oil_temperature + np.stack(rises, axis=1)

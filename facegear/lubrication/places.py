@@ -1,6 +1,10 @@
-"""Where flanks touch under load: load, curvature and velocities of every loaded plane of a contact line."""
+"""Where flanks touch under load: load, curvature and velocities of every loaded plane of a contact line.
 
-from collections.abc import Mapping
+Line loads are smoothed, which costs 1 to 3 % of the force at the ends of a line. Friction coefficients follow
+the load scaled to the force of the line's hats: planes twice as close then change the loss by 0.1 % at most.
+"""
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import TypeVar
 
@@ -23,9 +27,10 @@ class Places:
     """Loaded planes across the pinion's axis, all (m,), SI units; velocities for a pinion at 1 rad/s, in m.
 
     `torque`, `position`, `tooth`, `plane` say which; `inside` whether no edge is near. `y` along the pinion's
-    axis, `roll` on its flank. `line_load` along the line and the `length` it stands for; `pressure` and
-    `half_width` of the strip and `half_length` of its line. Relative `radius` of curvature across the line,
-    rolling velocities `u1`, `u2` across it, the whole `sliding` velocity and its parts `across` and `along`,
+    axis, `roll` on its flank. `line_load` along the line and the `length` it stands for; `carried` the same
+    load in the proportion in which all of a line carries the force of its hats; `pressure` and `half_width`
+    of the strip and `half_length` of its line. Relative `radius` of curvature across the line, rolling
+    velocities `u1`, `u2` across it, the whole `sliding` velocity and its parts `across` and `along`,
     and what is `entrained` along the line.
     """
 
@@ -37,6 +42,7 @@ class Places:
     y: Array
     roll: Array
     line_load: Array
+    carried: Array
     length: Array
     pressure: Array
     half_width: Array
@@ -87,6 +93,7 @@ def places(design: PairDesign, arrays: Arrays, lines: ContactLines, modulus: flo
         y=lines.y[at[1]],
         roll=lines.roll[at],
         line_load=load,
+        carried=load,
         length=arrays["line_length_m"],
         pressure=np.where(inside, arrays["line_pressure_pa"], long),
         half_width=np.where(inside, arrays["line_half_width_m"], strip),
@@ -99,7 +106,7 @@ def places(design: PairDesign, arrays: Arrays, lines: ContactLines, modulus: flo
         along=moving.along[at],
         entrained=moving.entrained[at],
     )
-    return _of(whole, np.isfinite(whole.radius))
+    return taken(whole, np.isfinite(whole.radius))
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,6 +123,18 @@ class LoadedContact:
     nearest: Integers
     positions: int
 
+    @property
+    def weights(self) -> Array:
+        """Loss (m,) N m of each place at a friction coefficient of 1 and the pinion's 1 rad/s.
+
+        What hats without a place lose is spread as `at_hats` takes their mean.
+        """
+        lost = self.hats.force * self.hats.sliding / self.positions
+        loads, own = self.places.line_load * self.places.length, self.nearest >= 0
+        summed = lost[~own].sum() * loads / loads.sum() if loads.size else np.zeros_like(loads)
+        np.add.at(summed, self.nearest[own], lost[own])
+        return summed
+
     def at_hats(self, values: Array) -> Array:
         """Values (m,) of places at every hat (h,); their mean, weighted with load, where a line has none."""
         weights = self.places.line_load * self.places.length
@@ -128,8 +147,8 @@ def loaded_contacts(contact_places: Places, hats: HatSlip) -> tuple[LoadedContac
     return tuple(
         _contact(
             float(torque),
-            _of(contact_places, contact_places.torque == torque),
-            _of(hats, hats.torque == torque),
+            taken(contact_places, contact_places.torque == torque),
+            taken(hats, hats.torque == torque),
         )
         for torque in np.unique(hats.torque)
     )
@@ -138,8 +157,17 @@ def loaded_contacts(contact_places: Places, hats: HatSlip) -> tuple[LoadedContac
 Loads = TypeVar("Loads", Places, HatSlip)
 
 
-def _of(loads: Loads, on: Mask) -> Loads:
+def taken(loads: Loads, on: Mask | Integers | slice) -> Loads:
+    """Some of the places or hats."""
     return replace(loads, **{field.name: getattr(loads, field.name)[on] for field in fields(loads)})
+
+
+def joined(parts: Sequence[Loads]) -> Loads:
+    """Places or hats one after the other; at least one part."""
+    names = [field.name for field in fields(parts[0])]
+    return replace(
+        parts[0], **{name: np.concatenate([getattr(one, name) for one in parts]) for name in names}
+    )
 
 
 def _contact(torque: float, contact_places: Places, hats: HatSlip) -> LoadedContact:
@@ -153,7 +181,14 @@ def _contact(torque: float, contact_places: Places, hats: HatSlip) -> LoadedCont
     table[line[:count], contact_places.plane] = np.arange(count)
     picked = _nearest(table)[line[count:], hats.plane]
     nearest = np.where(np.isfinite(picked), np.nan_to_num(picked), -1).astype(np.int64)
-    return LoadedContact(torque, contact_places, hats, nearest, np.unique(hats.position).size)
+    smoothed = contact_places.line_load * contact_places.length
+    forces, sums = (
+        np.bincount(on, weights=one, minlength=len(table))
+        for on, one in ((line[count:], hats.force), (line[:count], smoothed))
+    )
+    carried = contact_places.line_load * (forces / np.where(sums > 0.0, sums, 1.0))[line[:count]]
+    whole = replace(contact_places, carried=carried)
+    return LoadedContact(torque, whole, hats, nearest, np.unique(hats.position).size)
 
 
 def _filled(lines: ContactLines) -> ContactLines:

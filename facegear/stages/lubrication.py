@@ -5,9 +5,9 @@ from math import pi
 import pandas as pd
 
 from facegear.arrays import Arrays
-from facegear.config.lubrication import LubricationSection, limits_of, lubrication_request, map_speeds
+from facegear.config.loaded_teeth import contacts_of, lubrication_of
+from facegear.config.lubrication import LubricationSection, limits_of, map_speeds
 from facegear.config.tooth_pair import ToothPair, pair
-from facegear.contact.hertz import contact_modulus
 from facegear.errors import ConfigError
 from facegear.lubrication.assessment import (
     by_torque_table,
@@ -18,9 +18,7 @@ from facegear.lubrication.assessment import (
 )
 from facegear.lubrication.columns import LEFT_OUT
 from facegear.lubrication.excitation import excitation_table
-from facegear.lubrication.loss import hat_slip
 from facegear.lubrication.machine_loss import LoadedPair
-from facegear.lubrication.places import loaded_contacts, places, stored_lines
 from facegear.stages.outcome import Outcome
 
 
@@ -72,10 +70,4 @@ def loaded_pair(
     tooth_pair: ToothPair,
 ) -> LoadedPair:
     """The stored contact of the pair with its sliding, by torque."""
-    teeth = pair(tooth_pair)
-    modulus = contact_modulus(teeth.materials)
-    known = lubrication_request(section, modulus, teeth.design.pinion_pitch_radius)
-    unloaded = dict(zip(ltca["position"], 1e-6 * ltca["unloaded_ste_um"], strict=True))
-    lines = stored_lines(teeth.design, pressure, unloaded)
-    where = places(teeth.design, pressure, lines, modulus)
-    return LoadedPair(loaded_contacts(where, hat_slip(teeth.design, pressure)), known)
+    return LoadedPair(contacts_of(ltca, pressure, tooth_pair), lubrication_of(section, tooth_pair))
