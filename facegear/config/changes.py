@@ -9,6 +9,7 @@ from facegear.errors import ConfigError
 SPEED = "dynamics.speed_rpm"
 MACHINE = "transmission."
 PAIR = "tooth_pair."
+LUBRICATION = "lubrication."
 TEETH = ("pinion_teeth", "face_gear_teeth", "module_mm", "pressure_angle_deg")
 """Keys of the tooth pair that the lumped model needs; its other data must not rerun modes or dynamics."""
 GAPS = ("assembly", "pinion.tip_relief", "pinion.root_relief", "pinion.lead_crowning")
@@ -27,13 +28,17 @@ PLAIN = {"error_um": 0.0, "stiffness_factor": 1.0, "clocking_deg": 0.0}
 
 
 def variable_part(
-    transmission: Mapping[str, Any], tooth_pair: Mapping[str, Any], speed_rpm: float
+    transmission: Mapping[str, Any],
+    tooth_pair: Mapping[str, Any],
+    speed_rpm: float,
+    lubrication: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
     """The plain values of a config that may change from machine to machine, under the keys that they have."""
     return {
         "transmission": transmission,
         "tooth_pair": tooth_pair,
         "dynamics": {"speed_rpm": speed_rpm},
+        "lubrication": lubrication,
     }
 
 
@@ -54,7 +59,7 @@ def moves_pair(keys: Iterable[str]) -> bool:
 def movable(
     values: Mapping[str, Any],
     keys: Iterable[str],
-    allowed: Iterable[str] = (MACHINE, SPEED, PAIR),
+    allowed: Iterable[str] = (MACHINE, SPEED, PAIR, LUBRICATION),
     told: str = "tolerances.causes.moves",
 ) -> dict[str, Any]:
     """Values as of `variable_part` with an entry for every single part that one of the keys names.

@@ -9,6 +9,7 @@ import numpy as np
 
 from facegear.config.base import parse
 from facegear.config.changes import (
+    LUBRICATION,
     MACHINE,
     PAIR,
     SPEED,
@@ -19,6 +20,7 @@ from facegear.config.changes import (
     variable_part,
 )
 from facegear.config.contact import Contact
+from facegear.config.lubrication import LubricationSection
 from facegear.config.lumped_model import ToothNumbers, given_torques, layout, other_gear_torque
 from facegear.config.search import Search
 from facegear.config.stiffness import MeshStiffness
@@ -171,13 +173,22 @@ def check_studies(studies: Sequence[Study]) -> None:
         raise ConfigError("studies", f"{points} points", told)
 
 
-def check_tolerances(section: Tolerances, pair: ToothPair, machine: Transmission, solved: bool) -> None:
+def check_tolerances(
+    section: Tolerances,
+    pair: ToothPair,
+    machine: Transmission,
+    lubrication: LubricationSection | None,
+    solved: bool,
+) -> None:
     """Every cause moves numbers that this machine has; those of its teeth where contact is `solved`.
 
     Raises ConfigError.
     """
     keys = [key for cause in section.causes for key in cause.moves]
-    start = movable(_variable(pair, machine), keys, (MACHINE, SPEED, *WITHOUT_MESHING))
+    if lubrication is None and any(key.startswith(LUBRICATION) for key in keys):
+        raise ConfigError("lubrication", None, "given, as required by tolerances.causes that move it")
+    allowed = (MACHINE, SPEED, *([LUBRICATION] if lubrication else []), *WITHOUT_MESHING)
+    start = movable(_variable(pair, machine, lubrication), keys, allowed)
     if not solved and (section.tooth_contact or moves_pair(keys)):
         raise ConfigError("mesh_stiffness.source", "harmonics", f"fem or fem_scaled, {CONTACT_ASKED}")
     try:
@@ -200,6 +211,12 @@ def check_search(
     from facegear.load_sharing.quantity_names import columns_of, quantity_names
 
     keys = [key for variable in section.variables for key in variable.sets]
+    causes = tolerances.causes if section.robust and tolerances is not None else ()
+    oiled = [key for cause in causes for key in cause.moves if key.startswith(LUBRICATION)]
+    if oiled:
+        raise ConfigError(
+            "tolerances.causes.moves", oiled, "without lubrication where search asks for percentiles"
+        )
     movable(_variable(pair, machine), keys, (MACHINE, PAIR), "search.variables.sets")
     if contact == "none" and moves_pair(keys):
         raise ConfigError("mesh_stiffness.source", "harmonics", f"fem or fem_scaled, {CONTACT_ASKED}")
@@ -216,8 +233,11 @@ def check_search(
         raise ConfigError("tolerances", None, "given, as required by percentiles in search")
 
 
-def _variable(pair: ToothPair, machine: Transmission) -> dict[str, Any]:
-    return variable_part(machine.model_dump(mode="json"), pair.model_dump(mode="json"), 0.0)
+def _variable(
+    pair: ToothPair, machine: Transmission, lubrication: LubricationSection | None = None
+) -> dict[str, Any]:
+    oil = lubrication.model_dump(mode="json") if lubrication is not None else None
+    return variable_part(machine.model_dump(mode="json"), pair.model_dump(mode="json"), 0.0, oil)
 
 
 def _pinion_body(pair: ToothPair) -> tuple[float, float]:

@@ -239,7 +239,7 @@ class Config(Section):
         require_buildable(complete, pair_teeth(pair))
         solved = self.mesh_stiffness.source != "harmonics"
         if self.tolerances is not None:
-            check_tolerances(self.tolerances, pair, complete, solved)
+            check_tolerances(self.tolerances, pair, complete, self.lubrication, solved)
         if self.search is not None:
             stress = "root stress" if self._root_stress else "pressure"
             check_search(self.search, self.tolerances, pair, complete, stress if solved else "none")

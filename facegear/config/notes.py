@@ -21,14 +21,19 @@ EXTERNAL = (
     "duty cycle"
 )
 
+WITHOUT_FRICTION = (
+    "lubrication.friction.effect = excitation: {} leave out how friction disturbs the motion; loss, "
+    "temperature and film of samples are those of the forces without it (docs/friction.md)"
+)
+
 BACKLASH_DIFFERS_UM = 1.0
 """Difference between the backlash of the dynamics and that of the teeth that is worth a note."""
 
 
 def notes(values: Mapping[str, Any]) -> list[str]:
     """Lines for a config of one's own that counts as the publication does, for errors that turn, for dynamics
-    with a backlash other than that of the teeth, for preloads and external forces, and for numbers that
-    several causes move.
+    with a backlash other than that of the teeth, for preloads and external forces, for numbers that several
+    causes move, and for friction that samples and designs leave out of their motion.
     """
     transmission = values["transmission"]
     if transmission is None:
@@ -41,7 +46,18 @@ def notes(values: Mapping[str, Any]) -> list[str]:
         + _preloads(values)
         + _pushes(transmission)
         + _sums(values)
+        + _without_friction(values)
     )
+
+
+def _without_friction(values: Mapping[str, Any]) -> list[str]:
+    """Samples of tolerances and designs where friction disturbs the motion of the machine itself."""
+    oil = values.get("lubrication")
+    if not oil or oil["friction"]["effect"] == "loss_only":
+        return []
+    named = {"tolerances": "samples of tolerances", "search": "designs of the search"}
+    left = [words for section, words in named.items() if values.get(section)]
+    return [WITHOUT_FRICTION.format(" and ".join(left))] if left else []
 
 
 def _preloads(values: Mapping[str, Any]) -> list[str]:

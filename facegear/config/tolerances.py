@@ -37,8 +37,8 @@ class CauseSection(Section):
     values: tuple[float, ...] = Field((), description="of shape choice, each as likely")
     moves: dict[str, float] = Field(
         min_length=1,
-        description="dotted key of a number of `transmission`, dynamics.speed_rpm, or of the tooth pair's "
-        "assembly, reliefs, crowning and Young's moduli -> what one unit of the cause adds to it",
+        description="dotted key of a number of `transmission`, `lubrication`, dynamics.speed_rpm, or of "
+        "the tooth pair's assembly, reliefs, crowning and moduli -> what one unit of the cause adds to it",
     )
     source: str = Field(min_length=1, max_length=200, description="ISO grade or drawing that it is from")
 

@@ -1,7 +1,10 @@
 """What one machine among many is judged by: a few numbers of its load sharing, quasi-static or in motion."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from facegear.arrays import Array
 from facegear.dynamics.bearing_forces import bearing_history
 from facegear.dynamics.motion import Settings
 from facegear.dynamics.steady_state.simulate import build_model
@@ -21,7 +24,19 @@ POSITIONS = 8
 """Positions of a mesh cycle in the quasi-static motion."""
 
 
-def quasi_static_quantities(machine: Machine, cycles: int) -> dict[str, float]:
+@dataclass(frozen=True, eq=False)
+class FlankLoads:
+    """Mean and largest force of every flank (2 meshes,), N, drive flanks first."""
+
+    mean: Array
+    largest: Array
+
+
+Found = tuple[dict[str, float], FlankLoads]
+"""What a machine is judged by, and the loads of its flanks."""
+
+
+def quasi_static_quantities(machine: Machine, cycles: int) -> Found:
     """Of `cycles` mesh cycles spread over the hunting cycle; the largest loads also of its hardest ones.
 
     Raises NotConverged.
@@ -36,12 +51,14 @@ def quasi_static_quantities(machine: Machine, cycles: int) -> dict[str, float]:
         *_shares(run, shared),
         bearing_mass(run.bearings),
     )
-    return _named(machine.layout, values, dynamic=False)
+    forces = run.flank_forces
+    largest = np.maximum(forces.max(axis=0), hard.flank_forces.max(axis=0))
+    return _named(machine.layout, values, dynamic=False), FlankLoads(forces.mean(axis=0), largest)
 
 
 def dynamic_quantities(
     machine: Machine, speed_rpm: float, settings: Settings, options: SharingOptions
-) -> dict[str, float]:
+) -> Found:
     """Of the motion reached from static equilibrium. Raises NotConverged naming the speed."""
     model = build_model(machine)
     response = load_sharing(model, speed_rpm, settings, options).response
@@ -57,7 +74,8 @@ def dynamic_quantities(
         *_shares(run, shared),
         bearing_mass(bearing_history(model, response)),
     )
-    return _named(machine.layout, values, dynamic=True)
+    loads = FlankLoads(flanks.mean(axis=0), flanks.max(axis=0))
+    return _named(machine.layout, values, dynamic=True), loads
 
 
 def _named(layout: Layout, values: tuple[float, ...], dynamic: bool) -> dict[str, float]:

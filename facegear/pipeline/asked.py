@@ -208,6 +208,18 @@ def sampled_contact(case: Case) -> bool:
     return section is not None and (section["tooth_contact"] or moves_pair(_causes(section)))
 
 
+def lubricated_samples(case: Case) -> dict[str, Any] | None:
+    """Sections lubrication and tooth_pair where samples of tolerances are lubricated."""
+    if case.values["lubrication"] is None:
+        return None
+    return {key: case.values[key] for key in ("lubrication", "tooth_pair")}
+
+
+def stored_rubbing(case: Case) -> bool:
+    """Whether samples take friction from the stored contact: those that have none of their own."""
+    return friction(case) and not sampled_contact(case)
+
+
 def searched_contact(case: Case) -> bool:
     """Whether designs have a contact analysis of their own.
 

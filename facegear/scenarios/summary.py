@@ -1,6 +1,6 @@
 """Tables of what many samples say of each quantity."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 import pandas as pd
@@ -9,7 +9,7 @@ import scipy.stats
 from facegear.scenarios.chunks import ERROR, SAMPLE
 from facegear.scenarios.statistics import Estimate, fraction_of, percentile, sobol_indices
 
-PERCENTILES = (0.5, 0.95, 0.99)
+PERCENTILES, LOW_PERCENTILES = (0.5, 0.95, 0.99), (0.5, 0.05, 0.01)
 INDEX_COLUMNS = (
     "quantity",
     "cause",
@@ -29,16 +29,20 @@ def quantities_of(samples: pd.DataFrame, causes: Sequence[str]) -> list[str]:
     return [name for name in samples.columns if name not in (SAMPLE, *causes, ERROR)]
 
 
-def percentile_table(samples: pd.DataFrame, causes: Sequence[str], confidence: float) -> pd.DataFrame:
+def percentile_table(
+    samples: pd.DataFrame, causes: Sequence[str], confidence: float, better_large: Collection[str] = ()
+) -> pd.DataFrame:
     """One row a quantity and percentile: value, and the interval that holds it; empty ends are unbounded.
 
-    Samples that failed are left out; `samples` counts the others.
+    Of quantities that are `better_large` the small percentiles. Samples that failed are left out; `samples`
+    counts the others.
     """
     rows = []
     for name in quantities_of(samples, causes):
         values = samples[name].to_numpy(float)
         values = values[np.isfinite(values)]
-        for probability in PERCENTILES if values.size else ():
+        asked = LOW_PERCENTILES if name in better_large else PERCENTILES
+        for probability in asked if values.size else ():
             estimate = _bounded(percentile(values, probability, confidence))
             rows.append((name, 100.0 * probability, *estimate, values.size))
     table = pd.DataFrame(rows, columns=["quantity", "percentile", "value", "low", "high", "samples"])
@@ -47,13 +51,17 @@ def percentile_table(samples: pd.DataFrame, causes: Sequence[str], confidence: f
 
 
 def share_table(samples: pd.DataFrame, shares: dict[str, str], confidence: float) -> pd.DataFrame:
-    """Share of the samples that failed, and of those in which a share of time is above zero.
+    """Share of the samples that failed, and of those in which a share of time or loss is above zero.
 
     `shares`: column -> what it means in words. Columns: what, share, low, high, samples.
     """
     failed = samples[ERROR].to_numpy() != ""
     rows = [("cannot be built or computed", failed)]
-    rows += [(label, samples.loc[~failed, name].to_numpy(float) > 0.0) for name, label in shares.items()]
+    rows += [
+        (label, samples.loc[~failed, name].to_numpy(float) > 0.0)
+        for name, label in shares.items()
+        if name in samples
+    ]
     fractions = [(label, fraction_of(hits, confidence), hits.size) for label, hits in rows if hits.size]
     return pd.DataFrame(
         [(label, fraction.value, fraction.low, fraction.high, size) for label, fraction, size in fractions],

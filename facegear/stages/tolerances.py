@@ -5,7 +5,16 @@ from collections.abc import Sequence
 import pandas as pd
 
 from facegear.config.tolerances import Tolerances
-from facegear.load_sharing.quantity_names import MISSED, OPEN, REVERSED
+from facegear.load_sharing.quantity_names import (
+    BETTER_LARGE,
+    CONTACT_TEMPERATURE,
+    LOSS,
+    MISSED,
+    OPEN,
+    REVERSED,
+    SIMPLIFIED,
+    UNSOLVED,
+)
 from facegear.scenarios.chunks import ERROR
 from facegear.scenarios.summary import (
     importance_table,
@@ -19,7 +28,13 @@ from facegear.stages.outcome import Outcome
 SHARES = {
     OPEN: "some mesh that shares a load opens",
     REVERSED: "some mesh is loaded on the flank that it does not work on",
+    UNSOLVED: "some mesh loses under a torque outside those of the contact analysis",
 }
+CHECKS = {
+    **MISSED,
+    **{f"{name}, of few places of the contact": column for name, column in SIMPLIFIED.items()},
+}
+"""Quantity -> column that says of some samples what they miss."""
 
 
 def tolerances(
@@ -28,19 +43,22 @@ def tolerances(
     """`samples`, `percentiles`, `shares`, `importance`, `indices`, `sampling` (tables) from both designs.
 
     `sampling`: what the mesh cycles taken from the hunting cycle miss, in the samples that were computed over
-    the whole of it.
+    the whole of it, and what friction misses that is taken at few places of the contact.
     """
     causes = [cause.name for cause in tolerances.causes]
     every = pd.concat(samples, ignore_index=True)
-    found = every.drop(columns=list(MISSED.values()), errors="ignore")
-    design = pd.concat(indices, ignore_index=True) if indices else every.iloc[:0]
-    percentiles = percentile_table(found, causes, tolerances.confidence)
+    found = every.drop(columns=list(CHECKS.values()), errors="ignore")
+    drawn = pd.concat(indices, ignore_index=True) if indices else every.iloc[:0]
+    design = drawn.drop(columns=list(CHECKS.values()), errors="ignore")
+    percentiles = percentile_table(found, causes, tolerances.confidence, BETTER_LARGE)
     shares = share_table(every, SHARES, tolerances.confidence)
     top = percentiles[(percentiles["percentile"] == 99.0) & percentiles["quantity"].str.startswith("k_gamma")]
     worst = top.nlargest(1, "value")
     told = ", ".join(f"99 of 100 stay below {row.quantity} = {row.value:.3f}" for row in worst.itertuples())
-    sampling = sampling_table(every, MISSED)
-    told = "; ".join([told or "no path shares a load", *_missed_in_words(sampling)])
+    sampling = sampling_table(every, CHECKS)
+    told = "; ".join(
+        [told or "no path shares a load", *_hot_in_words(percentiles), *_missed_in_words(sampling)]
+    )
     failed = int((every[ERROR] != "").sum())
     if failed == len(every):
         told = f"the first by: {every[ERROR].iloc[0]}"
@@ -57,7 +75,19 @@ def tolerances(
     )
 
 
+def _hot_in_words(percentiles: pd.DataFrame) -> list[str]:
+    rows = percentiles[percentiles["percentile"] == 99.0].set_index("quantity")["value"]
+    if CONTACT_TEMPERATURE not in rows:
+        return []
+    return [f"{rows[LOSS]:.0f} W of friction and a contact temperature of {rows[CONTACT_TEMPERATURE]:.0f} C"]
+
+
 def _missed_in_words(sampling: pd.DataFrame) -> list[str]:
     parts = [f"{row.quantity} {row.largest_missed:.1e}" for row in sampling.itertuples()]
     most = sampling["samples"].max()
-    return [f"the mesh cycles taken miss at most {', '.join(parts)} ({most} samples)"] if parts else []
+    cycles = [part for part in parts if part.partition(" ")[0] in MISSED]
+    places = sampling.loc[~sampling["quantity"].isin(list(MISSED)), "largest_missed"]
+    told = [f"the mesh cycles taken miss at most {', '.join(cycles)} ({most} samples)"] if cycles else []
+    return told + (
+        [f"the places that friction is taken at miss at most {places.max():.1e}"] if len(places) else []
+    )

@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Any
 
 from facegear.config.tolerances import Design
-from facegear.load_sharing.quantity_names import MISSED
 from facegear.scenarios.sampling import index_samples, samples
 from facegear.stages.outcome import Outcome
 from facegear.variants.sampled import CHECKED, SampledMachine
@@ -22,7 +21,8 @@ def tolerances_chunk(
 
     A sample that cannot be built or computed is a row with its error. `partial` is a file that keeps finished
     samples, so that a killed chunk goes on after its last one; it counts only for the same config and `code`.
-    The columns MISSED say of the first CHECKED samples what the mesh cycles taken miss; empty else.
+    The columns MISSED say of the first CHECKED samples what the mesh cycles taken miss, SIMPLIFIED what the
+    few places of the contact that friction is taken at; empty else.
     `given`: fields of SampledMachine.
     """
     return chunk_of(SampledMachine.of_stage(**given), design, first, last, partial, code)
@@ -39,13 +39,14 @@ def chunk_of(
     """`tolerances_chunk` of a machine in memory."""
     draw = samples if design == "samples" else index_samples
     values = draw(machine.causes, first, last - first + 1)
-    plain = design == "samples" and not machine.question.dynamic
 
     def evaluate(number: int) -> dict[str, float]:
-        return machine.judged(machine.sample(values[number - first]), plain and number < CHECKED)
+        return machine.judged(
+            machine.sample(values[number - first]), design == "samples" and number < CHECKED
+        )
 
-    told, more = f"{design} {first} to {last}", tuple(MISSED.values()) if plain else ()
-    frame = machine.run(evaluate, range(first, last + 1), told, partial, design, code, more=more)
+    told = f"{design} {first} to {last}"
+    frame = machine.run(evaluate, range(first, last + 1), told, partial, design, code)
     for place, name in enumerate(machine.causes.names):
         frame.insert(1 + place, name, values[:, place])
     failed = int((frame["error"] != "").sum())

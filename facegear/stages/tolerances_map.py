@@ -6,12 +6,12 @@ from typing import Any
 import pandas as pd
 
 from facegear.config.tolerances import LoadMap
-from facegear.load_sharing.quantity_names import MISSED
+from facegear.load_sharing.quantity_names import BETTER_LARGE
 from facegear.scenarios.chunks import ERROR
 from facegear.scenarios.sampling import samples
 from facegear.scenarios.summary import percentile_table, sampling_table, share_table
 from facegear.stages.outcome import Outcome
-from facegear.stages.tolerances import SHARES
+from facegear.stages.tolerances import CHECKS, SHARES
 from facegear.variants.loads import with_torques
 from facegear.variants.sampled import CHECKED, SampledMachine
 
@@ -34,9 +34,7 @@ def tolerances_map(partial: str | Path | None = None, code: str = "", **given: A
     section = machine.section
     asked = section.load_map or LoadMap()
     values, loads = samples(machine.causes, 0, asked.samples), asked.loads(machine.speed_rpm)
-    count, checked = asked.samples * len(loads), 0
-    if not machine.question.dynamic:
-        checked = max(CHECKED // len(loads), 1)
+    count, checked = asked.samples * len(loads), max(CHECKED // len(loads), 1)
 
     def evaluate(number: int) -> dict[str, float]:
         load, row = divmod(number, asked.samples)
@@ -47,19 +45,19 @@ def tolerances_map(partial: str | Path | None = None, code: str = "", **given: A
         loaded = {**changed, "transmission": transmission, "dynamics": {"speed_rpm": speed + off}}
         return machine.judged(loaded, row < checked)
 
-    told, more = "tolerances over torque and speed", tuple(MISSED.values())
-    frame = machine.run(evaluate, range(count), told, partial, code, more=more)
+    frame = machine.run(evaluate, range(count), "tolerances over torque and speed", partial, code)
     tables: list[pd.DataFrame] = []
     shares: list[pd.DataFrame] = []
     sampling: list[pd.DataFrame] = []
     for place, (factor, speed) in enumerate(loads):
         own = frame.iloc[place * asked.samples : (place + 1) * asked.samples]
         load = {"torque_factor": factor, "speed_rpm": speed}
-        found = percentile_table(own.drop(columns=list(MISSED.values())), (), section.confidence)
+        results = own.drop(columns=list(machine.checks))
+        found = percentile_table(results, (), section.confidence, BETTER_LARGE)
         failed = int((own[ERROR] != "").sum())
         tables.append(found.assign(**load, failed=failed))
         shares.append(_at_load(load, share_table(own, SHARES, section.confidence)))
-        sampling.append(_at_load(load, sampling_table(own, MISSED)))
+        sampling.append(_at_load(load, sampling_table(own, CHECKS)))
     table = pd.concat(tables, ignore_index=True)[list(COLUMNS)]
     failed = int((frame[ERROR] != "").sum())
     return Outcome(

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 from facegear.config.base import parse
 from facegear.config.changes import GAPS, MODULI, without
@@ -27,14 +28,19 @@ from facegear.strength.pair_answers import PairAnswers
 from facegear.strength.passage import passing
 from facegear.variants.teeth import Flanks, Meshes, ToothMesh, Values
 
+if TYPE_CHECKING:
+    from facegear.variants.rubbed_teeth import Rub
+
 KEPT = 16
 """Pairs that are remembered: samples of one block of Saltelli's design share theirs."""
 KEPT_BODIES = 4
 """Compliances of both bodies that are remembered, some 70 MB each at the default resolution."""
 
 
-def meshes_in_contact(pair: Values, flanks: Flanks) -> Meshes:
-    """`pair`: sections tooth_pair, mesh, contact, mesh_stiffness; `flanks`: the compliance of its bodies."""
+def meshes_in_contact(pair: Values, flanks: Flanks, rub: "Rub | None" = None) -> Meshes:
+    """`pair`: sections tooth_pair, mesh, contact, mesh_stiffness; `flanks`: the compliance of its bodies;
+    `rub`: teeth from their contact, where they are lubricated.
+    """
     backlash = geometric_backlash(ToothPair.of_config(pair["tooth_pair"]))
     plan, request = contact_plan(Contact.of_config(pair["contact"])), _request(pair)
     bodies = _bodies(pair, flanks)
@@ -54,6 +60,7 @@ def meshes_in_contact(pair: Values, flanks: Flanks) -> Meshes:
             unloaded=unloaded_error(table),
             backlash_added=added,
             answers=_answers(found, dict(zip(BODIES, both, strict=True)), numbers, request),
+            rubbed=rub(found.ltca[0], found.pressure[0], section) if rub else None,
         )
 
     return lambda values: meshed(json.dumps(values, sort_keys=True))

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import pandas as pd
 
@@ -13,6 +13,7 @@ from facegear.config.buildable import require_buildable, require_room
 from facegear.config.dynamics import Accuracy, settings
 from facegear.config.keys import keys_named
 from facegear.config.load_sharing import LoadSharing, sharing_options
+from facegear.config.lubrication import LubricationSection, limits_of
 from facegear.config.lumped_model import ToothNumbers, machine
 from facegear.config.mesh_law import flank_tables
 from facegear.config.transmission import Transmission
@@ -20,18 +21,29 @@ from facegear.dynamics.steady_state.simulate import build_model
 from facegear.dynamics.sweeps.jump_margin import jump_margin
 from facegear.dynamics.sweeps.plan import JumpRange
 from facegear.geometry.bodies import BODIES
-from facegear.load_sharing.quantities import dynamic_quantities, quasi_static_quantities
+from facegear.load_sharing.quantities import (
+    FlankLoads,
+    Found,
+    dynamic_quantities,
+    quasi_static_quantities,
+)
 from facegear.load_sharing.quantity_names import JUMP_MARGIN, PEAK, quantity_names
 from facegear.scenarios.chunks import identity
 from facegear.stiffness.tables import series_of, unloaded_error
 from facegear.transmission.layout import Layout
+from facegear.transmission.machine import Machine
 from facegear.variants.teeth import Flanks, Meshes, ToothMesh, Values
+
+if TYPE_CHECKING:
+    from facegear.variants.rubbed_teeth import Rub, RubbedTeeth
 
 Judge = Callable[[Mapping[str, Any]], dict[str, float]]
 """What a machine is judged by, by column name, given the values of `facegear.config.changes.variable_part`.
 
 Raises the error that a config gets for a machine that cannot be built, NotConverged."""
 
+ARRAYS = ("flanks", "pressure")
+"""What a machine is given beside values and tables that say the same of it."""
 WHOLE = 2**31
 """More mesh cycles than any hunting cycle has: all of them."""
 
@@ -41,7 +53,8 @@ class Question:
     """How machines are judged: by loads over `cycles` mesh cycles of the hunting cycle, or of the motion.
 
     `model`: quasi_static or dynamic; `accuracy`, `options`: sections dynamics.accuracy and load_sharing;
-    `jumps`: where the nearest jump is looked for, None if it is not asked for.
+    `jumps`: where the nearest jump is looked for, None if it is not asked for. `every_place`: friction by all
+    places of the contact, not by the few that stand for them.
     """
 
     model: str
@@ -49,6 +62,7 @@ class Question:
     accuracy: Mapping[str, Any]
     options: Mapping[str, Any]
     jumps: JumpRange | None = None
+    every_place: bool = False
 
     @property
     def dynamic(self) -> bool:
@@ -88,28 +102,41 @@ class VariedMachine:
     def columns(self, layout: Layout, question: Question, jumps: bool = False) -> tuple[str, ...]:
         """Names of what a machine is judged by."""
         gauges = self.pair is not None and self.pair["contact"]["root_stress"]
-        return quantity_names(layout, question.dynamic, self.pair is not None, gauges, jumps)
+        contact, friction = self.pair is not None, self.friction
+        return quantity_names(layout, question.dynamic, contact, gauges, jumps, friction)
+
+    @property
+    def friction(self) -> bool:
+        """Whether friction is asked for."""
+        return False
 
     def identity(self, *parts: object) -> str:
         """Text that differs whenever one of the parts or a value of the machine does."""
-        plain = {one.name: getattr(self, one.name) for one in fields(self) if one.name != "flanks"}
+        plain = {one.name: getattr(self, one.name) for one in fields(self) if one.name not in ARRAYS}
+        tables = {name: one.to_csv() for name, one in plain.items() if isinstance(one, pd.DataFrame)}
         law = {name: values.tolist() for name, values in (self.law or {}).items()}
-        return identity(*parts, {**plain, "harmonics": self.harmonics.to_csv(), "law": law})
+        return identity(*parts, {**plain, **tables, "law": law})
 
 
 def tooth_meshes(
-    harmonics: pd.DataFrame, pair: Values | None, flanks: Flanks, law: Arrays | None = None
+    harmonics: pd.DataFrame,
+    pair: Values | None,
+    flanks: Flanks,
+    law: Arrays | None = None,
+    rub: "Rub | None" = None,
+    rubbed: "RubbedTeeth | None" = None,
 ) -> Meshes:
     """One mesh for all, of `harmonics`; or by contact where `pair` holds the sections that it needs.
 
     `pair`: tooth_pair, mesh, contact, mesh_stiffness; `flanks`: the compliance of its bodies by name.
+    Lubricated teeth: those `rubbed` of the one mesh, or what `rub` makes of each contact.
     """
     if pair is not None:
         from facegear.variants.contact import meshes_in_contact  # only contact needs finite elements
 
-        return meshes_in_contact(pair, flanks)
+        return meshes_in_contact(pair, flanks, rub)
     series, error = series_of(harmonics), unloaded_error(harmonics)
-    return lambda values: ToothMesh(ToothNumbers.of_config(values), series, error, law=law)
+    return lambda values: ToothMesh(ToothNumbers.of_config(values), series, error, law=law, rubbed=rubbed)
 
 
 def stored_flanks(arrays: Sequence[Arrays]) -> Flanks:
@@ -125,6 +152,15 @@ def judge(question: Question, meshes: Meshes, told: str) -> Judge:
     """`told` names the machine in errors."""
     ask = _ask(question)
 
+    def rubbed(
+        teeth: "RubbedTeeth", lubrication: Values, built: Machine, speed: float, loads: FlankLoads
+    ) -> dict[str, float]:
+        from facegear.variants.rubbed_teeth import friction_quantities  # only friction needs it
+
+        section = parse(LubricationSection, lubrication, told)
+        pair = teeth.pair(section, question.every_place)
+        return friction_quantities(built, speed, loads, pair, limits_of(section))
+
     @keys_named()
     def judged(values: Mapping[str, Any]) -> dict[str, float]:
         mesh = meshes(values["tooth_pair"])
@@ -135,8 +171,10 @@ def judge(question: Question, meshes: Meshes, told: str) -> Judge:
         if mesh.law is not None:
             built = replace(built, tables=flank_tables(mesh.law, built.layout))
         speed = values["dynamics"]["speed_rpm"]
-        found = ask(built, speed)
+        found, loads = ask(built, speed)
         found |= mesh.quantities(found[PEAK])
+        if mesh.rubbed is not None:
+            found |= rubbed(mesh.rubbed, values["lubrication"], built, speed, loads)
         if question.jumps is not None:
             found[JUMP_MARGIN] = jump_margin(build_model(built), speed, question.jumps)
         return found
@@ -144,7 +182,7 @@ def judge(question: Question, meshes: Meshes, told: str) -> Judge:
     return judged
 
 
-def _ask(question: Question) -> Callable[[Any, float], dict[str, float]]:
+def _ask(question: Question) -> Callable[[Any, float], Found]:
     if not question.dynamic:
         return lambda built, speed: quasi_static_quantities(built, question.cycles)
     precise = settings(Accuracy.of_config(question.accuracy))

@@ -1,6 +1,7 @@
 """One machine with its tolerances: its samples by number, and what each is judged by."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import nan
@@ -10,26 +11,83 @@ from typing import Any
 
 import pandas as pd
 
+from facegear.arrays import Arrays
+from facegear.config.base import parse
 from facegear.config.changes import movable, moved, variable_part
+from facegear.config.lubrication import LubricationSection
 from facegear.config.lumped_model import wired_layout
 from facegear.config.tolerances import Tolerances, population
-from facegear.load_sharing.quantity_names import K_GAMMA, MISSED, OPEN, REVERSED, columns_of
+from facegear.config.tooth_pair import ToothPair
+from facegear.errors import FacegearError
+from facegear.load_sharing.quantity_names import (
+    BULK,
+    K_GAMMA,
+    MISSED,
+    OPEN,
+    REVERSED,
+    SIMPLIFIED,
+    columns_of,
+)
 from facegear.progress import Progress
 from facegear.scenarios.chunks import Evaluate, run_chunk
-from facegear.scenarios.sampling import Population, changes
-from facegear.variants.machines import WHOLE, Judge, Question, VariedMachine, judge
-from facegear.variants.teeth import Values
+from facegear.scenarios.sampling import Population, changes, samples
+from facegear.variants.machines import WHOLE, Judge, Question, VariedMachine, judge, tooth_meshes
+from facegear.variants.teeth import Meshes, Values
 
 CHECKED = 8
-"""Number of samples that are computed over the whole hunting cycle as well."""
+"""Number of samples that are computed over the whole hunting cycle, and by all places of the contact, too."""
+STATES = 16
+"""Machines over whose lubrication and speed the contact is reduced to few places."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SampledMachine(VariedMachine):
-    """The machine with its tolerances, as plain config values: what the stages of its samples are given."""
+    """The machine with its tolerances, as plain config values: what the stages of its samples are given.
+
+    With `lubricated`, the sections lubrication and tooth_pair, friction is judged too: by `ltca` and
+    `pressure` of stage contact, unless each sample has a contact of its own.
+    """
 
     tolerances: Values
     teeth: Values
+    lubricated: Values | None = None
+    ltca: pd.DataFrame | None = None
+    pressure: Arrays | None = None
+
+    @property
+    def friction(self) -> bool:
+        """Whether friction is asked for."""
+        return self.lubricated is not None
+
+    @cached_property
+    def meshes(self) -> Meshes:
+        """The mesh of each one's tooth pair, lubricated where friction is asked for."""
+        if self.lubricated is None:
+            return super().meshes
+        from facegear.variants.rubbed_teeth import rubbing  # only friction needs it
+
+        rub = rubbing(self.lubricated_states)
+        rubbed = None
+        if self.ltca is not None and self.pressure is not None:
+            section = ToothPair.of_config(self.lubricated["tooth_pair"])
+            rubbed = rub(self.ltca, self.pressure, section)
+        return tooth_meshes(self.harmonics, self.pair, self.flanks, self.law, rub, rubbed)
+
+    @cached_property
+    def lubricated_states(self) -> list[tuple[LubricationSection, float]]:
+        """Lubrication and speed (rpm) of STATES machines that are none of the samples, where they can be."""
+        others = replace(self.causes, seed=self.section.seed + 1)
+        asked = self.section.load_map
+        speeds = [speed for _, speed in asked.loads(self.speed_rpm)] if asked else [self.speed_rpm]
+        found = []
+        for number, values in enumerate(samples(others, 0, STATES)):
+            sample = self.sample(values)
+            speed = (self.speed_rpm, min(speeds), max(speeds))[number % 3]
+            off = sample["dynamics"]["speed_rpm"] - self.speed_rpm
+            with suppress(FacegearError):
+                section = parse(LubricationSection, sample["lubrication"], "this sample")
+                found.append((section, speed + off))
+        return found or [(LubricationSection.of_config(self.start["lubrication"]), self.speed_rpm)]
 
     @cached_property
     def section(self) -> Tolerances:
@@ -46,7 +104,8 @@ class SampledMachine(VariedMachine):
         """The nominal values that the causes move."""
         teeth = self.pair["tooth_pair"] if self.pair else self.teeth
         keys = [key for cause in self.causes.causes for key, _ in cause.gains]
-        return movable(variable_part(self.transmission, teeth, self.speed_rpm), keys)
+        oil = self.lubricated["lubrication"] if self.lubricated else None
+        return movable(variable_part(self.transmission, teeth, self.speed_rpm, oil), keys)
 
     @property
     def question(self) -> Question:
@@ -67,20 +126,40 @@ class SampledMachine(VariedMachine):
         """The same over the whole hunting cycle."""
         return judge(replace(self.question, cycles=WHOLE), self.meshes, "this sample")
 
-    def judged(self, sample: Mapping[str, Any], check: bool) -> dict[str, float]:
-        """What a sample is judged by, and in the columns MISSED what its mesh cycles miss.
+    @cached_property
+    def thorough_judge(self) -> Judge:
+        """The same by every place of the contact."""
+        return judge(replace(self.question, every_place=True), self.meshes, "this sample")
 
-        The columns MISSED are nan unless `check` asks for the whole hunting cycle as well.
-        """
+    @property
+    def checks(self) -> tuple[str, ...]:
+        """Columns that say what a sample misses, of the first CHECKED samples."""
+        hunting = () if self.question.dynamic else tuple(MISSED.values())
+        return (*hunting, *(SIMPLIFIED.values() if self.friction else ()))
+
+    def judged(self, sample: Mapping[str, Any], check: bool) -> dict[str, float]:
+        """What a sample is judged by, and in the columns `checks` what it misses; nan unless `check`."""
         found = self.judge(sample)
         if not check:
-            return found | dict.fromkeys(MISSED.values(), nan)
+            return found | dict.fromkeys(self.checks, nan)
+        missed = {} if self.question.dynamic else self._missed(sample, found)
+        return found | missed | (self._simplified(sample, found) if self.friction else {})
+
+    def _simplified(self, sample: Mapping[str, Any], found: Mapping[str, float]) -> dict[str, float]:
+        """What the few places of the contact miss: columns SIMPLIFIED."""
+        whole = self.thorough_judge(sample)
+        off = {name: found[name] / whole[name] - 1.0 if whole[name] else nan for name in SIMPLIFIED}
+        off[BULK] = found[BULK] - whole[BULK]
+        return {column: off[name] for name, column in SIMPLIFIED.items()}
+
+    def _missed(self, sample: Mapping[str, Any], found: Mapping[str, float]) -> dict[str, float]:
+        """What the mesh cycles taken miss: columns MISSED."""
         whole = self.whole_judge(sample)
         paths = columns_of(f"{K_GAMMA} ", list(whole))
         missed = {name: whole[name] - found[name] for name in (OPEN, REVERSED)}
         ratios = (whole[name] / found[name] - 1.0 for name in paths if found[name] > 0.0)
         missed[K_GAMMA] = max(ratios, default=nan)
-        return found | {MISSED[name]: value for name, value in missed.items()}
+        return {MISSED[name]: value for name, value in missed.items()}
 
     def run(
         self,
@@ -89,14 +168,13 @@ class SampledMachine(VariedMachine):
         told: str,
         partial: str | Path | None,
         *same: object,
-        more: Sequence[str] = (),
     ) -> pd.DataFrame:
         """Rows of `run_chunk`, kept in `partial` for this machine and what else must be the `same`.
 
-        `told` names them to who waits; where `partial` is None nothing is kept. `more`: further columns.
+        `told` names them to who waits; where `partial` is None nothing is kept. Columns `checks` come last.
         """
         layout = wired_layout(self.start["transmission"], self.teeth)
-        names = [*self.columns(layout, self.question), *more]
+        names = [*self.columns(layout, self.question), *self.checks]
         known, progress = self.identity(*same), Progress(told, len(numbers))
         with TemporaryDirectory() as folder:
             kept = Path(folder) / "partial" if partial is None else partial

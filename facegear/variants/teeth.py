@@ -12,6 +12,7 @@ from facegear.strength.pair_answers import PairAnswers
 
 if TYPE_CHECKING:
     from facegear.contact.gear_flank import GearFlank
+    from facegear.variants.rubbed_teeth import RubbedTeeth
 
 Values = Mapping[str, Any]
 Flanks = Mapping[str, "GearFlank"]
@@ -23,7 +24,7 @@ class ToothMesh:
     """What a tooth pair means for its machine: k and e over a pitch, and the teeth's numbers.
 
     `backlash_added` (um): what the pair has more than the one of the config. `answers` where it was put into
-    contact. law: arrays of stage mesh_law where k depends on the load.
+    contact. law: arrays of stage mesh_law where k depends on the load. `rubbed` where it is lubricated.
     """
 
     numbers: ToothNumbers
@@ -32,6 +33,7 @@ class ToothMesh:
     backlash_added: float = 0.0
     answers: PairAnswers | None = None
     law: Arrays | None = None
+    rubbed: "RubbedTeeth | None" = None
 
     def in_machine(self, transmission: Values) -> dict[str, Any]:
         """Section `transmission` with the backlash of all meshes as this pair has it."""

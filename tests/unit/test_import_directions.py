@@ -39,7 +39,7 @@ MAY_IMPORT = {
     "lubrication": {"geometry", "contact", "harmonics"},
     "variants": {
         *("config", "geometry", "contact", "stiffness", "harmonics"),
-        *("transmission", "dynamics", "load_sharing", "scenarios", "strength"),
+        *("transmission", "dynamics", "load_sharing", "scenarios", "strength", "lubrication"),
     },
     "stages": {
         *("config", "variants", "geometry", "mesh", "contact", "stiffness", "harmonics"),

@@ -9,9 +9,11 @@ SAMPLED: Needs = {
     **SHARING,
     "tolerances": CAUSES,
     "pair": Computed(asked.pair_where(asked.sampled_contact), asked.PAIR_SECTIONS),
+    "lubricated": Computed(asked.lubricated_samples, ("lubrication", "tooth_pair")),
 }
 SAMPLED_FROM = {
     **HARMONICS,
+    **{name: From("contact", name, when=asked.stored_rubbing) for name in ("ltca", "pressure")},
     "flanks": From("compliance", "arrays", each=asked.both_bodies, when=asked.sampled_contact),
 }
 SEARCHED: Needs = {

@@ -165,6 +165,22 @@ def test_causes_that_move_the_same_number_are_told_when_a_run_starts():
 
 
 @pytest.mark.parametrize(
+    ("effect", "sections", "told"),
+    [
+        ("excitation", ("tolerances",), "excitation: samples of tolerances leave out"),
+        ("excitation", ("tolerances", "search"), "samples of tolerances and designs of the search leave out"),
+        ("excitation", (), None),
+        ("loss_only", ("tolerances",), None),
+    ],
+)
+def test_a_run_says_at_its_start_that_samples_leave_friction_out_of_their_motion(effect, sections, told):
+    oil = {"lubrication": {"friction": {"effect": effect}}}
+    found = notes({**TWO, **oil, **{section: {"causes": [CAUSE]} for section in sections}})
+    about = [line for line in found if line.startswith("lubrication.friction.effect = ")]
+    assert len(about) == (told is not None) and all(told in line for line in about)
+
+
+@pytest.mark.parametrize(
     ("key", "hint"),
     [
         ("transmission.Backlash_um", "did you mean 'backlash_um'?"),

@@ -91,6 +91,118 @@ def test_an_oil_s_limits_and_the_model_stand_beside_the_numbers(gearbox):
         assert found.plot(what).axes
 
 
+def cause(name, key, **shape):
+    return {"name": name, "moves": {key: 1.0}, "source": "drawing", **shape}
+
+
+def fixed(name, key, value):
+    return cause(name, key, shape="choice", values=[value])
+
+
+ONE_PINION = {
+    "transmission.pinions": [{"name": "engine", "role": "input", "angle_deg": 0}],
+    "transmission.face_gears": ["upper"],
+    "transmission.torque": {"per_input_n_m": 550, "tail_share": 0},
+    "transmission.transmission_error": "from_contact",
+    "transmission.mesh_kinematics": "geometric",
+}
+
+
+def test_a_sample_of_tolerances_loses_what_the_machine_with_its_values_does(gearbox):
+    """Of one mesh at a constant torque, where the mean and the largest load are those at rest."""
+    moves = {
+        "lubrication.supply_temperature_c": 8.0,
+        "lubrication.pinion.ra_um": 0.1,
+        "lubrication.oil.viscosities_mm2_s.0": -1.0,
+        "lubrication.bulk.pinion_w_per_k": -10.0,
+        "dynamics.speed_rpm": 500.0,
+    }
+    start = gearbox.with_values(ONE_PINION)
+    causes = [fixed(f"cause_{number}", *item) for number, item in enumerate(moves.items())]
+    section = {"causes": causes, "samples": 1, "chunk_samples": 1}
+    found = start.with_values({"tolerances": section}).tolerances()
+    sample, missed = found.samples().iloc[0], found.content["sampling"].set_index("quantity")
+    values = start.values["lubrication"]
+    oil = {**values["oil"], "viscosities_mm2_s": [values["oil"]["viscosities_mm2_s"][0] - 1.0, 5.1]}
+    changed = start.with_values(
+        {
+            "lubrication.oil": oil,
+            "lubrication.supply_temperature_c": 98.0,
+            "lubrication.pinion.ra_um": 0.4,
+            "lubrication.bulk.pinion_w_per_k": 50.0,
+            "dynamics.speed_rpm": 8000.0,
+        }
+    )
+    assert values["oil"]["viscosities_mm2_s"][1] == 5.1
+    losses = changed.losses()
+    mesh, whole = losses.meshes().iloc[0], losses.table().iloc[0]
+    assert sample["friction_loss_w"] == pytest.approx(whole["loss_w"], rel=1e-6)
+    assert sample["friction_loss_percent"] == pytest.approx(whole["loss_percent"], rel=1e-6)
+    assert sample["hottest_body_c"] == pytest.approx(mesh["pinion_bulk_c"], abs=1e-4)
+    names = ["largest_flash_k", "contact_temperature_c", "scuffing_safety", "scuffing_margin_k"]
+    names += ["smallest_film_ratio", "smallest_micropitting_film_ratio"]
+    for name in names:
+        assert sample[name] == pytest.approx(mesh[name], rel=1e-6), name
+    assert sample["unsolved_loss_share"] == 0.0
+    simplified = missed["largest_missed"][missed.index.str.endswith("few places of the contact")]
+    assert len(simplified) == 5 and (simplified < 1e-6).all()
+
+
+def test_samples_say_what_oil_and_roughness_do_and_small_percentiles_of_what_is_better_large(gearbox):
+    causes = [
+        cause("oil", "lubrication.supply_temperature_c", spread=5.0),
+        cause("rough", "lubrication.pinion.ra_um", shape="uniform", limits=[-0.1, 0.2]),
+        cause("teeth", "transmission.single_meshes.right input/lower.error_um", spread=4.0),
+    ]
+    section = {"causes": causes, "samples": 32, "chunk_samples": 32, "hunting_cycles": 1}
+    machine = {"transmission.mesh_kinematics": "geometric", "tolerances": section}
+    found = gearbox.with_values(machine).tolerances()
+    samples, table = found.samples(), found.table().set_index(["quantity", "percentile"])["value"]
+    assert (samples["error"] == "").all()
+    ranks = found.content["importance"].set_index(["quantity", "cause"])["rank_correlation"]
+    assert ranks["friction_loss_w", "rough"] > 0.9
+    assert ranks["smallest_film_um", "oil"] < -0.9
+    assert ranks["hottest_body_c", "oil"] > 0.9
+    assert ranks["k_gamma right input/lower", "oil"] == pytest.approx(0.0, abs=0.4)
+    assert table["smallest_film_um", 1.0] < table["smallest_film_um", 50.0]
+    assert table["friction_loss_w", 99.0] > table["friction_loss_w", 50.0]
+    assert ("smallest_film_um", 99.0) not in table.index
+    assert "W of friction and a contact temperature of" in found.summary
+    torques = gearbox.values["contact"]["torques_n_m"]
+    outside = found.content["shares"].set_index("what")["share"].filter(like="outside those")
+    assert samples["unsolved_loss_share"].between(0, 1).all() and len(outside) == 1
+    assert torques[0] == 300  # some meshes of the machine carry less
+    assert outside.iloc[0] == 1.0
+
+
+def test_a_sample_whose_oil_passes_its_flash_point_is_a_row_with_its_error(gearbox):
+    section = {"causes": [fixed("hot", "lubrication.supply_temperature_c", 170.0)], "samples": 1}
+    found = gearbox.with_values({"tolerances": {**section, "chunk_samples": 1}}).tolerances()
+    told = found.samples()["error"].iloc[0]
+    assert "supply_temperature_c = 260.0: must be below the oil's flash point, 246" in told
+
+
+@pytest.mark.parametrize(
+    ("key", "line"),
+    [
+        ("lubrication.supply_temperature", "a key of lubrication whose nominal value is a number"),
+        ("lubrication.pinion.rq_um", "a key of lubrication whose nominal value is a number"),
+        ("lubrication.oil.name", "a key of lubrication whose nominal value is a number"),
+        ("lubrication.oil.viscosities_mm2_s.2", "a key of lubrication whose nominal value is a number"),
+    ],
+)
+def test_a_cause_that_moves_what_the_oil_does_not_have_is_one_line(gearbox, key, line):
+    with pytest.raises(FacegearError, match=line) as caught:
+        gearbox.with_values({"tolerances": {"causes": [cause("one", key, spread=1.0)]}})
+    assert len(str(caught.value).splitlines()) == 1
+
+
+def test_a_cause_that_moves_lubrication_asks_for_the_section(gearbox):
+    moved = [cause("oil", "lubrication.supply_temperature_c", spread=1.0)]
+    with pytest.raises(FacegearError, match="lubrication = null: must be given, as required by tolerances"):
+        gearbox.with_values({"lubrication": None, "tolerances": {"causes": moved}})
+
+
 def test_without_the_section_friction_is_refused_in_one_line(gearbox):
     with pytest.raises(FacegearError, match=r"lubrication = None: must be given, for friction and heat"):
         gearbox.with_values({"lubrication": None}).friction()
