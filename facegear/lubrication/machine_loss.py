@@ -5,7 +5,7 @@ loss is taken of what a mesh carries, never of what the machine is given. A back
 the drive flank and loses alike. To first order in friction the forces are those without it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from typing import Protocol
 
@@ -186,16 +186,29 @@ def machine_loss(pair: Pair, loads: MeshLoads, speed: float) -> MachineLoss:
 
     def step(bulk: Array) -> Array:
         heat = _heat(loads, *_losses(loads, pair.losses(speed, bulk), speed))
-        after = _machine_bulk(loads, heat, cooling, known.oil_temperature)
-        for row, torque in zip(after.tolist(), loads.torque.tolist(), strict=True):
-            require_cool((row[0], row[1]), known, torque, speed)
+        return _machine_bulk(loads, heat, cooling, known.oil_temperature)
+
+    bulk = settled_bulk(step, known, loads.torque, speed)
+    return _evaluated(loads, pair.curves(speed, bulk), speed, bulk)
+
+
+def settled_bulk(step: Callable[[Array], Array], known: Lubrication, torque: Array, speed: float) -> Array:
+    """Bulk temperatures (n, 2) C under torques (n,) N m that `step`, from loss to temperature, leaves alone.
+
+    Raises TooHot where a body passes the oil's flash point, NotConverged.
+    """
+
+    def cool(bulk: Array) -> Array:
+        after = step(bulk)
+        for row, load in zip(after.tolist(), torque.tolist(), strict=True):
+            require_cool((row[0], row[1]), known, load, speed)
         return after
 
-    bulk = fixed_point(step, np.tile(starting_bulk(known), (count, 1)), SETTLED, STEPS)
+    bulk = fixed_point(cool, np.tile(starting_bulk(known), (torque.size, 1)), SETTLED, STEPS)
     if bulk is None:
         what = f"{STEPS} steps of loss and bulk temperature"
         raise NotConverged("bulk temperature", f"{speed:g} rad/s", what)
-    return _evaluated(loads, pair.curves(speed, bulk), speed, bulk)
+    return bulk
 
 
 def _losses(loads: MeshLoads, curves: LossCurves, speed: float) -> tuple[Array, Array]:

@@ -15,19 +15,8 @@ from scipy.optimize import nnls
 
 from facegear.arrays import Array, Integers
 from facegear.contact.pattern import passage
-from facegear.errors import NotConverged
-from facegear.lubrication.fixed_point import fixed_point
-from facegear.lubrication.heat import (
-    SETTLED,
-    STEPS,
-    Local,
-    local_state,
-    mean_flash,
-    require_cool,
-    rubbed,
-    starting_bulk,
-)
-from facegear.lubrication.machine_loss import LossCurves, MeshCurves
+from facegear.lubrication.heat import Local, local_state, mean_flash, rubbed, starting_bulk
+from facegear.lubrication.machine_loss import LossCurves, MeshCurves, settled_bulk
 from facegear.lubrication.places import LoadedContact, Places, joined, taken
 from facegear.lubrication.request import BorrowedBulk, Lubrication
 
@@ -163,16 +152,9 @@ class ReducedPair:
             def step(before: Array) -> Array:
                 flash = local_state(places, speed, known, _spread(few.extreme, before.mean(axis=1))).flash
                 means = [mean_flash(taken(places, part), flash[part]) for part in few.extreme.parts]
-                after = np.repeat(known.oil_temperature + factor * np.array(means), 2).reshape(-1, 2)
-                for torque, row in zip(self.torques.tolist(), after.tolist(), strict=True):
-                    require_cool((row[0], row[1]), known, torque, speed)
-                return after
+                return np.repeat(known.oil_temperature + factor * np.array(means), 2).reshape(-1, 2)
 
-            found = fixed_point(step, bulk, SETTLED, STEPS)
-            if found is None:
-                what = f"{STEPS} steps of loss and bulk temperature"
-                raise NotConverged("bulk temperature", f"{speed:g} rad/s", what)
-            bulk = found
+            bulk = settled_bulk(step, known, self.torques, speed)
         return self._curves(speed, bulk.mean(axis=1)[None]), bulk
 
     def _at_torques(self, bulk: Array) -> Array:
