@@ -3,6 +3,7 @@
 Made of numba's private parts: `compiler.py` lets only known versions of numba come here.
 """
 
+import hashlib
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -38,34 +39,41 @@ class SourcesCache(FunctionCache):
     Numba notices a change of the file a kernel stands in, but not of the kernels it calls in other files, nor
     of the files of the NamedTuples that choose between implementations: these count as well. The index holds
     text alone, so that a process reads it that cannot import what another one had compiled a function for.
-    Of processes that miss the same function one compiles it, and the others wait for what it stores.
+    Of processes that miss the same function for the same types one compiles it, and the others wait for what
+    it stores. They store one after the other: each rewrites the function's index.
     """
 
     def __init__(self, function: Callable[..., Any], text: str) -> None:
         super().__init__(function)
         self._text = text
-        self._turn = f"{function.__module__.rpartition('.')[2]}.{function.__qualname__}.lock"
+        self._turn = f"{function.__module__.rpartition('.')[2]}.{function.__qualname__}"
         self._lock: TextIO | None = None
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         overload = super().load_overload(sig, target_context)
         if overload is None and self._lock is None:
-            self._lock = self._wait()
+            types_hash = hashlib.sha256(str(sig).encode()).hexdigest()[:8]
+            self._lock = self._wait(f"{self._turn}.{types_hash}.lock")
             overload = super().load_overload(sig, target_context)
             if overload is not None:
                 self._end()
         return overload
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        super().save_overload(sig, data)
+        index = self._wait(f"{self._turn}.lock")
+        try:
+            super().save_overload(sig, data)
+        finally:
+            if index is not None:
+                index.close()
         self._end()
 
-    def _wait(self) -> TextIO | None:
-        """The lock of the one process that compiles; None after PATIENCE and where nothing can be written."""
+    def _wait(self, name: str) -> TextIO | None:
+        """The lock that one process may hold; None after PATIENCE and where nothing can be written."""
         end = time.monotonic() + PATIENCE
         with suppress(OSError):
             while time.monotonic() < end:
-                if (lock := hold(Path(self.cache_path) / self._turn)) is not None:
+                if (lock := hold(Path(self.cache_path) / name)) is not None:
                     return lock
                 time.sleep(0.02)
         return None

@@ -42,7 +42,7 @@ FILES = {
         "@kernel\ndef caller(x):\n    return 2.0 * called(x)\n"
     ),
 }
-PRINT = "from caller import caller; print(caller(1.0), sum(caller.stats.cache_hits.values()))"
+PRINT = "from caller import caller; print(caller({of}), sum(caller.stats.cache_hits.values()))"
 
 
 def test_a_kernel_sees_a_change_of_the_kernel_it_calls_in_another_file(tmp_path):
@@ -51,7 +51,7 @@ def test_a_kernel_sees_a_change_of_the_kernel_it_calls_in_another_file(tmp_path)
     path = os.pathsep.join([str(tmp_path), *sys.path])
 
     def run():
-        command = [sys.executable, "-c", PRINT]
+        command = [sys.executable, "-c", PRINT.format(of="1.0")]
         environment = {**os.environ, "PYTHONPATH": path}
         done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
@@ -79,15 +79,29 @@ def test_a_law_without_an_implementation_is_named_in_one_line_with_the_function_
         held_force(Rubber(1.0), 0, 0, 1e-6)
 
 
+def printed_together(folder, *arguments):
+    """What processes print that start together, each with an argument of its own."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(folder), *sys.path])}
+    commands = [[sys.executable, "-c", PRINT.format(of=argument)] for argument in arguments]
+    started = [
+        subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) for command in commands
+    ]
+    return [one.communicate(timeout=60)[0].split() for one in started]
+
+
 def test_of_two_processes_that_start_together_one_compiles(tmp_path):
     for name, text in FILES.items():
         (tmp_path / name).write_text(text)
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])}
-    both = [
-        subprocess.Popen([sys.executable, "-c", PRINT], env=environment, stdout=subprocess.PIPE, text=True)
-        for _ in range(2)
-    ]
-    assert sorted(one.communicate(timeout=60)[0] for one in both) == ["4.0 0\n", "4.0 1\n"]
+    assert sorted(printed_together(tmp_path, "1.0", "1.0")) == [["4.0", "0"], ["4.0", "1"]]
+
+
+def test_what_processes_compile_at_once_for_different_types_is_kept_of_each(tmp_path):
+    """They waited for each other; now they store one after the other, and none takes the other's place."""
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text)
+    arguments = ("1.0", "1", "1j")
+    assert printed_together(tmp_path, *arguments) == [["4.0", "0"], ["4.0", "0"], ["(2+2j)", "0"]]
+    assert printed_together(tmp_path, *arguments) == [["4.0", "1"], ["4.0", "1"], ["(2+2j)", "1"]]
 
 
 def test_machines_of_any_size_run_the_machine_code_that_was_prepared_for_the_smallest(machine_of, layout_of):
