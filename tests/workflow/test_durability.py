@@ -46,7 +46,7 @@ def test_a_killed_run_started_again_gives_the_same_files(quick, tmp_path, seed):
     time.sleep(random.Random(seed).uniform(2.0, 8.0))
     os.killpg(process.pid, signal.SIGKILL)
     process.wait()
-    project.run(*targets, *QUICK)
+    project.run(*targets, *QUICK, warm=True)
     undisturbed, resumed = data_files(quick), data_files(project)
     for target in targets:
         assert resumed[target] == undisturbed[target], target
@@ -71,7 +71,7 @@ def test_a_run_killed_in_the_contact_stage_resumes_and_says_so(quick, tmp_path):
     os.killpg(process.pid, signal.SIGKILL)
     process.wait()
     assert not (tmp_path / "results" / "quick" / "contact" / "contact.provenance.json").exists()
-    done = project.run("results/quick/contact/ltca.csv", *QUICK)
+    done = project.run("results/quick/contact/ltca.csv", *QUICK, warm=True)
     assert "resuming a run that was stopped" in done.stderr
     assert data_files(project) == data_files(quick)
 
@@ -146,7 +146,14 @@ def test_an_altered_intermediate_is_named_with_the_command_that_rebuilds_it(quic
     path.write_bytes(path.read_bytes()[:-20] + b"1" * 20)
     os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
     done = project.run(
-        *QUICK, "--force", "--rerun-triggers", "mtime", "--", f"results/quick/{target}", check=False
+        *QUICK,
+        "--force",
+        "--rerun-triggers",
+        "mtime",
+        "--",
+        f"results/quick/{target}",
+        check=False,
+        warm=True,
     )
     assert done.returncode != 0
     (line,) = [line for line in done.stderr.splitlines() if line.startswith("error in ")]
@@ -160,7 +167,9 @@ def test_the_command_told_with_a_damaged_file_makes_it_again_from_any_folder(qui
     path = tmp_path / "results" / "quick" / "modal" / "shapes.csv"
     whole = path.read_bytes()
     path.write_bytes(whole[: len(whole) // 2])
-    done = project.run(*QUICK, "--force", "--", "results/quick/figures/mode_shapes.svg", check=False)
+    done = project.run(
+        *QUICK, "--force", "--", "results/quick/figures/mode_shapes.svg", check=False, warm=True
+    )
     (line,) = [line for line in done.stderr.splitlines() if line.startswith("error in ")]
     words = shlex.split(line.split("rebuild it with: ")[1].split(" (log: ")[0])
     (tmp_path / "elsewhere").mkdir()
