@@ -1,11 +1,11 @@
 """No config, however broken, ends in a traceback."""
 
 import copy
+import json
 import random
 from pathlib import Path
 
 import pytest
-from ruamel.yaml import YAML
 
 from facegear.config.cases import expand_cases
 from facegear.config.load import load_config
@@ -50,6 +50,11 @@ def mutate(values, chance):
     return changed
 
 
+def as_yaml(values):
+    """JSON, which is YAML too, but for what is no number; written a hundred times sooner."""
+    return json.dumps(values).replace("NaN", ".nan").replace("Infinity", ".inf")
+
+
 @pytest.mark.parametrize("config", CONFIGS, ids=lambda path: path.stem)
 def test_every_config_in_the_project_is_accepted(config):
     assert expand_cases(load_config(config))
@@ -65,7 +70,7 @@ def test_mutated_configs_are_accepted_or_refused_in_clear_lines(config, tmp_path
     path = tmp_path / "mutated.yaml"
     tries = 520 // len(CONFIGS)
     for _ in range(tries):
-        YAML(typ="safe", pure=True).dump(mutate(original, chance), path)
+        path.write_text(as_yaml(mutate(original, chance)), encoding="utf-8")
         try:
             expand_cases(load_config(path))
         except FacegearError as error:
