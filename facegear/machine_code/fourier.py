@@ -26,16 +26,18 @@ inlined = for_callers(**FAST)
 
 class FourierScratch(NamedTuple):
     """powers (rows, harmonics): Taylor coefficients of cos(j s) (even rows) and sin(j s) (odd rows) at 0,
-    shared and only read; parts (2, harmonics, LANES): scratch space.
+    shared and only read; parts (2, harmonics, LANES): scratch space. angles (2, harmonics): cosines and sines
+    of the multiples of an angle.
     """
 
     powers: Array
     parts: Array
+    angles: Array
 
 
 def fourier_scratch(harmonics: int, rows: int) -> FourierScratch:
     """Scratch space for series of up to `harmonics` terms."""
-    return FourierScratch(_powers(harmonics, rows), aligned(2, harmonics, LANES))
+    return FourierScratch(_powers(harmonics, rows), aligned(2, harmonics, LANES), np.zeros((2, harmonics)))
 
 
 @cache
@@ -53,19 +55,35 @@ def fourier_terms(scratch: FourierScratch, series: Array, s: float, rows: int, o
     """Taylor coefficients at s of Fourier series (harmonics + 1, 2, width), sine part first, into out, row
     after row of `width`.
     """
-    terms, _, width = series.shape
-    parts, powers = scratch.parts, scratch.powers
-    span = powers.shape[1]
+    set_angle(scratch, s, series.shape[0])
+    terms_at_angle(scratch, series, rows, out)
+
+
+@inlined
+def set_angle(scratch: FourierScratch, s: float, terms: int) -> None:
+    """Cosines and sines of the first `terms` multiples of s, for terms_at_angle()."""
+    angles = scratch.angles
     cosine, sine = np.cos(s), np.sin(s)
+    cos_j, sin_j = 1.0, 0.0
+    for j in range(terms):
+        angles[0, j], angles[1, j] = cos_j, sin_j
+        cos_j, sin_j = cos_j * cosine - sin_j * sine, cos_j * sine + sin_j * cosine
+
+
+@inlined
+def terms_at_angle(scratch: FourierScratch, series: Array, rows: int, out: Array) -> None:
+    """fourier_terms() at the angle that was set last."""
+    terms, _, width = series.shape
+    parts, powers, angles = scratch.parts, scratch.powers, scratch.angles
+    span = powers.shape[1]
     for c in range(0, width, LANES):
-        cos_j, sin_j = 1.0, 0.0
         for j in range(terms):
+            cos_j, sin_j = angles[0, j], angles[1, j]
             a, b = load(series, 2 * j * width + c), load(series, (2 * j + 1) * width + c)
             even = multiply_add(b, splat(cos_j), multiply(a, splat(sin_j)))
             odd = multiply_add(a, splat(cos_j), multiply(b, splat(-sin_j)))
             store(parts, j * LANES, even)
             store(parts, (span + j) * LANES, odd)
-            cos_j, sin_j = cos_j * cosine - sin_j * sine, cos_j * sine + sin_j * cosine
         for i in range(rows):
             start, row = span * (i % 2), span * i
             # Two sums side by side: one alone would wait for each of its additions.

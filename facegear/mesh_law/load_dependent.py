@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from facegear.arrays import Array, Integers
-from facegear.machine_code.memory import aligned, divided
+from facegear.machine_code.memory import LANES, aligned, divided
 from facegear.mesh_law.law import Held
 
 LOOKS = 8
@@ -210,8 +210,9 @@ class LoadDependentLaw:
         """Scratch space for the coefficients of the pieces and the powers of the amounts."""
         from facegear.mesh_law.load_dependent_terms import LoadDependentSeries
 
-        shapes = dict.fromkeys(LoadDependentSeries._fields, width) | {"four": 4}
-        return LoadDependentSeries(**{name: aligned(rows, shape) for name, shape in shapes.items()})
+        shapes = dict.fromkeys(LoadDependentSeries._fields, (rows, width))
+        shapes |= {"four": (rows, LANES), "filled": (1, width)}
+        return LoadDependentSeries(**{name: aligned(*shape) for name, shape in shapes.items()})
 
 
 def load_dependent_law(tables: Sequence[ForceTable]) -> LoadDependentLaw:

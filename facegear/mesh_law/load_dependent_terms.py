@@ -6,8 +6,8 @@ import numpy as np
 
 from facegear.arrays import Array, Integers
 from facegear.machine_code.compiler import FAST, for_callers
-from facegear.machine_code.fourier import FourierScratch, fourier_terms
-from facegear.machine_code.lanes import add, load, multiply, multiply_add, splat, store
+from facegear.machine_code.fourier import FourierScratch, set_angle, terms_at_angle
+from facegear.machine_code.lanes import LANES, add, load, multiply, multiply_add, splat, store
 from facegear.mesh_law import terms
 from facegear.mesh_law.linear_terms import product_of, product_terms, values_ahead
 
@@ -37,7 +37,12 @@ class LoadDependentTerms(NamedTuple):
 
 class LoadDependentSeries(NamedTuple):
     """slope (rows, width); coefficients of the pieces that the contacts are in, zero where they are open;
-    square and cube of the deflections; four (rows, 4): coefficients of one contact.
+    four (rows, 4): coefficients of one contact. With d the deflection the force is
+
+        zeroth + d rise,   rise = first + d bend,   bend = second + d third,
+
+    and the slope rise + d (2 bend - second); lever holds what is in brackets. filled (1, width): 1 where a
+    contact has coefficients.
     """
 
     slope: Array
@@ -45,9 +50,11 @@ class LoadDependentSeries(NamedTuple):
     first: Array
     second: Array
     third: Array
-    square: Array
-    cube: Array
+    bend: Array
+    rise: Array
+    lever: Array
     four: Array
+    filled: Array
 
 
 @inlined
@@ -87,21 +94,37 @@ def piece_terms(
 ) -> None:
     """The series of the four coefficients of every contact's piece, odd ones on a back flank."""
     four = series.four
+    set_angle(scratch, s, law.table.shape[2])
     for m in range(law.kind.size):
         if state[m] == 0:
-            for i in range(rows):
-                series.zeroth[i, m] = 0.0
-                series.first[i, m] = 0.0
-                series.second[i, m] = 0.0
-                series.third[i, m] = 0.0
+            if series.filled[0, m] == 1.0:
+                _empty(series, m, rows)
             continue
-        fourier_terms(scratch, law.table[law.kind[m], abs(state[m]) - 1], s, rows, four)
+        series.filled[0, m] = 1.0
+        terms_at_angle(scratch, law.table[law.kind[m], abs(state[m]) - 1], rows, four)
         side = 1.0 if state[m] > 0 else -1.0
         for i in range(rows):
             series.zeroth[i, m] = side * four[i, 0]
             series.first[i, m] = four[i, 1]
             series.second[i, m] = side * four[i, 2]
             series.third[i, m] = four[i, 3]
+
+
+@inlined
+def _empty(series: LoadDependentSeries, m: int, rows: int) -> None:
+    """No coefficients for an open contact."""
+    series.filled[0, m] = 0.0
+    for i in range(rows):
+        series.zeroth[i, m] = 0.0
+        series.first[i, m] = 0.0
+        series.second[i, m] = 0.0
+        series.third[i, m] = 0.0
+
+
+@inlined
+def _all_open(state: Integers, c: int) -> bool:
+    """Whether none of the LANES contacts from number c on is in contact."""
+    return state[c] == 0 and state[c + 1] == 0 and state[c + 2] == 0 and state[c + 3] == 0
 
 
 @terms.force_terms.of(LoadDependentTerms)
@@ -113,13 +136,13 @@ def force_terms(
     i: int,
     c: int,
 ) -> terms.Lanes:
-    """The cubic of the deflection."""
+    """The cubic of the deflection; nothing where all contacts are open."""
+    if _all_open(state, c):
+        return splat(0.0)
     at = i * deflection.shape[1] + c
-    store(series.square, at, product_terms(deflection, deflection, i, c))
-    store(series.cube, at, product_terms(series.square, deflection, i, c))
-    total = add(load(series.zeroth, at), product_terms(series.first, deflection, i, c))
-    total = add(total, product_terms(series.second, series.square, i, c))
-    return add(total, product_terms(series.third, series.cube, i, c))
+    store(series.bend, at, add(load(series.second, at), product_terms(series.third, deflection, i, c)))
+    store(series.rise, at, add(load(series.first, at), product_terms(series.bend, deflection, i, c)))
+    return add(load(series.zeroth, at), product_terms(series.rise, deflection, i, c))
 
 
 @terms.force_of.of(LoadDependentTerms)
@@ -132,11 +155,9 @@ def force_of(
     m: int,
 ) -> float:
     """The cubic of the deflection."""
-    series.square[i, m] = product_of(deflection, deflection, i, m)
-    series.cube[i, m] = product_of(series.square, deflection, i, m)
-    total = series.zeroth[i, m] + product_of(series.first, deflection, i, m)
-    total += product_of(series.second, series.square, i, m)
-    return total + product_of(series.third, series.cube, i, m)
+    series.bend[i, m] = series.second[i, m] + product_of(series.third, deflection, i, m)
+    series.rise[i, m] = series.first[i, m] + product_of(series.bend, deflection, i, m)
+    return series.zeroth[i, m] + product_of(series.rise, deflection, i, m)
 
 
 @terms.slope_terms.of(LoadDependentTerms)
@@ -149,12 +170,15 @@ def slope_terms(
 ) -> None:
     """The derivative of the cubic."""
     width = deflection.shape[1]
-    two, three = splat(2.0), splat(3.0)
-    for i in range(order + 1):
-        for c in range(0, width, 4):
+    two, minus = splat(2.0), splat(-1.0)
+    for c in range(0, width, LANES):
+        if _all_open(state, c):
+            continue
+        for i in range(order + 1):
             at = i * width + c
-            total = multiply_add(two, product_terms(series.second, deflection, i, c), load(series.first, at))
-            total = multiply_add(three, product_terms(series.third, series.square, i, c), total)
+            lever = multiply_add(minus, load(series.second, at), multiply(two, load(series.bend, at)))
+            store(series.lever, at, lever)
+            total = add(load(series.rise, at), product_terms(series.lever, deflection, i, c))
             store(series.slope, at, total)
 
 
