@@ -9,7 +9,7 @@ from facegear.config.stiffness import MeshStiffness, stiffness_request
 from facegear.config.tooth_pair import ToothPair, pair
 from facegear.contact.gear_flank import from_arrays
 from facegear.contact.ltca import ContactModel, even_positions, loaded_contact
-from facegear.contact.options import ContactPlan
+from facegear.contact.options import ContactOptions
 from facegear.contact.pair import contact_model
 from facegear.contact.position import LoadedPosition
 from facegear.errors import FacegearError
@@ -24,6 +24,8 @@ from facegear.stiffness.load_dependent import (
     level_table,
 )
 from facegear.stiffness.request import StiffnessRequest
+
+DEFAULT = ContactOptions()
 
 
 def mesh_law(
@@ -45,7 +47,10 @@ def mesh_law(
     model = contact_model(design, from_arrays(pinion), from_arrays(face_gear))
     different, numbers = distinct_errors(design.assembly)
     scale = _scale(ltca, request)
-    solved = [_contacts(model.assembled(one), plan, plan.torques[-1] / scale) for one in different]
+    largest = plan.torques[-1] / scale
+    solved = [
+        flank_contacts(model.assembled(one), plan.positions, largest, plan.options) for one in different
+    ]
     tables, errors = fitted_tables(solved, request.kept)
     tables = [table.scaled(scale) for table in tables]
     levels = level_table(tables, errors, numbers, design.pinion_base_radius)
@@ -58,14 +63,20 @@ def mesh_law(
     return Outcome({"law": law_arrays(tables, numbers), "levels": levels}, told)
 
 
-def _contacts(model: ContactModel, plan: ContactPlan, largest: float) -> FlankContacts:
+def flank_contacts(
+    model: ContactModel, positions: int, largest: float, options: ContactOptions = DEFAULT
+) -> FlankContacts:
+    """Contact of a flank at so many even positions of a pitch, for a law up to the largest torque (N m).
+
+    Raises NotConverged naming position and torque, FacegearError where teeth interfere.
+    """
     torques = law_torques(largest)
-    found = loaded_contact(model, even_positions(plan.positions), torques, plan.options)
+    found = loaded_contact(model, even_positions(positions), torques, options)
     if any(np.isnan(one.k_average) for one in found):
         raise FacegearError("mesh law: there is none, as the teeth interfere")
 
     def by_torque(values: list[float]) -> np.ndarray:
-        return np.array(values).reshape(plan.positions, len(torques)).T
+        return np.array(values).reshape(positions, len(torques)).T
 
     def approach(one: LoadedPosition) -> float:
         return one.ste - one.unloaded

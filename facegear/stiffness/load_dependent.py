@@ -32,8 +32,9 @@ LIGHTEST = 1.0 / 32.0
 EXPONENT = 1.3
 """Of the force over the deflection, roughly: with it levels lie evenly in the root of the deflection."""
 INTERVALS = 12
-"""Between the torques that are solved; levels are every fourth, third or second of them."""
-STRIDES = (4, 3, 2)
+"""Between the torques that are solved."""
+CHOICES = ((0, 4, 8, 12), (0, 4, 7, 10, 12), (0, 2, 5, 7, 9, 12), (0, 2, 4, 6, 8, 10, 12))
+"""Those of them that give levels, the fewest first: a motion stops at every level that it passes."""
 REACH = 1.2
 """Largest torque solved over the one that the law is to reach at every position of the pitch."""
 BELOW = (0.5, 0.25, 0.125)
@@ -54,11 +55,10 @@ class FlankContacts:
     deflections: Array
     slopes: Array
 
-    def every(self, stride: int) -> "FlankContacts":
-        """Every so many of the forces, the last one included."""
-        return FlankContacts(
-            *(part[::-1][::stride][::-1] for part in (self.forces, self.deflections, self.slopes))
-        )
+    def at(self, rows: Sequence[int]) -> "FlankContacts":
+        """Some of the forces."""
+        chosen = list(rows)
+        return FlankContacts(self.forces[chosen], self.deflections[chosen], self.slopes[chosen])
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,8 +95,8 @@ def fitted_tables(flanks: Sequence[FlankContacts], orders: int) -> tuple[list[Fo
     orders: harmonics kept, at most as many as the positions give. Raises FacegearError where the force falls
     while the deflection grows.
     """
-    for stride in STRIDES:
-        tables = [force_table(flank.every(stride), orders) for flank in flanks]
+    for rows in CHOICES:
+        tables = [force_table(flank.at(rows), orders) for flank in flanks]
         errors = [table_error(*both) for both in zip(tables, flanks, strict=True)]
         if all(error.meets_aim for error in errors):
             break
@@ -123,7 +123,10 @@ def force_table(contacts: FlankContacts, orders: int) -> ForceTable:
         _series(np.concatenate([nothing, lower_slopes, slopes]), kept),
     )
     if table.least_slope < -ROUNDING * table.steepest:
-        raise FacegearError(f"mesh law: the force falls with the deflection, by {table.least_slope:.4g} N/m")
+        raise FacegearError(
+            f"mesh law: the force falls with the deflection, by {table.least_slope:.4g} N/m: the mesh of the "
+            f"flanks is too coarse for the lightest contact, {contacts.forces[0]:.3g} N"
+        )
     return table
 
 

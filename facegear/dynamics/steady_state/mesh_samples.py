@@ -51,9 +51,12 @@ def mesh_forces(system: System, each: Array, per_period: int) -> Array:
 
 
 def past_law(system: System, each: Array) -> Array:
-    """Fraction of samples (contacts,) at which a contact is pressed in past the last level of its law."""
+    """Fraction of samples (meshes,) at which a mesh is pressed in past the last level of its law, by the
+    flank that is so more often.
+    """
     contacts = system.contacts
-    return past_levels(system.law, beyond_edges(each, system.lower[:contacts], system.upper[:contacts]))
+    past = past_levels(system.law, beyond_edges(each, system.lower[:contacts], system.upper[:contacts]))
+    return past.reshape(2, -1).max(axis=0) if system.two_flanks else past
 
 
 def mesh_shares(system: System, shares: Array, each: Array) -> Array:

@@ -80,7 +80,9 @@ class SteadyState:
 
     @property
     def past_law(self) -> Array:
-        """Fraction of samples (contacts,) at which a contact is pressed in past the last level of its law."""
+        """Fraction of samples (meshes,) at which a mesh is pressed in past the last level of its law."""
+        if self.system.law.straight:
+            return np.zeros(self.deflections.shape[1])
         return past_law(self.system, each_deflection(self.system, self.coordinates, self.per_period))
 
     @property

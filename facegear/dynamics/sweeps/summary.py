@@ -24,7 +24,7 @@ def response_summary(response: SteadyState) -> str:
             f"largest exponent {response.exponent[0]:.3f} +- {response.exponent[1]:.3f} a mesh period"
         )
     parts.append(f"open for up to {100.0 * response.shares[0].max():.0f} % of the time")
-    past = 0.0 if response.system.law.straight else float(response.past_law.max())
+    past = float(response.past_law.max())
     if past > 0.0:
         parts.append(f"past the mesh law's last level for up to {100.0 * past:.2g} % of the time")
     pull = float(response.averages.pull.max())

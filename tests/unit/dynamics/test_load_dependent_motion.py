@@ -15,6 +15,8 @@ from scipy.integrate import simpson
 from scipy.interpolate import CubicHermiteSpline
 
 from facegear.dynamics.branches.continuation import ContinuationSettings, branch_at
+from facegear.dynamics.branches.family import Family
+from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.special import Kind
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.steady_state.orbits import monodromy
@@ -260,3 +262,39 @@ def test_a_small_vibration_of_one_pair_has_the_frequency_of_the_local_stiffness(
     matrix, _ = monodromy(Integrator(system, frequency, 1e-14), np.array([[force / average], [0.0]]), 1)
     angle = np.abs(np.angle(np.linalg.eigvals(matrix))).max()
     assert 4.0 * local * angle / (2.0 * np.pi) == pytest.approx(local, rel=1e-6)
+
+
+def test_rattle_without_a_mean_load_meets_both_flanks_alike():
+    """A mirror image of itself half a period later; each flank in contact for the same time."""
+    system = oscillator(power_table_law(100, first=1e-4), 0.05, 1.0, 0.0, -0.3, 0.3)
+    period_map = PeriodMap(Family("W", lambda speed: (system, speed)), 1, 1e-12)
+    point = orbit(period_map, 0.8, 1.5, 0.0)
+    integrator = Integrator(system, 0.8, 1e-12)
+    run = integrator.run(integrator.by_phase(period_map.state(point.z, point.u)), 1, samples=64)
+    place = run.samples[:, 0]
+    assert place.max() > 0.4
+    np.testing.assert_allclose(place[32:], -place[:32], rtol=0, atol=1e-9)
+    assert run.fractions[1, 0] == pytest.approx(run.fractions[2, 0], abs=1e-9)
+    assert 0.0 < run.fractions[0, 0] < 1.0
+
+
+@pytest.mark.parametrize("amplitude", [0.02, 0.08])
+def test_within_a_tenth_of_the_load_the_motion_is_that_of_the_local_stiffness_but_for_its_curvature(
+    amplitude,
+):
+    """The curvature of the law over the motion bounds what a constant local stiffness misses."""
+    speed, damping, local = 0.3, 0.02, 1.5
+    law = power_table_law(300, first=1e-3)
+    period_map = law_period_map(law, damping, amplitude)
+    point = orbit(period_map, speed, 1.0, 0.0)
+    integrator = Integrator(oscillator(law, damping, amplitude), speed, 1e-12)
+    state = integrator.by_phase(period_map.state(point.z, point.u))
+    moved = integrator.run(state, 1, samples=128).samples[:, 0]
+    phases = 2.0 * np.pi * np.arange(128) / 128
+    response = amplitude / (local - speed**2 + 2j * damping * speed)
+    linear = 1.0 + (response * np.exp(1j * phases)).real
+    assert np.abs(moved - 1.0).max() < 0.1 / local
+    curvature = np.abs(1.5 * np.sqrt(moved) / local - 1.0).max()
+    missed = np.abs(moved - linear).max() / np.abs(response)
+    assert missed < curvature * local / (local - speed**2)
+    assert missed > 0.1 * curvature

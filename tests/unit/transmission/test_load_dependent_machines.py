@@ -8,12 +8,14 @@ from force_tables import power_table
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
+from facegear.mesh_law.load_dependent import ForceTable
 from facegear.transmission.flanks import constant_errors, flank_gaps, flank_law
 from facegear.transmission.layout import Role, Side
 from facegear.transmission.loaded_contacts import loaded_contacts
-from facegear.transmission.loaded_modes import loaded_modes
+from facegear.transmission.loaded_modes import loaded_modes, vibrating_machine
 from facegear.transmission.machine import FlankTables
 from facegear.transmission.matrices import bearing_matrix, flank_directions, mass_diagonal
+from facegear.transmission.modal_tables import contact_table
 from facegear.transmission.statics import equilibria, mean_equilibrium, static_equilibrium
 from facegear.transmission.teeth import GEOMETRIC
 
@@ -107,3 +109,28 @@ def test_factors_of_single_meshes_scale_the_whole_law():
         for one in (machine, replace(machine, imperfections=errors))
     ]
     np.testing.assert_allclose(forces[1], forces[0] * np.tile(errors.stiffness, 2), rtol=1e-12)
+
+
+def test_a_table_of_one_torque_gives_the_deflection_and_the_slope_of_that_torque_back():
+    """Hermite cubic from the first touch to its only level, straight beyond."""
+    force = 600.0 / made(PINIONS[:1], (Side.UPPER,)).layout.pinion_arm
+    mean, amount = np.array([[0.0], [1.0]]), 30e-6
+    levels = np.array([0.0, amount])
+    forces, slopes = np.array([0.0, force]), np.array([0.0, 1.3 * force / amount])
+    table = ForceTable(levels, np.multiply.outer(forces, mean), np.multiply.outer(slopes, mean))
+    machine = made(PINIONS[:1], (Side.UPPER,), table=table)
+    found = static_equilibrium(machine)
+    pressed = (flank_directions(machine.layout) @ found.displacements)[0] - machine.half_backlash
+    assert pressed == pytest.approx(amount, rel=1e-9)
+    assert loaded_contacts(machine).stiffness[0] == pytest.approx(1.3 * force / amount, rel=1e-6)
+
+
+def test_a_torque_beyond_the_table_is_reported_and_goes_on_straight():
+    last = power_table(200, 0.0, 1e-7, 3e-5, C, N)
+    below, beyond = (made(PINIONS[:1], (Side.UPPER,), torque, last) for torque in (600.0, 6000.0))
+    assert not loaded_contacts(below).past_law.any()
+    contacts = loaded_contacts(beyond)
+    assert contacts.past_law.tolist() == [True, False]
+    assert contacts.stiffness[0] == pytest.approx(N * C * 3e-5 ** (N - 1.0), rel=1e-9)
+    found = vibrating_machine(beyond)
+    assert contact_table(beyond, found, "local").iloc[0]["definition"] == "local, past the law's last level"
