@@ -71,7 +71,8 @@ def distribution_figure(samples: pd.DataFrame, percentiles: pd.DataFrame) -> Fig
             axis.set_xlabel(in_words(name))
             axis.locator_params(axis="x", nbins=6)
         figure.supylabel("Share of samples above (%)", fontsize=9)
-        figure.suptitle("Dotted, dashed, solid: 50 %, 95 % and 99 % are no worse", fontsize=9)
+        above = " (film: above)" if "smallest_film_um" in names else ""
+        figure.suptitle(f"Distributions; lines: 50 %, 95 % and 99 % stay below{above}", fontsize=9)
     return figure
 
 
