@@ -7,6 +7,7 @@ from facegear.config.buildable import preloads
 from facegear.config.checks import geometric_backlash
 from facegear.config.lumped_model import lumped_sections
 from facegear.config.tooth_pair import ToothPair
+from facegear.geometry.design import BACKLASH_DIFFERS_UM
 
 PRINTED = (
     "transmission.mesh_kinematics = printed: equation (13) of the source paper to the letter, to compare "

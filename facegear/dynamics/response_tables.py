@@ -9,6 +9,7 @@ from facegear.dynamics.steady_state.spectra import HIGHEST, spectrum
 from facegear.dynamics.sweeps.sweep import collect
 from facegear.dynamics.sweeps.sweep_tables import UM, sweep_table
 from facegear.transmission.layout import Layout
+from facegear.transmission.machine import Machine
 
 SHOWN_PERIODS = 32
 
@@ -30,6 +31,17 @@ def response_table(layout: Layout, response: SteadyState) -> pd.DataFrame:
         for m, name in enumerate(layout.mesh_names)
     ]
     return pd.concat(frames, ignore_index=True)
+
+
+def losses_in_motion(machine: Machine, response: pd.DataFrame, speed_rpm: float) -> dict[str, float]:
+    """Mean loss (W) of each mesh by name, of a machine with friction; `response`: its response_table()."""
+    layout, friction = machine.layout, machine.friction
+    if friction is None:
+        raise ValueError("a machine with friction is needed")
+    forces = response["elastic_force_n"].to_numpy().reshape(len(layout.meshes), -1).T
+    cycles = response["mesh_cycle"].to_numpy()[: len(forces)]
+    taken = friction.loss(machine.phases, cycles, forces).mean(axis=0)
+    return dict(zip(layout.mesh_names, speed_rpm * TAU / 60.0 * layout.pinion_arm * taken, strict=True))
 
 
 def spectrum_table(layout: Layout, response: SteadyState) -> pd.DataFrame:

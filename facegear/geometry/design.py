@@ -21,6 +21,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from math import cos, pi, sqrt, tan
 
+BACKLASH_DIFFERS_UM = 1.0
+"""Difference between a backlash that is given and that of the teeth as assembled that is worth a note."""
+
 
 def involute(angle: float) -> float:
     """inv a = tan a - a (rad)."""

@@ -20,7 +20,7 @@ def curves_compared(
         top.plot(old[x], old[y], "-", color="tab:blue", lw=2.2, alpha=0.6, label="old")
         top.plot(new[x], new[y], "--", color="k", lw=1.1, label="new")
         top.set(ylabel=labels[1])
-        legend_above(top, 2)
+        legend_above(top, 2, right=True)
         bottom.axhline(0.0, color="0.6", lw=0.8)
         bottom.plot(both[x], both[f"{y}_new"] - both[f"{y}_old"], "-", color="tab:red", lw=1.2)
         bottom.set(xlabel=labels[0], ylabel="new - old")

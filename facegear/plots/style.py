@@ -48,6 +48,7 @@ def save(figure: Figure, *paths: str | Path) -> None:
     plt.close(figure)
 
 
-def legend_above(axis: Axes, columns: int) -> None:
-    """The legend of an axis over it, where it hides no curve."""
-    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.2)
+def legend_above(axis: Axes, columns: int, right: bool = False) -> None:
+    """The legend of an axis over it, where it hides no curve; `right`: clear of the offset of its ticks."""
+    loc, corner = ("lower right", (1.0, 1.0)) if right else ("lower left", (0.0, 1.0))
+    axis.legend(loc=loc, bbox_to_anchor=corner, ncols=columns, borderaxespad=0.2)

@@ -8,12 +8,12 @@ import pandas as pd
 
 from facegear.contact.columns import FILLET_CONTACT
 from facegear.contact.hertz import DENTED
+from facegear.geometry.design import BACKLASH_DIFFERS_UM
 from facegear.report.machine import BALANCED, key_numbers, rated
 from facegear.report.page import Chapter, Picture, Table, scientific
 
 POSITIONS_MATTER = 0.05
 """Relative change of a peak-to-peak value with half of the positions that is worth a warning."""
-BACKLASH_DIFFERS_UM = 1.0
 LISTED = 6
 """Names that a warning lists at most."""
 

@@ -13,6 +13,7 @@ from facegear.config.machines import wired_machine
 from facegear.config.strength import Strength
 from facegear.config.tooth_pair import ToothPair
 from facegear.config.transmission import Transmission
+from facegear.dynamics.response_tables import losses_in_motion
 from facegear.lubrication import machine_loss as losses
 from facegear.lubrication.machine_loss import LoadedPair, MeshLoads
 from facegear.lubrication.machine_tables import (
@@ -75,17 +76,6 @@ def machine_loss(
         bins = ", ".join(str(number) for number in beyond)
         told = f"{told}; bins with loads outside the torques of the contact analysis: {bins}"
     return Outcome(content, told)
-
-
-def losses_in_motion(machine: Machine, response: pd.DataFrame, speed_rpm: float) -> dict[str, float]:
-    """Mean loss (W) of each mesh by name, of a machine with friction; `response`: its elastic forces."""
-    layout, friction = machine.layout, machine.friction
-    if friction is None:
-        raise ValueError("a machine with friction is needed")
-    forces = response["elastic_force_n"].to_numpy().reshape(len(layout.meshes), -1).T
-    cycles = response["mesh_cycle"].to_numpy()[: len(forces)]
-    taken = friction.loss(machine.phases, cycles, forces).mean(axis=0)
-    return dict(zip(layout.mesh_names, speed_rpm * pi / 30 * layout.pinion_arm * taken, strict=True))
 
 
 def _states(

@@ -8,6 +8,7 @@ from contact_patterns import line_arrays
 from matplotlib.text import Text
 
 from facegear.contact.columns import LTCA_COLUMNS, SHARES
+from facegear.plots.compare import curves_compared
 from facegear.plots.contact import closed, contact_pattern
 from facegear.plots.dynamics import drawn_machine
 from facegear.plots.load_sharing import sharing_figure
@@ -124,6 +125,18 @@ def test_inputs_named_under_a_load_sharing_figure_stay_inside_it_and_leave_its_a
             assert whole.x0 <= box.x0 and box.x1 <= whole.x1, text.get_text()
     (axis,) = figure.axes
     assert axis.get_legend().get_window_extent().y1 <= axis.xaxis.label.get_window_extent().y0
+    plt.close(figure)
+
+
+def test_the_legend_of_curves_compared_leaves_the_offset_of_their_numbers_free():
+    x = np.linspace(0.0, 1.0, 9)
+    old, new = (pd.DataFrame({"x": x, "k": 4.1e8 + 1e3 * np.sin(factor * x)}) for factor in (7.0, 8.0))
+    figure = curves_compared(old, new, "x", "k", ("position", "stiffness (N/m)"), "tvms.csv")
+    figure.canvas.draw()
+    top = figure.axes[0]
+    offset = top.yaxis.get_offset_text()
+    assert offset.get_text()
+    assert not offset.get_window_extent().overlaps(top.get_legend().get_window_extent())
     plt.close(figure)
 
 
