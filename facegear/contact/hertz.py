@@ -1,6 +1,6 @@
 """Hertz pressure of a strip of contact from the load it carries per length and its relative curvature.
 
-Source: Johnson, Contact Mechanics, chapter 4, for a semi-elliptic pressure over a half-width b across the
+Source: Johnson 1985, chapter 4, for a semi-elliptic pressure over a half-width b across the
 contact line and a half-length a along it. Both the line contact (a far above b) and the sphere (a = b) are
 met exactly.
 """
@@ -34,7 +34,7 @@ def contact_modulus(materials: tuple[Material, Material]) -> float:
 def longer_semi_axis(force: float, across: float, along: float, modulus: float) -> float:
     """Semi-axis (m) of the ellipse under a force (N), along the smaller of two curvatures (1/m) `along`.
 
-    Of bodies curved alike both ways it is that of a sphere. Source: Johnson, chapter 4.
+    Of bodies curved alike both ways it is that of a sphere. Source: Johnson 1985, chapter 4.
     """
 
     def parts(ratio: float) -> tuple[float, float]:

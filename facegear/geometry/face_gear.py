@@ -2,7 +2,7 @@
 
 Everything is for the right flank of tooth 0 in the gear body frame (see `design`); the left flank its mirror
 image x -> -x. th is the roll angle of the shaper's involute, psi = phi_s + th + th_os the slope of the common
-normal. Source: shaper-generated face gears (Litvin and Fuentes, Gear Geometry and Applied Theory, ch. 18),
+normal. Source: shaper-generated face gears (Litvin and Fuentes 2004, chapter 18),
 with the contact condition solved for the axial coordinate: q = r_b / (m2s cos psi). A tip rounded about a
 centre at R_c, which stands chi from the vertical, generates with the same slope psi where
 q = R_c cos(chi - psi) / (m2s cos psi); a sharp tip edge is the rounding of radius zero.

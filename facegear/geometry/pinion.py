@@ -2,7 +2,7 @@
 
 Everything is for the right flank of tooth 0 in the pinion body frame (see `design`): polar angle a from the
 tooth's centre line, so x = r sin a, z = -r cos a. The left flank is the mirror image a -> -a.
-Sources: involute geometry (Litvin and Fuentes, Gear Geometry and Applied Theory, ch. 10); the trochoid is the
+Sources: involute geometry (Litvin and Fuentes 2004, chapter 10); the trochoid is the
 envelope of the rack's tip circle, whose normals pass through the pitch point.
 """
 

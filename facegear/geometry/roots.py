@@ -14,7 +14,7 @@ ROUNDING = 4 * sys.float_info.epsilon
 def root(function: Callable[[float], float], low: float, high: float, tolerance: float = 0.0) -> float:
     """Where `function` changes its sign between `low` and `high`, to `tolerance` or the rounding of the ends.
 
-    False position by the Illinois rule (Dowell and Jarratt, BIT 11, 1971), a bisection wherever two steps
+    False position by the Illinois rule (Dowell and Jarratt 1971), a bisection wherever two steps
     have not halved the bracket. Raises ValueError if the signs at both ends are the same.
     """
     at_low, at_high = function(low), function(high)

@@ -15,7 +15,7 @@ def line_film(
     pressure_coefficient: Numbers,
     reduced_modulus: float,
 ) -> Array:
-    """Smallest film (m) of a line contact: Dowson and Higginson, 2.65 R U^0.7 G^0.54 W^-0.13.
+    """Smallest film (m) of a line contact: Dowson and Higginson 1966, 2.65 R U^0.7 G^0.54 W^-0.13.
 
     radius m, entrained (u1 + u2)/2 across the line m/s, line_load N/m, viscosity Pa s, coefficient 1/Pa,
     reduced_modulus E_r Pa.
@@ -38,8 +38,8 @@ def elliptic_film(
 ) -> Array:
     """Smallest film (m) of an elliptic contact rolled across its longer axis.
 
-    Hamrock and Dowson, 3.63 R U^0.68 G^0.49 W^-0.073 (1 - e^-0.68k). force N, ellipticity k: the axis along
-    the line over that across it.
+    Hamrock and Dowson 1977: 3.63 R U^0.68 G^0.49 W^-0.073 (1 - e^-0.68k). force N, ellipticity k: the axis
+    along the line over that across it.
     """
     radius, k = np.asarray(radius, float), np.asarray(ellipticity, float)
     speed = np.asarray(viscosity, float) * entrained / (reduced_modulus * radius)
@@ -57,7 +57,7 @@ def shear_heating(
     conductivity: Numbers,
     reduced_modulus: float,
 ) -> Array:
-    """What heating by shear in the inlet leaves of the film (Gupta, Cheng, Zhu, Forster, Schrand 1992).
+    """What heating by shear in the inlet leaves of the film (Gupta et al. 1992).
 
     `(1 - 13.2 p/E_r L^0.42)/(1 + 0.213 (1 + 2.23 |SR|^0.83) L^0.64)` with L = eta beta u_e^2/k; p the largest
     pressure Pa, beta = -d ln nu/dT 1/K, k of the oil W/(m K).

@@ -157,7 +157,7 @@ class BenedictKelley:
 
 @dataclass(frozen=True)
 class Xu:
-    """Xu's regression of elastohydrodynamic traction (2005): one 75W-90 oil."""
+    """Regression of elastohydrodynamic traction (Xu 2005): one 75W-90 oil."""
 
     name: str = "xu"
     by_film: ClassVar = False
@@ -173,7 +173,7 @@ class Xu:
 
 @dataclass(frozen=True)
 class Doleschel:
-    """Solid and fluid friction by the film's share of the load (Doleschel 2002).
+    """Solid and fluid friction by the film's fraction of the load (Doleschel 2002).
 
     xi mu_F + (1 - xi) mu_EHD, xi = (1 - lambda/2)^2 below lambda = 2, with p in 1000 MPa and eta in mPa s
     at the oil's temperature: mu_F = solid p^solid_pressure v_S^solid_speed and mu_EHD = fluid

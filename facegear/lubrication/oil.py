@@ -25,7 +25,7 @@ REFERENCE = 15.0
 
 @dataclass(frozen=True)
 class PowerOfViscosity:
-    """Pressure coefficient s nu^t in 1/GPa, nu in mm2/s (Gold, Schmidt, Dicke, Loos, Assmann 2001)."""
+    """Pressure coefficient s nu^t in 1/GPa, nu in mm2/s (Gold et al. 2001)."""
 
     scale: float
     exponent: float

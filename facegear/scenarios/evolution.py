@@ -1,4 +1,7 @@
-"""Pareto fronts by evolution (NSGA-II of pymoo): every design is written down, so that a kill costs none."""
+"""Pareto fronts by evolution (NSGA-II of pymoo, Deb et al. 2002).
+
+Every design is written down, so that a kill costs none.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

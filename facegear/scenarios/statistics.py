@@ -38,7 +38,7 @@ def percentile(values: Array, probability: float, confidence: float = 0.95) -> E
 
 
 def fraction_of(hits: Mask, confidence: float = 0.95) -> Estimate:
-    """Share of samples for which something holds, with Wilson's interval."""
+    """Share of samples for which something holds, with its interval (Wilson 1927)."""
     count, counts = hits.size, int(hits.sum())
     interval = scipy.stats.binomtest(counts, count).proportion_ci(confidence, method="wilson")
     return Estimate(counts / count, float(interval.low), float(interval.high))
@@ -57,7 +57,8 @@ class SobolIndices:
 def sobol_indices(
     values: Array, causes: int, confidence: float = 0.95, seed: int = 0, resamples: int = RESAMPLES
 ) -> SobolIndices:
-    """Sobol indices of one output from the results (samples,) of Saltelli's design, in its order.
+    """Sobol indices of one output from the results (samples,) of Saltelli's design (Saltelli et al. 2010), in
+    its order.
 
     Blocks that hold a failed sample (NaN) are left out and counted. The first of the others are used, as many
     as the largest power of two: SciPy's estimator asks for that. Intervals are bootstrapped over blocks.

@@ -1,4 +1,4 @@
-"""Damage of a duty cycle by Miner's rule, and reliability by a Weibull distribution."""
+"""Damage of a duty cycle by Miner's rule (Miner 1945), and reliability by a Weibull distribution."""
 
 from math import log, nan
 

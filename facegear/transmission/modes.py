@@ -77,7 +77,7 @@ def _turning(linear: LinearModel, stiffness: Array, speed: float) -> Modes:
     """Modes of turning bodies: x'' + G x' + K x = 0 in mass-normalised coordinates x.
 
     With u = K^(1/2) x and v = x' this is (u, v)' = S (u, v), S = [[0, K^(1/2)], [-K^(1/2), -G]], which is
-    skew-symmetric: all motions are harmonic, with complex shapes (Meirovitch, AIAA Journal 12, 1974).
+    skew-symmetric: all motions are harmonic, with complex shapes (Meirovitch 1974).
     """
     assert linear.spin is not None
     inverse = np.linalg.inv(np.linalg.cholesky(linear.mass))

@@ -1,4 +1,4 @@
-"""One tooth of a gear condensed onto what is loaded and what is shared with its neighbours."""
+"""One tooth of a gear condensed onto what is loaded and what is shared with its neighbours (Guyan 1965)."""
 
 from dataclasses import dataclass, field
 

@@ -1,4 +1,8 @@
-"""Following a branch of periodic motions through folds until it ends."""
+"""Following a branch of periodic motions through folds until it ends.
+
+Pseudo-arclength continuation (Keller 1977): the parameter is an unknown like the state, a step goes along the
+tangent of the branch, and Newton's method comes back to the branch across it (points.py).
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace

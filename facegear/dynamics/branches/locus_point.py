@@ -1,4 +1,7 @@
-"""A point of a locus of folds or period doublings in the plane of two parameters, by Newton's method."""
+"""A point of a locus of folds or period doublings in the plane of two parameters, by Newton's method.
+
+The test that vanishes on the locus is the last unknown of a bordered system (Govaerts 2000).
+"""
 
 from dataclasses import dataclass, replace
 

@@ -1,4 +1,7 @@
-"""A periodic motion on a branch, found by Newton's method bordered by one condition."""
+"""A periodic motion on a branch, found by Newton's method bordered by one condition.
+
+The bordered matrix stays regular at folds (Keller 1977); multipliers tell stability (Seydel 2010).
+"""
 
 from dataclasses import dataclass
 from functools import cached_property

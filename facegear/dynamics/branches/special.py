@@ -1,4 +1,7 @@
-"""Special points of a branch: what they are and what proves them."""
+"""Special points of a branch: what they are and what proves them.
+
+Folds and doublings: Seydel 2010; grazing: di Bernardo et al. 2008.
+"""
 
 from dataclasses import dataclass
 from enum import StrEnum

@@ -1,4 +1,8 @@
-"""From one branch onto another: doubled periods, broken symmetry, any motion that was found."""
+"""From one branch onto another: doubled periods, broken symmetry, any motion that was found.
+
+The new branch is sought beside the special point, along the null vector of M + I or M - I (Doedel et al.
+1991), M the matrix of the period map.
+"""
 
 from dataclasses import replace
 
@@ -54,7 +58,7 @@ def _from(
 def through(period_map: PeriodMap, state: State, value: float, run: ContinuationSettings) -> Branch:
     """The branch through the orbit next to a state (displacement, velocity by time) at a parameter.
 
-    Raises NotConverged if Newton's method finds none. flow.period must be the orbit's own.
+    Raises NotConverged if Newton's method finds none. The map's period must be the orbit's own.
     """
     u = float(np.log(value))
     return follow(period_map, at_parameter(period_map, period_map.weighted(state, u), u), run)

@@ -1,4 +1,8 @@
-"""First zero of a polynomial in an interval, certain to be found or excluded (Bernstein subdivision)."""
+"""First zero of a polynomial in an interval, certain to be found or excluded.
+
+Bernstein coefficients bound the polynomial, and the interval is halved until they have one change of sign or
+none (Lane and Riesenfeld 1981).
+"""
 
 from functools import cache
 

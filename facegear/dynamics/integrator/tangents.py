@@ -22,9 +22,8 @@ from facegear.mesh_law.terms import is_curved
 def switch_tangents(packed: Packed, work: Work, acting: Array, tangents: Array) -> None:
     """Saltation: where the mesh damping starts or stops the velocity part shears by G^T (c- - c+) G.
 
-    The law alone gives none, since its force is continuous at every level (Leine and Nijmeijer, Dynamics and
-    Bifurcations of Non-Smooth Mechanical Systems, 2004). Neither do flanks that part where a contact only
-    pushes: their force was zero before.
+    The law alone gives none, since its force is continuous at every level (Leine and Nijmeijer 2004). Neither
+    do flanks that part where a contact only pushes: their force was zero before.
     """
     ring_switches(packed.rings, packed, work, acting, tangents)
     for m in range(packed.contacts):

@@ -145,7 +145,9 @@ def _ring(packed: Packed, work: Work, i: int, deflection: Array, tangent: bool) 
 
 @inlined
 def step_length(packed: Packed, work: Work, tolerance: float) -> float:
-    """Step at which each of the last two terms is below the tolerance times the system's length scale."""
+    """Step at which each of the last two terms is below the tolerance times the system's length scale (Jorba
+    and Zou 2005).
+    """
     n = packed.omega_squared.size
     target = tolerance * packed.scale
     longest = 1e300

@@ -46,6 +46,7 @@ class Exponent:
 def largest_exponent(integrator: Integrator, state: Array, settings: Settings) -> Exponent:
     """Largest exponent from a state (2, n) by phase, by one tangent vector over the settings' window.
 
+    The vector is brought back to length one after every period (Parker and Chua 1989).
     While it cannot be told from zero the run is doubled, window by window, up to `extensions` times.
     """
     tangent = np.random.default_rng(0).normal(size=(1, *state.shape))
@@ -87,7 +88,7 @@ def smooth_mean(rates: Array) -> tuple[float, float]:
     """Mean of a series weighted by exp(-1/(t(1 - t))), and how far those of two overlapping parts lie off.
 
     On a torus, where the growth only swings to and fro, it settles faster than any power of the length,
-    while the plain mean errs by one swing over the length (Das, Saiki, Sander, Yorke 2017).
+    while the plain mean errs by one swing over the length (Das et al. 2017).
     """
     part = 3 * rates.size // 4
     whole, first, last = (_weighted(some) for some in (rates, rates[:part], rates[-part:]))

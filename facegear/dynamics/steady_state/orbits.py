@@ -1,4 +1,4 @@
-"""Periodic orbits by Newton shooting, and their Floquet multipliers."""
+"""Periodic orbits by Newton shooting (Parker and Chua 1989), and their Floquet multipliers (Seydel 2010)."""
 
 from dataclasses import dataclass
 

@@ -24,7 +24,7 @@ def spectrum(samples: Array, per_period: int, periodic: bool) -> tuple[Array, Ar
 
 
 def order_spectrum(samples: Array, per_period: int, period: int) -> Array:
-    """Amplitudes on the fixed grid ORDERS, shape (columns, orders), RMS-averaged over segments.
+    """Amplitudes on the fixed grid ORDERS, shape (columns, orders), RMS-averaged over segments (Welch 1967).
 
     Lines of a period that SEGMENT is no multiple of go to the nearest order of the grid.
     """
