@@ -27,9 +27,6 @@ WITHOUT_FRICTION = (
     "temperature and film of samples are those of the forces without it (docs/friction.md)"
 )
 
-BACKLASH_DIFFERS_UM = 1.0
-"""Difference between the backlash of the dynamics and that of the teeth that is worth a note."""
-
 
 def notes(values: Mapping[str, Any]) -> list[str]:
     """Lines for a config of one's own that counts as the publication does, for errors that turn, for dynamics

@@ -1,10 +1,10 @@
 """Compiled: where all bodies stand when every flank, bearing and torque is in balance, position by position.
 
 The energy of one-sided flanks, bearings (with a ring of play or without) and torques is convex and, with a
-linear law and but for the rings, quadratic between changes of contact: a semismooth Newton method (Hintermueller et al. 2003), each step
-an active set with its equations solved, with an exact line search that makes it global. Pinions touch each
-other through the gears only, so each is eliminated by itself (3 x 3) and the gears remain (4 or 6 unknowns
-each).
+linear law and but for the rings, quadratic between changes of contact: a semismooth Newton method
+(Hintermueller et al. 2003), each step an active set with its equations solved, with an exact line search that
+makes it global. Pinions touch each other through the gears only, so each is eliminated by itself (3 x 3) and
+the gears remain (4 or 6 unknowns each).
 
 A body that nothing holds may be stopped by a flank that only just closes, by less than its place can be told.
 Such a flank counts as closed in the next step, unless that would pull it open: the search would else stay

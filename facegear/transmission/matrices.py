@@ -36,14 +36,5 @@ def flank_directions(layout: Layout) -> Array:
     return layout.kinematics.flank_rows(layout)
 
 
-def rigid_rotation(layout: Layout) -> Array:
-    """The motion of all bodies turning together without mesh deflection, shape (dof,)."""
-    motion = np.zeros(layout.dof)
-    pinions, bodies = len(layout.pinions), len(layout.bodies)
-    motion[3 : 4 * pinions : 4] = 1.0 / layout.pinion_radius
-    motion[4 * pinions + 3 : 4 * bodies : 4] = 1.0 / layout.gear_radius
-    return motion
-
-
 def _tilts(layout: Layout) -> list[Tilt]:
     return [tilt for gear in layout.gears if (tilt := gear.body.tilt) is not None]

@@ -10,7 +10,6 @@ from facegear.arrays import AnyArray, Array
 from facegear.errors import NotConverged
 from facegear.transmission.layout import Layout
 from facegear.transmission.linear_model import LinearModel
-from facegear.transmission.lumped import lumped_model
 
 EQUAL = 1e-8
 
@@ -26,15 +25,6 @@ class Modes:
     frequencies: Array
     shapes: AnyArray
     groups: tuple[tuple[int, int], ...]
-
-
-def natural_modes(layout: Layout, mesh_stiffness: float) -> Modes:
-    """All modes of the free, undamped, time-averaged system with every mesh on its drive flank (N/m).
-
-    Rigid body modes come out as 0 Hz exactly.
-    """
-    linear = lumped_model(layout)
-    return modes_of(linear, drive_flanks(layout, linear, mesh_stiffness))
 
 
 def drive_flanks(layout: Layout, linear: LinearModel, mesh_stiffness: float) -> Array:

@@ -4,6 +4,7 @@ import hypothesis.extra.numpy as hnp
 import numpy as np
 import pandas as pd
 import pytest
+from free_machines import natural_modes
 from hypothesis import given
 from hypothesis import strategies as st
 from lumped_machines import make_machine
@@ -20,7 +21,6 @@ from facegear.dynamics.sweeps.sweep_tables import jump_table, resonance_table, s
 from facegear.dynamics.sweeps.whole_sweep import whole_sweep
 from facegear.io import arrays
 from facegear.plots.campbell import campbell
-from facegear.transmission.modes import natural_modes
 from validation.dynamics.convergence import Watched, convergence_table, not_converged, watched_longer
 
 SETTINGS = Settings(tolerance=1e-5, settle=256, window=64, periodic_residual=1e-7, extensions=0)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from free_machines import rigid_rotation
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 from scipy_motions import gap_to_scipy, kicked
@@ -17,7 +18,7 @@ from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.harmonics.series import stacked_values
 from facegear.transmission.layout import FaceGear, Role, Side, Tilt
 from facegear.transmission.machine import OpenFlanks, mesh_frequency
-from facegear.transmission.matrices import bearing_matrix, flank_directions, mass_diagonal, rigid_rotation
+from facegear.transmission.matrices import bearing_matrix, flank_directions, mass_diagonal
 from facegear.transmission.mesh_friction import PARTS, MeshFriction, flank_ratios, friction_rows
 from facegear.transmission.teeth import GEOMETRIC
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from free_machines import natural_modes
 from hypothesis import event, given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
@@ -23,7 +24,6 @@ from facegear.transmission.lumped import lumped_model
 from facegear.transmission.matrices import bearing_matrix, mass_diagonal
 from facegear.transmission.modal_tables import contact_table
 from facegear.transmission.mode_classes import ModeClass, name_modes
-from facegear.transmission.modes import natural_modes
 from facegear.transmission.statics import mean_equilibrium
 from facegear.transmission.teeth import GEOMETRIC, mesh_parts
 

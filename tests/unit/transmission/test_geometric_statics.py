@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from free_machines import rigid_rotation
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout, make_machine
@@ -18,7 +19,7 @@ from facegear.transmission.contact_kernel import settle_all
 from facegear.transmission.flanks import constant_errors, flank_gaps
 from facegear.transmission.imperfections import Runout, perfect
 from facegear.transmission.layout import Body, Role, Side, Tilt
-from facegear.transmission.matrices import bearing_matrix, flank_directions, rigid_rotation
+from facegear.transmission.matrices import bearing_matrix, flank_directions
 from facegear.transmission.static_springs import static_springs
 from facegear.transmission.statics import (
     TOLERANCE,

@@ -3,13 +3,12 @@ import sys
 
 import numpy as np
 import pytest
+from free_machines import natural_modes, rigid_rotation
 from lumped_machines import drive_rows
 from references import against, agrees
 
 from facegear.transmission.lumped import lumped_model
-from facegear.transmission.matrices import rigid_rotation
 from facegear.transmission.mode_classes import ModeClass, name_modes
-from facegear.transmission.modes import natural_modes
 
 TABLE_2 = [0.0] * 6 + [756.7, 757.3, 757.9, 757.9, 833.5] + [1171.8] * 5
 TABLE_2 += [2260.1, 4617.0, 4770.0, 5080.8, 5406.4, 5565.2, 5581.5, 5581.5, 5622.2, 6069.2, 6438.0, 6488.0]
