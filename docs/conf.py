@@ -35,12 +35,16 @@ html_css_files = ["tables.css"]
 
 
 def _with_references(app: Sphinx, name: str, source: list[str]) -> None:
-    """Put the stored references and mutants into the page that shows them."""
+    """Put the stored references, mutants and platforms into the page that shows them."""
     if name == "verification":
+        import pandas as pd
+
         from validation.mutation.modules import mutation_tables, rows
+        from validation.platforms import MEASURED, platforms_table
         from validation.references import read, verification_table
 
         source[0] = source[0].replace("{mutants}", mutation_tables(rows()))
+        source[0] = source[0].replace("{platforms}", platforms_table(pd.read_csv(MEASURED)))
         source[0] = source[0].replace("{references}", verification_table(read()))
 
 
