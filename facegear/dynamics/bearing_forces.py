@@ -28,7 +28,7 @@ def bearing_history(model: Model, response: SteadyState) -> Array:
     """Force of every body on its bearing along x, y, z, shape (K, bodies, 3), N.
 
     Springs, their damping of equation (21) and dampers: K q + beta K q' + D q'. Mass damping acts from
-    outside and is no bearing's. With play the spring acts beyond it, F = k (1 - c / r) (x, y), and its
+    outside and is no bearing's. With clearance the spring acts beyond it, F = k (1 - c / r) (x, y), and its
     damping is beta dF/dt.
     """
     machine, basis = model.machine, model.reduced.basis
@@ -39,21 +39,21 @@ def bearing_history(model: Model, response: SteadyState) -> Array:
     if linear.dampers.any():
         forces += rate @ (basis.T @ linear.dampers[held.ravel()].T)
     forces = forces.reshape(-1, *held.shape)
-    for places, i, spring, play in zip(
+    for places, i, spring, clearance in zip(
         linear.ring_places, rings.body, rings.stiffness, rings.play, strict=True
     ):
         rows = basis[places].T
-        forces[:, i, :2] = _ring_force(response.coordinates @ rows, rate @ rows, spring, play, lag)
+        forces[:, i, :2] = _ring_force(response.coordinates @ rows, rate @ rows, spring, clearance, lag)
     return forces
 
 
-def _ring_force(place: Array, speed: Array, stiffness: float, play: float, lag: float) -> Array:
-    """Force of a bearing with play at places (K, 2) and speeds (K, 2)."""
-    distance = np.maximum(np.hypot(place[:, :1], place[:, 1:]), play)
-    share = 1.0 - play / distance
-    radial = (place * speed).sum(axis=1, keepdims=True) / distance**2
-    damping = (share * speed + (1.0 - share) * radial * place) * (distance > play)
-    return stiffness * (share * place + lag * damping)
+def _ring_force(displacement: Array, speed: Array, stiffness: float, clearance: float, lag: float) -> Array:
+    """Force of a bearing with clearance at displacements (K, 2) and speeds (K, 2)."""
+    distance = np.maximum(np.hypot(displacement[:, :1], displacement[:, 1:]), clearance)
+    fraction = 1.0 - clearance / distance
+    radial = (displacement * speed).sum(axis=1, keepdims=True) / distance**2
+    damping = (fraction * speed + (1.0 - fraction) * radial * displacement) * (distance > clearance)
+    return stiffness * (fraction * displacement + lag * damping)
 
 
 def velocities(response: SteadyState) -> Array:
@@ -75,16 +75,16 @@ def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:
     layout = model.machine.layout
     moving = _with_radial(bearing_history(model, response))
     static = _with_radial(static_bearing_forces(model.machine)[None])[0]
-    found = moments(moving.reshape(len(moving), -1), response.per_period, response.period > 0)
+    statistics = moments(moving.reshape(len(moving), -1), response.per_period, response.period > 0)
     names = [(body, direction) for body in layout.body_names for direction in DIRECTIONS]
     table = pd.DataFrame(names, columns=["body", "direction"])
     values = (
         static.ravel(),
-        found.mean,
-        found.rms,
-        found.ac_rms,
-        found.ac_rms_interval,
-        np.maximum(np.abs(found.minimum), np.abs(found.maximum)),
+        statistics.mean,
+        statistics.rms,
+        statistics.ac_rms,
+        statistics.ac_rms_interval,
+        np.maximum(np.abs(statistics.minimum), np.abs(statistics.maximum)),
     )
     for column, value in zip(BEARING_COLUMNS[2:-1], values, strict=True):
         table[column] = value

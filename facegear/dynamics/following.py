@@ -58,7 +58,7 @@ def follow(
 
     The lead is doubled until two starts agree, up to MAX_LEAD cycles. Raises NotConverged if a step fails.
     """
-    prepare(model.system.ring_play.size > 0, model.system.rubbing is not None)
+    prepare(model.system.ring_clearance.size > 0, model.system.rubbing is not None)
     settings = settings or Settings()
     frequency = TAU * mesh_frequency(model.machine.layout, speed_rpm)
     integrator = Integrator(model.system, frequency, settings.tolerance, settings.order)

@@ -5,7 +5,7 @@ import pandas as pd
 
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.steady_state.simulate import Model, SteadyState
-from facegear.dynamics.steady_state.spectra import HIGHEST, spectrum
+from facegear.dynamics.steady_state.spectra import MAX_ORDER, spectrum
 from facegear.dynamics.sweeps.sweep import collect
 from facegear.dynamics.sweeps.sweep_tables import UM, sweep_table
 from facegear.transmission.layout import Layout
@@ -49,7 +49,7 @@ def spectrum_table(layout: Layout, response: SteadyState) -> pd.DataFrame:
     response.
     """
     orders, lines = spectrum(response.deflections, response.per_period, response.period > 0)
-    kept = orders <= HIGHEST
+    kept = orders <= MAX_ORDER
     frames = [
         pd.DataFrame(
             {

@@ -48,7 +48,7 @@ def _torque_row(
     temperatures, integral = state.mean_bulk + largest, float(integral_temperature(state.mean_bulk, mean))
     allowed = limits.allowed_contact(known.oil, known.oil_temperature)
     allowed_integral = limits.allowed_integral(known.oil)
-    ratio = _least(state.micropitting, on)
+    ratio = _min_of(state.micropitting, on)
     return {
         "torque_n_m": torque,
         "speed_rpm": speed / RPM,
@@ -76,9 +76,9 @@ def _torque_row(
         "integral_temperature_c": integral,
         "allowed_integral_temperature_c": allowed_integral,
         "integral_safety": float(temperature_safety(allowed_integral, known.oil_temperature, integral)),
-        "smallest_film_um": 1e6 * _least(state.film, on),
-        "smallest_short_film_um": 1e6 * _least(state.short_film, on),
-        "smallest_film_ratio": _least(state.film_ratio, on),
+        "smallest_film_um": 1e6 * _min_of(state.film, on),
+        "smallest_short_film_um": 1e6 * _min_of(state.short_film, on),
+        "smallest_film_ratio": _min_of(state.film_ratio, on),
         "smallest_micropitting_film_ratio": ratio,
         "micropitting_safety": limits.micropitting_safety(ratio),
     }
@@ -137,7 +137,7 @@ def _map_row(contact: LoadedContact, speed: float, known: Lubrication) -> tuple[
     on, power = contact.places.inside, contact.torque * speed * RPM
     rise = float(state.flash[on].max(initial=0.0))
     values = state.loss, 1 - state.loss / power, rise, state.mean_bulk + rise
-    return (*key, *values, _least(state.film_ratio, on))
+    return (*key, *values, _min_of(state.film_ratio, on))
 
 
 def local_arrays(pair: LoadedPair, states: Sequence[Running], speed: float) -> dict[str, AnyArray]:
@@ -177,5 +177,5 @@ def _local(places: Places, state: Running, speed: float) -> dict[str, AnyArray]:
     }
 
 
-def _least(values: Array, on: Mask) -> float:
+def _min_of(values: Array, on: Mask) -> float:
     return float(values[on].min()) if on.any() else np.nan

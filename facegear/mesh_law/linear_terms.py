@@ -30,10 +30,10 @@ class LinearTerms(NamedTuple):
 
 
 class LinearSeries(NamedTuple):
-    """slope (rows, width); kinds and polynomial: scratch space."""
+    """slope (rows, width); per_kind and polynomial: scratch space."""
 
     slope: Array
-    kinds: Array
+    per_kind: Array
     polynomial: Array
 
 
@@ -78,8 +78,8 @@ def phase_terms(
     rows: int,
 ) -> None:
     """The series of k."""
-    fourier_terms(scratch, law.fourier, s, rows, series.kinds)
-    give(series.kinds, law.fourier.shape[2], law.kind, rows, series.slope)
+    fourier_terms(scratch, law.fourier, s, rows, series.per_kind)
+    give(series.per_kind, law.fourier.shape[2], law.kind, rows, series.slope)
     if law.pieces.shape[0] > 0:
         degrees = law.pieces.shape[1]
         for m in range(law.kind.size):

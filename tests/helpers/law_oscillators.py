@@ -23,7 +23,7 @@ def closing_error(law, start, period, least):
     integrator = Integrator(oscillator(law), 2.0 * np.pi / period, 1e-14)
     state = np.array([[start], [0.0]])
     run = integrator.run(state, 1, batches=1)
-    return max(np.abs(run.state - state).max(), abs(run.sums.lowest[0] - least))
+    return max(np.abs(run.state - state).max(), abs(run.sums.minimum[0] - least))
 
 
 def law_period_map(law, damping, amplitude=0.0, tolerance=1e-12, mean=1.0):

@@ -65,8 +65,8 @@ def sampled(known: Averages, deflections: Array, forces: Array, per_period: int)
         level=np.zeros(deflections.shape[1]),
         deflection=batches(by_period),
         square=batches(by_period**2),
-        lowest=deflections.min(axis=0),
-        highest=deflections.max(axis=0),
+        minimum=deflections.min(axis=0),
+        maximum=deflections.max(axis=0),
         force=np.array([forces.mean(axis=0), np.abs(forces).mean(axis=0)]),
     )
 

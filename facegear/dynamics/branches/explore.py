@@ -126,8 +126,8 @@ def _same(period_map: PeriodMap, u: float, motion: SettledMotion, other: Settled
 
 
 def _apart(z: Array, images: Sequence[Array], loose: tuple[Array, Array]) -> float:
-    """Largest difference of a state from the nearest image of another but for shifts of bodies afloat, of
-    the orbit with more of them.
+    """Largest difference of a state from the nearest image of another but for shifts along neutral
+    directions, in the orbit with more of them.
     """
     neutral = max(loose, key=lambda shifts: shifts.shape[1])
     apart = np.array(images) - z
@@ -177,7 +177,7 @@ def distance(branch: Branch, orbit: BranchPoint, period: int) -> float:
 
 def _passages(branch: Branch, u: float) -> Iterator[tuple[Array, float, Array]]:
     """States at which a branch passes a parameter's logarithm, on the cubics between its points, with the
-    lengths of their chords and the shifts of bodies afloat.
+    lengths of their chords and shifts along neutral directions.
     """
     for here, there in pairwise(branch.points):
         turns = here.tangent[-1] * there.tangent[-1] < 0.0

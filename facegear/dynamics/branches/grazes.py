@@ -27,7 +27,7 @@ class Graze:
 
 
 def grazes(period_map: PeriodMap, first: BranchPoint, second: BranchPoint) -> tuple[list[Graze], bool]:
-    """Extremes that have passed an edge; True if some cannot be told apart yet.
+    """Extremes that have passed an edge; True if some cannot be distinguished yet.
 
     Maxima less minima above an edge count its passages. A maximum and a minimum that are born together change
     none. Meshes that symmetry moves alike make one graze.

@@ -15,7 +15,7 @@ from facegear.dynamics.branches.special import Kind, Special, evidence
 LEVEL = 1e-7
 """A component of the tangent below this is zero: a motion that keeps contact may double at one speed."""
 SHORTEST = 1e-10
-"""Part of a step down to which points that lie together are told apart."""
+"""Part of a step down to which points that lie together are distinguished."""
 LOOKS = 2
 """How often a stretch is halved on the mere chance that a multiplier crosses the unit circle twice in it."""
 CLOSE = 0.02
@@ -122,7 +122,7 @@ def _turns(first: BranchPoint, second: BranchPoint) -> bool:
 
 
 def _loosening(segment: Segment, low: float, high: float) -> list[Special]:
-    """A body comes loose or is caught: halve until the place is known."""
+    """A body comes loose or is caught: halve until the parameter is known."""
     while high - low > 1e-9:
         middle = 0.5 * (low + high)
         if segment.at(middle).linear.neutral.shape == segment.at(low).linear.neutral.shape:
@@ -140,10 +140,11 @@ def _refined(segment: Segment, low: float, high: float, event: _Event) -> Specia
             return event.test(segment.extrema(fraction))
         return event.test(segment.at(fraction))
 
-    # At a fold the parameter stands still along the arc, so its place need not be as sharp.
+    # At a fold the parameter stands still along the arc, so the position along the chord need not be as
+    # sharp.
     tolerance = segment.period_map.step_tolerance
     goal = max(1e-3 * np.sqrt(tolerance), 1e-10) if event.kind is Kind.FOLD else max(0.1 * tolerance, 1e-13)
-    # Changes that lie closer together than SHORTEST are not told apart, nor is their order known.
+    # Changes that lie closer together than SHORTEST are not distinguished, nor is their order known.
     fraction = zero(test, low, high, goal) if high - low > SHORTEST else high
     point = segment.at(fraction)
     off = event.test(point.extrema) if event.kind is Kind.GRAZE else np.nan

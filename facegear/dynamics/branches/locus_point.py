@@ -34,7 +34,7 @@ class LocusProblem:
         return replace(self.period_map, family=self.plane.line(float(np.exp(v))))
 
     def matrix(self, linear: Linear) -> Array:
-        """What is singular on the locus: M + I, or M - I without the shifts of bodies afloat."""
+        """What is singular on the locus: M + I, or M - I without shifts along neutral directions."""
         size = len(linear.matrix)
         if self.kind is Kind.DOUBLING:
             return linear.matrix + np.eye(size)

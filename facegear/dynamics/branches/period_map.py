@@ -24,8 +24,8 @@ FINEST = 1e-14
 @dataclass(frozen=True, eq=False)
 class Linear:
     """The map near a state: change end - start (2 n,), matrix (2 n, 2 n), slope by the parameter's logarithm
-    (2 n,), contact (meshes,): whether it is ever in contact, afloat (2 n, k): directions of bodies that touch
-    nothing, orthonormal, divergence: integral of the trace. inverses: of the matrix bordered by a row.
+    (2 n,), contact (meshes,): whether it is ever in contact, neutral (2 n, k): directions of bodies that
+    touch nothing, orthonormal, divergence: integral of the trace. inverses: of the matrix bordered by a row.
     """
 
     gap: Array
@@ -133,7 +133,7 @@ class PeriodMap:
                 [
                     jacobian[contact] / np.abs(jacobian).max(),
                     np.diag(np.sign(integrator.omega_squared)),
-                    *([coupling.place_terms(integrator.frequency)] if coupling else []),
+                    *([coupling.displacement_terms(integrator.frequency)] if coupling else []),
                 ]
             )
             _, sizes, rows = np.linalg.svd(held)

@@ -58,7 +58,7 @@ class BranchPoint:
 
     @cached_property
     def multipliers(self) -> ComplexArray:
-        """Floquet multipliers (2 n - k,), largest first, without the ones of k bodies afloat."""
+        """Floquet multipliers (2 n - k,), largest first, without those of k neutral directions."""
         values = np.linalg.eigvals(self.linear.matrix).astype(complex)
         near_one = np.argsort(np.abs(values - 1.0))
         values = np.delete(values, near_one[: self.linear.neutral.shape[1]])
@@ -93,7 +93,7 @@ class BranchPoint:
 
 
 def bordered(linear: Linear, row: Array) -> Array:
-    """[M - I, P_u, V; row, 0; V^T, 0, 0] with the directions V of bodies afloat."""
+    """[M - I, P_u, V; row, 0; V^T, 0, 0] with the neutral directions V."""
     size, loose = linear.neutral.shape
     matrix = np.zeros((size + 1 + loose, size + 1 + loose))
     matrix[:size, :size] = linear.matrix - np.eye(size)

@@ -14,18 +14,18 @@ from facegear.mesh_law.linear import fourier_columns
 TAU = 2.0 * np.pi
 MIN_CLEARANCE = 1e-12
 ROUNDING = 1e-15
-"""Entries of G below this share of the largest are zeros that rounding has left."""
+"""Entries of G below this fraction of the largest are zeros that rounding has left."""
 
 
 class Rings(NamedTuple):
-    """Bearings with play: their number R, the first of their 3 R rows among the meshes, stiffness over w^2
-    and play, padded; lag: w times damping over stiffness.
+    """Bearings with clearance: number R, the first of their 3 R rows among the meshes, stiffness over w^2
+    and clearance, padded; lag: w times damping over stiffness.
     """
 
     number: int
     first: int
     stiffness: Array
-    play: Array
+    clearance: Array
     lag: float
 
 
@@ -61,9 +61,10 @@ class Packed(NamedTuple):
     (m,) names. drift (terms, m): polynomial in s added to the error of this period, or none. leverage (m,):
     sum of squares of a row of mesh_jacobian. pairs: meshes whose two flanks stand at j and j + pairs; 0 where
     every mesh stands for itself. contacts: rows of the m that are meshes or flanks; the others belong to the
-    rings of bearings with play. coupled (2 n, n): transposed matrices of what couples coordinates beside the
-    meshes, by derivative, then by place. Without any, `rings`, `rubbing` (friction) and `coupled` are None,
-    and the kernels are compiled without them: another type, of these or of the law, is another machine code.
+    rings of bearings with clearance. coupled (2 n, n): transposed matrices of what couples coordinates beside
+    the meshes, by velocity, then by displacement. Without any, `rings`, `rubbing` (friction) and `coupled`
+    are None, and the kernels are compiled without them: another type, of these or of the law, is another
+    machine code.
     """
 
     n: int
@@ -98,18 +99,18 @@ class Packed(NamedTuple):
 
 def pack(system: System, frequency: float) -> Packed:
     """Pack a system at an angular mesh frequency w in rad/s."""
-    one, square = _packed(system), frequency**2
+    at_unit_speed, square = _packed(system), frequency**2
     natural, harmonics = _fastest(system)
     coupling = system.coupling
-    return one._replace(
-        omega_squared=divided(one.omega_squared, square),
-        damping=divided(one.damping, frequency),
-        mesh_damping=divided(one.mesh_damping, frequency),
-        law=system.law.terms(frequency, len(one.mesh_damping)),
-        load=divided(one.load, square),
+    return at_unit_speed._replace(
+        omega_squared=divided(at_unit_speed.omega_squared, square),
+        damping=divided(at_unit_speed.damping, frequency),
+        mesh_damping=divided(at_unit_speed.mesh_damping, frequency),
+        law=system.law.terms(frequency, len(at_unit_speed.mesh_damping)),
+        load=divided(at_unit_speed.load, square),
         fastest=natural / frequency + harmonics + (coupling.fastest(frequency) if coupling else 0.0),
         rings=_rings(system, frequency),
-        coupled=_coupled(coupling, frequency, one.omega_squared.size) if coupling else None,
+        coupled=_coupled(coupling, frequency, at_unit_speed.omega_squared.size) if coupling else None,
     )
 
 
@@ -117,12 +118,12 @@ def pack(system: System, frequency: float) -> Packed:
 def _packed(system: System) -> Packed:
     """What pack() gives at 1 rad/s, without law and rings; its arrays are shared and only read."""
     m, n = system.mesh_jacobian.shape
-    wide_n, wide_m = whole_lanes(n), whole_lanes(m)
-    transposed = aligned(wide_m, wide_n)
+    width_n, width_m = whole_lanes(n), whole_lanes(m)
+    transposed = aligned(width_m, width_n)
     transposed[:m, :n] = system.mesh_jacobian
-    mesh_jacobian = aligned(wide_n, wide_m)
+    mesh_jacobian = aligned(width_n, width_m)
     mesh_jacobian[:] = transposed.T
-    # A clearance within rounding of the deflections is none: its edges could not be told apart.
+    # A clearance within rounding of the deflections is none: its edges could not be distinguished.
     closed = system.upper - system.lower <= MIN_CLEARANCE * system.scale
     lower = np.where(closed, system.upper, system.lower)
     return Packed(
@@ -132,18 +133,18 @@ def _packed(system: System) -> Packed:
         transposed=transposed,
         touched=_sparse(system.mesh_jacobian),
         touching=_sparse(system.mesh_jacobian.T),
-        omega_squared=padded(system.omega_squared, wide_n),
-        damping=padded(system.damping, wide_n),
-        mesh_damping=padded(system.mesh_damping, wide_m),
-        lower=padded(lower, wide_m),
-        upper=padded(system.upper, wide_m),
+        omega_squared=padded(system.omega_squared, width_n),
+        damping=padded(system.damping, width_n),
+        mesh_damping=padded(system.mesh_damping, width_m),
+        lower=padded(lower, width_m),
+        upper=padded(system.upper, width_m),
         law=None,
         error=fourier_columns(system.error),
         error_kind=system.error_kind,
-        drift=np.zeros((0, wide_m)),
+        drift=np.zeros((0, width_m)),
         load=fourier_columns(system.load),
         breaks=system.law.breaks * TAU,
-        weights=padded(_weights(system), wide_n),
+        weights=padded(_weights(system), width_n),
         leverage=(transposed**2).sum(axis=1),
         fastest=sum(_fastest(system)),
         damping_when_open=system.damping_when_open,
@@ -181,23 +182,26 @@ def _sparse(matrix: Array) -> Sparse:
 
 
 def _rings(system: System, frequency: float) -> Rings | None:
-    count = system.ring_play.size
+    count = system.ring_clearance.size
     if count == 0:
         return None
     return Rings(
         number=count,
         first=system.contacts,
         stiffness=divided(padded(system.ring_stiffness, whole_lanes(count)), frequency**2),
-        play=padded(system.ring_play, whole_lanes(count)),
+        clearance=padded(system.ring_clearance, whole_lanes(count)),
         lag=system.ring_lag * frequency,
     )
 
 
 def _coupled(coupling: Coupling, frequency: float, width: int) -> Array:
-    wide = aligned(2 * width, width)
-    for at, matrix in ((0, coupling.velocity_terms(frequency)), (width, coupling.place_terms(frequency))):
-        wide[at : at + len(matrix), : len(matrix)] = matrix.T
-    return wide
+    padded_terms = aligned(2 * width, width)
+    for at, matrix in (
+        (0, coupling.velocity_terms(frequency)),
+        (width, coupling.displacement_terms(frequency)),
+    ):
+        padded_terms[at : at + len(matrix), : len(matrix)] = matrix.T
+    return padded_terms
 
 
 @lru_cache(maxsize=16)

@@ -18,7 +18,7 @@ LATEST = 1e-4
 STILL = 1e-14
 """A rate (length scales per rad) that rounding explains."""
 OPEN, DRIVE, BACK = 0, 1, -1
-"""Rows of a log's shares, and the first piece of the law on each flank."""
+"""Rows of a log's fractions, and the first piece of the law on each flank."""
 
 
 @inlined

@@ -49,13 +49,15 @@ class Coupling:
         """D + W G over W: what acts on derivatives by the phase W t, (n, n)."""
         return self.dampers / speed + self.gyroscopic
 
-    def place_terms(self, speed: float) -> Array:
+    def displacement_terms(self, speed: float) -> Array:
         """W N + W^2 P over W^2, (n, n)."""
         return self.circulatory / speed + self.centrifugal
 
     def fastest(self, speed: float) -> float:
         """Bound of the angular frequency that the coupling brings by itself, over the speed."""
-        dampers, gyroscopic, circulatory, centrifugal = (np.linalg.norm(one, 2) for one in self._matrices)
+        dampers, gyroscopic, circulatory, centrifugal = (
+            np.linalg.norm(matrix, 2) for matrix in self._matrices
+        )
         return float(dampers / speed + gyroscopic + np.sqrt(circulatory / speed + centrifugal))
 
     @property

@@ -14,8 +14,8 @@ def excitation(packed: Packed, work: Work, s: float, piece: int, rows: int) -> N
     ahead = s - packed.breaks[piece] if packed.breaks.size > 0 else 0.0
     phase_terms(packed.law, work.law, work.fourier, s, ahead, piece, rows)
     rubbing_terms(packed.rubbing, work.rubbing, work.fourier, s, rows)
-    fourier_terms(work.fourier, packed.error, s, rows, work.kinds)
-    give(work.kinds, packed.error.shape[2], packed.error_kind, rows, work.error)
+    fourier_terms(work.fourier, packed.error, s, rows, work.per_kind)
+    give(work.per_kind, packed.error.shape[2], packed.error_kind, rows, work.error)
     if packed.drift.shape[0] > 0:
         _add_drift(packed, work, s)
     if packed.load.shape[0] > 1:

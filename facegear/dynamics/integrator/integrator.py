@@ -86,7 +86,7 @@ class Integrator:
 
     @property
     def rows(self) -> int:
-        """Number m of meshes or flanks, and three for each bearing with play."""
+        """Number m of meshes or flanks, and three for each bearing with clearance."""
         return self.packed.m
 
     @property
@@ -153,9 +153,9 @@ class Integrator:
 
     def padded(self, states: Array) -> Array:
         """States (..., n) as the kernels hold them; a copy."""
-        wide = np.zeros((*states.shape[:-1], self.packed.omega_squared.size))
-        wide[..., : self.packed.n] = states
-        return wide
+        padded = np.zeros((*states.shape[:-1], self.packed.omega_squared.size))
+        padded[..., : self.packed.n] = states
+        return padded
 
     def run(
         self,
@@ -177,20 +177,20 @@ class Integrator:
         """
         moved = self._empty if tangents is None else self.padded(tangents)
         log = self._log(periods, samples, growth, batches)
-        wide = self.padded(state)
+        padded = self.padded(state)
         packed = self.packed if drift is None else self.packed._replace(drift=self._drift(drift))
         longest = self.longest_step() if fine or len(moved) else np.inf
         status = run_periods(
-            packed, self.work, wide[0], wide[1], moved, periods, samples, self.tolerance, log, longest, 0.0
+            packed, self.work, padded[0], padded[1], moved, periods, samples, self.tolerance, log, longest, 0.0
         )
         require(status)
         n, m = self.packed.n, self.packed.m
         return RunResult(
-            state=wide[:, :n],
+            state=padded[:, :n],
             ends=log.ends[:, :, :n],
             tangents=moved[:, :, :n],
             samples=log.samples[:, :n],
-            fractions=log.shares[:, :m] / (TAU * periods),
+            fractions=log.fractions[:, :m] / (TAU * periods),
             divergence=float(log.divergence[0]),
             growth=log.growth,
             steps=int(log.steps[0]),
@@ -227,7 +227,7 @@ class Integrator:
         return Log(
             samples=np.zeros((periods * samples, n)),
             ends=np.zeros((periods, 2, n)),
-            shares=np.zeros((3, self.packed.lower.size)),
+            fractions=np.zeros((3, self.packed.lower.size)),
             divergence=np.zeros(1),
             growth=np.zeros(periods if growth else 0),
             steps=np.zeros(1, dtype=np.int64),
@@ -237,9 +237,9 @@ class Integrator:
         )
 
     def _drift(self, drift: Array) -> Array:
-        wide = np.zeros((len(drift), self.packed.lower.size))
-        wide[:, : drift.shape[1]] = drift
-        return wide
+        padded = np.zeros((len(drift), self.packed.lower.size))
+        padded[:, : drift.shape[1]] = drift
+        return padded
 
 
 def require(status: int) -> None:

@@ -1,4 +1,4 @@
-"""Run whole mesh periods: samples, contact shares, tangents."""
+"""Run whole mesh periods: samples, fractions of time in contact, tangents."""
 
 from typing import NamedTuple
 
@@ -26,7 +26,7 @@ class Log(NamedTuple):
     """What a run writes. Any array may have length 0, which leaves it out.
 
     samples (periods * per_period, n): y at equally spaced phases from the start of each period.
-    ends (periods, 2, n): y and dy/ds at the end of each period. shares (3, m): phase spent open, on the
+    ends (periods, 2, n): y and dy/ds at the end of each period. fractions (3, m): phase spent open, on the
     drive and on the back flank, rad, added up with samples, sums or tangents; where the two flanks of a mesh
     stand for themselves the third row holds, at its drive flank, how long both touch. divergence
     (1,): integral of the trace, added up with tangents. growth (periods,): logarithm of the first tangent's
@@ -36,7 +36,7 @@ class Log(NamedTuple):
 
     samples: Array
     ends: Array
-    shares: Array
+    fractions: Array
     divergence: Array
     growth: Array
     steps: Integers
@@ -97,10 +97,10 @@ def run_periods(
             first = False
             if per_period > 0 or batches > 0 or tangents.shape[0] > 0:
                 for m in range(packed.m):
-                    log.shares[flank_of(work.state[m]), m] += length
+                    log.fractions[flank_of(work.state[m]), m] += length
                 for m in range(packed.pairs):
                     if work.state[m] > 0 and work.state[m + packed.pairs] > 0:
-                        log.shares[2, m] += length
+                        log.fractions[2, m] += length
             while next_sample < per_period and TAU * next_sample / per_period < s + length:
                 ahead = TAU * next_sample / per_period - s
                 values(work.y, work.order, ahead, sample)

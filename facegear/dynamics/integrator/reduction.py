@@ -28,7 +28,7 @@ class Reduced:
     """The moving part in n mass-normalised coordinates y, displacements = basis y.
 
     - basis (dof, n).
-    - mesh_jacobian (contacts, n), followed by x, y and a row of zeros of each bearing with play: those
+    - mesh_jacobian (contacts, n), followed by x, y and a row of zeros of each bearing with clearance: those
       bearings are not in omega_squared.
     - omega_squared (n,): bearing frequencies squared, 1/s2.
     - damping (n,): 1/s. load (n,): from torques and forces.

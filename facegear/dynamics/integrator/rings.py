@@ -1,12 +1,12 @@
-"""Bearings with radial play: a body's x and y inside a ring, exact in two dimensions.
+"""Bearings with radial clearance: a body's x and y inside a ring, exact in two dimensions.
 
-    F = k (1 - c / r) (x, y) beyond the play c, none inside, and the bearing's damping beta dF/dt.
+    F = k (1 - c / r) (x, y) beyond the clearance c, none inside, and the bearing's damping beta dF/dt.
 
 Each ring has three rows among the meshes, none with a force of its own: x, y, and (r^2 - c^2) / (2 c), near
 the rim the way beyond it, whose zeros are the switches. Powers of series follow from the recurrence of
 f g' = p f' g for g = f^p. Series stand row after row with the rings side by side, four at a time.
-Machines without play pass None for both rings and series; what stands behind that question is then not
-compiled.
+Machines without bearing clearance pass None for both rings and series; what stands behind that question is
+then not compiled.
 """
 
 from facegear.arrays import Array
@@ -31,31 +31,31 @@ def ring_row(rings: Rings | None, series: RingSeries | None, work: Work, i: int)
     """Coefficient i of every ring's third row, and of its force where that is pressed."""
     if rings is None or series is None:
         return
-    wide = rings.play.size
+    width = rings.clearance.size
     _gather(rings, work.deflection, i, series.x, series.y)
-    for c in range(0, wide, LANES):
+    for c in range(0, width, LANES):
         along, up = splat(0.0), splat(0.0)
         for j in range(i + 1):
-            one, two = j * wide + c, (i - j) * wide + c
-            along = multiply_add(load(series.x, one), load(series.x, two), along)
-            up = multiply_add(load(series.y, one), load(series.y, two), up)
-        store(series.square, i * wide + c, add(along, up))
+            first, second = j * width + c, (i - j) * width + c
+            along = multiply_add(load(series.x, first), load(series.x, second), along)
+            up = multiply_add(load(series.y, first), load(series.y, second), up)
+        store(series.square, i * width + c, add(along, up))
     for r in range(rings.number):
         rim = rings.first + ROWS * r + 2
-        square, play = series.square[i, r], rings.play[r]
-        work.deflection[i, rim] = 0.5 * square / play - (0.5 * play if i == 0 else 0.0)
+        square, clearance = series.square[i, r], rings.clearance[r]
+        work.deflection[i, rim] = 0.5 * square / clearance - (0.5 * clearance if i == 0 else 0.0)
         if i == 0:
             series.reciprocal[r] = 1.0 / square if work.active[rim] > 0.0 else 0.0
     _power(series, i, -0.5, series.inverse)
     minus = splat(-1.0)
-    for c in range(0, wide, LANES):
+    for c in range(0, width, LANES):
         across, up = splat(0.0), splat(0.0)
         for j in range(i + 1):
-            inverse = load(series.inverse, j * wide + c)
-            across = multiply_add(load(series.x, (i - j) * wide + c), inverse, across)
-            up = multiply_add(load(series.y, (i - j) * wide + c), inverse, up)
-        stiffness, held = load(rings.stiffness, c), multiply(minus, load(rings.play, c))
-        at = i * wide + c
+            inverse = load(series.inverse, j * width + c)
+            across = multiply_add(load(series.x, (i - j) * width + c), inverse, across)
+            up = multiply_add(load(series.y, (i - j) * width + c), inverse, up)
+        stiffness, held = load(rings.stiffness, c), multiply(minus, load(rings.clearance, c))
+        at = i * width + c
         across = multiply_add(held, across, load(series.x, at))
         up = multiply_add(held, up, load(series.y, at))
         store(series.force_x, at, multiply(stiffness, across))
@@ -94,23 +94,23 @@ def ring_slopes(rings: Rings | None, series: RingSeries | None, order: int) -> N
 
 @inlined
 def _slope(
-    rings: Rings, series: RingSeries, order: int, one: Array, two: Array, same: float, out: Array
+    rings: Rings, series: RingSeries, order: int, first: Array, second: Array, same: float, out: Array
 ) -> None:
     """k (same (1 - c / r) + c one two / r^3) into out."""
-    wide = rings.play.size
-    for c in range(0, wide, LANES):
-        stiffness, play = load(rings.stiffness, c), load(rings.play, c)
+    width = rings.clearance.size
+    for c in range(0, width, LANES):
+        stiffness, clearance = load(rings.stiffness, c), load(rings.clearance, c)
         for i in range(order + 1):
             product = splat(0.0)
             for j in range(i + 1):
-                product = multiply_add(load(one, j * wide + c), load(two, (i - j) * wide + c), product)
-            store(series.product, i * wide + c, product)
-            total = multiply(splat(-same), load(series.inverse, i * wide + c))
+                product = multiply_add(load(first, j * width + c), load(second, (i - j) * width + c), product)
+            store(series.product, i * width + c, product)
+            total = multiply(splat(-same), load(series.inverse, i * width + c))
             for j in range(i + 1):
-                cube = load(series.cube, (i - j) * wide + c)
-                total = multiply_add(load(series.product, j * wide + c), cube, total)
+                cube = load(series.cube, (i - j) * width + c)
+                total = multiply_add(load(series.product, j * width + c), cube, total)
             whole = splat(same if i == 0 else 0.0)
-            store(out, i * wide + c, multiply(stiffness, multiply_add(play, total, whole)))
+            store(out, i * width + c, multiply(stiffness, multiply_add(clearance, total, whole)))
 
 
 @inlined
@@ -118,20 +118,20 @@ def ring_tangent_row(rings: Rings | None, series: RingSeries | None, deflection:
     """Coefficient i of the change of every ring's force with a tangent's `deflection`, into the forces."""
     if rings is None or series is None:
         return
-    wide = rings.play.size
+    width = rings.clearance.size
     _gather(rings, deflection, i, series.dx, series.dy)
-    for c in range(0, wide, LANES):
+    for c in range(0, width, LANES):
         across, up = splat(0.0), splat(0.0)
         for j in range(i + 1):
-            dx = load(series.dx, (i - j) * wide + c)
-            dy = load(series.dy, (i - j) * wide + c)
-            at = j * wide + c
+            dx = load(series.dx, (i - j) * width + c)
+            dy = load(series.dy, (i - j) * width + c)
+            at = j * width + c
             across = multiply_add(load(series.slope_xx, at), dx, across)
             across = multiply_add(load(series.slope_xy, at), dy, across)
             up = multiply_add(load(series.slope_xy, at), dx, up)
             up = multiply_add(load(series.slope_yy, at), dy, up)
-        store(series.force_x, i * wide + c, across)
-        store(series.force_y, i * wide + c, up)
+        store(series.force_x, i * width + c, across)
+        store(series.force_y, i * width + c, up)
 
 
 @inlined
@@ -189,15 +189,15 @@ def _gather(rings: Rings, deflection: Array, i: int, x: Array, y: Array) -> None
 @inlined
 def _power(series: RingSeries, i: int, exponent: float, out: Array) -> None:
     """Coefficient i of the rings' r^2 to a power, the ones before it known; zeros where none is pressed."""
-    wide = series.reciprocal.size
+    width = series.reciprocal.size
     if i == 0:
-        for r in range(wide):
+        for r in range(width):
             out[0, r] = series.reciprocal[r] ** -exponent
         return
-    for c in range(0, wide, LANES):
+    for c in range(0, width, LANES):
         total = splat(0.0)
         for j in range(1, i + 1):
             weight = splat((exponent * j - (i - j)) / i)
-            square = multiply(weight, load(series.square, j * wide + c))
-            total = multiply_add(square, load(out, (i - j) * wide + c), total)
-        store(out, i * wide + c, multiply(total, load(series.reciprocal, c)))
+            square = multiply(weight, load(series.square, j * width + c))
+            total = multiply_add(square, load(out, (i - j) * width + c), total)
+        store(out, i * width + c, multiply(total, load(series.reciprocal, c)))

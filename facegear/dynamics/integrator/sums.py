@@ -40,12 +40,12 @@ class Sums(NamedTuple):
     """Integrals over the mesh phase, in B batches of whole periods; B = 0 leaves them out.
 
     coordinates (B, n) of y and products (B, n, n) of y y^T, of which the upper half is filled, both about
-    `origin` (n,); deflections and squares (B, m) about `level` (m,); forces (2, m): elastic mesh force over
-    w^2 and its magnitude. lowest, highest (m,): extremes of the deflections. pull (m,): the smallest force of
-    spring and damper of a contact over w^2, negative where flanks are pulled together, zero where they never
-    are, at the ends and inner nodes of the steps. Of meshes with two flanks the
-    first `pairs` columns hold half the difference of the deflections of the two from their edges, and the
-    difference of their forces.
+    `origin` (n,); deflections and squared (B, m) about `level` (m,); forces (2, m): elastic mesh force over
+    w^2 and its magnitude. minimum, maximum (m,): extremes of the deflections. pull (m,): the smallest force
+    of spring and damper of a contact over w^2, negative where flanks are pulled together, zero where they
+    never are, at the ends and inner nodes of the steps. Of meshes with two flanks the first `pairs` columns
+    hold half the difference of the deflections of the two from their edges, and the difference of their
+    forces.
     """
 
     origin: Array
@@ -53,10 +53,10 @@ class Sums(NamedTuple):
     coordinates: Array
     products: Array
     deflections: Array
-    squares: Array
+    squared: Array
     forces: Array
-    lowest: Array
-    highest: Array
+    minimum: Array
+    maximum: Array
     pull: Array
 
 
@@ -78,10 +78,10 @@ def _sums(m: int, n: int, batches: int) -> Sums:
         coordinates=aligned(batches, n),
         products=aligned(batches, n, n),
         deflections=aligned(batches, m),
-        squares=aligned(batches, m),
+        squared=aligned(batches, m),
         forces=aligned(2, m),
-        lowest=np.full(m, np.inf),
-        highest=np.full(m, -np.inf),
+        minimum=np.full(m, np.inf),
+        maximum=np.full(m, -np.inf),
         pull=aligned(m),
     )
 
@@ -112,12 +112,12 @@ def add_step(packed: Packed, work: Work, length: float, sums: Sums, batch: int) 
         return
     for m in range(packed.m):
         edge = work.edge[m]
-        if work.most[m] + edge > sums.highest[m]:
-            highest = edge + _highest(work.deflection, work.order, m, length, 1.0)
-            sums.highest[m] = max(sums.highest[m], highest)
-        if work.least[m] + edge < sums.lowest[m]:
-            lowest = edge - _highest(work.deflection, work.order, m, length, -1.0)
-            sums.lowest[m] = min(sums.lowest[m], lowest)
+        if work.upper_bound[m] + edge > sums.maximum[m]:
+            maximum = edge + _maximum(work.deflection, work.order, m, length, 1.0)
+            sums.maximum[m] = max(sums.maximum[m], maximum)
+        if work.lower_bound[m] + edge < sums.minimum[m]:
+            minimum = edge - _maximum(work.deflection, work.order, m, length, -1.0)
+            sums.minimum[m] = min(sums.minimum[m], minimum)
 
 
 @inlined
@@ -131,19 +131,19 @@ def _between(packed: Packed, drive: Array, back: Array, m: int) -> float:
 def _pair_extremes(packed: Packed, work: Work, length: float, sums: Sums) -> None:
     """Extremes of meshes with two flanks; their polynomials go to work.scaled."""
     for m in range(packed.m):
-        work.least[m] += work.edge[m]
-        work.most[m] += work.edge[m]
+        work.lower_bound[m] += work.edge[m]
+        work.upper_bound[m] += work.edge[m]
         work.scaled[0, m] = work.deflection[0, m] + work.edge[m]
     for m in range(packed.pairs):
         for i in range(1, work.order + 1):
             work.scaled[i, m] = 0.5 * (work.deflection[i, m] - work.deflection[i, m + packed.pairs])
         work.scaled[0, m] = _between(packed, work.scaled[0], work.scaled[0], m)
-        if _between(packed, work.most, work.least, m) > sums.highest[m]:
-            highest = _highest(work.scaled, work.order, m, length, 1.0)
-            sums.highest[m] = max(sums.highest[m], highest)
-        if _between(packed, work.least, work.most, m) < sums.lowest[m]:
-            lowest = -_highest(work.scaled, work.order, m, length, -1.0)
-            sums.lowest[m] = min(sums.lowest[m], lowest)
+        if _between(packed, work.upper_bound, work.lower_bound, m) > sums.maximum[m]:
+            maximum = _maximum(work.scaled, work.order, m, length, 1.0)
+            sums.maximum[m] = max(sums.maximum[m], maximum)
+        if _between(packed, work.lower_bound, work.upper_bound, m) < sums.minimum[m]:
+            minimum = -_maximum(work.scaled, work.order, m, length, -1.0)
+            sums.minimum[m] = min(sums.minimum[m], minimum)
 
 
 @inlined
@@ -165,14 +165,14 @@ def _add_coordinates(packed: Packed, y: Array, weight: float, sums: Sums, batch:
 
 @inlined
 def _add_meshes(packed: Packed, work: Work, ahead: float, weight: float, sums: Sums, batch: int) -> None:
-    wide = work.edge.size
+    width = work.edge.size
     step, heavy, minus = splat(ahead), splat(weight), splat(-1.0)
     value, force = work.scaled[0], work.force
-    for c in range(0, wide, LANES):
+    for c in range(0, width, LANES):
         deflection, rate = splat(0.0), splat(0.0)
         for i in range(work.order, -1, -1):
             rate = multiply_add(rate, step, deflection)
-            deflection = multiply_add(deflection, step, load(work.deflection, i * wide + c))
+            deflection = multiply_add(deflection, step, load(work.deflection, i * width + c))
         store(value, c, add(deflection, load(work.edge, c)))
         elastic = force_ahead(packed.law, work.law, deflection, work.order, step, c)
         side = load(work.side, c)
@@ -182,17 +182,17 @@ def _add_meshes(packed: Packed, work: Work, ahead: float, weight: float, sums: S
     for m in range(packed.pairs):
         value[m] = _between(packed, value, value, m)
         force[m] -= force[m + packed.pairs]
-    for c in range(0, wide, LANES):
+    for c in range(0, width, LANES):
         off, pushed = multiply_add(minus, load(sums.level, c), load(value, c)), load(force, c)
-        at = batch * wide + c
+        at = batch * width + c
         store(sums.deflections, at, multiply_add(heavy, off, load(sums.deflections, at)))
-        store(sums.squares, at, multiply_add(multiply(heavy, off), off, load(sums.squares, at)))
+        store(sums.squared, at, multiply_add(multiply(heavy, off), off, load(sums.squared, at)))
         store(sums.forces, c, multiply_add(heavy, pushed, load(sums.forces, c)))
-        store(sums.forces, wide + c, multiply_add(heavy, magnitude(pushed), load(sums.forces, wide + c)))
+        store(sums.forces, width + c, multiply_add(heavy, magnitude(pushed), load(sums.forces, width + c)))
 
 
 @inlined
-def _highest(table: Array, order: int, m: int, length: float, sign: float) -> float:
+def _maximum(table: Array, order: int, m: int, length: float, sign: float) -> float:
     """Largest value of sign times the polynomial in column m over a step: the best of a few points, then
     Newton's method on the slope between that point's neighbours.
     """

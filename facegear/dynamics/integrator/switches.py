@@ -35,7 +35,7 @@ def until_switch(packed: Packed, work: Work, length: float) -> float:
                 level, number = (upper, DRIVE) if end == 0 else (lower, BACK)
             else:
                 level, number = end_of_piece(packed, m, state, end)
-            if work.least[m] <= level <= work.most[m]:
+            if work.lower_bound[m] <= level <= work.upper_bound[m]:
                 first = _crossing(work, m, level, standing == number, length, first)
         if packed.push_only and state != OPEN and m < packed.contacts:
             first = min(first, parting_time(packed, work, m, length))
@@ -44,31 +44,31 @@ def until_switch(packed: Packed, work: Work, length: float) -> float:
 
 @inlined
 def _over_step(work: Work, length: float) -> None:
-    """Every deflection in powers of the share of the step and in Bernstein form, with the bounds it gives."""
-    rows, wide = work.deflection.shape
+    """Every deflection in powers of the fraction of the step and in Bernstein form, with its bounds."""
+    rows, width = work.deflection.shape
     power = 1.0
     for i in range(rows):
-        for c in range(0, wide, LANES):
-            store(work.scaled, i * wide + c, multiply(splat(power), load(work.deflection, i * wide + c)))
+        for c in range(0, width, LANES):
+            store(work.scaled, i * width + c, multiply(splat(power), load(work.deflection, i * width + c)))
         power *= length
-    for c in range(0, wide, LANES):
+    for c in range(0, width, LANES):
         start = load(work.scaled, c)
-        least, most = start, start
+        lower_bound, upper_bound = start, start
         store(work.bernstein, c, start)
         for i in range(1, rows):
             total = start
             for k in range(1, i + 1):
                 weight = spread(work.conversion, i * rows + k)
-                total = multiply_add(load(work.scaled, k * wide + c), weight, total)
-            store(work.bernstein, i * wide + c, total)
-            least, most = smaller(least, total), larger(most, total)
-        store(work.least, c, least)
-        store(work.most, c, most)
+                total = multiply_add(load(work.scaled, k * width + c), weight, total)
+            store(work.bernstein, i * width + c, total)
+            lower_bound, upper_bound = smaller(lower_bound, total), larger(upper_bound, total)
+        store(work.lower_bound, c, lower_bound)
+        store(work.upper_bound, c, upper_bound)
 
 
 @inlined
 def _crossing(work: Work, m: int, level: float, on_it: bool, length: float, before: float) -> float:
-    """Share of the step at which deflection m first passes the level, if that is `before` a given share.
+    """Fraction of the step at which deflection m first passes the level, if that is `before` a given one.
 
     Standing on the level the known zero at the start is divided out.
     """

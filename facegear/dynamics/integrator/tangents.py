@@ -1,8 +1,8 @@
 """Disturbances of the motion: moved over a step by the same recurrence, with the slopes of the forces.
 
 A single tangent goes coordinate by coordinate, in the vectors that the motion itself uses. Many go in blocks
-of ABREAST, side by side in the innermost place: then every entry of G is read once for all of them, and those
-that are zero are left out. Rings, and coordinates that are coupled beside the meshes, go one by one.
+of ABREAST, side by side along the innermost axis: then every entry of G is read once for all of them, and
+those that are zero are left out. Rings, and coordinates that are coupled beside the meshes, go one by one.
 """
 
 import numpy as np
@@ -122,16 +122,16 @@ def _products(matrix: Sparse, factors: Array, at: int, out: Array, to: int) -> N
     """Row `to` of out: the sparse matrix times row `at` of factors, for each tangent of a block."""
     read, write = at * factors.shape[1], to * out.shape[1]
     for row in range(matrix.starts.size - 1):
-        one, two, three = splat(0.0), splat(0.0), splat(0.0)
+        total_1, total_2, total_3 = splat(0.0), splat(0.0), splat(0.0)
         for entry in range(take(matrix.starts, row), take(matrix.starts, row + 1)):
-            value, place = spread(matrix.values, entry), read + ABREAST * take(matrix.columns, entry)
-            one = multiply_add(value, load(factors, place), one)
-            two = multiply_add(value, load(factors, place + LANES), two)
-            three = multiply_add(value, load(factors, place + 2 * LANES), three)
-        place = write + ABREAST * row
-        store(out, place, one)
-        store(out, place + LANES, two)
-        store(out, place + 2 * LANES, three)
+            value, start = spread(matrix.values, entry), read + ABREAST * take(matrix.columns, entry)
+            total_1 = multiply_add(value, load(factors, start), total_1)
+            total_2 = multiply_add(value, load(factors, start + LANES), total_2)
+            total_3 = multiply_add(value, load(factors, start + 2 * LANES), total_3)
+        start = write + ABREAST * row
+        store(out, start, total_1)
+        store(out, start + LANES, total_2)
+        store(out, start + 2 * LANES, total_3)
 
 
 @inlined
@@ -139,47 +139,47 @@ def _push_block(packed: Packed, work: Work, i: int) -> None:
     """Coefficient i of every mesh's force on each tangent, with the factor of the coordinates' next one."""
     deflection, force = work.block_deflection, work.block_force
     slope = work.law.slope
-    wide, meshes = deflection.shape[1], slope.shape[1]
+    width, meshes = deflection.shape[1], slope.shape[1]
     pushed = splat(-1.0 / ((i + 1) * (i + 2)))
     for m in range(packed.m):
-        damping, place = splat(work.acting[m] * (i + 1)), m * ABREAST
-        at = (i + 1) * wide + place
-        one = multiply(damping, load(deflection, at))
-        two = multiply(damping, load(deflection, at + LANES))
-        three = multiply(damping, load(deflection, at + 2 * LANES))
+        damping, offset = splat(work.acting[m] * (i + 1)), m * ABREAST
+        at = (i + 1) * width + offset
+        total_1 = multiply(damping, load(deflection, at))
+        total_2 = multiply(damping, load(deflection, at + LANES))
+        total_3 = multiply(damping, load(deflection, at + 2 * LANES))
         if work.active[m] != 0.0:
             for j in range(i, -1, -1):
-                value, at = spread(slope, j * meshes + m), (i - j) * wide + place
-                one = multiply_add(value, load(deflection, at), one)
-                two = multiply_add(value, load(deflection, at + LANES), two)
-                three = multiply_add(value, load(deflection, at + 2 * LANES), three)
-        store(force, place, multiply(pushed, one))
-        store(force, place + LANES, multiply(pushed, two))
-        store(force, place + 2 * LANES, multiply(pushed, three))
+                value, at = spread(slope, j * meshes + m), (i - j) * width + offset
+                total_1 = multiply_add(value, load(deflection, at), total_1)
+                total_2 = multiply_add(value, load(deflection, at + LANES), total_2)
+                total_3 = multiply_add(value, load(deflection, at + 2 * LANES), total_3)
+        store(force, offset, multiply(pushed, total_1))
+        store(force, offset + LANES, multiply(pushed, total_2))
+        store(force, offset + 2 * LANES, multiply(pushed, total_3))
 
 
 @inlined
 def _expand_block(packed: Packed, work: Work, i: int) -> None:
     """Coefficient i + 2 of every coordinate from those before it and the meshes' forces."""
     y, force, matrix = work.block, work.block_force, packed.touching
-    wide, factor = y.shape[1], -1.0 / ((i + 1) * (i + 2))
+    width, factor = y.shape[1], -1.0 / ((i + 1) * (i + 2))
     for k in range(packed.n):
         damping = splat(factor * (i + 1) * packed.damping[k])
         stiffness = splat(factor * packed.omega_squared[k])
-        at = i * wide + k * ABREAST
-        one = multiply(stiffness, load(y, at))
-        two = multiply(stiffness, load(y, at + LANES))
-        three = multiply(stiffness, load(y, at + 2 * LANES))
-        at += wide
-        one = multiply_add(damping, load(y, at), one)
-        two = multiply_add(damping, load(y, at + LANES), two)
-        three = multiply_add(damping, load(y, at + 2 * LANES), three)
+        at = i * width + k * ABREAST
+        total_1 = multiply(stiffness, load(y, at))
+        total_2 = multiply(stiffness, load(y, at + LANES))
+        total_3 = multiply(stiffness, load(y, at + 2 * LANES))
+        at += width
+        total_1 = multiply_add(damping, load(y, at), total_1)
+        total_2 = multiply_add(damping, load(y, at + LANES), total_2)
+        total_3 = multiply_add(damping, load(y, at + 2 * LANES), total_3)
         for entry in range(take(matrix.starts, k), take(matrix.starts, k + 1)):
-            value, place = spread(matrix.values, entry), ABREAST * take(matrix.columns, entry)
-            one = multiply_add(value, load(force, place), one)
-            two = multiply_add(value, load(force, place + LANES), two)
-            three = multiply_add(value, load(force, place + 2 * LANES), three)
-        at += wide
-        store(y, at, one)
-        store(y, at + LANES, two)
-        store(y, at + 2 * LANES, three)
+            value, start = spread(matrix.values, entry), ABREAST * take(matrix.columns, entry)
+            total_1 = multiply_add(value, load(force, start), total_1)
+            total_2 = multiply_add(value, load(force, start + LANES), total_2)
+            total_3 = multiply_add(value, load(force, start + 2 * LANES), total_3)
+        at += width
+        store(y, at, total_1)
+        store(y, at + LANES, total_2)
+        store(y, at + 2 * LANES, total_3)

@@ -35,41 +35,41 @@ def accumulate(matrix: Array, rows: int, factors: Array, at: int, out: Array, to
 
     Three vectors at a time share each factor that is read.
     """
-    wide = matrix.shape[1]
-    triples = wide // (3 * LANES) * (3 * LANES)
+    width = matrix.shape[1]
+    triples = width // (3 * LANES) * (3 * LANES)
     for c in range(0, triples, 3 * LANES):
-        one, two, three = load(out, to + c), load(out, to + c + LANES), load(out, to + c + 2 * LANES)
-        four, five, six = splat(0.0), splat(0.0), splat(0.0)
+        sum_1, sum_2, sum_3 = load(out, to + c), load(out, to + c + LANES), load(out, to + c + 2 * LANES)
+        sum_4, sum_5, sum_6 = splat(0.0), splat(0.0), splat(0.0)
         for j in range(0, rows, 2):
-            row = j * wide + c
+            row = j * width + c
             factor, other = spread(factors, at + j), spread(factors, at + j + 1)
-            one = multiply_add(load(matrix, row), factor, one)
-            two = multiply_add(load(matrix, row + LANES), factor, two)
-            three = multiply_add(load(matrix, row + 2 * LANES), factor, three)
-            row += wide
-            four = multiply_add(load(matrix, row), other, four)
-            five = multiply_add(load(matrix, row + LANES), other, five)
-            six = multiply_add(load(matrix, row + 2 * LANES), other, six)
-        store(out, to + c, add(one, four))
-        store(out, to + c + LANES, add(two, five))
-        store(out, to + c + 2 * LANES, add(three, six))
-    for c in range(triples, wide, LANES):
-        one, two = load(out, to + c), splat(0.0)
+            sum_1 = multiply_add(load(matrix, row), factor, sum_1)
+            sum_2 = multiply_add(load(matrix, row + LANES), factor, sum_2)
+            sum_3 = multiply_add(load(matrix, row + 2 * LANES), factor, sum_3)
+            row += width
+            sum_4 = multiply_add(load(matrix, row), other, sum_4)
+            sum_5 = multiply_add(load(matrix, row + LANES), other, sum_5)
+            sum_6 = multiply_add(load(matrix, row + 2 * LANES), other, sum_6)
+        store(out, to + c, add(sum_1, sum_4))
+        store(out, to + c + LANES, add(sum_2, sum_5))
+        store(out, to + c + 2 * LANES, add(sum_3, sum_6))
+    for c in range(triples, width, LANES):
+        sum_1, sum_2 = load(out, to + c), splat(0.0)
         for j in range(0, rows, 2):
-            row = j * wide + c
-            one = multiply_add(load(matrix, row), spread(factors, at + j), one)
-            two = multiply_add(load(matrix, row + wide), spread(factors, at + j + 1), two)
-        store(out, to + c, add(one, two))
+            row = j * width + c
+            sum_1 = multiply_add(load(matrix, row), spread(factors, at + j), sum_1)
+            sum_2 = multiply_add(load(matrix, row + width), spread(factors, at + j + 1), sum_2)
+        store(out, to + c, add(sum_1, sum_2))
 
 
 @inlined
 def deflect(packed: Packed, y: Array, row: int, error: Array, deflection: Array) -> None:
     """One row of the mesh deflections, G y - e."""
-    n, wide = packed.mesh_jacobian.shape
+    n, width = packed.mesh_jacobian.shape
     minus = splat(-1.0)
-    for c in range(row * wide, (row + 1) * wide, LANES):
+    for c in range(row * width, (row + 1) * width, LANES):
         store(deflection, c, multiply(minus, load(error, c)))
-    accumulate(packed.mesh_jacobian, packed.n + packed.n % 2, y, row * n, deflection, row * wide)
+    accumulate(packed.mesh_jacobian, packed.n + packed.n % 2, y, row * n, deflection, row * width)
 
 
 @inlined
@@ -89,7 +89,7 @@ def recurrence(
     work.acting (m,) holds the mesh damping that acts. A `tangent` is moved by the slopes of the forces along
     the motion, which must be known.
     """
-    n, wide = packed.mesh_jacobian.shape
+    n, width = packed.mesh_jacobian.shape
     force = work.force
     minus = splat(-1.0)
     for i in range(2):
@@ -98,7 +98,7 @@ def recurrence(
         rate = splat(float(i + 1))
         # Forces push back; they carry the factor of the next coefficient already.
         pushed = splat(-1.0 / ((i + 1) * (i + 2)))
-        for c in range(0, wide, LANES):
+        for c in range(0, width, LANES):
             if tangent:
                 total = product_terms(work.law.slope, deflection, i, c)
             else:
@@ -106,7 +106,7 @@ def recurrence(
             keep_elastic(work.rubbing, work.side, total, i, c)
             total = multiply(load(work.active, c), total)
             damping = multiply(load(work.acting, c), rate)
-            total = multiply_add(damping, load(deflection, (i + 1) * wide + c), total)
+            total = multiply_add(damping, load(deflection, (i + 1) * width + c), total)
             store(force, c, multiply(pushed, total))
         ring_push(packed.rings, work.rings, work.active, i, force, -1.0 / ((i + 1) * (i + 2)))
         factor = splat(1.0 / ((i + 1) * (i + 2)))
@@ -128,10 +128,10 @@ def _couple(coupled: Array | None, factors: Array, y: Array, i: int) -> None:
     if coupled is None:
         return
     n = y.shape[1]
-    by_rate, by_place = splat(-1.0 / (i + 2)), splat(-1.0 / ((i + 1) * (i + 2)))
+    by_rate, by_displacement = splat(-1.0 / (i + 2)), splat(-1.0 / ((i + 1) * (i + 2)))
     for c in range(0, n, LANES):
         store(factors, c, multiply(by_rate, load(y, (i + 1) * n + c)))
-        store(factors, n + c, multiply(by_place, load(y, i * n + c)))
+        store(factors, n + c, multiply(by_displacement, load(y, i * n + c)))
     accumulate(coupled, 2 * n, factors, 0, y, (i + 2) * n)
 
 

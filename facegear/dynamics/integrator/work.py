@@ -17,8 +17,8 @@ ABREAST = 3 * LANES
 
 
 class RingSeries(NamedTuple):
-    """Series of the bearings with play, (rows, rings): place, its tangent, r^2 and its powers, forces, their
-    slopes; reciprocal (rings,) of r^2 where a ring presses, else 0.
+    """Series of bearings with clearance (rows, rings): displacement, its tangent, r^2 and its powers, forces,
+    their slopes; reciprocal (rings,) of r^2 where a ring presses, else 0.
     """
 
     x: Array
@@ -52,11 +52,12 @@ class Work(NamedTuple):
     counts it, side its sign as a number for vectors; active and acting are zero where a contact that may only
     push transmits nothing. at_level is 0 but for a mesh that stands where piece p (-p on the back flank)
     begins, at_parting says where the force is zero at the start of the step. law: the law's own series;
-    fourier and kinds are used by Fourier series. bernstein holds the deflections' Bernstein coefficients over
-    the step, least and most their bounds. block, block_deflection (rows, coordinates or meshes times ABREAST)
-    and block_force: of tangents side by side. nodes: of the rule that integrates products of polynomials.
-    rings: None without play; rubbing: None without friction. coupled: what the matrices of Packed.coupled are
-    multiplied by. Tables that hang on sizes alone (conversion, nodes) are shared and only read.
+    fourier and per_kind are used by Fourier series. bernstein holds the deflections' Bernstein coefficients
+    over the step, lower_bound and upper_bound their extremes. block, block_deflection (rows, coordinates or
+    meshes times ABREAST) and block_force: of tangents side by side. nodes: of the rule that integrates
+    products of polynomials. rings: None without bearing clearance; rubbing: None without friction. coupled:
+    what the matrices of Packed.coupled are multiplied by. Tables that hang on sizes alone (conversion, nodes)
+    are shared and only read.
     """
 
     order: int
@@ -74,7 +75,7 @@ class Work(NamedTuple):
     at_parting: Integers
     law: Any
     fourier: FourierScratch
-    kinds: Array
+    per_kind: Array
     polynomial: Array
     scaled: Array
     bernstein: Array
@@ -90,8 +91,8 @@ class Work(NamedTuple):
     zero_load: Array
     sample: Array
     was_acting: Array
-    least: Array
-    most: Array
+    lower_bound: Array
+    upper_bound: Array
     nodes: Array
     rings: RingSeries | None
     rubbing: RubbingSeries | None
@@ -121,7 +122,7 @@ def make_work(system: System, packed: Packed, order: int) -> Work:
         at_parting=np.zeros(m, dtype=np.int64),
         law=system.law.series(rows, m),
         fourier=fourier_scratch(harmonics, rows),
-        kinds=aligned(rows * packed.error.shape[2]),
+        per_kind=aligned(rows * packed.error.shape[2]),
         polynomial=aligned(rows),
         scaled=aligned(rows, m),
         bernstein=aligned(rows, m),
@@ -137,18 +138,18 @@ def make_work(system: System, packed: Packed, order: int) -> Work:
         zero_load=aligned(rows, n),
         sample=aligned(n),
         was_acting=aligned(m),
-        least=aligned(m),
-        most=aligned(m),
+        lower_bound=aligned(m),
+        upper_bound=aligned(m),
         nodes=_gauss(order // 4 + 1),
-        rings=_ring_series(rows, packed.rings.play.size) if packed.rings else None,
+        rings=_ring_series(rows, packed.rings.clearance.size) if packed.rings else None,
         rubbing=RubbingSeries(aligned(rows, rubbing.ratios.shape[2]), aligned(rows, m)) if rubbing else None,
         coupled=aligned(2 * n),
     )
 
 
-def _ring_series(rows: int, wide: int) -> RingSeries:
-    tables = {name: aligned(rows, wide) for name in RingSeries._fields}
-    return RingSeries(**{**tables, "reciprocal": aligned(wide)})
+def _ring_series(rows: int, width: int) -> RingSeries:
+    tables = {name: aligned(rows, width) for name in RingSeries._fields}
+    return RingSeries(**{**tables, "reciprocal": aligned(width)})
 
 
 @cache

@@ -36,7 +36,7 @@ class Moments:
 class Averages:
     """Time averages over B batches of a window; M meshes, n coordinates.
 
-    deflection (B, M) mean, m, and square (B, M) mean square about `level` (M,); lowest, highest (M,); force
+    deflection (B, M) mean, m, and square (B, M) mean square about `level` (M,); minimum, maximum (M,); force
     (2, M): mean and mean magnitude of the elastic mesh force, pull (M,): largest force by which the damper of
     a contact pulls its flanks together, in N in a response, over the squared mesh frequency as the kernels
     count it; centre (B, n) and products (B, n, n): means of y and y y^T about
@@ -47,8 +47,8 @@ class Averages:
     level: Array
     deflection: Array
     square: Array
-    lowest: Array
-    highest: Array
+    minimum: Array
+    maximum: Array
     force: Array
     pull: Array
     origin: Array
@@ -67,8 +67,8 @@ class Averages:
             mean=mean,
             rms=rms,
             ac_rms=ac_rms,
-            minimum=self.lowest,
-            maximum=self.highest,
+            minimum=self.minimum,
+            maximum=self.maximum,
             rms_interval=_root_interval(centred + 2.0 * mean * moved, rms, periodic),
             ac_rms_interval=_root_interval(centred, ac_rms, periodic),
         )
@@ -105,9 +105,9 @@ def averages(integrator: Integrator, sums: Sums, periods: int) -> Averages:
         weight=weight,
         level=sums.level[:m],
         deflection=sums.deflections[:, :m] / phase,
-        square=sums.squares[:, :m] / phase,
-        lowest=sums.lowest[:m],
-        highest=sums.highest[:m],
+        square=sums.squared[:, :m] / phase,
+        minimum=sums.minimum[:m],
+        maximum=sums.maximum[:m],
         force=sums.forces[:, :m] / (TAU * periods),
         pull=-sums.pull[: integrator.contacts].reshape(-1, m).min(axis=0),
         origin=sums.origin[:n],

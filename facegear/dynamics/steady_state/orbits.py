@@ -12,7 +12,7 @@ NEWTON_STEPS, MATRICES = 12, 3
 NEUTRAL = 1e-9
 """Directions in which the change over a period moves less than this, relatively, are left alone by Newton."""
 UNIT_TOLERANCE = 1e-6
-"""A multiplier may exceed one by this: it is one for a body afloat inside its backlash."""
+"""A multiplier may exceed one by this: that of a neutral direction is one."""
 RETURNS = 3
 """Returns in succession that must follow an orbit's multipliers."""
 ROUNDING = 1e-11
@@ -38,12 +38,12 @@ class Orbit:
 
     @property
     def moving(self) -> Mask:
-        """Which multipliers (2 n,) lie off the unit circle: all but the neutral ones of bodies afloat."""
+        """Which multipliers (2 n,) lie off the unit circle: all but those of neutral directions."""
         return np.abs(1.0 - np.abs(self.multipliers)) > UNIT_TOLERANCE
 
     @property
     def holding(self) -> float:
-        """By which factor a period brings the slowest disturbance back, those of bodies afloat left out."""
+        """By which factor a period brings the slowest disturbance back, neutral directions left out."""
         return float(np.abs(self.multipliers[self.moving]).max(initial=0.0))
 
     def parts(self, off: Array) -> ComplexArray:
@@ -53,7 +53,7 @@ class Orbit:
         return np.reshape(coefficients.T, flat.shape)
 
     def distance(self, integrator: Integrator, state: Array, rates: float = 1.0) -> float:
-        """How far a state (2, n) is off, as a change(), wherever bodies afloat may be.
+        """How far a state (2, n) is off, as a change(), whatever its neutral directions.
 
         rates: by which velocities are divided.
         """
@@ -119,7 +119,7 @@ class _Tangent:
     def slowness(self) -> float:
         """How far the multipliers stay from the unit circle (at least 1e-3), by which a residual is divided.
 
-        The neutral one of a body afloat inside its backlash, which goes nowhere, does not count.
+        That of a neutral direction, along which a disturbance stays as it is, does not count.
         """
         off = np.abs(1.0 - np.abs(self.multipliers))
         return max(float(off[off > UNIT_TOLERANCE].min(initial=1.0)), 1e-3)
@@ -127,7 +127,7 @@ class _Tangent:
     def correction(self, gap: Array) -> Array:
         """Newton's step for a change (2 n,) over the period.
 
-        A body afloat in its backlash has a place of its own choice: least norm leaves it where it is.
+        Positions along neutral directions are free: the solution of minimum norm keeps them.
         """
         matrix = np.eye(gap.size) - self.matrix
         if np.abs(1.0 - self.multipliers).min() > UNIT_TOLERANCE:

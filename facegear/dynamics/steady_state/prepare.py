@@ -17,11 +17,12 @@ from facegear.mesh_law.linear import LinearLaw
 
 
 @cache
-def prepare(play: bool = False, friction: bool = False) -> None:
+def prepare(clearance: bool = False, friction: bool = False) -> None:
     """Load the stored machine code of the time integration, or compile and store it while others wait.
 
-    play, friction: that of machines with play in their bearings and with friction; the law is linear.
-    Without this, jobs that start at once on a fresh checkout each compile the same for several seconds.
+    clearance, friction: the machine code for machines with bearing clearance and with friction; the law is
+    linear. Without this, jobs that start at once on a fresh checkout each compile the same for several
+    seconds.
     """
     folder = stored_in(run_periods)
     if folder is None:
@@ -30,8 +31,8 @@ def prepare(play: bool = False, friction: bool = False) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         with open(folder / "compiling.lock", "w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
-            parts = f"{'-play' if play else ''}{'-friction' if friction else ''}"
-            _compile(folder / f"compiled-{text_of(*SOURCES)[:16]}{parts}", _smallest(play, friction))
+            parts = f"{'-clearance' if clearance else ''}{'-friction' if friction else ''}"
+            _compile(folder / f"compiled-{text_of(*SOURCES)[:16]}{parts}", _smallest(clearance, friction))
     except OSError:
         # A folder that cannot be written keeps no machine code either: each process compiles its own.
         return
@@ -44,11 +45,11 @@ def _compile(done: Path, smallest: System) -> None:
     done.touch()
 
 
-def _smallest(play: bool, friction: bool) -> System:
+def _smallest(clearance: bool, friction: bool) -> System:
     """One coordinate and one mesh, with a ring or without, rubbing or not: the types are those of any such
     machine.
     """
-    rings = np.ones(int(play))
+    rings = np.ones(int(clearance))
     unit, rows, nothing = np.ones(1), np.ones(1 + 3 * rings.size), np.zeros((1, 2, 1))
     row_kinds = np.zeros(rows.size, dtype=np.int64)
     return System(
@@ -63,7 +64,7 @@ def _smallest(play: bool, friction: bool) -> System:
         error_kind=row_kinds,
         load=nothing,
         ring_stiffness=rings,
-        ring_play=rings,
+        ring_clearance=rings,
         damping_when_open=True,
         scale=1.0,
         rubbing=FlankRubbing(row_kinds[:1], nothing, rows[:1, None]) if friction else None,

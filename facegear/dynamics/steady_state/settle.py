@@ -28,7 +28,7 @@ CREEP = 0.01
 """Where Newton's method finds no orbit the change over a period must fall to this share of the goal."""
 NOISE, DRAWN = 50.0, 0.95
 """Steps chosen anew in each period may move a run by NOISE times the tolerance; an orbit whose multipliers
-are below DRAWN holds it there. They also push a body afloat, whose multiplier is one, on and on."""
+are below DRAWN holds it there. They also push a body along its neutral direction on and on."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,7 +174,7 @@ class SettlingRun:
     def _by_itself(self, near: Closing, last: bool) -> Settled | None:
         """The motion that the run has closed on without help, with its multipliers if they are wanted.
 
-        What only creeps by is told by Newton's method, which finds no orbit there: then the run goes on.
+        Newton's method detects what only creeps by, because it finds no orbit there: then the run goes on.
         """
         period = closed(self.integrator, self.ends, near, self.settings)
         if not period:

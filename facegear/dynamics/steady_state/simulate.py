@@ -161,7 +161,7 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
     A run that shows no sign of closing while it is watched gets its largest exponent on the window that it is
     measured on, which is also a second watch. Where the two do not agree it is watched for longer.
     """
-    prepare(system.ring_play.size > 0, system.rubbing is not None)
+    prepare(system.ring_clearance.size > 0, system.rubbing is not None)
     integrator = Integrator(system, frequency, settings.tolerance, settings.order)
     state, ends = integrator.by_phase(start), None
     periods_run = 0

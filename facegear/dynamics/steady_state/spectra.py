@@ -6,8 +6,8 @@ from facegear.arrays import Array
 
 SEGMENT = 8
 """Mesh periods in a segment; orders are multiples of 1 / SEGMENT."""
-HIGHEST = 6
-ORDERS = np.arange(SEGMENT * HIGHEST + 1) / SEGMENT
+MAX_ORDER = 6
+ORDERS = np.arange(SEGMENT * MAX_ORDER + 1) / SEGMENT
 
 
 def spectrum(samples: Array, per_period: int, periodic: bool) -> tuple[Array, Array]:

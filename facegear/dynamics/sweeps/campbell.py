@@ -11,7 +11,7 @@ from facegear.transmission.modes import Modes
 
 PROMINENT = 1.15
 SMALL = 0.1
-"""Maxima below this share of the largest do not count."""
+"""Maxima below this fraction of the largest do not count."""
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ MIN_CHANGE = 0.1
 ABRUPT = 3.0
 """A jump is this many times the change over the speeds around it."""
 FLOOR = 1e-3
-"""AC RMS below this share of the largest is not compared."""
+"""AC RMS below this fraction of the largest is not compared."""
 
 Respond = Callable[[float, State], SteadyState]
 

@@ -62,7 +62,7 @@ def rings(model, coordinates):
     rows = system.mesh_jacobian[system.contacts :].reshape(-1, 3, system.size)[:, :2]
     place = np.einsum("rcn,kn->krc", rows, coordinates)
     distance = np.hypot(place[..., 0], place[..., 1])
-    beyond = np.maximum(distance - system.ring_play, 0.0)
+    beyond = np.maximum(distance - system.ring_clearance, 0.0)
     along = place / np.maximum(distance, 1e-300)[..., None]
     return place, along, beyond
 

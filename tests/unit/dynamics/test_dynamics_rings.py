@@ -49,7 +49,7 @@ def slope(model, omega):
         push = system.mesh_jacobian[:flanks].T @ (
             system.law.force(cycles, np.maximum(over, 0.0)[None])[0] + acts * d_rate
         )
-        for row, spring, play in zip(rows, system.ring_stiffness, system.ring_play, strict=True):
+        for row, spring, play in zip(rows, system.ring_stiffness, system.ring_clearance, strict=True):
             q, q_rate = row[:2] @ y, row[:2] @ v
             r = np.hypot(*q)
             if r > play:
