@@ -87,9 +87,9 @@ def _check(given: argparse.Namespace) -> int:
 
 
 def _limits(given: argparse.Namespace) -> int:
-    from facegear.config.limits import told_limits
+    from facegear.config.limits import limits_in_words
 
-    print(told_limits(**{name: getattr(given, name) for name in LIMITS}))
+    print(limits_in_words(**{name: getattr(given, name) for name in LIMITS}))
     return 0
 
 

@@ -418,7 +418,7 @@ class Gearbox:
         percentile: float = 99.0,
         causes: Sequence[str] | None = None,
         samples: int = 512,
-        most: float = 4.0,
+        max_factor: float = 4.0,
     ) -> "Loosest":
         """By how much the deviations of all causes, or of those named, may grow until a percentile of a
         quantity exceeds a limit; `quantity` is a column of the samples.
@@ -443,7 +443,7 @@ class Gearbox:
             frame = self._changed("tolerances", {"tolerances.causes": scaled}).tolerances(samples).samples()
             return frame[chosen(quantity, list(frame.columns), "quantity")].to_numpy(float)
 
-        return loosest(sampled, at_most, percentile / 100.0, most)
+        return loosest(sampled, at_most, percentile / 100.0, max_factor)
 
     def search(self, generations: int | None = None, seeds: Sequence[int] | None = None) -> "SearchResult":
         """Designs that no other beats in every objective of the config's section `search`, in one process.
@@ -467,10 +467,10 @@ class Gearbox:
 
     def _required(self, section: str) -> Mapping[str, Any]:
         """A section of HOLDS. Raises ConfigError where the config leaves it out."""
-        found: Mapping[str, Any] | None = self._values[section]
-        if found is None:
+        values: Mapping[str, Any] | None = self._values[section]
+        if values is None:
             raise ConfigError(section, None, f"a section of the config: {HOLDS[section]}")
-        return found
+        return values
 
     def _with_branches(self, changes: Mapping[str, Any]) -> "Gearbox":
         """A copy with a section `branches`, in which some values differ from the config's."""

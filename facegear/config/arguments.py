@@ -16,7 +16,7 @@ def typed_arguments(function: Callable[..., Any], given: Mapping[str, Any]) -> d
 
 def _typed(kind: Any, value: Any) -> Any:
     if isinstance(value, Mapping):
-        for one in (kind, *get_args(kind)):
-            if hasattr(one, "of_config"):
-                return one.of_config(value)
+        for candidate in (kind, *get_args(kind)):
+            if hasattr(candidate, "of_config"):
+                return candidate.of_config(value)
     return value

@@ -1,8 +1,8 @@
-"""What all config sections share: strict parsing, and mistakes told in the user's terms."""
+"""What all config sections share: strict parsing, and mistakes reported in the terms of the user."""
 
 import difflib
 import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextvars import ContextVar
 from typing import Any, NoReturn, Self, TypeVar, get_args
 
@@ -43,7 +43,7 @@ def refuse(key: str, value: object, allowed: str) -> NoReturn:
 
 
 def require_all(*checks: Callable[[], None]) -> None:
-    """Run checks inside a validator, so that all that they refuse is told at once.
+    """Run checks inside a validator, so that all that they refuse is reported at once.
 
     A check calls `refuse` or raises ConfigError with a key relative to the section that is validated.
     """
@@ -82,23 +82,23 @@ def parse(model: type[SectionType], values: Mapping[str, Any], source: str = "co
         raise ConfigErrors(source, list(dict.fromkeys(lines))) from None
 
 
-def _lines(model: type[Section], values: Mapping[str, Any], found: list[ErrorDetails]) -> list[str]:
-    """The lines of all mistakes; a misspelt key is not told again as a missing one."""
-    places = [_location(details, values) for details in found]
+def _lines(model: type[Section], values: Mapping[str, Any], mistakes: list[ErrorDetails]) -> list[str]:
+    """The lines of all mistakes; a misspelt key is not reported again as a missing one."""
+    locations = [_location(details, values) for details in mistakes]
     meant = [
-        [*place[:-1], _nearest(model, place)]
-        for place, details in zip(places, found, strict=True)
+        [*location[:-1], _nearest(model, location)]
+        for location, details in zip(locations, mistakes, strict=True)
         if details["type"] == "extra_forbidden"
     ]
     return [
         line
-        for place, details in zip(places, found, strict=True)
-        if details["type"] != "missing" or place not in meant
-        for line in _told(model, details, place)
+        for location, details in zip(locations, mistakes, strict=True)
+        if details["type"] != "missing" or location not in meant
+        for line in _messages(model, details, location)
     ]
 
 
-def _told(model: type[Section], details: ErrorDetails, location: list[int | str]) -> list[str]:
+def _messages(model: type[Section], details: ErrorDetails, location: list[int | str]) -> list[str]:
     """One line for each value that is refused."""
     kind = details["type"]
     if kind == "refused":
@@ -118,8 +118,21 @@ def _told(model: type[Section], details: ErrorDetails, location: list[int | str]
     return [f"{key} = {_shown(details['input'])}: {message[:1].lower()}{message[1:]}"]
 
 
-def suggestion(key: str, allowed: Iterable[str]) -> str:
-    """The allowed key that was most likely meant, or else all of them, in words."""
+RENAMED = {
+    "least_bending_safety": "min_bending_safety",
+    "least_pitting_safety": "min_pitting_safety",
+    "longest_found": "longest_start_period",
+    "most_branches": "max_branches",
+}
+"""Keys of earlier versions and what they are called today."""
+
+
+def suggestion(key: str, allowed: Collection[str]) -> str:
+    """What a key of an earlier version is called now, or the allowed key that was most likely meant, or else
+    all of them, in words.
+    """
+    if (renamed := RENAMED.get(key)) in allowed:
+        return f"`{key}` is now `{renamed}`"
     nearest = _closest(key, allowed)
     return f"did you mean {nearest!r}?" if nearest else f"allowed here: {', '.join(sorted(allowed))}"
 
@@ -128,9 +141,9 @@ def _location(details: ErrorDetails, values: Any) -> list[int | str]:
     """Keys and list positions down to a mistake, without the names of types and models that pydantic adds."""
     named_by_user = details["type"] in ("extra_forbidden", "missing")
     kept: list[int | str] = []
-    for place, part in enumerate(details["loc"], start=1):
+    for depth, part in enumerate(details["loc"], start=1):
         own = isinstance(values, Mapping) and part in values
-        last = named_by_user and place == len(details["loc"])
+        last = named_by_user and depth == len(details["loc"])
         if not (own or last) and _is_union_tag(part):
             continue
         kept.append(part)
@@ -175,9 +188,9 @@ def _keys_at(model: type[BaseModel], location: list[int | str]) -> set[str]:
     for part in location:
         if isinstance(part, int):
             continue
-        fields = [found.model_fields[part] for found in models if part in found.model_fields]
+        fields = [candidate.model_fields[part] for candidate in models if part in candidate.model_fields]
         models = {nested for field in fields for nested in _models_in(field.annotation)}
-    return {key for found in models for key in found.model_fields}
+    return {key for candidate in models for key in candidate.model_fields}
 
 
 def _models_in(annotation: Any) -> set[type[BaseModel]]:

@@ -42,7 +42,7 @@ DIAMETRAL = (
 )
 
 
-def _play(one_side: float | None, diametral: float | None) -> float | None:
+def _one_sided(one_side: float | None, diametral: float | None) -> float | None:
     """Clearance of a bearing to each side of its centre, um."""
     return one_side if diametral is None else 0.5 * diametral
 
@@ -71,12 +71,12 @@ class PinionBody(Section):
     runout: RunoutSection | None = None
 
     @property
-    def play_um(self) -> float:
+    def bearing_clearance_um(self) -> float:
         """Clearance of the bearings to each side of their centre."""
-        return _play(self.clearance_um, self.clearance_diametral_um) or 0.0
+        return _one_sided(self.clearance_um, self.clearance_diametral_um) or 0.0
 
     @model_validator(mode="after")
-    def _one_play(self) -> "PinionBody":
+    def _single_clearance(self) -> "PinionBody":
         _refuse_both(self.clearance_um, self.clearance_diametral_um)
         return self
 
@@ -140,12 +140,12 @@ class SinglePinion(Section):
     cumulative_pitch_um: tuple[float, ...] = Field((), description="of every tooth, ahead as it turns")
 
     @property
-    def play_um(self) -> float | None:
+    def bearing_clearance_um(self) -> float | None:
         """Clearance of the bearings to each side of their centre; null: that of all pinions."""
-        return _play(self.clearance_um, self.clearance_diametral_um)
+        return _one_sided(self.clearance_um, self.clearance_diametral_um)
 
     @model_validator(mode="after")
-    def _one_play(self) -> "SinglePinion":
+    def _single_clearance(self) -> "SinglePinion":
         _refuse_both(self.clearance_um, self.clearance_diametral_um)
         return self
 

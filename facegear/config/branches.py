@@ -45,10 +45,10 @@ class Branches(Section):
     longest_period: int = Field(
         2, ge=1, le=64, description="longest period followed through doublings, in mesh periods"
     )
-    longest_found: int = Field(
+    longest_start_period: int = Field(
         8, ge=1, le=64, description="longest period followed of motions of the sweep and of random starts"
     )
-    most_branches: int = Field(48, ge=1, le=10_000)
+    max_branches: int = Field(48, ge=1, le=10_000)
     explore: Explore = Explore()
     loci: Loci = Loci()
 
@@ -71,8 +71,8 @@ def branch_plan(section: Branches | None, nominal_rpm: float) -> BranchPlan:
         nominal_rpm=nominal_rpm,
         tolerance=section.tolerance,
         longest_period=section.longest_period,
-        longest_found=section.longest_found,
-        most_branches=section.most_branches,
+        longest_start_period=section.longest_start_period,
+        max_branches=section.max_branches,
         speeds_rpm=section.explore.speeds_rpm or (nominal_rpm,),
         starts=section.explore.starts,
         spread=1e-6 * section.explore.spread_um,

@@ -24,11 +24,11 @@ def require_buildable(section: Transmission, teeth: ToothNumbers) -> None:
         ("single_pinions", section.single_pinions, teeth.pinion_teeth),
         ("single_gears", section.single_gears, teeth.gear_teeth),
     ):
-        for name, one in given.items():
-            told = len(one.cumulative_pitch_um)
-            if told not in (0, count):
+        for name, own in given.items():
+            given_count = len(own.cumulative_pitch_um)
+            if given_count not in (0, count):
                 where = f"transmission.{key}.{name}.cumulative_pitch_um"
-                raise ConfigError(where, f"{told} values", f"one for each of the {count} teeth")
+                raise ConfigError(where, f"{given_count} values", f"one for each of the {count} teeth")
     bodies: dict[str, SinglePinion | SingleGear] = {**section.single_pinions, **section.single_gears}
     for name, body in bodies.items():
         _require_hold(shape, name, body)
@@ -51,28 +51,30 @@ def _half_backlashes(section: Transmission, flaws: Imperfections) -> Array:
     return np.where(np.isnan(flaws.half_backlash), half_backlash(section), flaws.half_backlash)
 
 
-def _require_hold(shape: Layout, name: str, one: SinglePinion | SingleGear) -> None:
+def _require_hold(shape: Layout, name: str, own: SinglePinion | SingleGear) -> None:
     """Raise ConfigError for an external force along an axis of a body whose bearing gives way to it."""
-    key = "single_pinions" if isinstance(one, SinglePinion) else "single_gears"
+    key = "single_pinions" if isinstance(own, SinglePinion) else "single_gears"
     names = [pinion.name for pinion in shape.pinions] + [gear.side.value for gear in shape.gears]
     bearing = shape.bodies[names.index(name)].bearing
-    for axis, force in one.force_n.model_dump().items():
+    for axis, force in own.force_n.model_dump().items():
         if force != 0.0 and bearing["xyz".index(axis)] == 0.0:
             allowed = f"0, as the bearing has no stiffness along {axis}"
             raise ConfigError(f"transmission.{key}.{name}.force_n.{axis}", force, allowed)
 
 
-def _require_assembly(section: Transmission, shape: Layout, found: Assembly) -> None:
-    for i in np.flatnonzero(~found.fits):
-        place = section.pinions[i]
+def _require_assembly(section: Transmission, shape: Layout, built: Assembly) -> None:
+    for i in np.flatnonzero(~built.fits):
+        pinion = section.pinions[i]
         key, unit = (
-            ("angle_deg", 360.0 / shape.gear_teeth) if place.angle_pitches is None else ("angle_pitches", 1.0)
+            ("angle_deg", 360.0 / shape.gear_teeth)
+            if pinion.angle_pitches is None
+            else ("angle_pitches", 1.0)
         )
-        value = place.angle_deg if place.angle_pitches is None else place.angle_pitches
+        value = pinion.angle_deg if pinion.angle_pitches is None else pinion.angle_pitches
         allowed = (
-            f"where the teeth fit, such as {found.below[i] * unit:.6g} and {found.above[i] * unit:.6g} "
-            f"(or clocking_deg): {1e6 * found.misfit[i]:.0f} um are left between this pinion's meshes and "
-            f"their backlash takes up {1e6 * found.room[i]:.0f} um"
+            f"where the teeth fit, such as {built.below[i] * unit:.6g} and {built.above[i] * unit:.6g} "
+            f"(or clocking_deg): {1e6 * built.misfit[i]:.0f} um are left between this pinion's meshes and "
+            f"their backlash takes up {1e6 * built.room[i]:.0f} um"
         )
         raise ConfigError(f"transmission.pinions[{i}].{key}", value, allowed)
 
@@ -82,10 +84,10 @@ def _pressed(section: Transmission, teeth: ToothNumbers) -> Iterator[tuple[str, 
     shape = layout(section, teeth)
     flaws = imperfections(section, shape)
     half = _half_backlashes(section, flaws)
-    found = assembly(shape, half, flaws.clocking, flaws)
-    for i in np.flatnonzero(~found.fits):
-        allowed = f"errors of this pinion and its meshes within the {1e6 * found.room[i]:.0f} um they leave"
-        amount = f"{1e6 * found.misfit[i]:.0f} um between its two meshes"
+    built = assembly(shape, half, flaws.clocking, flaws)
+    for i in np.flatnonzero(~built.fits):
+        allowed = f"errors of this pinion and its meshes within the {1e6 * built.room[i]:.0f} um they leave"
+        amount = f"{1e6 * built.misfit[i]:.0f} um between its two meshes"
         yield f"transmission.single_pinions.{shape.pinions[i].name}", amount, allowed
     squeeze = squeezed(shape, half, flaws)
     for mesh in np.flatnonzero(squeeze > 0.0):

@@ -54,7 +54,7 @@ def study_points(study: Study) -> dict[str, Point]:
     """Folder name -> label and keys it sets, for the product of the study's axes."""
     points: dict[str, Point] = {}
     for combination in itertools.product(*(axis.resolved() for axis in study.axes)):
-        told = [
+        labels = [
             f"{axis.label} = {point.label}" if axis.key else point.label
             for axis, point in zip(study.axes, combination, strict=True)
         ]
@@ -62,7 +62,7 @@ def study_points(study: Study) -> dict[str, Point]:
         if name in points:
             raise ConfigErrors("studies", [f"{study.name}: two points are both called {name!r}"])
         points[name] = Point(
-            label=", ".join(told),
+            label=", ".join(labels),
             set={key: value for point in combination for key, value in point.set.items()},
         )
     return points

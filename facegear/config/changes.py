@@ -65,8 +65,8 @@ def movable(
     """Values as of `variable_part` with an entry for every single part that one of the keys names.
 
     What such an entry leaves open is filled with what all parts have. Where a key is a clearance to each
-    side, clearances given from side to side become clearances to each side. Raises ConfigError for `told`,
-    naming the first key that begins with none of the texts `allowed`, or is no number.
+    side, clearances given from side to side become clearances to each side. Raises ConfigError for
+    `refused_key`, naming the first key that begins with none of the texts `allowed`, or is no number.
     """
     complete, keys = deepcopy(dict(values)), tuple(keys)
     if any(key.endswith(f".{ONE_SIDE}") for key in keys):
@@ -74,14 +74,14 @@ def movable(
     for key in keys:
         if not key.startswith(tuple(allowed)):
             names = ", ".join(text.removesuffix(".") for text in allowed)
-            raise ConfigError(told, key, f"a number of {names}")
+            raise ConfigError(refused_key, key, f"a number of {names}")
         parts = key.split(".")
         if len(parts) > 3 and parts[1] in SHARED and isinstance(complete[parts[0]].get(parts[1]), dict):
             _enter(complete[parts[0]], parts[1:])
         inside, last = _holder(complete, parts)
-        found = inside[last] if _has(inside, last) else None
-        if isinstance(found, bool) or not isinstance(found, int | float):
-            raise ConfigError(told, key, f"a key of {parts[0]} whose nominal value is a number")
+        value = inside[last] if _has(inside, last) else None
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise ConfigError(refused_key, key, f"a key of {parts[0]} whose nominal value is a number")
     return complete
 
 
@@ -96,11 +96,11 @@ def moved(values: Mapping[str, Any], changes: Mapping[str, float]) -> dict[str, 
 
 def nominal(values: Mapping[str, Any], keys: Iterable[str]) -> float:
     """The number that all keys of values made by `movable` have; nan where they differ."""
-    found = set()
+    numbers = set()
     for key in keys:
         inside, last = _holder(values, key.split("."))
-        found.add(float(inside[last]))
-    return found.pop() if len(found) == 1 else float("nan")
+        numbers.add(float(inside[last]))
+    return numbers.pop() if len(numbers) == 1 else float("nan")
 
 
 def placed(values: Mapping[str, Any], numbers: Mapping[str, float]) -> dict[str, Any]:
@@ -126,24 +126,24 @@ def _enter(section: dict[str, Any], parts: list[str]) -> None:
         return
     shared = SHARED[kind]
     common = (section if shared is None else section[shared]).get(field)
-    found = common if common is not None else START.get(field, PLAIN.get(field))
-    if found is not None:
-        own[field] = deepcopy(found)
+    initial = common if common is not None else START.get(field, PLAIN.get(field))
+    if initial is not None:
+        own[field] = deepcopy(initial)
 
 
 def _holder(values: Any, parts: list[str]) -> tuple[Any, Any]:
     """The mapping or list that holds the last part of a dotted key, and that part as its index."""
     for part in parts[:-1]:
-        place = _place(values, part)
-        values = values[place] if _has(values, place) else None
-    return values, _place(values, parts[-1])
+        index = _index_of(values, part)
+        values = values[index] if _has(values, index) else None
+    return values, _index_of(values, parts[-1])
 
 
-def _place(values: Any, part: str) -> str | int:
+def _index_of(values: Any, part: str) -> str | int:
     return int(part) if isinstance(values, list | tuple) and part.isdecimal() else part
 
 
-def _has(values: Any, place: str | int) -> bool:
+def _has(values: Any, index: str | int) -> bool:
     if isinstance(values, dict):
-        return place in values
-    return isinstance(values, list) and isinstance(place, int) and place < len(values)
+        return index in values
+    return isinstance(values, list) and isinstance(index, int) and index < len(values)

@@ -85,35 +85,35 @@ def check_machine_strain(pair: ToothPair, section: Transmission) -> None:
     largest = STRAIN * STEEL * WIDEST * m**2 * 0.5 * m * pair.pinion_teeth
     given = {"transmission.torque.per_input_n_m": section.torque.per_input_n_m}
     given |= {
-        f"transmission.pinions[{number}].torque_n_m": place.torque_n_m
-        for number, place in enumerate(section.pinions)
-        if place.torque_n_m is not None
+        f"transmission.pinions[{number}].torque_n_m": pinion.torque_n_m
+        for number, pinion in enumerate(section.pinions)
+        if pinion.torque_n_m is not None
     }
     for key, torque in given.items():
         if abs(torque) > largest:
             raise ConfigError(key, torque, f"at most {largest:.4g}: {BROKEN}")
 
 
-def check_places(pair: ToothPair, section: Transmission) -> None:
+def check_positions(pair: ToothPair, section: Transmission) -> None:
     """Pinions stand at angles within a turn, far enough apart for their bodies. Raises ConfigError."""
-    found = layout(section, pair_teeth(pair))
-    for number, (pinion, place) in enumerate(zip(found.pinions, section.pinions, strict=True)):
-        if abs(pinion.pitches) > found.gear_teeth:
+    shape = layout(section, pair_teeth(pair))
+    for number, (pinion, given) in enumerate(zip(shape.pinions, section.pinions, strict=True)):
+        if abs(pinion.pitches) > shape.gear_teeth:
             key = f"transmission.pinions[{number}].angle_pitches"
-            allowed = f"within a turn, -{found.gear_teeth} to {found.gear_teeth}"
-            raise ConfigError(key, place.angle_pitches, allowed)
+            allowed = f"within a turn, -{shape.gear_teeth} to {shape.gear_teeth}"
+            raise ConfigError(key, given.angle_pitches, allowed)
     radius, inner_end = _pinion_body(pair)
     needed = 2.0 * atan(radius / inner_end)
-    angles = np.mod(found.angles, 2.0 * pi)
+    angles = np.mod(shape.angles, 2.0 * pi)
     order = np.argsort(angles)
-    for one, following in zip(order, np.roll(order, -1), strict=True):
-        apart = float(np.mod(angles[following] - angles[one], 2.0 * pi))
-        if one != following and apart < needed * (1.0 - 1e-9):
-            names = [found.pinions[i].name for i in (one, following)]
-            told = (
+    for first, following in zip(order, np.roll(order, -1), strict=True):
+        apart = float(np.mod(angles[following] - angles[first], 2.0 * pi))
+        if first != following and apart < needed * (1.0 - 1e-9):
+            names = [shape.pinions[i].name for i in (first, following)]
+            distance = (
                 f"{degrees(apart):.4g} deg apart, at least {degrees(needed):.4g}: their bodies would overlap"
             )
-            raise ConfigError("transmission.pinions", names, told)
+            raise ConfigError("transmission.pinions", names, distance)
 
 
 def check_torques(pair: ToothPair, section: Transmission) -> None:
@@ -121,12 +121,12 @@ def check_torques(pair: ToothPair, section: Transmission) -> None:
     on_pinions = given_torques(section, layout(section, pair_teeth(pair)))
     if not on_pinions.any() and other_gear_torque(section) == 0.0:
         allowed = "not 0 where no pinion has a torque of its own: nothing would be loaded"
-        if not any(place.role == "input" for place in section.pinions):
+        if not any(pinion.role == "input" for pinion in section.pinions):
             raise ConfigError("transmission.pinions", "no input", "at least one input, or a torque_n_m")
         if section.torque.per_input_n_m == 0.0:
             raise ConfigError("transmission.torque.per_input_n_m", 0.0, allowed)
-        told = "not 0 at every input: nothing would be loaded"
-        raise ConfigError("transmission.pinions", "torque_n_m: 0", told)
+        no_load = "not 0 at every input: nothing would be loaded"
+        raise ConfigError("transmission.pinions", "torque_n_m: 0", no_load)
 
 
 def geometric_backlash(pair: ToothPair) -> float:
@@ -140,9 +140,10 @@ def geometric_backlash(pair: ToothPair) -> float:
     except NotConverged:
         raise ConfigError("tooth_pair.assembly", assembly, "errors so small that the flanks meet") from None
     if backlash < -JAM:
-        least = (pair.pinion.thinning_um if pair.pinion else 0.0) - 1e6 * backlash
+        min_thinning = (pair.pinion.thinning_um if pair.pinion else 0.0) - 1e6 * backlash
         allowed = (
-            f"at least {least:.1f}: with these assembly errors the pair jams by {-1e6 * backlash:.1f} um"
+            f"at least {min_thinning:.1f}: with these assembly errors the pair jams by "
+            f"{-1e6 * backlash:.1f} um"
         )
         raise ConfigError("tooth_pair.pinion.thinning_um", pair.pinion and pair.pinion.thinning_um, allowed)
     return 1e6 * max(backlash, 0.0)
@@ -169,8 +170,8 @@ def check_studies(studies: Sequence[Study]) -> None:
         raise ConfigError("studies.figures", figures, "each number once")
     points = sum(int(np.prod([len(axis.resolved()) for axis in study.axes])) for study in studies)
     if points > MAX_POINTS:
-        told = f"at most {MAX_POINTS} in all: fewer values, several configs, or a loop in Python"
-        raise ConfigError("studies", f"{points} points", told)
+        allowed = f"at most {MAX_POINTS} in all: fewer values, several configs, or a loop in Python"
+        raise ConfigError("studies", f"{points} points", allowed)
 
 
 def check_tolerances(
@@ -194,9 +195,9 @@ def check_tolerances(
     try:
         parse(Transmission, start["transmission"])
     except ConfigErrors as error:
-        told = error.lines[0]
+        reason = error.lines[0]
         raise ConfigError(
-            "tolerances.causes.moves", keys, f"keys that this machine can have; {told}"
+            "tolerances.causes.moves", keys, f"keys that this machine can have; {reason}"
         ) from None
 
 
@@ -220,9 +221,9 @@ def check_search(
     movable(_variable(pair, machine), keys, (MACHINE, PAIR), "search.variables.sets")
     if contact == "none" and moves_pair(keys):
         raise ConfigError("mesh_stiffness.source", "harmonics", f"fem or fem_scaled, {CONTACT_ASKED}")
-    found = layout(machine, pair_teeth(pair))
+    machine_layout = layout(machine, pair_teeth(pair))
     dynamic, gauges = section.model == "dynamic", contact == "root stress"
-    names = quantity_names(found, dynamic, contact != "none", gauges, jumps=True)
+    names = quantity_names(machine_layout, dynamic, contact != "none", gauges, jumps=True)
     for goal in (*section.objectives, *section.constraints):
         for start in goal.quantities:
             if not columns_of(start, names):

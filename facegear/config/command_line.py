@@ -20,20 +20,20 @@ def check_configfiles(arguments: Sequence[str]) -> None:
         try:
             read_layers(name)
         except ConfigErrors as error:
-            told = str(error)
+            message = str(error)
             if not name.endswith(ENDINGS):
-                told += f"\nIs {name} a target? Write -- before the targets that follow --configfile."
-            sys.exit(told)
+                message += f"\nIs {name} a target? Write -- before the targets that follow --configfile."
+            sys.exit(message)
 
 
 def _named(arguments: Sequence[str]) -> Iterator[str]:
     """All that stands after an option for config files, up to the next option."""
     taken = False
-    for one in arguments:
-        option, equals, value = one.partition("=")
-        if one.startswith("-"):
+    for argument in arguments:
+        option, equals, value = argument.partition("=")
+        if argument.startswith("-"):
             taken = option in OPTIONS
             if taken and equals:
                 yield value
         elif taken:
-            yield one
+            yield argument

@@ -31,8 +31,8 @@ def read_numbers(path: str | Path, columns: Sequence[str]) -> list[Row]:
         header = [name.strip() for name in next(lines, [])]
         missing = [name for name in columns if header.count(name) != 1]
         if missing:
-            told = f"column {missing[0]} must stand once in its first line, separated by commas"
-            raise CsvFault(f"{told}; it has {', '.join(header)[:200] or 'none'}")
+            message = f"column {missing[0]} must stand once in its first line, separated by commas"
+            raise CsvFault(f"{message}; it has {', '.join(header)[:200] or 'none'}")
         rows = []
         for cells in lines:
             if any(cell.strip() for cell in cells):
@@ -47,8 +47,8 @@ def read_numbers(path: str | Path, columns: Sequence[str]) -> list[Row]:
 def _row(line: int, header: Sequence[str], cells: Sequence[str], columns: Sequence[str]) -> Row:
     if len(cells) != len(header):
         raise CsvFault(f"line {line}: {len(cells)} values under {len(header)} column names")
-    found = dict(zip(header, cells, strict=True))
-    return Row(line, {name: _number(line, name, found[name]) for name in columns})
+    by_column = dict(zip(header, cells, strict=True))
+    return Row(line, {name: _number(line, name, by_column[name]) for name in columns})
 
 
 def _number(line: int, name: str, text: str) -> float:

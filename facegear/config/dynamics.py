@@ -48,7 +48,7 @@ SWEPT = Accuracy(
     samples_per_period=32,
 )
 """What many speeds in a row are run with."""
-SWEPT_TOLD = (
+SWEPT_TEXT = (
     f"left out as a whole: tolerance {SWEPT.tolerance:g}, settle_periods {SWEPT.settle_periods}, "
     f"window_periods {SWEPT.window_periods}, periodic_residual {SWEPT.periodic_residual:g}, "
     f"extensions {SWEPT.extensions}, samples_per_period {SWEPT.samples_per_period}; "
@@ -68,7 +68,7 @@ class Sweep(Section):
     )
     overlap_points: int = Field(8, ge=0, le=1000, description="speeds a chunk runs before its own first one")
     jump_resolution_rpm: float = Field(1.0, gt=0, le=1000)
-    accuracy: Accuracy = Field(SWEPT, description=SWEPT_TOLD)
+    accuracy: Accuracy = Field(SWEPT, description=SWEPT_TEXT)
 
     @model_validator(mode="after")
     def _rising(self) -> "Sweep":

@@ -8,7 +8,7 @@ from facegear.geometry.limits import face_range, radius_limits
 from facegear.geometry.validate import check_shaper
 
 
-def told_limits(
+def limits_in_words(
     pinion_teeth: int,
     face_gear_teeth: int,
     module_mm: float,

@@ -73,10 +73,13 @@ def read_layers(path: str | Path, below: Sequence[Path] = ()) -> dict[str, Any]:
     if "extends" not in values:
         return values
     base = values.pop("extends")
-    others = {other.name for other in path.parent.glob("*.yaml")} - {path.name, *(one.name for one in below)}
+    others = {other.name for other in path.parent.glob("*.yaml")} - {
+        path.name,
+        *(layer.name for layer in below),
+    }
     if not isinstance(base, str) or base not in others:
-        told = f"extends = {base!r}: must be the name of another config file in the same folder"
-        raise ConfigErrors(_short(path), [told])
+        message = f"extends = {base!r}: must be the name of another config file in the same folder"
+        raise ConfigErrors(_short(path), [message])
     return merged(read_layers(path.with_name(base), (path, *below)), values)
 
 
@@ -90,15 +93,15 @@ def _with_paths(values: dict[str, Any], folder: Path) -> dict[str, Any]:
         inside: Any = values
         for section in sections:
             inside = inside.get(section) if isinstance(inside, dict) else None
-        _place(inside, key, folder)
+        _locate(inside, key, folder)
     for point in _study_points(values):
         for *sections, key in FILE_KEYS:
-            _place(point, ".".join([*sections, key]), folder)
-            _place(point.get(sections[0]) if sections else None, key, folder)
+            _locate(point, ".".join([*sections, key]), folder)
+            _locate(point.get(sections[0]) if sections else None, key, folder)
     return values
 
 
-def _place(inside: Any, key: str, folder: Path) -> None:
+def _locate(inside: Any, key: str, folder: Path) -> None:
     if isinstance(inside, dict) and isinstance(inside.get(key), str):
         inside[key] = located(inside[key], folder)
 

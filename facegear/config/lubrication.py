@@ -179,8 +179,8 @@ def lubrication_request(section: LubricationSection, modulus: float, pitch_radiu
     oil, steel = oil_of(section.oil), section.steel
     rough = section.pinion, section.face_gear
     heated = Heated(steel.conductivity_w_per_m_k, steel.density_kg_per_m3, steel.heat_capacity_j_per_kg_k)
-    ra = [1e-6 * one.ra_um for one in rough]
-    rq = [1e-6 * (one.rq_um or RQ_PER_RA * one.ra_um) for one in rough]
+    ra = [1e-6 * surface.ra_um for surface in rough]
+    rq = [1e-6 * (surface.rq_um or RQ_PER_RA * surface.ra_um) for surface in rough]
     return Lubrication(
         oil=oil,
         oil_temperature=section.supply_temperature_c,

@@ -69,12 +69,12 @@ def layout(section: Transmission, teeth: ToothNumbers) -> Layout:
     return Layout(
         pinions=tuple(
             Pinion(
-                place.name,
-                Role(place.role),
-                _pitches(place, teeth.gear_teeth),
-                _body(section.pinion, section.single_pinions.get(place.name)),
+                pinion.name,
+                Role(pinion.role),
+                _pitches(pinion, teeth.gear_teeth),
+                _body(section.pinion, section.single_pinions.get(pinion.name)),
             )
-            for place in section.pinions
+            for pinion in section.pinions
         ),
         gears=tuple(
             FaceGear(side, _body(section.face_gear, section.single_gears.get(side.value))) for side in sides
@@ -133,22 +133,25 @@ def imperfections(section: Transmission, shape: Layout, unloaded: Harmonics | No
     """Errors of single meshes and bodies, in m."""
     meshes = [section.single_meshes.get(name, SingleMesh()) for name in shape.mesh_names]
     pinions, gears = _singles(section, shape)
-    play = [section.pinion.play_um if one.play_um is None else one.play_um for one in pinions]
-    backlash = [np.nan if one.backlash_um is None else one.backlash_um for one in meshes]
+    clearances = [
+        section.pinion.bearing_clearance_um if own.bearing_clearance_um is None else own.bearing_clearance_um
+        for own in pinions
+    ]
+    backlash = [np.nan if own.backlash_um is None else own.backlash_um for own in meshes]
     return Imperfections(
-        error=1e-6 * np.array([one.error_um for one in meshes]),
+        error=1e-6 * np.array([own.error_um for own in meshes]),
         half_backlash=0.5e-6 * np.array(backlash),
-        stiffness=np.array([one.stiffness_factor for one in meshes]),
+        stiffness=np.array([own.stiffness_factor for own in meshes]),
         series={
-            mesh: error_series(one.transmission_error, unloaded)
-            for mesh, one in enumerate(meshes)
-            if one.transmission_error is not None
+            mesh: error_series(own.transmission_error, unloaded)
+            for mesh, own in enumerate(meshes)
+            if own.transmission_error is not None
         },
-        position=1e-6 * np.array([(one.position_um.x, one.position_um.y) for one in pinions]),
-        clearance=1e-6 * np.array(play),
-        clocking=np.array([one.clocking_deg for one in pinions]) / 360.0 * shape.pinion_teeth,
-        pinion_runout=tuple(_runout(one.runout or section.pinion.runout) for one in pinions),
-        gear_runout=tuple(_runout(one.runout or section.face_gear.runout) for one in gears),
+        position=1e-6 * np.array([(own.position_um.x, own.position_um.y) for own in pinions]),
+        clearance=1e-6 * np.array(clearances),
+        clocking=np.array([own.clocking_deg for own in pinions]) / 360.0 * shape.pinion_teeth,
+        pinion_runout=tuple(_runout(own.runout or section.pinion.runout) for own in pinions),
+        gear_runout=tuple(_runout(own.runout or section.face_gear.runout) for own in gears),
         pinion_pitch=_pitch_curves(pinions),
         gear_pitch=_pitch_curves(gears),
     )
@@ -157,14 +160,14 @@ def imperfections(section: Transmission, shape: Layout, unloaded: Harmonics | No
 def external_forces(section: Transmission, shape: Layout) -> Array:
     """External force on each body along its x, y, z, shape (bodies, 3), N."""
     pinions, gears = _singles(section, shape)
-    on_pinions = [(one.force_n.x, one.force_n.y, 0.0) for one in pinions]
-    return np.array(on_pinions + [(one.force_n.x, one.force_n.y, one.force_n.z) for one in gears])
+    on_pinions = [(own.force_n.x, own.force_n.y, 0.0) for own in pinions]
+    return np.array(on_pinions + [(own.force_n.x, own.force_n.y, own.force_n.z) for own in gears])
 
 
 def given_torques(section: Transmission, shape: Layout) -> Array:
     """Torque on each pinion by its role, or its own where it has one; shape (pinions,), N m."""
     by_role = pinion_torques(shape, section.torque.per_input_n_m, section.torque.tail_share)
-    own = np.array([np.nan if place.torque_n_m is None else place.torque_n_m for place in section.pinions])
+    own = np.array([np.nan if pinion.torque_n_m is None else pinion.torque_n_m for pinion in section.pinions])
     return np.where(np.isnan(own), by_role, own)
 
 
@@ -217,13 +220,13 @@ def _runout(section: RunoutSection | None) -> Runout:
 
 def _pitch_curves(bodies: Sequence[SinglePinion | SingleGear]) -> dict[int, Array]:
     return {
-        body: 1e-6 * np.array(one.cumulative_pitch_um)
-        for body, one in enumerate(bodies)
-        if one.cumulative_pitch_um
+        body: 1e-6 * np.array(own.cumulative_pitch_um)
+        for body, own in enumerate(bodies)
+        if own.cumulative_pitch_um
     }
 
 
-def _pitches(place: PinionPlace, gear_teeth: int) -> float:
-    if place.angle_pitches is not None:
-        return place.angle_pitches
-    return float(place.angle_deg or 0.0) / 360.0 * gear_teeth
+def _pitches(pinion: PinionPlace, gear_teeth: int) -> float:
+    if pinion.angle_pitches is not None:
+        return pinion.angle_pitches
+    return float(pinion.angle_deg or 0.0) / 360.0 * gear_teeth

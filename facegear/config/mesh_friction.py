@@ -29,18 +29,21 @@ def with_friction(machine: Machine, table: pd.DataFrame) -> Machine:
     known, ratios = _ratios(table)
     ratios[..., 3] /= 1e3 * machine.layout.pinion_arm
     ratios[..., 4] /= 1e3 * machine.layout.gear_arm
-    return replace(machine, friction=MeshFriction(np.stack([_series(known, ratios, one) for one in torques])))
+    return replace(
+        machine, friction=MeshFriction(np.stack([_series(known, ratios, torque) for torque in torques]))
+    )
 
 
 def _ratios(table: pd.DataFrame) -> tuple[Array, Array]:
     """Torques (t,) and the ratios (t, positions, parts) at each of them."""
     names = list(EXCITATION_COLUMNS[2:])
     by_torque = table.sort_values(["torque_n_m", "position"]).groupby("torque_n_m")
-    return np.array(list(by_torque.groups), float), np.stack([one[names].to_numpy() for _, one in by_torque])
+    ratios = np.stack([rows[names].to_numpy() for _, rows in by_torque])
+    return np.array(list(by_torque.groups), float), ratios
 
 
 def _series(torques: Array, ratios: Array, torque: float) -> Array:
     """Fourier series (parts, 2, orders) of the ratios at a torque, N m."""
     asked = np.clip(torque, torques[0], torques[-1])
     at = ratios[0] if torques.size == 1 else PchipInterpolator(np.log(torques), ratios)(np.log(asked))
-    return stacked([fit_harmonics(one).series.kept(ORDERS) for one in at.T])
+    return stacked([fit_harmonics(column).series.kept(ORDERS) for column in at.T])

@@ -15,7 +15,7 @@ from facegear.config.checks import (
     CONTACT_ASKED,
     check_load,
     check_machine_strain,
-    check_places,
+    check_positions,
     check_search,
     check_strain,
     check_studies,
@@ -220,7 +220,7 @@ class Config(Section):
                 )
             return
         self._check_duty_speeds()
-        check_places(pair, machine)
+        check_positions(pair, machine)
         check_machine_strain(pair, machine)
         check_torques(pair, machine)
         if machine.backlash_um is None and pair.pinion is None:

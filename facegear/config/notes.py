@@ -1,4 +1,4 @@
-"""What a user is told once when a run starts."""
+"""Notes that a user sees once when a run starts."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -69,7 +69,7 @@ def _preloads(values: Mapping[str, Any]) -> list[str]:
 def _pushes(transmission: Mapping[str, Any]) -> list[str]:
     """Bodies with an external force."""
     singles = {**transmission["single_pinions"], **transmission["single_gears"]}
-    named = [name for name, one in singles.items() if any((one.get("force_n") or {}).values())]
+    named = [name for name, own in singles.items() if any((own.get("force_n") or {}).values())]
     return [EXTERNAL.format(", ".join(named))] if named else []
 
 

@@ -23,8 +23,8 @@ def reference() -> str:
     for name, section in schema["properties"].items():
         parts.append(f"\n## {name}\n")
         whole = _plain(schema, section)
-        if told := (whole.get("description") or section.get("description")):
-            parts.append(f"{told}\n")
+        if text := (whole.get("description") or section.get("description")):
+            parts.append(f"{text}\n")
         parts.append("\n| key | default | allowed | meaning |\n|---|---|---|---|\n")
         required = name in schema.get("required", ())
         parts.extend(_row(*row) for row in _rows(schema, name, section, required))
@@ -39,14 +39,14 @@ def _rows(
     schema: Mapping[str, Any], key: str, field: Mapping[str, Any], required: bool
 ) -> Iterator[tuple[str, str, str, str]]:
     """A row for the key itself, then those of the keys inside it."""
-    inside = [_plain(schema, one) for one in field.get("anyOf", [field])]
+    inside = [_plain(schema, option) for option in field.get("anyOf", [field])]
     yield (f"`{key}`", _default(field, required), _allowed(schema, inside), field.get("description", ""))
-    for one in inside:
-        item, name = one, key
-        if one.get("type") == "array" and isinstance(one.get("items"), dict):
-            item, name = _plain(schema, one["items"]), f"{key}[]"
-        elif isinstance(one.get("additionalProperties"), dict):
-            item, name = _plain(schema, one["additionalProperties"]), f"{key}.<name>"
+    for option in inside:
+        item, name = option, key
+        if option.get("type") == "array" and isinstance(option.get("items"), dict):
+            item, name = _plain(schema, option["items"]), f"{key}[]"
+        elif isinstance(option.get("additionalProperties"), dict):
+            item, name = _plain(schema, option["additionalProperties"]), f"{key}.<name>"
         for inner, value in item.get("properties", {}).items():
             yield from _rows(schema, f"{name}.{inner}", value, inner in item.get("required", ()))
 
@@ -78,12 +78,12 @@ def _kind(schema: Mapping[str, Any], option: Mapping[str, Any]) -> str:
     inside = option.get("additionalProperties")
     if kind == "object" and isinstance(inside, Mapping) and inside.get("type") == "number":
         return f"names, each with a {_kind(schema, inside)}"
-    told = {"integer": "whole number", "object": "section", "string": "text", "boolean": "true, false"}
-    return told.get(kind, kind) + _bounds(option, ("minimum", "maximum"))
+    words = {"integer": "whole number", "object": "section", "string": "text", "boolean": "true, false"}
+    return words.get(kind, kind) + _bounds(option, ("minimum", "maximum"))
 
 
 def _bounds(option: Mapping[str, Any], names: tuple[str, str]) -> str:
-    told = [
+    limits = [
         f"{sign} {option[key]:g}"
         for key, sign in (
             (names[0], "from"),
@@ -93,7 +93,7 @@ def _bounds(option: Mapping[str, Any], names: tuple[str, str]) -> str:
         )
         if key in option
     ]
-    return f" {', '.join(told)}" if told else ""
+    return f" {', '.join(limits)}" if limits else ""
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse, require_all
-from facegear.config.dynamics import SWEPT, SWEPT_TOLD, Accuracy, settings
+from facegear.config.dynamics import SWEPT, SWEPT_TEXT, Accuracy, settings
 from facegear.dynamics.sweeps.plan import JumpRange
 from facegear.load_sharing.quantity_names import JUMP_MARGIN, QUANTITIES, of_jumps
 
@@ -83,9 +83,9 @@ class ConstraintSection(ObjectiveSection):
     @property
     def limit(self) -> float:
         """The one that is given."""
-        found = self.at_least if self.large else self.at_most
-        assert found is not None
-        return found
+        bound = self.at_least if self.large else self.at_most
+        assert bound is not None
+        return bound
 
     @model_validator(mode="after")
     def _limited(self) -> "ConstraintSection":
@@ -105,7 +105,7 @@ class Jumps(Section):
     )
     step_rpm: float = Field(50, gt=0, le=10_000, description="at most, from speed to speed")
     resolution_rpm: float = Field(1.0, gt=0, le=1000, description="to which a jump is bracketed")
-    accuracy: Accuracy = Field(SWEPT, description=SWEPT_TOLD)
+    accuracy: Accuracy = Field(SWEPT, description=SWEPT_TEXT)
 
     @model_validator(mode="after")
     def _inside(self) -> "Jumps":
@@ -140,7 +140,7 @@ class Search(Section):
     @property
     def robust(self) -> bool:
         """Whether some objective or constraint is a percentile."""
-        return any(one.percentile is not None for one in (*self.objectives, *self.constraints))
+        return any(goal.percentile is not None for goal in (*self.objectives, *self.constraints))
 
     @model_validator(mode="after")
     def _different(self) -> "Search":
@@ -148,8 +148,8 @@ class Search(Section):
         return self
 
     def _check_names(self) -> None:
-        goals = [one.name for one in (*self.objectives, *self.constraints)]
-        names = [*(one.name for one in self.variables), *goals]
+        goals = [entry.name for entry in (*self.objectives, *self.constraints)]
+        names = [*(entry.name for entry in self.variables), *goals]
         for number, name in enumerate(names):
             if name in TAKEN:
                 refuse("name", name, f"another one: {', '.join(TAKEN)} are columns of their own")

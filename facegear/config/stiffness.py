@@ -80,7 +80,7 @@ class MeshStiffness(Section):
     @model_validator(mode="before")
     @classmethod
     def _read(cls, values: Any) -> Any:
-        """A csv is read here, so that a fault in it is told with all others before any work."""
+        """A csv is read here, so that a fault in it is reported with all others before any work."""
         if not isinstance(values, Mapping):
             return values
         if isinstance(values.get("table"), list):

@@ -71,8 +71,8 @@ class Strength(Section):
     )
     dynamic_factor: float = Field(default=1.0, ge=0.1, le=10, description="K_v")
     mesh_load_factor: float = Field(default=1.0, ge=0.1, le=10, description="K_gamma of parallel meshes")
-    least_bending_safety: float = Field(default=1.4, ge=1, le=10)
-    least_pitting_safety: float = Field(default=1.0, ge=1, le=10)
+    min_bending_safety: float = Field(default=1.4, ge=1, le=10)
+    min_pitting_safety: float = Field(default=1.0, ge=1, le=10)
 
     @model_validator(mode="before")
     @classmethod
@@ -111,7 +111,7 @@ class Strength(Section):
                     refuse(f"{name}.{key}", value, "left out where load_factors is machine")
 
     def _check_duty(self) -> None:
-        if not any(one.hours > 0 for one in self.duty):
+        if not any(load.hours > 0 for load in self.duty):
             refuse("duty", [], "at least one bin with hours, here or in duty_csv")
 
     def _check_card(self, name: str) -> None:
@@ -130,7 +130,7 @@ class Strength(Section):
     @property
     def torques(self) -> tuple[float, float]:
         """Smallest and largest of the duty cycle with all factors, N m; bins without hours do not count."""
-        loads = [self.factor * one.torque_n_m for one in self.duty if one.hours > 0]
+        loads = [self.factor * load.torque_n_m for load in self.duty if load.hours > 0]
         return min(loads), max(loads)
 
     @property
@@ -142,8 +142,8 @@ class Strength(Section):
 def duty_bins(section: Strength) -> tuple[DutyBin, ...]:
     """The bins of the duty cycle with all load factors that section strength gives, in SI units."""
     return tuple(
-        DutyBin(section.factor * one.torque_n_m, one.speed_rpm / 60.0, 3600.0 * one.hours)
-        for one in section.duty
+        DutyBin(section.factor * load.torque_n_m, load.speed_rpm / 60.0, 3600.0 * load.hours)
+        for load in section.duty
     )
 
 
@@ -166,7 +166,7 @@ def rating_request(
             for gear, body in sections.items()
         },
         duty=flanks,
-        time=sum(one.time for one in duty),
-        min_bending=section.least_bending_safety,
-        min_pitting=section.least_pitting_safety,
+        time=sum(load.time for load in duty),
+        min_bending=section.min_bending_safety,
+        min_pitting=section.min_pitting_safety,
     )

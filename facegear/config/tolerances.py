@@ -65,8 +65,8 @@ class CauseSection(Section):
         centre = self.centre if self.shape == "normal" else 0.0
         low, high = ((end - centre) / self.spread for end in self.limits)
         if low > FARTHEST_CUT or high < -FARTHEST_CUT:
-            told = "beyond which next to nothing is left to sample"
-            refuse("limits", list(self.limits), f"within {FARTHEST_CUT:g} spreads of the middle, {told}")
+            reason = "beyond which next to nothing is left to sample"
+            refuse("limits", list(self.limits), f"within {FARTHEST_CUT:g} spreads of the middle, {reason}")
         if high > NO_CUT and (low < -NO_CUT or self.shape == "rayleigh"):
             allowed = f"nearer than {NO_CUT:g} spreads on one side at least, or left out: nothing is cut off"
             refuse("limits", list(self.limits), allowed)
@@ -170,8 +170,8 @@ class Tolerances(Section):
                 refuse(f"correlations[{number}].between", list(pair.between), allowed)
         matrix = correlation_matrix(self)
         if matrix is not None and np.linalg.eigvalsh(matrix)[0] <= 0.0:
-            told = [[*pair.between, pair.coefficient] for pair in self.correlations]
-            refuse("correlations", told, "numbers that can hold together: the matrix is not positive")
+            shown = [[*pair.between, pair.coefficient] for pair in self.correlations]
+            refuse("correlations", shown, "numbers that can hold together: the matrix is not positive")
 
     def _check_map(self) -> None:
         if self.load_map is not None and self.load_map.speeds_rpm and self.model == "quasi_static":
@@ -191,8 +191,10 @@ class Tolerances(Section):
     def _check_chunks(self) -> None:
         count = len(chunks(self, "samples")) + len(chunks(self, "indices"))
         if count > MAX_CHUNKS:
-            least = -(-self.chunk_samples * count // MAX_CHUNKS)
-            refuse("chunk_samples", self.chunk_samples, f"at least {least}, for at most {MAX_CHUNKS} jobs")
+            min_samples = -(-self.chunk_samples * count // MAX_CHUNKS)
+            refuse(
+                "chunk_samples", self.chunk_samples, f"at least {min_samples}, for at most {MAX_CHUNKS} jobs"
+            )
 
 
 Design = Literal["samples", "indices"]
@@ -218,11 +220,11 @@ def correlation_matrix(section: Tolerances) -> Array | None:
     """Correlation of the normal scores (causes, causes); None where there is none."""
     if not section.correlations:
         return None
-    place = {cause.name: number for number, cause in enumerate(section.causes)}
-    matrix = np.eye(len(place))
+    index = {cause.name: number for number, cause in enumerate(section.causes)}
+    matrix = np.eye(len(index))
     for pair in section.correlations:
-        one, other = (place[name] for name in pair.between)
-        matrix[one, other] = matrix[other, one] = pair.coefficient
+        first, second = (index[name] for name in pair.between)
+        matrix[first, second] = matrix[second, first] = pair.coefficient
     return matrix
 
 

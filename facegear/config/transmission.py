@@ -88,11 +88,13 @@ class Transmission(Section):
 
     @model_validator(mode="after")
     def _possible(self) -> "Transmission":
-        require_all(self._known, self._lags, self._kinematics, self._play, self._distinct)
+        require_all(
+            self._known, self._lags, self._kinematics, self._clearance_in_round_bearings, self._distinct
+        )
         return self
 
     def _known(self) -> None:
-        names = [place.name for place in self.pinions]
+        names = [pinion.name for pinion in self.pinions]
         meshes = [f"{name}/{side}" for side in self.face_gears for name in names]
         for key, given, known in (
             ("single_meshes", self.single_meshes, meshes),
@@ -105,15 +107,18 @@ class Transmission(Section):
 
     def _lags(self) -> None:
         phasing = self.transmission_error.phasing
-        places = [*(place.name for place in self.pinions), *dict.fromkeys(one.role for one in self.pinions)]
-        known = [f"{place}/{side}" for side in self.face_gears for place in places]
+        names = [
+            *(pinion.name for pinion in self.pinions),
+            *dict.fromkeys(pinion.role for pinion in self.pinions),
+        ]
+        known = [f"{name}/{side}" for side in self.face_gears for name in names]
         for name in phasing if isinstance(phasing, dict) else ():
             if name not in known:
                 refuse(f"transmission_error.phasing.{name}", name, f"one of {', '.join(known)}")
-        for name, one in self.single_meshes.items():
-            if one.transmission_error and isinstance(one.transmission_error.phasing, dict):
+        for name, mesh in self.single_meshes.items():
+            if mesh.transmission_error and isinstance(mesh.transmission_error.phasing, dict):
                 key = f"single_meshes.{name}.transmission_error.phasing"
-                refuse(key, one.transmission_error.phasing, "left out: one mesh has no pattern")
+                refuse(key, mesh.transmission_error.phasing, "left out: one mesh has no pattern")
 
     def _kinematics(self) -> None:
         radius = self.face_gear.mesh_radius_mm
@@ -131,27 +136,27 @@ class Transmission(Section):
             if named := list(getattr(self, key)):
                 refuse(key, named, "none where mesh_kinematics is printed: it knows no errors of one part")
         for key, value in (
-            ("pinion.clearance_um", self.pinion.play_um or None),
+            ("pinion.clearance_um", self.pinion.bearing_clearance_um or None),
             ("pinion.runout", self.pinion.runout),
             ("face_gear.runout", self.face_gear.runout),
             ("face_gear.tilt", self.face_gear.tilt),
         ):
             if value is not None:
-                told = value if isinstance(value, float) else value.model_dump()
-                refuse(key, told, "none where mesh_kinematics is printed")
+                shown = value if isinstance(value, float) else value.model_dump()
+                refuse(key, shown, "none where mesh_kinematics is printed")
 
-    def _play(self) -> None:
-        for place in self.pinions:
-            one = self.single_pinions.get(place.name, SinglePinion())
-            bearing = one.bearing_stiffness_n_per_m or self.pinion.bearing_stiffness_n_per_m
-            own = one.play_um is not None
-            play = one.play_um if own else self.pinion.play_um
-            key = f"single_pinions.{place.name}.clearance_um" if own else "pinion.clearance_um"
-            if play and (bearing.x <= 0.0 or bearing.x != bearing.y or bearing.xy != 0.0):
-                refuse(key, play, "0 unless the bearing is round: x = y above 0, without xy")
+    def _clearance_in_round_bearings(self) -> None:
+        for pinion in self.pinions:
+            single = self.single_pinions.get(pinion.name, SinglePinion())
+            bearing = single.bearing_stiffness_n_per_m or self.pinion.bearing_stiffness_n_per_m
+            own = single.bearing_clearance_um is not None
+            clearance = single.bearing_clearance_um if own else self.pinion.bearing_clearance_um
+            key = f"single_pinions.{pinion.name}.clearance_um" if own else "pinion.clearance_um"
+            if clearance and (bearing.x <= 0.0 or bearing.x != bearing.y or bearing.xy != 0.0):
+                refuse(key, clearance, "0 unless the bearing is round: x = y above 0, without xy")
 
     def _distinct(self) -> None:
-        names = [place.name for place in self.pinions]
+        names = [pinion.name for pinion in self.pinions]
         if len(set(names)) < len(names):
             refuse("pinions", names, "names that differ from pinion to pinion")
         if len(set(self.face_gears)) < len(self.face_gears):
@@ -161,6 +166,6 @@ class Transmission(Section):
             refuse(
                 f"single_gears.{output}.torque_n_m", own.torque_n_m, "left out: it follows from the balance"
             )
-        has_tail = any(place.role == "tail" for place in self.pinions)
+        has_tail = any(pinion.role == "tail" for pinion in self.pinions)
         if self.torque.tail_share > 0 and not has_tail:
             refuse("torque.tail_share", self.torque.tail_share, "0 where no pinion has the role tail")

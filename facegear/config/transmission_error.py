@@ -69,10 +69,10 @@ class TransmissionError(Section):
     @model_validator(mode="after")
     def _orders_once(self) -> "TransmissionError":
         orders = [1, *(term.order for term in self.more_harmonics)]
-        for place, order in enumerate(orders):
-            if order in orders[:place]:
-                allowed = f"another one than {', '.join(map(str, orders[:place]))}; amplitude_um is order 1"
-                refuse(f"more_harmonics[{place - 1}].order", order, allowed)
+        for number, order in enumerate(orders):
+            if order in orders[:number]:
+                allowed = f"another one than {', '.join(map(str, orders[:number]))}; amplitude_um is order 1"
+                refuse(f"more_harmonics[{number - 1}].order", order, allowed)
         return self
 
     @model_validator(mode="after")
@@ -101,8 +101,8 @@ def error_series(section: TransmissionError, unloaded: Harmonics | None = None) 
     amplitude = factor * (section.amplitude_um or 0.0)
     first = ErrorHarmonic(order=1, amplitude_um=amplitude, phase_deg=section.phase_deg)
     terms = (first, *section.more_harmonics)
-    highest = max(term.order for term in terms)
-    a, b = np.zeros(highest + 1), np.zeros(highest + 1)
+    max_order = max(term.order for term in terms)
+    a, b = np.zeros(max_order + 1), np.zeros(max_order + 1)
     for term in terms:
         phase = np.radians(term.phase_deg)
         a[term.order] -= 1e-6 * term.amplitude_um * np.sin(phase)

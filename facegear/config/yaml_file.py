@@ -92,8 +92,8 @@ def _text(path: Path) -> str:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
-        told = f"byte {content[error.start]:#04x} is not UTF-8: save the file as UTF-8"
-        raise ConfigErrors(f"{path}:{line}", [told]) from None
+        message = f"byte {content[error.start]:#04x} is not UTF-8: save the file as UTF-8"
+        raise ConfigErrors(f"{path}:{line}", [message]) from None
 
 
 class _Refused(Exception):
@@ -132,19 +132,19 @@ class _Builder:
         tag = getattr(event, "tag", None)
         if tag is not None and str(tag) not in _TAGS and str(tag) != "!":
             raise _Refused(event, f"tag {tag} is not allowed in a config")
-        found: tuple[Any, int]
+        value: tuple[Any, int]
         if isinstance(event, MappingStartEvent):
-            found = self._mapping(depth)
+            value = self._mapping(depth)
         elif isinstance(event, SequenceStartEvent):
-            found = self._sequence(depth)
+            value = self._sequence(depth)
         else:
             assert isinstance(event, ScalarEvent)
-            found = _scalar(event), 1
-        if found[1] > MAX_VALUES:
+            value = _scalar(event), 1
+        if value[1] > MAX_VALUES:
             raise _Refused(event, f"more than {MAX_VALUES} values, aliases written out")
         if event.anchor is not None:
-            self.anchored[event.anchor] = found
-        return found
+            self.anchored[event.anchor] = value
+        return value
 
     def _sequence(self, depth: int) -> tuple[list[Any], int]:
         items, size = [], 1
@@ -182,9 +182,9 @@ def _bounded(event: Event, size: int) -> int:
 def _merged(event: Event, value: Any) -> dict[str, Any]:
     """What a merge key (`<<: *name`) lays below a mapping's own keys; of several the first wins."""
     several = value if isinstance(value, list) else [value]
-    if not all(isinstance(one, dict) for one in several):
+    if not all(isinstance(mapping, dict) for mapping in several):
         raise _Refused(event, "'<<' takes a mapping or a list of mappings")
-    return {key: item for one in reversed(several) for key, item in one.items()}
+    return {key: item for mapping in reversed(several) for key, item in mapping.items()}
 
 
 def _scalar(event: ScalarEvent) -> Any:

@@ -63,7 +63,7 @@ def branches(
         "coexistence": operating_tables.coexistence_table(found, seen.branches),
         "ranges": operating_tables.range_table(ranges),
         "margins": operating_tables.margin_table(stability_limits),
-        "swept": operating_tables.swept_table(swept, seen.branches, plan.longest_found),
+        "swept": operating_tables.swept_table(swept, seen.branches, plan.longest_start_period),
         "jumps": operating_tables.jump_table(
             within, swept, seen.branches, swept_plan.jump_resolution_rpm, spacing
         ),

@@ -9,7 +9,7 @@ import numpy as np
 
 from facegear.config.base import parse
 from facegear.config.changes import movable, moved, placed, variable_part
-from facegear.config.checks import check_places
+from facegear.config.checks import check_positions
 from facegear.config.lumped_model import wired_layout
 from facegear.config.search import ObjectiveSection, Search, jump_range
 from facegear.config.tolerances import Tolerances, population
@@ -80,7 +80,7 @@ def assessor(
         numbers = zip(section.variables, design, strict=True) if design is not None else ()
         chosen = placed(start, {key: float(number) for variable, number in numbers for key in variable.sets})
         pair = parse(ToothPair, chosen["tooth_pair"], "this design")
-        check_places(pair, parse(Transmission, chosen["transmission"], "this design"))
+        check_positions(pair, parse(Transmission, chosen["transmission"], "this design"))
         nominal = ask(chosen)
         varied = [ask_varied(moved(chosen, added)) for added in drawn]
         goals = {}

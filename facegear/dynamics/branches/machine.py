@@ -87,10 +87,10 @@ def machine_survey(
     short = [
         (period_map.over(period), point, origin)
         for point, period, origin in motions
-        if point is not None and period <= plan.longest_found
+        if point is not None and period <= plan.longest_start_period
     ]
     return survey(
-        (period_map, start), short, plan_range(plan), plan.longest_period, plan.most_branches, progress
+        (period_map, start), short, plan_range(plan), plan.longest_period, plan.max_branches, progress
     )
 
 

@@ -110,7 +110,7 @@ def swept_table(swept: Sequence[Swept], branches: Sequence[Branch], longest: int
 
 def _not_followed(period: int, longest: int) -> str:
     if period > longest:
-        return f"the orbit is found; periods above longest_found = {longest} are not followed"
+        return f"the orbit is found; periods above longest_start_period = {longest} are not followed"
     return "not followed"
 
 

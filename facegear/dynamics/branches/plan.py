@@ -12,8 +12,8 @@ class BranchPlan:
     nominal_rpm: float
     tolerance: float
     longest_period: int
-    longest_found: int
-    most_branches: int
+    longest_start_period: int
+    max_branches: int
     speeds_rpm: tuple[float, ...]
     starts: int
     spread: float

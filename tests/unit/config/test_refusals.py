@@ -9,18 +9,20 @@ from hypothesis import strategies as st
 
 import facegear
 from facegear.__main__ import main
-from facegear.config.base import parse
-from facegear.config.cases import expand_cases
+from facegear.config.base import RENAMED, parse
+from facegear.config.cases import expand_cases, set_key
 from facegear.config.load import load_config
 from facegear.config.model import Config
 from facegear.config.notes import notes
 from facegear.config.search import Search
 from facegear.config.strength import Strength
 from facegear.config.tolerances import Tolerances
-from facegear.errors import ConfigErrors
+from facegear.errors import ConfigError, ConfigErrors
 
 CONFIG = Path(__file__).parents[3] / "config"
 TWO = load_config(CONFIG / "two_pinion.yaml").model_dump(mode="json")
+SECTIONS = {"branches": "branches", "strength_only": "strength"}
+"""Configs with sections of which keys have other names than in earlier versions."""
 GIVEN = load_config(CONFIG / "harmonics_only.yaml").model_dump(mode="json")
 
 
@@ -58,6 +60,21 @@ def test_capitals_and_hyphens_in_a_key_are_told_with_what_was_meant(section, key
     """They were taken for names of types: a traceback, or a hint at the section the key stands in."""
     (told,) = lines(TWO, **{"__".join((*section, key)): {}})
     assert line in told and told.startswith(".".join((*section, key)))
+
+
+@pytest.mark.parametrize(("old", "new"), sorted(RENAMED.items()))
+def test_a_key_of_an_earlier_version_is_refused_with_its_name_of_today(old, new):
+    """In the file itself, and as the dotted key of a change or of a study."""
+    shipped = [load_config(CONFIG / f"{name}.yaml").model_dump(mode="json") for name in SECTIONS]
+    ((section, values),) = [
+        pair for pair in zip(SECTIONS.values(), shipped, strict=True) if new in pair[1][pair[0]]
+    ]
+    value = values[section].pop(new)
+    (line,) = lines(values, **{f"{section}__{old}": value})
+    assert line == f"{section}.{old} = {value}: unknown key; `{old}` is now `{new}`"
+    values[section][new] = value
+    with pytest.raises(ConfigError, match=f"`{old}` is now `{new}`"):
+        set_key(values, f"{section}.{old}", value)
 
 
 @given(st.text(st.characters(categories=("L", "N", "P")), min_size=1, max_size=12))
