@@ -13,7 +13,7 @@ Source = Literal["computed", "stored"]
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class StageOutput:
     """What a stage gave: parts by name, one line, whether it was computed now or stored by the workflow."""
 
     content: Mapping[str, Any]

@@ -29,9 +29,9 @@ class Chain:
 
     def result(self, kind: type[Kind], **more: Any) -> Kind:
         """What the stage of a kind of result gives; `more`: arguments that decide no number, as threads."""
-        found = self.store.found(kind.STAGE, self.values, lambda: self.compute(kind.STAGE, **more))
+        stored = self.store.output(kind.STAGE, self.values, lambda: self.compute(kind.STAGE, **more))
         beside = {name: self.part(*source) for name, source in kind.BESIDE.items()}
-        return kind({**found.content, **beside}, found.summary, found.source, self.values)
+        return kind({**stored.content, **beside}, stored.summary, stored.source, self.values)
 
     def arguments(self, name: str) -> dict[str, Any]:
         """All that a stage is given from the config and from earlier stages."""
@@ -47,12 +47,12 @@ class Chain:
     def part(self, name: str, file: str, wildcards: Wildcards = NONE) -> Any:
         """The content of one file of a stage."""
         if not STAGES[name].wildcards:
-            return self.store.found(name, self.values, lambda: self.compute(name)).content[file]
+            return self.store.output(name, self.values, lambda: self.compute(name)).content[file]
         return self.store.part(
             name, file, wildcards, self.values, lambda: self.compute(name, wildcards).content[file]
         )
 
     def _given(self, source: From) -> Any:
         places = source.places(Case(self.values))
-        parts = [self.part(source.stage, source.file, place) for place in places]
+        parts = [self.part(source.stage, source.file, wildcards) for wildcards in places]
         return parts if source.each else parts[0]

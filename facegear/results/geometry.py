@@ -20,8 +20,8 @@ class GeometryResult(Result):
         """Columns quantity and value; the unit stands at the end of a quantity's name."""
         rows = [
             (f"{section}.{name}" if section else name, value)
-            for section, found in _sections(self.content["pair"])
-            for name, value in found.items()
+            for section, content in _sections(self.content["pair"])
+            for name, value in content.items()
             if isinstance(value, int | float | str)
         ]
         return pd.DataFrame(rows, columns=["quantity", "value"])

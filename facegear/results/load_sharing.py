@@ -44,12 +44,12 @@ class LoadSharingResult(Result):
 
         results = {label: self, **(beside or {})}
         frames = {
-            part: collected({(STUDY, name): one.content[part] for name, one in results.items()})
+            part: collected({(STUDY, name): result.content[part] for name, result in results.items()})
             for part in ("curve", "summary")
         }
-        kinds = tuple(dict.fromkeys(self.content["summary"]["kind"]))
-        if not kinds:
+        group_kinds = tuple(dict.fromkeys(self.content["summary"]["kind"]))
+        if not group_kinds:
             raise FacegearError(f"{self.values['case']}: no meshes share a load, there is nothing to draw")
-        shown = kinds[0] if kind is None else chosen(kind, kinds, "kind")
+        shown = group_kinds[0] if kind is None else chosen(kind, group_kinds, "kind")
         caption = "Inputs of the base case: " + "; ".join(inputs_in_words(self.values))
         return sharing_figure(frames["curve"], frames["summary"], shown, title, caption)

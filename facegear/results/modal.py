@@ -24,7 +24,7 @@ class ModesResult(Result):
         return self.content["shapes"].copy()
 
     def contacts(self) -> pd.DataFrame:
-        """One row a mesh and a bearing with play: state under load, force, stiffness and which one it is."""
+        """One row a mesh and a bearing with clearance: state under load, force, stiffness and its kind."""
         return self.content["contacts"].copy()
 
     def plot(self) -> "Figure":

@@ -31,6 +31,6 @@ class ResponseResult(Result):
         """Deflections along the line of action against time, and their spectra."""
         from facegear.plots.response import deflections
 
-        pinions = [place["name"] for place in self.values["transmission"]["pinions"]]
+        pinions = [pinion["name"] for pinion in self.values["transmission"]["pinions"]]
         speed = self.values["dynamics"]["speed_rpm"]
         return deflections(self.content["response"], self.content["spectrum"], pinions, speed)

@@ -41,5 +41,5 @@ class SearchResult(Result):
         content = self.content
         if chosen(kind, KINDS, "kind") == "hypervolume":
             return hypervolume_figure(content["hypervolume"])
-        objectives = [one["name"] for one in self.values["search"]["objectives"]]
+        objectives = [objective["name"] for objective in self.values["search"]["objectives"]]
         return front_figure(content["designs"], content["front"], content["winners"], objectives)

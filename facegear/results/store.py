@@ -11,7 +11,7 @@ from facegear.errors import CorruptFile, extras_named
 from facegear.pipeline.needs import stage_needs, stages_before
 from facegear.pipeline.stage import Wildcards
 from facegear.pipeline.table import STAGES
-from facegear.results.base import Found
+from facegear.results.base import StageOutput
 
 if TYPE_CHECKING:
     from facegear.stages.outcome import Outcome
@@ -32,22 +32,22 @@ class Store:
     folder: Path | None = None
     known: dict[str, Any] = field(default_factory=dict)
 
-    def found(self, name: str, values: Values, compute: Callable[[], "Outcome"]) -> Found:
+    def output(self, name: str, values: Values, compute: Callable[[], "Outcome"]) -> StageOutput:
         """All that a stage gives: known already, else stored and current, else computed."""
 
-        def find() -> Found:
+        def find() -> StageOutput:
             stored = self._stored(name, values)
             if stored is not None:
                 return stored
             outcome = compute()
-            return Found(outcome.content, outcome.summary, "computed")
+            return StageOutput(outcome.content, outcome.summary, "computed")
 
         return self._once(name, (), values, find)
 
     def part(
         self, name: str, file: str, wildcards: Wildcards, values: Values, compute: Callable[[], Any]
     ) -> Any:
-        """As `found`, for one file of a stage that has wildcards."""
+        """As `output`, for one file of a stage that has wildcards."""
 
         def find() -> Any:
             kept = STAGES[name].files[file]
@@ -69,7 +69,7 @@ class Store:
                 self.known[key] = find()
         return self.known[key]
 
-    def _stored(self, name: str, values: Values) -> Found | None:
+    def _stored(self, name: str, values: Values) -> StageOutput | None:
         if self.folder is None:
             return None
         folder, summary, files = self.folder, "", STAGES[name].readable
@@ -79,7 +79,7 @@ class Store:
                 return None
             summary = manifest["summary"]
         content = _unless_corrupt(lambda: {key: file.read(folder / file.path) for key, file in files.items()})
-        return None if content is None else Found(content, summary, "stored")
+        return None if content is None else StageOutput(content, summary, "stored")
 
     def _current_manifest(self, path: Path, values: Values) -> Mapping[str, Any] | None:
         from facegear.provenance.current import current_manifest

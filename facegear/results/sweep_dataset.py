@@ -24,12 +24,15 @@ def sweep_dataset(table: pd.DataFrame) -> xr.Dataset:
         "body": [name for name in names if "/" not in name],
     }
     speeds = table.drop_duplicates(KEYS)
-    found = {"class": _filled(speeds, "class", axes, ""), "periodic": _filled(speeds, "periodic", axes, "")}
+    variables = {
+        "class": _filled(speeds, "class", axes, ""),
+        "periodic": _filled(speeds, "periodic", axes, ""),
+    }
     for quantity, rows in table.groupby("quantity", sort=False):
         kind = _kind(rows["body_or_mesh"].iloc[0])
         own = {**axes, kind: items[kind]} if kind else axes
-        found[str(quantity)] = _filled(rows.rename(columns={"body_or_mesh": kind}), "value", own, np.nan)
-    return xr.Dataset(found)
+        variables[str(quantity)] = _filled(rows.rename(columns={"body_or_mesh": kind}), "value", own, np.nan)
+    return xr.Dataset(variables)
 
 
 def _kind(name: str) -> str:

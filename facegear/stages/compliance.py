@@ -15,6 +15,6 @@ def compliance(body: str, tooth_pair: ToothPair, mesh: Mesh, contact: Contact) -
     Raises ConfigError for a sector with more teeth than the gear and a mesh turned inside out.
     """
     setup = contact_setup(tooth_pair, mesh, contact)
-    found = gear_flank(setup.pair.design, body, setup.sizes, setup.pair.material(body), setup.plan)
-    told = f"{len(found.compliance.own)} flank nodes, {len(found.compliance.others)} teeth coupled"
-    return Outcome({"arrays": to_arrays(found)}, told)
+    flank = gear_flank(setup.pair.design, body, setup.sizes, setup.pair.material(body), setup.plan)
+    summary = f"{len(flank.compliance.own)} flank nodes, {len(flank.compliance.others)} teeth coupled"
+    return Outcome({"arrays": to_arrays(flank)}, summary)

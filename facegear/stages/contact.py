@@ -28,32 +28,32 @@ def contact(
     """
     teeth, plan = pair(tooth_pair), contact_plan(contact)
     flanks = from_arrays(pinion), from_arrays(face_gear)
-    found = contact_analysis(teeth.design, teeth.materials, flanks, plan)
-    worst = max(table["kkt_residual"].max() for table in found.ltca)
-    count = sum(map(len, found.ltca))
-    told = f"{count} contacts, {_mean_stiffness(found.ltca[0])}, worst KKT residual {worst:.0e}"
-    return Outcome(contents(found), told)
+    analysis = contact_analysis(teeth.design, teeth.materials, flanks, plan)
+    worst = max(table["kkt_residual"].max() for table in analysis.ltca)
+    count = sum(map(len, analysis.ltca))
+    summary = f"{count} contacts, {_mean_stiffness(analysis.ltca[0])}, worst KKT residual {worst:.0e}"
+    return Outcome(contents(analysis), summary)
 
 
-def contents(found: ContactAnalysis) -> dict[str, Any]:
+def contents(analysis: ContactAnalysis) -> dict[str, Any]:
     """The parts of stage contact."""
     return {
-        "ltca": found.ltca[0],
-        "by_torque": found.by_torque[0],
-        "by_flank": found.by_flank,
-        "pressure": found.pressure[0],
-        "loads": found.loads,
+        "ltca": analysis.ltca[0],
+        "by_torque": analysis.by_torque[0],
+        "by_flank": analysis.by_flank,
+        "pressure": analysis.pressure[0],
+        "loads": analysis.loads,
     }
 
 
 def _mean_stiffness(table: pd.DataFrame) -> str:
     """The mean, or why there is none, and what fillets carry from FILLET_CONTACT on."""
     mean, row = table["k_average_n_per_m"].mean(skipna=False), table.loc[table["fillet_share"].idxmax()]
-    told = f"mean stiffness {mean:.4g} N/m"
+    text = f"mean stiffness {mean:.4g} N/m"
     if np.isnan(mean):
         depth = table["interference_um"].max()
-        told = f"no mean stiffness as the teeth interfere, by {depth:.3g} um along the line of action"
+        text = f"no mean stiffness as the teeth interfere, by {depth:.3g} um along the line of action"
     if row["fillet_share"] < FILLET_CONTACT:
-        return told
+        return text
     carried = f"{100 * row['fillet_share']:.2g} % of the torque at {row['torque_n_m']:g} N m"
-    return f"{told}, fillets carry up to {carried}, kept out of pressure and root stress"
+    return f"{text}, fillets carry up to {carried}, kept out of pressure and root stress"

@@ -38,5 +38,5 @@ def dynamic_root_stress(
     own = {mesh: contacts_of(mesh, contacts, gears) for mesh in forces}
     table = dynamic_stress_table(forces, places, pair(tooth_pair).design.pinion_base_radius, own)
     worst = table.loc[table["face_gear_running_mpa"].idxmax()]
-    told = f"{worst['mesh']}: face gear {worst['face_gear_running_mpa']:.0f} MPa"
-    return Outcome({"dynamic_stress": table}, f"{told}, pinion {worst['pinion_running_mpa']:.0f} MPa")
+    summary = f"{worst['mesh']}: face gear {worst['face_gear_running_mpa']:.0f} MPa"
+    return Outcome({"dynamic_stress": table}, f"{summary}, pinion {worst['pinion_running_mpa']:.0f} MPa")

@@ -26,5 +26,5 @@ def friction_studies(
         solved = bool(at_rest["within_torques_solved"].all())
         rows.append((*point, *of_machine, *of_mesh, at_rest["smallest_film_ratio"].min(), solved))
     table = pd.DataFrame(rows, columns=list(FRICTION_STUDY_COLUMNS))
-    least, most = table["loss_percent"].min(), table["loss_percent"].max()
-    return Outcome({"table": table}, f"{len(table) - 1} cases; loss from {least:.3f} to {most:.3f} %")
+    min_loss, max_loss = table["loss_percent"].min(), table["loss_percent"].max()
+    return Outcome({"table": table}, f"{len(table) - 1} cases; loss from {min_loss:.3f} to {max_loss:.3f} %")

@@ -11,5 +11,5 @@ def load_dependence(ltca: pd.DataFrame) -> Outcome:
     """`table` from the table of stage contact."""
     table = table_of(load_table(ltca))
     means = table.loc[table["definition"] == "average", "mean_n_per_m"]
-    told = f"mean average stiffness {means.min():.3g} to {means.max():.3g} N/m over the torques solved"
-    return Outcome({"table": table}, told)
+    summary = f"mean average stiffness {means.min():.3g} to {means.max():.3g} N/m over the torques solved"
+    return Outcome({"table": table}, summary)

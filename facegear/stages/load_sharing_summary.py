@@ -21,9 +21,9 @@ def load_sharing_summary(
     frames = dict(zip([(NOMINAL, NOMINAL), *keys], summaries, strict=True))
     summary, every = collected(frames, labels), dict(zip(keys, curves, strict=True))
     studies = [
-        collected({key: one for key, one in every.items() if key[0] == name}, labels)
+        collected({key: frame for key, frame in every.items() if key[0] == name}, labels)
         for name in dict.fromkeys(study for study, _ in keys)
     ]
     irregular = summary.loc[~summary["periodic"].astype(bool), ["study", "point"]].drop_duplicates()
-    told = f"{len(frames)} cases, {len(irregular)} of them not periodic"
-    return Outcome({"summary": summary, "studies": studies}, told)
+    text = f"{len(frames)} cases, {len(irregular)} of them not periodic"
+    return Outcome({"summary": summary, "studies": studies}, text)

@@ -49,11 +49,11 @@ def lubrication(
         "excitation": excitation_table(loaded, states, pair(tooth_pair).design),
     }
     last = table.iloc[-1]
-    told = (
+    summary = (
         f"mesh efficiency {last['efficiency']:.4f} at {last['torque_n_m']:g} N m and {speed_rpm:g} rpm, "
         f"contact up to {last['contact_temperature_c']:.0f} C ({last['friction_model']} friction); {LEFT_OUT}"
     )
-    return Outcome(content, told)
+    return Outcome(content, summary)
 
 
 def lubrication_section(section: LubricationSection | None) -> LubricationSection:

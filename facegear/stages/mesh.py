@@ -21,15 +21,15 @@ def mesh(tooth_pair: ToothPair, mesh: Mesh) -> Outcome:
     content: dict[str, Any] = {}
     quality = []
     with TemporaryDirectory() as folder:
-        for body, found in meshes(tooth_pair, mesh).items():
+        for body, tooth in meshes(tooth_pair, mesh).items():
             files = [Path(folder, f"{body}.{kind}") for kind in KINDS]
-            quality.append(write_files(found, *files))
+            quality.append(write_files(tooth, *files))
             content |= {f"{body}_{kind}": file.read_bytes() for kind, file in zip(KINDS, files, strict=True)}
     table = pd.concat(quality, ignore_index=True)
     worst = table.query("quantity == 'scaled_jacobian'")["value"].min()
     elements = int(table.query("quantity == 'elements'")["value"].sum())
-    told = f"{elements} hexahedra, smallest scaled Jacobian {worst:.3f}"
-    return Outcome({**content, "quality": table}, told)
+    summary = f"{elements} hexahedra, smallest scaled Jacobian {worst:.3f}"
+    return Outcome({**content, "quality": table}, summary)
 
 
 def meshes(tooth_pair: ToothPair, mesh: Mesh) -> dict[str, SectorMesh]:

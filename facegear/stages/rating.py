@@ -40,14 +40,14 @@ def rating(
     design = pair(tooth_pair).design
     request, bins = rating_request(strength, design, duty_spectrum), duty_bins(strength)
     contacts = flank_contacts(stress, by_flank)
-    found: list[Rated] = []
+    ratings: list[Rated] = []
     tables: dict[str, list[pd.DataFrame]] = {}
     for duty in request.duty:
-        met = [contacts[one] for one in met_by(duty, gears)]
+        met = [contacts[flank] for flank in met_by(duty, gears)]
         roots, pressure = {duty.gear: worst_root(duty, met)}, worst_pressure(met)
         alone = replace(request, duty=(duty,))
         ways = rate(design, section_contact_ratio(design), roots, pressure, alone)
-        found += ways
+        ratings += ways
         for name, table in {
             "safety": safety_table(ways, pressure),
             "rating": rating_table(ways, pressure, roots),
@@ -58,10 +58,10 @@ def rating(
     content = {name: pd.concat(parts, ignore_index=True) for name, parts in tables.items()}
     if duty_spectrum is not None and mesh_losses is not None:
         content["safety"] = with_scuffing(content["safety"], duty_spectrum, mesh_losses)
-    worst = min(found, key=lambda one: one.safety / one.required)
+    worst = min(ratings, key=lambda rated: rated.safety / rated.required)
     where = f"{worst.duty.body.replace('_', ' ')}, {worst.duty.flank}"
-    told = f"{where}, {worst.failure} ({worst.method})"
+    text = f"{where}, {worst.failure} ({worst.method})"
     return Outcome(
         content,
-        f"nearest to its limit: {told}, safety {worst.safety:.2f} where {worst.required:g} is required",
+        f"nearest to its limit: {text}, safety {worst.safety:.2f} where {worst.required:g} is required",
     )

@@ -34,5 +34,5 @@ def root_stress(pinion: Arrays, face_gear: Arrays, loads: Arrays) -> Outcome:
 def _summary(table: pd.DataFrame) -> str:
     worst = table[table["torque_n_m"] == table["torque_n_m"].max()]
     peaks = worst.groupby("body", sort=False)["largest_mpa"].max()
-    told = ", ".join(f"{body.replace('_', ' ')} {peak:.0f} MPa" for body, peak in peaks.items())
-    return f"largest root stress at {worst['torque_n_m'].iloc[0]:g} N m: {told}"
+    text = ", ".join(f"{body.replace('_', ' ')} {peak:.0f} MPa" for body, peak in peaks.items())
+    return f"largest root stress at {worst['torque_n_m'].iloc[0]:g} N m: {text}"

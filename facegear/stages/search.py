@@ -20,7 +20,7 @@ def search(islands: Sequence[pd.DataFrame], **given: Any) -> Outcome:
     """
     machine = SearchedMachine.of_stage(**given)
     asked, by_seed = task(machine.section), dict(zip(machine.section.seeds, islands, strict=True))
-    every = pd.concat([one.assign(seed=seed) for seed, one in by_seed.items()], ignore_index=True)
+    every = pd.concat([rows.assign(seed=seed) for seed, rows in by_seed.items()], ignore_index=True)
     best = front(every, asked)
     covered = hypervolumes(by_seed, asked)
     return Outcome(
@@ -46,14 +46,14 @@ def _winners(best: pd.DataFrame, asked: Task, given: SearchedMachine) -> pd.Data
     """The nominal design and those of the front that win: goals as searched, and all at full accuracy."""
     coarse = assessor(given, given.section.hunting_cycles, given.section.samples)
     full = assessor(given, WHOLE, given.section.winner_samples)
-    names = [one.name for one in asked.variables]
+    names = [variable.name for variable in asked.variables]
     rows = []
-    for told, design in {"nominal": None, **chosen(best, asked)}.items():
+    for label, design in {"nominal": None, **chosen(best, asked)}.items():
         searched, (goals, quantities) = coarse(design)[0], full(design)
         values = dict(zip(names, design if design is not None else _nominal(given), strict=True))
         compared = {f"{goal}_searched": searched[goal] for goal in asked.goals}
         others = {name: value for name, value in quantities.items() if name not in goals}
-        rows.append({"design": told, **values, **goals, **compared, **others})
+        rows.append({"design": label, **values, **goals, **compared, **others})
     columns = ["design", *names, *(key for key in rows[0] if key not in ("design", *names))]
     return pd.DataFrame(rows, columns=columns)
 
@@ -70,11 +70,11 @@ def chosen(best: pd.DataFrame, asked: Task) -> dict[str, tuple[float, ...]]:
     if best.empty:
         return {}
     goals = asked.costs(best)
-    most = {name: "most" if name in asked.large else "least" for name in asked.objectives}
-    places = {f"{most[name]} {name}": int(goals[:, i].argmin()) for i, name in enumerate(asked.objectives)}
+    extreme = {name: "most" if name in asked.large else "least" for name in asked.objectives}
+    places = {f"{extreme[name]} {name}": int(goals[:, i].argmin()) for i, name in enumerate(asked.objectives)}
     span = np.ptp(goals, axis=0)
     if len(asked.objectives) > 1:
         parts = (goals - goals.min(axis=0)) / np.where(span > 0.0, span, 1.0)
         places["compromise"] = int(np.linalg.norm(parts, axis=1).argmin())
-    names = [one.name for one in asked.variables]
-    return {told: tuple(map(float, best.loc[place, names])) for told, place in places.items()}
+    names = [variable.name for variable in asked.variables]
+    return {label: tuple(map(float, best.loc[row, names])) for label, row in places.items()}

@@ -13,6 +13,10 @@ def stiffness(mesh_stiffness: MeshStiffness, ltca: pd.DataFrame | None = None) -
     Raises ConfigError for a load outside those solved and for a k(t) that is not positive throughout.
     """
     request = stiffness_request(mesh_stiffness)
-    found = stiffness_given(request) if ltca is None else stiffness_from_contact(ltca, request)
-    content = {"tvms": found.curve, "harmonics": found.harmonics, "spectrum": found.spectrum}
-    return Outcome(content, found.summary)
+    result = stiffness_given(request) if ltca is None else stiffness_from_contact(ltca, request)
+    content = {
+        "tvms": result.curve,
+        "harmonics": result.harmonics,
+        "spectrum": result.spectrum,
+    }
+    return Outcome(content, result.summary)

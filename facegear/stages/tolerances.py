@@ -61,17 +61,17 @@ def tolerances(
     )
     failed = int((every[ERROR] != "").sum())
     if failed == len(every):
-        told = f"the first by: {every[ERROR].iloc[0]}"
+        summary = f"the first by: {every[ERROR].iloc[0]}"
     return Outcome(
         {
             "samples": every,
             "percentiles": percentiles,
             "shares": shares,
-            "importance": importance_table(found, causes),
+            "importance": importance_table(values, causes),
             "indices": index_table(design, causes, tolerances.confidence),
             "sampling": sampling,
         },
-        f"{len(every)} samples, {failed} failed; {told}",
+        f"{len(every)} samples, {failed} failed; {summary}",
     )
 
 

@@ -49,13 +49,13 @@ def tolerances_map(partial: str | Path | None = None, code: str = "", **given: A
     tables: list[pd.DataFrame] = []
     shares: list[pd.DataFrame] = []
     sampling: list[pd.DataFrame] = []
-    for place, (factor, speed) in enumerate(loads):
-        own = frame.iloc[place * asked.samples : (place + 1) * asked.samples]
+    for index, (factor, speed) in enumerate(loads):
+        own = frame.iloc[index * asked.samples : (index + 1) * asked.samples]
         load = {"torque_factor": factor, "speed_rpm": speed}
         results = own.drop(columns=list(machine.checks))
         found = percentile_table(results, (), section.confidence, BETTER_LARGE)
         failed = int((own[ERROR] != "").sum())
-        tables.append(found.assign(**load, failed=failed))
+        tables.append(percentiles.assign(**load, failed=failed))
         shares.append(_at_load(load, share_table(own, SHARES, section.confidence)))
         sampling.append(_at_load(load, sampling_table(own, CHECKS)))
     table = pd.concat(tables, ignore_index=True)[list(COLUMNS)]

@@ -51,8 +51,8 @@ def meshes_in_contact(pair: Values, flanks: Flanks, rub: "Rub | None" = None) ->
         section = parse(ToothPair, values, "this pair")
         added = geometric_backlash(section) - backlash
         both = bodies(values, section)
-        found = contact_analysis(pair_design(section), materials(section), both, plan, every_flank=False)
-        table = stiffness_from_contact(found.ltca[0], request).harmonics
+        analysis = contact_analysis(pair_design(section), materials(section), both, plan, every_flank=False)
+        table = stiffness_from_contact(analysis.ltca[0], request).harmonics
         numbers = ToothNumbers.of_config(values)
         return ToothMesh(
             numbers=numbers,
@@ -71,15 +71,15 @@ def _request(pair: Values) -> StiffnessRequest:
 
 
 def _answers(
-    found: ContactAnalysis, flanks: Flanks, numbers: ToothNumbers, request: StiffnessRequest
+    analysis: ContactAnalysis, flanks: Flanks, numbers: ToothNumbers, request: StiffnessRequest
 ) -> PairAnswers:
     assert request.torque is not None
-    torque, ltca = request.torque, found.ltca[0]
+    torque, ltca = request.torque, analysis.ltca[0]
     unloaded = ltca[ltca["torque_n_m"] == ltca["torque_n_m"].min()].sort_values("position")["unloaded_ste_um"]
     approach = torque / numbers.pinion_base_radius / load_table(ltca).at(torque, "average")
     error = 1e-6 * unloaded.to_numpy(float) + approach
-    roots = {body: passing(body, flank, found.loads) for body, flank in flanks.items() if flank.gauges}
-    return PairAnswers(error, contact_pressure(found.by_torque[0]), roots)
+    roots = {body: passing(body, flank, analysis.loads) for body, flank in flanks.items() if flank.gauges}
+    return PairAnswers(error, contact_pressure(analysis.by_torque[0]), roots)
 
 
 def _bodies(pair: Values, flanks: Flanks) -> Callable[[Values, ToothPair], tuple[GearFlank, GearFlank]]:
@@ -105,7 +105,7 @@ def _bodies(pair: Values, flanks: Flanks) -> Callable[[Values, ToothPair], tuple
                 known.pop(list(known)[1])
             known[key] = section, made
         of, made = known[key]
-        moduli = ([one.young_modulus for one in materials(other)] for other in (of, section))
+        moduli = ([material.young_modulus for material in materials(other)] for other in (of, section))
         first, second = (
             made[body] if before == after else made[body].softer(before / after)
             for body, before, after in zip(BODIES, *moduli, strict=True)

@@ -22,7 +22,7 @@ from facegear.scenarios.sampling import changes, samples
 from facegear.variants.machines import Question, VariedMachine, judge
 from facegear.variants.teeth import Values
 
-Found = dict[str, float]
+Quantities = dict[str, float]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -47,17 +47,18 @@ def task(section: Search) -> Task:
     """What is free, what is to be small or large and what is to hold."""
     return Task(
         variables=tuple(
-            Variable(one.name, *one.limits, one.steps, one.scale == "log") for one in section.variables
+            Variable(entry.name, *entry.limits, entry.steps, entry.scale == "log")
+            for entry in section.variables
         ),
-        objectives=tuple(one.name for one in section.objectives),
-        limits=tuple((one.name, one.limit) for one in section.constraints),
-        large=frozenset(one.name for one in (*section.objectives, *section.constraints) if one.large),
+        objectives=tuple(entry.name for entry in section.objectives),
+        limits=tuple((entry.name, entry.limit) for entry in section.constraints),
+        large=frozenset(entry.name for entry in (*section.objectives, *section.constraints) if entry.large),
     )
 
 
 def assessor(
     given: SearchedMachine, cycles: int, count: int
-) -> Callable[[Sequence[float] | None], tuple[Found, Found]]:
+) -> Callable[[Sequence[float] | None], tuple[Quantities, Quantities]]:
     """Function of a design's values, None for the nominal ones: its goals, and all quantities as designed.
 
     Over `cycles` mesh cycles and, where percentiles are asked for, `count` samples. The function raises
@@ -76,7 +77,7 @@ def assessor(
     names = given.columns(wired_layout(start["transmission"], given.tooth_pair), question, jumps=True)
     drawn = [changes(causes, row) for row in samples(causes, 0, count)] if causes else []
 
-    def assess(design: Sequence[float] | None) -> tuple[Found, Found]:
+    def assess(design: Sequence[float] | None) -> tuple[Quantities, Quantities]:
         numbers = zip(section.variables, design, strict=True) if design is not None else ()
         chosen = placed(start, {key: float(number) for variable, number in numbers for key in variable.sets})
         pair = parse(ToothPair, chosen["tooth_pair"], "this design")
@@ -91,12 +92,16 @@ def assessor(
     return assess
 
 
-def _goal(goal: ObjectiveSection, names: Sequence[str], nominal: Found, varied: Sequence[Found]) -> float:
+def _goal(
+    goal: ObjectiveSection, names: Sequence[str], nominal: Quantities, varied: Sequence[Quantities]
+) -> float:
     columns = [name for start in goal.quantities for name in columns_of(start, names)]
     worst = min if goal.large else max
     if goal.percentile is None:
         return worst(nominal[name] for name in columns)
-    return float(np.percentile([worst(found[name] for name in columns) for found in varied], goal.percentile))
+    return float(
+        np.percentile([worst(values[name] for name in columns) for values in varied], goal.percentile)
+    )
 
 
 def _jumps(section: Search) -> tuple[JumpRange | None, JumpRange | None]:

@@ -29,6 +29,6 @@ def with_torques(transmission: Mapping[str, Any], part: float) -> dict[str, Any]
     return {
         **transmission,
         "torque": {**transmission["torque"], "per_input_n_m": part * transmission["torque"]["per_input_n_m"]},
-        "pinions": [scaled(place) for place in transmission["pinions"]],
+        "pinions": [scaled(pinion) for pinion in transmission["pinions"]],
         "single_gears": {name: scaled(gear) for name, gear in transmission["single_gears"].items()},
     }

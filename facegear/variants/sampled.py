@@ -156,8 +156,8 @@ class SampledMachine(VariedMachine):
         """What the mesh cycles taken miss: columns MISSED."""
         whole = self.whole_judge(sample)
         paths = columns_of(f"{K_GAMMA} ", list(whole))
-        missed = {name: whole[name] - found[name] for name in (OPEN, REVERSED)}
-        ratios = (whole[name] / found[name] - 1.0 for name in paths if found[name] > 0.0)
+        missed = {name: whole[name] - values[name] for name in (OPEN, REVERSED)}
+        ratios = (whole[name] / values[name] - 1.0 for name in paths if values[name] > 0.0)
         missed[K_GAMMA] = max(ratios, default=nan)
         return {MISSED[name]: value for name, value in missed.items()}
 
@@ -165,7 +165,7 @@ class SampledMachine(VariedMachine):
         self,
         evaluate: Evaluate,
         numbers: range,
-        told: str,
+        label: str,
         partial: str | Path | None,
         *same: object,
     ) -> pd.DataFrame:
