@@ -148,7 +148,7 @@ def imperfections(section: Transmission, shape: Layout, unloaded: Harmonics | No
             if own.transmission_error is not None
         },
         position=1e-6 * np.array([(own.position_um.x, own.position_um.y) for own in pinions]),
-        clearance=1e-6 * np.array(clearances),
+        bearing_clearance=1e-6 * np.array(clearances),
         clocking=np.array([own.clocking_deg for own in pinions]) / 360.0 * shape.pinion_teeth,
         pinion_runout=tuple(_runout(own.runout or section.pinion.runout) for own in pinions),
         gear_runout=tuple(_runout(own.runout or section.face_gear.runout) for own in gears),

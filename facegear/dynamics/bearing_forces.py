@@ -40,7 +40,7 @@ def bearing_history(model: Model, response: SteadyState) -> Array:
         forces += rate @ (basis.T @ linear.dampers[held.ravel()].T)
     forces = forces.reshape(-1, *held.shape)
     for places, i, spring, clearance in zip(
-        linear.ring_places, rings.body, rings.stiffness, rings.play, strict=True
+        linear.ring_coordinates, rings.body, rings.stiffness, rings.clearance, strict=True
     ):
         rows = basis[places].T
         forces[:, i, :2] = _ring_force(response.coordinates @ rows, rate @ rows, spring, clearance, lag)

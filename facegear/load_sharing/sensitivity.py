@@ -117,8 +117,8 @@ def _changes(machine: Machine) -> Iterator[tuple[str, Imperfections, Imperfectio
         for k, letter in enumerate("xy"):
             low, high = _moved(own, "position", (i, k))
             yield f"position {letter} {pinion.name}", low, high, 2 * STEP
-        if own.clearance[i] > STEP:
-            low, high = _moved(own, "clearance", i)
+        if own.bearing_clearance[i] > STEP:
+            low, high = _moved(own, "bearing_clearance", i)
             yield f"clearance {pinion.name}", low, high, 2 * STEP
     for key, names in (
         ("pinion_runout", [pinion.name for pinion in layout.pinions]),

@@ -42,8 +42,8 @@ def assembly(
 ) -> Assembly:
     """Check all pinions; half_backlash (meshes,) in m, clocking (pinions,) of the lower rims in pitches.
 
-    With `errors` their constant ones count as misfit, and play of the bearings as room. With one face gear
-    nothing has to fit.
+    With `errors` their constant ones count as misfit, and clearance of the bearings as room. With one face
+    gear nothing has to fit.
     """
     count = len(layout.pinions)
     pitches = np.array([pinion.pitches for pinion in layout.pinions])
@@ -57,21 +57,21 @@ def assembly(
         lower, upper = np.split(errors.error, 2)
         cosine = np.cos(layout.pressure_angle)
         ahead = ahead + (upper - lower - 2.0 * cosine * errors.position[:, 0]) / layout.base_pitch
-        room = room + 2.0 * cosine * errors.clearance
+        room = room + 2.0 * cosine * errors.bearing_clearance
     reach = room / layout.base_pitch + 0.5 * ROUNDED
     together = np.abs(_wrapped(ahead[:, None] - ahead)) <= reach[:, None] + reach
-    most = int(np.argmax(together.sum(axis=1)))
-    left = _wrapped(ahead - ahead[most])
-    low, high = left[together[most]].min(), left[together[most]].max()
-    fits = _all_together(left, reach, together[most])
+    hardest = int(np.argmax(together.sum(axis=1)))
+    left = _wrapped(ahead - ahead[hardest])
+    low, high = left[together[hardest]].min(), left[together[hardest]].max()
+    fits = _all_together(left, reach, together[hardest])
     middle = 0.5 * (low + high)
-    near = np.floor(2.0 * (pitches - 0.5 * (turned - ahead[most])))
-    steps = 0.5 * (turned - ahead[most] + near)
+    near = np.floor(2.0 * (pitches - 0.5 * (turned - ahead[hardest])))
+    steps = 0.5 * (turned - ahead[hardest] + near)
     return Assembly((left - middle) * layout.base_pitch, room, fits, steps, steps + 0.5)
 
 
 def squeezed(layout: Layout, half_backlash: Array, errors: Imperfections) -> Array:
-    """How much deeper a pinion stands in each mesh than backlash and play allow, shape (meshes,), m.
+    """How much deeper a pinion stands in each mesh than backlash and clearance allow, shape (meshes,), m.
 
     Positive where both flanks of a tooth would be pressed with the machine at rest.
     """
@@ -79,7 +79,9 @@ def squeezed(layout: Layout, half_backlash: Array, errors: Imperfections) -> Arr
     squeeze = np.empty(len(layout.meshes))
     for mesh, (i, g) in enumerate(layout.meshes):
         side = layout.gears[g].sign
-        squeeze[mesh] = sine * (side * errors.position[i, 1] - errors.clearance[i]) - half_backlash[mesh]
+        squeeze[mesh] = (
+            sine * (side * errors.position[i, 1] - errors.bearing_clearance[i]) - half_backlash[mesh]
+        )
     return squeeze
 
 

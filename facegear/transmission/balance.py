@@ -46,13 +46,13 @@ def balance(machine: Machine, displacements: Array, forces: Array, stiffness: Ar
     (K, F): theirs, N/m and m, which say how well the forces can be known.
     """
     linear = machine.linear
-    directions, arms, applied = linear.rows[: forces.shape[1]], linear.lengths, linear.loads
-    left_over = bearing_loads(machine, displacements) + forces @ directions - applied
+    rows, arms, applied = linear.rows[: forces.shape[1]], linear.lengths, linear.loads
+    left_over = bearing_loads(machine, displacements) + forces @ rows - applied
     size = np.maximum(np.abs(applied / arms).max(), np.abs(forces).max(axis=1))
     size = np.where(size > 0.0, size, 1.0)
     moved = np.abs(displacements)
-    pressed = stiffness * (moved @ np.abs(directions).T + np.abs(gaps))
-    terms = moved @ np.abs(linear.stiffness) + pressed @ np.abs(directions)
+    pressed = stiffness * (moved @ np.abs(rows).T + np.abs(gaps))
+    terms = moved @ np.abs(linear.stiffness) + pressed @ np.abs(rows)
     return Balance(
         residual=np.abs(left_over / arms).max(axis=1) / size,
         rounding=ROUNDED * EPSILON * (terms / arms).max(axis=1) / size,
@@ -60,11 +60,13 @@ def balance(machine: Machine, displacements: Array, forces: Array, stiffness: Ar
 
 
 def bearing_loads(machine: Machine, displacements: Array) -> Array:
-    """Force or moment of every degree of freedom on its bearing, (K, dof); beyond the play where there is."""
+    """Force or moment of every degree of freedom on its bearing, (K, dof), beyond any clearance."""
     linear = machine.linear
     loads = displacements @ linear.stiffness_without_rings
-    for at, spring, play in zip(linear.ring_places, linear.rings.stiffness, linear.rings.play, strict=True):
+    for at, spring, clearance in zip(
+        linear.ring_coordinates, linear.rings.stiffness, linear.rings.clearance, strict=True
+    ):
         distance = np.hypot(*displacements[:, at].T)[:, None]
-        beyond = np.maximum(1.0 - play / np.maximum(distance, play), 0.0)
+        beyond = np.maximum(1.0 - clearance / np.maximum(distance, clearance), 0.0)
         loads[:, at] += displacements[:, at] * beyond * spring
     return np.asarray(loads)

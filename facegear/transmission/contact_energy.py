@@ -1,4 +1,4 @@
-"""Compiled: derivatives of the energy of one-sided flanks, bearings (with play or without) and torques.
+"""Compiled: derivatives of the energy of one-sided flanks, bearings (with clearance or without) and torques.
 
 Pinions touch each other through the other unknowns only, which the second derivatives keep to: a block for
 each pinion and one, the core, for the gears and all else.
@@ -40,9 +40,9 @@ class Springs(NamedTuple):
 
 
 @kernel
-def penetrate(springs: Springs, gap: Array, place: Array, over: Array) -> None:
+def penetrate(springs: Springs, gap: Array, displacement: Array, over: Array) -> None:
     """How far each flank is pressed in, negative where it is open; (F,)."""
-    along(springs, place, over)
+    along(springs, displacement, over)
     for f in range(gap.size):
         over[f] -= gap[f]
 
@@ -50,13 +50,13 @@ def penetrate(springs: Springs, gap: Array, place: Array, over: Array) -> None:
 @kernel
 def along(springs: Springs, motion: Array, out: Array) -> None:
     """Jacobian times a motion."""
-    wide = springs.jacobian.shape[1]
+    width = springs.jacobian.shape[1]
     for f in range(out.size):
         p, g = springs.pinion[f], springs.gear[f] - 3
         total = 0.0
         for j in range(3):
             total += springs.jacobian[f, j] * motion[p + j]
-        for j in range(3, wide):
+        for j in range(3, width):
             total += springs.jacobian[f, j] * motion[g + j]
         out[f] = total
 
@@ -65,16 +65,18 @@ def along(springs: Springs, motion: Array, out: Array) -> None:
 def _bearing(springs: Springs, i: int, x: float, y: float) -> tuple[float, float]:
     """Force of pinion i's bearing away from x, y."""
     xx, xy, yy = springs.pinion_bearing[i]
-    play = springs.clearance[i]
-    if play > 0.0:
+    clearance = springs.clearance[i]
+    if clearance > 0.0:
         distance = np.hypot(x, y)
-        share = xx * (1.0 - play / distance) if distance > play else 0.0
-        return share * x, share * y
+        factor = xx * (1.0 - clearance / distance) if distance > clearance else 0.0
+        return factor * x, factor * y
     return xx * x + xy * y, xy * x + yy * y
 
 
 @kernel
-def balance(springs: Springs, held: Held, position: int, over: Array, place: Array, gradient: Array) -> float:
+def balance(
+    springs: Springs, held: Held, position: int, over: Array, displacement: Array, gradient: Array
+) -> float:
     """Forces out of balance into gradient (n,) at a position of the law; the largest single force is
     returned.
     """
@@ -85,14 +87,14 @@ def balance(springs: Springs, held: Held, position: int, over: Array, place: Arr
         gradient[j] = -springs.applied[j]
         size = max(size, abs(springs.applied[j]))
     for i in range(pinions):
-        x, y = _bearing(springs, i, place[3 * i], place[3 * i + 1])
+        x, y = _bearing(springs, i, displacement[3 * i], displacement[3 * i + 1])
         gradient[3 * i] += x
         gradient[3 * i + 1] += y
     for e in range(springs.core_value.size):
         x, y = first + springs.core_row[e], first + springs.core_column[e]
-        gradient[x] += springs.core_value[e] * place[y]
+        gradient[x] += springs.core_value[e] * displacement[y]
         if x != y:
-            gradient[y] += springs.core_value[e] * place[x]
+            gradient[y] += springs.core_value[e] * displacement[x]
     for f in range(over.size):
         if over[f] > 0.0:
             force, _ = held_force(held, position, f, over[f])
@@ -112,7 +114,7 @@ def assemble(
     position: int,
     over: Array,
     closed: Array,
-    place: Array,
+    displacement: Array,
     gradient: Array,
     tie: float,
     blocks: Array,
@@ -120,22 +122,22 @@ def assemble(
 ) -> None:
     """Second derivatives of the energy and the right side, upper triangles only; closed (F,) 1 or 0."""
     pinions, gears = blocks.shape[0], core.shape[0]
-    first, wide = 3 * pinions, blocks.shape[2]
+    first, width = 3 * pinions, blocks.shape[2]
     blocks[:] = 0.0
     core[:] = 0.0
     for i in range(pinions):
         block = blocks[i]
         xx, xy, yy = springs.pinion_bearing[i]
-        play = springs.clearance[i]
-        if play > 0.0:
-            x, y = place[3 * i], place[3 * i + 1]
+        clearance = springs.clearance[i]
+        if clearance > 0.0:
+            x, y = displacement[3 * i], displacement[3 * i + 1]
             distance = np.hypot(x, y)
-            turned = xx * (1.0 - play / distance) if distance > play else 0.0
-            ahead = (xx - turned) / distance**2 if distance > play else 0.0
+            turned = xx * (1.0 - clearance / distance) if distance > clearance else 0.0
+            ahead = (xx - turned) / distance**2 if distance > clearance else 0.0
             xx, xy, yy = turned + ahead * x * x, ahead * x * y, turned + ahead * y * y
         block[0, 0], block[0, 1], block[1, 1], block[2, 2] = xx + tie, xy, yy + tie, tie
         for r in range(3):
-            block[r, wide - 1] = -gradient[3 * i + r]
+            block[r, width - 1] = -gradient[3 * i + r]
     for a in range(gears):
         core[a, a] = tie
         core[a, gears] = -gradient[first + a]
@@ -164,9 +166,9 @@ def slope_along(
     position: int,
     over: Array,
     rate: Array,
-    place: Array,
+    displacement: Array,
     step: Array,
-    share: float,
+    fraction: float,
 ) -> tuple[float, float]:
     """First and second derivative of the energy along the step."""
     pinions = springs.pinion_bearing.shape[0]
@@ -176,7 +178,7 @@ def slope_along(
         slope -= springs.applied[j] * step[j]
     for i in range(pinions):
         dx, dy = step[3 * i], step[3 * i + 1]
-        x, y = place[3 * i] + share * dx, place[3 * i + 1] + share * dy
+        x, y = displacement[3 * i] + fraction * dx, displacement[3 * i + 1] + fraction * dy
         along_x, along_y = _bearing(springs, i, x, y)
         slope += along_x * dx + along_y * dy
         xx, xy, yy = springs.pinion_bearing[i]
@@ -189,14 +191,14 @@ def slope_along(
     for e in range(springs.core_value.size):
         x, y = first + springs.core_row[e], first + springs.core_column[e]
         stiff = springs.core_value[e] * step[y]
-        slope += stiff * (place[x] + share * step[x])
+        slope += stiff * (displacement[x] + fraction * step[x])
         curvature += stiff * step[x]
         if x != y:
             stiff = springs.core_value[e] * step[x]
-            slope += stiff * (place[y] + share * step[y])
+            slope += stiff * (displacement[y] + fraction * step[y])
             curvature += stiff * step[y]
     for f in range(over.size):
-        depth = over[f] + share * rate[f]
+        depth = over[f] + fraction * rate[f]
         if depth > 0.0:
             force, stiffness = held_force(held, position, f, depth)
             slope += force * rate[f]

@@ -6,9 +6,9 @@ linear law and but for the rings, quadratic between changes of contact: a semism
 makes it global. Pinions touch each other through the gears only, so each is eliminated by itself (3 x 3) and
 the gears remain (4 or 6 unknowns each).
 
-A body that nothing holds may be stopped by a flank that only just closes, by less than its place can be told.
-Such a flank counts as closed in the next step, unless that would pull it open: the search would else stay
-where it is.
+A body that nothing holds may be stopped by a flank that only just closes, by less than its position can be
+resolved. Such a flank counts as closed in the next step, unless that would pull it open: the search would
+else stay where it is.
 """
 
 import numpy as np
@@ -27,7 +27,7 @@ from facegear.transmission.contact_energy import (
 )
 
 TIE, FIRST_TIE = 1e-10, 1e-1
-"""Springs to ground in the matrix only (over the stiffest contact), which give free bodies a next place."""
+"""Springs to ground in the matrix only, over the stiffest contact: they give free bodies a next position."""
 MAX_STEPS = 200
 JUST_CLOSED = 1e-9
 """Part of a whole step's approach by which a flank that stopped the step may still be open."""
@@ -35,18 +35,18 @@ JUST_CLOSED = 1e-9
 
 @kernel
 def settle_all(
-    springs: Springs, held: Held, gap: Array, tolerance: float, place: Array
+    springs: Springs, held: Held, gap: Array, tolerance: float, displacement: Array
 ) -> tuple[Array, Array, Array]:
-    """Places (K, n), flank forces (K, F), largest imbalance over the largest force (K,).
+    """Displacements (K, n), flank forces (K, F), largest imbalance over the largest force (K,).
 
-    held: the law of the flanks at K phases; gap (K, F): flanks are pressed in by J q - gap. `place` (n,) is
-    where the first search starts; each later one starts from the one before. A position that is not solved
-    keeps its residual.
+    held: the law of the flanks at K phases; gap (K, F): flanks are pressed in by J q - gap. `displacement`
+    (n,) is where the first search starts; each later one starts from the one before. A position that is not
+    solved keeps its residual.
     """
     count, flanks = gap.shape
-    n = place.size
+    n = displacement.size
     gears = n - 3 * springs.pinion_bearing.shape[0]
-    places, forces = np.zeros((count, n)), np.zeros((count, flanks))
+    displacements, forces = np.zeros((count, n)), np.zeros((count, flanks))
     residuals = np.zeros(count)
     over, rate = np.zeros(flanks), np.zeros(flanks)
     stops, closed = np.zeros(flanks), np.zeros(flanks)
@@ -58,8 +58,8 @@ def settle_all(
         tie = FIRST_TIE if k == 0 else TIE
         stops[:] = 0.0
         for _ in range(MAX_STEPS):
-            penetrate(springs, gap[k], place, over)
-            size = balance(springs, held, k, over, place, gradient)
+            penetrate(springs, gap[k], displacement, over)
+            size = balance(springs, held, k, over, displacement, gradient)
             worst = np.abs(gradient).max()
             residuals[k] = worst / size if size > 0.0 else 0.0
             if worst <= tolerance * size:
@@ -68,7 +68,7 @@ def settle_all(
                 for f in range(flanks):
                     closed[f] = 1.0 if over[f] > 0.0 else stops[f]
                 _newton_step(
-                    springs, held, k, over, closed, place, gradient, tie * stiffest, blocks, core, step
+                    springs, held, k, over, closed, displacement, gradient, tie * stiffest, blocks, core, step
                 )
                 along(springs, step, rate)
                 if (stops * rate).min() >= 0.0:
@@ -77,17 +77,17 @@ def settle_all(
             tie = max(0.1 * tie, TIE)
             # Forces below the tolerance are no reason to go on: a free body would slide, the others with it.
             noise = tolerance * size * np.abs(step).sum()
-            share = _line_minimum(springs, held, k, over, rate, place, step, noise)
+            fraction = _line_minimum(springs, held, k, over, rate, displacement, step, noise)
             for f in range(flanks):
-                near = over[f] + share * rate[f] >= -JUST_CLOSED * rate[f]
+                near = over[f] + fraction * rate[f] >= -JUST_CLOSED * rate[f]
                 stops[f] = 1.0 if over[f] <= 0.0 and rate[f] > 0.0 and near else 0.0
             for j in range(n):
-                place[j] += share * step[j]
+                displacement[j] += fraction * step[j]
         for f in range(flanks):
             if over[f] > 0.0:
                 forces[k, f], _ = held_force(held, k, f, over[f])
-        places[k] = place
-    return places, forces, residuals
+        displacements[k] = displacement
+    return displacements, forces, residuals
 
 
 @kernel
@@ -97,7 +97,7 @@ def _newton_step(
     position: int,
     over: Array,
     closed: Array,
-    place: Array,
+    displacement: Array,
     gradient: Array,
     tie: float,
     blocks: Array,
@@ -108,9 +108,9 @@ def _newton_step(
 
     blocks (P, 3, 4 + gears) holds each pinion's 3 x 3, its coupling to the gears and its right side.
     """
-    assemble(springs, held, position, over, closed, place, gradient, tie, blocks, core)
+    assemble(springs, held, position, over, closed, displacement, gradient, tie, blocks, core)
     gears = core.shape[0]
-    wide = blocks.shape[2]
+    width = blocks.shape[2]
     for i in range(blocks.shape[0]):
         block = blocks[i]
         _eliminate(block)
@@ -120,12 +120,12 @@ def _newton_step(
                 if factor != 0.0:
                     for b in range(a, gears):
                         core[a, b] -= factor * block[r, 3 + b]
-                    core[a, gears] -= factor * block[r, wide - 1]
+                    core[a, gears] -= factor * block[r, width - 1]
     first = step.size - gears
     _solve_core(core, step[first:])
     for i in range(blocks.shape[0]):
         for r in range(2, -1, -1):
-            total = blocks[i, r, wide - 1]
+            total = blocks[i, r, width - 1]
             for b in range(gears):
                 total -= blocks[i, r, 3 + b] * step[first + b]
             for c in range(r + 1, 3):
@@ -169,30 +169,30 @@ def _line_minimum(
     position: int,
     over: Array,
     rate: Array,
-    place: Array,
+    displacement: Array,
     step: Array,
     noise: float,
 ) -> float:
-    """Where the energy is least along the step: 1 as long as no contact changes."""
-    start, _ = slope_along(springs, held, position, over, rate, place, step, 0.0)
-    slope, curvature = slope_along(springs, held, position, over, rate, place, step, 1.0)
+    """Where the energy is minimal along the step: 1 as long as no contact changes."""
+    start, _ = slope_along(springs, held, position, over, rate, displacement, step, 0.0)
+    slope, curvature = slope_along(springs, held, position, over, rate, displacement, step, 1.0)
     close = 1e-9 * abs(start) + noise
     if start >= 0.0 or abs(slope) <= close:
         return 1.0
-    low, high, share = 0.0, 1.0, 1.0
+    low, high, fraction = 0.0, 1.0, 1.0
     while slope < 0.0 and high < 1e30:
         low, high = high, 2.0 * high
-        share = high
-        slope, curvature = slope_along(springs, held, position, over, rate, place, step, share)
+        fraction = high
+        slope, curvature = slope_along(springs, held, position, over, rate, displacement, step, fraction)
     for _ in range(200):
         if abs(slope) <= close or high - low <= 1e-15 * high:
             break
-        share = share - slope / curvature if curvature > 0.0 else low
-        if not low < share < high:
-            share = 0.5 * (low + high)
-        slope, curvature = slope_along(springs, held, position, over, rate, place, step, share)
+        fraction = fraction - slope / curvature if curvature > 0.0 else low
+        if not low < fraction < high:
+            fraction = 0.5 * (low + high)
+        slope, curvature = slope_along(springs, held, position, over, rate, displacement, step, fraction)
         if slope < 0.0:
-            low = share
+            low = fraction
         else:
-            high = share
-    return share
+            high = fraction
+    return fraction

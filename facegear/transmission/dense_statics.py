@@ -57,13 +57,13 @@ def dense_equilibrium(linear: LinearModel, contacts: Contacts, lengths: Array) -
     one unit of each coordinate, so that all unknowns are lengths of one order.
     """
     scale = 1.0 / lengths
-    places = linear.ring_places
+    ring_coordinates = linear.ring_coordinates
     scaled = _Springs(
         linear.rows[: contacts.upper.size] * scale,
         contacts,
         linear.stiffness_without_rings * np.outer(scale, scale),
         linear.loads * scale,
-        _Rings(places, linear.rings.stiffness, linear.rings.play),
+        _Rings(ring_coordinates, linear.rings.stiffness, linear.rings.clearance),
     )
     solution = _minimise(scaled)
     deflections = scaled.deflections(solution)
@@ -72,56 +72,56 @@ def dense_equilibrium(linear: LinearModel, contacts: Contacts, lengths: Array) -
 
 @dataclass(frozen=True, eq=False)
 class _Rings:
-    """Bearings with play: which unknowns are x and y (R, 2), stiffness and play (R,)."""
+    """Bearings with clearance: which unknowns are x and y (R, 2), stiffness and clearance (R,)."""
 
-    places: Integers
+    coordinates: Integers
     stiffness: Array
-    play: Array
+    clearance: Array
 
     def push(self, q: Array) -> Array:
-        """Forces (..., n) of the bearings at places (..., n)."""
+        """Forces (..., n) of the bearings at displacements (..., n)."""
         forces = np.zeros_like(q)
-        moved = q[..., self.places]
-        distance = np.maximum(np.hypot(moved[..., 0], moved[..., 1]), self.play)
-        share = self.stiffness * (1.0 - self.play / distance)
-        forces[..., self.places] = share[..., None] * moved
+        moved = q[..., self.coordinates]
+        distance = np.maximum(np.hypot(moved[..., 0], moved[..., 1]), self.clearance)
+        stretched = self.stiffness * (1.0 - self.clearance / distance)
+        forces[..., self.coordinates] = stretched[..., None] * moved
         return forces
 
     def add_tangents(self, q: Array, matrix: Array) -> None:
-        """Add their derivatives at places (n,) to a matrix (n, n)."""
-        for at, stiffness, play in zip(self.places, self.stiffness, self.play, strict=True):
+        """Add their derivatives at displacements (n,) to a matrix (n, n)."""
+        for at, stiffness, clearance in zip(self.coordinates, self.stiffness, self.clearance, strict=True):
             distance = float(np.hypot(*q[at]))
-            if distance > play:
+            if distance > clearance:
                 along = q[at] / distance
-                across = stiffness * (1.0 - play / distance)
+                across = stiffness * (1.0 - clearance / distance)
                 matrix[np.ix_(at, at)] += across * np.eye(2) + (stiffness - across) * np.outer(along, along)
 
 
 @dataclass(frozen=True, eq=False)
 class _Springs:
-    """Contacts and bearings in scaled displacements: directions (contacts, q), bearing (q, q), rings."""
+    """Contacts and bearings in scaled displacements: jacobian (contacts, q), bearing (q, q), rings."""
 
-    directions: Array
+    jacobian: Array
     contacts: Contacts
     bearing: Array
     applied: Array
     rings: _Rings
 
     def deflections(self, q: Array) -> Array:
-        return self.directions @ q - self.contacts.error
+        return self.jacobian @ q - self.contacts.error
 
     def forces(self, q: Array) -> Array:
         return self.contacts.forces(self.contacts.beyond(self.deflections(q)))
 
     def balance(self, q: Array, forces: Array) -> Array:
         """What is left over at q with these forces of the contacts."""
-        balance = self.bearing @ q + self.directions.T @ forces - self.applied
-        return balance + self.rings.push(q) if self.rings.play.size else balance
+        balance = self.bearing @ q + self.jacobian.T @ forces - self.applied
+        return balance + self.rings.push(q) if self.rings.clearance.size else balance
 
     def curvature(self, q: Array, slope: Array) -> Array:
         """Second derivatives of the energy at q with these slopes of the contacts' forces."""
-        curvature = self.bearing + (self.directions.T * slope) @ self.directions
-        if self.rings.play.size:
+        curvature = self.bearing + (self.jacobian.T * slope) @ self.jacobian
+        if self.rings.clearance.size:
             self.rings.add_tangents(q, curvature)
         return curvature
 
@@ -136,16 +136,16 @@ class _Springs:
             constant=float(at_start @ step),
             rise=float((self.bearing @ step + tie * step) @ step),
             deflections=deflections,
-            rates=self.directions @ step,
+            rates=self.jacobian @ step,
             contacts=self.contacts,
-            bearings=bearings if self.rings.play.size else None,
+            bearings=bearings if self.rings.clearance.size else None,
         )
 
 
 @dataclass(frozen=True, eq=False)
 class Line:
     """Slope of the energy along a line: constant + rise s + sum of rates F(deflections + s rates), and what
-    `bearings` with play add at places (K,) of the line.
+    `bearings` with clearance add at points (K,) of the line.
     """
 
     constant: float
@@ -159,7 +159,7 @@ class Line:
         return self.contacts.forces(self.contacts.beyond(self.deflections + s * self.rates))
 
     def slopes(self, s: Array) -> Array:
-        """The slope at some places (K,)."""
+        """The slope at some points (K,)."""
         forces = self._forces(s[:, None])
         slopes = np.asarray(self.constant + self.rise * s + forces @ self.rates)
         return slopes if self.bearings is None else slopes + self.bearings(s)
@@ -219,48 +219,50 @@ def _minimise(springs: _Springs) -> Array:
     """Proximal point method (Rockafellar 1976): each round ties the body to its last place by a spring softer
     than before.
 
-    The springs make every round strictly convex, so that bodies free inside their backlash have a place too;
-    the force in the springs goes to zero as the rounds settle.
+    The springs make every round strictly convex, so that bodies free inside their backlash have a position
+    too; the force in the springs goes to zero as the rounds settle.
     """
     size = np.abs(springs.applied).max()
     stiffest = max(springs.contacts.law.steepest.max(), springs.bearing.max())
-    place = np.zeros(springs.applied.size)
+    displacement = np.zeros(springs.applied.size)
     for tie in stiffest * np.geomspace(FIRST_SPRING, LAST_SPRING, ROUNDS):
-        last = place
-        place = _newton(springs, tie, last)
-        largest = max(size, np.abs(springs.forces(place)).max())
-        if tie * np.abs(place - last).max() <= 1e-3 * RESIDUAL * largest:
-            return place
-    return _pushed_on(springs, float(tie), last, place)
+        last = displacement
+        displacement = _newton(springs, tie, last)
+        largest = max(size, np.abs(springs.forces(displacement)).max())
+        if tie * np.abs(displacement - last).max() <= 1e-3 * RESIDUAL * largest:
+            return displacement
+    return _pushed_on(springs, float(tie), last, displacement)
 
 
-def _pushed_on(springs: _Springs, tie: float, last: Array, place: Array) -> Array:
+def _pushed_on(springs: _Springs, tie: float, last: Array, displacement: Array) -> Array:
     """A body that a force next to nothing has not yet moved through its backlash goes on as far as it can."""
     for _ in range(MORE_ROUNDS):
-        deflections = springs.deflections(place)
+        deflections = springs.deflections(displacement)
         forces = springs.contacts.forces(springs.contacts.beyond(deflections))
         size = max(np.abs(springs.applied).max(), np.abs(forces).max())
-        if np.abs(springs.balance(place, forces)).max() <= RESIDUAL * size:
+        if np.abs(springs.balance(displacement, forces)).max() <= RESIDUAL * size:
             break
-        step = place - last
-        last = place + step * springs.along(place, deflections, step, 0.0, place).minimum()
-        place = _newton(springs, tie, last)
-    return place
+        step = displacement - last
+        last = (
+            displacement + step * springs.along(displacement, deflections, step, 0.0, displacement).minimum()
+        )
+        displacement = _newton(springs, tie, last)
+    return displacement
 
 
 def _newton(springs: _Springs, tie: float, anchor: Array) -> Array:
     """Newton's method with an exact line search on the piecewise quadratic energy of one round."""
-    place, ties, contacts = anchor, tie * np.eye(len(anchor)), springs.contacts
+    displacement, ties, contacts = anchor, tie * np.eye(len(anchor)), springs.contacts
     widest = np.abs(contacts.upper).max()
     for _ in range(MAX_ITERATIONS):
-        deflections = springs.deflections(place)
+        deflections = springs.deflections(displacement)
         beyond = contacts.beyond(deflections)
-        gradient = springs.balance(place, contacts.forces(beyond)) + tie * (place - anchor)
-        curvature = springs.curvature(place, contacts.slopes(beyond)) + ties
+        gradient = springs.balance(displacement, contacts.forces(beyond)) + tie * (displacement - anchor)
+        curvature = springs.curvature(displacement, contacts.slopes(beyond)) + ties
         step = -np.asarray(np.linalg.solve(curvature, gradient), np.float64)
-        moved = place + step * springs.along(place, deflections, step, tie, anchor).minimum()
-        size = max(np.abs(place).max(), widest)
-        if np.abs(moved - place).max() <= 1e-15 * size:
+        moved = displacement + step * springs.along(displacement, deflections, step, tie, anchor).minimum()
+        size = max(np.abs(displacement).max(), widest)
+        if np.abs(moved - displacement).max() <= 1e-15 * size:
             return moved
-        place = moved
-    return place
+        displacement = moved
+    return displacement

@@ -68,8 +68,8 @@ def _flank_contacts(machine: Machine) -> MeshContacts:
     Damping across open flanks is shared by the two, so that turning alone meets the whole of it.
     """
     upper = flank_gaps(machine) + constant_errors(machine)
-    share = 0.5 if machine.damping.open_flanks is OpenFlanks.ALWAYS else 1.0
-    damping = np.full(upper.size, machine.damping.mesh * share)
+    fraction = 0.5 if machine.damping.open_flanks is OpenFlanks.ALWAYS else 1.0
+    damping = np.full(upper.size, machine.damping.mesh * fraction)
     never = np.full(upper.size, -np.inf)
     return MeshContacts(flank_law(machine), error_series(machine), never, upper, damping)
 
@@ -212,9 +212,9 @@ def mirrored(series: Harmonics) -> Harmonics:
 
 def _both(drive: list[Harmonics], phases: Array) -> list[Harmonics]:
     """Drive flanks and their mirror images, each as its mesh passes through the cycle."""
-    flanks = [*drive, *(mirrored(one) for one in drive)]
+    flanks = [*drive, *(mirrored(own) for own in drive)]
     lags = [float(lag) for lag in np.round(np.tile(phases, 2), 12)]
-    return [one.shifted(lag) for one, lag in zip(flanks, lags, strict=True)]
+    return [own.shifted(lag) for own, lag in zip(flanks, lags, strict=True)]
 
 
 def _flanks(tangential: Array, separating: Array) -> Array:

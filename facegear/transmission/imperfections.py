@@ -28,16 +28,17 @@ class Imperfections:
     error (meshes,): constant, along the line of action, positive where the drive flank comes late.
     half_backlash (meshes,): nan takes the machine's. stiffness (meshes,): factor on k(t). series: e(t) of a
     mesh by its index, in place of the common one. position (pinions, 2): x, y of the pinion's bearings.
-    clearance (pinions,): radial play of the bearings. clocking (pinions,): lower rim ahead of the upper, in
-    pitches. pinion_runout, gear_runout: one a body. pinion_pitch, gear_pitch: by the body's index, cumulative
-    pitch deviation (teeth,) along the pitch circle, positive where a tooth stands ahead as the body turns.
+    bearing_clearance (pinions,): radial. clocking (pinions,): lower rim ahead of the upper,
+    in pitches. pinion_runout, gear_runout: one a body. pinion_pitch, gear_pitch: by the body's index,
+    cumulative pitch deviation (teeth,) along the pitch circle, positive where a tooth stands ahead as the
+    body turns.
     """
 
     error: Array
     half_backlash: Array
     stiffness: Array
     position: Array
-    clearance: Array
+    bearing_clearance: Array
     clocking: Array
     pinion_runout: tuple[Runout, ...]
     gear_runout: tuple[Runout, ...]
@@ -49,7 +50,7 @@ class Imperfections:
     def any_slow(self) -> bool:
         """Whether an error changes from one mesh cycle to the next."""
         turning = (*self.pinion_runout, *self.gear_runout)
-        return bool(self.pinion_pitch or self.gear_pitch or any(one.amplitude != 0.0 for one in turning))
+        return bool(self.pinion_pitch or self.gear_pitch or any(curve.amplitude != 0.0 for curve in turning))
 
     @property
     def standing(self) -> "Imperfections":
@@ -72,7 +73,7 @@ def perfect(layout: Layout) -> Imperfections:
         half_backlash=np.full(meshes, np.nan),
         stiffness=np.ones(meshes),
         position=np.zeros((pinions, 2)),
-        clearance=np.zeros(pinions),
+        bearing_clearance=np.zeros(pinions),
         clocking=np.zeros(pinions),
         pinion_runout=(Runout(),) * pinions,
         gear_runout=(Runout(),) * gears,

@@ -6,4 +6,4 @@ from facegear.transmission.layout import Kinematics
 from facegear.transmission.printed import PRINTED
 from facegear.transmission.teeth import GEOMETRIC
 
-KINEMATICS: Mapping[str, Kinematics] = {one.name: one for one in (GEOMETRIC, PRINTED)}
+KINEMATICS: Mapping[str, Kinematics] = {kinematics.name: kinematics for kinematics in (GEOMETRIC, PRINTED)}

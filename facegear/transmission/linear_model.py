@@ -30,13 +30,13 @@ class Spin:
 
 @dataclass(frozen=True, eq=False)
 class Rings:
-    """Bearings with play, R of them: body (R,) in the order of the bodies, stiffness (R,) beyond the play
-    (N/m), play (R,), m.
+    """Bearings with clearance, R of them: body (R,) in the order of the bodies, stiffness (R,) beyond the
+    clearance (N/m), clearance (R,), m.
     """
 
     body: Integers
     stiffness: Array
-    play: Array
+    clearance: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +44,8 @@ class LinearModel:
     """n coordinates; m flanks; SI units.
 
     - labels (n): `body:letter`. The coordinates of the layout come first, as it orders them.
-    - mass, stiffness (n, n): symmetric; stiffness holds all bearings, those with play as if they had none.
+    - mass, stiffness (n, n): symmetric; stiffness holds all bearings, those with clearance as if they had
+      none.
     - rows (m, n): derivative of the flanks' deflections by the coordinates, drive flanks first.
     - torques (n,): those that the flanks hold in balance; forces (n,): all other external loads.
     - lengths (n,): length (m) that one unit of a coordinate counts as: 1 for a displacement, an arm for a
@@ -52,7 +53,7 @@ class LinearModel:
     - translations (bodies, 3): which coordinates are x, y, z of each body.
     - mass_damping (1/s), bearing_damping (s): factors of M and K in equation (21); dampers (n, n): all other
       damping, N s/m.
-    - rings: bearings with play. spin: what turning bodies add, None for nothing.
+    - rings: bearings with clearance. spin: what turning bodies add, None for nothing.
     """
 
     labels: tuple[str, ...]
@@ -92,15 +93,15 @@ class LinearModel:
 
     @cached_property
     def stiffness_without_rings(self) -> Array:
-        """Stiffness (n, n) without the bearings that have play."""
+        """Stiffness (n, n) without the bearings that have clearance."""
         stiffness = self.stiffness.copy()
-        for places, spring in zip(self.ring_places, self.rings.stiffness, strict=True):
+        for places, spring in zip(self.ring_coordinates, self.rings.stiffness, strict=True):
             stiffness[places, places] -= spring
         return stiffness
 
     @property
-    def ring_places(self) -> Integers:
-        """Which coordinates are x and y of each bearing with play, (R, 2)."""
+    def ring_coordinates(self) -> Integers:
+        """Which coordinates are x and y of each bearing with clearance, (R, 2)."""
         return self.translations[self.rings.body, :2]
 
     def momentum(self, velocities: Array) -> Array:

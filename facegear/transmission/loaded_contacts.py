@@ -1,4 +1,4 @@
-"""Which flanks and bearings with play the mean torques press together, and which they leave apart.
+"""Which flanks and bearings with clearance the mean torques press together, and which they leave apart.
 
 Decided by load: what carries less than NOTHING of the largest flank force is open, what carries more than
 LOADED is closed. In between rounding and the last digits of a torque would decide: `undecided`.
@@ -35,7 +35,7 @@ class LoadedContacts:
 
     stiffness (2 meshes,): slope of each flank's force there, N/m, or what it would be in contact; past_law
     (2 meshes,): whether it is pressed in past the last level of its law.
-    rings and places (pinions, 2), m: nan where a bearing has no play.
+    rings and places (pinions, 2), m: nan where a bearing has no clearance.
     """
 
     flanks: Array
@@ -49,7 +49,7 @@ class LoadedContacts:
         return [self._state(force) for force in self.flanks]
 
     def ring_states(self) -> list[Contact | None]:
-        """Of every pinion's bearing; None without play."""
+        """Of every pinion's bearing; None without clearance."""
         return [None if np.isnan(force) else self._state(force) for force in self.rings]
 
     def any_undecided(self) -> bool:
@@ -76,7 +76,7 @@ def loaded_contacts(machine: Machine) -> LoadedContacts:
     found = mean_equilibrium(machine)
     ringed = machine.linear.rings.body
     rings[ringed] = np.hypot(*bearing_forces(machine, found)[0, ringed, :2].T)
-    places[ringed] = found.displacements[0, machine.linear.ring_places]
+    places[ringed] = found.displacements[0, machine.linear.ring_coordinates]
     over = machine.linear.rows @ found.displacements[0] - constant_errors(machine) - flank_gaps(machine)
     law, pressed = flank_law(machine).mean(), np.maximum(over, 0.0)[None]
     stiffness = constant if machine.constant_stiffness else law.slope(np.zeros(1), pressed)[0]
@@ -87,7 +87,7 @@ def forces_by_active_sets(machine: Machine) -> Array | None:
     """Flank forces (2 meshes,) at mean stiffness, N: the statics of one position without compiled code.
 
     Each step solves the springs of the flanks that were closed after the last one. None for bearings with
-    play or a stiffness that depends on the load, and where the flanks do not settle or leave a loaded body
+    clearance or a stiffness that depends on the load, and where the flanks do not settle or leave a loaded body
     free.
     """
     linear = machine.linear

@@ -30,7 +30,7 @@ def loaded_modes(machine: Machine, speed_rpm: float = 0.0) -> Modes:
     """Modes at a pinion speed with the flanks that carry load at their mean stiffness, or at its slope under
     their load where it depends on that.
 
-    Bearings with play are as they are pressed. An open mesh stays open, a wedged one has both flanks;
+    Bearings with clearance are as they are pressed. An open mesh stays open, a wedged one has both flanks;
     undecided contacts count as open. Raises NotConverged.
     """
     return vibrating_machine(machine, speed_rpm).modes
@@ -63,19 +63,21 @@ def _modes(machine: Machine, contacts: LoadedContacts, holding: tuple[Contact, .
 def _pressed_bearings(
     machine: Machine, contacts: LoadedContacts, holding: tuple[Contact, ...]
 ) -> LinearModel:
-    """The linear model with every bearing that has play replaced by its tangent.
+    """The linear model with every bearing that has clearance replaced by its tangent.
 
-    A bearing pressed against its ring is stiff along its load, k, and less across it, k (1 - play / way); one
-    that floats inside carries nothing.
+    A bearing pressed against its ring is stiff along its load, k, and less across it, k (1 - clearance /
+    way); one that floats inside carries nothing.
     """
     linear, states = machine.linear, contacts.ring_states()
     if not linear.rings.body.size:
         return linear
     stiffness, rings = linear.stiffness_without_rings.copy(), linear.rings
-    for at, i, spring, play in zip(linear.ring_places, rings.body, rings.stiffness, rings.play, strict=True):
+    for at, i, spring, clearance in zip(
+        linear.ring_coordinates, rings.body, rings.stiffness, rings.clearance, strict=True
+    ):
         if states[i] in holding:
             distance = float(np.hypot(*contacts.places[i]))
-            across = spring * (1.0 - play / distance)
+            across = spring * (1.0 - clearance / distance)
             direction = contacts.places[i] / distance
             tangent = across * np.eye(2) + (spring - across) * np.outer(direction, direction)
             stiffness[np.ix_(at, at)] += tangent

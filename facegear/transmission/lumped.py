@@ -5,7 +5,7 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.transmission.layout import DOF_PER_BODY, Layout
 from facegear.transmission.linear_model import LinearModel, Rings
-from facegear.transmission.matrices import bearing_matrix, flank_directions, mass_diagonal
+from facegear.transmission.matrices import bearing_matrix, flank_jacobian, mass_diagonal
 
 
 def lumped_model(
@@ -18,7 +18,7 @@ def lumped_model(
     """The linear part of a layout; what is left out is zero.
 
     torques (bodies,), N m; forces (bodies, 3), N; damping: of the masses (1/s) and of the bearings (s);
-    clearance (pinions,): radial play of the bearings, m.
+    clearance (pinions,): radial clearance of the bearings, m.
     """
     bodies = len(layout.bodies)
     turning, pushing = np.zeros((2, layout.dof))
@@ -29,7 +29,7 @@ def lumped_model(
         labels=layout.dof_names,
         mass=np.diag(mass_diagonal(layout)),
         stiffness=bearing_matrix(layout),
-        rows=flank_directions(layout),
+        rows=flank_jacobian(layout),
         torques=turning,
         forces=pushing,
         lengths=_lengths(layout),

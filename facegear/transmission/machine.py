@@ -94,15 +94,19 @@ class Machine:
         ):
             if given is not None and len(given) != meshes:
                 raise InvalidInput(quantity, f"{len(given)} meshes", f"one for each of {meshes}")
-        lowest = self.stiffness.minimum
-        if lowest <= 0.0:
-            raise InvalidInput("mesh stiffness", f"{lowest:.3g} N/m", "positive everywhere in the mesh cycle")
+        minimum = self.stiffness.minimum
+        if minimum <= 0.0:
+            raise InvalidInput(
+                "mesh stiffness", f"{minimum:.3g} N/m", "positive everywhere in the mesh cycle"
+            )
 
     @cached_property
     def linear(self) -> LinearModel:
         """Masses, bearings, loads and the directions of the contacts."""
         damping = (self.damping.mass, self.damping.bearing)
-        lumped = lumped_model(self.layout, self.torques, self.forces, damping, self.imperfections.clearance)
+        lumped = lumped_model(
+            self.layout, self.torques, self.forces, damping, self.imperfections.bearing_clearance
+        )
         return lumped if self.bodies is None else self.bodies(lumped)
 
     @property
@@ -147,8 +151,8 @@ def pinion_torques(layout: Layout, per_input: float, tail_share: float) -> Array
     """Torque on each pinion: inputs drive, tail pinions take a share of the sum, idlers none; N m."""
     roles = [pinion.role for pinion in layout.pinions]
     inputs, tails = roles.count(Role.INPUT), roles.count(Role.TAIL)
-    share = -tail_share * inputs * per_input / tails if tails else 0.0
-    value = {Role.INPUT: per_input, Role.TAIL: share, Role.IDLER: 0.0}
+    each_tail = -tail_share * inputs * per_input / tails if tails else 0.0
+    value = {Role.INPUT: per_input, Role.TAIL: each_tail, Role.IDLER: 0.0}
     return np.array([value[role] for role in roles])
 
 

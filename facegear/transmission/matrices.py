@@ -27,7 +27,7 @@ def bearing_matrix(layout: Layout) -> Array:
     return matrix
 
 
-def flank_directions(layout: Layout) -> Array:
+def flank_jacobian(layout: Layout) -> Array:
     """Derivative of the flanks' deflections by the DOF, (2 meshes, dof): drive flanks, then back flanks.
 
     The deflection along the line of action is this times q, minus the transmission error. A pinion's x is

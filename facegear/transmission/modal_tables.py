@@ -14,12 +14,12 @@ from facegear.transmission.modes import Modes
 CONTACT_COLUMNS = ("contact", "state", "force_n", "stiffness_n_per_m", "definition")
 
 
-def frequency_table(found: VibratingMachine, names: tuple[ModeName, ...]) -> pd.DataFrame:
+def frequency_table(vibrating: VibratingMachine, names: tuple[ModeName, ...]) -> pd.DataFrame:
     """Columns order, frequency_hz, multiplicity, symbols, class, pinion_energy_share, decided.
 
     decided: whether the frequency is the same with undecided contacts open and closed.
     """
-    modes = found.modes
+    modes = vibrating.modes
     multiplicity = [stop - start for start, stop in modes.groups for _ in range(stop - start)]
     return pd.DataFrame(
         {
@@ -29,7 +29,7 @@ def frequency_table(found: VibratingMachine, names: tuple[ModeName, ...]) -> pd.
             "symbols": [name.symbols for name in names],
             "class": [name.mode_class.value for name in names],
             "pinion_energy_share": [name.pinion_share for name in names],
-            "decided": found.decided,
+            "decided": vibrating.decided,
         }
     )
 
@@ -38,9 +38,9 @@ def contact_table(machine: Machine, found: VibratingMachine, told: str) -> pd.Da
     """What modes keep closed: columns contact, state, force_n, stiffness_n_per_m, definition.
 
     One row a mesh, whose state is drive, back, wedged, open or undecided, with the mean stiffness of a closed
-    flank (`told` says which); then one a bearing with play: closed, open or undecided, with its stiffness
-    along the load. Forces under the mean torques, negative on the back flank; empty for printed meshes, all
-    of which are closed.
+    flank (`told` says which); then one a bearing with clearance: closed, open or undecided, with its
+    stiffness along the load. Forces under the mean torques, negative on the back flank; empty for printed
+    meshes, all of which are closed.
     """
     layout, contacts = machine.layout, found.contacts
     stiffness = machine.stiffness.mean * machine.imperfections.stiffness

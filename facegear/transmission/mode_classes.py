@@ -51,17 +51,19 @@ def name_modes(layout: Layout, linear: LinearModel, modes: Modes) -> tuple[ModeN
 def _name(layout: Layout, linear: LinearModel, frequency: float, shapes: Array) -> ModeName:
     energy = np.real(shapes.conj() * linear.momentum(shapes)).sum(axis=1)
     pinions = np.concatenate([linear.of_body(pinion.name) for pinion in layout.pinions])
-    share = float(energy[pinions].sum() / energy.sum())
+    pinion_fraction = float(energy[pinions].sum() / energy.sum())
     if frequency == 0.0:
         mode_class = ModeClass.RIGID
-    elif share >= 1.0 - ENERGY_SHARE:
+    elif pinion_fraction >= 1.0 - ENERGY_SHARE:
         mode_class = ModeClass.PINION
-    elif share <= ENERGY_SHARE:
+    elif pinion_fraction <= ENERGY_SHARE:
         mode_class = ModeClass.GEAR
     else:
         mode_class = ModeClass.COUPLED
-    squares = (np.abs(shapes) ** 2).sum(axis=1)
-    return ModeName(mode_class, _symbols(layout, linear.labels, np.sqrt(squares) * linear.lengths), share)
+    squared = (np.abs(shapes) ** 2).sum(axis=1)
+    return ModeName(
+        mode_class, _symbols(layout, linear.labels, np.sqrt(squared) * linear.lengths), pinion_fraction
+    )
 
 
 def _symbols(layout: Layout, labels: Sequence[str], amplitudes: Array) -> str:

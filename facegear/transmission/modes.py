@@ -29,38 +29,40 @@ class Modes:
 
 def drive_flanks(layout: Layout, linear: LinearModel, mesh_stiffness: float) -> Array:
     """Stiffness (n, n) of the meshes with every drive flank closed, N/m each."""
-    directions = linear.rows[: len(layout.meshes)]
-    return np.asarray(mesh_stiffness * directions.T @ directions)
+    rows = linear.rows[: len(layout.meshes)]
+    return np.asarray(mesh_stiffness * rows.T @ rows)
 
 
 def modes_of(linear: LinearModel, meshes: Array, speed: float = 0.0) -> Modes:
     """All modes with the stiffness matrix (n, n) of the meshes, SI units, at a speed of the pinions in rad/s.
 
-    Raises NotConverged where the machine has no place to vibrate about at the speed.
+    Raises NotConverged where the machine has no position to vibrate about at the speed.
     """
     stiffness = linear.stiffness + meshes
     if linear.spin is not None and speed != 0.0:
         return _turning(linear, stiffness, speed)
     if linear.masses is None:
-        squares, shapes = scipy.linalg.eigh(stiffness, linear.mass)
+        omega_squared, shapes = scipy.linalg.eigh(stiffness, linear.mass)
     else:
         root = np.sqrt(linear.masses)
-        squares, vectors = scipy.linalg.eigh(stiffness / np.outer(root, root))
+        omega_squared, vectors = scipy.linalg.eigh(stiffness / np.outer(root, root))
         shapes = vectors / root[:, None]
-    frequencies = np.sqrt(_stable(squares, speed)) / (2.0 * np.pi)
+    frequencies = np.sqrt(_stable(omega_squared, speed)) / (2.0 * np.pi)
     return Modes(frequencies, shapes, _equal_runs(frequencies))
 
 
-def _stable(squares: Array, speed: float) -> Array:
-    """Ascending squares of frequencies with those that are rounding as zero. Raises NotConverged if one is
+def _stable(omega_squared: Array, speed: float) -> Array:
+    """Ascending squared frequencies with those that are rounding as zero. Raises NotConverged if one is
     negative.
     """
-    noise = squares.size * np.finfo(float).eps * squares[-1]
-    squares = np.where(np.abs(squares) < 10.0 * noise, 0.0, squares)
-    if squares[0] < 0.0:
-        tried = f"the stiffness is not positive, as little as {squares[0]:.3g} 1/s2 in its softest motion"
+    noise = omega_squared.size * np.finfo(float).eps * omega_squared[-1]
+    omega_squared = np.where(np.abs(omega_squared) < 10.0 * noise, 0.0, omega_squared)
+    if omega_squared[0] < 0.0:
+        tried = (
+            f"the stiffness is not positive, as little as {omega_squared[0]:.3g} 1/s2 in its softest motion"
+        )
         raise NotConverged("modes", f"{speed:.6g} rad/s", tried)
-    return squares
+    return omega_squared
 
 
 def _turning(linear: LinearModel, stiffness: Array, speed: float) -> Modes:
@@ -72,9 +74,9 @@ def _turning(linear: LinearModel, stiffness: Array, speed: float) -> Modes:
     assert linear.spin is not None
     inverse = np.linalg.inv(np.linalg.cholesky(linear.mass))
     whole = stiffness + speed**2 * linear.spin.centrifugal
-    squares, vectors = scipy.linalg.eigh(inverse @ whole @ inverse.T)
-    squares = _stable(squares, speed)
-    size, half = linear.size, (vectors * np.sqrt(squares)) @ vectors.T
+    omega_squared, vectors = scipy.linalg.eigh(inverse @ whole @ inverse.T)
+    omega_squared = _stable(omega_squared, speed)
+    size, half = linear.size, (vectors * np.sqrt(omega_squared)) @ vectors.T
     gyroscopic = speed * inverse @ linear.spin.gyroscopic @ inverse.T
     system = np.block([[np.zeros_like(half), half], [-half, -gyroscopic]])
     speeds, states = scipy.linalg.eigh(-1j * system)

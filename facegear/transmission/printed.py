@@ -42,8 +42,8 @@ class Printed:
         """Drive flanks as equation (13) has them; back flanks are the same, pulled."""
         cosine, sine = np.cos(layout.pressure_angle), np.sin(layout.pressure_angle)
         angles = layout.angles
-        directions = np.zeros((len(layout.meshes), layout.dof))
-        for row, (i, g) in zip(directions, layout.meshes, strict=True):
+        rows = np.zeros((len(layout.meshes), layout.dof))
+        for row, (i, g) in zip(rows, layout.meshes, strict=True):
             pinion = DOF_PER_BODY * i
             gear = DOF_PER_BODY * (len(layout.pinions) + g)
             axial = -layout.gears[g].sign
@@ -52,7 +52,7 @@ class Printed:
             row[gear + 1] = -np.sin(angles[i]) * cosine
             row[gear + 2] = axial * sine
             row[gear + 3] = -layout.gear_radius * cosine
-        return np.concatenate([directions, -directions])
+        return np.concatenate([rows, -rows])
 
 
 PRINTED = Printed()

@@ -51,16 +51,16 @@ def rated(machine: Machine, speed_rpm: float) -> Ratings:
     )
 
 
-def number_table(found: Ratings) -> pd.DataFrame:
+def number_table(rated: Ratings) -> pd.DataFrame:
     """Columns quantity (unit at its end) and value."""
     rows = {
-        "gear_ratio": found.ratio,
-        "pinion_speed_rpm": found.pinion_speed,
-        "gear_speed_rpm": found.gear_speed,
-        "mesh_frequency_hz": found.mesh_frequency,
-        "power_in_kw": 1e-3 * found.power_in,
-        "power_out_kw": 1e-3 * found.power_out,
-        "power_imbalance": found.imbalance,
+        "gear_ratio": rated.ratio,
+        "pinion_speed_rpm": rated.pinion_speed,
+        "gear_speed_rpm": rated.gear_speed,
+        "mesh_frequency_hz": rated.mesh_frequency,
+        "power_in_kw": 1e-3 * rated.power_in,
+        "power_out_kw": 1e-3 * rated.power_out,
+        "power_imbalance": rated.imbalance,
     }
     return pd.DataFrame(list(rows.items()), columns=["quantity", "value"])
 
@@ -97,8 +97,8 @@ def mesh_table(machine: Machine, speed_rpm: float) -> pd.DataFrame:
     largest counts as none, its mesh as open. Raises NotConverged.
     """
     layout = machine.layout
-    found = static_equilibrium(machine).forces
-    forces = np.where(np.abs(found) > ROUNDING * np.abs(found).max(), found, 0.0)
+    mesh_forces = static_equilibrium(machine).forces
+    forces = np.where(np.abs(mesh_forces) > ROUNDING * np.abs(mesh_forces).max(), mesh_forces, 0.0)
     torque = forces * layout.pinion_arm
     flank = np.select([forces > 0.0, forces < 0.0], ["drive", "back"], "open")
     return pd.DataFrame(

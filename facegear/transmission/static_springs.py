@@ -29,20 +29,20 @@ def static_springs(machine: Machine) -> Springs:
     """The compiled problem in the unknowns of `unknowns`."""
     layout, linear = machine.layout, machine.linear
     kept, scale = unknowns(machine)
-    first, directions = 3 * len(layout.pinions), linear.rows[:, kept] * scale
+    first, jacobian = 3 * len(layout.pinions), linear.rows[:, kept] * scale
     touched, columns = _windows(layout, kept.size, linear.size == layout.dof)
-    if np.count_nonzero(np.take_along_axis(directions, columns, axis=1)) < np.count_nonzero(directions):
+    if np.count_nonzero(np.take_along_axis(jacobian, columns, axis=1)) < np.count_nonzero(jacobian):
         touched, columns = _windows(layout, kept.size, False)
     x, y = kept[0:first:3], kept[1:first:3]
     bearing = linear.stiffness
     core = bearing[np.ix_(kept[first:], kept[first:])] * np.outer(scale[first:], scale[first:])
     row, column = np.nonzero(np.triu(core))
     return Springs(
-        jacobian=np.take_along_axis(directions, columns, axis=1),
+        jacobian=np.take_along_axis(jacobian, columns, axis=1),
         pinion=touched[:, 0].copy(),
         gear=touched[:, 1].copy(),
         pinion_bearing=np.stack([bearing[x, x], bearing[x, y], bearing[y, y]], axis=1),
-        clearance=machine.imperfections.clearance,
+        clearance=machine.imperfections.bearing_clearance,
         core_row=row.copy(),  # with strides, as np.nonzero gives them, the kernel would be compiled anew
         core_column=column.copy(),
         core_value=core[row, column],

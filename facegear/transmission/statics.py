@@ -1,6 +1,6 @@
 """Static equilibrium: who carries load when the machine stands still under torque.
 
-Every flank is a one-sided contact, every bearing a spring, with a ring of play or without: one convex problem
+Every flank is a one-sided contact, every bearing a spring, with clearance or without: one convex problem
 at each position, solved to the accuracy of its numbers. Each result is held against the balance of all forces
 and moments on every body.
 """
@@ -70,9 +70,9 @@ def static_equilibrium(machine: Machine, cycles: float | None = None) -> Equilib
     A body that is free inside its backlash is left at one of its possible positions. Raises NotConverged.
     """
     if machine.layout.kinematics.flanks_apart:
-        found = mean_equilibrium(machine) if cycles is None else equilibria(machine, np.array([cycles]))
+        at_rest = mean_equilibrium(machine) if cycles is None else equilibria(machine, np.array([cycles]))
         return Equilibrium(
-            found.displacements[0], found.deflections[0], found.forces[0], float(found.residual[0])
+            at_rest.displacements[0], at_rest.deflections[0], at_rest.forces[0], float(at_rest.residual[0])
         )
     return _line_equilibrium(machine, cycles)
 
@@ -129,20 +129,22 @@ def _by_blocks(machine: Machine, held: Held, gaps: Array) -> tuple[Array, Array]
     """Displacements (K, dof) and flank forces (K, flanks) by the compiled solver."""
     kept, scale = unknowns(machine)
     springs, start = static_springs(machine), np.zeros(kept.size)
-    places, forces, _ = settle_all(springs, held, np.ascontiguousarray(gaps), TOLERANCE, start)
+    solution, forces, _ = settle_all(springs, held, np.ascontiguousarray(gaps), TOLERANCE, start)
     displacements = np.zeros((len(gaps), machine.linear.size))
-    np.add.at(displacements.T, kept, (places * scale).T)
+    np.add.at(displacements.T, kept, (solution * scale).T)
     return displacements, forces
 
 
 def _one_by_one(machine: Machine, law: MeshLaw, cycles: Array, gaps: Array) -> tuple[Array, Array]:
     """The same in dense algebra."""
     linear, never = machine.linear, np.full(gaps.shape[1], -np.inf)
-    found = [
+    solutions = [
         dense_equilibrium(linear, Contacts(law.at_phase(at), 0.0 * gap, never, gap), linear.lengths)
         for at, gap in zip(cycles, gaps, strict=True)
     ]
-    return np.array([one[0] for one in found]), np.array([one[2] for one in found])
+    return np.array([solution[0] for solution in solutions]), np.array(
+        [solution[2] for solution in solutions]
+    )
 
 
 def static_bearing_forces(machine: Machine) -> Array:
@@ -156,6 +158,6 @@ def static_bearing_forces(machine: Machine) -> Array:
     return forces[0, machine.linear.translations]
 
 
-def bearing_forces(machine: Machine, found: Equilibria) -> Array:
+def bearing_forces(machine: Machine, at_rest: Equilibria) -> Array:
     """Force of every body on its bearing along x, y, z, shape (K, bodies, 3), N."""
-    return bearing_loads(machine, found.displacements)[:, machine.linear.translations]
+    return bearing_loads(machine, at_rest.displacements)[:, machine.linear.translations]

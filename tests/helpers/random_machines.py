@@ -55,7 +55,7 @@ def machines(draw, **fixed):
         layout = replace(layout, gears=gears)
     error = np.zeros(len(layout.meshes)) if symmetric else np.array([draw(ERRORS) for _ in layout.meshes])
     play = draw(st.sampled_from([0.0, 1e-5, 5e-5]))
-    flaws = replace(perfect(layout), error=error, clearance=np.full(count, play))
+    flaws = replace(perfect(layout), error=error, bearing_clearance=np.full(count, play))
     return make_machine(layout, **(options | fixed), imperfections=flaws)
 
 

@@ -146,7 +146,7 @@ def _coupling(linear: LinearModel) -> Coupling | None:
 
 
 def _ring_rows(linear: LinearModel) -> list[Array]:
-    rows = np.zeros((len(linear.ring_places), 3, linear.size))
-    for row, places in zip(rows, linear.ring_places, strict=True):
+    rows = np.zeros((len(linear.ring_coordinates), 3, linear.size))
+    for row, places in zip(rows, linear.ring_coordinates, strict=True):
         row[[0, 1], places] = 1.0
     return list(rows)

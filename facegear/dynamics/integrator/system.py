@@ -110,7 +110,7 @@ def machine_system(machine: Machine, reduced: Reduced) -> System:
         two_flanks=machine.layout.kinematics.flanks_apart,
         push_only=machine.damping.open_flanks is OpenFlanks.PUSH_ONLY,
         ring_stiffness=rings.stiffness,
-        ring_clearance=rings.play,
+        ring_clearance=rings.clearance,
         ring_lag=machine.linear.bearing_damping,
         coupling=reduced.coupling and reduced.coupling.per_speed(machine.layout.pinion_teeth),
         rubbing=None if machine.friction is None else _rubbing(machine, machine.friction, reduced),

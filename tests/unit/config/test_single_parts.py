@@ -159,7 +159,7 @@ def test_one_line_overrides_one_body():
 def test_what_all_pinions_have_holds_where_one_has_none_of_its_own():
     body = {**section()["pinion"], "clearance_um": 20, "runout": {"eccentricity_um": 5}}
     found = built(pinion=body, single_pinions={"one": {"clearance_um": 0}}).imperfections
-    np.testing.assert_allclose(found.clearance, [0, 20e-6, 20e-6])
+    np.testing.assert_allclose(found.bearing_clearance, [0, 20e-6, 20e-6])
     np.testing.assert_allclose([one.amplitude for one in found.pinion_runout], 5e-6)
 
 
@@ -167,7 +167,7 @@ def test_play_is_given_to_each_side_or_from_side_to_side_as_catalogues_do():
     body = {**section()["pinion"], "clearance_diametral_um": 40}
     single = {"one": {"clearance_diametral_um": 30}, "two": {"clearance_um": 0}}
     found = built(pinion=body, single_pinions=single).imperfections
-    np.testing.assert_allclose(found.clearance, [15e-6, 0.0, 20e-6])
+    np.testing.assert_allclose(found.bearing_clearance, [15e-6, 0.0, 20e-6])
 
 
 @pytest.mark.parametrize(
@@ -184,7 +184,7 @@ def test_a_tolerance_adds_to_a_play_that_is_given_from_side_to_side(key, clearan
     given = section(pinion=body, single_pinions={"one": {"clearance_diametral_um": 30}})
     start = movable({"transmission": parse(Transmission, given).model_dump(mode="json")}, [key])
     sample = parse(Transmission, moved(start, {key: 5.0})["transmission"])
-    found = machine(sample, TEETH, STIFFNESS).imperfections.clearance
+    found = machine(sample, TEETH, STIFFNESS).imperfections.bearing_clearance
     np.testing.assert_allclose(found, 1e-6 * np.array(clearance_um))
 
 

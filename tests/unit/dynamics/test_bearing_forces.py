@@ -21,7 +21,7 @@ from facegear.transmission.imperfections import perfect
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Role
 from facegear.transmission.machine import OpenFlanks
-from facegear.transmission.matrices import bearing_matrix, flank_directions, mass_diagonal
+from facegear.transmission.matrices import bearing_matrix, flank_jacobian, mass_diagonal
 from facegear.transmission.printed import PRINTED
 from facegear.transmission.statics import static_equilibrium
 from facegear.transmission.teeth import GEOMETRIC
@@ -35,7 +35,7 @@ FLAT = Harmonics(np.zeros(1), np.array([4.1e8]))
 def loaded(kinematics=GEOMETRIC, clearance=0.0, samples=64, **options):
     """A machine of the paper's layout under load, and its response at 2500 rpm."""
     layout = make_layout(kinematics=kinematics)
-    flaws = replace(perfect(layout), clearance=np.full(5, clearance))
+    flaws = replace(perfect(layout), bearing_clearance=np.full(5, clearance))
     model = build_model(make_machine(layout, 1500.0, imperfections=flaws, **options))
     return model, simulate(model, 2500.0, Settings(tolerance=1e-10, samples=samples))
 
@@ -88,7 +88,7 @@ def test_mean_forces_on_bearings_balance_torques_and_meshes(kinematics, error, b
     model = build_model(make_machine(layout, 1500.0, **options))
     found = simulate(model, speed, Settings(tolerance=1e-10, samples=256))
     assume(found.motion is Motion.PERIODIC and found.shares.sum(axis=0).max() <= 1.0)
-    pulls = flank_means(found) @ flank_directions(layout)
+    pulls = flank_means(found) @ flank_jacobian(layout)
     mean = bearing_history(model, found).mean(axis=0)
     agrees(
         "mean bearing force, N",
@@ -115,7 +115,7 @@ def test_external_forces_stand_in_the_bearings_of_the_running_machine(kinematics
     model = build_model(replace(machine, forces=forces))
     found = simulate(model, 3000.0, Settings(tolerance=1e-10, samples=256))
     assert found.motion is Motion.PERIODIC
-    pulls = (flank_means(found) @ flank_directions(layout)).reshape(-1, 4)[:, :3]
+    pulls = (flank_means(found) @ flank_jacobian(layout)).reshape(-1, 4)[:, :3]
     mean = bearing_history(model, found).mean(axis=0)
     agrees("mean bearing force, N", mean, forces - pulls, relative=1e-7, absolute=1e-4 * np.abs(pulls).max())
 

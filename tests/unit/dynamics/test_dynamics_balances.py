@@ -20,7 +20,7 @@ from facegear.transmission.flanks import error_series, stiffness_series
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Role
 from facegear.transmission.machine import OpenFlanks
-from facegear.transmission.matrices import flank_directions, mass_diagonal
+from facegear.transmission.matrices import flank_jacobian, mass_diagonal
 from facegear.transmission.printed import PRINTED
 
 
@@ -201,7 +201,7 @@ def test_torques_less_mesh_forces_change_the_spin_of_every_body(machine, speed):
     (angle, spin), (later_angle, later_spin) = ((q[layout.spins], v[layout.spins]) for q, v in ends)
     inertia = mass_diagonal(layout)[layout.spins]
     gained = inertia * (later_spin - spin + machine.damping.mass * (later_angle - angle))
-    directions = flank_directions(layout) if layout.kinematics.flanks_apart else drive_rows(layout)
+    directions = flank_jacobian(layout) if layout.kinematics.flanks_apart else drive_rows(layout)
     impulses = directions[:, layout.spins] * (times @ force)[:, None]
     given_ = machine.torques * times.sum()
     size = np.abs(given_).max() + np.abs(impulses).max() + np.abs(inertia * spin).max()
@@ -255,7 +255,7 @@ def test_mean_mesh_forces_balance_the_torques_of_a_periodic_motion(kinematics):
         # Open and closed alike the damper's mean is nought; in contact only, the two flanks share it.
         assert np.ptp(damping) == 0.0
         layout = machine.layout
-        directions = flank_directions(layout) if layout.kinematics.flanks_apart else drive_rows(layout)
+        directions = flank_jacobian(layout) if layout.kinematics.flanks_apart else drive_rows(layout)
         carried = (mean @ directions)[3:20:4]
         agrees(
             "mean torque of a pinion, N m",

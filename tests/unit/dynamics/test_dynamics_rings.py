@@ -27,7 +27,7 @@ TWO = (("engine", Role.INPUT, 0.0), ("idler", Role.IDLER, 35.5))
 def machine_with(play, places=TWO, sides=tuple(Side), torque=900.0, **options):
     layout = make_layout(places, sides, kinematics=GEOMETRIC)
     errors = options.pop("errors", {})
-    flaws = replace(perfect(layout), clearance=np.full(len(places), play), **errors)
+    flaws = replace(perfect(layout), bearing_clearance=np.full(len(places), play), **errors)
     return make_machine(layout, torque, 0.0, error=8e-6, imperfections=flaws, **options)
 
 

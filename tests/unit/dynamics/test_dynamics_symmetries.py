@@ -43,7 +43,7 @@ def test_scaling_torques_backlash_and_error_scales_the_motion(machine, speed, fa
         imperfections=replace(
             machine.imperfections,
             error=factor * machine.imperfections.error,
-            clearance=factor * machine.imperfections.clearance,
+            bearing_clearance=factor * machine.imperfections.bearing_clearance,
         ),
     )
     bigger = replace(build_model(scaled).system, scale=factor * model.system.scale)
@@ -90,7 +90,7 @@ def standing_on_an_edge():
         pinions=(replace(layout.pinions[0], body=Body(1.199, 0.002, (1e7, 1e7, 0.0))),),
         gears=tuple(replace(gear, body=Body(7.795, 0.54, (1e8,) * 3)) for gear in layout.gears),
     )
-    flaws = replace(perfect(layout), clearance=np.array([1e-5]))
+    flaws = replace(perfect(layout), bearing_clearance=np.array([1e-5]))
     swing = Harmonics(np.array([0.0, 0.0, 8.2e6]), np.array([4.1e8, 0.0, 0.0]))
     options = {"error": 0.0, "stiffness": swing, "mesh_damping": 0.0, "mass_damping": 0.0}
     return make_machine(layout, 50.0, 0.0, backlash=1.14732774e-4, imperfections=flaws, **options)
@@ -113,7 +113,7 @@ def resting_on_rings():
     )
     options = {"stiffness": swing, "mesh_damping": 0.0, "mass_damping": 468.78866131223623}
     options |= {"open_flanks": OpenFlanks.CONTACT_ONLY, "backlash": 6.103515625e-05}
-    flaws = replace(perfect(layout), clearance=np.full(6, 1e-5))
+    flaws = replace(perfect(layout), bearing_clearance=np.full(6, 1e-5))
     error = 3.0399327968901198e-05
     return make_machine(layout, 1996.3598187060481, 0.0, error=error, imperfections=flaws, **options)
 

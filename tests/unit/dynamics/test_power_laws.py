@@ -21,7 +21,7 @@ from facegear.dynamics.steady_state.orbits import monodromy
 from facegear.dynamics.steady_state.simulate import simulate
 from facegear.transmission.layout import Role, Side
 from facegear.transmission.machine import mesh_frequency
-from facegear.transmission.matrices import bearing_diagonal, flank_directions, mass_diagonal
+from facegear.transmission.matrices import bearing_diagonal, flank_jacobian, mass_diagonal
 from facegear.transmission.printed import PRINTED
 from facegear.transmission.statics import static_equilibrium
 from facegear.transmission.teeth import GEOMETRIC
@@ -161,7 +161,7 @@ def test_statics_press_a_mesh_in_by_the_inverse_of_its_law(torque):
     found = static_equilibrium(machine)
     force = torque / machine.layout.pinion_arm
     agrees("mesh force, N", found.forces[0], force, relative=1e-11)
-    amount = (flank_directions(machine.layout) @ found.displacements)[0] - machine.half_backlash
+    amount = (flank_jacobian(machine.layout) @ found.displacements)[0] - machine.half_backlash
     agrees("deflection, m", amount, (force / C) ** (1.0 / N), relative=1e-10)
 
 
@@ -184,7 +184,7 @@ def test_a_machine_at_rest_on_a_law_answers_disturbances_with_its_local_stiffnes
     np.testing.assert_allclose(response.forces[:, 0], force, rtol=1e-8)
     local = N * force / (force / C) ** (1.0 / N)
     mass, bearing = mass_diagonal(machine.layout), bearing_diagonal(machine.layout)
-    directions = flank_directions(machine.layout)
+    directions = flank_jacobian(machine.layout)
     dampers = 0.5 * machine.damping.mesh * directions.T @ directions
     own = np.diag(machine.damping.mass * mass + machine.damping.bearing * bearing)
     stiffness = np.diag(bearing) + local * np.outer(directions[0], directions[0])

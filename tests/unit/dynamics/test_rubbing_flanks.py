@@ -18,7 +18,7 @@ from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.harmonics.series import stacked_values
 from facegear.transmission.layout import FaceGear, Role, Side, Tilt
 from facegear.transmission.machine import OpenFlanks, mesh_frequency
-from facegear.transmission.matrices import bearing_matrix, flank_directions, mass_diagonal
+from facegear.transmission.matrices import bearing_matrix, flank_jacobian, mass_diagonal
 from facegear.transmission.mesh_friction import PARTS, MeshFriction, flank_ratios, friction_rows
 from facegear.transmission.teeth import GEOMETRIC
 
@@ -52,7 +52,7 @@ def test_a_force_along_the_normal_acts_on_the_bodies_as_the_force_of_the_mesh_do
         drive = np.einsum("p,mpd->md", [-cosine, 0.0, -sine, -1.0, 1.0], rows)
         back = np.einsum("p,mpd->md", [cosine, 0.0, -sine, 1.0, -1.0], rows)
         np.testing.assert_allclose(
-            np.concatenate([drive, back]), -flank_directions(layout), atol=1e-15 * layout.gear_arm
+            np.concatenate([drive, back]), -flank_jacobian(layout), atol=1e-15 * layout.gear_arm
         )
 
 
@@ -178,7 +178,7 @@ def test_power_in_less_power_out_less_friction_less_damping_is_the_change_of_ene
     run = record(system, omega, kicked(model, 0.3), 1, Settings(tolerance=1e-13))
     assert (run.states == 0).any() and (run.states[:, 4:] == 1).any()
     bearing, mass = bearing_matrix(layout), mass_diagonal(layout)
-    jacobian, kept = flank_directions(layout), friction_rows(layout, at_output=False)
+    jacobian, kept = flank_jacobian(layout), friction_rows(layout, at_output=False)
     output = layout.spins.start + 4 * (len(layout.bodies) - 1)
     errors = system.error[system.error_kind]
 

@@ -14,7 +14,7 @@ from facegear.geometry.design import AssemblyErrors
 from facegear.geometry.flank_errors import FLANKS, GEARS, distinct_errors, errors_at
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.transmission.layout import Side
-from facegear.transmission.matrices import flank_directions
+from facegear.transmission.matrices import flank_jacobian
 from facegear.transmission.teeth import GEOMETRIC
 
 PATHS = [
@@ -70,7 +70,7 @@ def test_a_displaced_pinion_closes_each_flank_as_the_machine_s_directions_say(pa
     agrees(
         "closing of a flank over the displacement",
         along,
-        flank_directions(layout)[row, pinion],
+        flank_jacobian(layout)[row, pinion],
         relative=1e-3,
     )
 

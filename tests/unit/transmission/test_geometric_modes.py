@@ -169,7 +169,7 @@ def cells(modes):
 def test_bearings_with_play_vibrate_along_and_across_their_load_as_they_are_pressed():
     """k along the load, k (1 - c / r) across it: not the bearing without play."""
     play = 30e-6
-    flaws = replace(perfect(LAYOUT), clearance=np.full(5, play))
+    flaws = replace(perfect(LAYOUT), bearing_clearance=np.full(5, play))
     machine = make_machine(LAYOUT, torque=2000.0, tail_share=0.03, imperfections=flaws)
     standing = mean_equilibrium(machine).displacements[0].reshape(-1, 4)
     pinions = list(LAYOUT.pinions)
@@ -192,7 +192,7 @@ def idle_machine(torque, clearance=0.0, turned=1.0, **options):
     """One face gear driven by two of three pinions: the third carries nothing. `turned` -1: in a mirror."""
     places = (("a", Role.INPUT, 0.0), ("b", Role.INPUT, turned * 45.0), ("idle", Role.IDLER, turned * 80.5))
     layout = make_layout(places, (Side.UPPER,), kinematics=GEOMETRIC)
-    flaws = replace(perfect(layout), clearance=np.full(3, clearance))
+    flaws = replace(perfect(layout), bearing_clearance=np.full(3, clearance))
     return make_machine(layout, turned * torque, 0.0, imperfections=flaws, **options)
 
 

@@ -19,7 +19,7 @@ from facegear.transmission.contact_kernel import settle_all
 from facegear.transmission.flanks import constant_errors, flank_gaps
 from facegear.transmission.imperfections import Runout, perfect
 from facegear.transmission.layout import Body, Role, Side, Tilt
-from facegear.transmission.matrices import bearing_matrix, flank_directions
+from facegear.transmission.matrices import bearing_matrix, flank_jacobian
 from facegear.transmission.static_springs import static_springs
 from facegear.transmission.statics import (
     TOLERANCE,
@@ -229,7 +229,7 @@ def random_machine(draw, most_pinions):
 def test_sharing_with_gaps_is_the_one_consistent_state_of_all_contact_states(data):
     machine = random_machine(data.draw, 2)
     layout = machine.layout
-    directions, bearing = flank_directions(layout), bearing_matrix(layout)
+    directions, bearing = flank_jacobian(layout), bearing_matrix(layout)
     applied = np.zeros(layout.dof)
     applied[layout.spins] = machine.torques
     gap = constant_errors(machine) + flank_gaps(machine)
@@ -279,7 +279,7 @@ def test_every_force_is_balanced_and_no_flank_pulls_or_penetrates(data):
     round_bearings = all(p.body.bearing_xy == 0.0 for p in machine.layout.pinions)
     flaws = replace(
         machine.imperfections,
-        clearance=random.uniform(0.0, 30e-6, count) * round_bearings,
+        bearing_clearance=random.uniform(0.0, 30e-6, count) * round_bearings,
         pinion_runout=tuple(Runout(8e-6, phase) for phase in random.uniform(0, 6, count)),
         gear_runout=tuple(Runout(2e-5, phase) for phase in random.uniform(0, 6, len(machine.layout.gears))),
     )
@@ -287,7 +287,7 @@ def test_every_force_is_balanced_and_no_flank_pulls_or_penetrates(data):
     found = equilibria(machine, np.linspace(0.0, 200.0, 7))
     assert (found.flank_forces >= 0.0).all()
     layout = machine.layout
-    on_bodies = found.flank_forces @ flank_directions(layout)
+    on_bodies = found.flank_forces @ flank_jacobian(layout)
     applied = np.zeros(layout.dof)
     applied[layout.spins] = machine.torques
     arms = np.where(np.arange(layout.dof) % 4 == 3, layout.pinion_arm, 1.0)
@@ -322,7 +322,7 @@ def test_every_force_is_balanced_and_no_flank_pulls_or_penetrates(data):
 def test_moving_the_whole_gearbox_loads_nothing():
     """Sideways, along the axis, round the axis, and turning as the gears turn."""
     layout = make_layout(kinematics=GEOMETRIC)
-    directions = flank_directions(layout)
+    directions = flank_jacobian(layout)
     pinions = len(layout.pinions)
     sideways, lifted, turned = np.zeros((3, layout.dof))
     sideways[: 4 * pinions : 4] = np.cos(layout.angles - 0.3)
@@ -396,7 +396,7 @@ def test_a_pinion_inside_its_play_floats_and_beyond_it_is_held():
     free = held_forces(machine_with(layout, error=[10e-6, 0.0], clearance=[50e-6]))
     agrees("mesh force of a pinion that floats, N", free[0], free[1], relative=1e-10)
     play = 1e-6
-    tight = held_forces(machine_with(layout, error=[10e-6, 0.0], clearance=[play]))
+    tight = held_forces(machine_with(layout, error=[10e-6, 0.0], bearing_clearance=[play]))
     # The pinion leans along (cos a, sin a) F_difference: the play takes 2 play off the misfit of 10 um.
     exact = K * (10e-6 - 2.0 * play) / (1.0 + 2.0 * K / 1e9)
     agrees("difference of the mesh forces beyond the play, N", tight[1] - tight[0], exact, relative=1e-9)
@@ -433,7 +433,7 @@ def test_next_to_no_torque_against_a_ring_of_play_is_balanced_or_refused_by_name
     count, pinion, gear, backlash, clearance = RINGS_OF_PLAY[name]
     places = [(f"p{i}", Role.INPUT if i < count - 1 else Role.TAIL, 20.0 * i) for i in range(count)]
     layout = make_layout(tuple(places), (Side.LOWER, Side.UPPER), pinion, gear, GEOMETRIC)
-    flaws = replace(perfect(layout), clearance=np.array(clearance))
+    flaws = replace(perfect(layout), bearing_clearance=np.array(clearance))
     machine = make_machine(
         layout, torque=50.0, tail_share=share, backlash=backlash, error=0.0, imperfections=flaws
     )

@@ -130,7 +130,7 @@ def test_a_shaft_that_couples_displacement_and_tilt_bends_by_its_whole_complianc
 @pytest.mark.parametrize("play", [0.0, 20e-6])
 def test_both_solvers_of_statics_agree(play, monkeypatch):
     layout = make_layout(kinematics=GEOMETRIC)
-    machine = make_machine(layout, imperfections=replace(perfect(layout), clearance=np.full(5, play)))
+    machine = make_machine(layout, imperfections=replace(perfect(layout), bearing_clearance=np.full(5, play)))
     cycles = np.array([0.0, 0.4])
     by_blocks = equilibria(machine, cycles)
     monkeypatch.setattr(statics, "has_blocks", lambda machine: False)

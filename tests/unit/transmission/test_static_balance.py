@@ -16,7 +16,7 @@ from facegear.transmission.flanks import constant_errors, flank_gaps
 from facegear.transmission.imperfections import perfect
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Layout, Role, Side
-from facegear.transmission.matrices import bearing_matrix, flank_directions
+from facegear.transmission.matrices import bearing_matrix, flank_jacobian
 from facegear.transmission.printed import PRINTED
 from facegear.transmission.statics import mean_equilibrium, static_bearing_forces, static_equilibrium
 from facegear.transmission.teeth import GEOMETRIC
@@ -178,7 +178,7 @@ def test_the_balance_counts_every_degree_of_freedom():
     expected = 1e-9 * np.diag(bearing_matrix(layout))[held] / largest
     np.testing.assert_allclose(checked.residual, expected, rtol=1e-6)
     np.testing.assert_allclose(
-        bearing_loads(machine, found.displacements) + found.flank_forces @ flank_directions(layout),
+        bearing_loads(machine, found.displacements) + found.flank_forces @ flank_jacobian(layout),
         [np.where(np.arange(28) % 4 == 3, np.repeat(machine.torques, 4), 0.0)],
         atol=1e-8,
     )

@@ -13,7 +13,7 @@ from facegear.harmonics.series import Harmonics
 from facegear.transmission.flanks import constant_errors, flank_gaps
 from facegear.transmission.imperfections import perfect
 from facegear.transmission.layout import Body, Role, Side
-from facegear.transmission.matrices import bearing_diagonal, flank_directions
+from facegear.transmission.matrices import bearing_diagonal, flank_jacobian
 from facegear.transmission.statics import bearing_forces, mean_equilibrium
 from facegear.transmission.teeth import GEOMETRIC
 
@@ -38,7 +38,7 @@ def machines(draw):
     random = np.random.default_rng(draw(st.integers(0, 2**31)))
     flaws = replace(
         perfect(layout),
-        clearance=random.uniform(1e-6, 40e-6, count),
+        bearing_clearance=random.uniform(1e-6, 40e-6, count),
         error=15e-6 * random.normal(size=len(layout.meshes)),
         position=15e-6 * random.normal(size=(count, 2)),
         stiffness=random.uniform(0.7, 1.4, len(layout.meshes)),
@@ -53,7 +53,7 @@ def potential(machine):
     layout, flaws = machine.layout, machine.imperfections
     scale = np.ones(layout.dof)
     scale[layout.spins] = 1.0 / layout.pinion_radius
-    directions = flank_directions(layout)
+    directions = flank_jacobian(layout)
     gap = constant_errors(machine) + flank_gaps(machine)
     stiffness = K * np.tile(flaws.stiffness, 2)
     bearing = bearing_diagonal(layout)
@@ -68,7 +68,7 @@ def potential(machine):
         over = np.maximum(directions @ place - gap, 0.0)
         sideways = place[: 4 * pinions].reshape(-1, 4)[:, :2]
         way = np.maximum(np.hypot(*sideways.T), 1e-30)
-        beyond = np.maximum(way - flaws.clearance, 0.0)
+        beyond = np.maximum(way - flaws.bearing_clearance, 0.0)
         value = 0.5 * (stiffness @ over**2 + bearing @ place**2 + ring @ beyond**2) - applied @ place
         force = directions.T @ (stiffness * over) + bearing * place - applied
         force[: 4 * pinions].reshape(-1, 4)[:, :2] += (ring * beyond / way)[:, None] * sideways
@@ -100,13 +100,13 @@ def test_with_rings_of_play_the_statics_are_the_least_energy_that_a_general_mini
     assert least <= other.fun + 1e-9 * abs(least)
     agrees("elastic energy, uJ", other.fun, least, relative=1e-6, absolute=1e-6 * size)
     over = (
-        flank_directions(machine.layout) @ (to_si * other.x) - constant_errors(machine) - flank_gaps(machine)
+        flank_jacobian(machine.layout) @ (to_si * other.x) - constant_errors(machine) - flank_gaps(machine)
     )
     forces = K * np.tile(machine.imperfections.stiffness, 2) * np.maximum(over, 0.0)
     agrees("flank force, N", forces, found.flank_forces[0], relative=1e-7, absolute=5e-3 * size)
     count = len(machine.layout.pinions)
     way = (to_si * other.x)[: 4 * count].reshape(-1, 4)[:, :2]
-    beyond = np.maximum(np.hypot(*way.T) - machine.imperfections.clearance, 0.0)
+    beyond = np.maximum(np.hypot(*way.T) - machine.imperfections.bearing_clearance, 0.0)
     ring = np.array([pinion.body.bearing[0] for pinion in machine.layout.pinions])
     held = np.hypot(*bearing_forces(machine, found)[0, :count, :2].T)
     agrees("force of a bearing with play, N", ring * beyond, held, relative=1e-7, absolute=5e-3 * size)
