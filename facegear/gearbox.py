@@ -380,7 +380,7 @@ class Gearbox:
             return export(path, body, teeth, self.config.tooth_pair)
 
     def tolerances(self, samples: int | None = None) -> "TolerancesResult":
-        """Percentiles, shares and Sobol indices of the machine with its tolerances, in one process.
+        """Percentiles, fractions and Sobol indices of the machine with its tolerances, in one process.
 
         `samples`: as many instead of the config's, without Sobol indices. Raises ConfigError without a
         section `tolerances`.

@@ -198,7 +198,7 @@ class Tolerances(Section):
 
 
 Design = Literal["samples", "indices"]
-"""Plain samples for percentiles and shares, or Saltelli's design for Sobol indices."""
+"""Plain samples for percentiles and fractions, or Saltelli's design for Sobol indices."""
 
 
 def sizes(section: Tolerances, design: Design) -> int:

@@ -17,16 +17,16 @@ MESH_COLUMNS = (
     "torque_n_m",
     "k_gamma",
     "group_ratio",
-    "drive_share",
-    "back_share",
-    "open_share",
-    "wedged_share",
+    "drive_fraction",
+    "back_fraction",
+    "open_fraction",
+    "wedged_fraction",
     "first_open_cycle",
 )
 
 
 def mesh_table(run: LoadHistory) -> pd.DataFrame:
-    """One row a mesh: load, mesh load factor, shares of the time on each flank, open, wedged (both).
+    """One row a mesh: load, mesh load factor, fractions of the time on each flank, open, wedged (both).
 
     `even_share_n` and `torque_n_m` (on the pinion) are the nominal even share that K_gamma counts from, empty
     with it where that is nothing. `group_ratio`: largest load over the mean of the group's own loads.
@@ -83,7 +83,7 @@ def group_table(run: HuntingCycle) -> pd.DataFrame:
                 "largest": high,
                 "k_gamma": largest(run.path_factors(group)),
                 "group_ratio": run.group_ratios(group).max(),
-                "undefined_share": np.isnan(coefficient).mean(),
+                "undefined_fraction": np.isnan(coefficient).mean(),
                 "torque_n_m": run.largest_torque,
                 "mesh_cycles": len(run.cycles) // run.positions,
                 "kkt_residual": run.at_rest.residual.max(),

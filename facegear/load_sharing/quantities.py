@@ -93,8 +93,8 @@ def _coefficients(run: LoadHistory) -> list[float]:
 
 
 def _shares(run: LoadHistory, shared: list[int]) -> tuple[float, float]:
-    """Share of the time in which one of the meshes that share a load carries nothing, and in which a mesh is
-    loaded on the flank that carries less on average.
+    """Fraction of the time in which one of the meshes that share a load carries nothing, and in which a mesh
+    is loaded on the flank that carries less on average.
     """
     drive, back = np.split(run.flank_forces, 2, axis=1)
     works_back = back.mean(axis=0) > drive.mean(axis=0)

@@ -7,7 +7,7 @@ if TYPE_CHECKING:
     from facegear.transmission.layout import Layout
 
 K_GAMMA, K_V = "k_gamma", "k_v"
-PEAK, OPEN, REVERSED = "peak_mesh_force_n", "open_share", "reversed_share"
+PEAK, OPEN, REVERSED = "peak_mesh_force_n", "open_fraction", "reversed_fraction"
 BEARINGS = "bearing_mass"
 ERROR_RANGE, ERROR_HARMONIC, PRESSURE = "te_peak_to_peak_um", "te_first_harmonic_um", "pressure_mpa"
 ROOTS = {"pinion": "root_stress_pinion_mpa", "face_gear": "root_stress_face_gear_mpa"}
@@ -30,7 +30,7 @@ SIMPLIFIED = {name: f"{name}_simplified" for name in (LOSS, BULK, FLASH, FILM_RA
 """What the few places that stand for the whole contact miss, relative; of a body's temperature, in K."""
 MISSED = {name: f"{name}_missed" for name in (K_GAMMA, OPEN, REVERSED)}
 """What the mesh cycles taken from the hunting cycle miss: of the largest K_gamma of any path, relative; of a
-share of time, the difference."""
+fraction of time, the difference."""
 JUMP_MARGIN = "jump_margin_rpm"
 """What sweeps around the operating speed alone tell."""
 QUANTITIES = (PEAK, OPEN, REVERSED, BEARINGS, *MISSED.values(), *CONTACT, *FRICTION, *SIMPLIFIED.values())
@@ -50,7 +50,7 @@ def quantity_names(
     `k_gamma <mesh>`: mesh load factor of a path, its largest mean of a mesh cycle over its nominal even share
     (`facegear.load_sharing.even_shares`); of the motion with `k_v <mesh>`, the largest load over that mean;
     `coefficient <group>`: mean over time of the largest load over the mean (equations (25), (26));
-    then the largest load of a mesh, the share of time in which some mesh that shares a load carries
+    then the largest load of a mesh, the fraction of time in which some mesh that shares a load carries
     nothing, and in which some mesh is loaded on the flank that it does not work on; the mass of bearings for
     the loads on them (`facegear.load_sharing.bearings`). With `contact`, the loaded transmission error of the
     tooth pair and its pressure, with `gauges` the root stress of both bodies

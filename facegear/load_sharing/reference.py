@@ -19,7 +19,7 @@ from facegear.load_sharing.statistics import average
 from facegear.progress import Progress
 from facegear.transmission.machine import Machine
 
-SHARES = ("maximum", "lost_share", "undefined_share")
+SHARES = ("maximum", "lost_fraction", "undefined_fraction")
 REFERENCE_COLUMNS = ("quantity", "group", "kind", "mean", "minimum", *SHARES)
 SPEED_COLUMNS = ("speed_rpm", "group", "kind", "mean", "half_width", *SHARES, "motion")
 POSITIONS = 64
@@ -88,8 +88,8 @@ def speed_range_table(machine: Machine, settings: Settings, options: SharingOpti
                     "mean": sharing_average.mean,
                     "half_width": sharing_average.half_width,
                     "maximum": sharing_average.maximum,
-                    "lost_share": sharing_average.lost,
-                    "undefined_share": sharing_average.undefined,
+                    "lost_fraction": sharing_average.lost,
+                    "undefined_fraction": sharing_average.undefined,
                     "motion": response.label,
                 }
             )
@@ -110,8 +110,8 @@ def _rows(machine: Machine, quantity: str, forces: Array) -> list[dict[str, obje
                 "mean": mesh_average.mean,
                 "minimum": mesh_average.minimum,
                 "maximum": mesh_average.maximum,
-                "lost_share": mesh_average.lost,
-                "undefined_share": mesh_average.undefined,
+                "lost_fraction": mesh_average.lost,
+                "undefined_fraction": mesh_average.undefined,
             }
         )
     return rows

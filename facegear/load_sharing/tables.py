@@ -14,7 +14,7 @@ CURVE_COLUMNS = (
     "coefficient",
     "envelope_low",
     "envelope_high",
-    "lost_share",
+    "lost_fraction",
 )
 SUMMARY_COLUMNS = (
     "group",
@@ -26,8 +26,8 @@ SUMMARY_COLUMNS = (
     "cycle_minimum",
     "cycle_low",
     "cycle_high",
-    "lost_share",
-    "undefined_share",
+    "lost_fraction",
+    "undefined_fraction",
     "motion",
     "cycles",
     "starts_low",
@@ -40,8 +40,8 @@ SUMMARY_COLUMNS = (
 def curve_table(sharing: Sharing) -> pd.DataFrame:
     """One mesh cycle of each group with the envelope over all cycles; empty cells where undefined.
 
-    `lost_share` is the share of cycles with a path out of contact at that instant. No rows where no meshes
-    share a load.
+    `lost_fraction` is the fraction of cycles with a path out of contact at that instant. No rows where no
+    meshes share a load.
     """
     curves = [_curve(group, sharing.period) for group in sharing.groups]
     return pd.concat(curves, ignore_index=True) if curves else pd.DataFrame(columns=list(CURVE_COLUMNS))

@@ -169,7 +169,7 @@ def _local(places: Places, state: Running, speed: float) -> dict[str, AnyArray]:
         "friction": state.friction,
         "loss_w_per_m": state.friction * places.line_load * speed * places.sliding,
         "flash_k": state.flash,
-        "pinion_share": state.heat_fraction,
+        "pinion_heat_fraction": state.heat_fraction,
         "film_m": state.film,
         "shear_factor": state.sheared,
         "film_ratio": state.film_ratio,

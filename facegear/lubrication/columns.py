@@ -155,7 +155,7 @@ LOCAL_ARRAYS: dict[str, tuple[int | None, ...]] = {
     "friction": (None,),
     "loss_w_per_m": (None,),
     "flash_k": (None,),
-    "pinion_share": (None,),
+    "pinion_heat_fraction": (None,),
     "film_m": (None,),
     "shear_factor": (None,),
     "film_ratio": (None,),

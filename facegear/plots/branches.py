@@ -26,7 +26,7 @@ MARKERS = {
 SWEEPS = {"up": ("1", "0.45"), "down": ("2", "0.7")}
 IRREGULAR = "0.55"
 SHOWN = 0.06
-"""Least share of a bar that has room for its number."""
+"""Smallest fraction of a bar that has room for its number."""
 
 
 def typical_meshes(pinions: Sequence[Mapping[str, Any]], meshes: Iterable[str]) -> list[str]:
@@ -155,7 +155,7 @@ def loci(table: pd.DataFrame, speed_rpm: float) -> Figure:
     return figure
 
 
-def shares(table: pd.DataFrame) -> Figure:
+def fractions(table: pd.DataFrame) -> Figure:
     """Share of random starts that ends on each motion, a stacked bar for each speed with standard errors.
 
     Colours tell the period as in amplitudes(), numbers the branch.
@@ -169,16 +169,16 @@ def shares(table: pd.DataFrame) -> Figure:
             for row in table[table["speed_rpm"] == speed].itertuples():
                 name, colour = _motion(str(row.motion))
                 used[name] = colour
-                axis.bar(bar, row.share, 0.7, bottom=bottom, color=colour, edgecolor="white")
-                if str(row.branch).isdigit() and row.share > SHOWN:
-                    middle = bottom + 0.5 * row.share
+                axis.bar(bar, row.fraction, 0.7, bottom=bottom, color=colour, edgecolor="white")
+                if str(row.branch).isdigit() and row.fraction > SHOWN:
+                    middle = bottom + 0.5 * row.fraction
                     axis.text(bar, middle, row.branch, ha="center", va="center", color="white", fontsize=8)
-                bottom += row.share
-                if 0.0 < row.share < 1.0 and bottom < 1.0 - 1e-9:
+                bottom += row.fraction
+                if 0.0 < row.fraction < 1.0 and bottom < 1.0 - 1e-9:
                     axis.errorbar(bar, bottom, row.error, color="black", capsize=3, lw=0.8)
         axis.set_xticks(range(len(speeds)), [f"{speed:g}" for speed in speeds])
         axis.set_xlabel("pinion speed (rpm)")
-        axis.set_ylabel("share of random starts")
+        axis.set_ylabel("fraction of random starts")
         axis.set_ylim(0, 1.02)
         axis.grid(False, axis="x")
         keys = [plt.Rectangle((0, 0), 1, 1, color=used[name], label=name) for name in sorted(used)]
@@ -228,11 +228,11 @@ def figures(
     speed_rpm: float,
     pinions: Sequence[Mapping[str, Any]],
 ) -> tuple[Figure, ...]:
-    """Amplitudes over speed, loci (`curves`), shares of random starts, multipliers (`circle`)."""
+    """Amplitudes over speed, loci (`curves`), fractions of random starts, multipliers (`circle`)."""
     meshes = typical_meshes(pinions, branches["mesh"])
     return (
         amplitudes(branches, special, sweep, meshes, speed_rpm),
         loci(curves, speed_rpm),
-        shares(coexistence),
+        fractions(coexistence),
         multipliers(circle),
     )

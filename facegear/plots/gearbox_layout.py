@@ -76,7 +76,7 @@ def _panel(
         ]
         axis.add_patch(Polygon(corners, color=ROLE_COLOUR[pinion.role], alpha=0.55, lw=0))
         row = loads.loc[layout.mesh_names[layout.mesh_index(i, gear.side)]]
-        drives = 1.0 if row["drive_share"] >= row["back_share"] else -1.0
+        drives = 1.0 if row["drive_fraction"] >= row["back_fraction"] else -1.0
         force = turns * drives * row["mean_n"] * np.cos(layout.pressure_angle) * along
         _arrow(axis, middle, metres * force, MESH)
         if gear.side is Side.UPPER or len(layout.gears) == 1:

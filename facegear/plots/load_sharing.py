@@ -64,8 +64,8 @@ def _draw(axis: Axes, curve: pd.DataFrame, mean: pd.Series, number: int) -> None
         axis.fill_between(time, curve["envelope_low"], curve["envelope_high"], color=colour, alpha=0.12, lw=0)
     width = f" ± {mean['half_width']:.2f}" if mean["half_width"] > 0.005 else ""
     label = f"{curve['label'].iloc[0]}: mean {mean['mean']:.2f}{width}, {mean['motion']}"
-    if mean["undefined_share"] > 0.005:
-        label += f", no load {100 * mean['undefined_share']:.0f} % of the time"
+    if mean["undefined_fraction"] > 0.005:
+        label += f", no load {100 * mean['undefined_fraction']:.0f} % of the time"
     axis.plot(time, curve["coefficient"], LINES[number % len(LINES)], color=colour, lw=1.3, label=label)
 
 

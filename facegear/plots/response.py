@@ -15,7 +15,7 @@ SHOWN_ORDERS = 4
 APART = 0.04
 """Orders by which the lines of the two gears stand apart, so that neither hides the other."""
 VISIBLE = 1e-3
-"""Lines below this share of the largest amplitude are not drawn."""
+"""Lines below this fraction of the largest amplitude are not drawn."""
 
 
 def deflections(

@@ -73,7 +73,7 @@ MODE_CONTACTS = (
 NEAR_RESONANCE = 0.3
 """Largest relative distance of a jump from the linear resonance that it may belong to."""
 JUMPS = (
-    "Jumps. Moves most: the linear mode with the largest share of the energy just beside the jump, and the "
+    "Jumps. Moves most: linear mode with the largest fraction of the energy just beside the jump, and the "
     "multiple of the mesh frequency at which it moves most. Linear resonance: the speed at which that "
     f"multiple meets the mode's frequency, blank where the jump is more than {100 * NEAR_RESONANCE:.0f} % "
     "away from it and so belongs to no linear resonance of that mode"
@@ -186,7 +186,7 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
             "half_width",
             "minimum",
             "maximum",
-            "lost_share",
+            "lost_fraction",
             "motion",
         ]
         return [Table("Means over the cycle with their 95 % half-widths", tables["summary"][columns], 4)]
@@ -244,7 +244,7 @@ def _jumps(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     away = (jumps["speed_before_rpm"].astype(float) / linear - 1.0).abs()
     shown = jumps[["direction", "speed_before_rpm", "mesh", "class_before", "class_after"]].assign(
         moves_most=jumps["resonance"],
-        energy_share=jumps["energy_share"],
+        energy_fraction=jumps["energy_fraction"],
         linear_resonance_rpm=linear.where(away <= NEAR_RESONANCE),
     )
     return [Table(JUMPS, shown, 6)]

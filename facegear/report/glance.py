@@ -138,10 +138,10 @@ def warnings(
     yield from _open_warnings(tables)
     yield from _sweep_warnings(tables)
     for row in _nominal(tables).itertuples():
-        if row.lost_share > 0.0:
+        if row.lost_fraction > 0.0:
             yield (
                 f"load sharing, {row.group}",
-                f"a path is out of contact {100 * row.lost_share:.0f} % of the time",
+                f"a path is out of contact {100 * row.lost_fraction:.0f} % of the time",
             )
         if not str(row.motion).startswith("period-"):
             yield f"load sharing, {row.group}", f"the motion is {row.motion}: numbers are averages"
@@ -169,7 +169,7 @@ def _sweep_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[tuple[str, s
             f"the motion is not periodic at {irregular.sum()} of {len(motions)} speeds, up and down counted "
             "apart: numbers there are averages",
         )
-    gaps = sweep[sweep["quantity"] == "open_share"].groupby("body_or_mesh", sort=False)["value"]
+    gaps = sweep[sweep["quantity"] == "open_fraction"].groupby("body_or_mesh", sort=False)["value"]
     min_open, max_open = gaps.min(), gaps.max()
     if (always := min_open.index[min_open >= 1.0]).size:
         yield "speed sweep", f"open at every speed: {_listed(always)}"

@@ -10,7 +10,7 @@ from facegear.results.base import Result
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
 
-FIGURES = ("amplitudes", "shares", "multipliers")
+FIGURES = ("amplitudes", "fractions", "multipliers")
 
 
 class BranchesResult(Result):
@@ -36,7 +36,7 @@ class BranchesResult(Result):
         return self.content["ranges"].copy()
 
     def coexistence(self) -> pd.DataFrame:
-        """Share of random starts that ends on each motion, with its standard error."""
+        """Fraction of random starts that ends on each motion, with its standard error."""
         return self.content["coexistence"].copy()
 
     def jumps(self) -> pd.DataFrame:
@@ -48,12 +48,12 @@ class BranchesResult(Result):
         return self.content["swept"].copy()
 
     def plot(self, what: str = "amplitudes", branch: int = 0) -> "Figure":
-        """`amplitudes` over speed, `shares` of random starts, or the `multipliers` of one branch."""
-        from facegear.plots.branches import amplitudes, multipliers, shares, typical_meshes
+        """`amplitudes` over speed, `fractions` of random starts, or the `multipliers` of one branch."""
+        from facegear.plots.branches import amplitudes, fractions, multipliers, typical_meshes
 
         chosen(what, FIGURES, "plot")
-        if what == "shares":
-            return shares(self.content["coexistence"])
+        if what == "fractions":
+            return fractions(self.content["coexistence"])
         if what == "multipliers":
             return multipliers(self.content["multipliers"], branch)
         meshes = typical_meshes(self.values["transmission"]["pinions"], self.content["branches"]["mesh"])

@@ -14,7 +14,7 @@ KINDS = ("distributions", "importance", "scatter")
 
 
 class LoadMapResult(Result):
-    """Percentiles, and shares of machines that open or reverse, over torque and speed."""
+    """Percentiles, and fractions of machines that open or reverse, over torque and speed."""
 
     STAGE: ClassVar = "tolerances_map"
 
@@ -22,9 +22,9 @@ class LoadMapResult(Result):
         """One row a torque, speed, quantity and percentile: value, and the interval that holds it."""
         return self.content["load_map"].copy()
 
-    def shares(self) -> pd.DataFrame:
-        """One row a torque, speed and mishap: share of the machines that it meets, with its interval."""
-        return self.content["load_shares"].copy()
+    def fractions(self) -> pd.DataFrame:
+        """One row a torque, speed and mishap: fraction of the machines that it meets, with its interval."""
+        return self.content["load_fractions"].copy()
 
     def plot(self) -> "Figure":
         """K_gamma of the worst path over torque and speed."""
@@ -34,7 +34,7 @@ class LoadMapResult(Result):
 
 
 class TolerancesResult(Result):
-    """Percentiles of K_gamma and mesh forces, shares of machines that open or reverse, what matters most."""
+    """Percentiles of K_gamma and mesh forces, fractions of machines that open or reverse, main causes."""
 
     STAGE: ClassVar = "tolerances"
 

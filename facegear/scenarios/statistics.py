@@ -1,4 +1,4 @@
-"""What many samples say: percentiles, shares and Sobol indices, each with its confidence interval."""
+"""What many samples say: percentiles, fractions and Sobol indices, each with its confidence interval."""
 
 from dataclasses import dataclass
 

@@ -53,7 +53,7 @@ def percentile_table(
 def share_table(samples: pd.DataFrame, shares: dict[str, str], confidence: float) -> pd.DataFrame:
     """Share of the samples that failed, and of those in which a share of time or loss is above zero.
 
-    `shares`: column -> what it means in words. Columns: what, share, low, high, samples.
+    `events`: column -> what it means in words. Columns: what, fraction, low, high, samples.
     """
     failed = samples[ERROR].to_numpy() != ""
     rows = [("cannot be built or computed", failed)]
@@ -65,7 +65,7 @@ def share_table(samples: pd.DataFrame, shares: dict[str, str], confidence: float
     fractions = [(label, fraction_of(hits, confidence), hits.size) for label, hits in rows if hits.size]
     return pd.DataFrame(
         [(label, fraction.value, fraction.low, fraction.high, size) for label, fraction, size in fractions],
-        columns=["what", "share", "low", "high", "samples"],
+        columns=["what", "fraction", "low", "high", "samples"],
     )
 
 

@@ -17,15 +17,15 @@ from facegear.load_sharing.quantity_names import (
 )
 from facegear.scenarios.chunks import ERROR
 from facegear.scenarios.summary import (
+    fraction_table,
     importance_table,
     index_table,
     percentile_table,
     sampling_table,
-    share_table,
 )
 from facegear.stages.outcome import Outcome
 
-SHARES = {
+EVENTS = {
     OPEN: "some mesh that shares a load opens",
     REVERSED: "some mesh is loaded on the flank that it does not work on",
     UNSOLVED: "some mesh loses under a torque outside those of the contact analysis",
@@ -40,7 +40,7 @@ CHECKS = {
 def tolerances(
     samples: Sequence[pd.DataFrame], indices: Sequence[pd.DataFrame], tolerances: Tolerances
 ) -> Outcome:
-    """`samples`, `percentiles`, `shares`, `importance`, `indices`, `sampling` (tables) from both designs.
+    """`samples`, `percentiles`, `fractions`, `importance`, `indices`, `sampling` (tables) from both designs.
 
     `sampling`: what the mesh cycles taken from the hunting cycle miss, in the samples that were computed over
     the whole of it, and what friction misses that is taken at few places of the contact.
@@ -66,7 +66,7 @@ def tolerances(
         {
             "samples": every,
             "percentiles": percentiles,
-            "shares": shares,
+            "fractions": fractions,
             "importance": importance_table(values, causes),
             "indices": index_table(design, causes, tolerances.confidence),
             "sampling": sampling,

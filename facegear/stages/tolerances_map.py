@@ -9,7 +9,7 @@ from facegear.config.tolerances import LoadMap
 from facegear.load_sharing.quantity_names import BETTER_LARGE
 from facegear.scenarios.chunks import ERROR
 from facegear.scenarios.sampling import samples
-from facegear.scenarios.summary import percentile_table, sampling_table, share_table
+from facegear.scenarios.summary import fraction_table, percentile_table, sampling_table
 from facegear.stages.outcome import Outcome
 from facegear.stages.tolerances import CHECKS, SHARES
 from facegear.variants.loads import with_torques
@@ -22,9 +22,9 @@ COLUMNS = (
 
 
 def tolerances_map(partial: str | Path | None = None, code: str = "", **given: Any) -> Outcome:
-    """`load_map` (table): percentiles of every quantity at every torque and speed, COLUMNS; `load_shares`
-    (table): share of the machines that fail, open or change their flank there; `load_sampling` (table): what
-    the mesh cycles taken miss there, from CHECKED samples at all loads together or one at each.
+    """`load_map` (table): percentiles of every quantity at every torque and speed, COLUMNS; `load_fractions`
+    (table): fraction of the machines that fail, open or change their flank there; `load_sampling` (table):
+    what the mesh cycles taken miss there, from CHECKED samples at all loads together or one at each.
 
     The same machines at every load, so that differences between loads are no accident of the samples. The
     mesh stiffness stays that of mesh_stiffness.torque_n_m. `partial`, `code` and `given` as of
@@ -47,7 +47,7 @@ def tolerances_map(partial: str | Path | None = None, code: str = "", **given: A
 
     frame = machine.run(evaluate, range(count), "tolerances over torque and speed", partial, code)
     tables: list[pd.DataFrame] = []
-    shares: list[pd.DataFrame] = []
+    fractions: list[pd.DataFrame] = []
     sampling: list[pd.DataFrame] = []
     for index, (factor, speed) in enumerate(loads):
         own = frame.iloc[index * asked.samples : (index + 1) * asked.samples]
@@ -63,7 +63,7 @@ def tolerances_map(partial: str | Path | None = None, code: str = "", **given: A
     return Outcome(
         {
             "load_map": table,
-            "load_shares": pd.concat(shares, ignore_index=True),
+            "load_fractions": pd.concat(fractions, ignore_index=True),
             "load_sampling": pd.concat(sampling, ignore_index=True),
         },
         f"{len(loads)} loads of {asked.samples} samples each, {failed} machines failed",

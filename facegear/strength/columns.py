@@ -105,7 +105,7 @@ DUTY_LOAD_COLUMNS = (
     "settled",
 )
 """Of the table of loads in every bin of the duty cycle, a row for each flank of a mesh that carries any."""
-DUTY_SPECTRUM_COLUMNS = ("bin", "body", "gear", "flank", "mesh", "share", "force_n")
+DUTY_SPECTRUM_COLUMNS = ("bin", "body", "gear", "flank", "mesh", "fraction", "force_n")
 """Of the table of forces that the hardest loaded tooth of a body meets in its passages through a mesh."""
 
 RATING_FINITE = tuple(

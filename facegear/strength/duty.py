@@ -83,7 +83,7 @@ def machine_duty(
                 flank=str(flank),
                 bins=bins,
                 torque=arm * rows["force_n"].to_numpy(),
-                cycles=turns[str(gear)] * passes[bins] * rows["share"].to_numpy(),
+                cycles=turns[str(gear)] * passes[bins] * rows["fraction"].to_numpy(),
                 opposite=arm * np.array(opposite),
             )
         )

@@ -77,7 +77,7 @@ def load_rows(history: History) -> Iterator[tuple[Any, ...]]:
 
 
 def spectrum_rows(history: History) -> Iterator[tuple[Any, ...]]:
-    """Body, gear, flank, mesh, share and force of every class of passages."""
+    """Body, gear, flank, mesh, fraction and force of every class of passages."""
     layout, passages = history.layout, passage_forces(history.forces)
     pinions, floor = len(layout.pinions), NO_LOAD * passages.max()
     if history.turning:  # on to where the same two teeth meet again

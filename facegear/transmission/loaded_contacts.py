@@ -87,8 +87,8 @@ def forces_by_active_sets(machine: Machine) -> Array | None:
     """Flank forces (2 meshes,) at mean stiffness, N: the statics of one position without compiled code.
 
     Each step solves the springs of the flanks that were closed after the last one. None for bearings with
-    clearance or a stiffness that depends on the load, and where the flanks do not settle or leave a loaded body
-    free.
+    clearance or a stiffness that depends on the load, and where the flanks do not settle or leave a loaded
+    body free.
     """
     linear = machine.linear
     if linear.rings.body.size or not machine.constant_stiffness:

@@ -15,7 +15,7 @@ CONTACT_COLUMNS = ("contact", "state", "force_n", "stiffness_n_per_m", "definiti
 
 
 def frequency_table(vibrating: VibratingMachine, names: tuple[ModeName, ...]) -> pd.DataFrame:
-    """Columns order, frequency_hz, multiplicity, symbols, class, pinion_energy_share, decided.
+    """Columns order, frequency_hz, multiplicity, symbols, class, pinion_energy_fraction, decided.
 
     decided: whether the frequency is the same with undecided contacts open and closed.
     """
@@ -28,7 +28,7 @@ def frequency_table(vibrating: VibratingMachine, names: tuple[ModeName, ...]) ->
             "multiplicity": multiplicity,
             "symbols": [name.symbols for name in names],
             "class": [name.mode_class.value for name in names],
-            "pinion_energy_share": [name.pinion_share for name in names],
+            "pinion_energy_fraction": [name.pinion_energy_fraction for name in names],
             "decided": vibrating.decided,
         }
     )

@@ -15,9 +15,9 @@ from facegear.transmission.layout import DOF_LETTERS, TILT_LETTERS, Layout, Role
 from facegear.transmission.linear_model import LinearModel
 from facegear.transmission.modes import Modes
 
-ENERGY_SHARE = 0.01
+ENERGY_FRACTION = 0.01
 """A part takes part in a mode if it holds at least this share of the kinetic energy."""
-AMPLITUDE_SHARE = 0.01
+AMPLITUDE_FRACTION = 0.01
 """A motion is named if its amplitude (a rotation: at the mesh) is this share of the largest in the mode."""
 
 
@@ -32,11 +32,11 @@ class ModeClass(StrEnum):
 
 @dataclass(frozen=True)
 class ModeName:
-    """Class, symbols such as `input, idler T-R; face gear T(y)`, kinetic energy share of the pinions."""
+    """Class, symbols as `input, idler T-R; face gear T(y)`, fraction of the kinetic energy in the pinions."""
 
     mode_class: ModeClass
     symbols: str
-    pinion_share: float
+    pinion_energy_fraction: float
 
 
 def name_modes(layout: Layout, linear: LinearModel, modes: Modes) -> tuple[ModeName, ...]:
@@ -54,9 +54,9 @@ def _name(layout: Layout, linear: LinearModel, frequency: float, shapes: Array) 
     pinion_fraction = float(energy[pinions].sum() / energy.sum())
     if frequency == 0.0:
         mode_class = ModeClass.RIGID
-    elif pinion_fraction >= 1.0 - ENERGY_SHARE:
+    elif pinion_fraction >= 1.0 - ENERGY_FRACTION:
         mode_class = ModeClass.PINION
-    elif pinion_fraction <= ENERGY_SHARE:
+    elif pinion_fraction <= ENERGY_FRACTION:
         mode_class = ModeClass.GEAR
     else:
         mode_class = ModeClass.COUPLED
@@ -69,7 +69,7 @@ def _name(layout: Layout, linear: LinearModel, frequency: float, shapes: Array) 
 def _symbols(layout: Layout, labels: Sequence[str], amplitudes: Array) -> str:
     """Who moves and how, from the amplitudes of all DOF as lengths, shape (dof,)."""
     moving: dict[str, set[str]] = {name: set() for name in layout.body_names}
-    for label in np.array(labels)[amplitudes > AMPLITUDE_SHARE * amplitudes.max()]:
+    for label in np.array(labels)[amplitudes > AMPLITUDE_FRACTION * amplitudes.max()]:
         body, _, letter = label.rpartition(":")
         moving[body].add(letter)
     parts: dict[str, list[str]] = {}

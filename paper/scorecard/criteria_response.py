@@ -68,7 +68,7 @@ def subharmonic_content(tables: Tables, pinion: str, fraction: float) -> ClaimOu
 def lost_contact(tables: Tables) -> ClaimOutcome:
     """At the nominal speed some mesh is out of contact for part of the time."""
     frame = tables["sharing"]
-    fraction = float(frame.loc[frame["study"] == "nominal", "lost_share"].max())
+    fraction = float(frame.loc[frame["study"] == "nominal", "lost_fraction"].max())
     return statement(fraction > 0.0, f"up to {100 * fraction:.0f} % of the time")
 
 

@@ -30,7 +30,7 @@ def sharing(
 
     The mean is also that of single cycles and from other starts.
     """
-    undefined = _value(tables, kind, "undefined_share", study, point)
+    undefined = _value(tables, kind, "undefined_fraction", study, point)
     value = _value(tables, kind, column, study, point)
     if undefined >= MAX_UNDEFINED:
         return ClaimOutcome(None, f"{value:.4g}, but undefined for {100 * undefined:.0f} % of the cycle")
@@ -117,7 +117,7 @@ def lost_regions_move(tables: Tables, study: str, by: float, kind: str = "") -> 
     moved = {}
     for group, curves in rows.groupby("group", sort=False):
         regions = [
-            curve.sort_values("cycle_fraction")["lost_share"].to_numpy(float)
+            curve.sort_values("cycle_fraction")["lost_fraction"].to_numpy(float)
             for _, curve in curves.groupby("point", sort=False)
         ]
         moved[str(group)] = max(float(np.abs(a - b).mean()) for a in regions for b in regions)

@@ -190,7 +190,7 @@ def curves(**points):
                 "group": "idlers",
                 "cycle_fraction": np.arange(100) / 100,
                 "coefficient": values,
-                "lost_share": (np.asarray(values) >= 3.0).astype(float),
+                "lost_fraction": (np.asarray(values) >= 3.0).astype(float),
             }
         )
         for point, values in points.items()
@@ -276,7 +276,7 @@ def sharing(undefined=0.0, **means):
                 "point": list(means),
                 "kind": "idlers",
                 "mean": list(means.values()),
-                "undefined_share": undefined,
+                "undefined_fraction": undefined,
             }
         )
     }

@@ -152,7 +152,7 @@ def test_branches_have_tables_figures_and_files(followed, tmp_path):
     assert followed.source == "computed"
     assert table["mesh"].nunique() == 10
     assert (table["deflection_minimum_um"] <= table["deflection_maximum_um"]).all()
-    assert all(followed.plot(name).axes for name in ("amplitudes", "shares", "multipliers"))
+    assert all(followed.plot(name).axes for name in ("amplitudes", "fractions", "multipliers"))
     assert all(path.stat().st_size for path in followed.save(tmp_path))
     with pytest.raises(FacegearError, match="plot = 'loci': must be one of amplitudes"):
         followed.plot("loci")

@@ -58,7 +58,7 @@ def test_teeth_alone_plan_geometry_contact_stiffness_and_a_report(tmp_path):
 
 def test_a_target_without_its_section_in_the_config_ends_in_one_line(tmp_path):
     """It ended in a TypeError."""
-    for target, section in (("figures/branches.svg", "branches"), ("tolerances/shares.csv", "tolerances")):
+    for target, section in (("figures/branches.svg", "branches"), ("tolerances/fractions.csv", "tolerances")):
         asked = ("-n", "--configfile", str(ROOT / "config" / "harmonics_only.yaml"), "--")
         done = Project(tmp_path).run(*asked, f"results/harmonics_only/{target}", check=False)
         assert done.returncode == 1 and "Traceback" not in done.stderr

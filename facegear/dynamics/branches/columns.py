@@ -15,9 +15,9 @@ BRANCH_COLUMNS = (
     "deflection_minimum_um",
     "deflection_maximum_um",
     "peak_force_n",
-    "open_share",
-    "drive_share",
-    "back_share",
+    "open_fraction",
+    "drive_fraction",
+    "back_fraction",
 )
 BRANCH_FINITE = tuple(name for name in BRANCH_COLUMNS if "multiplier" not in name)
 """Those whose numbers are finite in every row."""

@@ -63,7 +63,7 @@ class ContinuationSettings:
 class Branch:
     """Points in their order along the branch, what was met between them, and why it ends on both sides.
 
-    specials are sorted by `after`, the index of the point before them plus their share of the way to the
+    specials are sorted by `after`, the index of the point before them plus their fraction of the way to the
     next.
     """
 

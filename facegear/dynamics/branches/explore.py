@@ -1,4 +1,4 @@
-"""Which motions exist at a speed: random starts, the share of them that ends on each, and what is new."""
+"""Which motions exist at a speed: random starts, the fraction of them that ends on each, and what is new."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -22,7 +22,7 @@ SAME = 1e-4
 ALONG = 0.2
 """Greatest distance from a branch's chord at which Newton's method is tried from it."""
 REAL = 1e-9
-"""Rounding of the share of a chord."""
+"""Rounding of the fraction of a chord."""
 BLOCK = 8
 PATIENCE = 40
 
@@ -68,10 +68,10 @@ def explore(
         motions[index] = replace(motions[index], count=motions[index].count + 1)
         step()
     motions.sort(key=lambda motion: -motion.count)
-    shares = [motion.count / len(starts) for motion in motions]
+    fractions = [motion.count / len(starts) for motion in motions]
     return [
         replace(motion, fraction=p, error=float(np.sqrt(p * (1.0 - p) / len(starts))))
-        for motion, p in zip(motions, shares, strict=True)
+        for motion, p in zip(motions, fractions, strict=True)
     ]
 
 
@@ -184,9 +184,9 @@ def _passages(branch: Branch, u: float) -> Iterator[tuple[Array, float, Array]]:
         if not turns and not min(here.u, there.u) <= u <= max(here.u, there.u):
             continue
         coefficients = cubic(here, there)
-        shares = np.polynomial.Polynomial(coefficients[:, -1] - [u, 0.0, 0.0, 0.0]).roots()
+        roots = np.polynomial.Polynomial(coefficients[:, -1] - [u, 0.0, 0.0, 0.0]).roots()
         reach = float(np.linalg.norm(there.x - here.x))
-        for fraction in shares[np.abs(shares.imag) < REAL].real:
+        for fraction in roots[np.abs(roots.imag) < REAL].real:
             # A point at which two cubics meet belongs to the first of them.
             if REAL < fraction <= 1.0 + REAL or (abs(fraction) <= REAL and here is branch.points[0]):
                 yield (fraction ** np.arange(4) @ coefficients)[:-1], reach, here.linear.neutral

@@ -34,7 +34,7 @@ class _Event:
 
 
 def locate(period_map: PeriodMap, here: BranchPoint, there: BranchPoint) -> list[Special]:
-    """All special points between two neighbours, in order; `after` is the share of the way."""
+    """All special points between two neighbours, in order; `after` is the fraction of the way."""
     segment = Segment(period_map, here, there)
     return sorted(_between(segment, 0.0, 1.0), key=lambda special: special.after)
 

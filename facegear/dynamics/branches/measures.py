@@ -7,7 +7,7 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.dynamics.branches.period_map import PeriodMap
 from facegear.dynamics.branches.points import BranchPoint
-from facegear.dynamics.steady_state.mesh_samples import each_deflection, mesh_forces, mesh_shares
+from facegear.dynamics.steady_state.mesh_samples import each_deflection, mesh_forces, mesh_fractions
 from facegear.dynamics.steady_state.window import run_window
 
 SAMPLES = 64
@@ -16,8 +16,8 @@ SAMPLES = 64
 @dataclass(frozen=True, eq=False)
 class Measures:
     """Of each mesh, shape (meshes,): RMS without and with mean, least and largest deflection in m, largest
-    elastic force of at least 64 samples a mesh period in N. shares (3, meshes): time open, on drive and back
-    flank.
+    elastic force of at least 64 samples a mesh period in N. fractions (3, meshes): time open, on drive and
+    back flank.
     """
 
     ac_rms: Array
@@ -25,7 +25,7 @@ class Measures:
     minimum: Array
     maximum: Array
     peak_force: Array
-    shares: Array
+    fractions: Array
 
 
 def measures(period_map: PeriodMap, point: BranchPoint) -> Measures:
@@ -43,5 +43,5 @@ def measures(period_map: PeriodMap, point: BranchPoint) -> Measures:
         minimum=moments.minimum,
         maximum=moments.maximum,
         peak_force=np.abs(forces).max(axis=0),
-        shares=mesh_shares(system, window.shares[:, : system.contacts], each),
+        fractions=mesh_fractions(system, window.fractions[:, : system.contacts], each),
     )

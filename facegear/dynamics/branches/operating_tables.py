@@ -19,7 +19,7 @@ NEUTRAL = "on it but for the place of a body that touches nothing, which is free
 def coexistence_table(
     motions_by_speed: Sequence[tuple[float, Sequence[SettledMotion]]], branches: Sequence[Branch]
 ) -> pd.DataFrame:
-    """Columns speed_rpm, motion, branch, share, error, starts: where random starts end.
+    """Columns speed_rpm, motion, branch, fraction, error, starts: where random starts end.
 
     branch: its number, `not followed`, or what kind of motion it is that no branch holds.
     """
@@ -32,12 +32,12 @@ def coexistence_table(
                     "speed_rpm": speed,
                     "motion": motion.label,
                     "branch": _branch_of(motion, speed, branches),
-                    "share": motion.fraction,
+                    "fraction": motion.fraction,
                     "error": motion.error,
                     "starts": starts,
                 }
             )
-    return pd.DataFrame(rows, columns=["speed_rpm", "motion", "branch", "share", "error", "starts"])
+    return pd.DataFrame(rows, columns=["speed_rpm", "motion", "branch", "fraction", "error", "starts"])
 
 
 def _branch_of(motion: SettledMotion, speed: float, branches: Sequence[Branch]) -> str:

@@ -20,7 +20,7 @@ EXACT = 1e-13
 
 def cubic(here: BranchPoint, there: BranchPoint) -> Array:
     """The cubic through two points of a branch along their tangents: coefficients (4, 2 n + 1) of ascending
-    powers of the share of their chord.
+    powers of the fraction of their chord.
     """
     chord = there.x - here.x
     first, second = (_slope(chord, point.tangent) for point in (here, there))
@@ -35,7 +35,7 @@ def _slope(chord: Array, tangent: Array) -> Array:
 
 
 class Segment:
-    """Points of a branch between two neighbours, by their share of the chord."""
+    """Points of a branch between two neighbours, by their fraction of the chord."""
 
     def __init__(self, period_map: PeriodMap, here: BranchPoint, there: BranchPoint) -> None:
         self.period_map, self.here, self.there = period_map, here, there
@@ -44,7 +44,7 @@ class Segment:
         self.known = {0.0: here, 1.0: there}
 
     def at(self, fraction: float) -> BranchPoint:
-        """The point of the branch at a share of the chord."""
+        """The point of the branch at a fraction of the chord."""
         if fraction not in self.known:
             row = self.chord / self.length
             linear = self._near(fraction).linear
@@ -94,7 +94,7 @@ def zero(test: Callable[[float], float], low: float, high: float, goal: float) -
     try:
         return float(brentq(rounded, low, high, xtol=EXACT))
     except ValueError as error:
-        raise NotConverged("branches", f"shares {low:g} to {high:g} of a step", str(error)) from None
+        raise NotConverged("branches", f"fractions {low:g} to {high:g} of a step", str(error)) from None
 
 
 def reversal(

@@ -19,7 +19,7 @@ from facegear.errors import NotConverged
 ASIDE = (0.02, 0.005, 0.06, 0.15, 0.4, 1e-3)
 """Distances from a special point, in length scales, at which another branch is sought."""
 LEFT = 0.3
-"""Least share of the distance that must remain along the new direction."""
+"""Smallest fraction of the distance that must remain along the new direction."""
 
 
 def doubled(period_map: PeriodMap, special: Special, run: ContinuationSettings) -> Branch:

@@ -42,9 +42,9 @@ def branch_table(layout: Layout, branches: Sequence[Branch]) -> pd.DataFrame:
                         "deflection_minimum_um": UM * measured.minimum,
                         "deflection_maximum_um": UM * measured.maximum,
                         "peak_force_n": measured.peak_force,
-                        "open_share": measured.shares[0],
-                        "drive_share": measured.shares[1],
-                        "back_share": measured.shares[2],
+                        "open_fraction": measured.fractions[0],
+                        "drive_fraction": measured.fractions[1],
+                        "back_fraction": measured.fractions[2],
                     }
                 )
             )

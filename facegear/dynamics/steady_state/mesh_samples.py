@@ -59,7 +59,7 @@ def past_law(system: System, each: Array) -> Array:
     return past.reshape(2, -1).max(axis=0) if system.two_flanks else past
 
 
-def mesh_shares(system: System, shares: Array, each: Array) -> Array:
+def mesh_fractions(system: System, fractions: Array, each: Array) -> Array:
     """Time open, on the drive and on the back flank (3, meshes) from that of each flank, where there are two.
 
     Time with both flanks wedged counts on both, so that the three may add up to more than one. each (K,
@@ -67,19 +67,19 @@ def mesh_shares(system: System, shares: Array, each: Array) -> Array:
     is open.
     """
     lower, upper = system.lower[: system.contacts], system.upper[: system.contacts]
-    touching = shares[1] if system.two_flanks else 1.0 - shares[0]
+    touching = fractions[1] if system.two_flanks else 1.0 - fractions[0]
     depths = np.maximum(each - upper, lower - each)
     never = (upper > lower) & _never_pressed(depths, touching)
     if not system.two_flanks:
-        return np.where(never, np.array([[1.0], [0.0], [0.0]]), shares)
+        return np.where(never, np.array([[1.0], [0.0], [0.0]]), fractions)
     drive, back = np.split(np.where(never, 0.0, touching), 2)
-    wedged = np.minimum(shares[2, : drive.size], np.minimum(drive, back))
+    wedged = np.minimum(fractions[2, : drive.size], np.minimum(drive, back))
     return np.stack([1.0 - drive - back + wedged, drive, back])
 
 
-def _never_pressed(depths: Array, shares: Array) -> Mask:
-    """Which contacts touch for longer than a sample (shares (m,)) without ever being pressed by more than
+def _never_pressed(depths: Array, fractions: Array) -> Mask:
+    """Which contacts touch for longer than a sample (fractions (m,)) without ever being pressed by more than
     rounding; depths (K, m) beyond the edge.
     """
     deepest = depths.max(axis=0)
-    return (deepest <= NO_LOAD * max(float(deepest.max()), 0.0)) & (shares * len(depths) > 1.0)
+    return (deepest <= NO_LOAD * max(float(deepest.max()), 0.0)) & (fractions * len(depths) > 1.0)

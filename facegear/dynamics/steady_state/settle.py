@@ -25,7 +25,7 @@ MAX_KICKS = 2
 LONGER = 4
 """A run that comes nearer and nearer is watched for so many times as long."""
 CREEP = 0.01
-"""Where Newton's method finds no orbit the change over a period must fall to this share of the goal."""
+"""Where Newton's method finds no orbit the change over a period must fall to this fraction of the goal."""
 NOISE, DRAWN = 50.0, 0.95
 """Steps chosen anew in each period may move a run by NOISE times the tolerance; an orbit whose multipliers
 are below DRAWN holds it there. They also push a body along its neutral direction on and on."""

@@ -20,7 +20,7 @@ from facegear.dynamics.steady_state.mesh_samples import (
     by_mesh,
     each_deflection,
     mesh_forces,
-    mesh_shares,
+    mesh_fractions,
     past_law,
 )
 from facegear.dynamics.steady_state.prepare import prepare
@@ -41,7 +41,7 @@ class SteadyState:
     """The response over `periods` mesh periods (the orbit's own period, else the window), sampled evenly.
 
     samples K = periods * per_period: deflections (K, meshes) in m with e(t) taken off, coordinates (K, n) of
-    the system; displacements(machine) gives all DOF. shares (3, meshes): fraction of time open, on the drive
+    the system; displacements(machine) gives all DOF. fractions (3, meshes): of time open, on the drive
     flank, on the back flank. residual: change over the period, over the length scale. multipliers (2 n,) of a
     refined periodic orbit. exponent: largest Lyapunov exponent per mesh period with its 95 % half-width, for
     motions that are not periodic. periods_run: for how many mesh periods the motion was watched in all before
@@ -58,7 +58,7 @@ class SteadyState:
     deflections: Array
     coordinates: Array
     averages: Averages
-    shares: Array
+    fractions: Array
     multipliers: ComplexArray | None
     liouville: float | None
     exponent: tuple[float, float] | None
@@ -197,7 +197,7 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
             force=window.averages.force * frequency**2,
             pull=window.averages.pull * frequency**2,
         ),
-        shares=mesh_shares(system, window.shares[:, : system.contacts], each),
+        fractions=mesh_fractions(system, window.fractions[:, : system.contacts], each),
         multipliers=orbit.multipliers if orbit else None,
         liouville=orbit.liouville if orbit else None,
         exponent=(exponent.value, exponent.half_width) if exponent else None,

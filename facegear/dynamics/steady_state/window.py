@@ -17,15 +17,15 @@ FINENESS = 3.0
 
 @dataclass(frozen=True, eq=False)
 class Window:
-    """Whole mesh periods: samples (periods * per_period, n) of y, shares (3, m) of time, ends (periods, 2, n)
-    of each period by phase, exact averages, logarithmic growth (periods,) of a disturbance, if one was run,
-    and the disturbance (1, 2, n) at the end.
+    """Whole mesh periods: samples (periods * per_period, n) of y, fractions (3, m) of time, ends (periods, 2,
+    n) of each period by phase, exact averages, logarithmic growth (periods,) of a disturbance, if one was
+    run, and the disturbance (1, 2, n) at the end.
     """
 
     periods: int
     per_period: int
     samples: Array
-    shares: Array
+    fractions: Array
     ends: Array
     averages: Averages
     growth: Array
@@ -53,7 +53,7 @@ def run_window(
         periods=periods,
         per_period=per_period,
         samples=result.samples,
-        shares=result.fractions,
+        fractions=result.fractions,
         ends=result.ends,
         averages=averages(integrator, result.sums, periods),
         growth=result.growth,

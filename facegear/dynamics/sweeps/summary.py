@@ -13,7 +13,7 @@ PULLS = 1e-3
 
 
 def response_summary(response: SteadyState) -> str:
-    """Class of motion with the evidence for it, largest share of time out of contact, pull of the dampers."""
+    """Class of motion with its evidence, largest fraction of time out of contact, pull of the dampers."""
     parts = [response.label, f"change over the period {response.residual:.1e} of the length scale"]
     if response.multipliers is not None:
         parts.append(f"leading multiplier {abs(response.multipliers[0]):.4f}")
@@ -23,7 +23,7 @@ def response_summary(response: SteadyState) -> str:
         parts.append(
             f"largest exponent {response.exponent[0]:.3f} +- {response.exponent[1]:.3f} a mesh period"
         )
-    parts.append(f"open for up to {100.0 * response.shares[0].max():.0f} % of the time")
+    parts.append(f"open for up to {100.0 * response.fractions[0].max():.0f} % of the time")
     past = float(response.past_law.max())
     if past > 0.0:
         parts.append(f"past the mesh law's last level for up to {100.0 * past:.2g} % of the time")

@@ -25,7 +25,7 @@ class Piece:
     (P, M): moments of the mesh deflections, m. mean_force, mean_force_magnitude (P, M) of the elastic mesh
     forces, without the damper's part, N; largest_force (P, M): largest magnitude of their samples.
     largest_pull (P, M): largest force by which the damper of a contact pulls its flanks together, N.
-    open_share, drive_share, back_share (P, M) of the time; past_law_share (P, M) of the samples at which a
+    open_fraction, drive_fraction, back_fraction (P, M) of the time; past_law_share (P, M) of the samples at which a
     mesh is pressed in past the last level of its law. translation_* (P, B, 3): moments of x, y, z, m.
     residual, periods_run (P,); leading_multiplier, exponent_per_period, exponent_interval (P,): NaN where
     there is none. spectrum (P, M, orders), m. modal (P, modes): RMS velocity scale omega * coordinate of
@@ -47,9 +47,9 @@ class Piece:
     mean_force_magnitude: Array
     largest_force: Array
     largest_pull: Array
-    open_share: Array
-    drive_share: Array
-    back_share: Array
+    open_fraction: Array
+    drive_fraction: Array
+    back_fraction: Array
     past_law_share: Array
     translation_rms: Array
     translation_ac_rms: Array
@@ -157,7 +157,7 @@ def _row(
         **dict(zip(("mean_force", "mean_force_magnitude"), response.mean_forces, strict=True)),
         "largest_force": np.abs(response.forces).max(axis=0),
         "largest_pull": response.averages.pull,
-        **dict(zip(("open_share", "drive_share", "back_share"), response.shares, strict=True)),
+        **dict(zip(("open_fraction", "drive_fraction", "back_fraction"), response.fractions, strict=True)),
         "past_law_share": response.past_law,
         **dict(zip((f"translation_{name}" for name in TRANSLATION), moved, strict=True)),
         "residual": response.residual,

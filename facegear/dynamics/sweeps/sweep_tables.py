@@ -19,7 +19,7 @@ PER_MESH = {
     "mean_elastic_force_magnitude_n": (1.0, "mean_force_magnitude"),
     "largest_elastic_force_n": (1.0, "largest_force"),
     "largest_pull_n": (1.0, "largest_pull"),
-    **{name: (1.0, name) for name in ("open_share", "drive_share", "back_share")},
+    **{name: (1.0, name) for name in ("open_fraction", "drive_fraction", "back_fraction")},
 }
 """Quantity of the table: factor to its unit, and field of a Piece."""
 PER_SPEED = ("residual", "leading_multiplier", "exponent_per_period", "exponent_interval", "periods_run")
@@ -75,7 +75,7 @@ JUMP_COLUMNS = (
     "leading_multiplier_before",
     "resonance",
     "resonance_rpm",
-    "energy_share",
+    "energy_fraction",
     "mode",
     "order",
     "periodic_before",
@@ -90,7 +90,7 @@ RESONANCE_COLUMNS = (
     "class",
     "resonance",
     "resonance_rpm",
-    "energy_share",
+    "energy_fraction",
     "mode",
     "order",
     "periodic",
@@ -149,7 +149,7 @@ def _belongs(resonance: Resonance) -> dict[str, str | int | float]:
     return {
         "resonance": resonance.name,
         "resonance_rpm": resonance.predicted_rpm,
-        "energy_share": resonance.fraction,
+        "energy_fraction": resonance.fraction,
         "mode": resonance.mode,
         "order": resonance.order,
     }

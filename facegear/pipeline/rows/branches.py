@@ -41,7 +41,7 @@ ROWS = (
                 text=("meshes", "edge", "proof"),
             ),
             "coexistence": File(
-                "branches/coexistence.csv", ("speed_rpm", "share", "error"), text=("branch", "motion")
+                "branches/coexistence.csv", ("speed_rpm", "fraction", "error"), text=("branch", "motion")
             ),
             "ranges": File(
                 "branches/ranges.csv", ("from_rpm", "to_rpm"), may_be_empty=True, text=("branches",)
@@ -79,7 +79,7 @@ ROWS = (
         },
         figures=Figures(
             draw="facegear.plots.branches:figures",
-            names=("branches", "branch_loci", "branch_shares", "branch_multipliers"),
+            names=("branches", "branch_loci", "branch_fractions", "branch_multipliers"),
             chapter="branches",
             upstream={
                 **from_stage("branches", "branches", "special", "coexistence"),

@@ -73,7 +73,7 @@ ROWS = (
         files={
             "meshes": File(
                 "load_sharing/hunting_meshes.csv",
-                ("mean_n", "drive_share", "back_share"),
+                ("mean_n", "drive_fraction", "back_fraction"),
                 text=("mesh", "group"),
             ),
             "groups": File("load_sharing/hunting_groups.csv", ("torque_n_m",), text=("group", "kind")),

@@ -44,7 +44,7 @@ ROWS = (
     ),
     Stage(
         name="tolerances",
-        title="Percentiles, shares and Sobol indices",
+        title="Percentiles, fractions and Sobol indices",
         needs={"tolerances": "tolerances"},
         section="tolerances",
         upstream={
@@ -59,7 +59,7 @@ ROWS = (
                 may_be_empty=True,
                 text=("quantity",),
             ),
-            "shares": File("tolerances/shares.csv", ("share",)),
+            "fractions": File("tolerances/fractions.csv", ("fraction",)),
             "importance": File("tolerances/importance.csv", text=("quantity", "cause")),
             "indices": File("tolerances/indices.csv", may_be_empty=True, text=("quantity", "cause")),
             "sampling": File("tolerances/sampling.csv", may_be_empty=True),
@@ -86,7 +86,9 @@ ROWS = (
                 may_be_empty=True,
                 text=("quantity",),
             ),
-            "load_shares": File("tolerances/load_shares.csv", ("torque_factor", "speed_rpm", "share")),
+            "load_fractions": File(
+                "tolerances/load_fractions.csv", ("torque_factor", "speed_rpm", "fraction")
+            ),
             "load_sampling": File("tolerances/load_sampling.csv", may_be_empty=True),
         },
         figures=Figures(

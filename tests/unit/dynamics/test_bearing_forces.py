@@ -87,7 +87,7 @@ def test_mean_forces_on_bearings_balance_torques_and_meshes(kinematics, error, b
     options = {"tail_share": tail, "error": error, "open_flanks": OpenFlanks.ALWAYS}
     model = build_model(make_machine(layout, 1500.0, **options))
     found = simulate(model, speed, Settings(tolerance=1e-10, samples=256))
-    assume(found.motion is Motion.PERIODIC and found.shares.sum(axis=0).max() <= 1.0)
+    assume(found.motion is Motion.PERIODIC and found.fractions.sum(axis=0).max() <= 1.0)
     pulls = flank_means(found) @ flank_jacobian(layout)
     mean = bearing_history(model, found).mean(axis=0)
     agrees(

@@ -5,7 +5,7 @@ import pytest
 from lumped_machines import make_layout, make_machine
 
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.mesh_samples import each_deflection, mesh_shares
+from facegear.dynamics.steady_state.mesh_samples import each_deflection, mesh_fractions
 from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.transmission.teeth import GEOMETRIC
 
@@ -21,7 +21,7 @@ def test_a_mesh_is_open_while_neither_flank_touches_though_both_do_at_other_time
     drive, back = np.split(touching, 2, axis=1)
     assert (drive & back).mean(axis=0).max() > 0.02, "this machine wedges"
     counted = np.stack([~drive & ~back, drive, back]).mean(axis=1)
-    np.testing.assert_allclose(found.shares, counted, atol=4.0 / 1024)
+    np.testing.assert_allclose(found.fractions, counted, atol=4.0 / 1024)
 
 
 def test_a_flank_that_rounding_alone_presses_is_open():
@@ -33,8 +33,8 @@ def test_a_flank_that_rounding_alone_presses_is_open():
     shares = np.zeros((3, 20))
     shares[1, :2] = 1.0
     shares[0] = 1.0 - shares[1]
-    found = mesh_shares(system, shares, depths + system.upper[:20])
+    found = mesh_fractions(system, shares, depths + system.upper[:20])
     np.testing.assert_array_equal(found[:, 0], [0.0, 1.0, 0.0])
     np.testing.assert_array_equal(found[:, 1], [1.0, 0.0, 0.0])
     shares[:, 2] = [1.0 - 1e-3, 1e-3, 0.0]  # a touch between two samples counts
-    assert mesh_shares(system, shares, depths + system.upper[:20])[1, 2] == 1e-3
+    assert mesh_fractions(system, shares, depths + system.upper[:20])[1, 2] == 1e-3

@@ -170,6 +170,6 @@ def test_a_machine_says_how_far_its_dampers_pull_and_never_pulls_where_it_may_on
     pushing = build_model(machine_of(OpenFlanks.PUSH_ONLY, kinematics))
     response = simulate(pushing, speed, settings)
     assert response.averages.pull.max() < 1e-8 * np.abs(response.forces).max()
-    assert response.shares[0].max() > 0.0
+    assert response.fractions[0].max() > 0.0
     cut = contact_forces(pushing, response, 16)
     assert (cut < 0.0).any()  # where they would pull, they do not: the motion is that of SciPy, above

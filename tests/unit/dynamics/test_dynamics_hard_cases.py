@@ -165,12 +165,12 @@ def test_grazing_within_a_millionth_of_the_edge(miss):
     if miss > 0:
         agrees("smallest displacement", least, 1.0 + miss, absolute=1e-11)
         agrees("largest displacement", most, 1.0 + 2 * mean - miss, absolute=1e-11)
-        assert response.shares[0, 0] == 0.0
+        assert response.fractions[0, 0] == 0.0
     else:
         assert 1.0 - 1.2e-6 < least < 1.0
         # A parabola that dips by 1e-6 below the edge with the curvature of the cosine.
         share = 2 * np.sqrt(2e-6 / mean) / (2 * np.pi)
-        agrees("fraction of the time beyond the edge", response.shares[0, 0], share, relative=0.02)
+        agrees("fraction of the time beyond the edge", response.fractions[0, 0], share, relative=0.02)
 
 
 @against(
@@ -195,7 +195,7 @@ def test_without_error_and_backlash_only_the_scale_depends_on_torque():
 
 def test_a_body_afloat_in_its_backlash_is_periodic_with_a_neutral_multiplier():
     response = simulate(make_machine(torque=300.0), 2000.0)
-    assert response.shares[0].max() == pytest.approx(1.0)
+    assert response.fractions[0].max() == pytest.approx(1.0)
     assert response.motion is Motion.PERIODIC
     assert abs(response.multipliers[0]) == pytest.approx(1.0, abs=1e-6)
 

@@ -160,7 +160,7 @@ def test_steps_that_alternate_do_not_make_a_motion_of_twice_its_period(refine):
 def test_a_body_afloat_that_the_steps_push_on_and_on_is_no_torus(tolerance):
     hasty = Settings(tolerance=tolerance, settle=256, window=160, periodic_residual=1e-5, samples=32)
     found = simulate(make_machine(torque=900.0), 175.0, replace(hasty, extensions=1))
-    assert found.shares[0].max() == pytest.approx(1.0)
+    assert found.fractions[0].max() == pytest.approx(1.0)
     assert found.label == "period-1"
 
 

@@ -142,7 +142,7 @@ def test_tables_name_every_mesh_and_unit(model, whole):
     assert list(table.columns) == columns
     assert (table["periodic"] == table["class"].str.startswith("period-")).all()
     assert set(layout.mesh_names) <= set(table["body_or_mesh"])
-    shares = table[table["quantity"].isin(["open_share", "drive_share", "back_share"])]
+    shares = table[table["quantity"].isin(["open_fraction", "drive_fraction", "back_fraction"])]
     total = shares.groupby(["speed_rpm", "body_or_mesh"])["value"].sum()
     np.testing.assert_allclose(total, 1.0, atol=1e-9)
     jumps = jump_table(layout, "up", whole["up"], natural_modes(layout, 4.1e8))

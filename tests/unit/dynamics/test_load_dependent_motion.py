@@ -60,11 +60,11 @@ def test_a_body_between_two_flanks_swings_with_the_period_of_the_closed_form():
     agrees("distance from the start after a period", run.state, state, absolute=1e-9)
     agrees("largest displacement", run.sums.maximum[0], 0.3 + 0.91461010385465, absolute=1e-9)
     agrees("smallest displacement", run.sums.minimum[0], -0.3 - 0.91461010385465, absolute=1e-9)
-    open_share = 4.0 * 0.3 / 0.8 / 8.2298730550201
+    open_fraction = 4.0 * 0.3 / 0.8 / 8.2298730550201
     agrees(
         "fractions of the time on the flanks",
         run.fractions[:, 0],
-        [open_share, *2 * [0.5 - 0.5 * open_share]],
+        [open_fraction, *2 * [0.5 - 0.5 * open_fraction]],
         absolute=1e-9,
     )
 

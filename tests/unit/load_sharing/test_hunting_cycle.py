@@ -64,7 +64,7 @@ def test_paths_that_carry_nothing_have_no_ratio_and_a_mesh_load_factor_of_zero()
     assert groups.loc["idlers", "k_gamma"] == 0.0 and np.isnan(groups.loc["idlers", "group_ratio"])
     meshes = mesh_table(found)
     idlers = meshes[meshes["mesh"].str.contains("idler/")]
-    assert (idlers["open_share"] == 1.0).all() and (idlers["drive_share"] == 0.0).all()
+    assert (idlers["open_fraction"] == 1.0).all() and (idlers["drive_fraction"] == 0.0).all()
 
 
 def test_meshes_without_an_even_share_have_no_mesh_load_factor_in_tables(monkeypatch):
@@ -184,9 +184,9 @@ def test_tables_tell_loads_factors_and_bearings_of_every_part():
     meshes, groups, bearings = mesh_table(run), group_table(run), bearing_table(run)
     assert list(meshes["mesh"]) == list(LAYOUT.mesh_names)
     assert list(bearings["body"]) == list(LAYOUT.body_names)
-    assert (meshes["drive_share"] + meshes["back_share"] + meshes["open_share"]).to_numpy() == pytest.approx(
-        1
-    )
+    assert (
+        meshes["drive_fraction"] + meshes["back_fraction"] + meshes["open_fraction"]
+    ).to_numpy() == pytest.approx(1)
     inputs = groups[groups["kind"] == "inputs"]
     assert ((inputs["largest"] >= 1.0) & (inputs["largest"] <= 2.0)).all()
     mean = cycle_table(run).drop(columns="cycle").to_numpy()[0]

@@ -112,7 +112,7 @@ def test_inputs_named_under_a_load_sharing_figure_stay_inside_it_and_leave_its_a
             "mean": [1.5],
             "motion": ["period-1"],
             "half_width": [0.0],
-            "undefined_share": [0.5],
+            "undefined_fraction": [0.5],
         }
     )
     caption = "; ".join(["mesh stiffness source fem_scaled, mean 4.1e+08 N/m"] * inputs)

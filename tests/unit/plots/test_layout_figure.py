@@ -20,7 +20,7 @@ def drawn(gears, names):
     torque = {"per_input_n_m": 1000.0, "tail_share": 0.0}
     section = {**values["transmission"], "pinions": pinions, "face_gears": gears, "torque": torque}
     layout = wired_layout(section, {key: values["tooth_pair"][key] for key in TEETH})
-    meshes = {"mesh": layout.mesh_names, "mean_n": 9e3, "drive_share": 1.0, "back_share": 0.0}
+    meshes = {"mesh": layout.mesh_names, "mean_n": 9e3, "drive_fraction": 1.0, "back_fraction": 0.0}
     forces = {"body": layout.body_names, "mean_x_n": 8e3, "mean_y_n": -3e3, "mean_z_n": 1e3}
     return layout_figure(layout, pd.DataFrame(meshes), pd.DataFrame(forces)), layout.mesh_radius
 

@@ -60,7 +60,7 @@ def test_a_map_of_a_machine_of_one_mesh_shows_its_force():
 
 
 def test_what_comes_once_a_machine_stands_after_the_worst_paths():
-    columns = ["te_peak_to_peak_um", "open_share", OTHER, "pressure_mpa", WORST, "peak_mesh_force_n"]
+    columns = ["te_peak_to_peak_um", "open_fraction", OTHER, "pressure_mpa", WORST, "peak_mesh_force_n"]
     values = [5.0, 0.0, 1.3, 1500.0, 1.4, 2e4]
     found = worst_first(pd.DataFrame({"quantity": columns, "percentile": 99.0, "value": values}))
     assert found == [WORST, OTHER, "peak_mesh_force_n", "pressure_mpa", "te_peak_to_peak_um"]

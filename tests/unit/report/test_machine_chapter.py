@@ -169,7 +169,7 @@ def test_a_machine_whose_output_is_a_pinion_shows_its_torque_and_ratio(example):
 def sweep_table(periodic, **open_shares):
     """A sweep up and down over speeds, with shares of time out of contact by mesh."""
     rows = [
-        (direction, 1000.0 * i, "open_share", mesh, share, regular)
+        (direction, 1000.0 * i, "open_fraction", mesh, share, regular)
         for direction in ("up", "down")
         for mesh, shares in open_shares.items()
         for i, (share, regular) in enumerate(zip(shares, periodic, strict=True))
@@ -218,11 +218,11 @@ def test_a_jump_far_from_a_linear_resonance_is_not_given_its_speed():
             "class_before": "period-1",
             "class_after": "period-1",
             "resonance": ["mode 28 at 1x", "mode 19 at 1x"],
-            "energy_share": 0.5,
+            "energy_fraction": 0.5,
             "resonance_rpm": [16925.0, 12443.0],
         }
     )
     (table,) = case_tables("Nominal response and speed sweeps", {"jumps": jumps}, 7500.0)
-    assert table.header()[-3:] == ["moves most", "energy share", "linear resonance (rpm)"]
+    assert table.header()[-3:] == ["moves most", "energy fraction", "linear resonance (rpm)"]
     assert [row[-1] for row in table.rows()] == ["", "12443"]
     assert not case_tables("Nominal response and speed sweeps", {"jumps": jumps[:0]}, 7500.0)[0].rows()

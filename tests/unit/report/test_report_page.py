@@ -73,5 +73,5 @@ def test_text_of_pictures_keeps_its_size_on_a_telephone(tmp_path):
 
 
 def test_rounding_is_written_as_zero_and_small_numbers_of_their_own_unit_are_kept():
-    frame = pd.DataFrame({"mean_n": [3.3e-12, 2.1e4], "rms_n": [10.2, 0.5], "energy_share": [1e-12, 0.1]})
+    frame = pd.DataFrame({"mean_n": [3.3e-12, 2.1e4], "rms_n": [10.2, 0.5], "energy_fraction": [1e-12, 0.1]})
     assert Table("T", frame).rows() == [["0", "10.2", "1e-12"], ["21000", "0.5", "0.1"]]

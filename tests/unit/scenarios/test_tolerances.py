@@ -126,8 +126,8 @@ def test_a_sample_that_cannot_be_built_is_a_row_with_its_error_and_is_counted():
     told = found.samples()["error"]
     assert 0 < (told != "").sum() < len(told)
     assert all("jams" in text or "um between" in text for text in told[told != ""])
-    shares = found.content["shares"].set_index("what")
-    assert shares.loc["cannot be built or computed", "share"] == (told != "").mean()
+    shares = found.content["fractions"].set_index("what")
+    assert shares.loc["cannot be built or computed", "fraction"] == (told != "").mean()
     assert (found.table()["samples"] == (told == "").sum()).all()
 
 
@@ -155,7 +155,7 @@ def test_a_few_mesh_cycles_hold_the_largest_factor_of_the_whole_hunting_cycle():
     assert (spread.cycle_means.max(axis=0) < 0.99 * whole_means.max(axis=0)).any()
     row = found.content["sampling"].iloc[0]
     assert row["quantity"] == "k_gamma" and row["samples"] == 3 and row["largest_missed"] < 1e-9
-    assert "miss at most k_gamma" in found.summary and "open_share" in found.summary
+    assert "miss at most k_gamma" in found.summary and "open_fraction" in found.summary
 
 
 def test_what_the_cycles_taken_miss_is_measured(monkeypatch):
@@ -180,7 +180,7 @@ def test_a_load_map_measures_at_every_load_what_the_cycles_taken_miss():
     factors = [name for name in whole if name.startswith("k_gamma ")]
     ratios = whole[factors] / taken[factors]
     assert missed[0.1, "k_gamma"] == pytest.approx(ratios.to_numpy().max() - 1.0, abs=1e-12)
-    for name in ("open_share", "reversed_share"):
+    for name in ("open_fraction", "reversed_fraction"):
         off = (whole[name] - taken[name]).abs().max()
         assert missed[0.1, name] == pytest.approx(off, abs=1e-12)
     assert missed[0.1].max() > 0.005
@@ -248,7 +248,7 @@ def test_the_loosest_tolerances_of_a_linear_machine_are_those_of_the_closed_form
 def test_a_map_of_loads_holds_the_machine_of_each_torque_and_the_closed_form():
     gearbox = machine([RIGHT], hunting_cycles=1)
     found = gearbox.load_map([0.01, 0.5, 1.0, 2.0], samples=16)
-    opened = found.shares().query("what.str.contains('opens')").set_index("torque_factor")["share"]
+    opened = found.fractions().query("what.str.contains('opens')").set_index("torque_factor")["fraction"]
     assert opened[0.01] == 1.0 and opened[2.0] == 0.0, "hardly loaded, the play opens a mesh"
     table = found.table()
     name = "k_gamma right input/upper"
@@ -316,7 +316,7 @@ def test_a_machine_none_of_whose_samples_can_be_built_has_empty_tables_and_figur
     assert (found.samples()["error"] != "").all()
     assert found.table().empty and "4 failed; the first by: this sample: backlash_um" in found.summary
     assert len(found.summary.splitlines()) == 1
-    shares = found.content["shares"].set_index("what")["share"]
+    shares = found.content["fractions"].set_index("what")["fraction"]
     assert shares.to_dict() == {"cannot be built or computed": 1.0}
     for kind in ("distributions", "importance", "scatter"):
         plt.close(found.plot(kind))

@@ -25,7 +25,7 @@ REPORTED = {
     "contact": ["ltca", "by_torque"],
     "root_stress": ["summary"],
     "contact_studies": ["table"],
-    "tolerances": ["percentiles", "shares", "sampling"],
+    "tolerances": ["percentiles", "fractions", "sampling"],
     "lubrication": ["by_torque", "limits"],
     "machine_loss": ["machine", "meshes", "bodies"],
     "friction_studies": ["table"],
