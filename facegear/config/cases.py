@@ -8,7 +8,7 @@ from typing import Any
 
 from facegear.config.base import parse, suggestion
 from facegear.config.model import Config, resolved
-from facegear.config.studies import Point, Study
+from facegear.config.studies import Study, StudyPoint
 from facegear.errors import ConfigError, ConfigErrors
 
 
@@ -50,9 +50,9 @@ def changed_config(base: Mapping[str, Any], changes: Mapping[str, Any], where: s
     return parse(Config, changed, source=where)
 
 
-def study_points(study: Study) -> dict[str, Point]:
+def study_points(study: Study) -> dict[str, StudyPoint]:
     """Folder name -> label and keys it sets, for the product of the study's axes."""
-    points: dict[str, Point] = {}
+    points: dict[str, StudyPoint] = {}
     for combination in itertools.product(*(axis.resolved() for axis in study.axes)):
         labels = [
             f"{axis.label} = {point.label}" if axis.key else point.label
@@ -61,7 +61,7 @@ def study_points(study: Study) -> dict[str, Point]:
         name = "__".join(folder_name(point.label) for point in combination)
         if name in points:
             raise ConfigErrors("studies", [f"{study.name}: two points are both called {name!r}"])
-        points[name] = Point(
+        points[name] = StudyPoint(
             label=", ".join(labels),
             set={key: value for point in combination for key, value in point.set.items()},
         )

@@ -10,7 +10,7 @@ LARGEST_FILE = 2_000_000
 """Bytes that are read at most."""
 
 
-class Row(NamedTuple):
+class CsvRow(NamedTuple):
     """One line of the file, counted from 1, and its numbers by column."""
 
     line: int
@@ -21,7 +21,7 @@ class CsvFault(Exception):
     """Why a file cannot be used, with the line where there is one; the text is one line."""
 
 
-def read_numbers(path: str | Path, columns: Sequence[str]) -> list[Row]:
+def read_numbers(path: str | Path, columns: Sequence[str]) -> list[CsvRow]:
     """The finite numbers of the named columns; other columns may stand beside them and are left alone.
 
     Raises CsvFault naming the line.
@@ -44,11 +44,11 @@ def read_numbers(path: str | Path, columns: Sequence[str]) -> list[Row]:
     return rows
 
 
-def _row(line: int, header: Sequence[str], cells: Sequence[str], columns: Sequence[str]) -> Row:
+def _row(line: int, header: Sequence[str], cells: Sequence[str], columns: Sequence[str]) -> CsvRow:
     if len(cells) != len(header):
         raise CsvFault(f"line {line}: {len(cells)} values under {len(header)} column names")
     by_column = dict(zip(header, cells, strict=True))
-    return Row(line, {name: _number(line, name, by_column[name]) for name in columns})
+    return CsvRow(line, {name: _number(line, name, by_column[name]) for name in columns})
 
 
 def _number(line: int, name: str, text: str) -> float:

@@ -203,10 +203,10 @@ class Config(Section):
         sweep = self.dynamics.sweep
         if self.strength is None or self.strength.load_factors != "machine":
             return
-        for number, one in enumerate(self.strength.duty):
-            if not sweep.from_rpm <= one.speed_rpm <= sweep.to_rpm:
+        for number, load in enumerate(self.strength.duty):
+            if not sweep.from_rpm <= load.speed_rpm <= sweep.to_rpm:
                 allowed = f"within dynamics.sweep, {sweep.from_rpm:g} to {sweep.to_rpm:g}"
-                raise ConfigError(f"strength.duty[{number}].speed_rpm", one.speed_rpm, allowed)
+                raise ConfigError(f"strength.duty[{number}].speed_rpm", load.speed_rpm, allowed)
 
     def _check_machine(self) -> None:
         pair, machine = self.tooth_pair, self.transmission
@@ -228,9 +228,9 @@ class Config(Section):
             raise ConfigError("transmission.backlash_um", None, allowed)
         errors = {"transmission_error": machine.transmission_error}
         errors |= {
-            f"single_meshes.{name}.transmission_error": one.transmission_error
-            for name, one in machine.single_meshes.items()
-            if one.transmission_error is not None
+            f"single_meshes.{name}.transmission_error": mesh.transmission_error
+            for name, mesh in machine.single_meshes.items()
+            if mesh.transmission_error is not None
         }
         for key, error in errors.items():
             if error.source == "from_contact" and self.mesh_stiffness.source == "harmonics":

@@ -8,11 +8,11 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
-from facegear.config.csv_file import CsvFault, Row, read_numbers
+from facegear.config.csv_file import CsvFault, CsvRow, read_numbers
 from facegear.harmonics.series import Harmonics
 from facegear.stiffness.request import StiffnessRequest
 
-HIGHEST_ORDER = 512
+MAX_ORDER = 512
 SOFTEST = 1e5
 """Mean stiffness (N/m) below which no pair of gears is: a pinion of 1 mm in plastic has ten times as much."""
 SAME_MEAN = 1e-6
@@ -24,7 +24,7 @@ Amplitude = Annotated[float, Field(ge=-1e12, le=1e12)]
 class HarmonicSection(Section):
     """One order of k(t) = sum a sin(order w t) + b cos(order w t); order 0 is the mean, its a is 0."""
 
-    order: int = Field(ge=0, le=HIGHEST_ORDER)
+    order: int = Field(ge=0, le=MAX_ORDER)
     a_n_per_m: Amplitude = 0.0
     b_n_per_m: Amplitude = 0.0
 
@@ -63,12 +63,12 @@ class MeshStiffness(Section):
     definition: Literal["average", "local"] = Field(
         default="average", description="F / deflection, or its slope dF / d deflection at that load"
     )
-    harmonics_kept: int = Field(default=8, ge=0, le=HIGHEST_ORDER)
+    harmonics_kept: int = Field(default=8, ge=0, le=MAX_ORDER)
     variation: float = Field(
         default=1.0, ge=0, le=100, description="factor on k(t) about its mean; 1: as computed or given"
     )
     table: tuple[HarmonicSection, ...] = Field(
-        default=(), max_length=HIGHEST_ORDER + 1, description="for source harmonics: orders rising"
+        default=(), max_length=MAX_ORDER + 1, description="for source harmonics: orders rising"
     )
     csv: str | None = Field(
         default=None,
@@ -109,17 +109,17 @@ class MeshStiffness(Section):
             return self
         if not self.table:
             refuse("table", [], "given, here or in csv, where source is harmonics")
-        for number, (one, following) in enumerate(pairwise(self.table)):
-            if following.order <= one.order:
+        for number, (terms, following) in enumerate(pairwise(self.table)):
+            if following.order <= terms.order:
                 refuse(f"table[{number + 1}].order", following.order, "above the order before it")
         _check_mean(self.mean_n_per_m, self.table[0])
         if (mean := self.mean) is not None and mean < SOFTEST:
             allowed = f"at least {SOFTEST:g} N/m; values in N/um are a million times too small"
             refuse("csv or table" if self.mean_n_per_m is None else "mean_n_per_m", mean, allowed)
-        lowest = given_series(self).kept(self.harmonics_kept).varied(self.variation).minimum
-        if lowest <= 0.0:
-            told = "harmonics so small beside the mean that k(t) stays positive"
-            refuse("table", f"k(t) falls to {lowest:.4g} N/m", told)
+        minimum = given_series(self).kept(self.harmonics_kept).varied(self.variation).minimum
+        if minimum <= 0.0:
+            condition = "harmonics so small beside the mean that k(t) stays positive"
+            refuse("table", f"k(t) falls to {minimum:.4g} N/m", condition)
         return self
 
     @property
@@ -170,11 +170,11 @@ def _check_mean(mean: float | None, first: HarmonicSection) -> None:
         given = [first.a_n_per_m, first.b_n_per_m]
         refuse("table", given, "0 for a_n_per_m of order 0, and the mean, above 0, for its b_n_per_m")
     if mean is not None and abs(mean / first.b_n_per_m - 1.0) > SAME_MEAN:
-        told = f"the same as order 0 of the harmonics, {first.b_n_per_m:.10g}, or left out"
-        refuse("mean_n_per_m", mean, told)
+        condition = f"the same as order 0 of the harmonics, {first.b_n_per_m:.10g}, or left out"
+        refuse("mean_n_per_m", mean, condition)
 
 
-def _harmonics(rows: Sequence[Row]) -> tuple[dict[str, Any], ...]:
+def _harmonics(rows: Sequence[CsvRow]) -> tuple[dict[str, Any], ...]:
     """Rows of `table` from those of a csv, in any order there."""
     lines: dict[int, int] = {}
     table = []
@@ -187,12 +187,10 @@ def _harmonics(rows: Sequence[Row]) -> tuple[dict[str, Any], ...]:
     return tuple(sorted(table, key=lambda harmonic: harmonic["order"]))
 
 
-def _harmonic(row: Row) -> dict[str, Any]:
+def _harmonic(row: CsvRow) -> dict[str, Any]:
     order = row.values["order"]
-    if order != round(order) or not 0 <= order <= HIGHEST_ORDER:
-        raise CsvFault(
-            f"line {row.line}: order = {order:.10g} is not a whole number from 0 to {HIGHEST_ORDER}"
-        )
+    if order != round(order) or not 0 <= order <= MAX_ORDER:
+        raise CsvFault(f"line {row.line}: order = {order:.10g} is not a whole number from 0 to {MAX_ORDER}")
     for name in COLUMNS[1:]:
         if abs(row.values[name]) > 1e12:
             raise CsvFault(f"line {row.line}: {name} = {row.values[name]:g} is beyond 1e12")

@@ -9,7 +9,7 @@ from facegear.config.base import Section, refuse
 NAME = r"^[a-z][a-z0-9_]{0,39}$"
 
 
-class Point(Section):
+class StudyPoint(Section):
     """One value of an axis: a label for the figures and the keys it sets."""
 
     label: str = Field(min_length=1, max_length=160)
@@ -22,7 +22,7 @@ class Axis(Section):
     label: str = Field(min_length=1, max_length=60)
     key: str | None = Field(None, description="dotted config key, such as transmission.backlash_um")
     values: tuple[Any, ...] = ()
-    points: tuple[Point, ...] = ()
+    points: tuple[StudyPoint, ...] = ()
 
     @model_validator(mode="after")
     def _one_form(self) -> "Axis":
@@ -35,10 +35,10 @@ class Axis(Section):
             refuse("points", labels, "points whose labels differ")
         return self
 
-    def resolved(self) -> tuple[Point, ...]:
+    def resolved(self) -> tuple[StudyPoint, ...]:
         """The axis as labelled points."""
         if self.key:
-            return tuple(Point(label=f"{value}", set={self.key: value}) for value in self.values)
+            return tuple(StudyPoint(label=f"{value}", set={self.key: value}) for value in self.values)
         return self.points
 
 

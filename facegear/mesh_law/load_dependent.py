@@ -72,7 +72,7 @@ class ForceTable:
         return float(np.hypot(self.bounds[:, 0], self.bounds[:, 1]).sum(axis=1).max())
 
     @cached_property
-    def least_slope(self) -> float:
+    def min_slope(self) -> float:
         """Smallest slope at LOOKS phases for each harmonic and as many amounts between two levels, N/m."""
         count = LOOKS * self.forces.shape[2]
         values = _values(self.coefficients[:, 1:], np.arange(count) / count)

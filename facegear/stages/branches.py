@@ -43,14 +43,14 @@ def branches(
     model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction, law=law))
     plan, layout = branch_plan(branches, speed_rpm), model.machine.layout
     period_map, swept_plan = machine_period_map(model, plan), sweep_plan(sweep)
-    found = [from_arrays(period_map, one) for one in starts]
+    starting = [from_arrays(period_map, arrays) for arrays in starts]
     stored = iter(chunks)
     pieces = {
         name: [chunk_from_arrays(next(stored))[1] for _ in range(swept_plan.chunks)]
         for name in swept_plan.directions
     }
     swept = swept_motions(period_map, pieces, plan.from_rpm, plan.to_rpm)
-    seen = machine_survey(model, plan, found, swept, tell)
+    seen = machine_survey(model, plan, starting, swept, tell)
     ranges, stability_limits = several(seen.branches), margins(model, plan, seen.branches)
     within = jumps[jumps["speed_before_rpm"].between(plan.from_rpm, plan.to_rpm)]
     spacing = (swept_plan.last_rpm - swept_plan.first_rpm) / (swept_plan.points - 1)
@@ -60,7 +60,7 @@ def branches(
         "unfollowed": tables.unfollowed_table(seen.unfollowed),
         "multipliers": tables.multiplier_table(seen.branches),
         "special": tables.special_table(layout, seen.branches),
-        "coexistence": operating_tables.coexistence_table(found, seen.branches),
+        "coexistence": operating_tables.coexistence_table(starting, seen.branches),
         "ranges": operating_tables.range_table(ranges),
         "margins": operating_tables.margin_table(stability_limits),
         "swept": operating_tables.swept_table(swept, seen.branches, plan.longest_start_period),

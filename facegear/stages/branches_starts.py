@@ -24,10 +24,12 @@ def branches_starts(
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
 ) -> Outcome:
-    """`found` (arrays) at one of the config's speeds. Raises NotConverged naming the speed."""
+    """`motions` (arrays) at one of the config's speeds. Raises NotConverged naming the speed."""
     model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction, law=law))
     plan = branch_plan(branches, speed_rpm)
     speed = plan.speeds_rpm[number]
-    found = random_starts(model, plan, speed, Progress("random starts", plan.starts).step)
-    shares = ", ".join(f"{one.label} {100 * one.fraction:.1f} +- {100 * one.error:.1f} %" for one in found)
-    return Outcome({"found": to_arrays(speed, found)}, f"{speed:g} rpm: {shares}")
+    motions = random_starts(model, plan, speed, Progress("random starts", plan.starts).step)
+    fractions = ", ".join(
+        f"{motion.label} {100 * motion.fraction:.1f} +- {100 * motion.error:.1f} %" for motion in motions
+    )
+    return Outcome({"motions": to_arrays(speed, motions)}, f"{speed:g} rpm: {fractions}")

@@ -34,12 +34,12 @@ def duty_loads(
         raise ConfigError("strength", None, "given for the loads of its duty cycle")
     known = settings(accuracy)
     progress, loads, spectrum = Progress("duty cycle", len(strength.duty)), [], []
-    for number, one in enumerate(strength.duty, start=1):
-        loaded = at_mesh_torque(transmission, one.torque_n_m)
+    for number, load in enumerate(strength.duty, start=1):
+        loaded = at_mesh_torque(transmission, load.torque_n_m)
         machine = wired_machine(loaded, teeth, harmonics, friction=friction, law=law)
-        history = history_of(machine, one.speed_rpm, known)
-        place = (number, one.torque_n_m, one.speed_rpm)
-        loads += [(*place, *row) for row in load_rows(history)]
+        history = history_of(machine, load.speed_rpm, known)
+        key = (number, load.torque_n_m, load.speed_rpm)
+        loads += [(*key, *row) for row in load_rows(history)]
         spectrum += [(number, *row) for row in spectrum_rows(history)]
         progress.step()
     content = {
@@ -53,6 +53,6 @@ def _summary(table: pd.DataFrame) -> str:
     worst = table.loc[table["largest_force_n"].idxmax()]
     where = f"{worst['mesh']} in bin {worst['bin']} of {worst['torque_n_m']:g} N m"
     factors = f"K_gamma {worst['mesh_load_factor']:.3f}, K_v {worst['dynamic_factor']:.3f}"
-    told = f"largest force {worst['largest_force_n']:.0f} N, {where}: {factors}"
+    text = f"largest force {worst['largest_force_n']:.0f} N, {where}: {factors}"
     loose = ", ".join(str(number) for number in table.loc[~table["settled"], "bin"].unique())
-    return f"{told}; bins without a settled motion: {loose}" if loose else told
+    return f"{text}; bins without a settled motion: {loose}" if loose else text

@@ -33,13 +33,13 @@ def dynamics_response(
     Raises NotConverged naming the speed.
     """
     model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction, law=law))
-    found = simulate(model, speed_rpm, settings(accuracy))
+    response = simulate(model, speed_rpm, settings(accuracy))
     layout = model.machine.layout
     content = {
-        "response": response_table(layout, found),
-        "spectrum": spectrum_table(layout, found),
-        "summary": summary_of_response(model, speed_rpm, found),
-        "multipliers": multiplier_table(found),
-        "bearings": bearing_table(model, found),
+        "response": response_table(layout, response),
+        "spectrum": spectrum_table(layout, response),
+        "summary": summary_of_response(model, speed_rpm, response),
+        "multipliers": multiplier_table(response),
+        "bearings": bearing_table(model, response),
     }
-    return Outcome(content, response_summary(found))
+    return Outcome(content, response_summary(response))

@@ -37,21 +37,21 @@ def dynamics_sweep(
     plan, layout = sweep_plan(sweep), model.machine.layout
     stored = iter(chunks)
     pieces = {name: [from_arrays(next(stored)) for _ in range(plan.chunks)] for name in plan.directions}
-    found = whole_sweep(model, plan, pieces, threads)
+    directions = whole_sweep(model, plan, pieces, threads)
     modes = loaded_modes(model.machine)
     content = {
-        "sweep": pd.concat([sweep_table(layout, n, d.piece) for n, d in found.items()]),
-        "jumps": pd.concat([jump_table(layout, n, d, modes) for n, d in found.items()]),
-        "resonances": pd.concat([resonance_table(layout, n, d.piece, modes) for n, d in found.items()]),
-        "seams": seam_table([seam for d in found.values() for seam in d.seams]),
-        "waterfall": _waterfall(found),
+        "sweep": pd.concat([sweep_table(layout, n, d.piece) for n, d in directions.items()]),
+        "jumps": pd.concat([jump_table(layout, n, d, modes) for n, d in directions.items()]),
+        "resonances": pd.concat([resonance_table(layout, n, d.piece, modes) for n, d in directions.items()]),
+        "seams": seam_table([seam for d in directions.values() for seam in d.seams]),
+        "waterfall": _waterfall(directions),
     }
-    return Outcome(content, sweep_summary(found))
+    return Outcome(content, sweep_summary(directions))
 
 
-def _waterfall(found: Mapping[str, Direction]) -> dict[str, AnyArray]:
+def _waterfall(directions: Mapping[str, Direction]) -> dict[str, AnyArray]:
     arrays = {"orders": ORDERS}
-    for name, direction in found.items():
+    for name, direction in directions.items():
         arrays[f"{name}_speed_rpm"] = direction.piece.speeds
         arrays[f"{name}_amplitude_m"] = direction.piece.spectrum
     return arrays

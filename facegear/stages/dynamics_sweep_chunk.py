@@ -30,5 +30,5 @@ def dynamics_sweep_chunk(
     progress = Progress(f"sweep {direction}, chunk {number}", total)
     model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction, law=law))
     before, own = run_chunk(model, plan, direction, number, progress.step)
-    told = f"{len(own.speeds)} speeds {direction}, {len(before.speeds)} for overlap"
-    return Outcome({"chunk": to_arrays(before, own)}, told)
+    summary = f"{len(own.speeds)} speeds {direction}, {len(before.speeds)} for overlap"
+    return Outcome({"chunk": to_arrays(before, own)}, summary)

@@ -22,20 +22,20 @@ def hunting(
 ) -> Outcome:
     """Tables `meshes`, `groups`, `bearings`, `cycles`, `scan`, `sensitivity`. Raises NotConverged."""
     machine = wired_machine(transmission, teeth, harmonics, law=law)
-    found = hunting_cycle(machine, positions)
+    cycle = hunting_cycle(machine, positions)
     content = {
-        "meshes": mesh_table(found),
-        "groups": (groups := group_table(found)),
-        "bearings": bearing_table(found),
-        "cycles": cycle_table(found),
+        "meshes": mesh_table(cycle),
+        "groups": (groups := group_table(cycle)),
+        "bearings": bearing_table(cycle),
+        "cycles": cycle_table(cycle),
         "scan": bearing_scan(machine),
-        "sensitivity": sensitivities(found),
+        "sensitivity": sensitivities(cycle),
     }
     known = groups.dropna(subset="k_gamma")
     if known.empty:
         return Outcome(content, "no path shares a load")
-    past = float(past_law(machine, found.cycles, found.flank_forces).max())
+    past = float(past_law(machine, cycle.cycles, cycle.flank_forces).max())
     beyond = f"; past the mesh law's last level at up to {100.0 * past:.2g} % of positions" if past else ""
     worst = known.loc[known["k_gamma"].idxmax()]
-    told = f"K_gamma {worst['k_gamma']:.3f} ({worst['group']}) at {worst['torque_n_m']:g} N m"
-    return Outcome(content, f"{told} over {worst['mesh_cycles']:.0f} mesh cycles{beyond}")
+    summary = f"K_gamma {worst['k_gamma']:.3f} ({worst['group']}) at {worst['torque_n_m']:g} N m"
+    return Outcome(content, f"{summary} over {worst['mesh_cycles']:.0f} mesh cycles{beyond}")

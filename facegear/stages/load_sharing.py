@@ -24,15 +24,15 @@ def load_sharing(
     law: Arrays | None = None,
 ) -> Outcome:
     """`curve` and `summary` (tables). Raises NotConverged naming the speed."""
-    found = shared(
+    sharing = shared(
         wired_machine(transmission, teeth, harmonics, friction=friction, law=law),
         speed_rpm,
         settings(accuracy),
         sharing_options(options),
     )
-    summary = summary_table(found)
+    summary = summary_table(sharing)
     means = ", ".join(f"{row.group} {row.mean:.3f}" for row in summary.itertuples())
     return Outcome(
-        {"curve": curve_table(found), "summary": summary},
-        f"{found.response.label}; mean coefficients: {means or 'no meshes share a load'}",
+        {"curve": curve_table(sharing), "summary": summary},
+        f"{sharing.response.label}; mean coefficients: {means or 'no meshes share a load'}",
     )

@@ -55,11 +55,11 @@ def machine_loss(
     """
     section = lubrication_section(lubrication)
     loaded = loaded_pair(ltca, pressure, section, tooth_pair)
-    found = list(_states(loaded, harmonics, duty_loads, transmission, teeth, strength, speed_rpm, law))
+    states = list(_states(loaded, harmonics, duty_loads, transmission, teeth, strength, speed_rpm, law))
     content = {
-        "meshes": mesh_loss_table(found, loaded.known, limits_of(section)),
-        "bodies": body_heat_table(found, loaded.known),
-        "machine": machine_loss_table(found),
+        "meshes": mesh_loss_table(states, loaded.known, limits_of(section)),
+        "bodies": body_heat_table(states, loaded.known),
+        "machine": machine_loss_table(states),
     }
     if friction is not None and response is not None:
         machine = wired_machine(transmission, teeth, harmonics, friction=friction, law=law)
@@ -68,14 +68,14 @@ def machine_loss(
         content["meshes"].loc[rest, "loss_in_motion_w"] = content["meshes"].loc[rest, "mesh"].map(moving)
     whole, hottest = content["machine"].iloc[0], content["meshes"]["contact_temperature_c"].max()
     beyond = content["meshes"].loc[~content["meshes"]["within_torques_solved"], "bin"].unique()
-    told = (
+    summary = (
         f"the machine loses {whole['loss_w']:.0f} W, {whole['loss_percent']:.3f} % of its power; "
         f"contact up to {hottest:.0f} C"
     )
     if beyond.size:
         bins = ", ".join(str(number) for number in beyond)
-        told = f"{told}; bins with loads outside the torques of the contact analysis: {bins}"
-    return Outcome(content, told)
+        summary = f"{summary}; bins with loads outside the torques of the contact analysis: {bins}"
+    return Outcome(content, summary)
 
 
 def _states(
@@ -97,26 +97,26 @@ def _states(
     yield _state(loaded, machine, (0, np.nan, speed_rpm), names, torque, torque)
     if duty_loads is None or strength is None:
         return
-    for number, one in enumerate(strength.duty, start=1):
+    for number, load in enumerate(strength.duty, start=1):
         rows = duty_loads[duty_loads["bin"] == number]
-        machine = wired_machine(at_mesh_torque(transmission, one.torque_n_m), teeth, harmonics, law=law)
+        machine = wired_machine(at_mesh_torque(transmission, load.torque_n_m), teeth, harmonics, law=law)
         arm = machine.layout.pinion_arm
         mean = arm * rows["mean_force_n"].to_numpy()
         peak = arm * strength.application_factor * rows["largest_force_n"].to_numpy()
         names = rows["mesh"].tolist(), rows["flank"].tolist()
-        yield _state(loaded, machine, (number, one.hours, one.speed_rpm), names, mean, peak)
+        yield _state(loaded, machine, (number, load.hours, load.speed_rpm), names, mean, peak)
 
 
 def _state(
     loaded: LoadedPair,
     machine: Machine,
-    place: tuple[int, float, float],
+    key: tuple[int, float, float],
     names: tuple[list[str], list[str]],
     torque: Array,
     peak: Array,
 ) -> MachineState:
     layout = machine.layout
-    number, hours, speed_rpm = place
+    number, hours, speed_rpm = key
     of = [layout.meshes[layout.mesh_names.index(name)] for name in names[0]]
     loads = MeshLoads(
         pinion=np.array([i for i, _ in of]),

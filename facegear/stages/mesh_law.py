@@ -54,13 +54,13 @@ def mesh_law(
     tables, errors = fitted_tables(solved, request.kept)
     tables = [table.scaled(scale) for table in tables]
     levels = level_table(tables, errors, numbers, design.pinion_base_radius)
-    rms, largest = (100.0 * max(getattr(one, name) for one in errors) for name in ("rms", "largest"))
-    told = (
+    rms, largest = (100.0 * max(getattr(error, name) for error in errors) for name in ("rms", "largest"))
+    summary = (
         f"{tables[0].levels.size - 1} levels up to {1e6 * tables[0].levels[-1]:.3g} um, "
         f"{tables[0].forces.shape[2] - 1} orders, times {scale:.4f}; against contact between the levels "
         f"{rms:.2g} % rms, {largest:.2g} % at most of the largest mean force"
     )
-    return Outcome({"law": law_arrays(tables, numbers), "levels": levels}, told)
+    return Outcome({"law": law_arrays(tables, numbers), "levels": levels}, summary)
 
 
 def flank_contacts(
@@ -78,13 +78,13 @@ def flank_contacts(
     def by_torque(values: list[float]) -> np.ndarray:
         return np.array(values).reshape(positions, len(torques)).T
 
-    def approach(one: LoadedPosition) -> float:
-        return one.ste - one.unloaded
+    def approach(contact: LoadedPosition) -> float:
+        return contact.ste - contact.unloaded
 
     return FlankContacts(
         np.array(torques) / model.design.pinion_base_radius,
-        by_torque([approach(one) for one in found]),
-        by_torque([one.k_local for one in found]),
+        by_torque([approach(contact) for contact in contacts]),
+        by_torque([contact.k_local for contact in contacts]),
     )
 
 

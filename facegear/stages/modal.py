@@ -32,19 +32,19 @@ def modal(
     """
     if harmonics is None:
         mean = mean_stiffness
-        told = f"{definition}, given" if source == "fem_scaled" else "given"
+        source_text = f"{definition}, given" if source == "fem_scaled" else "given"
     else:
-        mean, told = float(harmonics[f"mean_{definition}_n_per_m"].iloc[0]), definition
+        mean, source_text = float(harmonics[f"mean_{definition}_n_per_m"].iloc[0]), definition
     if mean is None:
         raise ConfigError("mesh_stiffness.mean_n_per_m", None, "given where k(t) is not computed")
     constant, none = Harmonics(np.zeros(1), np.array([mean])), Harmonics(np.zeros(1), np.zeros(1))
     machine = wired_machine(transmission, teeth, constant, unloaded=none, law=law)
-    found = vibrating_machine(machine)
-    modes, contacts = found.modes, contact_table(machine, found, told)
+    vibration = vibrating_machine(machine)
+    modes, contacts = vibration.modes, contact_table(machine, vibration, source_text)
     rigid = int((modes.frequencies == 0.0).sum())
     elastic = modes.frequencies[rigid:]
     content = {
-        "frequencies": frequency_table(found, name_modes(machine.layout, machine.linear, modes)),
+        "frequencies": frequency_table(vibration, name_modes(machine.layout, machine.linear, modes)),
         "shapes": shape_table(machine.linear.labels, modes),
         "contacts": contacts,
     }
@@ -52,9 +52,9 @@ def modal(
     size = f"{mean:.4g}" if law is None else f"{closed.min():.4g} to {closed.max():.4g}"
     summary = (
         f"{rigid} rigid body modes, {elastic.size} from {elastic[0]:.1f} to {elastic[-1]:.1f} Hz, with a "
-        f"mesh stiffness of {size} N/m ({told})"
+        f"mesh stiffness of {size} N/m ({source_text})"
     )
-    return Outcome(content, summary + _remarks(contacts, found.decided))
+    return Outcome(content, summary + _remarks(contacts, vibration.decided))
 
 
 def _remarks(contacts: pd.DataFrame, decided: np.ndarray) -> str:

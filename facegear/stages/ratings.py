@@ -19,11 +19,13 @@ def ratings(
 ) -> Outcome:
     """`ratings`, `bodies` and `meshes` (tables). Raises NotConverged."""
     machine = wired_machine(transmission, teeth, harmonics, law=law)
-    found = rated(machine, speed_rpm)
+    rating = rated(machine, speed_rpm)
     content = {
-        "ratings": number_table(found),
+        "ratings": number_table(rating),
         "bodies": body_table(machine, speed_rpm),
         "meshes": mesh_table(machine, speed_rpm),
     }
-    told = f"ratio {found.ratio:.4f}, mesh frequency {found.mesh_frequency:.1f} Hz"
-    return Outcome(content, f"{told}, {1e-3 * found.power_in:.4g} kW in, {1e-3 * found.power_out:.4g} kW out")
+    summary = f"ratio {rating.ratio:.4f}, mesh frequency {rating.mesh_frequency:.1f} Hz"
+    return Outcome(
+        content, f"{summary}, {1e-3 * rating.power_in:.4g} kW in, {1e-3 * rating.power_out:.4g} kW out"
+    )

@@ -46,5 +46,5 @@ def stress_over_speed(
     worst = table.loc[table["largest_force_n"].idxmax()]
     where = f"{worst['speed_rpm']:.0f} rpm ({worst['motion']}, {worst['class']})"
     stresses = f"face gear {worst['face_gear_mpa']:.0f} MPa, pinion {worst['pinion_mpa']:.0f} MPa"
-    told = f"largest dynamic factor {worst['dynamic_factor']:.2f} at {where}: {stresses}"
-    return Outcome({"stress_over_speed": table}, told)
+    summary = f"largest dynamic factor {worst['dynamic_factor']:.2f} at {where}: {stresses}"
+    return Outcome({"stress_over_speed": table}, summary)

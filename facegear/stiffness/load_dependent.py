@@ -122,9 +122,9 @@ def force_table(contacts: FlankContacts, orders: int) -> ForceTable:
         _series(np.concatenate([nothing, lower, forces]), kept),
         _series(np.concatenate([nothing, lower_slopes, slopes]), kept),
     )
-    if table.least_slope < -ROUNDING * table.steepest:
+    if table.min_slope < -ROUNDING * table.steepest:
         raise FacegearError(
-            f"mesh law: the force falls with the deflection, by {table.least_slope:.4g} N/m: the mesh of the "
+            f"mesh law: the force falls with the deflection, by {table.min_slope:.4g} N/m: the mesh of the "
             f"flanks is too coarse for the lightest contact, {contacts.forces[0]:.3g} N"
         )
     return table

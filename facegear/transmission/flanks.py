@@ -113,8 +113,10 @@ def _tables_of_flanks(machine: Machine) -> LoadDependentLaw:
     gears = [machine.tables[g] for _, g in machine.layout.meshes]
     factors = machine.imperfections.stiffness.tolist()
     lags = _lags(machine)
-    drive = [one.drive.scaled(factor) for one, factor in zip(gears, factors, strict=True)]
-    back = [one.back.mirrored().scaled(factor) for one, factor in zip(gears, factors, strict=True)]
+    drive = [gear_tables.drive.scaled(factor) for gear_tables, factor in zip(gears, factors, strict=True)]
+    back = [
+        gear_tables.back.mirrored().scaled(factor) for gear_tables, factor in zip(gears, factors, strict=True)
+    ]
     return load_dependent_law(
         [table.shifted(lag) for table, lag in zip([*drive, *back], 2 * lags, strict=True)]
     )

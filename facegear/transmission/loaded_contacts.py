@@ -66,21 +66,23 @@ class LoadedContacts:
 def loaded_contacts(machine: Machine) -> LoadedContacts:
     """Contacts of geometric meshes with the mean law and constant errors. Raises NotConverged."""
     pinions = len(machine.layout.pinions)
-    rings, places = np.full(pinions, np.nan), np.full((pinions, 2), np.nan)
+    rings, positions = np.full(pinions, np.nan), np.full((pinions, 2), np.nan)
     forces = forces_by_active_sets(machine)
     constant = machine.stiffness.mean * np.tile(machine.imperfections.stiffness, 2)
     if forces is not None:
-        return LoadedContacts(forces, constant, np.zeros(constant.size, bool), rings, places)
+        return LoadedContacts(forces, constant, np.zeros(constant.size, bool), rings, positions)
     from facegear.transmission.statics import bearing_forces, mean_equilibrium  # compiled
 
-    found = mean_equilibrium(machine)
+    equilibrium = mean_equilibrium(machine)
     ringed = machine.linear.rings.body
-    rings[ringed] = np.hypot(*bearing_forces(machine, found)[0, ringed, :2].T)
-    places[ringed] = found.displacements[0, machine.linear.ring_coordinates]
-    over = machine.linear.rows @ found.displacements[0] - constant_errors(machine) - flank_gaps(machine)
+    rings[ringed] = np.hypot(*bearing_forces(machine, equilibrium)[0, ringed, :2].T)
+    positions[ringed] = equilibrium.displacements[0, machine.linear.ring_coordinates]
+    over = machine.linear.rows @ equilibrium.displacements[0] - constant_errors(machine) - flank_gaps(machine)
     law, pressed = flank_law(machine).mean(), np.maximum(over, 0.0)[None]
     stiffness = constant if machine.constant_stiffness else law.slope(np.zeros(1), pressed)[0]
-    return LoadedContacts(found.flank_forces[0], stiffness, past_levels(law, pressed) > 0.0, rings, places)
+    return LoadedContacts(
+        equilibrium.flank_forces[0], stiffness, past_levels(law, pressed) > 0.0, rings, positions
+    )
 
 
 def forces_by_active_sets(machine: Machine) -> Array | None:
@@ -94,7 +96,7 @@ def forces_by_active_sets(machine: Machine) -> Array | None:
     if linear.rings.body.size or not machine.constant_stiffness:
         return None
     scale = 1.0 / np.sqrt(linear.mass.diagonal())
-    directions = linear.rows * scale
+    jacobian = linear.rows * scale
     bearing = linear.stiffness * np.outer(scale, scale)
     applied = linear.loads * scale
     stiffness = machine.stiffness.mean * np.tile(machine.imperfections.stiffness, 2)
@@ -102,11 +104,11 @@ def forces_by_active_sets(machine: Machine) -> Array | None:
     closed = np.arange(gaps.size) < len(machine.layout.meshes)
     for _ in range(MAX_SETS):
         pressed = np.where(closed, stiffness, 0.0)
-        matrix = bearing + (directions.T * pressed) @ directions
-        moved = np.linalg.lstsq(matrix, applied + directions.T @ (pressed * gaps), rcond=RIGID)[0]
-        over = directions @ moved - gaps
+        matrix = bearing + (jacobian.T * pressed) @ jacobian
+        moved = np.linalg.lstsq(matrix, applied + jacobian.T @ (pressed * gaps), rcond=RIGID)[0]
+        over = jacobian @ moved - gaps
         if ((over > 0.0) == closed).all():
-            missing = matrix @ moved - applied - directions.T @ (pressed * gaps)
+            missing = matrix @ moved - applied - jacobian.T @ (pressed * gaps)
             return pressed * over if np.abs(missing).max() <= BALANCED * np.abs(applied).max() else None
         closed = over > 0.0
     return None

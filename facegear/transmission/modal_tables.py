@@ -34,26 +34,27 @@ def frequency_table(vibrating: VibratingMachine, names: tuple[ModeName, ...]) ->
     )
 
 
-def contact_table(machine: Machine, found: VibratingMachine, told: str) -> pd.DataFrame:
+def contact_table(machine: Machine, vibrating: VibratingMachine, stiffness_name: str) -> pd.DataFrame:
     """What modes keep closed: columns contact, state, force_n, stiffness_n_per_m, definition.
 
     One row a mesh, whose state is drive, back, wedged, open or undecided, with the mean stiffness of a closed
-    flank (`told` says which); then one a bearing with clearance: closed, open or undecided, with its
-    stiffness along the load. Forces under the mean torques, negative on the back flank; empty for printed
+    flank (`stiffness_name` says which); then one a bearing with clearance: closed, open or undecided, with
+    its stiffness along the load. Forces under the mean torques, negative on the back flank; empty for printed
     meshes, all of which are closed.
     """
-    layout, contacts = machine.layout, found.contacts
+    layout, contacts = machine.layout, vibrating.contacts
     stiffness = machine.stiffness.mean * machine.imperfections.stiffness
     if contacts is None:
         rows = [
-            (name, "closed", np.nan, k, told) for name, k in zip(layout.mesh_names, stiffness, strict=True)
+            (name, "closed", np.nan, k, stiffness_name)
+            for name, k in zip(layout.mesh_names, stiffness, strict=True)
         ]
         return pd.DataFrame(rows, columns=list(CONTACT_COLUMNS))
     count = len(layout.mesh_names)
     states, drive, back = contacts.flank_states(), *np.split(contacts.flanks, 2)
     on_drive, on_back = np.split(contacts.stiffness, 2)
     past = contacts.past_law.reshape(2, count).any(axis=0)
-    ways = np.where(past, f"{told}, past the law's last level", told)
+    ways = np.where(past, f"{stiffness_name}, past the law's last level", stiffness_name)
     stiffness = np.where(back > drive, on_back, on_drive)
     rows = [
         (name, _mesh_state(states[m], states[count + m]), drive[m] - back[m], stiffness[m], ways[m])

@@ -26,7 +26,7 @@ from facegear.stiffness.tables import series_of, unloaded_error
 from facegear.strength.contact_pressure import contact_pressure
 from facegear.strength.pair_answers import PairAnswers
 from facegear.strength.passage import passing
-from facegear.variants.teeth import Flanks, Meshes, ToothMesh, Values
+from facegear.variants.teeth import Flanks, Meshes, PairExcitation, Values
 
 if TYPE_CHECKING:
     from facegear.variants.rubbed_teeth import Rub
@@ -46,7 +46,7 @@ def meshes_in_contact(pair: Values, flanks: Flanks, rub: "Rub | None" = None) ->
     bodies = _bodies(pair, flanks)
 
     @lru_cache(maxsize=KEPT)
-    def meshed(text: str) -> ToothMesh:
+    def meshed(text: str) -> PairExcitation:
         values = json.loads(text)
         section = parse(ToothPair, values, "this pair")
         added = geometric_backlash(section) - backlash
@@ -54,7 +54,7 @@ def meshes_in_contact(pair: Values, flanks: Flanks, rub: "Rub | None" = None) ->
         analysis = contact_analysis(pair_design(section), materials(section), both, plan, every_flank=False)
         table = stiffness_from_contact(analysis.ltca[0], request).harmonics
         numbers = ToothNumbers.of_config(values)
-        return ToothMesh(
+        return PairExcitation(
             numbers=numbers,
             stiffness=series_of(table),
             unloaded=unloaded_error(table),

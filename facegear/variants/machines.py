@@ -145,11 +145,11 @@ def stored_flanks(arrays: Sequence[Arrays]) -> Flanks:
         return {}
     from facegear.contact.gear_flank import from_arrays
 
-    return {body: from_arrays(one) for body, one in zip(BODIES, arrays, strict=True)}
+    return {body: from_arrays(arrays_of_body) for body, arrays_of_body in zip(BODIES, arrays, strict=True)}
 
 
-def judge(question: Question, meshes: Meshes, told: str) -> Judge:
-    """`told` names the machine in errors."""
+def judge(question: Question, meshes: Meshes, label: str) -> Judge:
+    """`label` names the machine in errors."""
     ask = _ask(question)
 
     def rubbed(
@@ -164,7 +164,7 @@ def judge(question: Question, meshes: Meshes, told: str) -> Judge:
     @keys_named()
     def judged(values: Mapping[str, Any]) -> dict[str, float]:
         mesh = meshes(values["tooth_pair"])
-        section = parse(Transmission, mesh.in_machine(values["transmission"]), told)
+        section = parse(Transmission, mesh.in_machine(values["transmission"]), label)
         require_buildable(section, mesh.numbers)
         require_room(section, mesh.numbers)
         built = machine(section, mesh.numbers, mesh.stiffness, mesh.unloaded)
@@ -176,8 +176,8 @@ def judge(question: Question, meshes: Meshes, told: str) -> Judge:
         if mesh.rubbed is not None:
             found |= rubbed(mesh.rubbed, values["lubrication"], built, speed, loads)
         if question.jumps is not None:
-            found[JUMP_MARGIN] = jump_margin(build_model(built), speed, question.jumps)
-        return found
+            quantities[JUMP_MARGIN] = jump_margin(build_model(built), speed, question.jumps)
+        return quantities
 
     return judged
 
@@ -186,5 +186,5 @@ def _ask(question: Question) -> Callable[[Any, float], Found]:
     if not question.dynamic:
         return lambda built, speed: quasi_static_quantities(built, question.cycles)
     precise = settings(Accuracy.of_config(question.accuracy))
-    one_start = replace(sharing_options(LoadSharing.of_config(question.options)), starts=1)
-    return lambda built, speed: dynamic_quantities(built, speed, precise, one_start)
+    single_start = replace(sharing_options(LoadSharing.of_config(question.options)), starts=1)
+    return lambda built, speed: dynamic_quantities(built, speed, precise, single_start)

@@ -20,7 +20,7 @@ Flanks = Mapping[str, "GearFlank"]
 
 
 @dataclass(frozen=True, eq=False)
-class ToothMesh:
+class PairExcitation:
     """What a tooth pair means for its machine: k and e over a pitch, and the teeth's numbers.
 
     `backlash_added` (um): what the pair has more than the one of the config. `answers` where it was put into
@@ -42,10 +42,10 @@ class ToothMesh:
             return changed
         changed["backlash_um"] += self.backlash_added
         changed["single_meshes"] = {
-            name: one
-            if one.get("backlash_um") is None
-            else {**one, "backlash_um": one["backlash_um"] + self.backlash_added}
-            for name, one in transmission["single_meshes"].items()
+            name: mesh
+            if mesh.get("backlash_um") is None
+            else {**mesh, "backlash_um": mesh["backlash_um"] + self.backlash_added}
+            for name, mesh in transmission["single_meshes"].items()
         }
         return changed
 
@@ -53,14 +53,14 @@ class ToothMesh:
         """Columns of a sample whose largest mesh force is `force` (N); none without contact."""
         if self.answers is None:
             return {}
-        told, torque = self.answers, force * self.numbers.pinion_base_radius
+        answers, torque = self.answers, force * self.numbers.pinion_base_radius
         return {
-            ERROR_RANGE: 1e6 * told.error_range,
-            ERROR_HARMONIC: 1e6 * told.error_harmonic,
-            PRESSURE: 1e-6 * told.pressure.at(torque),
-            **{ROOTS[body]: 1e-6 * told.largest_root_stress(body, torque) for body in told.roots},
+            ERROR_RANGE: 1e6 * answers.error_range,
+            ERROR_HARMONIC: 1e6 * answers.error_harmonic,
+            PRESSURE: 1e-6 * answers.pressure.at(torque),
+            **{ROOTS[body]: 1e-6 * answers.largest_root_stress(body, torque) for body in answers.roots},
         }
 
 
-Meshes = Callable[[Values], ToothMesh]
+Meshes = Callable[[Values], PairExcitation]
 """The mesh of a tooth pair, given the plain values of its section. Raises the errors that a config gets."""

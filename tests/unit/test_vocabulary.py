@@ -13,7 +13,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 GLOSSARY = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")
 AREAS = ("facegear", "paper", "validation", "workflow")
-EVERY = [
+SOURCES = [
     path
     for area in AREAS
     for path in sorted((ROOT / area).rglob("*.py"))
@@ -38,8 +38,6 @@ WHOLE = {word for word, names, *_ in REFUSED if names}
 PARTS = {word for word, names, *_ in REFUSED if names == "any part"}
 IN_TEXT = re.compile(rf"\b(?:{'|'.join(word for word, _, text, *_ in REFUSED if text)})\b", re.IGNORECASE)
 ALLOWED = {name for name, *_ in rows("Exceptions")}
-NOT_YET = {ROOT / "facegear" / name for (name,) in rows("Not yet renamed")}
-SOURCES = [path for path in EVERY if NOT_YET.isdisjoint((path, *path.parents))]
 
 
 def defined_names(tree: ast.AST) -> Iterator[tuple[int, str]]:
@@ -93,7 +91,7 @@ def test_text_uses_the_terms_of_the_glossary():
 
 
 def test_every_exception_is_needed():
-    names = {name for path in EVERY for _, name in defined_names(ast.parse(path.read_text(encoding="utf-8")))}
+    names = {name for path in SOURCES for _, name in defined_names(ast.parse(path.read_text(encoding="utf-8")))}
     assert names >= ALLOWED
     for name in ALLOWED:
         assert name in WHOLE or not PARTS.isdisjoint(name.lower().split("_"))
@@ -112,15 +110,8 @@ def test_a_name_of_each_kind_and_each_kind_of_text_is_seen():
     ] == [2, 4]
 
 
-def test_every_part_that_is_not_yet_renamed_exists_and_holds_a_refused_name():
-    for part in NOT_YET:
-        own = [path for path in EVERY if path.is_relative_to(part)]
-        trees = (ast.parse(path.read_text(encoding="utf-8")) for path in own)
-        assert any(refused(name) for tree in trees for _, name in defined_names(tree)), part
-
-
 def test_names_of_code_in_the_terms_are_those_of_the_code():
-    code = "\n".join(path.read_text(encoding="utf-8") for path in EVERY)
+    code = "\n".join(path.read_text(encoding="utf-8") for path in SOURCES)
     quoted = {name for _, meaning in rows("Terms") for name in re.findall(r"`([A-Za-z_]+)`", meaning)}
     assert quoted and all(re.search(rf"\b{name}\b", code) for name in quoted)
 

@@ -13,7 +13,7 @@ ROWS = (
         needs=BRANCHES,
         section="branches",
         upstream=MOVING,
-        files={"found": File("branches/starts/{number}.npz", "facegear.dynamics.branches.stored:SHAPES")},
+        files={"motions": File("branches/starts/{number}.npz", "facegear.dynamics.branches.stored:SHAPES")},
         wildcards={"number": NUMBER},
         minutes=30,
         priority=50,
@@ -25,7 +25,7 @@ ROWS = (
         section="branches",
         upstream={
             **MOVING,
-            "starts": From("branches_starts", "found", each=asked.random_starts),
+            "starts": From("branches_starts", "motions", each=asked.random_starts),
             "chunks": From("dynamics_sweep_chunk", "chunk", each=asked.sweep_chunks),
             "jumps": From("dynamics_sweep", "jumps"),
         },
