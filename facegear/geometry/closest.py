@@ -82,7 +82,7 @@ def _coarse(design: PairDesign, phi1: Array, phi2: Array) -> tuple[Closest, Arra
 def _search(
     design: PairDesign, rows: _Rows, roll: Array, y: Array, size: Array, levels: int
 ) -> tuple[Array, Array, Array]:
-    """Walk 5 x 5 grids to the lowest point, shrinking them when their middle part holds it.
+    """Walk 5 x 5 grids to the minimum, shrinking them when their middle part holds it.
 
     The grids lean along the contact line, as the gap is a narrow and flat valley in its direction.
     """
@@ -112,7 +112,7 @@ def _search(
 
 
 def _polish(design: PairDesign, rows: _Rows, gap: Array, roll: Array, y: Array) -> tuple[Array, Array, Array]:
-    """One Newton step from a 3 x 3 stencil where the lowest point lies inside the flank."""
+    """One Newton step from a 3 x 3 stencil where the minimum lies inside the flank."""
     step = np.array([2e-4, 1e-4])
     a, b = (part.ravel() for part in np.meshgrid([-1, 0, 1], [-1, 0, 1], indexing="ij"))
     turns = rows.phi1, rows.phi2, rows.tooth

@@ -35,7 +35,7 @@ class Harmonics:
 
     @property
     def order(self) -> int:
-        """Highest harmonic H."""
+        """Largest order H."""
         return self.a.size - 1
 
     @property

@@ -38,7 +38,7 @@ def between(samples: Array, factor: int) -> Array:
     count = len(samples)
     spectrum = np.fft.rfft(samples, axis=0)
     if count % 2 == 0:
-        spectrum[-1] *= 0.5  # half of the highest wave belongs to its negative frequency
+        spectrum[-1] *= 0.5  # half of the wave of largest order belongs to its negative frequency
     return np.asarray(np.fft.irfft(spectrum, factor * count, axis=0) * factor)
 
 

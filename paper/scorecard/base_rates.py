@@ -29,7 +29,7 @@ class Totals:
 
     @property
     def spread(self) -> tuple[float, float]:
-        """Claims held by the lowest and the highest 5 % of the samples, at most and at least."""
+        """The 5th and the 95th percentile of the number of claims held."""
         low, high = np.quantile(self.held, TAILS)
         return float(low), float(high)
 

@@ -9,7 +9,7 @@ import pandas as pd
 from paper.scorecard.outcome import ClaimOutcome, Tables, number, statement
 
 WINDOWS = ("cycle", "starts")
-"""The summary holds the lowest and the highest mean of these."""
+"""The summary holds the minimum and the maximum mean of these."""
 NEARLY_ONE_CARRIER = 0.02
 BOUNDS = {"inputs": 2.0, "idlers": 3.0}
 """The coefficient where one mesh of the group carries all."""
@@ -80,8 +80,8 @@ def orders(
 
 
 def minimum_at(tables: Tables, study: str, kind: str, point: Point, column: str = "mean") -> ClaimOutcome:
-    """Among all points of the study the column is lowest at the named one; points without a value do not
-    count, and the named one must have one.
+    """Among all points of the study the column has its minimum at the named one; points without a value do
+    not count, and the named one must have one.
     """
     frame = _study(tables, study)
     points = list(dict.fromkeys(frame["point"]))

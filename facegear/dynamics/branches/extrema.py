@@ -1,4 +1,4 @@
-"""Turning points of the mesh deflections over whole mesh periods, to the accuracy of the steps."""
+"""Extrema of the mesh deflections over whole mesh periods, to the accuracy of the steps."""
 
 import numpy as np
 

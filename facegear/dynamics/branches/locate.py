@@ -25,7 +25,7 @@ NEAR_CIRCLE = 0.4
 
 @dataclass(frozen=True, eq=False)
 class _Event:
-    """test: of a Point, at a graze of its turning points."""
+    """test: of a Point, at a graze of its extrema."""
 
     kind: Kind
     test: Callable[..., float]

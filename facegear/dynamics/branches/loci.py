@@ -1,4 +1,4 @@
-"""Curves of folds and period doublings in the plane of two parameters, with cusps and turning points."""
+"""Curves of folds and period doublings in the plane of two parameters, with cusps and extrema."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -130,7 +130,7 @@ def _onto_limit(
 
 
 def _corners(problem: LocusProblem, here: LocusPoint, there: LocusPoint) -> list[tuple[Corner, LocusPoint]]:
-    """Cusps and turning points in the second parameter between two points."""
+    """Cusps and extrema in the second parameter between two points."""
     tests = {Corner.CUSP: lambda point: point.bend, Corner.TURN: lambda point: point.tangent[-1]}
     if problem.kind is Kind.DOUBLING or here.bend * there.bend > 0.0:
         del tests[Corner.CUSP]

@@ -52,7 +52,7 @@ class Segment:
         return self.known[fraction]
 
     def extrema(self, fraction: float) -> Array:
-        """Turning points of the deflections at a share, without the matrix of the map."""
+        """Extrema of the deflections at a fraction, without the matrix of the map."""
         if fraction in self.known:
             return self.known[fraction].extrema
         row = self.chord / self.length
@@ -60,7 +60,7 @@ class Segment:
         return self.period_map.extrema(x[:-1], x[-1])
 
     def extremum_slope(self, fraction: float, stretch: float) -> Array:
-        """Change of the turning points of a known point with its place on a stretch of the chord, by a small
+        """Change of the extrema of a known point with its position on a stretch of the chord, by a small
         step along the tangent.
         """
         point = self.known[fraction]
@@ -85,7 +85,7 @@ class Segment:
 
 
 def zero(test: Callable[[float], float], low: float, high: float, goal: float) -> float:
-    """Where a test of the share is zero, to `goal` in the test. Raises NotConverged without a sign change."""
+    """Where a test of the fraction is zero, to `goal` in the test. Raises NotConverged without a sign change."""
 
     def rounded(fraction: float) -> float:
         value = test(fraction)

@@ -206,7 +206,7 @@ def _coupled(coupling: Coupling, frequency: float, width: int) -> Array:
 
 @lru_cache(maxsize=16)
 def _fastest(system: System) -> tuple[float, float]:
-    """Highest natural frequency with all meshes in contact plus damping, 1/s, and the harmonics of the law
+    """Largest natural frequency with all meshes in contact plus damping, 1/s, and the harmonics of the law
     that matter, in multiples of the mesh frequency.
     """
     contacts = system.contacts

@@ -2,7 +2,7 @@
 
 Products of two polynomials are integrated by Gauss's rule with a quarter of the order's number of nodes and
 one more, whose error lies below that of the step (a term that the rule misses is the square of one half way
-to the last); extremes are the polynomials' own turning points. So nothing depends on how densely the motion
+to the last); extremes are the polynomials' own. So nothing depends on how densely the motion
 is sampled.
 """
 
@@ -32,7 +32,7 @@ from facegear.machine_code.memory import aligned
 from facegear.mesh_law.terms import force_ahead
 
 LOOKS = 8
-"""Parts of a step between whose ends a turning point is looked for."""
+"""Parts of a step between whose ends an extremum is looked for."""
 TURNS = 4
 
 

@@ -48,7 +48,7 @@ def resonance(piece: Piece, position: int, modes: Modes, teeth: int) -> Resonanc
 def peaks(piece: Piece) -> list[tuple[str, int, int, float]]:
     """Local maxima over speed: (deflection or x, y, z), mesh or body, position, AC RMS in m.
 
-    A maximum counts if it stands 15 % over the lowest value on either side before a higher one comes.
+    A maximum counts if it stands 15 % over the minimum on either side before a larger value comes.
     """
     rows = []
     for mesh, curve in enumerate(piece.deflection_ac_rms.T):
