@@ -133,7 +133,7 @@ def _gaps(design: PairDesign, placement: tuple[Array, Array, Array], roll_square
 
 
 def _vertex(before: Array, middle: Array, after: Array) -> Array:
-    """Where a parabola through three values at -1, 0, 1 has its minimum, within -1..1; 0 where there is none."""
+    """Where a parabola through three values at -1, 0, 1 has its minimum, within -1..1; 0 without one."""
     with np.errstate(invalid="ignore", divide="ignore"):
         vertex = 0.5 * (before - after) / (before - 2 * middle + after)
     return np.clip(np.nan_to_num(vertex, nan=0.0, posinf=0.0, neginf=0.0), -1.0, 1.0)

@@ -85,7 +85,7 @@ class Segment:
 
 
 def zero(test: Callable[[float], float], low: float, high: float, goal: float) -> float:
-    """Where a test of the fraction is zero, to `goal` in the test. Raises NotConverged without a sign change."""
+    """Where a test of fractions is zero, to `goal` in the test. Raises NotConverged without a sign change."""
 
     def rounded(fraction: float) -> float:
         value = test(fraction)
