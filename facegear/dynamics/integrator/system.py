@@ -33,7 +33,7 @@ class System:
     `two_flanks`: the m are one-sided flanks, all drive flanks, then the back flanks of the same meshes.
     `push_only`: spring and damper of a contact together never pull, F >= 0, damping acts in contact only. The
     last 3 R of the m rows belong to the rings: x, y of the body, and a row of zeros. ring_stiffness and
-    ring_play (R,); ring_lag: damping over stiffness of the rings, s. rubbing: friction of the flanks, or
+    ring_clearance (R,); ring_lag: damping over stiffness of the rings, s. rubbing: friction of the flanks, or
     none. coupling: forces that couple coordinates beside the meshes, for a mesh frequency of 1 rad/s, or
     None; the diagonal of its dampers is in `damping` and not in them.
     """

@@ -14,7 +14,7 @@ from facegear.transmission.layout import Role, Side
 from facegear.transmission.loaded_contacts import loaded_contacts
 from facegear.transmission.loaded_modes import loaded_modes, vibrating_machine
 from facegear.transmission.machine import FlankTables
-from facegear.transmission.matrices import bearing_matrix, flank_directions, mass_diagonal
+from facegear.transmission.matrices import bearing_matrix, flank_jacobian, mass_diagonal
 from facegear.transmission.modal_tables import contact_table
 from facegear.transmission.statics import equilibria, mean_equilibrium, static_equilibrium
 from facegear.transmission.teeth import GEOMETRIC
@@ -43,7 +43,7 @@ def test_a_mesh_stands_where_its_table_has_the_force_at_every_phase(torque):
     found = equilibria(machine, cycles)
     force = torque / machine.layout.pinion_arm
     agrees("mesh force, N", found.forces[:, 0], force, relative=1e-10)
-    amounts = (found.displacements @ flank_directions(machine.layout).T)[:, 0] - machine.half_backlash
+    amounts = (found.displacements @ flank_jacobian(machine.layout).T)[:, 0] - machine.half_backlash
     factor = 1.0 + 0.2 * np.cos(2.0 * np.pi * cycles)
     agrees("deflection, m", amounts, (force / (factor * C)) ** (1.0 / N), relative=1e-6)
 
@@ -53,7 +53,7 @@ def test_a_negative_torque_presses_the_back_flank_by_its_own_table():
     machine = made(PINIONS[:1], (Side.UPPER,), -600.0)
     machine = replace(machine, tables=(FlankTables(TABLE, softer),))
     found = static_equilibrium(machine)
-    amount = (flank_directions(machine.layout) @ found.displacements)[1] - machine.half_backlash
+    amount = (flank_jacobian(machine.layout) @ found.displacements)[1] - machine.half_backlash
     force = 600.0 / machine.layout.pinion_arm
     assert amount == pytest.approx((force / (0.5 * C)) ** (1.0 / N), rel=1e-6)
 
@@ -71,7 +71,7 @@ def test_frequencies_of_a_loaded_machine_are_those_of_differences_of_its_forces(
     machine = made()
     layout = machine.layout
     place = mean_equilibrium(machine).displacements[0]
-    directions, gaps = flank_directions(layout), constant_errors(machine) + flank_gaps(machine)
+    directions, gaps = flank_jacobian(layout), constant_errors(machine) + flank_gaps(machine)
     law = flank_law(machine).mean()
 
     def restoring(displacements):
