@@ -19,16 +19,33 @@ class Motion(StrEnum):
 
 @dataclass(frozen=True)
 class Settings:
-    """How a steady state is sought. Lengths of time are in mesh periods.
+    """How a steady state is sought.
 
-    tolerance: local error of a step over the system's length scale. order: of the Taylor steps, None: from
-    the tolerance. dwell: periods before anything is judged. settle: periods for which a motion is watched
-    before it counts as not periodic. longest_period: m, the longest period looked for. periodic_residual:
-    change over a period that counts as periodic, over the length scale. window: periods over which a motion
-    that is not periodic is measured, and before that its exponent. samples: least number per period; more are
-    taken where the motion needs them. refine: find periodic orbits to rounding by Newton's method, with
-    Floquet multipliers. extensions: times that the window of an undecided exponent is doubled, and that a
-    motion is watched again whose exponent and window do not agree.
+    Lengths of time are in mesh periods.
+
+    Attributes
+    ----------
+    tolerance
+        Local error of a step over the system's length scale.
+    order
+        Of the Taylor steps, None: from the tolerance.
+    dwell
+        Periods before anything is judged.
+    settle
+        Periods for which a motion is watched before it counts as not periodic.
+    longest_period
+        M, the longest period looked for.
+    periodic_residual
+        Change over a period that counts as periodic, over the length scale.
+    window
+        Periods over which a motion that is not periodic is measured, and before that its exponent.
+    samples
+        Least number per period; more are taken where the motion needs them.
+    refine
+        Find periodic orbits to rounding by Newton's method, with Floquet multipliers.
+    extensions
+        Times that the window of an undecided exponent is doubled, and that a motion is watched again whose
+        exponent and window do not agree.
     """
 
     tolerance: float = 1e-8

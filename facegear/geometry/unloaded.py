@@ -21,9 +21,17 @@ MAX_TURNS = 100
 class UnloadedContact:
     """Flank contact at p pinion angles.
 
-    phi1, phi2: (p,) rad. transmission_error: (p,) m, (phi2 - phi1 N1 / N2) r_b2, along the line of action.
-    tooth: (p,) number of the touching pair. gap, roll, y: (p, 5) for the pairs -2..2 the smallest separation
-    (m) and where it is on the pinion (rad, m); inf and nan where a pair does not face each other.
+    Attributes
+    ----------
+    phi1, phi2
+        (p,) rad.
+    transmission_error
+        (p,) m, (phi2 - phi1 N1 / N2) r_b2, along the line of action.
+    tooth
+        (p,) number of the touching pair.
+    gap, roll, y
+        (p, 5) for the pairs -2..2 the smallest separation (m) and where it is on the pinion (rad, m); inf and
+        nan where a pair does not face each other.
     """
 
     phi1: Array

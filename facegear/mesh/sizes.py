@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 @dataclass(frozen=True)
 class MeshSizes:
-    """Element sizes (m). Quadratic elements carry nodes at half these distances.
+    """Element sizes (m).
 
     profile: along the flank's profile at its surface; width: along the face; thickness: largest size inside
     the tooth and the body below it. Between surface and inside the mesh coarsens three to one per level.

@@ -40,8 +40,14 @@ class Piecewise:
 class LinearLaw:
     """k(phase) times the amount pressed in, of contacts of a few kinds, which differ in phase or size.
 
-    fourier (kinds, 2, harmonics + 1): series of k, sine part first, N/m; kind (M,) of each contact; pieces:
-    what is added to the series of each kind, or nothing.
+    Attributes
+    ----------
+    fourier : (kinds, 2, harmonics + 1)
+        Series of k, sine part first, N/m.
+    kind : (M,)
+        Of each contact.
+    pieces
+        What is added to the series of each kind, or nothing.
     """
 
     fourier: Array

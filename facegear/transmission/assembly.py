@@ -21,10 +21,17 @@ ROUNDED = 1e-3
 class Assembly:
     """What each pinion leaves over where it bridges both gears, all (pinions,).
 
-    misfit (m along the line of action): how far the teeth of its lower mesh stand ahead of the gear's, with
-    the upper mesh in place and the lower gear where most pinions fit; positive closes the drive flank.
-    room (m): what its backlashes take up to either side. fits: whether it mounts together with the others.
-    below, above: the nearest angles that leave nothing over, in pitches.
+    Attributes
+    ----------
+    misfit
+        m along the line of action, how far the teeth of its lower mesh stand ahead of the gear's, with the
+        upper mesh in place and the lower gear where most pinions fit; positive closes the drive flank.
+    room
+        m, what its backlashes take up to either side.
+    fits
+        Whether it mounts together with the others.
+    below, above
+        The nearest angles that leave nothing over, in pitches.
     """
 
     misfit: Array

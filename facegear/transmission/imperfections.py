@@ -25,13 +25,27 @@ class Runout:
 class Imperfections:
     """Errors of single meshes and bodies; lengths in m.
 
-    error (meshes,): constant, along the line of action, positive where the drive flank comes late.
-    half_backlash (meshes,): nan takes the machine's. stiffness (meshes,): factor on k(t). series: e(t) of a
-    mesh by its index, in place of the common one. position (pinions, 2): x, y of the pinion's bearings.
-    bearing_clearance (pinions,): radial. clocking (pinions,): lower rim ahead of the upper,
-    in pitches. pinion_runout, gear_runout: one a body. pinion_pitch, gear_pitch: by the body's index,
-    cumulative pitch deviation (teeth,) along the pitch circle, positive where a tooth stands ahead as the
-    body turns.
+    Attributes
+    ----------
+    error : (meshes,)
+        Constant, along the line of action, positive where the drive flank comes late.
+    half_backlash : (meshes,)
+        nan takes the machine's.
+    stiffness : (meshes,)
+        Factor on k(t).
+    series
+        e(t) of a mesh by its index, in place of the common one.
+    position : (pinions, 2)
+        x, y of the pinion's bearings.
+    bearing_clearance : (pinions,)
+        Radial.
+    clocking : (pinions,)
+        Lower rim ahead of the upper, in pitches.
+    pinion_runout, gear_runout
+        One a body.
+    pinion_pitch, gear_pitch
+        By the body's index, cumulative pitch deviation (teeth,) along the pitch circle, positive where a
+        tooth stands ahead as the body turns.
     """
 
     error: Array

@@ -18,9 +18,14 @@ from facegear.arrays import Array, Integers
 class Spin:
     """What turning bodies add, for a speed of the pinions of 1 rad/s; each (n, n), SI units.
 
-    - gyroscopic: G, skew-symmetric, force by velocity.
-    - circulatory: N, force by displacement, from damping that turns with a body.
-    - centrifugal: P, symmetric, force by displacement for the square of the speed.
+    Attributes
+    ----------
+    gyroscopic
+        G, skew-symmetric, force by velocity.
+    circulatory
+        N, force by displacement, from damping that turns with a body.
+    centrifugal
+        P, symmetric, force by displacement for the square of the speed.
     """
 
     gyroscopic: Array
@@ -43,17 +48,30 @@ class Rings:
 class LinearModel:
     """n coordinates; m flanks; SI units.
 
-    - labels (n): `body:letter`. The coordinates of the layout come first, as it orders them.
-    - mass, stiffness (n, n): symmetric; stiffness holds all bearings, those with clearance as if they had
-      none.
-    - rows (m, n): derivative of the flanks' deflections by the coordinates, drive flanks first.
-    - torques (n,): those that the flanks hold in balance; forces (n,): all other external loads.
-    - lengths (n,): length (m) that one unit of a coordinate counts as: 1 for a displacement, an arm for a
-      rotation.
-    - translations (bodies, 3): which coordinates are x, y, z of each body.
-    - mass_damping (1/s), bearing_damping (s): factors of M and K in equation (21); dampers (n, n): all other
-      damping, N s/m.
-    - rings: bearings with clearance. spin: what turning bodies add, None for nothing.
+    Attributes
+    ----------
+    labels : (n,)
+        `body:letter`. The coordinates of the layout come first, as it orders them.
+    mass, stiffness : (n, n)
+        Symmetric; stiffness holds all bearings, those with clearance as if they had none.
+    rows : (m, n)
+        Derivative of the flanks' deflections by the coordinates, drive flanks first.
+    torques : (n,)
+        Those that the flanks hold in balance.
+    forces : (n,)
+        All other external loads.
+    lengths : (n,)
+        Length (m) that one unit of a coordinate counts as: 1 for a displacement, an arm for a rotation.
+    translations : (bodies, 3)
+        Which coordinates are x, y, z of each body.
+    mass_damping, bearing_damping
+        Factors of M (1/s) and K (s) in equation (21).
+    dampers : (n, n)
+        All other damping, N s/m.
+    rings
+        Bearings with clearance.
+    spin
+        What turning bodies add, None for nothing.
     """
 
     labels: tuple[str, ...]

@@ -34,14 +34,26 @@ from facegear.errors import NotConverged
 class RunResult:
     """What a run over whole mesh periods has left. n coordinates, m rows of meshes, flanks and rings.
 
-    - state (2, n): at the end; ends (periods, 2, n): at the end of each period.
-    - tangents (columns, 2, n): disturbances at the end.
-    - samples (periods * samples, n): coordinates at evenly spaced phases, from the start of each period.
-    - fractions (3, m): of time open, on the drive and on the back flank; only with samples, batches or
-      tangents.
-    - divergence: integral of the trace of the equations' matrix; only with tangents.
-    - growth (periods,): logarithm of the growth of the one tangent in each period, if it was asked for.
-    - steps: their number. sums: integrals and extremes over batches of periods.
+    Attributes
+    ----------
+    state : (2, n)
+        At the end.
+    ends : (periods, 2, n)
+        At the end of each period.
+    tangents : (columns, 2, n)
+        Disturbances at the end.
+    samples : (periods * samples, n)
+        Coordinates at evenly spaced phases, from the start of each period.
+    fractions : (3, m)
+        Of time open, on the drive and on the back flank; only with samples, batches or tangents.
+    divergence
+        Integral of the trace of the equations' matrix; only with tangents.
+    growth : (periods,)
+        Logarithm of the growth of the one tangent in each period, if it was asked for.
+    steps
+        Their number.
+    sums
+        Integrals and extremes over batches of periods.
     """
 
     state: Array

@@ -23,7 +23,7 @@ DONE, TOO_MANY_STEPS, NOT_FINITE = 0, 1, 2
 
 
 class Log(NamedTuple):
-    """What a run writes. Any array may have length 0, which leaves it out.
+    """What a run writes.
 
     samples (periods * per_period, n): y at equally spaced phases from the start of each period.
     ends (periods, 2, n): y and dy/ds at the end of each period. fractions (3, m): phase spent open, on the

@@ -39,8 +39,14 @@ class JumpSide:
 class Jump:
     """The response leaves its branch between two speeds (in the order of running).
 
-    before, after: what is found on both sides. mesh: where the relative change is largest. largest: the
-    sweep's position next to the jump with the larger response.
+    Attributes
+    ----------
+    before, after
+        What is found on both sides.
+    mesh
+        Where the relative change is largest.
+    largest
+        The sweep's position next to the jump with the larger response.
     """
 
     before: JumpSide
