@@ -12,7 +12,7 @@ sys.path.insert(0, str(ROOT))
 project = "facegear"
 author = "the facegear authors"
 release = importlib.metadata.version("facegear")
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.apidoc"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.apidoc", "sphinx.ext.napoleon"]
 exclude_patterns = ["build", "joss"]
 default_role = "literal"  # docstrings write names in single backticks
 myst_enable_extensions = ["dollarmath", "colon_fence"]

@@ -63,11 +63,30 @@ class Spot:
 class LoadedPosition:
     """One position at one torque.
 
-    `position` 0..1 of a pitch; `torque` N m on the pinion; transmission errors (m) along the line of action,
-    the pinion ahead of the gear positive, `ste` loaded and `unloaded`; stiffnesses (N/m) on the line of
-    action; `load_share` (5,) of the torque carried by the pairs -2..2; `fillet_share` of the torque carried
-    in fillets; `overlap` (m, along the line of action) by which teeth whose flanks just touch stand in each
-    other elsewhere, with which `k_average` is nan where it matters; `residual` of the contact conditions.
+    Transmission errors are along the line of action, the pinion ahead of the gear positive.
+
+    Attributes
+    ----------
+    position
+        0..1 of a pitch.
+    torque
+        On the pinion, N m.
+    ste, unloaded
+        Transmission error under load and without, m.
+    k_average, k_local
+        Stiffness on the line of action, N/m; k_average is nan where an overlap matters.
+    load_share : (5,)
+        Of the torque carried by the pairs -2..2.
+    fillet_share
+        Of the torque carried in fillets.
+    overlap
+        By how much teeth whose flanks just touch stand in each other elsewhere, m along the line of action.
+    residual
+        Of the contact conditions.
+    steps
+        Of the solver.
+    candidates, spots
+        Points that may touch, and what they carry.
     """
 
     position: float

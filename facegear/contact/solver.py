@@ -20,11 +20,22 @@ TOLERANCE = 1e-11
 
 @dataclass(frozen=True, eq=False)
 class ContactSolution:
-    """A contact loaded by `torque` (N m).
+    """A contact loaded by a torque.
 
-    `force` (n,) N; `rotation` rad (the approach in m where lever arms are 1); `slope` d rotation / d torque
-    with the contact area following the load, rad/(N m); `residual` largest relative violation of the
-    conditions.
+    Attributes
+    ----------
+    torque
+        N m.
+    force : (n,)
+        N.
+    rotation
+        rad (the approach in m where lever arms are 1).
+    slope
+        d rotation / d torque with the contact area following the load, rad/(N m).
+    residual
+        Largest relative violation of the conditions.
+    steps
+        Of the active set.
     """
 
     torque: float

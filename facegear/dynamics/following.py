@@ -33,9 +33,21 @@ APART = 0.3
 class Followed:
     """K = mesh cycles x positions of the motion with everything that turns.
 
-    cycles (K,) mesh cycles of the reference; coordinates (K, n); flank_forces (K, 2 meshes) elastic, N, drive
-    flanks first. lead: cycles run before. memory: largest difference of the flank forces in the cycles after
-    the lead between two starts, over the largest force; the motion depends on its past where it is not small.
+    Attributes
+    ----------
+    cycles : (K,)
+        Mesh cycles of the reference.
+    positions
+        In each mesh cycle.
+    coordinates : (K, n)
+        Of the system.
+    flank_forces : (K, 2 meshes)
+        Elastic, N, drive flanks first.
+    lead
+        Cycles run before.
+    memory
+        Largest difference of the flank forces in the cycles after the lead between two starts, over the
+        largest force; the motion depends on its past where it is not small.
     """
 
     cycles: Array

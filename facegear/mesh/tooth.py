@@ -31,11 +31,21 @@ class SurfaceGrid:
 class FeTooth:
     """Tooth 0 with its share of the body, from cut face to cut face, in the body frame of `geometry.design`.
 
-    nodes: (N, 3) in m. hexes: (M, 27), node i + 3 j + 9 k at local (i/2, j/2, k/2), right handed; the eight
-    corners are `hexes[:, CORNERS]`. faces: named (F, 9) boundary faces, node i + 3 j, normals outward:
-    flank_left/right, fillet_left/right, root_land_left/right, tip, end_inner, end_outer, cut_left/right and
-    bore or rim_back. surfaces: flank_left/right and fillet_left/right as grids.
-    cut_left[i] turned by one pitch is cut_right[i].
+    Attributes
+    ----------
+    body, teeth
+        Which body, and its number of teeth.
+    nodes : (N, 3)
+        m.
+    hexes : (M, 27)
+        Node i + 3 j + 9 k at local (i/2, j/2, k/2), right handed; the eight corners are `hexes[:, CORNERS]`.
+    faces
+        Named (F, 9) boundary faces, node i + 3 j, normals outward: flank_left/right, fillet_left/right,
+        root_land_left/right, tip, end_inner, end_outer, cut_left/right and bore or rim_back.
+    surfaces
+        flank_left/right and fillet_left/right as grids.
+    cut_left, cut_right
+        cut_left[i] turned by one pitch is cut_right[i].
     """
 
     body: str

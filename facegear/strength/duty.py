@@ -25,10 +25,22 @@ class DutyBin:
 class FlankDuty:
     """Loads of one flank of the teeth of one gear.
 
-    gear: `pinion` or `face_gear`, as which the body's teeth are rated. flank: `drive` (the pinion drives),
-    `back`, or `each` where both are loaded alike. bins (n,): bin of each load, from 0; torque (n,) N m on the
-    pinion with all load factors; cycles (n,). opposite (bins,): largest torque of the other flank in each
-    bin, 0 where it carries none.
+    Attributes
+    ----------
+    body
+        Its name.
+    gear
+        `pinion` or `face_gear`, as which the body's teeth are rated.
+    flank
+        `drive` (the pinion drives), `back`, or `each` where both are loaded alike.
+    bins : (n,)
+        Bin of each load, from 0.
+    torque : (n,)
+        On the pinion with all load factors, N m.
+    cycles : (n,)
+        Of each load.
+    opposite : (bins,)
+        Largest torque of the other flank in each bin, 0 where it carries none.
     """
 
     body: str

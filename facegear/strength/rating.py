@@ -67,11 +67,35 @@ class RatingRequest:
 class Rated:
     """One way in which the teeth of a gear may fail on one flank.
 
-    `stress` (n,) Pa and `damage` (n,) of the loads in `duty`; `allowed` (Pa): stress that may be repeated for
-    ever before life factors, which `limit` gives; `safety`: by how much all stresses may rise until Miner's
-    sum is 1; `life`: of the duty cycle in seconds. `reliability` at the end of the duty cycle: nan where the
-    card has no Weibull shape (`has_shape`), or where no load does damage. `edge_load` (N/m) on tip edges
-    under the largest load; `fillet_share`: the largest share of the torque that fillets carry under any load.
+    Attributes
+    ----------
+    duty
+        Loads of the flank, n of them.
+    failure, method
+        Pitting or bending, and how its stress was computed.
+    stress : (n,)
+        Pa.
+    allowed
+        Stress that may be repeated for ever before life factors, Pa.
+    limit
+        Gives those factors.
+    damage : (n,)
+        Of the loads.
+    safety
+        By how much all stresses may rise until Miner's sum is 1.
+    required
+        Minimum safety.
+    life
+        Of the duty cycle, s.
+    reliability
+        At the end of the duty cycle: nan where the card has no Weibull shape (`has_shape`), or where no load
+        does damage.
+    has_shape
+        Whether the card has one.
+    edge_load
+        On tip edges under the largest load, N/m.
+    fillet_share
+        The largest share of the torque that fillets carry under any load.
     """
 
     duty: FlankDuty

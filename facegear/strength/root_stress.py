@@ -24,13 +24,22 @@ FINER = 8
 
 @dataclass(frozen=True, eq=False)
 class RootStress:
-    """Stress (Pa) at the gauges of one tooth while it passes through the mesh.
+    """Stress (Pa) at the gauges of one tooth while it passes through the mesh; t torques.
 
-    For t torques (N m): `stress` (t, n, 2, a, b) at the places `passage` (n,) in pitches, 0 to 1 while the
-    tooth belongs to pair 0; fillets below the loaded and below the other flank, a gauges down them, b along
-    the face. `along` (b,) m: gear radius, the pinion's distance from the gear's axis; `angle` (2, a, b) rad
-    between the tangent and the tooth's middle line. `error` (b,): relative error of the largest stress that
-    the mesh makes, nan where it is not known.
+    Attributes
+    ----------
+    torques : (t,)
+        N m.
+    passage : (n,)
+        Positions in pitches, 0 to 1 while the tooth belongs to pair 0.
+    stress : (t, n, 2, a, b)
+        Fillets below the loaded and below the other flank, a gauges down them, b along the face.
+    along : (b,)
+        Gear radius, the pinion's distance from the gear's axis, m.
+    angle : (2, a, b)
+        Between the tangent and the tooth's middle line, rad.
+    error : (b,)
+        Relative error of the largest stress that the mesh makes, nan where it is not known.
     """
 
     torques: Array

@@ -39,9 +39,20 @@ class Tilt:
 
 @dataclass(frozen=True)
 class Body:
-    """Mass (kg), moment of inertia about the own axis (kg m2), bearing stiffness along x, y, z (N/m).
+    """Inertia and bearing of one body.
 
-    `bearing_xy` couples x and y (N/m). `tilt` lets a face gear rock; without it the gear stays square.
+    Attributes
+    ----------
+    mass
+        kg.
+    inertia
+        About the own axis, kg m2.
+    bearing
+        Stiffness along x, y, z, N/m.
+    bearing_xy
+        Stiffness that couples x and y, N/m.
+    tilt
+        Lets a face gear rock; without it the gear stays square.
     """
 
     mass: float

@@ -35,8 +35,16 @@ class Spin:
 
 @dataclass(frozen=True, eq=False)
 class Rings:
-    """Bearings with clearance, R of them: body (R,) in the order of the bodies, stiffness (R,) beyond the
-    clearance (N/m), clearance (R,), m.
+    """Bearings with clearance, R of them.
+
+    Attributes
+    ----------
+    body : (R,)
+        Index in the order of the bodies.
+    stiffness : (R,)
+        Beyond the clearance, N/m.
+    clearance : (R,)
+        To each side, m.
     """
 
     body: Integers

@@ -31,11 +31,20 @@ class Contact(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class LoadedContacts:
-    """Forces under the mean torques: flanks (2 meshes,), drive flanks first, and rings (pinions,), N.
+    """What the mean torques press together.
 
-    stiffness (2 meshes,): slope of each flank's force there, N/m, or what it would be in contact; past_law
-    (2 meshes,): whether it is pressed in past the last level of its law.
-    rings and places (pinions, 2), m: nan where a bearing has no clearance.
+    Attributes
+    ----------
+    flanks : (2 meshes,)
+        Forces, N, drive flanks first.
+    stiffness : (2 meshes,)
+        Slope of each flank's force there, N/m, or what it would be in contact.
+    past_law : (2 meshes,)
+        Whether it is pressed in past the last level of its law.
+    rings : (pinions,)
+        Forces of the bearings, N; nan where a bearing has no clearance.
+    places : (pinions, 2)
+        Where the pinions stand in their rings, m; nan where a bearing has no clearance.
     """
 
     flanks: Array

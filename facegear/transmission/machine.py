@@ -55,15 +55,37 @@ class FlankTables:
 
 @dataclass(frozen=True, eq=False)
 class Machine:
-    """Layout, torques on the bodies (N m), reference mesh stiffness and error, half backlash (m).
+    """The lumped model with everything that drives it.
 
-    `error` is a Fourier series in m on the reference mesh; each mesh lags by its `error_lags` (meshes,), in
-    mesh periods, or by its stiffness phase if there are none. `imperfections` default to none. `forces`
-    (bodies, 3): external ones on the bodies along x, y, z, N, none by default. `law`: of all contacts, as
-    facegear.transmission.flanks.mesh_contacts orders them; without one their force is the stiffness times how
-    far they are pressed in, and with one `stiffness` is only the scale of it. `tables`: of the flanks at each
-    gear, from which that law is made where it depends on the load. `friction` of the meshes disturbs the
-    motion, and nothing at rest. `bodies`: what makes more of them than rigid masses on springs.
+    Attributes
+    ----------
+    layout
+        Bodies and mesh geometry.
+    torques
+        On the bodies, N m.
+    stiffness
+        Of the reference mesh, N/m.
+    error
+        e(t) of the reference mesh, a Fourier series in m.
+    half_backlash
+        m.
+    damping, phase_convention
+        Of bodies, bearings and meshes; how meshes lag.
+    error_lags : (meshes,)
+        Lag of the error in mesh periods; without them each mesh lags by its stiffness phase.
+    imperfections
+        Of single meshes and bodies; none by default.
+    forces : (bodies, 3)
+        External ones on the bodies along x, y, z, N; none by default.
+    law
+        Of all contacts, as facegear.transmission.flanks.mesh_contacts orders them. Without one their force is
+        the stiffness times how far they are pressed in, and with one `stiffness` is only the scale of it.
+    tables
+        Of the flanks at each gear, from which that law is made where it depends on the load.
+    friction
+        Of the meshes; it disturbs the motion, and nothing at rest.
+    bodies
+        What makes more of them than rigid masses on springs.
     """
 
     layout: Layout

@@ -18,9 +18,17 @@ ROUNDING = 1e-9
 class Ratings:
     """What a machine does at one pinion speed.
 
-    ratio: gear teeth over pinion teeth, the pinion's speed over the gear's. Speeds in rpm, mesh_frequency in
-    Hz, powers in W: `power_in` is brought by the bodies that drive, `power_out` taken by those that are
-    driven; they differ by rounding alone unless the lever arms are not those of the teeth.
+    Attributes
+    ----------
+    ratio
+        Gear teeth over pinion teeth, the pinion's speed over the gear's.
+    pinion_speed, gear_speed
+        rpm.
+    mesh_frequency
+        Hz.
+    power_in, power_out
+        W, brought by the bodies that drive and taken by those that are driven; they differ by rounding alone
+        unless the lever arms are not those of the teeth.
     """
 
     ratio: float

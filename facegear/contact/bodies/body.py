@@ -14,11 +14,22 @@ class ElasticBody:
     """Mesh of 27-node hexahedra with its contact surface, supports and cut faces.
 
     Nodes are those of the mesh in scikit-fem's numbering: displacement i of node k is dof 3 k + i of
-    `ElementVector(ElementHex2())`. `flank` (2a+1, 2b+1) holds the nodes of the contact surface, axis 0 across
-    the profile and axis 1 along the width; `normals` (2a+1, 2b+1, 3) point out of the body there. `held`
-    (n, 3) marks dof kept at zero. `left` and `right` (s,) are the nodes of the two cut faces: the rotation
-    `turn` (3, 3) by one pitch about the gear's axis takes the left ones to the right ones, in this order.
-    Both are empty for a body that does not repeat.
+    `ElementVector(ElementHex2())`.
+
+    Attributes
+    ----------
+    mesh, material
+        Elements and their elasticity.
+    flank : (2 a + 1, 2 b + 1)
+        Nodes of the contact surface, axis 0 across the profile and axis 1 along the width.
+    normals : (2 a + 1, 2 b + 1, 3)
+        Out of the body there.
+    held : (n, 3)
+        Marks dof kept at zero.
+    left, right : (s,)
+        Nodes of the two cut faces, in corresponding order; both empty for a body that does not repeat.
+    turn : (3, 3)
+        Rotation by one pitch about the gear's axis, which takes the left nodes to the right ones.
     """
 
     mesh: MeshHex2

@@ -21,12 +21,22 @@ SHARES = (1, 6, 3)
 class FlankCompliance:
     """Normal displacements of the flanks of a gear by unit normal forces on one of them, m/N.
 
-    `own` (n, n): on the loaded tooth, nodes of the refined lattice `shape`; `others` (2 d + 1, c, c): on the
-    tooth t - d places further, nodes of the lattice before refinement `coarse_shape` (the field of a
-    neighbour is smooth); the middle block repeats the own tooth and is not used. `refinement` relates the two
-    lattices; `linear` where displacements are so between nodes, not quadratic over elements. `readings`
-    (2 d + 1, g, c): what g gauges on the tooth t - d places further show by unit normal forces on the nodes
-    of the lattice before refinement; empty without gauges.
+    Attributes
+    ----------
+    own : (n, n)
+        On the loaded tooth, nodes of the refined lattice `shape`.
+    others : (2 d + 1, c, c)
+        On the tooth t - d further along, nodes of the lattice before refinement `coarse_shape` (the field of
+        a neighbour is smooth); the middle block repeats the own tooth and is not used.
+    shape, coarse_shape
+        Of the two lattices.
+    refinement
+        Relates the two lattices.
+    linear
+        Whether displacements are linear between nodes, not quadratic over elements.
+    readings : (2 d + 1, g, c)
+        What g gauges on the tooth t - d further along show by unit normal forces on the nodes of the lattice
+        before refinement; empty without gauges.
     """
 
     own: Array

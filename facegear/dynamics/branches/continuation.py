@@ -43,10 +43,20 @@ class BranchEnd(StrEnum):
 
 @dataclass(frozen=True)
 class ContinuationSettings:
-    """How a branch is followed: range of the parameter, steps in weighted states and logarithms.
+    """How a branch is followed; steps are lengths in weighted states and logarithms.
 
-    first, ds_min, ds_max: step lengths. max_points: most points in each direction. bound: largest weighted
-    state. to_first: end at the first special point that is no graze.
+    Attributes
+    ----------
+    p_min, p_max
+        Range of the parameter.
+    first, ds_min, ds_max
+        Step lengths.
+    max_points
+        Maximum number of points in each direction.
+    bound
+        Largest weighted state.
+    to_first
+        End at the first special point that is no graze.
     """
 
     p_min: float
@@ -63,8 +73,18 @@ class ContinuationSettings:
 class Branch:
     """Points in their order along the branch, what was met between them, and why it ends on both sides.
 
-    specials are sorted by `after`, the index of the point before them plus their fraction of the way to the
-    next.
+    Attributes
+    ----------
+    period_map
+        The map whose fixed points they are.
+    points
+        Neighbours a step apart.
+    specials
+        Sorted by `after`, the index of the point before them plus their fraction of the way to the next.
+    ends
+        Why it ends before the first and behind the last point.
+    tried
+        What was tried where steps became too short.
     """
 
     period_map: PeriodMap

@@ -29,9 +29,20 @@ PATIENCE = 40
 
 @dataclass(frozen=True, eq=False)
 class SettledMotion:
-    """A motion that starts ended on. z (2 n,): a weighted state of it; point: the orbit if it is periodic.
+    """A motion that starts ended on.
 
-    count of the starts, share and its standard error sqrt(p (1 - p) / N).
+    Attributes
+    ----------
+    label, period
+        Class of motion, and its mesh periods.
+    z : (2 n,)
+        A weighted state of it.
+    point
+        The orbit if it is periodic.
+    count, fraction
+        Of the starts.
+    error
+        Standard error sqrt(p (1 - p) / N) of the fraction.
     """
 
     label: str

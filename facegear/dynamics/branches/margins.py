@@ -21,8 +21,18 @@ ENDING = (Kind.FOLD, Kind.DOUBLING, Kind.TORUS, Kind.BRANCH)
 class StabilityLimit:
     """Where a stable motion first loses its stability or its existence when one parameter changes.
 
-    branch, period: of the motion. parameter, start: its name and value there. direction: of the parameter.
-    special: None if nothing is met within the range.
+    Attributes
+    ----------
+    branch, period
+        Of the motion.
+    parameter, start
+        Its name and value there.
+    direction
+        Of the parameter.
+    special
+        None if nothing is met within the range.
+    reached
+        Value of the parameter at the end.
     """
 
     branch: int

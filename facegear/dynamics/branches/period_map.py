@@ -23,9 +23,24 @@ FINEST = 1e-14
 
 @dataclass(frozen=True, eq=False)
 class Linear:
-    """The map near a state: change end - start (2 n,), matrix (2 n, 2 n), slope by the parameter's logarithm
-    (2 n,), contact (meshes,): whether it is ever in contact, neutral (2 n, k): directions of bodies that
-    touch nothing, orthonormal, divergence: integral of the trace. inverses: of the matrix bordered by a row.
+    """The period map near a state.
+
+    Attributes
+    ----------
+    gap : (2 n,)
+        Change end - start.
+    matrix : (2 n, 2 n)
+        Derivative of the map.
+    slope : (2 n,)
+        Its change with the parameter's logarithm.
+    contact : (meshes,)
+        Whether a mesh is ever in contact.
+    neutral : (2 n, k)
+        Directions of bodies that touch nothing, orthonormal.
+    divergence
+        Integral of the trace.
+    inverses
+        Of the matrix bordered by a row.
     """
 
     gap: Array

@@ -30,9 +30,20 @@ SINGULAR = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class BranchPoint:
-    """x (2 n + 1,): weighted state and logarithm of the parameter. tangent (2 n + 1,) of the branch, of
-    length one. parity: sign of the bordered determinant, which changes at a branch point only. turning: see
-    PeriodMap.turning.
+    """A periodic motion at one value of the parameter.
+
+    Attributes
+    ----------
+    x : (2 n + 1,)
+        Weighted state and logarithm of the parameter.
+    tangent : (2 n + 1,)
+        Of the branch, of length one.
+    parity
+        Sign of the bordered determinant, which changes at a branch point only.
+    linear
+        The map near it.
+    extrema
+        As PeriodMap.extrema gives them.
     """
 
     x: Array

@@ -25,9 +25,24 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Special:
-    """A special point. after: place along the branch. multiplier: the critical one (NaN at a graze).
+    """A special point of a branch.
 
-    proof: what shows that it is one. meshes, edge: those that graze (+1 upper edge, -1 lower).
+    Attributes
+    ----------
+    kind
+        What it is.
+    point
+        The motion there.
+    multiplier
+        The critical one (NaN at a graze).
+    proof
+        What shows that it is one.
+    after
+        Position along the branch.
+    meshes
+        Those that graze.
+    edge
+        Which edge they graze, +1 upper, -1 lower.
     """
 
     kind: Kind

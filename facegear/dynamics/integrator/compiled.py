@@ -18,8 +18,20 @@ ROUNDING = 1e-15
 
 
 class Rings(NamedTuple):
-    """Bearings with clearance: number R, the first of their 3 R rows among the meshes, stiffness over w^2
-    and clearance, padded; lag: w times damping over stiffness.
+    """Bearings with clearance.
+
+    Attributes
+    ----------
+    number
+        Their number R.
+    first
+        The first of their 3 R rows among the meshes.
+    stiffness
+        Over w^2, padded.
+    clearance
+        Padded.
+    lag
+        w times damping over stiffness.
     """
 
     number: int
@@ -53,18 +65,53 @@ class Sparse(NamedTuple):
 class Packed(NamedTuple):
     """Arrays padded to whole SIMD lanes; padded meshes and coordinates are zero and stay at rest.
 
-    n, m count the real ones. mesh_jacobian (n, m) and transposed (m, n); touched and touching are the same
-    without zeros and padding, by mesh and by coordinate. Derivatives are by s = w t:
-    omega_squared, the law and load are over w^2, damping and mesh_damping over w. law: the contacts' law as
-    facegear.mesh_law.terms takes it, smooth in s from one of `breaks` (rad) to the next. Fourier series are
-    (harmonics + 1, 2, width), sine part first; the error has one column for each of the kinds that error_kind
-    (m,) names. drift (terms, m): polynomial in s added to the error of this period, or none. leverage (m,):
-    sum of squares of a row of mesh_jacobian. pairs: meshes whose two flanks stand at j and j + pairs; 0 where
-    every mesh stands for itself. contacts: rows of the m that are meshes or flanks; the others belong to the
-    rings of bearings with clearance. coupled (2 n, n): transposed matrices of what couples coordinates beside
-    the meshes, by velocity, then by displacement. Without any, `rings`, `rubbing` (friction) and `coupled`
-    are None, and the kernels are compiled without them: another type, of these or of the law, is another
-    machine code.
+    Derivatives are by s = w t. Fourier series are (harmonics + 1, 2, width), sine part first. Without any,
+    `rings`, `rubbing` and `coupled` are None, and the kernels are compiled without them: another type, of
+    these or of the law, is another machine code.
+
+    Attributes
+    ----------
+    n, m
+        Count the real coordinates and meshes.
+    mesh_jacobian, transposed
+        (n, m) and (m, n).
+    touched, touching
+        The same without zeros and padding, by mesh and by coordinate.
+    omega_squared, load
+        Over w^2.
+    damping, mesh_damping
+        Over w.
+    lower, upper : (m,)
+        Edges of the clearance.
+    law
+        The contacts' law as facegear.mesh_law.terms takes it, over w^2, smooth in s from one of `breaks`
+        (rad) to the next.
+    error
+        One column for each of the kinds of mesh that differ in phase.
+    error_kind : (m,)
+        Which of them a mesh has.
+    drift : (terms, m)
+        Polynomial in s added to the error of this period, or none.
+    breaks
+        Phases at which the law is not smooth, rad.
+    weights : (n,)
+        Largest motion along a mesh that one unit of each coordinate makes.
+    leverage : (m,)
+        Sum of squares of a row of mesh_jacobian.
+    fastest
+        Bound of the angular frequency over w.
+    damping_when_open, push_only
+        As of System; push_only where it makes a difference.
+    pairs
+        Meshes whose two flanks stand at j and j + pairs; 0 where every mesh stands for itself.
+    scale
+        The length that tolerances mean.
+    contacts
+        Rows of the m that are meshes or flanks; the others belong to the rings of bearings with clearance.
+    rings, rubbing
+        Bearings with clearance, and friction.
+    coupled : (2 n, n)
+        Transposed matrices of what couples coordinates beside the meshes, by velocity, then by displacement.
     """
 
     n: int

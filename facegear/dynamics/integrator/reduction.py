@@ -27,13 +27,23 @@ RIGID = 1e-13
 class Reduced:
     """The moving part in n mass-normalised coordinates y, displacements = basis y.
 
-    - basis (dof, n).
-    - mesh_jacobian (contacts, n), followed by x, y and a row of zeros of each bearing with clearance: those
-      bearings are not in omega_squared.
-    - omega_squared (n,): bearing frequencies squared, 1/s2.
-    - damping (n,): 1/s. load (n,): from torques and forces.
-    - free: the names of the coordinates that nothing touches.
-    - coupling: what couples the n beside the meshes, for a speed of the pinions of 1 rad/s; or None.
+    Attributes
+    ----------
+    basis : (dof, n)
+        Displacements of unit coordinates.
+    mesh_jacobian : (contacts, n)
+        Followed by x, y and a row of zeros of each bearing with clearance: those bearings are not in
+        omega_squared.
+    omega_squared : (n,)
+        Bearing frequencies squared, 1/s2.
+    damping : (n,)
+        1/s.
+    load : (n,)
+        From torques and forces.
+    free
+        The names of the coordinates that nothing touches.
+    coupling
+        What couples the n beside the meshes, for a speed of the pinions of 1 rad/s; or None.
     """
 
     basis: Array

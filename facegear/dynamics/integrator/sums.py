@@ -39,13 +39,28 @@ TURNS = 4
 class Sums(NamedTuple):
     """Integrals over the mesh phase, in B batches of whole periods; B = 0 leaves them out.
 
-    coordinates (B, n) of y and products (B, n, n) of y y^T, of which the upper half is filled, both about
-    `origin` (n,); deflections and squared (B, m) about `level` (m,); forces (2, m): elastic mesh force over
-    w^2 and its magnitude. minimum, maximum (m,): extremes of the deflections. pull (m,): the smallest force
-    of spring and damper of a contact over w^2, negative where flanks are pulled together, zero where they
-    never are, at the ends and inner nodes of the steps. Of meshes with two flanks the first `pairs` columns
-    hold half the difference of the deflections of the two from their edges, and the difference of their
-    forces.
+    Of meshes with two flanks the first `pairs` columns hold half the difference of the deflections of the two
+    from their edges, and the difference of their forces.
+
+    Attributes
+    ----------
+    origin : (n,)
+        About which coordinates are taken.
+    level : (m,)
+        About which deflections are taken.
+    coordinates : (B, n)
+        Of y.
+    products : (B, n, n)
+        Of y y^T, of which the upper half is filled.
+    deflections, squared : (B, m)
+        Of the deflections and their squares.
+    forces : (2, m)
+        Elastic mesh force over w^2 and its magnitude.
+    minimum, maximum : (m,)
+        Extremes of the deflections.
+    pull : (m,)
+        The smallest force of spring and damper of a contact over w^2, negative where flanks are pulled
+        together, zero where they never are, at the ends and inner nodes of the steps.
     """
 
     origin: Array

@@ -25,17 +25,43 @@ from facegear.transmission.mesh_friction import MeshFriction, flank_ratios, fric
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """n coordinates, m meshes. Fourier series are (rows, 2, harmonics + 1): sine part, cosine part.
+    """n coordinates and m meshes; Fourier series are (rows, 2, harmonics + 1), sine part first.
 
-    mesh_jacobian (m, n); omega_squared, damping (n,); mesh_damping, lower, upper (m,); law: of the meshes,
-    without those of rings; error of the kinds of mesh that differ in phase, error_kind (m,) says which; load
-    (n, 2, harmonics + 1). A mesh with lower >= upper never opens. `scale`: the length that tolerances mean.
-    `two_flanks`: the m are one-sided flanks, all drive flanks, then the back flanks of the same meshes.
-    `push_only`: spring and damper of a contact together never pull, F >= 0, damping acts in contact only. The
-    last 3 R of the m rows belong to the rings: x, y of the body, and a row of zeros. ring_stiffness and
-    ring_clearance (R,); ring_lag: damping over stiffness of the rings, s. rubbing: friction of the flanks, or
-    none. coupling: forces that couple coordinates beside the meshes, for a mesh frequency of 1 rad/s, or
-    None; the diagonal of its dampers is in `damping` and not in them.
+    The last 3 R of the m rows belong to the rings: x, y of the body, and a row of zeros.
+
+    Attributes
+    ----------
+    mesh_jacobian : (m, n)
+        Derivative of the mesh deflections.
+    omega_squared, damping : (n,)
+        1/s2 and 1/s.
+    mesh_damping, lower, upper : (m,)
+        A mesh with lower >= upper never opens.
+    law
+        Of the meshes, without those of rings.
+    error
+        Series of the kinds of mesh that differ in phase.
+    error_kind : (m,)
+        Which of them a mesh has.
+    load : (n, 2, harmonics + 1)
+        On the coordinates.
+    damping_when_open
+        Whether mesh dampers act on open meshes too.
+    scale
+        The length that tolerances mean.
+    two_flanks
+        The m are one-sided flanks, all drive flanks, then the back flanks of the same meshes.
+    push_only
+        Spring and damper of a contact together never pull, F >= 0, damping acts in contact only.
+    ring_stiffness, ring_clearance : (R,)
+        Of the rings.
+    ring_lag
+        Damping over stiffness of the rings, s.
+    rubbing
+        Friction of the flanks, or none.
+    coupling
+        Forces that couple coordinates beside the meshes, for a mesh frequency of 1 rad/s, or None; the
+        diagonal of its dampers is in `damping` and not in them.
     """
 
     mesh_jacobian: Array

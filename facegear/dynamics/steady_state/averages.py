@@ -17,10 +17,18 @@ CONFIDENCE = 0.95
 
 @dataclass(frozen=True, eq=False)
 class Moments:
-    """Of each column: mean, RMS with mean, RMS without mean, smallest, largest, and the 95 % half-widths of
-    the RMS.
+    """Moments of each column.
 
     The half-widths come from the spread between batches of periods; they are zero for a periodic motion.
+
+    Attributes
+    ----------
+    mean, rms, ac_rms
+        Mean, root mean square with and without the mean.
+    minimum, maximum
+        Extremes.
+    rms_interval, ac_rms_interval
+        95 % half-widths.
     """
 
     mean: Array
@@ -36,11 +44,27 @@ class Moments:
 class Averages:
     """Time averages over B batches of a window; M meshes, n coordinates.
 
-    deflection (B, M) mean, m, and square (B, M) mean square about `level` (M,); minimum, maximum (M,); force
-    (2, M): mean and mean magnitude of the elastic mesh force, pull (M,): largest force by which the damper of
-    a contact pulls its flanks together, in N in a response, over the squared mesh frequency as the kernels
-    count it; centre (B, n) and products (B, n, n): means of y and y y^T about
-    `origin` (n,). weight (B,): of a batch, its periods.
+    Attributes
+    ----------
+    weight : (B,)
+        Of a batch, its periods.
+    level : (M,)
+        About which squares are taken, m.
+    deflection, square : (B, M)
+        Mean, m, and mean square about the level.
+    minimum, maximum : (M,)
+        m.
+    force : (2, M)
+        Mean and mean magnitude of the elastic mesh force.
+    pull : (M,)
+        Largest force by which the damper of a contact pulls its flanks together. Forces are in N in a
+        response, over the squared mesh frequency as the kernels count them.
+    origin : (n,)
+        About which the coordinates are taken.
+    centre : (B, n)
+        Mean of y.
+    products : (B, n, n)
+        Mean of y y^T.
     """
 
     weight: Array

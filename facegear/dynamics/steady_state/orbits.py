@@ -21,12 +21,23 @@ ROUNDING = 1e-11
 
 @dataclass(frozen=True, eq=False)
 class Orbit:
-    """A periodic orbit of `period` mesh periods through a state (2, n) by phase.
+    """A periodic orbit through a state, with its Floquet multipliers.
 
-    residual: change over the period over the length scale, also an error estimate once Newton has settled.
-    multipliers (2 n,) complex, largest first, vectors (2 n, 2 n) their directions, by column. liouville: log
-    det of the monodromy matrix less the integral of the divergence, which is zero for an exact solution (NaN
-    where the matrix is singular to rounding).
+    Attributes
+    ----------
+    state : (2, n)
+        By phase.
+    period
+        In mesh periods.
+    residual
+        Change over the period over the length scale, also an error estimate once Newton has settled.
+    multipliers : (2 n,)
+        Complex, largest first.
+    vectors : (2 n, 2 n)
+        Their directions, by column.
+    liouville
+        Log det of the monodromy matrix less the integral of the divergence, which is zero for an exact
+        solution (NaN where the matrix is singular to rounding).
     """
 
     state: Array

@@ -38,14 +38,42 @@ ESCAPING = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class SteadyState:
-    """The response over `periods` mesh periods (the orbit's own period, else the window), sampled evenly.
+    """The response over K = periods * per_period samples, evenly spaced.
 
-    samples K = periods * per_period: deflections (K, meshes) in m with e(t) taken off, coordinates (K, n) of
-    the system; displacements(machine) gives all DOF. fractions (3, meshes): of time open, on the drive
-    flank, on the back flank. residual: change over the period, over the length scale. multipliers (2 n,) of a
-    refined periodic orbit. exponent: largest Lyapunov exponent per mesh period with its 95 % half-width, for
-    motions that are not periodic. periods_run: for how many mesh periods the motion was watched in all before
-    it was named so. averages: over the whole response.
+    `displacements(machine)` gives all DOF.
+
+    Attributes
+    ----------
+    system
+        What was integrated.
+    motion
+        Class of motion.
+    period
+        In mesh periods where the motion is periodic, else 0.
+    frequency
+        Angular mesh frequency, rad/s.
+    residual
+        Change over the period, over the length scale.
+    periods, per_period
+        Mesh periods (the orbit's own period, else the window) and samples in each.
+    deflections : (K, meshes)
+        With e(t) taken off, m.
+    coordinates : (K, n)
+        Of the system.
+    averages
+        Over the whole response.
+    fractions : (3, meshes)
+        Of time open, on the drive flank, on the back flank.
+    multipliers : (2 n,)
+        Of a refined periodic orbit.
+    liouville
+        As of its Orbit.
+    exponent
+        Largest Lyapunov exponent per mesh period with its 95 % half-width, for motions that are not periodic.
+    periods_run
+        For how many mesh periods the motion was watched in all before it was named so.
+    state
+        At the end.
     """
 
     system: System
