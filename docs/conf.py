@@ -15,6 +15,7 @@ release = importlib.metadata.version("facegear")
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.apidoc", "sphinx.ext.napoleon"]
 exclude_patterns = ["build", "joss"]
 default_role = "literal"  # docstrings write names in single backticks
+suppress_warnings = ["ref.python"]  # shapes in lists of fields, such as (meshes,), look like names of code
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 4
 apidoc_modules = [

@@ -7,12 +7,23 @@ from dataclasses import dataclass, replace
 class MeshSizes:
     """Element sizes (m).
 
-    profile: along the flank's profile at its surface; width: along the face; thickness: largest size inside
-    the tooth and the body below it. Between surface and inside the mesh coarsens three to one per level.
-    fillet: along the lower half of the fillet's profile, None as along the flank's; fillet_depth: of the
-    first row of elements below the fillet, down to half of it below a sharp one; the second row is at most
-    twice as deep. None as below the flank. second_row: depth of a second row as fine along the profile as the
-    surface, before the mesh coarsens inwards; None where it coarsens below the first.
+    Attributes
+    ----------
+    profile
+        Along the flank's profile at its surface.
+    width
+        Along the face.
+    thickness
+        Largest size inside the tooth and the body below it. Between surface and inside the mesh coarsens
+        three to one per level.
+    fillet
+        Along the lower half of the fillet's profile, None as along the flank's.
+    fillet_depth
+        Of the first row of elements below the fillet, down to half of it below a sharp one; the second row is
+        at most twice as deep. None as below the flank.
+    second_row
+        Depth of a second row as fine along the profile as the surface, before the mesh coarsens inwards; None
+        where it coarsens below the first.
     """
 
     profile: float

@@ -85,7 +85,7 @@ def test_meshes_without_an_even_share_have_no_mesh_load_factor_in_tables(monkeyp
     module="facegear.load_sharing.hunting",
 )
 def test_the_hunting_cycle_balances_every_torque_to_rounding():
-    run = hunting_cycle(machine_with(clearance=np.full(5, 20e-6), **RUNOUTS, **CONSTANT), 16, 100)
+    run = hunting_cycle(machine_with(bearing_clearance=np.full(5, 20e-6), **RUNOUTS, **CONSTANT), 16, 100)
     agrees("residual of the statics, relative", run.at_rest.residual.max(), 0.0, absolute=1e-12)
     net = run.at_rest.forces.reshape(len(run.cycles), 2, 5).sum(axis=1)
     torques = np.broadcast_to(run.machine.torques[:5], net.shape)

@@ -393,7 +393,7 @@ def test_tilt_of_no_give_is_the_gear_that_cannot_tilt():
 )
 def test_a_pinion_inside_its_play_floats_and_beyond_it_is_held():
     layout = layout_with([1e9], [Role.INPUT])
-    free = held_forces(machine_with(layout, error=[10e-6, 0.0], clearance=[50e-6]))
+    free = held_forces(machine_with(layout, error=[10e-6, 0.0], bearing_clearance=[50e-6]))
     agrees("mesh force of a pinion that floats, N", free[0], free[1], relative=1e-10)
     play = 1e-6
     tight = held_forces(machine_with(layout, error=[10e-6, 0.0], bearing_clearance=[play]))

@@ -99,9 +99,7 @@ def test_with_rings_of_play_the_statics_are_the_least_energy_that_a_general_mini
     assert np.abs(other.jac).max() < 1e-4 * size
     assert least <= other.fun + 1e-9 * abs(least)
     agrees("elastic energy, uJ", other.fun, least, relative=1e-6, absolute=1e-6 * size)
-    over = (
-        flank_jacobian(machine.layout) @ (to_si * other.x) - constant_errors(machine) - flank_gaps(machine)
-    )
+    over = flank_jacobian(machine.layout) @ (to_si * other.x) - constant_errors(machine) - flank_gaps(machine)
     forces = K * np.tile(machine.imperfections.stiffness, 2) * np.maximum(over, 0.0)
     agrees("flank force, N", forces, found.flank_forces[0], relative=1e-7, absolute=5e-3 * size)
     count = len(machine.layout.pinions)
