@@ -257,7 +257,7 @@ def test_undefined_instants_win_no_comparison():
     assert not CRITERIA["minimum_at"](tables, point="gap", **asked).holds
 
 
-def test_nothing_is_lowest_where_nothing_is_defined():
+def test_there_is_no_minimum_where_nothing_is_defined():
     tables = sharing(a=np.nan, b=np.nan)
     assert not CRITERIA["minimum_at"](tables, study="s", kind="idlers", point="a").holds
     assert not CRITERIA["differ"](tables, study="s", kind="idlers", column="mean", by=0.1).holds

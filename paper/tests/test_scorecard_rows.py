@@ -155,10 +155,10 @@ def test_page_shows_every_row_and_escapes_text():
 def test_page_shows_what_random_inputs_hold_beside_each_verdict_and_against_the_total():
     rates = pd.DataFrame([("period", 64, 40, 0.625, 0.5, 0.733)], columns=RATE_COLUMNS)
     frame = scorecard([NUMBER], outcome_table([NUMBER], frequencies(100.5)), runs(), rates)
-    for held, told in (([1.0] * 64, "no better than chance; 100 %"), ([0.0] * 64, "than 95 % of random")):
+    for held, message in (([1.0] * 64, "no better than chance; 100 %"), ([0.0] * 64, "than 95 % of random")):
         page = render(frame, "source", [], pd.DataFrame(), NO_STARTS, Totals(1, np.array(held)))
         assert "<td>62 % (50 … 73)</td>" in page
-        assert told.split(";")[0] in page
+        assert message.split(";")[0] in page
     assert "random plausible" not in render(frame, "source", [], pd.DataFrame(), NO_STARTS)
 
 

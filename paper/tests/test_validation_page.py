@@ -43,7 +43,7 @@ def percent(value):
     return f"{100 * value:.0f} %"
 
 
-def told(pattern):
+def message(pattern):
     return pattern.replace("+", ", ")
 
 
@@ -79,7 +79,7 @@ def pattern_rows():
         "{0.most} | {0.all_mean:.1f} |"
     )
     shown = pd.concat([frame.head(SHOWN), frame.tail(SHOWN)])
-    return [row.format(one, name=told(one.value)) for one in shown.itertuples()]
+    return [row.format(one, name=message(one.value)) for one in shown.itertuples()]
 
 
 def null_rows():
@@ -95,7 +95,7 @@ def search_rows():
     each = frame.filter(regex=r"log_likelihood_\d").to_numpy(float)
     row = "| {name} | {0.evaluations} | {each} | {0.held} of {0.claims} | {0.most} |"
     return [
-        row.format(one, name=told(one.pattern), each=", ".join(f"{best:.1f}" for best in repeated))
+        row.format(one, name=message(one.pattern), each=", ".join(f"{best:.1f}" for best in repeated))
         for one, repeated in zip(frame.itertuples(), each, strict=True)
     ]
 
@@ -119,7 +119,7 @@ def share_rows(ids):
     ]
 
 
-def accurate_told():
+def accurate_text():
     """How many inputs of the region are likely at full accuracy, too, and from every start."""
     inputs = distinct_inputs(table("accurate"))
     found = inputs[LOG_LIKELIHOOD]
@@ -139,7 +139,7 @@ def region_rows():
     for (pattern, *choices), found in distinct_inputs(table("region")).groupby(chosen):
         low, high = found.min(numeric_only=True), found.max(numeric_only=True)
         rows.append(
-            f"| {len(found)} | {told(pattern)} | {' | '.join(choices).replace('_', ' ')} | "
+            f"| {len(found)} | {message(pattern)} | {' | '.join(choices).replace('_', ' ')} | "
             f"{low['per_input_n_m']:.0f} to {high['per_input_n_m']:.0f} | "
             f"{100 * low['tail_share']:.0f} to {100 * high['tail_share']:.0f} % | "
             f"{low['error_phase_deg']:.0f} to {high['error_phase_deg']:.0f} | "
@@ -149,7 +149,7 @@ def region_rows():
     return rows
 
 
-def recommended_told():
+def recommended_texts():
     found = pd.read_csv(STORED.sets).iloc[0]
     return (
         f"Set a: {found['per_input_n_m']:.1f} N m per engine",
@@ -161,7 +161,7 @@ def recommended_told():
     )
 
 
-def confirmed_told():
+def confirmed_text():
     """What the inputs confirmed have over their runs, and in the worst of them."""
     found = table("confirmed")
     likely, worst = found[LOG_LIKELIHOOD], found["least_log_likelihood"]
@@ -172,7 +172,7 @@ def confirmed_told():
     )
 
 
-def near_5772_told():
+def near_5772_texts():
     """Inputs that hold what the paper says of 5772 rpm, and how the recommended set holds it."""
     judged = pd.concat([table("likely"), pd.read_csv(STORED.random)], ignore_index=True)
     near = judged[judged[["jump_5772", "jump_5772_hardening", "dominates_5772_gears"]].min(axis=1) > 0]
@@ -215,13 +215,13 @@ def moved_by_kinematics():
     return change[fewer | more].sort_values(ascending=False, kind="stable").index.tolist()
 
 
-def test_what_the_region_does_at_full_accuracy_is_told_as_stored():
-    assert accurate_told() in TEXT and confirmed_told() in TEXT
+def test_what_the_region_does_at_full_accuracy_is_reported_as_stored():
+    assert accurate_text() in TEXT and confirmed_text() in TEXT
 
 
-def test_the_recommended_set_and_what_holds_near_5772_rpm_are_told_as_stored():
-    for told in (*recommended_told(), *near_5772_told()):
-        assert told in TEXT
+def test_the_recommended_set_and_what_holds_near_5772_rpm_are_reported_as_stored():
+    for message in (*recommended_texts(), *near_5772_texts()):
+        assert message in TEXT
 
 
 def test_means_of_the_backlash_study_lie_within_the_runs_of_the_recommended_set():
@@ -237,7 +237,7 @@ def test_means_of_the_backlash_study_lie_within_the_runs_of_the_recommended_set(
             assert runs["low"][claim] - 0.005 <= found <= runs["high"][claim] + 0.005
 
 
-def test_whether_the_set_is_found_is_told_by_the_stored_null():
+def test_whether_the_set_is_found_is_reported_by_the_stored_null():
     """More held-out claims than the rule reaches for 95 % of the invented papers."""
     edge = table("null").set_index("paper").loc["invented", "held_out_high"]
     runs = pd.read_csv(STORED.runs).query("set == 'a'").set_index("id")
@@ -251,7 +251,7 @@ def test_whether_the_set_is_found_is_told_by_the_stored_null():
     assert ("it does not count as found" in PAGE) == (held <= edge)
 
 
-def test_what_chance_holds_is_told_as_stored():
+def test_what_chance_holds_is_reported_as_stored():
     distinct = sum(claim.dynamic and claim.counts for claim in CLAIMS)
     assert f"| inputs | distinct claims held, of {distinct} |" in PAGE
     assert chance_row() in PAGE
@@ -268,11 +268,11 @@ def test_tables_of_the_page_are_those_stored(rows):
 
 
 @pytest.mark.parametrize("ids", [ANNOUNCED, OPTIMUM, ORDER])
-def test_shares_of_claims_are_told_as_stored(ids):
+def test_shares_of_claims_are_reported_as_stored(ids):
     for row in share_rows(ids):
         assert row in PAGE
 
 
-def test_every_claim_that_the_kinematics_move_is_told():
+def test_every_claim_that_the_kinematics_move_is_reported():
     for row in kinematics_rows(moved_by_kinematics()):
         assert row in PAGE

@@ -54,8 +54,8 @@ def machines(draw, **fixed):
         gears = tuple(replace(gear, body=replace(gear.body, tilt=tilt)) for gear in layout.gears)
         layout = replace(layout, gears=gears)
     error = np.zeros(len(layout.meshes)) if symmetric else np.array([draw(ERRORS) for _ in layout.meshes])
-    play = draw(st.sampled_from([0.0, 1e-5, 5e-5]))
-    flaws = replace(perfect(layout), error=error, bearing_clearance=np.full(count, play))
+    clearance = draw(st.sampled_from([0.0, 1e-5, 5e-5]))
+    flaws = replace(perfect(layout), error=error, bearing_clearance=np.full(count, clearance))
     return make_machine(layout, **(options | fixed), imperfections=flaws)
 
 

@@ -117,11 +117,13 @@ def _start(*command: str) -> subprocess.Popen[bytes]:
 def _until_idle(nodes: int) -> None:
     end = time.monotonic() + PATIENCE
     while time.monotonic() < end:
-        told = subprocess.run(["sinfo", "-h", "-N", "-o", "%T"], capture_output=True, text=True, check=False)
-        if told.stdout.split().count("idle") == nodes:
+        message = subprocess.run(
+            ["sinfo", "-h", "-N", "-o", "%T"], capture_output=True, text=True, check=False
+        )
+        if message.stdout.split().count("idle") == nodes:
             return
         time.sleep(0.2)
-    raise RuntimeError(f"the throw-away Slurm did not come up: {told.stdout}{told.stderr}")
+    raise RuntimeError(f"the throw-away Slurm did not come up: {message.stdout}{message.stderr}")
 
 
 def _free_ports(count: int) -> list[int]:

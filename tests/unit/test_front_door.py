@@ -90,8 +90,8 @@ def test_a_change_of_teeth_forgets_the_contact(gearbox):
 def test_the_dataset_of_pressures_says_what_the_table_says(gearbox):
     contact = gearbox.contact()
     peaks = contact.pressures()["pressure_mpa"].max(["pair", "plane"])
-    told = contact.table().pivot(index="torque_n_m", columns="position", values="pressure_mpa")
-    np.testing.assert_allclose(peaks.to_numpy(), told.to_numpy(), rtol=1e-12)
+    message = contact.table().pivot(index="torque_n_m", columns="position", values="pressure_mpa")
+    np.testing.assert_allclose(peaks.to_numpy(), message.to_numpy(), rtol=1e-12)
 
 
 def test_the_dataset_of_a_sweep_holds_every_row_of_its_table(gearbox):

@@ -10,7 +10,7 @@ ROOT = Path(__file__).parents[2]
 TEETH = ("limits", "--pinion-teeth", "25", "--face-gear-teeth", "160", "--module-mm", "6.35")
 
 
-def test_limits_of_a_gear_are_told_from_tooth_numbers_alone(capsys):
+def test_limits_of_a_gear_are_reported_from_tooth_numbers_alone(capsys):
     assert main(TEETH) == 0
     assert "with a shaper of 28 teeth: between 465.173 (undercut) and 552.153 (" in capsys.readouterr().out
 
@@ -27,8 +27,8 @@ def test_limits_of_a_gear_are_told_from_tooth_numbers_alone(capsys):
 )
 def test_a_mistake_on_the_command_line_ends_in_one_line(capsys, arguments, line):
     assert main(arguments) == 1
-    told = capsys.readouterr().err
-    assert told.startswith(line) and told.count("\n") == 1
+    message = capsys.readouterr().err
+    assert message.startswith(line) and message.count("\n") == 1
 
 
 @pytest.mark.parametrize("name", ["misaligned", "unequal_inputs", "eight_pinions"])

@@ -9,7 +9,7 @@ import facegear
 import facegear.__main__ as command_line
 
 
-def told(module, call):
+def message(module, call):
     """What a call in a fresh interpreter says in which `module` cannot be imported."""
     script = f"""
 import sys
@@ -30,16 +30,16 @@ except MissingExtra as error:
 @pytest.mark.parametrize("call", ["contact()", "load_sharing()"])
 def test_teeth_without_finite_elements_name_the_extra(call):
     line = 'skfem is not installed; get it with: pip install "facegear[fe]"'
-    assert told("skfem", f"gearbox.{call}") == line
+    assert message("skfem", f"gearbox.{call}") == line
 
 
 def test_modes_of_a_given_mean_stiffness_need_no_extra():
-    assert told("skfem", "print(len(gearbox.modes().table()) > 6)") == "True"
+    assert message("skfem", "print(len(gearbox.modes().table()) > 6)") == "True"
 
 
 def test_a_report_without_its_template_engine_names_the_extra():
     line = 'jinja2 is not installed; get it with: pip install "facegear[workflow]"'
-    assert told("jinja2", "import facegear.report.page") == line
+    assert message("jinja2", "import facegear.report.page") == line
 
 
 @pytest.mark.parametrize("missing", ["snakemake", "Snakefile"])

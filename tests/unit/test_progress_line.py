@@ -18,15 +18,15 @@ def clock(monkeypatch):
 
 def lines(clock, durations, interval=5.0):
     stream = io.StringIO()
-    told = progress.Progress("contact", len(durations), interval, stream)
+    message = progress.Progress("contact", len(durations), interval, stream)
     for duration in durations:
         clock[0] += duration
-        told.step()
+        message.step()
     return stream.getvalue().splitlines()
 
 
-def seconds(told):
-    return [int(found[1]) for line in told if (found := re.search(r"about (\d+) s left", line))]
+def seconds(message):
+    return [int(found[1]) for line in message if (found := re.search(r"about (\d+) s left", line))]
 
 
 def by_mean_pace(durations, interval=5.0):
@@ -40,9 +40,9 @@ def by_mean_pace(durations, interval=5.0):
     return found
 
 
-def steady(told):
+def steady(message):
     """Whether no estimate is far from the last one less the six seconds between two lines."""
-    return len(told) > 3 and all(0.6 * (a - 6.0) <= b <= 1.6 * a for a, b in pairwise(told))
+    return len(message) > 3 and all(0.6 * (a - 6.0) <= b <= 1.6 * a for a, b in pairwise(message))
 
 
 def test_estimate_is_the_pace_after_the_first_step_times_what_is_left(clock):
@@ -69,8 +69,8 @@ def test_estimate_does_not_jump_where_steps_cost_unlike(clock):
 
 
 def test_estimate_rises_where_the_work_has_become_slower(clock):
-    told = seconds(lines(clock, [1.0] * 11 + [20.0] * 29))
-    assert told[1] < told[0] + 5 < max(told)
+    message = seconds(lines(clock, [1.0] * 11 + [20.0] * 29))
+    assert message[1] < message[0] + 5 < max(message)
 
 
 def test_a_short_stage_prints_no_progress(clock):

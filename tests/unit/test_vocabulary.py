@@ -36,6 +36,7 @@ def rows(title: str) -> list[list[str]]:
 REFUSED = rows("Words that are refused")
 WHOLE = {word for word, names, *_ in REFUSED if names}
 PARTS = {word for word, names, *_ in REFUSED if names == "any part"}
+TESTS = [path for folder in (".", "paper", "validation") for path in (ROOT / folder / "tests").rglob("*.py")]
 SPOKEN = [word.replace("_", "[ _]") for word, _, text, *_ in REFUSED if text]
 IN_TEXT = re.compile(rf"\b(?:{'|'.join(SPOKEN)})\b", re.IGNORECASE)
 ALLOWED = {name for name, *_ in rows("Exceptions")}
@@ -77,6 +78,17 @@ def test_names_use_the_terms_of_the_glossary(area):
         if refused(name)
     ]
     assert not wrong, "\n".join(["names that docs/glossary.md refuses:", *wrong])
+
+
+def test_names_of_tests_hold_no_word_that_text_refuses():
+    spoken = {word for word, names, text, *_ in REFUSED if names == "any part" and text}
+    wrong = [
+        f"{path.relative_to(ROOT)}:{line} {name}"
+        for path in TESTS
+        for line, name in defined_names(ast.parse(path.read_text(encoding="utf-8")))
+        if not spoken.isdisjoint(name.lower().split("_"))
+    ]
+    assert spoken and not wrong, "\n".join(["names that docs/glossary.md refuses:", *wrong])
 
 
 def test_text_uses_the_terms_of_the_glossary():

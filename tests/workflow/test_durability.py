@@ -90,7 +90,7 @@ def test_no_spelling_of_a_dry_run_changes_anything_on_disk(tmp_path, spelling):
     assert {path: held for path, held in after.items() if path.parent.name != "iocache"} == before
 
 
-def test_a_dry_run_beside_a_working_run_is_told_the_plan(tmp_path):
+def test_a_dry_run_beside_a_working_run_is_reported_the_plan(tmp_path):
     project = Project(tmp_path)
     with hold(tmp_path / ".snakemake" / "facegear.lock"):
         assert project.planned("results/paper/modal/frequencies.csv") == {"modal"}
@@ -161,7 +161,7 @@ def test_an_altered_intermediate_is_named_with_the_command_that_rebuilds_it(quic
     assert f" --force results/quick/{file} (log: " in line
 
 
-def test_the_command_told_with_a_damaged_file_makes_it_again_from_any_folder(quick, tmp_path, monkeypatch):
+def test_the_command_printed_with_a_damaged_file_makes_it_again_from_any_folder(quick, tmp_path, monkeypatch):
     """It lacked --snakefile and --directory, so that it worked in the folder of the run alone."""
     project = quick.copied(tmp_path)
     path = tmp_path / "results" / "quick" / "modal" / "shapes.csv"
@@ -200,9 +200,9 @@ def test_a_config_mistake_stops_before_any_work_in_one_line(tmp_path, old, new, 
     project = Project(tmp_path / "run")
     done = project.run("--configfile", str(config), check=False)
     assert done.returncode != 0
-    told = [told for told in done.stderr.splitlines() if told.strip()]
-    assert any(line in told_line for told_line in told), done.stderr
-    assert len(told) <= 2, done.stderr
+    message = [message for message in done.stderr.splitlines() if message.strip()]
+    assert any(line in message_line for message_line in message), done.stderr
+    assert len(message) <= 2, done.stderr
     assert "Traceback" not in done.stderr + done.stdout
     assert not (project.folder / "results").exists()
 

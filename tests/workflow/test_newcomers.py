@@ -52,8 +52,8 @@ def test_teeth_alone_plan_geometry_contact_stiffness_and_a_report(tmp_path):
     asked = ("-n", "--configfile", config, "--", "results/teeth_only/modal/frequencies.csv")
     done = Project(tmp_path).run(*asked, check=False)
     assert done.returncode == 1
-    told = done.stderr.splitlines()[-1]
-    assert told.startswith("teeth_only: transmission = None: must be given for modes, dynamics")
+    message = done.stderr.splitlines()[-1]
+    assert message.startswith("teeth_only: transmission = None: must be given for modes, dynamics")
 
 
 def test_a_target_without_its_section_in_the_config_ends_in_one_line(tmp_path):
@@ -62,8 +62,8 @@ def test_a_target_without_its_section_in_the_config_ends_in_one_line(tmp_path):
         asked = ("-n", "--configfile", str(ROOT / "config" / "harmonics_only.yaml"), "--")
         done = Project(tmp_path).run(*asked, f"results/harmonics_only/{target}", check=False)
         assert done.returncode == 1 and "Traceback" not in done.stderr
-        told = done.stderr.splitlines()[-1]
-        assert told.startswith(f"harmonics_only: {section} = None: must be given, as rule {section}")
+        message = done.stderr.splitlines()[-1]
+        assert message.startswith(f"harmonics_only: {section} = None: must be given, as rule {section}")
 
 
 def test_misalignments_of_a_machine_without_load_sharing_are_studied(tmp_path):
@@ -83,9 +83,9 @@ def interrupted(command, begun):
         time.sleep(0.02)
     assert process.poll() is None, process.communicate()[1]
     process.send_signal(signal.SIGINT)
-    told = process.communicate(timeout=60)[1]
-    assert process.returncode == 130, told
-    return told.splitlines()
+    message = process.communicate(timeout=60)[1]
+    assert process.returncode == 130, message
+    return message.splitlines()
 
 
 def test_an_interrupted_run_ends_in_one_line_within_three_seconds(tmp_path):
@@ -93,9 +93,9 @@ def test_an_interrupted_run_ends_in_one_line_within_three_seconds(tmp_path):
     config = str(ROOT / "config" / "harmonics_only.yaml")
     target = "results/harmonics_only/dynamics/sweep.csv"
     log = tmp_path / "results" / "harmonics_only" / "logs" / "stiffness.log"
-    told = interrupted(Project(tmp_path).command("--configfile", config, "--", target), log)
-    assert told[-1] == "stopped; the same command goes on from here"
-    assert len(told) <= 5, told
+    message = interrupted(Project(tmp_path).command("--configfile", config, "--", target), log)
+    assert message[-1] == "stopped; the same command goes on from here"
+    assert len(message) <= 5, message
     assert not list((tmp_path / "results").rglob(".[0-9]*"))
 
 
@@ -127,11 +127,11 @@ stop_at_once(quieten(workflow, logger))
 
 
 @pytest.mark.parametrize("hindrance", HINDRANCES.values(), ids=HINDRANCES)
-def test_an_interrupted_run_is_never_told_as_failed(tmp_path, hindrance):
+def test_an_interrupted_run_is_never_reported_as_failed(tmp_path, hindrance):
     """Where Snakemake saw its job killed before all was tidied up, the run ended as one that had failed."""
     (tmp_path / "Snakefile").write_text(ONE_JOB + hindrance)
-    told = interrupted(Project(tmp_path, tmp_path).command(), tmp_path / "running")
-    assert told[-1] == "stopped; the same command goes on from here"
+    message = interrupted(Project(tmp_path, tmp_path).command(), tmp_path / "running")
+    assert message[-1] == "stopped; the same command goes on from here"
     assert not (tmp_path / "done").exists()
     assert not list((tmp_path / "results").glob(".[0-9]*"))
 

@@ -27,9 +27,9 @@ def test_a_reproduction_numbers_its_figures_as_the_paper_does_and_another_machin
     project.run("results/quick/report.html", *QUICK, "--config", given, warm=True)
     told = captions((tmp_path / "results" / "quick" / "report.html").read_text())
     for start in ("Figure 7 of the paper: Mesh stiffness", "Figure 13 of the paper: Effect of backlash"):
-        assert any(caption.startswith(start) for caption in told), start
+        assert any(caption.startswith(start) for caption in message), start
     plain = captions((quick.folder / "results" / "quick" / "report.html").read_text())
-    assert len(plain) == len(told) and not any("of the paper" in caption for caption in plain)
+    assert len(plain) == len(message) and not any("of the paper" in caption for caption in plain)
 
 
 def test_the_report_holds_every_key_of_the_config(quick):

@@ -37,11 +37,11 @@ pytestmark = [
 
 def jobs():
     """Of every job that Slurm remembers: chunk, node, start and end in seconds, state."""
-    told = subprocess.run(
+    message = subprocess.run(
         ["scontrol", "--oneliner", "show", "job"], capture_output=True, text=True, check=True
     )
     found = []
-    for line in told.stdout.splitlines():
+    for line in message.stdout.splitlines():
         fields = dict(re.findall(r"(\w+)=(\S*)", line))
         start, end = (pd.Timestamp(fields[key]) for key in ("StartTime", "EndTime"))
         found.append((fields["Comment"], fields["NodeList"], start, end, fields["JobState"]))
@@ -71,10 +71,10 @@ def test_a_killed_study_on_two_nodes_runs_no_chunk_twice_at_once_and_keeps_nothi
         assert [job[-1] for job in jobs()].count("RUNNING") == 2, "Slurm goes on without the scheduler"
         own = found.folder / "config" / "own.yaml"
         own.write_text(own.read_text().replace("index_blocks: 0", "index_blocks: 0, hunting_cycles: 30"))
-        told = found.run(*PROFILE, *target).stderr
+        message = found.run(*PROFILE, *target).stderr
         every = jobs()
-    assert "ending jobs that a killed run has left working" in told
-    assert "tolerances_chunk tolerances samples 2000 3999: 2000 samples, 0 of them" in told
+    assert "ending jobs that a killed run has left working" in message
+    assert "tolerances_chunk tolerances samples 2000 3999: 2000 samples, 0 of them" in message
     for name in {job[0] for job in every}:
         times = sorted(job[2:4] for job in every if job[0] == name)
         assert all(one[1] <= other[0] for one, other in pairwise(times)), name
@@ -102,8 +102,8 @@ def test_a_job_that_fails_on_a_node_tells_its_own_line_in_the_terminal(tmp_path)
     path = found.folder / harmonics
     path.write_text(path.read_text().replace("410000000", "420000000"))
     with cluster(tmp_path / "slurm", 1):
-        told = found.run(*PROFILE, *target, check=False)
-    assert told.returncode != 0
-    assert "error in tolerances_chunk of tolerances" in told.stderr
-    assert "differs from what its stage wrote" in told.stderr
-    assert "Traceback" not in told.stderr
+        message = found.run(*PROFILE, *target, check=False)
+    assert message.returncode != 0
+    assert "error in tolerances_chunk of tolerances" in message.stderr
+    assert "differs from what its stage wrote" in message.stderr
+    assert "Traceback" not in message.stderr

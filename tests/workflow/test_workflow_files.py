@@ -17,11 +17,11 @@ from facegear.report.inputs import inputs_in_words
 
 pytestmark = pytest.mark.xdist_group("workflow_files")
 STAGES = sorted((ROOT / "facegear" / "stages").glob("*.py"))
-TOLD = """
+RULES_AS_JSON = """
 import json
 from types import SimpleNamespace
 
-def told(rule):
+def record(rule):
     values = rule.params.get("values")
     return {
         "log": list(rule.log), "benchmark": rule.benchmark, "threads": rule.resources["_cores"].value,
@@ -32,7 +32,7 @@ def told(rule):
         "sections": [*values(SimpleNamespace(case=CASE))] if values else ["none"],
     }
 
-Path("rules.json").write_text(json.dumps({rule.name: told(rule) for rule in workflow.rules if rule.output}))
+Path("rules.json").write_text(json.dumps({rule.name: record(rule) for rule in workflow.rules if rule.output}))
 """
 
 
@@ -42,7 +42,7 @@ def rules(tmp_path_factory):
     folder = tmp_path_factory.mktemp("rules")
     for name in FOLDERS:
         (folder / name).symlink_to(ROOT / name)
-    (folder / "Snakefile").write_text((ROOT / "Snakefile").read_text() + TOLD)
+    (folder / "Snakefile").write_text((ROOT / "Snakefile").read_text() + RULES_AS_JSON)
     Project(folder, folder).run("-n", "--quiet")
     return json.loads((folder / "rules.json").read_text())
 

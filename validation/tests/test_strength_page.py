@@ -67,9 +67,9 @@ def cost_rows():
     ]
 
 
-@pytest.mark.parametrize("told", [*calculix_rows(), *halving_rows(), *cost_rows()])
-def test_a_row_about_root_stress_is_the_stored_measurement(told):
-    assert told in PAGE
+@pytest.mark.parametrize("message", [*calculix_rows(), *halving_rows(), *cost_rows()])
+def test_a_row_about_root_stress_is_the_stored_measurement(message):
+    assert message in PAGE
 
 
 @against(

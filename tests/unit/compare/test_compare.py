@@ -124,10 +124,10 @@ def test_a_change_is_traced_to_config_code_and_versions_of_all_stages_before(tmp
         manifest.write_text(json.dumps(record))
     page = tmp_path / "page.html"
     assert main(["compare", str(tmp_path / "old"), str(tmp_path / "new"), "--page", str(page)]) == 1
-    told = capsys.readouterr().out
-    assert "config single.left.stiffness: 410000000.0 -> 420000000.0  [statics/force.csv]" in told
-    assert "code of stage stiffness" in told and "numpy 2.3 -> 2.4" in told and "alike" not in told
-    assert "The folders differ in 1 table." in told
+    message = capsys.readouterr().out
+    assert "config single.left.stiffness: 410000000.0 -> 420000000.0  [statics/force.csv]" in message
+    assert "code of stage stiffness" in message and "numpy 2.3 -> 2.4" in message and "alike" not in message
+    assert "The folders differ in 1 table." in message
     assert "410000000.0" in page.read_text()
 
 

@@ -49,8 +49,8 @@ def test_every_profile_asks(tmp_path, profile):
         f"yte.process_yaml(open({str(path)!r}), require_use_yte=True)"
     )
     here = {**os.environ, "PYTHONPATH": str(ROOT)}
-    told = subprocess.run(
+    message = subprocess.run(
         [sys.executable, "-c", code], cwd=tmp_path, env=here, capture_output=True, text=True
     )
-    assert told.returncode == 1
-    assert told.stderr == "none.yaml: no such config file\n"
+    assert message.returncode == 1
+    assert message.stderr == "none.yaml: no such config file\n"

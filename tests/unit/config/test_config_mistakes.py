@@ -54,12 +54,12 @@ GOOD = {"case": "a", "bearing": {"stiffness_n_per_m": 1}}
 def test_each_mistake_names_key_value_and_what_is_allowed(change, line):
     with pytest.raises(ConfigErrors) as caught:
         parse(Machine, {**GOOD, **change}, "machine.yaml")
-    (told,) = caught.value.lines
-    assert line in told
+    (message,) = caught.value.lines
+    assert line in message
     assert str(caught.value).startswith("machine.yaml: ")
 
 
-def test_all_mistakes_of_a_file_are_told_at_once():
+def test_all_mistakes_of_a_file_are_reported_at_once():
     with pytest.raises(ConfigErrors) as caught:
         parse(Machine, {"case": 3, "bearing": {"stiffness_n_per_m": "soft", "x": 1}})
     assert len(caught.value.lines) == 3

@@ -33,7 +33,7 @@ def changed(values, **keys):
     return values
 
 
-def told(values):
+def message(values):
     with pytest.raises(ConfigErrors) as refused:
         expand_cases(parse(Config, values))
     (line,) = refused.value.lines
@@ -73,14 +73,14 @@ STUDY = {
     ],
 )
 def test_what_cannot_be_run_is_refused_in_one_line(changes, line):
-    assert line in told(changed(QUICK, **changes))
+    assert line in message(changed(QUICK, **changes))
 
 
 @pytest.mark.parametrize("profile", [1e-3, 1e-6])
 def test_a_mesh_that_cannot_fit_into_memory_is_refused_with_an_estimate(profile):
     """One micrometre was accepted without a word."""
     size = {"profile_mm": profile, "width_mm": 0.1, "thickness_mm": 1.0}
-    line = told(changed(QUICK, mesh__resolution=size))
+    line = message(changed(QUICK, mesh__resolution=size))
     assert line.startswith("mesh.resolution = ")
     assert "an estimate of the memory for factorisation and compliance is" in line
     assert " GB, and this machine has" in line
@@ -111,20 +111,20 @@ def test_the_estimate_of_memory_agrees_with_what_was_measured_within_a_fifth(res
 
 def test_points_of_all_studies_are_counted_before_they_are_made():
     axis = {"label": "2b", "key": "transmission.backlash_um", "values": [float(i) for i in range(1, 1501)]}
-    line = told(changed(QUICK, studies=[{**STUDY, "axes": [axis]}]))
+    line = message(changed(QUICK, studies=[{**STUDY, "axes": [axis]}]))
     assert line.startswith('studies = "1500 points": must be at most 200 in all')
 
 
 def test_a_misaligned_pair_without_backlash_is_refused_with_the_amount_by_which_it_jams():
     values = changed(TWO, tooth_pair__pinion__thinning_um=0.0, tooth_pair__assembly__axial_shift_um=-50.0)
-    line = told(values)
+    line = message(values)
     assert "tooth_pair.pinion.thinning_um = 0.0: must be at least " in line
     assert "the pair jams by " in line
     least = float(line.split("at least ")[1].split(":")[0])
     assert parse(Config, changed(values, tooth_pair__pinion__thinning_um=least + 0.1))
 
 
-def test_another_backlash_than_that_of_the_teeth_is_told_when_a_run_starts():
+def test_another_backlash_than_that_of_the_teeth_is_reported_when_a_run_starts():
     """It was never compared with the geometry's."""
     (line,) = notes(parse(Config, TWO).model_dump(mode="json"))
     assert line.startswith("transmission.backlash_um = 120: the teeth as assembled have 130.5 um")
@@ -165,7 +165,7 @@ def test_what_needs_a_transmission_says_so(key):
     }
     other = {"studies": "reproduction", "reproduction": "studies"}[key]
     del values[other]
-    assert told(values) == f"transmission = null: must be given, as required by {key}"
+    assert message(values) == f"transmission = null: must be given, as required by {key}"
 
 
 def test_a_csv_named_by_a_study_counts_from_the_folder_of_the_config(tmp_path, monkeypatch):

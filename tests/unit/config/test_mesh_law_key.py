@@ -9,7 +9,7 @@ LAW = {"mesh_stiffness.mesh_law": "load_dependent", "modal.stiffness": "local"}
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "message"),
     [
         (
             {"transmission.mesh_kinematics": "printed", "transmission.face_gear.mesh_radius_mm": 262.5},
@@ -19,8 +19,8 @@ LAW = {"mesh_stiffness.mesh_law": "load_dependent", "modal.stiffness": "local"}
         ({"mesh_stiffness.variation": 0.5}, "mesh_stiffness.variation"),
     ],
 )
-def test_what_a_load_dependent_law_cannot_be_combined_with_is_refused_in_one_line(changes, told):
-    with pytest.raises((ConfigError, ConfigErrors), match=told):
+def test_what_a_load_dependent_law_cannot_be_combined_with_is_refused_in_one_line(changes, message):
+    with pytest.raises((ConfigError, ConfigErrors), match=message):
         facegear.example().with_values({**LAW, **changes})
 
 

@@ -56,10 +56,10 @@ def lines(values, **keys):
         ),
     ],
 )
-def test_capitals_and_hyphens_in_a_key_are_told_with_what_was_meant(section, key, line):
+def test_capitals_and_hyphens_in_a_key_are_reported_with_what_was_meant(section, key, line):
     """They were taken for names of types: a traceback, or a hint at the section the key stands in."""
-    (told,) = lines(TWO, **{"__".join((*section, key)): {}})
-    assert line in told and told.startswith(".".join((*section, key)))
+    (message,) = lines(TWO, **{"__".join((*section, key)): {}})
+    assert line in message and message.startswith(".".join((*section, key)))
 
 
 @pytest.mark.parametrize(("old", "new"), sorted(RENAMED.items()))
@@ -83,24 +83,24 @@ def test_any_unknown_key_is_one_line_that_names_it(key):
         path = "__".join((*place, "?")).replace("?", key)
         if "__" in key or key in Config.model_fields:
             continue
-        (told,) = lines(GIVEN, **{path: 1})
-        assert told.startswith(".".join((*place, key)) + " = 1: unknown key; ")
+        (message,) = lines(GIVEN, **{path: 1})
+        assert message.startswith(".".join((*place, key)) + " = 1: unknown key; ")
 
 
-def test_mistakes_in_different_parts_of_a_config_are_told_at_once():
-    told = lines(
+def test_mistakes_in_different_parts_of_a_config_are_reported_at_once():
+    message = lines(
         TWO,
         transmission__mesh_kinematics="printed",
         transmission__pinion={**TWO["transmission"]["pinion"], "clearance_um": 10.0},
         transmission__torque={"per_input_n_m": 600.0, "tail_share": 0.1},
     )
-    assert [line.split(" = ")[0] for line in told] == [
+    assert [line.split(" = ")[0] for line in message] == [
         "transmission.face_gear.mesh_radius_mm",
         "transmission.torque.tail_share",
     ]
-    told = lines(TWO, mesh_stiffness__torque_n_m=1e4, transmission__pinions__1__angle_deg=1.0)
-    assert [line.split(" = ")[0] for line in told] == ["mesh_stiffness.torque_n_m", "transmission.pinions"]
-    assert all(": must be " in line for line in told)
+    message = lines(TWO, mesh_stiffness__torque_n_m=1e4, transmission__pinions__1__angle_deg=1.0)
+    assert [line.split(" = ")[0] for line in message] == ["mesh_stiffness.torque_n_m", "transmission.pinions"]
+    assert all(": must be " in line for line in message)
 
 
 CAUSE = {"name": "a", "moves": {"transmission.backlash_um": 1.0}, "source": "drawing", "spread": 2.0}
@@ -150,16 +150,18 @@ HARMONIC = {"order": 1, "amplitude_um": 1.0}
     ],
 )
 def test_what_no_machine_can_be_is_refused(changes, line):
-    told = lines(TWO, **changes)
-    assert len(told) == 1 and line in told[0], told
+    message = lines(TWO, **changes)
+    assert len(message) == 1 and line in message[0], message
 
 
 def test_a_stiffness_in_newton_per_micrometre_is_refused_by_its_size(tmp_path):
     path = tmp_path / "harmonics.csv"
     path.write_text("order,a_n_per_m,b_n_per_m\n0,0,410\n1,20,0\n")
     given = {"source": "harmonics", "csv": str(path)}
-    (told,) = lines(GIVEN, mesh_stiffness=given)
-    assert told.endswith("= 410.0: must be at least 100000 N/m; values in N/um are a million times too small")
+    (message,) = lines(GIVEN, mesh_stiffness=given)
+    assert message.endswith(
+        "= 410.0: must be at least 100000 N/m; values in N/um are a million times too small"
+    )
     path.write_text("order,a_n_per_m,b_n_per_m\n0,0,4.1e8\n1,2e7,0\n")
     assert parse(Config, {**GIVEN, "mesh_stiffness": given}).mesh_stiffness.mean == 4.1e8
 
@@ -174,10 +176,10 @@ def test_check_refuses_a_reproduction_whose_file_is_missing(tmp_path, capsys):
     assert 'lost.yaml": must be the name of a file that exists' in capsys.readouterr().err
 
 
-def test_causes_that_move_the_same_number_are_told_when_a_run_starts():
+def test_causes_that_move_the_same_number_are_reported_when_a_run_starts():
     causes = [CAUSE, {**CAUSE, "name": "b"}]
-    told = notes({**TWO, "tolerances": {"causes": causes}})
-    assert "tolerances.causes: a and b all move transmission.backlash_um: what they add is summed" in told
+    message = notes({**TWO, "tolerances": {"causes": causes}})
+    assert "tolerances.causes: a and b all move transmission.backlash_um: what they add is summed" in message
     assert not any("tolerances" in line for line in notes({**TWO, "tolerances": {"causes": causes[:1]}}))
 
 
@@ -207,12 +209,12 @@ def test_a_run_says_at_its_start_that_samples_leave_friction_out_of_their_motion
         ("transmission.single_meshes.x.error_um", "transmission.single_meshes"),
     ],
 )
-def test_a_misspelt_key_of_with_values_and_of_a_study_is_told_with_what_was_meant(key, hint):
+def test_a_misspelt_key_of_with_values_and_of_a_study_is_reported_with_what_was_meant(key, hint):
     gearbox = facegear.example()
     with pytest.raises(ConfigErrors) as refused:
         gearbox.with_values({key: 1, "case": "other"})
-    told = refused.value.lines
-    assert len(told) == 2 and hint in told[0] and told[0].startswith(f"with_values: {key}"[13:])
+    message = refused.value.lines
+    assert len(message) == 2 and hint in message[0] and message[0].startswith(f"with_values: {key}"[13:])
     axis = {"label": "a", "key": key, "values": [1]}
     study = {"name": "one", "title": "One", "axes": [axis]}
     with pytest.raises(ConfigErrors, match=r"studies\.one\.1: ") as refused:
@@ -257,7 +259,7 @@ CARD = {"card": "case_carburised_din3990_11", "root_roughness_um": 16.0}
         ),
     ],
 )
-def test_what_does_not_fit_together_inside_a_section_is_told_all_at_once(section, values, keys):
+def test_what_does_not_fit_together_inside_a_section_is_reported_all_at_once(section, values, keys):
     with pytest.raises(ConfigErrors) as refused:
         parse(section, values)
     assert [line.split(" = ")[0] for line in refused.value.lines] == keys

@@ -163,7 +163,7 @@ def test_what_all_pinions_have_holds_where_one_has_none_of_its_own():
     np.testing.assert_allclose([one.amplitude for one in found.pinion_runout], 5e-6)
 
 
-def test_play_is_given_to_each_side_or_from_side_to_side_as_catalogues_do():
+def test_clearance_is_given_to_each_side_or_from_side_to_side_as_catalogues_do():
     body = {**section()["pinion"], "clearance_diametral_um": 40}
     single = {"one": {"clearance_diametral_um": 30}, "two": {"clearance_um": 0}}
     found = built(pinion=body, single_pinions=single).imperfections
@@ -178,7 +178,7 @@ def test_play_is_given_to_each_side_or_from_side_to_side_as_catalogues_do():
         ("single_pinions.two.clearance_um", [15, 25, 20]),
     ],
 )
-def test_a_tolerance_adds_to_a_play_that_is_given_from_side_to_side(key, clearance_um):
+def test_a_tolerance_adds_to_a_clearance_that_is_given_from_side_to_side(key, clearance_um):
     """It was refused in every sample, or the pinion named lost the play that all pinions have."""
     body, key = {**section()["pinion"], "clearance_diametral_um": 40}, f"transmission.{key}"
     given = section(pinion=body, single_pinions={"one": {"clearance_diametral_um": 30}})
@@ -290,8 +290,8 @@ def test_a_machine_that_errors_press_together_is_solved_with_a_note_and_jams_in_
     require_buildable(parts, TEETH)
     teeth = {"pinion_teeth": 23, "face_gear_teeth": 143, "module_mm": 3.75, "pressure_angle_deg": 25}
     values = {"transmission": parts.model_dump(mode="json"), "reproduction": None, "tooth_pair": teeth}
-    told = [note for note in notes(values) if "preloaded" in note]
-    assert told and re.search(line, told[0])
+    message = [note for note in notes(values) if "preloaded" in note]
+    assert message and re.search(line, message[0])
     idle = parse(Transmission, parts.model_dump() | {"torque": {"per_input_n_m": 1e-3, "tail_share": 0.1}})
     found = mean_equilibrium(machine(idle, TEETH, STIFFNESS))
     assert found.flank_forces[0].max() > 100.0
@@ -314,18 +314,18 @@ def test_a_machine_with_errors_within_its_backlash_is_buildable():
     require_buildable(parse(Transmission, section(**errors)), TEETH)
 
 
-def test_a_config_of_ones_own_is_told_once_what_printed_meshes_and_runouts_mean():
+def test_a_config_of_ones_own_is_reported_once_what_printed_meshes_and_runouts_mean():
     plain = parse(Transmission, section()).model_dump(mode="json")
     printed = {**plain, "mesh_kinematics": "printed"}
     turning = {**plain, "single_gears": {"upper": {"runout": {"eccentricity_um": 5.0}}}}
-    for transmission, reproduction, told in (
+    for transmission, reproduction, message in (
         (plain, None, 0),
         (printed, None, 1),
         (printed, "a.yaml", 0),
         (turning, None, 1),
         (None, None, 0),
     ):
-        assert len(notes({"transmission": transmission, "reproduction": reproduction})) == told
+        assert len(notes({"transmission": transmission, "reproduction": reproduction})) == message
 
 
 def test_both_gears_may_carry_load_and_differ_in_all_but_their_teeth():

@@ -18,7 +18,7 @@ def section(tmp_path, text, **changes):
     return parse(MeshStiffness, {"source": "harmonics", "csv": str(path), **changes})
 
 
-def told(tmp_path, text, **changes):
+def message(tmp_path, text, **changes):
     with pytest.raises(ConfigErrors) as refused:
         section(tmp_path, text, **changes)
     (line,) = refused.value.lines
@@ -77,16 +77,16 @@ def test_a_dumped_section_no_longer_needs_its_csv(tmp_path):
     ],
 )
 def test_a_fault_of_a_csv_is_one_line_without_advice_to_rebuild_the_users_file(tmp_path, text, changes, line):
-    found = told(tmp_path, text, **changes)
+    found = message(tmp_path, text, **changes)
     assert line in found
     assert "snakemake" not in found
 
 
 def test_a_csv_of_any_length_is_refused_at_once(tmp_path):
-    assert "longer than 2000000 bytes" in told(tmp_path, HEADER + "0,0,4e8\n" * 300_000)
+    assert "longer than 2000000 bytes" in message(tmp_path, HEADER + "0,0,4e8\n" * 300_000)
 
 
-def test_a_missing_csv_and_a_directory_are_told(tmp_path):
+def test_a_missing_csv_and_a_directory_are_reported(tmp_path):
     for path, line in ((tmp_path / "none.csv", "no such file"), (tmp_path, "a directory")):
         with pytest.raises(ConfigErrors, match=line):
             parse(MeshStiffness, {"source": "harmonics", "csv": str(path)})

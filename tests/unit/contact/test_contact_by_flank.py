@@ -55,8 +55,8 @@ def found(bodies):
 
 def test_every_flank_is_that_of_a_pair_assembled_with_its_own_errors(bodies, found):
     design = pair(ToothPair.of_config(with_errors(**ERRORS))).design
-    told = found["by_flank"].set_index(["gear", "flank"])
-    assert len(told) == 4
+    message = found["by_flank"].set_index(["gear", "flank"])
+    assert len(message) == 4
     for gear in GEARS:
         for flank in FLANKS:
             met = asdict(errors_at(design.assembly, gear, flank))
@@ -67,21 +67,21 @@ def test_every_flank_is_that_of_a_pair_assembled_with_its_own_errors(bodies, fou
             )
             alone = contact_of(bodies, own, every_flank=False)["by_torque"]
             for name in ("k_average_mean_n_per_m", "pressure_mpa", "path_radius_mm", "ste_peak_to_peak_um"):
-                assert told.loc[(gear, flank), name] == pytest.approx(alone[name][0], rel=1e-6)
+                assert message.loc[(gear, flank), name] == pytest.approx(alone[name][0], rel=1e-6)
 
 
 def test_an_offset_parts_the_root_stress_of_both_flanks_and_each_is_given(bodies, found):
     """An offset of 50 um counted for both flanks alike, 652 and 704 MPa at 1000 N m."""
     stress = root_stress(*map(to_arrays, bodies), found["loads"]).content
-    told = stress["by_flank"].set_index(["gear", "flank", "body", "fillet"])["largest_mpa"]
-    drive, back = (told["upper", flank, "face_gear", "loaded"] for flank in FLANKS)
+    message = stress["by_flank"].set_index(["gear", "flank", "body", "fillet"])["largest_mpa"]
+    drive, back = (message["upper", flank, "face_gear", "loaded"] for flank in FLANKS)
     assert back > 1.03 * drive
-    for (gear, flank, body, fillet), largest in told.items():
+    for (gear, flank, body, fillet), largest in message.items():
         root = root_from_arrays(stress["stress"], body, gear, flank)
         side = ("loaded", "other").index(fillet)
         assert 1e-6 * root.stress[:, :, side].max() == pytest.approx(largest, rel=0.05)
     main = stress["summary"].set_index(["body", "fillet"])["largest_mpa"]
-    pd.testing.assert_series_equal(told["upper"]["drive"], main)
+    pd.testing.assert_series_equal(message["upper"]["drive"], main)
 
 
 def test_without_errors_every_flank_costs_nothing_and_is_the_same(bodies, monkeypatch):

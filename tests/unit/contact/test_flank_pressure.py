@@ -246,7 +246,7 @@ def test_line_loads_carry_the_forces_they_are_made_from(pressed_pair):
         assert (loads.line_load > 0).all()
 
 
-def test_pressure_is_told_only_away_from_edges_and_with_its_error(pressed_pair):
+def test_pressure_is_reported_only_away_from_edges_and_with_its_error(pressed_pair):
     _, _, pressure = pressed_pair
     lines = pressure.lines
     for loads in pressure.loads:

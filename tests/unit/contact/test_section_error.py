@@ -70,7 +70,7 @@ def test_error_of_a_coarse_fillet_is_what_solid_elements_miss_there():
     agrees("error of the root stress, relative", errors("pinion", plain).error[0], missed, absolute=0.005)
 
 
-def test_an_error_is_told_at_every_place_along_the_face():
+def test_an_error_is_reported_at_every_place_along_the_face():
     sizes = MeshSizes(1.5e-3, 6e-3, 4e-3)
     gear = errors("face_gear", sizes)
     gauges, _ = root_gauges(BUILDERS["face_gear"](DESIGN, sizes), STEEL, gear)

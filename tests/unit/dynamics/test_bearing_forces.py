@@ -185,7 +185,7 @@ def test_without_excitation_the_response_has_the_static_forces(kinematics):
     )
 
 
-def test_a_bearing_with_play_carries_its_static_force_where_nothing_excites():
+def test_a_bearing_with_clearance_carries_its_static_force_where_nothing_excites():
     model, found = loaded(clearance=20e-6, error=0.0, stiffness=FLAT)
     table = bearing_table(model, found)
     np.testing.assert_allclose(table["mean_n"], table["static_n"], atol=1e-6 * table["static_n"].abs().max())

@@ -193,7 +193,7 @@ def test_without_error_and_backlash_only_the_scale_depends_on_torque():
         )
 
 
-def test_a_body_afloat_in_its_backlash_is_periodic_with_a_neutral_multiplier():
+def test_a_body_that_touches_nothing_is_periodic_with_a_neutral_multiplier():
     response = simulate(make_machine(torque=300.0), 2000.0)
     assert response.fractions[0].max() == pytest.approx(1.0)
     assert response.motion is Motion.PERIODIC

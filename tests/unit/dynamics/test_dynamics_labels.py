@@ -157,7 +157,7 @@ def test_steps_that_alternate_do_not_make_a_motion_of_twice_its_period(refine):
 
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6])
-def test_a_body_afloat_that_the_steps_push_on_and_on_is_no_torus(tolerance):
+def test_a_free_body_that_the_steps_push_on_and_on_is_no_torus(tolerance):
     hasty = Settings(tolerance=tolerance, settle=256, window=160, periodic_residual=1e-5, samples=32)
     found = simulate(make_machine(torque=900.0), 175.0, replace(hasty, extensions=1))
     assert found.fractions[0].max() == pytest.approx(1.0)

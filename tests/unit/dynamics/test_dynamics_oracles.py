@@ -51,7 +51,7 @@ def exact_multipliers(speed, displacement, velocity):
     damping, period = 0.1, 2 * np.pi / speed
     force = 0.05 * speed**2
 
-    def flow_matrix(contact):
+    def period_matrix(contact):
         return np.array(
             [
                 [0, 1, 0, 0, 0],
@@ -66,7 +66,7 @@ def exact_multipliers(speed, displacement, velocity):
     now, vector, product = 0.0, np.array([displacement, velocity, 1.0, 1.0, 0.0]), np.eye(2)
     contact = displacement > 1.0
     while now < period - 1e-13:
-        matrix = flow_matrix(contact)
+        matrix = period_matrix(contact)
 
         def gap(t, matrix=matrix, vector=vector):
             return (expm(matrix * t) @ vector)[0] - 1.0

@@ -24,10 +24,10 @@ ONE = (("engine", Role.INPUT, 0.0),)
 TWO = (("engine", Role.INPUT, 0.0), ("idler", Role.IDLER, 35.5))
 
 
-def machine_with(play, places=TWO, sides=tuple(Side), torque=900.0, **options):
+def machine_with(clearance, places=TWO, sides=tuple(Side), torque=900.0, **options):
     layout = make_layout(places, sides, kinematics=GEOMETRIC)
     errors = options.pop("errors", {})
-    flaws = replace(perfect(layout), bearing_clearance=np.full(len(places), play), **errors)
+    flaws = replace(perfect(layout), bearing_clearance=np.full(len(places), clearance), **errors)
     return make_machine(layout, torque, 0.0, error=8e-6, imperfections=flaws, **options)
 
 
@@ -49,12 +49,12 @@ def slope(model, omega):
         push = system.mesh_jacobian[:flanks].T @ (
             system.law.force(cycles, np.maximum(over, 0.0)[None])[0] + acts * d_rate
         )
-        for row, spring, play in zip(rows, system.ring_stiffness, system.ring_clearance, strict=True):
+        for row, spring, clearance in zip(rows, system.ring_stiffness, system.ring_clearance, strict=True):
             q, q_rate = row[:2] @ y, row[:2] @ v
             r = np.hypot(*q)
-            if r > play:
-                jacobian = (1.0 - play / r) * np.eye(2) + play / r**3 * np.outer(q, q)
-                force = spring * ((1.0 - play / r) * q + system.ring_lag * jacobian @ q_rate)
+            if r > clearance:
+                jacobian = (1.0 - clearance / r) * np.eye(2) + clearance / r**3 * np.outer(q, q)
+                force = spring * ((1.0 - clearance / r) * q + system.ring_lag * jacobian @ q_rate)
                 push = push + row[:2].T @ force
         load = system.load[:, 1, 0]
         return np.concatenate([v, load - system.damping * v - system.omega_squared * y - push])
@@ -68,9 +68,9 @@ def slope(model, omega):
     capability="dynamics_response",
     module="facegear.dynamics.integrator.integrator",
 )
-@pytest.mark.parametrize("play", [3e-6, 40e-6])
-def test_a_bearing_with_play_moves_as_scipy_says_through_touching_and_leaving(play):
-    model = build_model(machine_with(play, ONE, torque=20.0, backlash=20e-6))
+@pytest.mark.parametrize("clearance", [3e-6, 40e-6])
+def test_a_bearing_with_clearance_moves_as_scipy_says_through_touching_and_leaving(clearance):
+    model = build_model(machine_with(clearance, ONE, torque=20.0, backlash=20e-6))
     omega = TAU * 1500.0
     start = kicked(model, 0.15)
     run = record(model.system, omega, start, 2, Settings(tolerance=1e-13))
@@ -112,13 +112,15 @@ def test_liouville_holds_while_bearings_touch_and_leave_their_rings():
         np.testing.assert_allclose(matrix[:n, column], slope_, atol=2e-4 * np.abs(matrix).max())
 
 
-def test_without_play_the_ring_is_the_bearing():
-    tiny, none = (simulate(machine_with(play), 2500.0, Settings(tolerance=1e-10)) for play in (1e-13, 0.0))
+def test_without_clearance_the_ring_is_the_bearing():
+    tiny, none = (
+        simulate(machine_with(clearance), 2500.0, Settings(tolerance=1e-10)) for clearance in (1e-13, 0.0)
+    )
     assert tiny.label == none.label == "period-1"
     np.testing.assert_allclose(tiny.forces, none.forces, atol=1e-6 * np.abs(none.forces).max())
 
 
-def test_slow_running_with_play_is_the_quasi_static_machine():
+def test_slow_running_with_clearance_is_the_quasi_static_machine():
     errors = {"position": 1e-6 * np.array([[30.0, 10.0], [-20.0, 5.0]])}
     machine = machine_with(25e-6, torque=250.0, errors=errors)
     still = hunting_cycle(machine, 32).at_rest.forces

@@ -166,7 +166,7 @@ def test_the_campbell_diagram_marks_a_resonance_at_its_order_of_the_mesh_frequen
 
 
 @given(hnp.arrays(float, st.integers(3, 30), elements=st.integers(0, 9).map(float)))
-def test_a_maximum_stands_15_percent_over_the_lowest_value_on_either_side_before_a_higher_one(curve):
+def test_a_maximum_stands_15_percent_over_the_minimum_on_either_side_before_a_larger_value(curve):
     curve = curve + 1e-3 * np.arange(curve.size) ** 0.5  # no plateaus
     expected = []
     for i in range(1, curve.size - 1):

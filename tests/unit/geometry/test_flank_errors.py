@@ -85,7 +85,7 @@ ERRORS = st.builds(
 
 @settings(max_examples=12)
 @given(ERRORS)
-def test_only_flanks_that_errors_part_are_told_apart(errors):
+def test_only_flanks_that_errors_part_are_distinguished(errors):
     """None without errors of the pinion: a shift of the gears away from it is the same for all four."""
     different, numbers = distinct_errors(errors)
     assert different[0] == errors == different[numbers[0, 0]]

@@ -49,9 +49,9 @@ def test_surfaces_close_and_face_outwards(pair, body, teeth):
 def test_step_has_the_volume_and_the_flanks_of_the_exact_teeth(pair, body, tmp_path):
     design = pair(tip_relief=Relief(20e-6, 0.0, 2e-3), thinning=1e-4)
     file = tmp_path / "teeth.step"
-    told = write_step(file, solid(design, body, TEETH), body)
+    message = write_step(file, solid(design, body, TEETH), body)
     agrees(
-        "volume of the solid, m3", told, exact_volume(design, body), relative=5e-5
+        "volume of the solid, m3", message, exact_volume(design, body), relative=5e-5
     )  # OpenCASCADE's quadrature
     agrees(
         "distance of exact flank points from the faces, m",

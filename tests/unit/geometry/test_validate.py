@@ -77,7 +77,7 @@ def test_an_accepted_crowning_takes_no_more_off_the_ends_of_the_face_than_the_la
     assert taken <= MAX_RELIEF * design.module * (1 + 1e-9)
 
 
-def test_a_gear_outside_its_limits_is_told_both(pair):
+def test_a_gear_outside_its_limits_is_reported_both(pair):
     with pytest.raises(GeometryError, match=r"between 245\.800 \(undercut\) and 293\.208 \("):
         check(changed(pair(26), face_gear__inner_radius=0.24))
 
@@ -87,19 +87,19 @@ def test_a_gear_outside_its_limits_is_told_both(pair):
 def test_the_range_of_a_refusal_is_the_range_that_is_accepted(pair, shaper_addendum, rounding):
     """Two ranges that contradict each other were told: well below one radius, and up to a larger one."""
     design = changed(pair(26, tip_rounding=rounding), shaper__addendum=shaper_addendum * 3.75e-3)
-    told = face_range(design, radius_limits(design))
+    message = face_range(design, radius_limits(design))
     step = 1e-6
     fits = changed(
-        design, face_gear__inner_radius=told.inner + step, face_gear__outer_radius=told.outer - step
+        design, face_gear__inner_radius=message.inner + step, face_gear__outer_radius=message.outer - step
     )
-    assert check(changed(fits, pinion__width=told.outer - told.inner))
+    assert check(changed(fits, pinion__width=message.outer - message.inner))
     for change in (
-        {"face_gear__outer_radius": told.outer + step},
-        {"face_gear__inner_radius": told.inner - step},
+        {"face_gear__outer_radius": message.outer + step},
+        {"face_gear__inner_radius": message.inner - step},
     ):
         with pytest.raises(GeometryError, match=r"between .* and ") as refused:
             check(changed(fits, **change))
-        assert str(told) in str(refused.value)
+        assert str(message) in str(refused.value)
 
 
 @st.composite

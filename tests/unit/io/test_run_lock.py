@@ -56,7 +56,7 @@ def test_a_disk_without_locks_still_holds_off_a_second_run_on_this_machine(witho
         assert not stream.closed
 
 
-def test_a_broken_disk_is_not_told_as_another_run(monkeypatch, tmp_path):
+def test_a_broken_disk_is_not_reported_as_another_run(monkeypatch, tmp_path):
     def broken(*_):
         raise OSError(errno.EIO, os.strerror(errno.EIO))
 

@@ -113,9 +113,9 @@ def test_benedict_and_kelley_s_logarithm_is_cut_on_the_pitch_line_and_says_so():
 
 def test_ranges_name_the_places_outside_them():
     slow = rubbing(line_load=np.array([100e3, 200e3]), pitch_speed=60.0)
-    told = Schlenk().within(slow)
-    assert told["line load at least 150 N/mm"].tolist() == [False, True]
-    assert told["pitch line velocity at most 50 m/s"].tolist() == [False, False]
+    message = Schlenk().within(slow)
+    assert message["line load at least 150 N/mm"].tolist() == [False, True]
+    assert message["pitch line velocity at most 50 m/s"].tolist() == [False, False]
     assert not Iso633620().within(slow)["pitch line velocity at most 50 m/s"].any()
     fast = rubbing(u1=np.array([1.0, 8.0]), u2=np.array([4.0, 9.0]))
     assert Xu().within(fast)["slide to roll ratio at most 1"].tolist() == [False, True]

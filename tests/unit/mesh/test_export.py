@@ -58,8 +58,8 @@ def test_gmsh_measures_the_same_volume_and_no_inverted_element(written):
         gmsh.finalize()
     agrees("volume of the mesh, m3", volumes.sum(), volume(merged.nodes, merged.hexes), relative=1e-10)
     assert smallest > 0
-    lowest = table.query("quantity == 'min_sicn' and statistic == 'quantile_0'")["value"].item()
-    assert lowest > 0
+    worst = table.query("quantity == 'min_sicn' and statistic == 'quantile_0'")["value"].item()
+    assert worst > 0
 
 
 @against(

@@ -73,9 +73,9 @@ def test_no_room_for_the_log_is_one_line_as_well(job, tmp_path, capsys):
     with pytest.raises(SystemExit), stage(job) as run:
         run.summary("mean stiffness 4.1e8 N/m")
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-    told = capsys.readouterr().err.splitlines()
-    assert told[0] == "contact paper: mean stiffness 4.1e8 N/m"
-    (line,) = told[1:]
+    message = capsys.readouterr().err.splitlines()
+    assert message[0] == "contact paper: mean stiffness 4.1e8 N/m"
+    (line,) = message[1:]
     assert "no space left on the disk; free some and run again" in line
 
 
@@ -88,5 +88,5 @@ def test_an_input_whose_manifest_is_gone_is_not_read(job, tmp_path, capsys, monk
     job.input = [str(table)]
     with pytest.raises(SystemExit), stage(job):
         pytest.fail("the stage ran")
-    (told,) = capsys.readouterr().err.splitlines()
-    assert f"{table}: no manifest beside it says what its stage wrote; rebuild it with: " in told
+    (message,) = capsys.readouterr().err.splitlines()
+    assert f"{table}: no manifest beside it says what its stage wrote; rebuild it with: " in message

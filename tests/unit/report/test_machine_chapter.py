@@ -80,7 +80,7 @@ def test_the_first_screen_warns_of_what_the_results_hide(example):
     gap = {"gap_um": 7.8, "gear_part": "tip edge", "pinion_part": "fillet", "gear_radius_mm": 259.6}
     pair = {"interference": gap, "smallest_gap": gap, "backlash_um": {"smallest": 60.0}}
     found = {**tables, "by_torque": pd.DataFrame(contact), "ltca": edges}
-    told = [" ".join(row) for row in warnings(values, found, pair)]
+    message = [" ".join(row) for row in warnings(values, found, pair)]
     for words in (
         "the bodies interfere",
         "from 600 N m on tip edges carry load, up to 412 N/mm over 7.3 mm",
@@ -89,15 +89,17 @@ def test_the_first_screen_warns_of_what_the_results_hide(example):
         "solved up to 600 N m",
         "the dynamics take 100 um, the teeth as assembled have 60.0 um",
     ):
-        assert any(words in one for one in told), words
-    assert len(told) == len(set(told)) and not any("3900 MPa" in one for one in told)
+        assert any(words in one for one in message), words
+    assert len(message) == len(set(message)) and not any("3900 MPa" in one for one in message)
     pressed = pd.DataFrame(contact).assign(fillet_share=[0.0, 0.152], k_average_mean_n_per_m=[5e8, np.nan])
-    told = [" ".join(row) for row in warnings(values, found | {"by_torque": pressed}, pair)]
+    message = [" ".join(row) for row in warnings(values, found | {"by_torque": pressed}, pair)]
     words = "contact at 600 N m tips press into fillets and carry up to 15.2 % of the torque there"
-    assert any(words in one for one in told)
+    assert any(words in one for one in message)
     light = pd.DataFrame(contact).assign(fillet_share=[0.0009, 0.002])
-    told = [row for row in warnings(values, found | {"by_torque": light}, pair) if "into fillets" in row[1]]
-    assert [about for about, _ in told] == ["contact at 600 N m"], "as the rating judges it"
+    message = [
+        row for row in warnings(values, found | {"by_torque": light}, pair) if "into fillets" in row[1]
+    ]
+    assert [about for about, _ in message] == ["contact at 600 N m"], "as the rating judges it"
     known = dict(verdicts(found | {"by_torque": pressed}, pair))
     assert known["contact at 600 N m"].startswith("no mean stiffness, ")
     most = tables["meshes"]["pinion_torque_n_m"].abs().max()
@@ -125,8 +127,8 @@ def test_a_green_rating_beside_loaded_tip_edges_is_amber_with_its_reason_on_the_
         "reason": "tip edges carry 327 N/mm, where pressure has no limit",
         "within_torques_solved": False,
     }
-    told = dict(verdicts({"rating": pd.DataFrame([row])}, None))
-    line = told["pinion, drive flank, pitting (contact analysis)"]
+    message = dict(verdicts({"rating": pd.DataFrame([row])}, None))
+    line = message["pinion, drive flank, pitting (contact analysis)"]
     assert line.startswith("amber") and "327 N/mm" in line
     assert line.endswith("outside the torques of the contact analysis")
 
@@ -141,8 +143,8 @@ def test_the_first_screen_names_k_gamma_of_the_running_machine_beside_that_at_re
         "speed_rpm": 7500.0,
         "mesh_cycles": 99,
     }
-    told = dict(verdicts({"following_groups": pd.DataFrame([row])}, None))
-    assert told["K_gamma, idlers"].startswith(
+    message = dict(verdicts({"following_groups": pd.DataFrame([row])}, None))
+    assert message["K_gamma, idlers"].startswith(
         "1.416 (K_v 1.100) at 7500 rpm and 1328 N m, 1.268 at rest, over 99 mesh cycles"
     )
 
@@ -183,9 +185,9 @@ def test_the_first_screen_warns_of_motions_that_are_not_periodic_and_of_meshes_o
     values, tables = example
     meshes = tables["meshes"].assign(flank=["open", *["drive"] * (len(tables["meshes"]) - 1)])
     sweep = sweep_table([True, False, False], a=[1.0, 1.0, 1.0], b=[0.0, 0.25, 0.0], c=[0.0, 0.0, 0.0])
-    told = list(warnings(values, {**tables, "meshes": meshes, "sweep": sweep}, None))
-    assert ("meshes at rest", f"no load at {meshes['mesh'].iloc[0]}") in told
-    swept = [words for about, words in told if about == "speed sweep"]
+    message = list(warnings(values, {**tables, "meshes": meshes, "sweep": sweep}, None))
+    assert ("meshes at rest", f"no load at {meshes['mesh'].iloc[0]}") in message
+    swept = [words for about, words in message if about == "speed sweep"]
     assert swept[0].startswith("the motion is not periodic at 4 of 6 speeds")
     assert swept[1:] == [
         "open at every speed: a",

@@ -84,9 +84,9 @@ def test_the_viewer_holds_every_loaded_node_at_its_torque_and_position(loads, vi
             drawn = load[here] / 255 * found["largest"]["load"]
             np.testing.assert_allclose(drawn, line_load(loads, on), atol=found["largest"]["load"] / 255)
             lines = (loads["line_torque_n_m"] == found["torque_n_m"]) & (loads["line_position"] == position)
-            told = np.tile(np.where([0, 1, 1, 0], 1e-6 * loads["line_pressure_pa"][lines], 0.0), 2)
+            message = np.tile(np.where([0, 1, 1, 0], 1e-6 * loads["line_pressure_pa"][lines], 0.0), 2)
             drawn = pressure[here] / 255 * found["largest"]["pressure"]
-            np.testing.assert_allclose(drawn, told, atol=found["largest"]["pressure"] / 255)
+            np.testing.assert_allclose(drawn, message, atol=found["largest"]["pressure"] / 255)
     assert [found["error_um"] for found in view.data["torques"]] == [[1.0, 2.0], [3.0, 4.0]]
 
 
@@ -120,10 +120,10 @@ def test_root_stress_colours_the_fillets_of_every_tooth_on_its_passage(loads):
     largest = 1e-6 * max(stress[f"{name}_stress_pa"][1].max() for name in ("pinion", "face_gear"))
     assert found["largest"]["root_stress"] == pytest.approx(largest)
     for body in seen["bodies"]:
-        told = decoded(found["tension"][body["name"]], "u1").astype(float) / 255.0 * largest
+        message = decoded(found["tension"][body["name"]], "u1").astype(float) / 255.0 * largest
         wanted = 1e-6 * np.maximum(stress[f"{body['name']}_stress_pa"][1], 0.0).ravel()
         assert body["fillets"]["first"] == -1
-        np.testing.assert_allclose(told, wanted, atol=largest / 255.0)
+        np.testing.assert_allclose(message, wanted, atol=largest / 255.0)
         points = decoded(body["fillets"]["points"], "<f4")
         np.testing.assert_allclose(points, 1e3 * stress[f"{body['name']}_position_m"].ravel(), rtol=1e-6)
 

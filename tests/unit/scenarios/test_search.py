@@ -103,8 +103,8 @@ def difference(inputs, idlers, clocking):
     Clocking of the idlers (deg) takes its length at the base circle from the play of two flanks.
     """
     force, k, base, pressure = 6.4e3, 4.1e8, 0.0391, np.radians(25.0)
-    play = 1e-4 + np.radians(clocking) * base
-    return (2 * force + play * k + 4 * force * k * np.cos(pressure) ** 2 / idlers) / (1 + 2 * k / inputs)
+    clearance = 1e-4 + np.radians(clocking) * base
+    return (2 * force + clearance * k + 4 * force * k * np.cos(pressure) ** 2 / idlers) / (1 + 2 * k / inputs)
 
 
 @against(

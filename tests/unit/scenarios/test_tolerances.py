@@ -123,12 +123,12 @@ def test_samples_are_equal_to_the_bit_for_any_size_of_chunk(gearbox):
 def test_a_sample_that_cannot_be_built_is_a_row_with_its_error_and_is_counted():
     jams = cause("shim", "transmission.single_pinions.right input.position_um.y", 80.0)
     found = machine([jams]).tolerances()
-    told = found.samples()["error"]
-    assert 0 < (told != "").sum() < len(told)
-    assert all("jams" in text or "um between" in text for text in told[told != ""])
+    message = found.samples()["error"]
+    assert 0 < (message != "").sum() < len(message)
+    assert all("jams" in text or "um between" in text for text in message[message != ""])
     shares = found.content["fractions"].set_index("what")
-    assert shares.loc["cannot be built or computed", "fraction"] == (told != "").mean()
-    assert (found.table()["samples"] == (told == "").sum()).all()
+    assert shares.loc["cannot be built or computed", "fraction"] == (message != "").mean()
+    assert (found.table()["samples"] == (message == "").sum()).all()
 
 
 TURNING = {

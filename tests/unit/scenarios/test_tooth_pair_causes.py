@@ -59,8 +59,8 @@ def test_a_sample_is_the_machine_of_a_config_with_its_values(found):
     # the nominal backlash is rounded to 1e-6 um where a config leaves it to the teeth
     np.testing.assert_allclose(row[names].astype(float), expected[names].astype(float), rtol=1e-7)
     table = alone.contact().by_torque()
-    lowest, highest = table["ste_peak_to_peak_um"].min(), table["ste_peak_to_peak_um"].max()
-    assert lowest < row["te_peak_to_peak_um"] < highest
+    minimum, maximum = table["ste_peak_to_peak_um"].min(), table["ste_peak_to_peak_um"].max()
+    assert minimum < row["te_peak_to_peak_um"] < maximum
 
 
 def test_no_compliance_is_computed_for_a_sample_and_pairs_that_are_alike_are_solved_once(monkeypatch):

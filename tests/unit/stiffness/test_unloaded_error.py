@@ -63,7 +63,7 @@ def test_given_harmonics_bring_no_error_of_a_pair():
     assert unloaded_error(stiffness_given(stiffness_request(section)).harmonics) is None
 
 
-def test_what_the_orders_kept_miss_is_told():
+def test_what_the_orders_kept_miss_is_reported():
     step = np.where(POSITIONS < 0.25, 5.0, 0.0)
     table = found_for(step, kept=3).harmonics
     missed = np.abs(1e6 * unloaded_error(table)(POSITIONS) - (step - step.mean())).max()

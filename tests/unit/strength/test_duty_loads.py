@@ -175,7 +175,7 @@ def test_factors_are_either_given_or_the_machines():
         facegear.example().with_values({"strength.load_factors": "machine", "transmission": None})
 
 
-def test_a_bin_outside_the_range_of_speeds_is_told_before_any_work():
+def test_a_bin_outside_the_range_of_speeds_is_reported_before_any_work():
     fast = {**SMOOTH, "strength.duty": [{**BIN, "torque_n_m": 600, "speed_rpm": 25000}]}
     with pytest.raises(
         ConfigErrors,

@@ -26,9 +26,9 @@ def test_teeth_that_interfere_are_amber_at_best_and_the_report_says_why():
     share, found = gearbox.contact().table()["fillet_share"].max(), gearbox.rating().content
     bending = found["rating"][found["rating"]["failure"] == "bending"]
     assert (bending["safety"] >= bending["required"]).all() and set(bending["verdict"]) == {"amber"}
-    told = f"fillets carry up to {100 * share:.2g} % of the torque, kept out of pressure and root stress"
+    message = f"fillets carry up to {100 * share:.2g} % of the torque, kept out of pressure and root stress"
     assert share > 0.1
     assert set(found["safety"]["verdict"]) == {"amber"}
-    assert found["safety"]["reason"].str.contains(told).all()
+    assert found["safety"]["reason"].str.contains(message).all()
     shown = [finding for about, finding in verdicts({"rating": found["rating"]}, None) if "bending" in about]
-    assert shown and all(finding.startswith("amber") and told in finding for finding in shown)
+    assert shown and all(finding.startswith("amber") and message in finding for finding in shown)

@@ -118,11 +118,11 @@ def test_damage_adds_up_over_the_bins_and_an_empty_bin_does_none():
 def test_a_bin_that_lasts_no_time_changes_no_row_of_the_rating():
     used, empty = DutyBin(750.0, 20.0, 3.6e7), DutyBin(900.0, 20.0, 0.0)
     alone, beside = (rated(duty)[1] for duty in ([used], [used, empty]))
-    for told in (
+    for message in (
         lambda found: rating_table(found, PRESSURE, ROOTS),
         lambda found: safety_table(found, PRESSURE),
     ):
-        pd.testing.assert_frame_equal(told(beside), told(alone), check_exact=True)
+        pd.testing.assert_frame_equal(message(beside), message(alone), check_exact=True)
     never = rating_table(rated([empty])[1], PRESSURE, ROOTS)  # a flank that only such a bin loads
     assert (never["stress_mpa"] == 0.0).all() and (never["verdict"] == "green").all()
 
@@ -178,7 +178,7 @@ def test_pitting_stress_at_the_pitch_point_is_hertz_of_a_cylinder_on_a_plane():
     agrees("contact stress, Pa", found, hertz * sqrt((4 - ratio) / 3), relative=1e-12)
 
 
-def told(**changes):
+def message(**changes):
     with pytest.raises(ConfigErrors) as caught:
         parse(Strength, {**SECTION, **changes})
     return str(caught.value)
@@ -188,21 +188,21 @@ def test_a_card_without_what_the_rating_needs_stops_it_by_name():
     card = read_yaml(CARDS / "case_carburised_din3990_11.yaml")
     for part in ("pitting", "bending"):
         without = {**BODY, "card": {key: value for key, value in card.items() if key != part}}
-        assert f"a card with {part}" in told(pinion=without)
+        assert f"a card with {part}" in message(pinion=without)
     bending = {key: value for key, value in card["bending"].items() if key != "mean_stress"}
-    assert "bending.mean_stress" in told(
+    assert "bending.mean_stress" in message(
         face_gear={**BODY, "card": {**card, "bending": bending}, "both_ways": True}
     )
 
 
-def test_bad_duty_cycles_are_told_in_one_line(tmp_path):
-    assert "duty[0].hours = -1" in told(duty=[{**DUTY[0], "hours": -1}])
-    assert "at least one bin with hours" in told(duty=[])
+def test_bad_duty_cycles_are_reported_in_one_line(tmp_path):
+    assert "duty[0].hours = -1" in message(duty=[{**DUTY[0], "hours": -1}])
+    assert "at least one bin with hours" in message(duty=[])
     path = tmp_path / "duty.csv"
     path.write_text("torque_n_m,speed_rpm,hours\n400,1000,abc\n")
-    line = told(duty=[], duty_csv=str(path))
+    line = message(duty=[], duty_csv=str(path))
     assert "line 2: hours = 'abc' is not a finite number" in line and "\n" not in line
-    assert "either duty_csv or duty" in told(duty_csv=str(path))
+    assert "either duty_csv or duty" in message(duty_csv=str(path))
 
 
 def test_a_duty_cycle_from_a_csv_is_that_of_the_config(tmp_path):
@@ -410,8 +410,8 @@ def test_flanks_whose_tip_edges_carry_load_are_amber_at_best_and_say_why():
         assert {one.verdict for one in pitting} == {verdict}
         table = safety_table(found, pressure)
         assert set(table["verdict"]) == {verdict}
-        told = table["reason"].iloc[0]
-        assert ("tip edges carry 100 N/mm" in told) if verdict == "amber" else told == ""
+        message = table["reason"].iloc[0]
+        assert ("tip edges carry 100 N/mm" in message) if verdict == "amber" else message == ""
 
 
 @pytest.mark.parametrize(("share", "light"), [(0.0, 500.0), (9e-4, 500.0), (2e-3, 500.0), (0.15, 250.0)])
@@ -428,8 +428,8 @@ def test_flanks_with_contact_in_fillets_under_any_load_are_amber_at_best_and_say
     tables = safety_table(found, pressed), rating_table(found, pressed, roots)
     for table in tables:
         assert set(table["verdict"]) == {verdict}
-        told = f"fillets carry up to {100 * share:.2g} % of the torque" if verdict == "amber" else ""
-        assert table["reason"].str.startswith(told).all() and (told or not table["reason"].any())
+        message = f"fillets carry up to {100 * share:.2g} % of the torque" if verdict == "amber" else ""
+        assert table["reason"].str.startswith(message).all() and (message or not table["reason"].any())
 
 
 def test_no_reliability_is_stated_where_no_card_has_the_shape_of_its_distribution():
@@ -450,7 +450,7 @@ def test_another_elasticity_in_the_card_than_in_the_body_is_refused():
 
 @pytest.mark.parametrize("roughness", [1.6e-5, 150])
 def test_a_roughness_outside_the_range_of_the_standards_factor_is_refused(roughness):
-    line = told(pinion={**BODY, "root_roughness_um": roughness})
+    line = message(pinion={**BODY, "root_roughness_um": roughness})
     assert f"pinion.root_roughness_um = {roughness:g}" in line and "\n" not in line
 
 

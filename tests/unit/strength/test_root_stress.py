@@ -166,14 +166,14 @@ def test_the_file_for_paraview_holds_points_quadrilaterals_and_stress(tmp_path):
     _, root = passing({0: sp.csr_matrix(np.arange(28.0).reshape(4, 7))})
     position = np.random.default_rng(2).normal(size=(*GRID, 3))
     both = {"pinion": root, "face_gear": root}
-    points, cells, told = stress_surface(root_arrays([both], ALIKE, dict.fromkeys(both, position)))
-    write_vtu(tmp_path / "stress.vtu", points, cells, told)
+    points, cells, message = stress_surface(root_arrays([both], ALIKE, dict.fromkeys(both, position)))
+    write_vtu(tmp_path / "stress.vtu", points, cells, message)
     stored = vtu_arrays(tmp_path / "stress.vtu")
     np.testing.assert_array_equal(stored["Points"].reshape(-1, 3), points)
     np.testing.assert_array_equal(stored["connectivity"].reshape(-1, 4), cells["quad"])
     np.testing.assert_array_equal(stored["offsets"], 4 * np.arange(1, len(cells["quad"]) + 1))
     assert (stored["types"] == 9).all()  # VTK_QUAD
-    for name, values in told.items():
+    for name, values in message.items():
         np.testing.assert_array_equal(stored[name], values)
 
 
@@ -182,12 +182,12 @@ def test_surface_for_paraview_shows_the_largest_and_smallest_stress_of_every_gau
     position = np.random.default_rng(2).normal(size=(*GRID, 3))
     both = {"pinion": root, "face_gear": root}
     arrays = root_arrays([both], ALIKE, {"pinion": position, "face_gear": 2 * position})
-    points, cells, told = stress_surface(arrays)
+    points, cells, message = stress_surface(arrays)
     assert len(points) == 2 * np.prod(GRID)
     assert len(cells["quad"]) == 2 * 2 * (GRID[1] - 1) * (GRID[2] - 1)
-    np.testing.assert_array_equal(told["body"], np.repeat([0.0, 1.0], np.prod(GRID)))
+    np.testing.assert_array_equal(message["body"], np.repeat([0.0, 1.0], np.prod(GRID)))
     for name, found in (("largest", root.stress.max(axis=1)), ("smallest", root.stress.min(axis=1))):
-        on_gear = told[f"{name}_pa_at_300_n_m"][told["body"] == 1].reshape(GRID)
+        on_gear = message[f"{name}_pa_at_300_n_m"][message["body"] == 1].reshape(GRID)
         np.testing.assert_array_equal(on_gear, found[1])
     corners = points[cells["quad"][0]]
     np.testing.assert_array_equal(corners, position[0][[0, 1, 1, 0], [0, 0, 1, 1]])

@@ -133,9 +133,9 @@ def test_inputs_float_along_one_line_and_idlers_along_none():
 
 
 def test_the_table_of_both_kinematics_in_the_docs_is_what_the_model_gives():
-    told = (ROOT / "docs" / "validation.md").read_text().splitlines()
+    message = (ROOT / "docs" / "validation.md").read_text().splitlines()
     for line in table_lines():
-        assert line in told
+        assert line in message
 
 
 def both_modes():
@@ -166,18 +166,18 @@ def cells(modes):
             yield cell
 
 
-def test_bearings_with_play_vibrate_along_and_across_their_load_as_they_are_pressed():
+def test_bearings_with_clearance_vibrate_along_and_across_their_load_as_they_are_pressed():
     """k along the load, k (1 - c / r) across it: not the bearing without play."""
-    play = 30e-6
-    flaws = replace(perfect(LAYOUT), bearing_clearance=np.full(5, play))
+    clearance = 30e-6
+    flaws = replace(perfect(LAYOUT), bearing_clearance=np.full(5, clearance))
     machine = make_machine(LAYOUT, torque=2000.0, tail_share=0.03, imperfections=flaws)
     standing = mean_equilibrium(machine).displacements[0].reshape(-1, 4)
     pinions = list(LAYOUT.pinions)
     for i, pinion in enumerate(pinions):
         place = standing[i, :2]
         k, r = pinion.body.bearing[0], np.hypot(*place)
-        assert r > play
-        matrix = k * (1.0 - play / r) * np.eye(2) + k * play / r**3 * np.outer(place, place)
+        assert r > clearance
+        matrix = k * (1.0 - clearance / r) * np.eye(2) + k * clearance / r**3 * np.outer(place, place)
         bearing = (matrix[0, 0], matrix[1, 1], 0.0)
         pinions[i] = replace(pinion, body=replace(pinion.body, bearing=bearing, bearing_xy=matrix[0, 1]))
     pressed = make_machine(replace(LAYOUT, pinions=tuple(pinions)), torque=2000.0, tail_share=0.03)
@@ -231,7 +231,7 @@ def test_a_machine_and_its_mirror_image_have_the_same_modes(torque, backlash, cl
     backlash=st.floats(1e-6, 2e-4),
     seed=st.integers(0, 2**31),
 )
-def test_no_mode_of_a_pinion_in_its_play_hangs_on_the_last_digits_of_a_torque(
+def test_no_mode_of_a_pinion_in_its_clearance_hangs_on_the_last_digits_of_a_torque(
     torque, clearance, backlash, seed
 ):
     machine = idle_machine(torque, clearance, backlash=backlash)
@@ -273,7 +273,7 @@ def test_a_wedged_mesh_has_both_flanks_and_the_table_names_it():
     )
 
 
-def test_the_table_says_what_every_mesh_and_every_bearing_with_play_does():
+def test_the_table_says_what_every_mesh_and_every_bearing_with_clearance_does():
     machine = idle_machine(800.0, 2e-5)
     table = contact_table(machine, vibrating_machine(machine), "average").set_index("contact")
     assert table["state"].to_dict() == {

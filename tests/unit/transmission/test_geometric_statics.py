@@ -391,14 +391,14 @@ def test_tilt_of_no_give_is_the_gear_that_cannot_tilt():
     capability="hunting load_sharing_reference",
     module="facegear.transmission.statics",
 )
-def test_a_pinion_inside_its_play_floats_and_beyond_it_is_held():
+def test_a_pinion_inside_its_clearance_floats_and_beyond_it_is_held():
     layout = layout_with([1e9], [Role.INPUT])
     free = held_forces(machine_with(layout, error=[10e-6, 0.0], bearing_clearance=[50e-6]))
     agrees("mesh force of a pinion that floats, N", free[0], free[1], relative=1e-10)
-    play = 1e-6
-    tight = held_forces(machine_with(layout, error=[10e-6, 0.0], bearing_clearance=[play]))
+    clearance = 1e-6
+    tight = held_forces(machine_with(layout, error=[10e-6, 0.0], bearing_clearance=[clearance]))
     # The pinion leans along (cos a, sin a) F_difference: the play takes 2 play off the misfit of 10 um.
-    exact = K * (10e-6 - 2.0 * play) / (1.0 + 2.0 * K / 1e9)
+    exact = K * (10e-6 - 2.0 * clearance) / (1.0 + 2.0 * K / 1e9)
     agrees("difference of the mesh forces beyond the play, N", tight[1] - tight[0], exact, relative=1e-9)
 
 
@@ -420,17 +420,17 @@ def test_next_to_no_torque_on_a_free_pinion_does_not_keep_the_others_from_balanc
     assert found.forces[0, 0] == pytest.approx(50.0 / layout.pinion_arm, rel=1e-12)
 
 
-RINGS_OF_PLAY = {
+BEARING_CLEARANCES = {
     "six pinions": (6, 4.4e8, 1e9, 2e-4, [5e-5] * 6),
     "five pinions on soft bearings": (5, 1e5, 1e7, 1.433e-4, [15e-6, 28e-6, 4e-6, 28e-6, 9e-6]),
 }
 
 
-@pytest.mark.parametrize("name", RINGS_OF_PLAY)
+@pytest.mark.parametrize("name", BEARING_CLEARANCES)
 @pytest.mark.parametrize("share", [1e-13, 1e-12, 1e-10, 1e-8, 1e-6])
-def test_next_to_no_torque_against_a_ring_of_play_is_balanced_or_refused_by_name(share, name):
+def test_next_to_no_torque_against_a_bearing_ring_is_balanced_or_refused_by_name(share, name):
     """Below 1e-7 of the others' load the force that turns a free pinion in its ring is lost in rounding."""
-    count, pinion, gear, backlash, clearance = RINGS_OF_PLAY[name]
+    count, pinion, gear, backlash, clearance = BEARING_CLEARANCES[name]
     places = [(f"p{i}", Role.INPUT if i < count - 1 else Role.TAIL, 20.0 * i) for i in range(count)]
     layout = make_layout(tuple(places), (Side.LOWER, Side.UPPER), pinion, gear, GEOMETRIC)
     flaws = replace(perfect(layout), bearing_clearance=np.array(clearance))

@@ -127,10 +127,12 @@ def test_a_shaft_that_couples_displacement_and_tilt_bends_by_its_whole_complianc
     np.testing.assert_allclose(static_bearing_forces(machine), static_bearing_forces(free), atol=1e-4)
 
 
-@pytest.mark.parametrize("play", [0.0, 20e-6])
-def test_both_solvers_of_statics_agree(play, monkeypatch):
+@pytest.mark.parametrize("clearance", [0.0, 20e-6])
+def test_both_solvers_of_statics_agree(clearance, monkeypatch):
     layout = make_layout(kinematics=GEOMETRIC)
-    machine = make_machine(layout, imperfections=replace(perfect(layout), bearing_clearance=np.full(5, play)))
+    machine = make_machine(
+        layout, imperfections=replace(perfect(layout), bearing_clearance=np.full(5, clearance))
+    )
     cycles = np.array([0.0, 0.4])
     by_blocks = equilibria(machine, cycles)
     monkeypatch.setattr(statics, "has_blocks", lambda machine: False)

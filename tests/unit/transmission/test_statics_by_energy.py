@@ -85,7 +85,7 @@ def potential(machine):
 )
 @settings(max_examples=25, deadline=None)
 @given(machines())
-def test_with_rings_of_play_the_statics_are_the_least_energy_that_a_general_minimiser_finds(machine):
+def test_with_bearing_clearance_the_statics_are_the_least_energy_that_a_general_minimiser_finds(machine):
     energy, to_si = potential(machine)
     found = mean_equilibrium(machine)
     ours = found.displacements[0] / to_si

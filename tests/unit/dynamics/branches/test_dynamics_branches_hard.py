@@ -28,7 +28,7 @@ EXACT = [0.828463984388, 0.820631087712, 0.708031618722, 1.407088466023]
 WIDE = ContinuationSettings(0.25, 2.6)
 
 
-def flow_of(at, tolerance=1e-12) -> PeriodMap:
+def period_map_of(at, tolerance=1e-12) -> PeriodMap:
     return PeriodMap(Family("W", lambda speed: (at(speed), speed)), 1, tolerance)
 
 
@@ -62,7 +62,7 @@ def mirrored(speed):
 
 
 def test_mirrored_meshes_that_switch_at_one_instant_graze_at_one_speed():
-    branch = branch_at(flow_of(mirrored), np.array([1.1, 0.0]), 0.3, WIDE)
+    branch = branch_at(period_map_of(mirrored), np.array([1.1, 0.0]), 0.3, WIDE)
     folds, grazes = ([special.point.value for special in branch.of(kind)] for kind in (Kind.FOLD, Kind.GRAZE))
     assert len(branch.specials) == len(folds) + len(grazes)
     assert folds == pytest.approx([EXACT[0], EXACT[2]], rel=1e-9)
@@ -90,7 +90,7 @@ def neutral(speed):
 
 
 def test_a_floating_body_changes_no_special_point_and_its_one_is_no_fold():
-    branch = branch_at(flow_of(neutral), np.array([1.1, 0.0, 0.0, 0.0]), 0.3, WIDE)
+    branch = branch_at(period_map_of(neutral), np.array([1.1, 0.0, 0.0, 0.0]), 0.3, WIDE)
     assert sorted(value for _, value in listed(branch)) == pytest.approx(sorted(EXACT), rel=1e-9)
     assert branch.points[0].linear.neutral.shape == (4, 1)
     assert branch.points[0].multipliers.size == 3
@@ -99,7 +99,7 @@ def test_a_floating_body_changes_no_special_point_and_its_one_is_no_fold():
 
 def test_the_place_of_a_floating_body_makes_no_other_motion():
     """Nothing holds the body, so a sweep finds it anywhere; the rest of the motion must agree."""
-    branch = branch_at(flow_of(neutral), np.array([1.1, 0.0, 0.0, 0.0]), 0.3, WIDE)
+    branch = branch_at(period_map_of(neutral), np.array([1.1, 0.0, 0.0, 0.0]), 0.3, WIDE)
     found = crossings(branch, 1.2)[0]
     shift = np.append(found.linear.neutral[:, 0], 0.0)
     assert distance(branch, replace(found, x=found.x + 3.0 * shift), 1) < 1e-12
@@ -107,9 +107,9 @@ def test_the_place_of_a_floating_body_makes_no_other_motion():
     assert distance(branch, aside, 1) > 1e-4
 
 
-def test_a_graze_within_a_hundred_thousandth_of_a_fold_is_told_apart_from_it():
+def test_a_graze_within_a_hundred_thousandth_of_a_fold_is_distinguished_from_it():
     run = ContinuationSettings(0.33, 0.47)
-    period_map = flow_of(lambda speed: backlash_oscillator(speed, mean=0.0106))
+    period_map = period_map_of(lambda speed: backlash_oscillator(speed, mean=0.0106))
     branch = branch_at(period_map, np.array([1.01, 0.0]), 0.335, run)
     folds, grazes = ([special.point.value for special in branch.of(kind)] for kind in (Kind.FOLD, Kind.GRAZE))
     nearest = min(abs(fold / graze - 1.0) for fold in folds for graze in grazes)
@@ -119,7 +119,7 @@ def test_a_graze_within_a_hundred_thousandth_of_a_fold_is_told_apart_from_it():
 
 def test_two_folds_a_hundred_thousandth_apart_are_both_found():
     """As 0.1 rpm at 11 000 rpm."""
-    period_map = flow_of(lambda speed: backlash_oscillator(speed, mean=0.4), 1e-14)
+    period_map = period_map_of(lambda speed: backlash_oscillator(speed, mean=0.4), 1e-14)
     branch = branch_at(period_map, np.array([1.4, 0.0]), 0.5, ContinuationSettings(0.45, 2.1))
     folds = [special.point.value for special in branch.of(Kind.FOLD)]
     assert folds == pytest.approx([0.968919631757, 0.968911121069], rel=1e-9)
@@ -127,7 +127,7 @@ def test_two_folds_a_hundred_thousandth_apart_are_both_found():
 
 
 def test_contact_only_damping_with_a_square_wave_stiffness_gives_one_list_from_both_ends():
-    period_map = flow_of(
+    period_map = period_map_of(
         lambda speed: one_degree(
             0.02,
             stiffness=((0.0,), (0.0,)),
@@ -146,7 +146,7 @@ def test_contact_only_damping_with_a_square_wave_stiffness_gives_one_list_from_b
 
 def test_multipliers_of_an_undamped_oscillator_multiply_to_one():
     run = ContinuationSettings(1.2, 2.4)
-    period_map = flow_of(lambda speed: backlash_oscillator(speed, 0.0))
+    period_map = period_map_of(lambda speed: backlash_oscillator(speed, 0.0))
     branch = branch_at(period_map, np.array([1.0, 0.0]), 2.35, run)
     assert branch.points[-1].value == pytest.approx(2.4)
     for point in branch.points:
@@ -155,7 +155,7 @@ def test_multipliers_of_an_undamped_oscillator_multiply_to_one():
 
 def test_without_any_damping_a_branch_ends_for_a_named_reason_at_orbits_that_are_right():
     run = ContinuationSettings(0.3, 2.4, max_points=10)
-    period_map = flow_of(lambda speed: backlash_oscillator(speed, 0.0))
+    period_map = period_map_of(lambda speed: backlash_oscillator(speed, 0.0))
     branch = branch_at(period_map, np.array([1.1, 0.0]), 0.4, run)
     assert set(branch.ends) <= {BranchEnd.LIMIT, BranchEnd.POLE, BranchEnd.POINTS}
     for point in branch.points:
