@@ -16,6 +16,7 @@ extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.apidoc", "sphinx.
 exclude_patterns = ["build", "joss"]
 default_role = "literal"  # docstrings write names in single backticks
 suppress_warnings = ["ref.python"]  # shapes in lists of fields, such as (meshes,), look like names of code
+napoleon_use_ivar = True  # fields are listed once, by their class
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 4
 apidoc_modules = [

@@ -60,7 +60,7 @@ def movable(
     values: Mapping[str, Any],
     keys: Iterable[str],
     allowed: Iterable[str] = (MACHINE, SPEED, PAIR, LUBRICATION),
-    told: str = "tolerances.causes.moves",
+    refused_key: str = "tolerances.causes.moves",
 ) -> dict[str, Any]:
     """Values as of `variable_part` with an entry for every single part that one of the keys names.
 

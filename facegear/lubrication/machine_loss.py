@@ -176,10 +176,10 @@ def machine_loss(pair: Pair, loads: MeshLoads, speed: float) -> MachineLoss:
     """
     known, count = pair.known, loads.torque.size
     if not isinstance(known.bulk, Cooling):
-        one, own = pair.own(speed)
+        single, own = pair.own(speed)
         curves = MeshCurves(
             pair.torques,
-            *(np.repeat(getattr(one, field.name), count, axis=0) for field in fields(one)[1:]),
+            *(np.repeat(getattr(single, field.name), count, axis=0) for field in fields(single)[1:]),
         )
         return _evaluated(loads, curves, speed, OverTorque(pair.torques, own).at(loads.torque))
     cooling = known.bulk

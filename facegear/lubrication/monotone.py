@@ -17,8 +17,8 @@ def monotone_at(nodes: Array, values: Array, at: Array) -> Array:
     left = np.clip(np.searchsorted(nodes, at, side="right") - 1, 0, steps.size - 1)
     each = np.arange(at.size)
     step, part = steps[left], (at - nodes[left]) / steps[left]
-    first, last = (values[..., each, left + one] for one in (0, 1))
-    leaving, reaching = (step * slopes[..., each, left + one] for one in (0, 1))
+    first, last = (values[..., each, left + offset] for offset in (0, 1))
+    leaving, reaching = (step * slopes[..., each, left + offset] for offset in (0, 1))
     back = 1.0 - part
     start = back**2 * ((1.0 + 2.0 * part) * first + part * leaving)
     return start + part**2 * ((3.0 - 2.0 * part) * last - back * reaching)

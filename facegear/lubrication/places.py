@@ -166,7 +166,7 @@ def joined(parts: Sequence[Loads]) -> Loads:
     """Places or hats one after the other; at least one part."""
     names = [field.name for field in fields(parts[0])]
     return replace(
-        parts[0], **{name: np.concatenate([getattr(one, name) for one in parts]) for name in names}
+        parts[0], **{name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
     )
 
 
@@ -183,8 +183,8 @@ def _contact(torque: float, contact_places: Places, hats: HatSlip) -> LoadedCont
     nearest = np.where(np.isfinite(picked), np.nan_to_num(picked), -1).astype(np.int64)
     smoothed = contact_places.line_load * contact_places.length
     forces, sums = (
-        np.bincount(on, weights=one, minlength=len(table))
-        for on, one in ((line[count:], hats.force), (line[:count], smoothed))
+        np.bincount(on, weights=weights, minlength=len(table))
+        for on, weights in ((line[count:], hats.force), (line[:count], smoothed))
     )
     carried = contact_places.line_load * (forces / np.where(sums > 0.0, sums, 1.0))[line[:count]]
     whole = replace(contact_places, carried=carried)

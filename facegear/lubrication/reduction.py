@@ -46,7 +46,7 @@ class Group:
     def of(cls, by_torque: Sequence[Places]) -> "Group":
         """From the places of each torque."""
         ends = np.cumsum([0, *(places.plane.size for places in by_torque)]).tolist()
-        return cls(joined(by_torque), tuple(slice(*one) for one in pairwise(ends)))
+        return cls(joined(by_torque), tuple(slice(*bounds) for bounds in pairwise(ends)))
 
     def gathered(self, how: Callable[..., Array], values: Array, nothing: float) -> Array:
         """Values (n, m) gathered to (n, t); `nothing` where a torque has no place."""
@@ -81,12 +81,14 @@ def reduced(contacts: Sequence[LoadedContact], conditions: Sequence[Condition]) 
 def _few(contact: LoadedContact, conditions: Sequence[Condition]) -> tuple[Places, Array, Places]:
     """Places that lose, with their weights, and extreme ones."""
     spots, whole = contact.places, contact.weights
-    states = [local_state(spots, one.speed, one.known, one.bulk) for one in conditions]
+    states = [
+        local_state(spots, condition.speed, condition.known, condition.bulk) for condition in conditions
+    ]
     losses = [state.friction * whole for state in states]
     heat = [loss * state.heat_fraction for loss, state in zip(losses, states, strict=True)]
     factors = cubature(np.array([*losses, *heat]))
     losing = np.flatnonzero(factors)
-    borrowed = any(isinstance(one.known.bulk, BorrowedBulk) for one in conditions)
+    borrowed = any(isinstance(condition.known.bulk, BorrowedBulk) for condition in conditions)
     extreme = np.unique(np.concatenate([_extremes(spots, state, borrowed) for state in states]))
     return taken(spots, losing), (factors * whole)[losing], taken(spots, extreme)
 
@@ -111,15 +113,15 @@ def _extremes(spots: Places, state: Local, borrowed: bool) -> Integers:
     on = np.flatnonzero(spots.inside)
     if on.size == 0:
         return on
-    found = [
+    contenders = [
         on[np.argsort(values[on], kind="stable")[:CONTENDERS]]
         for values in (-state.flash, state.film_ratio, state.micropitting)
     ]
     if borrowed:
         stage = passage(spots.position, spots.tooth)[on]
         hottest_first = on[np.lexsort((-state.flash[on], stage))]
-        found.append(hottest_first[np.unique(np.sort(stage), return_index=True)[1]])
-    return np.concatenate(found)
+        contenders.append(hottest_first[np.unique(np.sort(stage), return_index=True)[1]])
+    return np.concatenate(contenders)
 
 
 @dataclass(frozen=True, eq=False)

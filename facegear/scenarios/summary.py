@@ -50,8 +50,8 @@ def percentile_table(
     return table.astype({"quantity": str, **numbers, "samples": int})  # also where every sample failed
 
 
-def share_table(samples: pd.DataFrame, shares: dict[str, str], confidence: float) -> pd.DataFrame:
-    """Share of the samples that failed, and of those in which a share of time or loss is above zero.
+def fraction_table(samples: pd.DataFrame, events: dict[str, str], confidence: float) -> pd.DataFrame:
+    """Fraction of the samples that failed, and of those in which a fraction of time or loss is above zero.
 
     `events`: column -> what it means in words. Columns: what, fraction, low, high, samples.
     """
@@ -59,7 +59,7 @@ def share_table(samples: pd.DataFrame, shares: dict[str, str], confidence: float
     rows = [("cannot be built or computed", failed)]
     rows += [
         (label, samples.loc[~failed, name].to_numpy(float) > 0.0)
-        for name, label in shares.items()
+        for name, label in events.items()
         if name in samples
     ]
     fractions = [(label, fraction_of(hits, confidence), hits.size) for label, hits in rows if hits.size]

@@ -49,7 +49,8 @@ def mesh_law(
     scale = _scale(ltca, request)
     largest = plan.torques[-1] / scale
     solved = [
-        flank_contacts(model.assembled(one), plan.positions, largest, plan.options) for one in different
+        flank_contacts(model.assembled(assembly), plan.positions, largest, plan.options)
+        for assembly in different
     ]
     tables, errors = fitted_tables(solved, request.kept)
     tables = [table.scaled(scale) for table in tables]
@@ -71,8 +72,8 @@ def flank_contacts(
     Raises NotConverged naming position and torque, FacegearError where teeth interfere.
     """
     torques = law_torques(largest)
-    found = loaded_contact(model, even_positions(positions), torques, options)
-    if any(np.isnan(one.k_average) for one in found):
+    contacts = loaded_contact(model, even_positions(positions), torques, options)
+    if any(np.isnan(contact.k_average) for contact in contacts):
         raise FacegearError("mesh law: there is none, as the teeth interfere")
 
     def by_torque(values: list[float]) -> np.ndarray:

@@ -47,17 +47,19 @@ def tolerances(
     """
     causes = [cause.name for cause in tolerances.causes]
     every = pd.concat(samples, ignore_index=True)
-    found = every.drop(columns=list(CHECKS.values()), errors="ignore")
+    values = every.drop(columns=list(CHECKS.values()), errors="ignore")
     drawn = pd.concat(indices, ignore_index=True) if indices else every.iloc[:0]
     design = drawn.drop(columns=list(CHECKS.values()), errors="ignore")
-    percentiles = percentile_table(found, causes, tolerances.confidence, BETTER_LARGE)
-    shares = share_table(every, SHARES, tolerances.confidence)
+    percentiles = percentile_table(values, causes, tolerances.confidence, BETTER_LARGE)
+    fractions = fraction_table(every, EVENTS, tolerances.confidence)
     top = percentiles[(percentiles["percentile"] == 99.0) & percentiles["quantity"].str.startswith("k_gamma")]
     worst = top.nlargest(1, "value")
-    told = ", ".join(f"99 of 100 stay below {row.quantity} = {row.value:.3f}" for row in worst.itertuples())
+    summary = ", ".join(
+        f"99 of 100 stay below {row.quantity} = {row.value:.3f}" for row in worst.itertuples()
+    )
     sampling = sampling_table(every, CHECKS)
-    told = "; ".join(
-        [told or "no path shares a load", *_hot_in_words(percentiles), *_missed_in_words(sampling)]
+    summary = "; ".join(
+        [summary or "no path shares a load", *_hot_in_words(percentiles), *_missed_in_words(sampling)]
     )
     failed = int((every[ERROR] != "").sum())
     if failed == len(every):
@@ -84,10 +86,12 @@ def _hot_in_words(percentiles: pd.DataFrame) -> list[str]:
 
 def _missed_in_words(sampling: pd.DataFrame) -> list[str]:
     parts = [f"{row.quantity} {row.largest_missed:.1e}" for row in sampling.itertuples()]
-    most = sampling["samples"].max()
+    max_samples = sampling["samples"].max()
     cycles = [part for part in parts if part.partition(" ")[0] in MISSED]
     places = sampling.loc[~sampling["quantity"].isin(list(MISSED)), "largest_missed"]
-    told = [f"the mesh cycles taken miss at most {', '.join(cycles)} ({most} samples)"] if cycles else []
-    return told + (
+    missed = (
+        [f"the mesh cycles taken miss at most {', '.join(cycles)} ({max_samples} samples)"] if cycles else []
+    )
+    return missed + (
         [f"the places that friction is taken at miss at most {places.max():.1e}"] if len(places) else []
     )

@@ -45,9 +45,9 @@ def chunk_of(
             machine.sample(values[number - first]), design == "samples" and number < CHECKED
         )
 
-    told = f"{design} {first} to {last}"
-    frame = machine.run(evaluate, range(first, last + 1), told, partial, design, code)
-    for place, name in enumerate(machine.causes.names):
-        frame.insert(1 + place, name, values[:, place])
+    label = f"{design} {first} to {last}"
+    frame = machine.run(evaluate, range(first, last + 1), label, partial, design, code)
+    for column, name in enumerate(machine.causes.names):
+        frame.insert(1 + column, name, values[:, column])
     failed = int((frame["error"] != "").sum())
     return Outcome({"chunk": frame}, f"{len(frame)} samples, {failed} of them cannot be built or computed")

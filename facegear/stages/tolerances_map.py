@@ -11,7 +11,7 @@ from facegear.scenarios.chunks import ERROR
 from facegear.scenarios.sampling import samples
 from facegear.scenarios.summary import fraction_table, percentile_table, sampling_table
 from facegear.stages.outcome import Outcome
-from facegear.stages.tolerances import CHECKS, SHARES
+from facegear.stages.tolerances import CHECKS, EVENTS
 from facegear.variants.loads import with_torques
 from facegear.variants.sampled import CHECKED, SampledMachine
 
@@ -53,10 +53,10 @@ def tolerances_map(partial: str | Path | None = None, code: str = "", **given: A
         own = frame.iloc[index * asked.samples : (index + 1) * asked.samples]
         load = {"torque_factor": factor, "speed_rpm": speed}
         results = own.drop(columns=list(machine.checks))
-        found = percentile_table(results, (), section.confidence, BETTER_LARGE)
+        percentiles = percentile_table(results, (), section.confidence, BETTER_LARGE)
         failed = int((own[ERROR] != "").sum())
         tables.append(percentiles.assign(**load, failed=failed))
-        shares.append(_at_load(load, share_table(own, SHARES, section.confidence)))
+        fractions.append(_at_load(load, fraction_table(own, EVENTS, section.confidence)))
         sampling.append(_at_load(load, sampling_table(own, CHECKS)))
     table = pd.concat(tables, ignore_index=True)[list(COLUMNS)]
     failed = int((frame[ERROR] != "").sum())

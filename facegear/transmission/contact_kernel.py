@@ -1,6 +1,6 @@
 """Compiled: where all bodies stand when every flank, bearing and torque is in balance, position by position.
 
-The energy of one-sided flanks, bearings (with a ring of play or without) and torques is convex and, with a
+The energy of one-sided flanks, bearings (with clearance or without) and torques is convex and, with a
 linear law and but for the rings, quadratic between changes of contact: a semismooth Newton method
 (Hintermueller et al. 2003), each step an active set with its equations solved, with an exact line search that
 makes it global. Pinions touch each other through the gears only, so each is eliminated by itself (3 x 3) and

@@ -216,8 +216,8 @@ class Line:
 
 
 def _minimise(springs: _Springs) -> Array:
-    """Proximal point method (Rockafellar 1976): each round ties the body to its last place by a spring softer
-    than before.
+    """Proximal point method (Rockafellar 1976): each round ties the body to its last position by a spring
+    softer than before.
 
     The springs make every round strictly convex, so that bodies free inside their backlash have a position
     too; the force in the springs goes to zero as the rounds settle.

@@ -59,8 +59,8 @@ def meshes_in_contact(pair: Values, flanks: Flanks, rub: "Rub | None" = None) ->
             stiffness=series_of(table),
             unloaded=unloaded_error(table),
             backlash_added=added,
-            answers=_answers(found, dict(zip(BODIES, both, strict=True)), numbers, request),
-            rubbed=rub(found.ltca[0], found.pressure[0], section) if rub else None,
+            answers=_answers(analysis, dict(zip(BODIES, both, strict=True)), numbers, request),
+            rubbed=rub(analysis.ltca[0], analysis.pressure[0], section) if rub else None,
         )
 
     return lambda values: meshed(json.dumps(values, sort_keys=True))

@@ -32,7 +32,7 @@ from facegear.scenarios.chunks import identity
 from facegear.stiffness.tables import series_of, unloaded_error
 from facegear.transmission.layout import Layout
 from facegear.transmission.machine import Machine
-from facegear.variants.teeth import Flanks, Meshes, ToothMesh, Values
+from facegear.variants.teeth import Flanks, Meshes, PairExcitation, Values
 
 if TYPE_CHECKING:
     from facegear.variants.rubbed_teeth import Rub, RubbedTeeth
@@ -112,8 +112,8 @@ class VariedMachine:
 
     def identity(self, *parts: object) -> str:
         """Text that differs whenever one of the parts or a value of the machine does."""
-        plain = {one.name: getattr(self, one.name) for one in fields(self) if one.name not in ARRAYS}
-        tables = {name: one.to_csv() for name, one in plain.items() if isinstance(one, pd.DataFrame)}
+        plain = {field.name: getattr(self, field.name) for field in fields(self) if field.name not in ARRAYS}
+        tables = {name: value.to_csv() for name, value in plain.items() if isinstance(value, pd.DataFrame)}
         law = {name: values.tolist() for name, values in (self.law or {}).items()}
         return identity(*parts, {**plain, **tables, "law": law})
 
@@ -136,7 +136,9 @@ def tooth_meshes(
 
         return meshes_in_contact(pair, flanks, rub)
     series, error = series_of(harmonics), unloaded_error(harmonics)
-    return lambda values: ToothMesh(ToothNumbers.of_config(values), series, error, law=law, rubbed=rubbed)
+    return lambda values: PairExcitation(
+        ToothNumbers.of_config(values), series, error, law=law, rubbed=rubbed
+    )
 
 
 def stored_flanks(arrays: Sequence[Arrays]) -> Flanks:
@@ -157,7 +159,7 @@ def judge(question: Question, meshes: Meshes, label: str) -> Judge:
     ) -> dict[str, float]:
         from facegear.variants.rubbed_teeth import friction_quantities  # only friction needs it
 
-        section = parse(LubricationSection, lubrication, told)
+        section = parse(LubricationSection, lubrication, label)
         pair = teeth.pair(section, question.every_place)
         return friction_quantities(built, speed, loads, pair, limits_of(section))
 
@@ -171,10 +173,10 @@ def judge(question: Question, meshes: Meshes, label: str) -> Judge:
         if mesh.law is not None:
             built = replace(built, tables=flank_tables(mesh.law, built.layout))
         speed = values["dynamics"]["speed_rpm"]
-        found, loads = ask(built, speed)
-        found |= mesh.quantities(found[PEAK])
+        quantities, loads = ask(built, speed)
+        quantities |= mesh.quantities(quantities[PEAK])
         if mesh.rubbed is not None:
-            found |= rubbed(mesh.rubbed, values["lubrication"], built, speed, loads)
+            quantities |= rubbed(mesh.rubbed, values["lubrication"], built, speed, loads)
         if question.jumps is not None:
             quantities[JUMP_MARGIN] = jump_margin(build_model(built), speed, question.jumps)
         return quantities

@@ -77,22 +77,22 @@ def friction_quantities(
     Raises TooHot and NotConverged as `facegear.lubrication.machine_loss` does.
     """
     meshes = mesh_loads(machine, loads)
-    found = machine_loss(pair, meshes, speed_rpm * pi / 30)
+    losses = machine_loss(pair, meshes, speed_rpm * pi / 30)
     power_in = rated(machine, speed_rpm).power_in
-    hottest, film_ratio = float(found.contact_temperature.max()), float(found.film_ratio.min())
+    hottest, film_ratio = float(losses.contact_temperature.max()), float(losses.film_ratio.min())
     allowed = limits.allowed_contact(pair.known.oil, pair.known.oil_temperature)
     return {
-        names.LOSS: found.total,
-        names.LOSS_PERCENT: 100 * found.total / power_in if power_in > 0.0 else np.nan,
-        names.BULK: float(found.bulk.max()),
-        names.FLASH: float(found.flash.max()),
+        names.LOSS: losses.total,
+        names.LOSS_PERCENT: 100 * losses.total / power_in if power_in > 0.0 else np.nan,
+        names.BULK: float(losses.bulk.max()),
+        names.FLASH: float(losses.flash.max()),
         names.CONTACT_TEMPERATURE: hottest,
         names.SCUFFING: float(temperature_safety(allowed, pair.known.oil_temperature, hottest)),
         names.SCUFFING_MARGIN: allowed - hottest,
         names.FILM: 1e6 * film_ratio * pair.known.composite_rq,
         names.FILM_RATIO: film_ratio,
-        names.MICROPITTING: float(found.micropitting.min()),
-        names.UNSOLVED: _unsolved(found),
+        names.MICROPITTING: float(losses.micropitting.min()),
+        names.UNSOLVED: _unsolved(losses),
     }
 
 
@@ -111,6 +111,6 @@ def mesh_loads(machine: Machine, loads: FlankLoads) -> MeshLoads:
     )
 
 
-def _unsolved(found: MachineLoss) -> float:
+def _unsolved(losses: MachineLoss) -> float:
     """Part of the loss that arises under torques outside those of the contact analysis."""
-    return float(found.loss[~found.within].sum() / found.total) if found.total > 0.0 else 0.0
+    return float(losses.loss[~losses.within].sum() / losses.total) if losses.total > 0.0 else 0.0

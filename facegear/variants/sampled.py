@@ -79,15 +79,15 @@ class SampledMachine(VariedMachine):
         others = replace(self.causes, seed=self.section.seed + 1)
         asked = self.section.load_map
         speeds = [speed for _, speed in asked.loads(self.speed_rpm)] if asked else [self.speed_rpm]
-        found = []
+        states = []
         for number, values in enumerate(samples(others, 0, STATES)):
             sample = self.sample(values)
             speed = (self.speed_rpm, min(speeds), max(speeds))[number % 3]
             off = sample["dynamics"]["speed_rpm"] - self.speed_rpm
             with suppress(FacegearError):
                 section = parse(LubricationSection, sample["lubrication"], "this sample")
-                found.append((section, speed + off))
-        return found or [(LubricationSection.of_config(self.start["lubrication"]), self.speed_rpm)]
+                states.append((section, speed + off))
+        return states or [(LubricationSection.of_config(self.start["lubrication"]), self.speed_rpm)]
 
     @cached_property
     def section(self) -> Tolerances:
@@ -139,20 +139,20 @@ class SampledMachine(VariedMachine):
 
     def judged(self, sample: Mapping[str, Any], check: bool) -> dict[str, float]:
         """What a sample is judged by, and in the columns `checks` what it misses; nan unless `check`."""
-        found = self.judge(sample)
+        values = self.judge(sample)
         if not check:
-            return found | dict.fromkeys(self.checks, nan)
-        missed = {} if self.question.dynamic else self._missed(sample, found)
-        return found | missed | (self._simplified(sample, found) if self.friction else {})
+            return values | dict.fromkeys(self.checks, nan)
+        missed = {} if self.question.dynamic else self._missed(sample, values)
+        return values | missed | (self._simplified(sample, values) if self.friction else {})
 
-    def _simplified(self, sample: Mapping[str, Any], found: Mapping[str, float]) -> dict[str, float]:
+    def _simplified(self, sample: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, float]:
         """What the few places of the contact miss: columns SIMPLIFIED."""
         whole = self.thorough_judge(sample)
-        off = {name: found[name] / whole[name] - 1.0 if whole[name] else nan for name in SIMPLIFIED}
-        off[BULK] = found[BULK] - whole[BULK]
+        off = {name: values[name] / whole[name] - 1.0 if whole[name] else nan for name in SIMPLIFIED}
+        off[BULK] = values[BULK] - whole[BULK]
         return {column: off[name] for name, column in SIMPLIFIED.items()}
 
-    def _missed(self, sample: Mapping[str, Any], found: Mapping[str, float]) -> dict[str, float]:
+    def _missed(self, sample: Mapping[str, Any], values: Mapping[str, float]) -> dict[str, float]:
         """What the mesh cycles taken miss: columns MISSED."""
         whole = self.whole_judge(sample)
         paths = columns_of(f"{K_GAMMA} ", list(whole))
@@ -171,11 +171,11 @@ class SampledMachine(VariedMachine):
     ) -> pd.DataFrame:
         """Rows of `run_chunk`, kept in `partial` for this machine and what else must be the `same`.
 
-        `told` names them to who waits; where `partial` is None nothing is kept. Columns `checks` come last.
+        `label` names them to who waits; where `partial` is None nothing is kept. Columns `checks` come last.
         """
         layout = wired_layout(self.start["transmission"], self.teeth)
         names = [*self.columns(layout, self.question), *self.checks]
-        known, progress = self.identity(*same), Progress(told, len(numbers))
+        known, progress = self.identity(*same), Progress(label, len(numbers))
         with TemporaryDirectory() as folder:
             kept = Path(folder) / "partial" if partial is None else partial
             return run_chunk(evaluate, numbers, names, kept, known, progress.step)

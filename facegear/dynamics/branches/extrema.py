@@ -6,12 +6,12 @@ from facegear.arrays import Array
 from facegear.dynamics.integrator.integrator import Integrator
 
 MAX_EXTREMA = 64
-"""Turning points of a mesh kept for each mesh period."""
+"""Extrema of a mesh kept for each mesh period."""
 
 
 def extrema(integrator: Integrator, state: Array, periods: int) -> Array:
     """Maxima and minima (m, 2, most) of each deflection over a run from a state (2, n), each falling, and
     minus infinity where there are fewer. Raises NotConverged where a step fails.
     """
-    values, counts = integrator.turning_points(state, periods, MAX_EXTREMA * periods)
+    values, counts = integrator.extrema(state, periods, MAX_EXTREMA * periods)
     return -np.sort(-values[:, :, : min(counts.max(), values.shape[2])])

@@ -1,4 +1,4 @@
-"""What a run keeps of its steps: their polynomials, and the turning points of the deflections."""
+"""What a run keeps of its steps: their polynomials, and the extrema of the deflections."""
 
 from typing import NamedTuple
 
@@ -29,7 +29,7 @@ class Steps(NamedTuple):
     states: Integers
 
 
-class TurningPoints(NamedTuple):
+class Extrema(NamedTuple):
     """Deflections where they change direction: values (m, 2, K), maxima, then minima, in the order in which
     they are met; counts (m, 2), also of those that have no room. K = 0 where none are looked for.
     """
@@ -41,7 +41,7 @@ class TurningPoints(NamedTuple):
 NO_STEPS = Steps(
     np.zeros(0), np.zeros(0), np.zeros((0, 0, 0)), np.zeros((0, 0, 0)), np.zeros((0, 0), dtype=np.int64)
 )
-NO_TURNING_POINTS = TurningPoints(np.zeros((0, 0, 0)), np.zeros((0, 0), dtype=np.int64))
+NO_TURNING_POINTS = Extrema(np.zeros((0, 0, 0)), np.zeros((0, 0), dtype=np.int64))
 
 
 def make_steps(packed: Packed, order: int, count: int) -> Steps:
@@ -56,10 +56,10 @@ def make_steps(packed: Packed, order: int, count: int) -> Steps:
     )
 
 
-def make_turning_points(packed: Packed, count: int) -> TurningPoints:
+def make_extrema(packed: Packed, count: int) -> Extrema:
     """Room for so many maxima and as many minima of each deflection."""
     values = np.full((packed.m, 2, count), -np.inf)
-    return TurningPoints(values, np.zeros((packed.m, 2), dtype=np.int64))
+    return Extrema(values, np.zeros((packed.m, 2), dtype=np.int64))
 
 
 @inlined
@@ -78,7 +78,7 @@ def keep_step(packed: Packed, work: Work, s: float, length: float, steps: Steps,
 
 
 @inlined
-def add_turning_points(packed: Packed, work: Work, length: float, found: TurningPoints) -> None:
+def add_extrema(packed: Packed, work: Work, length: float, extrema: Extrema) -> None:
     """Write every deflection at which a mesh changes its direction within a step."""
     order = work.order
     for m in range(packed.m):
@@ -99,7 +99,7 @@ def add_turning_points(packed: Packed, work: Work, length: float, found: Turning
                 for i in range(order - 1, -1, -1):
                     value = value * t + work.deflection[i, m]
                 kind = 0 if slope > 0.0 else 1
-                if found.counts[m, kind] < found.values.shape[2]:
-                    found.values[m, kind, found.counts[m, kind]] = value + work.edge[m]
-                found.counts[m, kind] += 1
+                if extrema.counts[m, kind] < extrema.values.shape[2]:
+                    extrema.values[m, kind, extrema.counts[m, kind]] = value + work.edge[m]
+                extrema.counts[m, kind] += 1
             slope = later

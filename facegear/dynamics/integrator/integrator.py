@@ -9,10 +9,10 @@ from facegear.dynamics.integrator.compiled import TAU, Packed, pack
 from facegear.dynamics.integrator.dense import (
     NO_STEPS,
     NO_TURNING_POINTS,
+    Extrema,
     Steps,
-    TurningPoints,
+    make_extrema,
     make_steps,
-    make_turning_points,
 )
 from facegear.dynamics.integrator.periods import (
     DONE,
@@ -193,7 +193,17 @@ class Integrator:
         packed = self.packed if drift is None else self.packed._replace(drift=self._drift(drift))
         longest = self.longest_step() if fine or len(moved) else np.inf
         status = run_periods(
-            packed, self.work, padded[0], padded[1], moved, periods, samples, self.tolerance, log, longest, 0.0
+            packed,
+            self.work,
+            padded[0],
+            padded[1],
+            moved,
+            periods,
+            samples,
+            self.tolerance,
+            log,
+            longest,
+            0.0,
         )
         require(status)
         n, m = self.packed.n, self.packed.m
@@ -215,24 +225,24 @@ class Integrator:
         Returns the state at the end, the number of steps and the first `count` of them. Raises NotConverged.
         """
         log = self._log(periods)._replace(kept=make_steps(self.packed, self.order, count))
-        wide = self._run_alone(state, periods, log, np.inf, begin)
-        return wide[:, : self.packed.n], int(log.steps[0]), log.kept
+        padded = self._run_alone(state, periods, log, np.inf, begin)
+        return padded[:, : self.packed.n], int(log.steps[0]), log.kept
 
-    def turning_points(self, state: Array, periods: int, count: int) -> TurningPoints:
+    def extrema(self, state: Array, periods: int, count: int) -> Extrema:
         """The first `count` maxima and minima of each deflection in a run from a state (2, n).
 
         Runs whole mesh periods; the steps are no longer than disturbances need. Raises NotConverged.
         """
-        log = self._log(periods)._replace(turning_points=make_turning_points(self.packed, count))
+        log = self._log(periods)._replace(extrema=make_extrema(self.packed, count))
         self._run_alone(state, periods, log, self.longest_step())
-        return log.turning_points
+        return log.extrema
 
     def _run_alone(self, state: Array, periods: int, log: Log, longest: float, begin: float = 0.0) -> Array:
         """The padded state at the end of a run without tangents and samples."""
-        wide = self.padded(state)
-        moved = (wide[0], wide[1], self._empty)
+        padded = self.padded(state)
+        moved = (padded[0], padded[1], self._empty)
         require(run_periods(self.packed, self.work, *moved, periods, 0, self.tolerance, log, longest, begin))
-        return wide
+        return padded
 
     def _log(self, periods: int, samples: int = 0, growth: bool = False, batches: int = 0) -> Log:
         n = self.packed.omega_squared.size
@@ -245,7 +255,7 @@ class Integrator:
             steps=np.zeros(1, dtype=np.int64),
             sums=make_sums(self.packed, batches),
             kept=NO_STEPS,
-            turning_points=NO_TURNING_POINTS,
+            extrema=NO_TURNING_POINTS,
         )
 
     def _drift(self, drift: Array) -> Array:

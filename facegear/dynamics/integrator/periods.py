@@ -8,7 +8,7 @@ from facegear.arrays import Array, Integers
 from facegear.dynamics.integrator.advance import advance, after, move
 from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.contact_states import flank_of
-from facegear.dynamics.integrator.dense import Steps, TurningPoints, add_turning_points, keep_step
+from facegear.dynamics.integrator.dense import Extrema, Steps, add_extrema, keep_step
 from facegear.dynamics.integrator.kernel import inlined, kernel
 from facegear.dynamics.integrator.parting import shearing_damping
 from facegear.dynamics.integrator.rings import ring_slopes, ring_trace
@@ -42,7 +42,7 @@ class Log(NamedTuple):
     steps: Integers
     sums: Sums
     kept: Steps
-    turning_points: TurningPoints
+    extrema: Extrema
 
 
 @kernel
@@ -68,7 +68,7 @@ def run_periods(
     n = packed.omega_squared.size
     sample, acting = work.sample, work.was_acting
     batches = log.sums.coordinates.shape[0]
-    turns = log.turning_points.values.shape[2]
+    turns = log.extrema.values.shape[2]
     for period in range(periods):
         first = period == 0
         s = begin if first else 0.0
@@ -108,7 +108,7 @@ def run_periods(
                     log.samples[period * per_period + next_sample, k] = sample[k]
                 next_sample += 1
             if turns > 0:
-                add_turning_points(packed, work, length, log.turning_points)
+                add_extrema(packed, work, length, log.extrema)
             if log.steps[0] + taken < log.kept.starts.size:
                 keep_step(packed, work, s, length, log.kept, log.steps[0] + taken)
             move(work, length, displacement, velocity)

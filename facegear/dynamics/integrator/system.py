@@ -3,8 +3,8 @@
     y'' + damping y' + omega_squared y + coupling + G^T F = load(t),   F = law(s, x) + c d',   d = G y - e(t),
 
 x = d - upper above `upper`, d - lower below `lower`, zero between (Kahraman and Singh 1990). e and load are
-Fourier series in the mesh phase s = 2 pi t / T, the law is any of facegear.mesh_law. Bearings with play are
-rings (rings.py). Friction adds forces in directions of its own, which are Fourier series times the law's
+Fourier series in the mesh phase s = 2 pi t / T, the law is any of facegear.mesh_law. Bearings with clearance
+are rings (rings.py). Friction adds forces in directions of its own, which are Fourier series times the law's
 forces (rubbing.py). One degree of freedom is a case like any other.
 """
 

@@ -47,7 +47,7 @@ def largest_exponent(integrator: Integrator, state: Array, settings: Settings) -
     """Largest exponent from a state (2, n) by phase, by one tangent vector over the settings' window.
 
     The vector is brought back to length one after every period (Parker and Chua 1989).
-    While it cannot be told from zero the run is doubled, window by window, up to `extensions` times.
+    While it cannot be distinguished from zero the run is doubled, window by window, up to `extensions` times.
     """
     tangent = np.random.default_rng(0).normal(size=(1, *state.shape))
     tangent /= np.sqrt(((integrator.weights * tangent) ** 2).sum())

@@ -192,11 +192,11 @@ def test_causes_that_move_the_same_number_are_reported_when_a_run_starts():
         ("loss_only", ("tolerances",), None),
     ],
 )
-def test_a_run_says_at_its_start_that_samples_leave_friction_out_of_their_motion(effect, sections, told):
+def test_a_run_says_at_its_start_that_samples_leave_friction_out_of_their_motion(effect, sections, message):
     oil = {"lubrication": {"friction": {"effect": effect}}}
     found = notes({**TWO, **oil, **{section: {"causes": [CAUSE]} for section in sections}})
     about = [line for line in found if line.startswith("lubrication.friction.effect = ")]
-    assert len(about) == (told is not None) and all(told in line for line in about)
+    assert len(about) == (message is not None) and all(message in line for line in about)
 
 
 @pytest.mark.parametrize(

@@ -178,8 +178,8 @@ def test_samples_say_what_oil_and_roughness_do_and_small_percentiles_of_what_is_
 def test_a_sample_whose_oil_passes_its_flash_point_is_a_row_with_its_error(gearbox):
     section = {"causes": [fixed("hot", "lubrication.supply_temperature_c", 170.0)], "samples": 1}
     found = gearbox.with_values({"tolerances": {**section, "chunk_samples": 1}}).tolerances()
-    told = found.samples()["error"].iloc[0]
-    assert "supply_temperature_c = 260.0: must be below the oil's flash point, 246" in told
+    message = found.samples()["error"].iloc[0]
+    assert "supply_temperature_c = 260.0: must be below the oil's flash point, 246" in message
 
 
 @pytest.mark.parametrize(

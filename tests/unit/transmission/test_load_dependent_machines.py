@@ -120,7 +120,7 @@ def test_a_table_of_one_torque_gives_the_deflection_and_the_slope_of_that_torque
     table = ForceTable(levels, np.multiply.outer(forces, mean), np.multiply.outer(slopes, mean))
     machine = made(PINIONS[:1], (Side.UPPER,), table=table)
     found = static_equilibrium(machine)
-    pressed = (flank_directions(machine.layout) @ found.displacements)[0] - machine.half_backlash
+    pressed = (flank_jacobian(machine.layout) @ found.displacements)[0] - machine.half_backlash
     assert pressed == pytest.approx(amount, rel=1e-9)
     assert loaded_contacts(machine).stiffness[0] == pytest.approx(1.3 * force / amount, rel=1e-6)
 
