@@ -172,11 +172,11 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
         return [Table(FOLLOWING, tables["following_groups"], 4)]
     if title == "Tolerances" and "percentiles" in tables:
         limits = Table("Percentiles with their confidence intervals", tables["percentiles"], 4)
-        shares = Table("Share of the samples in which", tables["shares"], 4)
+        fractions = Table("Fraction of the samples in which", tables["fractions"], 4)
         missed = Table(
-            "What the first samples miss, relative; of shares and C the difference", tables["sampling"], 2
+            "What the first samples miss, relative; of fractions and C the difference", tables["sampling"], 2
         )
-        return [limits, shares, *([] if tables["sampling"].empty else [missed])]
+        return [limits, fractions, *([] if tables["sampling"].empty else [missed])]
     if title == "Load sharing" and "summary" in tables:
         columns = [
             "study",

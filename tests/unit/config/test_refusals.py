@@ -184,7 +184,7 @@ def test_causes_that_move_the_same_number_are_reported_when_a_run_starts():
 
 
 @pytest.mark.parametrize(
-    ("effect", "sections", "told"),
+    ("effect", "sections", "message"),
     [
         ("excitation", ("tolerances",), "excitation: samples of tolerances leave out"),
         ("excitation", ("tolerances", "search"), "samples of tolerances and designs of the search leave out"),

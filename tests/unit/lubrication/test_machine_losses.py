@@ -169,7 +169,7 @@ def test_samples_say_what_oil_and_roughness_do_and_small_percentiles_of_what_is_
     assert ("smallest_film_um", 99.0) not in table.index
     assert "W of friction and a contact temperature of" in found.summary
     torques = gearbox.values["contact"]["torques_n_m"]
-    outside = found.content["shares"].set_index("what")["share"].filter(like="outside those")
+    outside = found.content["fractions"].set_index("what")["fraction"].filter(like="outside those")
     assert samples["unsolved_loss_share"].between(0, 1).all() and len(outside) == 1
     assert torques[0] == 300  # some meshes of the machine carry less
     assert outside.iloc[0] == 1.0
