@@ -172,7 +172,7 @@ class Stage:
 
     @property
     def function(self) -> str:
-        """The stage as `module:function`."""
+        """Where the stage stands, as ``module:function``."""
         return f"facegear.stages.{self.name}:{self.name}"
 
     @property

@@ -208,7 +208,7 @@ class Layout:
 
     @property
     def dof_names(self) -> tuple[str, ...]:
-        """`body:letter` of each degree of freedom."""
+        """Names of the degrees of freedom, ``body:letter``."""
         places = [f"{name}:{letter}" for name in self.body_names for letter in DOF_LETTERS]
         tilts = [f"{self.gears[g].name}:{letter}" for g in self.tilting for letter in TILT_LETTERS]
         return (*places, *tilts)

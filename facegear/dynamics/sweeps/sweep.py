@@ -25,7 +25,7 @@ class Piece:
     (P, M): moments of the mesh deflections, m. mean_force, mean_force_magnitude (P, M) of the elastic mesh
     forces, without the damper's part, N; largest_force (P, M): largest magnitude of their samples.
     largest_pull (P, M): largest force by which the damper of a contact pulls its flanks together, N.
-    open_fraction, drive_fraction, back_fraction (P, M) of the time; past_law_share (P, M) of the samples at
+    open_fraction, drive_fraction, back_fraction (P, M) of the time; past_law_fraction (P, M) of the samples at
     which a mesh is pressed in past the last level of its law. translation_* (P, B, 3): moments of x, y, z, m.
     residual, periods_run (P,); leading_multiplier, exponent_per_period, exponent_interval (P,): NaN where
     there is none. spectrum (P, M, orders), m. modal (P, modes): RMS velocity scale omega * coordinate of
@@ -50,7 +50,7 @@ class Piece:
     open_fraction: Array
     drive_fraction: Array
     back_fraction: Array
-    past_law_share: Array
+    past_law_fraction: Array
     translation_rms: Array
     translation_ac_rms: Array
     translation_ac_rms_interval: Array
@@ -158,7 +158,7 @@ def _row(
         "largest_force": np.abs(response.forces).max(axis=0),
         "largest_pull": response.averages.pull,
         **dict(zip(("open_fraction", "drive_fraction", "back_fraction"), response.fractions, strict=True)),
-        "past_law_share": response.past_law,
+        "past_law_fraction": response.past_law,
         **dict(zip((f"translation_{name}" for name in TRANSLATION), moved, strict=True)),
         "residual": response.residual,
         "leading_multiplier": leading,

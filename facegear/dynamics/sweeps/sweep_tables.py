@@ -28,7 +28,7 @@ PER_SPEED = ("residual", "leading_multiplier", "exponent_per_period", "exponent_
 def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
     """Columns direction, speed_rpm, quantity, body_or_mesh, value, class, periodic.
 
-    The unit stands in the quantity. `past_law_share` is there where some mesh is past its law at some speed.
+    The unit stands in the quantity. `past_law_fraction` is there where some mesh is past its law at some speed.
     """
     order, labels = np.argsort(piece.speeds), np.array(piece.labels)
     frames = []
@@ -51,8 +51,8 @@ def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
     for m, mesh in enumerate(layout.mesh_names):
         for quantity, (factor, field) in PER_MESH.items():
             add(quantity, mesh, factor * getattr(piece, field)[:, m])
-        if piece.past_law_share.any():
-            add("past_law_share", mesh, piece.past_law_share[:, m])
+        if piece.past_law_fraction.any():
+            add("past_law_fraction", mesh, piece.past_law_fraction[:, m])
     for b, body in enumerate(layout.body_names):
         for axis, letter in enumerate("xyz"):
             if piece.translation_rms[:, b, axis].max() > 0.0:

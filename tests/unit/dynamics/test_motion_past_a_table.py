@@ -24,7 +24,7 @@ def test_a_sweep_names_the_mesh_that_is_past_its_law_and_is_silent_where_none_is
     model = build_model(machine)
     piece = collect(model, run_speeds(model, np.array([3000.0]), Settings(), None))
     swept = sweep_table(layout, "up", piece)
-    past = swept[swept["quantity"] == "past_law_share"]
+    past = swept[swept["quantity"] == "past_law_fraction"]
     if share is None:
         assert past.empty
     else:
