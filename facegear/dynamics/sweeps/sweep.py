@@ -25,8 +25,8 @@ class Piece:
     (P, M): moments of the mesh deflections, m. mean_force, mean_force_magnitude (P, M) of the elastic mesh
     forces, without the damper's part, N; largest_force (P, M): largest magnitude of their samples.
     largest_pull (P, M): largest force by which the damper of a contact pulls its flanks together, N.
-    open_fraction, drive_fraction, back_fraction (P, M) of the time; past_law_fraction (P, M) of the samples at
-    which a mesh is pressed in past the last level of its law. translation_* (P, B, 3): moments of x, y, z, m.
+    open_fraction, drive_fraction, back_fraction (P, M) of the time; past_law_fraction (P, M) of the samples,
+    at which a mesh is pressed past the last level of its law. translation_* (P, B, 3): moments of x, y, z, m.
     residual, periods_run (P,); leading_multiplier, exponent_per_period, exponent_interval (P,): NaN where
     there is none. spectrum (P, M, orders), m. modal (P, modes): RMS velocity scale omega * coordinate of
     every natural mode without mean, sqrt(J). modal_order (P,): where in multiples of the mesh frequency the

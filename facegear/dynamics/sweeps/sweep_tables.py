@@ -28,7 +28,7 @@ PER_SPEED = ("residual", "leading_multiplier", "exponent_per_period", "exponent_
 def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:
     """Columns direction, speed_rpm, quantity, body_or_mesh, value, class, periodic.
 
-    The unit stands in the quantity. `past_law_fraction` is there where some mesh is past its law at some speed.
+    The unit stands in the quantity. `past_law_fraction` is there where a mesh is past its law at some speed.
     """
     order, labels = np.argsort(piece.speeds), np.array(piece.labels)
     frames = []
