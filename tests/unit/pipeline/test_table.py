@@ -1,6 +1,8 @@
 """The table of stages is whole: every file once, every argument from somewhere, every page in step."""
 
+import ast
 import inspect
+import re
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -127,3 +129,18 @@ def test_what_a_stage_depends_on_reaches_back_to_the_teeth():
 def test_the_page_shows_the_table_as_it_is():
     """Renewed by `python -m facegear.pipeline.listing`."""
     assert listing() in (ROOT / "docs" / "stages.md").read_text()
+
+
+def test_the_report_is_given_every_table_that_its_chapters_read():
+    targets = ast.parse((ROOT / "workflow/rules/functions/targets.smk").read_text())
+    (reported,) = (
+        ast.literal_eval(one.value)
+        for one in targets.body
+        if isinstance(one, ast.Assign) and ast.unparse(one.targets[0]) == "REPORTED"
+    )
+    stems = [Path(STAGES[stage].files[file].path).stem for stage, files in reported.items() for file in files]
+    assert len(set(stems)) == len(stems)
+    sources = [path.read_text() for path in (ROOT / "facegear/report").glob("*.py")]
+    read = {name for text in sources for name in re.findall(r'\btables\["(\w+)"\]', text)}
+    assert len(read) > 20
+    assert read <= {*stems, "duty_loads", "scorecard"}
