@@ -10,6 +10,7 @@ from contact_bodies import pair_design
 from hypothesis import given
 from hypothesis import strategies as st
 from references import against, agrees
+from root_stresses import power_law, root
 
 from facegear.config.base import parse
 from facegear.config.material_card import CARDS, material_card
@@ -19,7 +20,7 @@ from facegear.config.yaml_file import read_yaml
 from facegear.errors import ConfigErrors, FacegearError
 from facegear.geometry.analysis import section_contact_ratio
 from facegear.plots.strength import damage_by_bin, life
-from facegear.strength.contact_pressure import ContactPressure, contact_pressure
+from facegear.strength.contact_pressure import ContactPressure
 from facegear.strength.duty import DutyBin, given_duty
 from facegear.strength.fatigue import reliability
 from facegear.strength.materials import Life
@@ -35,7 +36,6 @@ from facegear.strength.rating import (
     standard_bending,
 )
 from facegear.strength.rating_tables import curve_table, damage_table, rating_table, safety_table
-from facegear.strength.root_stress import RootStress, down_the_fillet, largest_tension
 
 CARD = material_card(CARDS / "case_carburised_din3990_11.yaml")
 BODY = {"card": "case_carburised_din3990_11", "root_roughness_um": 16}
@@ -53,14 +53,6 @@ def request(*duty, both_ways=False, card=CARD):
         min_bending=1.4,
         min_pitting=1.0,
     )
-
-
-def root(largest):
-    """Tension `largest` (Pa) below the loaded flank and as much compression below the other, at 500 N m."""
-    stress = np.zeros((1, 3, 2, 4, 2))
-    stress[0, 1, 0], stress[0, 1, 1] = largest, -largest
-    along, error = np.array([0.25, 0.27]), np.array([0.01, 0.02])
-    return RootStress(np.array([500.0]), np.arange(3.0), stress, along, np.ones((2, 4, 2)), error)
 
 
 ROOTS = {"pinion": root(300e6), "face_gear": root(400e6)}
@@ -283,45 +275,6 @@ def test_a_contact_on_edges_alone_is_judged_by_the_standard():
     assert safety_table(found, bare)["pitting_safety"].isna().all()
 
 
-@against(
-    "analytic",
-    "Hertz: pressure of a line load grows with its root",
-    capability="rating",
-    module="facegear.strength.contact_pressure",
-)
-@given(factor=st.floats(1.0, 5.0))
-def test_beyond_the_torques_solved_pressure_rises_with_the_root_of_the_torque_and_edges_with_it(factor):
-    table = pd.DataFrame(
-        {
-            "torque_n_m": [500.0, 1000.0],
-            "pressure_mpa": [np.nan, 1200.0],
-            "pressure_error_mpa": [np.nan, 24.0],
-            "tip_line_load_n_per_mm": [100.0, 300.0],
-            "tip_length_mm": [2.0, 4.0],
-            "fillet_share": [0.0, 0.0],
-        }
-    )
-    found = contact_pressure(table)
-    agrees(
-        "pressure beyond the torques solved, Pa",
-        found.at(1000.0 * factor),
-        1200e6 * sqrt(factor),
-        relative=1e-6,
-    )
-    assert found.error_at(1000.0 * factor) == pytest.approx(0.02 * found.at(1000.0 * factor))
-    assert found.edge_at(1000.0 * factor) == pytest.approx((300e3 * factor, 4e-3))
-    assert found.at(500.0) == pytest.approx(1200e6 * 0.5 ** (1 / 3))  # of a point contact: no less than it is
-
-
-@given(torque=st.floats(10.0, 2000.0))
-def test_the_largest_tension_between_torques_is_that_of_every_place_of_the_fillet(torque):
-    stress = np.random.default_rng(3).normal(size=(3, 4, 2, 5, 3))
-    torques, error = np.array([100.0, 400.0, 1000.0]), np.zeros(3)
-    full = RootStress(torques, np.arange(4.0), stress, np.arange(3.0), np.ones((2, 5, 3)), error)
-    expected = down_the_fillet(full.at_torque(torque)).max()
-    assert largest_tension(full)(torque) == pytest.approx(expected, rel=1e-12)
-
-
 def test_a_rating_brings_root_stress_and_counts_the_meshes_of_a_turn():
     values = read_yaml("facegear/example.yaml")
     filled = resolved(parse(Config, values))
@@ -340,27 +293,6 @@ def test_torques_that_the_duty_cycle_needs_are_solved_with_the_others():
     assert resolved(parse(Config, values))["contact"]["torques_n_m"] == sorted(given)
     values["strength"]["duty"].append({"torque_n_m": 1e-3, "speed_rpm": 1000, "hours": 1})
     assert min(resolved(parse(Config, values))["contact"]["torques_n_m"]) > 1.0  # no mesh resolves 2 mN m
-
-
-def power_law(torques, exponent):
-    """Root stress that grows as a power of the torque, 400 MPa at 500 N m."""
-    one = root(400e6)
-    torques = np.array(torques)
-    factors = (torques / 500.0) ** exponent
-    return replace(one, torques=torques, stress=factors[:, None, None, None, None, None] * one.stress)
-
-
-@given(
-    exponent=st.floats(0.5, 1.0),
-    solved=st.sampled_from([(1000.0,), (300.0, 1000.0), (200.0, 300.0, 1000.0)]),
-    torque=st.floats(20.0, 3000.0),
-)
-def test_stress_at_no_torque_is_taken_for_less_than_it_is(exponent, solved, torque):
-    true = 400e6 * (torque / 500.0) ** exponent
-    found = largest_tension(power_law(solved, exponent))(torque)
-    assert found >= true * (1 - 1e-9)
-    if len(solved) > 1 and torque <= solved[-1]:
-        assert found <= true * max(solved[0] / torque, 1.0) ** 0.11 * (1 + 1e-9)
 
 
 def test_a_load_below_the_torques_solved_gives_no_false_green():
@@ -388,15 +320,6 @@ def test_a_load_below_the_torques_solved_gives_no_false_green():
     alone = bending([1000.0], level)
     assert alone["verdict"] == "amber" and alone["safety"] < 1.4
     assert not alone["within_torques_solved"]  # nor is it said to have been solved
-
-
-@given(exponent=st.floats(1 / 3, 0.5), torque=st.floats(20.0, 3000.0))
-def test_pressure_at_no_torque_is_taken_for_less_than_it_is(exponent, torque):
-    torques, none = np.array([300.0, 1000.0]), np.zeros(2)
-    for solved in (torques, torques[1:]):
-        pressure = 1e9 * (solved / 500.0) ** exponent
-        found = ContactPressure(solved, pressure, none[: solved.size], none, none, none).at(torque)
-        assert found >= 1e9 * (torque / 500.0) ** exponent * (1 - 1e-9)
 
 
 def test_flanks_whose_tip_edges_carry_load_are_amber_at_best_and_say_why():
