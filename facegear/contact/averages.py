@@ -4,11 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from numba import njit
 
 from facegear.arrays import AnyArray, Array, Integers, Mask
 from facegear.contact.bodies.surface import face_functions
 from facegear.contact.options import Refinement
+from facegear.machine_code.compiler import compiler
+
+compiled = compiler()
 
 ROUNDING = 1e-6
 """Of coordinates on a lattice."""
@@ -78,7 +80,7 @@ def hat_averages(
     return Rows(pointer, index, weight), chosen
 
 
-@njit(cache=True)
+@compiled
 def _hat_averages(
     hats: Integers, values: Array, area: Array, min_area: Array
 ) -> tuple[Integers, Integers, Array, Integers]:
@@ -149,7 +151,7 @@ class Lattice:
         return spread(rows, *fine, self.linear), spread(rows, *coarse, self.linear)
 
 
-@njit(cache=True)
+@compiled
 def _averaged(
     pointer: Integers, index: Integers, weight: Array, nodes: Integers, values: Array, count: int
 ) -> tuple[AnyArray, Array, AnyArray]:

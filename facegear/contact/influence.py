@@ -4,11 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 import scipy.sparse as sp
-from numba import njit
 
 from facegear.arrays import AnyArray, Array, Integers
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.candidates import Candidates
+from facegear.machine_code.compiler import compiler
+
+compiled = compiler()
 
 Sparse = tuple[AnyArray, AnyArray, AnyArray]
 """Row ends, columns and values of a sparse matrix in rows."""
@@ -86,7 +88,7 @@ def _response(
     return _sparse_response(touching[0], compliance, touching[1], np.ascontiguousarray(forces))
 
 
-@njit(cache=True)
+@compiled
 def _sparse_response(seen: Sparse, compliance: Array, loads: Sparse, forces: Array) -> Array:
     loaded, slot = _used(loads[1], compliance.shape[1])
     nodal = np.zeros((loaded.size, forces.shape[1]))
@@ -109,7 +111,7 @@ def product(first: sp.csr_matrix, compliance: Array | None, second: sp.csr_matri
     )
 
 
-@njit(cache=True)
+@compiled
 def _sparse_product(first: Sparse, compliance: Array, second: Sparse) -> Array:
     rows, row_slot = _used(first[1], compliance.shape[0])
     columns, column_slot = _used(second[1], compliance.shape[1])
@@ -118,7 +120,7 @@ def _sparse_product(first: Sparse, compliance: Array, second: Sparse) -> Array:
     return _averaged(second[0], column_slot[second[1]], second[2], np.ascontiguousarray(half.T)).T
 
 
-@njit(cache=True)
+@compiled
 def _gathered(dense: Array, rows: Integers, columns: Integers) -> Array:
     """dense[np.ix_(rows, columns)], contiguous."""
     part = np.empty((rows.size, columns.size))
@@ -129,7 +131,7 @@ def _gathered(dense: Array, rows: Integers, columns: Integers) -> Array:
     return part
 
 
-@njit(cache=True)
+@compiled
 def _used(indices: Integers, count: int) -> tuple[Integers, Integers]:
     """The distinct indices, rising, and the index of each among them."""
     mark = np.zeros(count, np.bool_)
@@ -141,7 +143,7 @@ def _used(indices: Integers, count: int) -> tuple[Integers, Integers]:
     return used, slot
 
 
-@njit(cache=True)
+@compiled
 def _averaged(pointer: Integers, index: Integers, weight: Array, dense: Array) -> Array:
     """Sparse rows times a dense matrix."""
     result = np.zeros((pointer.size - 1, dense.shape[1]))

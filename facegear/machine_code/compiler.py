@@ -11,7 +11,7 @@ from numba.extending import overload
 from facegear.machine_code.versions import NUMBA_IS_KNOWN, warn_once
 
 PRIVATE_OPTIONS = ("_nrt",)
-FAST = {"nogil": True, "fastmath": {"contract"}, "_nrt": False}
+FAST: dict[str, Any] = {"nogil": True, "fastmath": {"contract"}, "_nrt": False}
 """For functions that allocate nothing: counting references to every array of a NamedTuple at every use would
 cost more than their arithmetic. Without the interpreter's lock; products and sums may be fused."""
 Decorator = Callable[[Callable[..., Any]], Any]
@@ -27,14 +27,16 @@ class ByType(Protocol):
         """Decorator that makes a function the implementation for a NamedTuple."""
 
 
-def compiler(*sources: Path, **options: Any) -> Decorator:
-    """Decorator that compiles a function, and stores its machine code as long as no file of the folders
-    `sources` changes.
+def compiler(*sources: Path, announced: str = "", **options: Any) -> Decorator:
+    """Decorator that compiles a function, and keeps its machine code in the user's cache: it is found again
+    while the function's own file and `sources`, folders or files, have the same text.
+
+    announced: what is said to be compiled, on standard error, when it is not found there.
     """
     if NUMBA_IS_KNOWN:
         from facegear.machine_code.stored import stored
 
-        return stored(*sources, **options)
+        return stored(*sources, announced=announced, **options)
     warn_once()
     return njit(**_public(options))
 
@@ -82,11 +84,6 @@ def by_type(**options: Any) -> Callable[[Callable[..., Any]], ByType]:
         return call  # type: ignore[return-value]
 
     return generic
-
-
-def stored_in(function: Any) -> Path | None:
-    """Folder that keeps a function's machine code; None where none is kept."""
-    return Path(function._cache.cache_path) if NUMBA_IS_KNOWN else None
 
 
 def _public(options: dict[str, Any]) -> dict[str, Any]:

@@ -4,6 +4,7 @@ Made of numba's private parts: `compiler.py` lets only known versions of numba c
 """
 
 import hashlib
+import pickle
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -11,14 +12,18 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, TextIO
 
+import llvmlite
+import numba
 from numba import njit, types
-from numba.core.caching import FunctionCache
+from numba.core.caching import _Cache
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler
+from numba.core.compiler import Compiler, CompileResult
 from numba.core.compiler_machinery import register_pass
+from numba.core.serialize import dumps
 from numba.core.typed_passes import NativeLowering
 
 from facegear.io.run_lock import hold
+from facegear.machine_code import kept
 from facegear.machine_code.sources import text_of
 
 PATIENCE = 300.0
@@ -33,72 +38,105 @@ def _records(kind: Any) -> Iterator[type]:
         yield from _records(part)
 
 
-class SourcesCache(FunctionCache):
+class SourcesCache(_Cache):
     """Machine code of a function, found again only while the text of all files in its sources is the same.
 
-    Numba notices a change of the file a kernel stands in, but not of the kernels it calls in other files, nor
-    of the files of the NamedTuples that choose between implementations: these count as well. The index holds
-    text alone, so that a process reads it that cannot import what another one had compiled a function for.
-    Of processes that miss the same function for the same types one compiles it, and the others wait for what
-    it stores. They store one after the other: each rewrites the function's index.
+    Numba's own cache notices a change of the file a kernel stands in, but not of the kernels it calls in
+    other files, nor of the files of the NamedTuples that choose between implementations. These count here as
+    well, and paths do not. Of processes that miss the same function for the same types one compiles it, and
+    the others wait for what it stores.
     """
 
-    def __init__(self, function: Callable[..., Any], text: str) -> None:
-        super().__init__(function)
+    def __init__(self, function: Callable[..., Any], text: str, announced: str) -> None:
+        self._function = function
         self._text = text
-        self._turn = f"{function.__module__.rpartition('.')[2]}.{function.__qualname__}"
-        self._lock: TextIO | None = None
+        self._announced = announced
+        self._locks: dict[str, TextIO] = {}
+
+    @property
+    def cache_path(self) -> str:
+        """The folder of all machine code."""
+        return str(kept.folder())
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        overload = super().load_overload(sig, target_context)
-        if overload is None and self._lock is None:
-            types_hash = hashlib.sha256(str(sig).encode()).hexdigest()[:8]
-            self._lock = self._wait(f"{self._turn}.{types_hash}.lock")
-            overload = super().load_overload(sig, target_context)
-            if overload is not None:
-                self._end()
-        return overload
+        """What was compiled for a signature; None if the caller is to compile it, for others too."""
+        target_context.refresh()
+        name = self._name(sig, target_context.codegen())
+        content = kept.read(name)
+        if content is None and name not in self._locks:
+            if (lock := _wait(name)) is not None:
+                self._locks[name] = lock
+            content = kept.read(name)
+            if content is not None:
+                self._release(name)
+            elif self._announced:
+                print(f"compiling {self._announced}", file=sys.stderr, flush=True)
+        if content is None:
+            return None
+        return CompileResult._rebuild(target_context, *pickle.loads(content))
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        index = self._wait(f"{self._turn}.lock")
-        try:
-            super().save_overload(sig, data)
-        finally:
-            if index is not None:
-                index.close()
-        self._end()
+        """Keep what was compiled, unless addresses of this process are in it."""
+        name = self._name(sig, data.codegen)
+        if not data.library.has_dynamic_globals:
+            kept.write(name, dumps(data._reduce()))
+        self._release(name)
 
-    def _wait(self, name: str) -> TextIO | None:
-        """The lock that one process may hold; None after PATIENCE and where nothing can be written."""
-        end = time.monotonic() + PATIENCE
-        with suppress(OSError):
-            while time.monotonic() < end:
-                if (lock := hold(Path(self.cache_path) / name)) is not None:
-                    return lock
-                time.sleep(0.02)
-        return None
+    def enable(self) -> None:
+        """Numba asks for it; nothing is ever disabled."""
 
-    def _end(self) -> None:
-        if self._lock is not None:
-            self._lock.close()
-            self._lock = None
+    def disable(self) -> None:
+        """Numba asks for it; nothing is ever disabled."""
 
-    def _index_key(self, sig: Any, codegen: Any) -> tuple[Any, ...]:
+    def flush(self) -> None:
+        """Numba asks for it; what is kept is never stale."""
+
+    def _name(self, sig: Any, codegen: Any) -> str:
+        """The file for a signature: a hash of sources, types, processor, and versions."""
         records = {record for kind in sig for record in _records(kind)}
         files = {sys.modules[record.__module__].__file__ for record in records}
-        names = sorted(f"{record.__module__}.{record.__qualname__}" for record in records)
-        text = text_of(*sorted(Path(file) for file in files if file is not None))
-        _, *rest = super()._index_key(sig, codegen)
-        return (str(sig), *names, *rest, text, self._text)
+        function = self._function
+        cells = tuple(cell.cell_contents for cell in function.__closure__ or ())
+        parts = (
+            f"{function.__module__}.{function.__qualname__}",
+            function.__code__.co_code,
+            dumps(cells) if cells else b"",
+            str(sig),
+            *sorted(f"{record.__module__}.{record.__qualname__}" for record in records),
+            text_of(*sorted(Path(file) for file in files if file is not None)),
+            self._text,
+            codegen.magic_tuple(),
+            (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__),
+        )
+        return f"{function.__name__}-{hashlib.sha256(repr(parts).encode()).hexdigest()[:32]}"
+
+    def _release(self, name: str) -> None:
+        if (lock := self._locks.pop(name, None)) is not None:
+            with suppress(OSError):
+                Path(lock.name).unlink()
+            lock.close()
 
 
-def stored(*sources: Path, **options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """Decorator that compiles a function and stores its machine code by the text of all of `sources`."""
-    text = text_of(*sources)
+def _wait(name: str) -> TextIO | None:
+    """The lock that one process may hold; None after PATIENCE and where nothing can be written."""
+    end = time.monotonic() + PATIENCE
+    with suppress(OSError):
+        while time.monotonic() < end:
+            if (lock := hold(kept.folder() / f"{name}.lock")) is not None:
+                return lock
+            time.sleep(0.02)
+    return None
+
+
+def stored(*sources: Path, announced: str = "", **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Decorator that compiles a function and stores its machine code by the text of all of `sources`, and of
+    the function's own file.
+    """
 
     def compiled(function: Callable[..., Any]) -> Any:
         dispatcher = njit(**options)(function)
-        dispatcher._cache = SourcesCache(function, text)
+        own = Path(function.__code__.co_filename)
+        dispatcher._cache = SourcesCache(function, text_of(*sources, own), announced)
         return dispatcher
 
     return compiled

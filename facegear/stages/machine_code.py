@@ -5,6 +5,6 @@ from facegear.stages.outcome import Outcome
 
 
 def machine_code() -> Outcome:
-    """Nothing but the compiled code beside the sources."""
+    """Nothing but the compiled code in the user's cache."""
     prepare()
     return Outcome({}, "time integration ready")

@@ -4,19 +4,17 @@ Pinions touch each other through the other unknowns only, which the second deriv
 each pinion and one, the core, for the gears and all else.
 """
 
-from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from facegear import mesh_law
 from facegear.arrays import Array, Integers
-from facegear.machine_code.compiler import compiler
+from facegear.machine_code.compiler import for_callers
 from facegear.mesh_law.law import Held
 from facegear.mesh_law.terms import held_force
 
-SOURCES = (Path(__file__).parent, Path(str(mesh_law.__file__)).parent)
-kernel = compiler(*SOURCES, nogil=True, fastmath={"contract"})
+OPTIONS: dict[str, Any] = {"nogil": True, "fastmath": {"contract"}}
+inlined = for_callers(**OPTIONS)
 
 
 class Springs(NamedTuple):
@@ -39,7 +37,7 @@ class Springs(NamedTuple):
     applied: Array
 
 
-@kernel
+@inlined
 def penetrate(springs: Springs, gap: Array, displacement: Array, over: Array) -> None:
     """How far each flank is pressed in, negative where it is open; (F,)."""
     along(springs, displacement, over)
@@ -47,7 +45,7 @@ def penetrate(springs: Springs, gap: Array, displacement: Array, over: Array) ->
         over[f] -= gap[f]
 
 
-@kernel
+@inlined
 def along(springs: Springs, motion: Array, out: Array) -> None:
     """Jacobian times a motion."""
     width = springs.jacobian.shape[1]
@@ -61,7 +59,7 @@ def along(springs: Springs, motion: Array, out: Array) -> None:
         out[f] = total
 
 
-@kernel
+@inlined
 def _bearing(springs: Springs, i: int, x: float, y: float) -> tuple[float, float]:
     """Force of pinion i's bearing away from x, y."""
     xx, xy, yy = springs.pinion_bearing[i]
@@ -73,7 +71,7 @@ def _bearing(springs: Springs, i: int, x: float, y: float) -> tuple[float, float
     return xx * x + xy * y, xy * x + yy * y
 
 
-@kernel
+@inlined
 def balance(
     springs: Springs, held: Held, position: int, over: Array, displacement: Array, gradient: Array
 ) -> float:
@@ -107,7 +105,7 @@ def balance(
     return size
 
 
-@kernel
+@inlined
 def assemble(
     springs: Springs,
     held: Held,
@@ -159,7 +157,7 @@ def assemble(
                     core[g + a, g + b] += factor * springs.jacobian[f, b]
 
 
-@kernel
+@inlined
 def slope_along(
     springs: Springs,
     held: Held,

@@ -11,17 +11,22 @@ resolved. Such a flank counts as closed in the next step, unless that would pull
 else stay where it is.
 """
 
+from pathlib import Path
+
 import numpy as np
 
+from facegear import mesh_law
 from facegear.arrays import Array
+from facegear.machine_code.compiler import compiler
 from facegear.mesh_law.law import Held
 from facegear.mesh_law.terms import held_force
 from facegear.transmission.contact_energy import (
+    OPTIONS,
     Springs,
     along,
     assemble,
     balance,
-    kernel,
+    inlined,
     penetrate,
     slope_along,
 )
@@ -33,7 +38,7 @@ JUST_CLOSED = 1e-9
 """Part of a whole step's approach by which a flank that stopped the step may still be open."""
 
 
-@kernel
+@compiler(Path(__file__).parent, Path(str(mesh_law.__file__)).parent, **OPTIONS)
 def settle_all(
     springs: Springs, held: Held, gap: Array, tolerance: float, displacement: Array
 ) -> tuple[Array, Array, Array]:
@@ -90,7 +95,7 @@ def settle_all(
     return displacements, forces, residuals
 
 
-@kernel
+@inlined
 def _newton_step(
     springs: Springs,
     held: Held,
@@ -133,7 +138,7 @@ def _newton_step(
             step[3 * i + r] = total / blocks[i, r, r]
 
 
-@kernel
+@inlined
 def _eliminate(block: Array) -> None:
     """Cholesky factor of the leading 3 x 3 (upper triangle), applied to the columns right of it."""
     for r in range(3):
@@ -146,7 +151,7 @@ def _eliminate(block: Array) -> None:
                 block[below, c] -= factor * block[r, c]
 
 
-@kernel
+@inlined
 def _solve_core(core: Array, out: Array) -> None:
     """Solve the gears' symmetric equations, upper triangle and right side in core (g, g + 1)."""
     size = core.shape[0]
@@ -162,7 +167,7 @@ def _solve_core(core: Array, out: Array) -> None:
         out[r] = total / core[r, r]
 
 
-@kernel
+@inlined
 def _line_minimum(
     springs: Springs,
     held: Held,

@@ -42,20 +42,7 @@ def installed(tmp_path_factory):
     pip("wheel", *offline, "--no-build-isolation", "--wheel-dir", str(wheels), str(sources))
     (wheel,) = wheels.glob("facegear-*.whl")
     pip("install", *offline, "--no-compile", "--target", str(site), str(wheel))
-    lend_machine_code(site)
     return site
-
-
-def lend_machine_code(site):
-    """Kernels that the checkout has compiled already are not compiled again: numba goes by time and size."""
-    for path in (ROOT / "facegear").rglob("*"):
-        copy = site / path.relative_to(ROOT)
-        if path.suffix in (".nbi", ".nbc"):
-            copy.parent.mkdir(exist_ok=True)
-            shutil.copy(path, copy)
-        elif path.suffix == ".py":
-            assert copy.read_bytes() == path.read_bytes()
-            os.utime(copy, ns=(path.stat().st_atime_ns, path.stat().st_mtime_ns))
 
 
 def run_installed(script, site, folder):

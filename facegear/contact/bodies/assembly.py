@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from numba import njit
 from skfem import Basis, Mesh, MeshHex2
 from skfem.assembly import Dofs
 from skfem.models.elasticity import lame_parameters
@@ -18,6 +17,9 @@ from facegear.arrays import Array, Integers
 from facegear.contact.bodies.elements import KINDS, mesh_of
 from facegear.contact.options import Element
 from facegear.geometry.design import Material
+from facegear.machine_code.compiler import compiler
+
+compiled = compiler()
 
 ELEMENTS_AT_ONCE = 512
 
@@ -53,7 +55,7 @@ def element_stiffness(basis: Basis, material: Material) -> Array:
     return stiffness.reshape(elements, nodes * axes, nodes * axes)
 
 
-@njit(cache=True)
+@compiled
 def _scatter(elements: Integers, blocks: Array, indptr: Integers, indices: Integers, data: Array) -> None:
     nodes = elements.shape[1]
     for element in range(elements.shape[0]):

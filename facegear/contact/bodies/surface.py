@@ -12,10 +12,12 @@ from functools import lru_cache
 
 import numpy as np
 import scipy.sparse as sp
-from numba import njit
 from skfem import Basis, ElementLineP1, ElementQuad1, ElementQuad2, MeshLine, MeshQuad
 
 from facegear.arrays import Array, Integers
+from facegear.machine_code.compiler import compiler
+
+compiled = compiler()
 
 TWO_POINTS = 3
 """Degree that two Gauss points integrate exactly."""
@@ -38,7 +40,7 @@ def face_functions(
     return _faces(np.ascontiguousarray(coordinates), shape[0], shape[1], steps)
 
 
-@njit(cache=True)
+@compiled
 def _faces(coordinates: Array, rows: int, columns: int, steps: Integers) -> tuple[Integers, Array, Array]:
     """`face_functions` of elements whose nodes stand `steps` (a, 2) from their corner."""
     count, width, size = coordinates.shape[0], steps.shape[0], steps.max()
@@ -60,7 +62,7 @@ def _faces(coordinates: Array, rows: int, columns: int, steps: Integers) -> tupl
     return nodes, values, gradients
 
 
-@njit(cache=True)
+@compiled
 def _interval(x: float, degree: int, value: Array, slope: Array) -> None:
     """Fill in values and slopes of the Lagrange polynomials of an interval at x in 0..1."""
     if degree == 1:

@@ -14,6 +14,9 @@ SOURCES = (
 kernel = compiler(*SOURCES, **FAST)
 """Compiled, and called from Python."""
 
+longest = compiler(*SOURCES, announced="the time integration once, some 30 s", **FAST)
+"""The same for the one that takes so long to compile that a user is told."""
+
 inlined = for_callers(**FAST)
 """The same for functions of a Packed and a Work: handing over these hundreds of words would cost more than
 most of the functions do. They are compiled as part of the kernels that call them.

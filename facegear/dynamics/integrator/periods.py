@@ -9,7 +9,7 @@ from facegear.dynamics.integrator.advance import advance, after, move
 from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.contact_states import flank_of
 from facegear.dynamics.integrator.dense import Extrema, Steps, add_extrema, keep_step
-from facegear.dynamics.integrator.kernel import inlined, kernel
+from facegear.dynamics.integrator.kernel import inlined, kernel, longest
 from facegear.dynamics.integrator.parting import shearing_damping
 from facegear.dynamics.integrator.rings import ring_slopes, ring_trace
 from facegear.dynamics.integrator.sums import Sums, add_step, start_sums
@@ -45,7 +45,7 @@ class Log(NamedTuple):
     extrema: Extrema
 
 
-@kernel
+@longest
 def run_periods(
     packed: Packed,
     work: Work,

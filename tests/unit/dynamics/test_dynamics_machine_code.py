@@ -18,6 +18,7 @@ from facegear.dynamics.integrator.compiled import pack
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.steady_state.prepare import _smallest
 from facegear.dynamics.steady_state.simulate import build_model
+from facegear.machine_code import kept
 from facegear.machine_code.compiler import for_callers
 from facegear.machine_code.versions import KNOWN, is_known
 from facegear.mesh_law.terms import held_force
@@ -45,22 +46,70 @@ FILES = {
 PRINT = "from caller import caller; print(caller({of}), sum(caller.stats.cache_hits.values()))"
 
 
-def test_a_kernel_sees_a_change_of_the_kernel_it_calls_in_another_file(tmp_path):
-    for name, text in FILES.items():
-        (tmp_path / name).write_text(text)
-    path = os.pathsep.join([str(tmp_path), *sys.path])
+def environment(tmp_path, sources):
+    """Of a process that finds the kernels' sources in a folder, with a cache of the test's own."""
+    path = os.pathsep.join([str(sources), *sys.path])
+    return {**os.environ, "PYTHONPATH": path, kept.VARIABLE: str(tmp_path / "cache")}
 
-    def run():
-        command = [sys.executable, "-c", PRINT.format(of="1.0")]
-        environment = {**os.environ, "PYTHONPATH": path}
-        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stderr
-        return done.stdout.split()
 
-    assert run() == ["4.0", "0"]
-    assert run() == ["4.0", "1"]
-    (tmp_path / "called.py").write_text(CALLED.format(added=2.0))
-    assert run() == ["6.0", "0"]
+def printed(tmp_path, sources, of="1.0"):
+    """The kernel's value, and how many kernels were found in the cache."""
+    command = [sys.executable, "-c", PRINT.format(of=of)]
+    done = subprocess.run(
+        command, env=environment(tmp_path, sources), capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.split()
+
+
+@pytest.fixture
+def clone(tmp_path):
+    """Makes a folder with the kernels' sources."""
+
+    def make(name):
+        folder = tmp_path / name
+        folder.mkdir()
+        for file, text in FILES.items():
+            (folder / file).write_text(text)
+        return folder
+
+    return make
+
+
+def test_a_second_clone_compiles_nothing_until_a_kernel_that_is_called_in_another_file_changes(
+    tmp_path, clone
+):
+    first, second = clone("first"), clone("second")
+    assert printed(tmp_path, first) == ["4.0", "0"]
+    assert printed(tmp_path, second) == ["4.0", "1"]
+    (second / "called.py").write_text(CALLED.format(added=2.0))
+    assert printed(tmp_path, second) == ["6.0", "0"]
+    assert printed(tmp_path, first) == ["4.0", "1"]
+
+
+def test_damaged_machine_code_is_compiled_again(tmp_path, clone):
+    folder = clone("one")
+    printed(tmp_path, folder)
+    for path in (tmp_path / "cache" / "machine_code").iterdir():
+        path.write_bytes(path.read_bytes()[:-1] + b"?")
+    assert printed(tmp_path, folder) == ["4.0", "0"]
+    assert printed(tmp_path, folder) == ["4.0", "1"]
+
+
+def test_kernels_run_where_no_cache_can_be_written(tmp_path, clone):
+    folder = clone("one")
+    (tmp_path / "cache").write_text("a file where the folder should be")
+    assert printed(tmp_path, folder) == printed(tmp_path, folder) == ["4.0", "0"]
+
+
+def test_machine_code_used_least_lately_is_removed_first(tmp_path, monkeypatch):
+    monkeypatch.setenv(kept.VARIABLE, str(tmp_path))
+    for age, name in enumerate("abc"):
+        kept.write(name, b"x" * 1000)
+        os.utime(tmp_path / "machine_code" / name, (1000.0 + age, 1000.0 + age))
+    assert kept.read("a") == b"x" * 1000
+    kept.trim(2500)
+    assert [kept.read(name) is None for name in "abc"] == [False, True, False]
 
 
 def test_a_function_for_compiled_callers_says_so_when_python_calls_it():
@@ -79,29 +128,24 @@ def test_a_law_without_an_implementation_is_named_in_one_line_with_the_function_
         held_force(Rubber(1.0), 0, 0, 1e-6)
 
 
-def printed_together(folder, *arguments):
+def printed_together(tmp_path, sources, *arguments):
     """What processes print that start together, each with an argument of its own."""
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(folder), *sys.path])}
     commands = [[sys.executable, "-c", PRINT.format(of=argument)] for argument in arguments]
     started = [
-        subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) for command in commands
+        subprocess.Popen(command, env=environment(tmp_path, sources), stdout=subprocess.PIPE, text=True)
+        for command in commands
     ]
     return [one.communicate(timeout=60)[0].split() for one in started]
 
 
-def test_of_two_processes_that_start_together_one_compiles(tmp_path):
-    for name, text in FILES.items():
-        (tmp_path / name).write_text(text)
-    assert sorted(printed_together(tmp_path, "1.0", "1.0")) == [["4.0", "0"], ["4.0", "1"]]
+def test_of_two_processes_that_start_together_one_compiles(tmp_path, clone):
+    assert sorted(printed_together(tmp_path, clone("one"), "1.0", "1.0")) == [["4.0", "0"], ["4.0", "1"]]
 
 
-def test_what_processes_compile_at_once_for_different_types_is_kept_of_each(tmp_path):
-    """They waited for each other; now they store one after the other, and none takes the other's place."""
-    for name, text in FILES.items():
-        (tmp_path / name).write_text(text)
-    arguments = ("1.0", "1", "1j")
-    assert printed_together(tmp_path, *arguments) == [["4.0", "0"], ["4.0", "0"], ["(2+2j)", "0"]]
-    assert printed_together(tmp_path, *arguments) == [["4.0", "1"], ["4.0", "1"], ["(2+2j)", "1"]]
+def test_what_processes_compile_at_once_for_different_types_is_kept_of_each(tmp_path, clone):
+    folder, arguments = clone("one"), ("1.0", "1", "1j")
+    assert printed_together(tmp_path, folder, *arguments) == [["4.0", "0"], ["4.0", "0"], ["(2+2j)", "0"]]
+    assert printed_together(tmp_path, folder, *arguments) == [["4.0", "1"], ["4.0", "1"], ["(2+2j)", "1"]]
 
 
 def test_machines_of_any_size_run_the_machine_code_that_was_prepared_for_the_smallest(machine_of, layout_of):

@@ -1,0 +1,62 @@
+"""Files of machine code in a folder of the user's, which all clones, environments and notebooks share.
+
+A file's name is a hash of all that its code follows from: it is right or absent, never stale. The file that
+was used least lately is removed once the folder holds more than LIMIT.
+"""
+
+import hashlib
+import os
+from contextlib import suppress
+from pathlib import Path
+
+import platformdirs
+
+from facegear.errors import FacegearError
+from facegear.io.atomic import atomic_path
+
+LIMIT = 256 * 2**20
+"""Bytes. The code of one machine's time integration takes 2 million."""
+VARIABLE = "FACEGEAR_CACHE"
+"""Environment variable that names another folder, for instance where the home folder cannot be written."""
+_DIGEST = hashlib.sha256().digest_size
+
+
+def folder() -> Path:
+    """Where machine code is kept: nothing is made here yet."""
+    named = os.environ.get(VARIABLE)
+    return (Path(named) if named else platformdirs.user_cache_path("facegear")) / "machine_code"
+
+
+def read(name: str) -> bytes | None:
+    """The content of a file as it was written; None if it is absent or damaged."""
+    path = folder() / name
+    try:
+        stored = path.read_bytes()
+        os.utime(path)
+    except OSError:
+        return None
+    digest, content = stored[:_DIGEST], stored[_DIGEST:]
+    return content if hashlib.sha256(content).digest() == digest else None
+
+
+def write(name: str, content: bytes) -> None:
+    """Keep a content; where the folder cannot be written or the disk is full nothing is kept."""
+    with suppress(OSError, FacegearError), atomic_path(folder() / name) as path:
+        path.write_bytes(hashlib.sha256(content).digest() + content)
+    trim(LIMIT)
+
+
+def trim(limit: int) -> None:
+    """Remove the files that were used least lately until the others hold `limit` bytes at most."""
+    files = []
+    for path in folder().glob("*"):
+        with suppress(OSError):
+            found = path.stat()
+            files.append((found.st_mtime_ns, found.st_size, path))
+    size = sum(bytes_of for _, bytes_of, _ in files)
+    for _, bytes_of, path in sorted(files):
+        if size <= limit:
+            return
+        with suppress(OSError):
+            path.unlink()
+            size -= bytes_of
