@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from facegear.results.contact import ContactResult
     from facegear.results.dynamic_stress import DynamicStressResult
     from facegear.results.friction import FrictionResult
+    from facegear.results.gear_bodies import GearBodiesResult
     from facegear.results.geometry import GeometryResult
     from facegear.results.load_sharing import LoadSharingResult
     from facegear.results.machine_loss import MachineLossResult
@@ -272,6 +273,15 @@ class Gearbox:
         from facegear.results.modal import ModesResult
 
         return self._chain.result(ModesResult)
+
+    def gear_bodies(self) -> "GearBodiesResult":
+        """Modes and compliance of face gears that bend, with their hubs held.
+
+        Raises ConfigError for a machine whose face gears are rigid.
+        """
+        from facegear.results.gear_bodies import GearBodiesResult
+
+        return self._chain.result(GearBodiesResult)
 
     def response(self, speed_rpm: float | None = None) -> "ResponseResult":
         """Steady state at a pinion speed, the config's unless given.

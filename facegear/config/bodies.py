@@ -1,8 +1,11 @@
 """Config of the bodies: what all pinions or face gears share, and what is different in a single one."""
 
-from pydantic import Field, model_validator
+from typing import Annotated
+
+from pydantic import BeforeValidator, Field, model_validator
 
 from facegear.config.base import Section, refuse
+from facegear.config.gear_body import BodySection
 
 LIGHTEST_KG, SMALLEST_KG_M2 = 1e-6, 1e-12
 """Less belongs to no gear: a steel pinion of 2 mm has 5e-5 kg and 2e-11 kg m2."""
@@ -88,6 +91,14 @@ class TiltSection(Section):
     stiffness_n_m_per_rad: float = Field(gt=0, le=1e14)
 
 
+def _elastic(value: object) -> object:
+    """What `rigid` stands for."""
+    return None if value == "rigid" else value
+
+
+Bending = Annotated[BodySection | None, BeforeValidator(_elastic)]
+
+
 class GearBody(Section):
     """Data shared by the face gears; z is their axis."""
 
@@ -98,6 +109,7 @@ class GearBody(Section):
         None, gt=0, le=1e4, description="required by mesh_kinematics printed, refused by geometric"
     )
     tilt: TiltSection | None = Field(None, description="null: the gears stay square to their axis")
+    body: Bending = Field(None, description="hub, web and rim that bend; null or rigid: they do not")
     runout: RunoutSection | None = None
 
 
@@ -164,5 +176,6 @@ class SingleGear(Section):
     inertia_kg_m2: float | None = Field(None, ge=SMALLEST_KG_M2, le=1e6)
     bearing_stiffness_n_per_m: BearingStiffness | None = None
     tilt: TiltSection | None = None
+    body: BodySection | None = Field(None, description="hub, web and rim that bend")
     runout: RunoutSection | None = None
     cumulative_pitch_um: tuple[float, ...] = Field((), description="of every tooth, ahead as it turns")

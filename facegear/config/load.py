@@ -17,6 +17,9 @@ FILE_KEYS = (
     ("strength", "pinion", "card"),
     ("strength", "face_gear", "card"),
     ("lubrication", "oil"),
+    ("transmission", "face_gear", "body", "corners_csv"),
+    ("transmission", "single_gears", "lower", "body", "corners_csv"),
+    ("transmission", "single_gears", "upper", "body", "corners_csv"),
 )
 """Keys whose value is the name of a file; it counts from the folder of the config file that sets it."""
 

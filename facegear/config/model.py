@@ -28,6 +28,7 @@ from facegear.config.checks import (
 )
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.dynamics import Dynamics
+from facegear.config.elastic_bodies import check_bodies
 from facegear.config.load_sharing import LoadSharing
 from facegear.config.lubrication import LubricationSection
 from facegear.config.mesh import Mesh, mesh_sizes
@@ -223,6 +224,7 @@ class Config(Section):
         check_positions(pair, machine)
         check_machine_strain(pair, machine)
         check_torques(pair, machine)
+        check_bodies(pair, machine)
         if machine.backlash_um is None and pair.pinion is None:
             allowed = "given, as tooth_pair has no bodies that it could be taken from"
             raise ConfigError("transmission.backlash_um", None, allowed)

@@ -77,6 +77,13 @@ def machine(case: Case) -> bool:
     return case.values["transmission"] is not None
 
 
+def elastic_gears(case: Case) -> bool:
+    """Whether the body of a face gear bends."""
+    from facegear.config.elastic_bodies import any_elastic
+
+    return any_elastic(case.values["transmission"])
+
+
 def machine_stress(case: Case) -> bool:
     """Whether section transmission is given and root stress asked for."""
     return machine(case) and root_stress(case)

@@ -25,6 +25,9 @@ CAPTIONS = {
     "stiffness_harmonics": "Amplitudes of the mesh stiffness harmonics.",
     "stiffness_load": "Mean stiffness and its harmonics against load.",
     "mode_shapes": "Typical mode shapes.",
+    "body_shapes": "Sections of the face gears and their first mode shapes at a crest, hubs held.",
+    "body_waves": "Frequencies of the face gears over nodal diameters, hubs held: at rest, and of waves in "
+    "space at the nominal speed.",
     "campbell": "Campbell diagram: natural frequencies against multiples of the mesh frequency.",
     "mesh_deflections": "Mesh deflections at the nominal speed and their spectra.",
     "pinion_sweep": "RMS of the pinions' translations over speed.",

@@ -19,6 +19,7 @@ MAY_IMPORT = {
     "harmonics": {"errors"},
     "mesh": {"geometry"},
     "contact": {"geometry", "mesh", "harmonics"},
+    "gear_body": {"geometry"},
     "stiffness": {"harmonics", "mesh_law"},
     "mesh_law": {"harmonics"},
     "transmission": {"harmonics", "mesh_law"},
@@ -26,7 +27,7 @@ MAY_IMPORT = {
     "load_sharing": {"dynamics", "transmission", "harmonics"},
     "config": {
         *("geometry", "mesh", "contact", "harmonics", "stiffness", "transmission", "dynamics"),
-        *("load_sharing", "scenarios", "strength", "lubrication", "mesh_law"),
+        *("load_sharing", "scenarios", "strength", "lubrication", "mesh_law", "gear_body"),
     },
     "plots": {
         *("config", "geometry", "contact", "stiffness", "harmonics", "transmission"),
@@ -42,7 +43,7 @@ MAY_IMPORT = {
         *("transmission", "dynamics", "load_sharing", "scenarios", "strength", "lubrication"),
     },
     "stages": {
-        *("config", "variants", "geometry", "mesh", "contact", "stiffness", "harmonics"),
+        *("config", "variants", "geometry", "mesh", "contact", "stiffness", "harmonics", "gear_body"),
         *("transmission", "dynamics", "load_sharing", "scenarios", "strength", "lubrication"),
     },
     "pipeline": {"config", "load_sharing", "report", "stages"},

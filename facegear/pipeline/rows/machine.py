@@ -15,6 +15,27 @@ ROWS = (
         local=True,
     ),
     Stage(
+        name="gear_bodies",
+        title="Face gears that bend: modes and compliance with their hubs held",
+        needs={"transmission": "transmission", "tooth_pair": "tooth_pair", **SPEED},
+        files={
+            "bodies": File("bodies/bodies.csv", ("gear", "mass_kg", "frequency_change")),
+            "modes": File("bodies/modes.csv", ("gear", "nodal_diameters", "frequency_hz"), may_be_empty=True),
+            "compliance": File("bodies/compliance.csv", ("gear", "order", "axial_m_per_n")),
+            "influence": File("bodies/influence.csv", ("gear", "first", "second", "compliance_m_per_n")),
+            "shapes": File("bodies/shapes.npz"),
+        },
+        figures=Figures(
+            draw="facegear.plots.gear_bodies:figures",
+            names=("body_shapes", "body_waves"),
+            chapter="modes",
+            upstream=from_stage("gear_bodies", "modes", "shapes"),
+        ),
+        asked=asked.elastic_gears,
+        memory_mb=500,
+        local=True,
+    ),
+    Stage(
         name="modal",
         title="Natural frequencies and mode shapes",
         needs={

@@ -1,0 +1,115 @@
+"""Config section `body` of a face gear: hub, web and rim that bend, or any section, and how finely."""
+
+from typing import Any
+
+from pydantic import Field, model_validator
+
+from facegear.config.base import Section, refuse, require_all
+from facegear.config.csv_file import CsvFault, read_numbers
+from facegear.config.tooth_pair import MaterialSection
+
+COLUMNS = ("r_mm", "height_mm")
+
+
+class HubSection(Section):
+    """Rectangle round the bore; heights as those of the whole section."""
+
+    bore_radius_mm: float = Field(gt=0, le=1e4)
+    outer_radius_mm: float = Field(gt=0, le=1e4)
+    back_mm: float = Field(ge=-1e4, le=1e4, description="height of its face away from the teeth")
+    front_mm: float = Field(ge=-1e4, le=1e4, description="height of its face on the side of the teeth")
+
+
+class WebSection(Section):
+    """Straight web between hub and rim, flat or conical; thicknesses along the axis."""
+
+    hub_thickness_mm: float = Field(gt=0, le=1e4)
+    rim_thickness_mm: float = Field(gt=0, le=1e4)
+    offset_mm: float = Field(0.0, ge=-1e4, le=1e4, description="height of its middle plane at the rim")
+    cone_angle_deg: float = Field(
+        0.0, ge=-80, le=80, description="by which its middle plane rises outwards; 0: a flat web"
+    )
+
+
+class RimSection(Section):
+    """Rectangle below the teeth, up to their root land."""
+
+    inner_radius_mm: float | None = Field(None, gt=0, le=1e4, description="null: that of the teeth")
+    outer_radius_mm: float | None = Field(None, gt=0, le=1e4, description="null: that of the teeth")
+    back_mm: float = Field(ge=-1e4, le=0, description="height of its face away from the teeth")
+
+
+class BodySection(Section):
+    """Cross-section of a face gear of distances from the axis and heights, counted along the axis towards the
+    teeth from the plane on which the contact analysis clamps them: hub, web and rim; a rim alone (disc,
+    ring); or any polygon.
+    """
+
+    hub: HubSection | None = None
+    web: WebSection | None = None
+    rim: RimSection | None = None
+    corners_mm: tuple[tuple[float, float], ...] = Field(
+        (), max_length=200, description="instead of hub, web and rim: distance and height of every corner"
+    )
+    corners_csv: str | None = Field(None, description="the corners as a csv file, columns r_mm and height_mm")
+    held_edges: tuple[int, ...] = Field(
+        (),
+        description="edges of corners_mm that the shaft holds, 1 from the first corner on; []: the bore",
+    )
+    material: MaterialSection | None = Field(None, description="null: that of the face gear's teeth")
+    density_kg_per_m3: float = Field(7850.0, ge=500, le=25000)
+    teeth: bool = Field(True, description="whether the teeth's mass and stiffness belong to the body")
+    highest_frequency_hz: float = Field(
+        10000.0, gt=0, le=1e6, description="modes up to it are kept; what the others give counts as static"
+    )
+    nodal_diameters: int = Field(12, ge=0, le=40, description="largest number of which modes are kept")
+    contact_width_pitches: float = Field(
+        4.0, gt=0, le=40, description="width of the raised cosine by which a mesh loads the rim; 4 fits"
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_csv(cls, values: Any) -> Any:
+        """The corners of the file `corners_csv`."""
+        if not isinstance(values, dict):
+            return values
+        if isinstance(values.get("corners_mm"), list):
+            corners = values["corners_mm"]
+            paired = tuple(tuple(one) if isinstance(one, list) else one for one in corners)
+            values = {**values, "corners_mm": paired}
+        if isinstance(values.get("held_edges"), list):
+            values = {**values, "held_edges": tuple(values["held_edges"])}
+        if not isinstance(name := values.get("corners_csv"), str):
+            return values
+        if values.get("corners_mm"):
+            refuse("corners_csv", name, "either corners_csv or corners_mm, not both")
+        try:
+            rows = read_numbers(name, COLUMNS)
+        except CsvFault as fault:
+            refuse("corners_csv", name, f"a csv of numbers; {fault}")
+        corners = tuple(tuple(row.values[column] for column in COLUMNS) for row in rows)
+        return {**values, "corners_csv": None, "corners_mm": corners}
+
+    @model_validator(mode="after")
+    def _complete(self) -> "BodySection":
+        require_all(self._check_parts, self._check_edges)
+        return self
+
+    def _check_parts(self) -> None:
+        if self.corners_mm:
+            for name in ("hub", "web", "rim"):
+                if getattr(self, name) is not None:
+                    refuse(name, "given", "left out beside corners_mm")
+            return
+        if self.rim is None:
+            refuse("rim", None, "given, or corners_mm")
+        if (self.hub is None) != (self.web is None):
+            missing = "hub" if self.hub is None else "web"
+            refuse(missing, None, "given: hub and web go together; a rim alone is a disc or ring")
+
+    def _check_edges(self) -> None:
+        if self.held_edges and not self.corners_mm:
+            refuse("held_edges", list(self.held_edges), "left out where hub, web and rim are given")
+        wrong = [edge for edge in self.held_edges if not 1 <= edge <= len(self.corners_mm)]
+        if wrong:
+            refuse("held_edges", wrong[0], f"from 1 to {len(self.corners_mm)}, the number of corners")

@@ -1,0 +1,178 @@
+"""Modes of a gear body whose hub is held, and what turning does to them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
+
+from facegear.arrays import Array
+from facegear.errors import NotConverged, extras_named
+from facegear.gear_body.elements import V
+from facegear.gear_body.factor import Solve, solver
+from facegear.gear_body.matrices import BodyMatrices, around, rigid_motions
+
+with extras_named():
+    from threadpoolctl import threadpool_limits
+
+FIRST_TRY = 6
+"""Modes of an order that are looked for at first."""
+
+
+@dataclass(frozen=True, eq=False)
+class OrderModes:
+    """Modes of one order n with unit modal mass, m of them by frequency; SI units.
+
+    Attributes
+    ----------
+    order
+        Nodal diameters n.
+    frequencies : (m,)
+        At rest, Hz.
+    shapes : (dofs, m)
+        U, V, W of every shape of the elements.
+    coriolis, stress, centrifugal : (m, m)
+        g, S and P over the modes.
+    teeth : (3, m)
+        <W>, <V> and <W / r> on height 0 below the teeth.
+    hub : (2, m)
+        Coupling of masses Q with the rigid motions of `rigid_motions`; none above order 1, where it is zero.
+    """
+
+    order: int
+    frequencies: Array
+    shapes: Array
+    coriolis: Array
+    stress: Array
+    centrifugal: Array
+    teeth: Array
+    hub: Array
+
+    @property
+    def gyroscopic_factors(self) -> Array:
+        """c = g / M of each mode, (m,)."""
+        return np.diagonal(self.coriolis)
+
+    @property
+    def stiffening_factors(self) -> Array:
+        """B = (S - P) / M of each mode, (m,)."""
+        return np.diagonal(self.stress - self.centrifugal)
+
+    @property
+    def torsional(self) -> Array:
+        """Fraction of each mode's mass that moves round the axis, (m,)."""
+        return (self.shapes[V::3] ** 2).sum(axis=0) / (self.shapes**2).sum(axis=0)
+
+
+def held_solver(body: BodyMatrices, order: int) -> Solve:
+    """What gives displacements (dofs, ...) of the held body by loads (dofs, ...) in an order."""
+    free = body.free
+    solve = solver(body.stiffness.at(order)[free][:, free])
+
+    def displacements(loads: Array) -> Array:
+        result = np.zeros(loads.shape)
+        result[free] = solve(loads[free])
+        return result
+
+    return displacements
+
+
+def order_modes(
+    body: BodyMatrices, order: int, highest: float, solve: Solve | None = None, expected: int = FIRST_TRY
+) -> OrderModes:
+    """All modes of an order up to the frequency `highest` (Hz), or without a limit the lowest `expected` + 1.
+
+    Raises NotConverged.
+
+    solve: of `held_solver`, where it was made already; expected: about how many modes there are.
+    """
+    free = body.free
+    solve = solve or held_solver(body, order)
+    mass = (around(order) * body.mass)[free][:, free].tocsr()
+    stiffness = body.stiffness.at(order)[free][:, free].tocsr()
+
+    def inverse(loads: Array) -> Array:
+        whole = np.zeros(body.elements.size)
+        whole[free] = loads
+        return solve(whole)[free]
+
+    count = expected + 1
+    while True:
+        squares, vectors = _lowest(stiffness, mass, inverse, min(count, free.size - 2), order)
+        if squares[-1] > (2.0 * np.pi * highest) ** 2 or squares.size < count or np.isinf(highest):
+            break
+        count += FIRST_TRY
+    kept = squares <= (2.0 * np.pi * highest) ** 2
+    shapes = np.zeros((body.elements.size, int(kept.sum())))
+    shapes[free] = vectors[:, kept]
+    return _reduced(body, order, np.sqrt(squares[kept]) / (2.0 * np.pi), _signed(shapes))
+
+
+def _lowest(
+    stiffness: sp.csr_matrix, mass: sp.csr_matrix, inverse: Solve, count: int, order: int
+) -> tuple[Array, Array]:
+    """Squares of the lowest angular frequencies and their shapes."""
+    operator = LinearOperator(stiffness.shape, matvec=inverse, dtype=float)
+    start = np.ones(stiffness.shape[0])
+    try:
+        with threadpool_limits(1):
+            squares, vectors = eigsh(stiffness, count, mass, sigma=0.0, OPinv=operator, v0=start, tol=1e-11)
+    except ArpackNoConvergence as error:
+        raise NotConverged(
+            "gear body", f"order {order}", f"{len(error.eigenvalues)} of {count} modes"
+        ) from None
+    ascending = np.argsort(squares)
+    return squares[ascending], vectors[:, ascending]
+
+
+def _signed(shapes: Array) -> Array:
+    """Shapes whose largest entry is positive."""
+    if not shapes.size:
+        return shapes
+    largest = np.take_along_axis(shapes, np.abs(shapes).argmax(axis=0)[None], axis=0)
+    return shapes * np.sign(largest)
+
+
+def _reduced(body: BodyMatrices, order: int, frequencies: Array, shapes: Array) -> OrderModes:
+    factor = around(order)
+    rigid = rigid_motions(body.elements, order) if order < 2 else np.zeros((body.elements.size, 2))
+    return OrderModes(
+        order=order,
+        frequencies=frequencies,
+        shapes=shapes,
+        coriolis=factor * shapes.T @ (body.coriolis @ shapes),
+        stress=shapes.T @ (body.stress.at(order) @ shapes),
+        centrifugal=factor * shapes.T @ (body.centrifugal @ shapes),
+        teeth=np.stack(body.on_teeth) @ shapes,
+        hub=factor * rigid.T @ (body.mass @ shapes),
+    )
+
+
+def wave_frequencies(modes: OrderModes, speed: float) -> tuple[Array, Array]:
+    """Frequencies (m,) in Hz at which the forward and the backward wave of each mode pass a point in space.
+
+    `speed`: of the body, rad/s. Forward waves travel as the body turns. Modes of an order are taken one by
+    one, f = sqrt(w^2 + (B + c^2) W^2) / 2 pi, f +- (n + c) W / 2 pi; order 0 has no waves, so both are f.
+    """
+    w = 2.0 * np.pi * modes.frequencies
+    c = modes.gyroscopic_factors if modes.order else np.zeros(w.size)
+    middle = np.sqrt(w**2 + (modes.stiffening_factors + c**2) * speed**2) / (2.0 * np.pi)
+    shift = (modes.order + c) * abs(speed) / (2.0 * np.pi) if modes.order else np.zeros(w.size)
+    return middle + shift, middle - shift
+
+
+def resonant_speeds(modes: OrderModes, teeth: int, harmonic: int) -> tuple[Array, Array]:
+    """Speeds of the body (m,), rad/s, at which a harmonic of the mesh frequency meets each forward and each
+    backward wave; NaN where it never does.
+
+    k N W / 2 pi = f(W) +- (n + c) W / 2 pi with f^2 = (w^2 + (B + c^2) W^2) / 4 pi^2, solved for W.
+    """
+    w = 2.0 * np.pi * modes.frequencies
+    c = modes.gyroscopic_factors if modes.order else np.zeros(w.size)
+    added = modes.stiffening_factors + c**2
+    found = []
+    for sign in (1.0, -1.0):
+        slope = harmonic * teeth - sign * ((modes.order + c) if modes.order else 0.0 * c)
+        below = slope**2 - added
+        found.append(np.where((below > 0.0) & (slope > 0.0), w / np.sqrt(np.maximum(below, 1e-300)), np.nan))
+    return found[0], found[1]

@@ -1,0 +1,45 @@
+"""Where a mesh presses on the body of a face gear.
+
+A flank force turned into force and moment on height 0, spread along the ring as a raised cosine, moves the
+pitch point in order n by W_p = c_n <W> axially and by V_p = c_n (<V> + n h <W / r>) round the axis, with c_n
+the transform of the patch and h the height of the pitch plane. The second part is the moment of the
+tangential force. Displacements are u_axial = Re[z e^(-i n psi)] W_p and u_round = Re[i z e^(-i n psi)] V_p.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from facegear.arrays import Array
+
+
+@dataclass(frozen=True)
+class Patch:
+    """Where a mesh presses on the body.
+
+    Attributes
+    ----------
+    height
+        Of the pitch plane over height 0, m.
+    half_width
+        Of the raised cosine along the ring, rad.
+    """
+
+    height: float
+    half_width: float
+
+    def factor(self, order: int) -> float:
+        """c_n: the part of a wave of order n that the patch feels."""
+        wide = order * self.half_width
+        if abs(wide - np.pi) < 1e-6:
+            return 0.5
+        return float(np.sinc(wide / np.pi) / (1.0 - (wide / np.pi) ** 2))
+
+    def rows(self, order: int, teeth: Array) -> Array:
+        """W_p and V_p, (2, ...), from <W>, <V> and <W / r> (3, ...)."""
+        lever = order * self.height
+        return self.factor(order) * (np.array([[1.0, 0.0, 0.0], [0.0, 1.0, lever]]) @ teeth)
+
+    def compliance(self, order: int, below: Array) -> Array:
+        """H_n (2, 2), m/N: motions W_p and V_p by unit loads on them, from that of the means (3, 3)."""
+        return self.rows(order, self.rows(order, below).T)

@@ -1,0 +1,271 @@
+"""The cross-section of a gear body: a polygon of distances r from the axis and heights zeta.
+
+Heights count along the axis towards the teeth from the plane on which the contact analysis clamps them, so
+that teeth and rim of the contact analysis stand at positive heights. Lengths in m.
+"""
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.errors import InvalidInput
+from facegear.geometry.design import Material
+
+GAUSS = np.polynomial.legendre.leggauss(4)
+OPPOSITE = 0.5
+"""Cosine of the angle between the normals of two edges beyond which they bound a wall."""
+SAME = 1e-9
+"""Distance (m) below which two points of a section are one."""
+
+
+@dataclass(frozen=True)
+class Hub:
+    """Rectangle from the bore to `outer_radius`, from height `back` to `front`."""
+
+    bore_radius: float
+    outer_radius: float
+    back: float
+    front: float
+
+
+@dataclass(frozen=True)
+class Web:
+    """Straight conical web from hub to rim.
+
+    Thicknesses are axial, at the hub and at the rim. `offset` is the height of its middle plane at the rim;
+    `slope` is how much that plane rises for each metre outwards, the tangent of the cone angle.
+    """
+
+    hub_thickness: float
+    rim_thickness: float
+    offset: float
+    slope: float
+
+
+@dataclass(frozen=True)
+class Rim:
+    """Rectangle from `inner_radius` to `outer_radius`, from height `back` to `front`, where the teeth are."""
+
+    inner_radius: float
+    outer_radius: float
+    back: float
+    front: float
+
+
+@dataclass(frozen=True)
+class Layer:
+    """Teeth as a layer on the rim between two radii, from height `back` to `front`.
+
+    `density` and `hoop` are fractions of the body's density and of its Young's modulus round the axis,
+    `shear` the fraction of the shear moduli that turn the teeth about their roots.
+    """
+
+    inner_radius: float
+    outer_radius: float
+    back: float
+    front: float
+    density: float = 0.524
+    hoop: float = 0.06
+    shear: float = 0.15
+
+    @property
+    def corners(self) -> Array:
+        """Corners (4, 2)."""
+        return rectangle(self.inner_radius, self.outer_radius, self.back, self.front)
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """What a body is made of.
+
+    Attributes
+    ----------
+    corners : (n, 2)
+        r and height, anticlockwise (r to the right, height upwards).
+    held : (n,)
+        Whether the edge from each corner to the next is held.
+    teeth
+        Inner and outer radius of the teeth.
+    material
+        Elasticity.
+    density
+        kg/m3.
+    layer
+        Teeth, None for a body without them.
+    """
+
+    corners: Array
+    held: tuple[bool, ...]
+    teeth: tuple[float, float]
+    material: Material
+    density: float
+    layer: Layer | None = None
+
+    @property
+    def edges(self) -> Array:
+        """First and last point of each edge, (n, 2, 2)."""
+        return np.stack([self.corners, np.roll(self.corners, -1, axis=0)], axis=1)
+
+
+def rectangle(inner: float, outer: float, back: float, front: float) -> Array:
+    """Corners (4, 2) anticlockwise."""
+    return np.array([(inner, back), (outer, back), (outer, front), (inner, front)])
+
+
+def wheel(hub: Hub, web: Web, rim: Rim) -> Array:
+    """Corners (n, 2) of hub, web and rim, anticlockwise.
+
+    Raises InvalidInput where they do not make one body: see `require_wheel`.
+    """
+    require_wheel(hub, web, rim)
+    (low_in, high_in), (low_out, high_out) = web_ends(hub, web, rim)
+    points = [
+        (hub.bore_radius, hub.back),
+        (hub.outer_radius, hub.back),
+        (hub.outer_radius, low_in),
+        (rim.inner_radius, low_out),
+        (rim.inner_radius, rim.back),
+        (rim.outer_radius, rim.back),
+        (rim.outer_radius, rim.front),
+        (rim.inner_radius, rim.front),
+        (rim.inner_radius, high_out),
+        (hub.outer_radius, high_in),
+        (hub.outer_radius, hub.front),
+        (hub.bore_radius, hub.front),
+    ]
+    return distinct(np.array(points))
+
+
+def web_ends(hub: Hub, web: Web, rim: Rim) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Lower and upper height of the web at the hub, and at the rim."""
+    middle = web.offset - web.slope * (rim.inner_radius - hub.outer_radius)
+    at_hub = (middle - 0.5 * web.hub_thickness, middle + 0.5 * web.hub_thickness)
+    at_rim = (web.offset - 0.5 * web.rim_thickness, web.offset + 0.5 * web.rim_thickness)
+    return at_hub, at_rim
+
+
+def require_wheel(hub: Hub, web: Web, rim: Rim) -> None:
+    """Raises InvalidInput unless the hub lies inside the rim and the web ends on both."""
+    if hub.outer_radius >= rim.inner_radius:
+        limit = f"below `inner radius of the rim`, {1e3 * rim.inner_radius:g} mm"
+        raise InvalidInput("outer radius of the hub", 1e3 * hub.outer_radius, limit)
+    if hub.bore_radius >= hub.outer_radius:
+        limit = f"below `outer radius of the hub`, {1e3 * hub.outer_radius:g} mm"
+        raise InvalidInput("bore radius of the hub", 1e3 * hub.bore_radius, limit)
+    at_hub, at_rim = web_ends(hub, web, rim)
+    for part, body, (low, high) in (("hub", hub, at_hub), ("rim", rim, at_rim)):
+        if body.back >= body.front:
+            raise InvalidInput(f"back of the {part}", 1e3 * body.back, f"below {1e3 * body.front:g} mm")
+        if low < body.back - SAME or high > body.front + SAME:
+            limit = (
+                f"such that the web, {1e3 * low:.4g} to {1e3 * high:.4g} mm at the {part}, stays between the "
+                f"{part}'s faces, {1e3 * body.back:g} and {1e3 * body.front:g} mm"
+            )
+            raise InvalidInput("offset of the web", 1e3 * web.offset, limit)
+
+
+def distinct(corners: Array) -> Array:
+    """Corners without those that repeat the one before."""
+    apart = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1) > SAME
+    return corners[apart]
+
+
+def anticlockwise(corners: Array) -> Array:
+    """The same polygon in the sense in which r turns towards the height; it begins at the same corner."""
+    return corners if _area(corners) > 0.0 else np.roll(corners[::-1], 1, axis=0)
+
+
+def _area(corners: Array) -> float:
+    following = np.roll(corners, -1, axis=0)
+    return float(0.5 * np.sum(corners[:, 0] * following[:, 1] - corners[:, 1] * following[:, 0]))
+
+
+def require_simple(corners: Array) -> None:
+    """Raises InvalidInput for a polygon that crosses or touches itself, or has no area."""
+    count = len(corners)
+    if count < 3:
+        raise InvalidInput("corners of the section", count, "three points or more")
+    ends = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
+    for i, j in combinations(range(count), 2):
+        if (j - i) % count == 1 or (i - j) % count == 1:
+            continue
+        if distance_between(ends[i], ends[j]) <= SAME:
+            allowed = f"a line that does not cross itself; edges {i + 1} and {j + 1} meet"
+            raise InvalidInput("corners of the section", (1e3 * corners).round(6).tolist(), allowed)
+    if abs(_area(corners)) < SAME**2 or _folds(ends):
+        allowed = "a line that does not fold back on itself"
+        raise InvalidInput("corners of the section", (1e3 * corners).round(6).tolist(), allowed)
+
+
+def _folds(ends: Array) -> bool:
+    """Whether two edges after one another lie on one another."""
+    ways = ends[:, 1] - ends[:, 0]
+    following = np.roll(ways, -1, axis=0)
+    cross = ways[:, 0] * following[:, 1] - ways[:, 1] * following[:, 0]
+    lengths = np.linalg.norm(ways, axis=1) * np.linalg.norm(following, axis=1)
+    return bool(((np.abs(cross) <= 1e-9 * lengths) & ((ways * following).sum(axis=1) < 0.0)).any())
+
+
+def distance_between(first: Array, second: Array) -> float:
+    """Smallest distance of two straight edges (2, 2); 0 where they cross."""
+    a, b = first[1] - first[0], second[1] - second[0]
+    offset, cross = second[0] - first[0], a[0] * b[1] - a[1] * b[0]
+    if cross != 0.0:
+        along_first = (offset[0] * b[1] - offset[1] * b[0]) / cross
+        along_second = (offset[0] * a[1] - offset[1] * a[0]) / cross
+        if 0.0 <= along_first <= 1.0 and 0.0 <= along_second <= 1.0:
+            return 0.0
+    pairs = [(p, second) for p in first] + [(p, first) for p in second]
+    return min(_from_edge(point, edge) for point, edge in pairs)
+
+
+def _from_edge(point: Array, edge: Array) -> float:
+    way = edge[1] - edge[0]
+    place = np.clip(np.dot(point - edge[0], way) / np.dot(way, way), 0.0, 1.0)
+    return float(np.linalg.norm(point - edge[0] - place * way))
+
+
+def thinnest(corners: Array) -> float:
+    """Smallest distance (m) through the material between two edges of an anticlockwise polygon that face
+    away from each other: the thinnest wall of the section.
+    """
+    ends = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
+    ways = ends[:, 1] - ends[:, 0]
+    lengths = np.linalg.norm(ways, axis=1)
+    outward = np.stack([ways[:, 1], -ways[:, 0]], axis=1) / lengths[:, None]
+    middles = ends.mean(axis=1)
+    walls = [
+        distance_between(ends[i], ends[j])
+        for i, j in combinations(range(len(ends)), 2)
+        if outward[i] @ outward[j] < -OPPOSITE and (middles[j] - middles[i]) @ outward[i] < 0.0
+    ]
+    return min([*walls, float(lengths.max())])
+
+
+def mass_properties(corners: Array, density: float) -> tuple[float, float, float]:
+    """Mass (kg), moments of inertia (kg m2) about the axis and about a diameter at height 0, of a full turn.
+
+    Exact: each edge makes a triangle with the origin, over which a form of degree d is 1 / (d + 2) of its
+    integral along the edge times twice the area.
+    """
+    first, last = corners, np.roll(corners, -1, axis=0)
+    double = first[:, 0] * last[:, 1] - first[:, 1] * last[:, 0]
+    places = 0.5 * (GAUSS[0] + 1.0)[:, None, None]
+    r, height = np.moveaxis(first + places * (last - first), -1, 0)
+
+    def integral(values: Array, degree: int) -> float:
+        return float(double @ (0.5 * GAUSS[1] @ values)) / (degree + 2)
+
+    mass = 2.0 * np.pi * density * integral(r, 1)
+    polar = 2.0 * np.pi * density * integral(r**3, 3)
+    return mass, polar, 0.5 * polar + 2.0 * np.pi * density * integral(r * height**2, 3)
+
+
+def section_properties(section: Section) -> tuple[float, float, float]:
+    """Mass and moments of inertia as `mass_properties`, teeth included."""
+    own = np.array(mass_properties(section.corners, section.density))
+    if section.layer is not None:
+        own += mass_properties(section.layer.corners, section.layer.density * section.density)
+    return float(own[0]), float(own[1]), float(own[2])

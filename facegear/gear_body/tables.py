@@ -1,0 +1,121 @@
+"""Tables and arrays of gear bodies with their hubs held."""
+
+from itertools import combinations_with_replacement
+
+import numpy as np
+import pandas as pd
+
+from facegear.arrays import Array
+from facegear.gear_body.body import SolvedBody
+from facegear.gear_body.compliance import flank_direction, influence
+from facegear.gear_body.modes import resonant_speeds, wave_frequencies
+from facegear.gear_body.patch import Patch
+from facegear.gear_body.section import section_properties
+
+RPM = 30.0 / np.pi
+DRAWN_MODES = 2
+"""Modes of each order whose shapes are stored."""
+DRAWN_ORDERS = 7
+
+
+def body_table(gear: str, body: SolvedBody, patch: Patch, pressure_angle: float) -> pd.DataFrame:
+    """One row: mass (kg) and inertia (kg m2) of the section, coordinates that its modes make, own compliance
+    along the line of action (m/N), the part of it that the modes hold, and the largest relative change of a
+    frequency from a coarser mesh.
+    """
+    mass, polar, diametral = section_properties(body.section)
+    drive = flank_direction(pressure_angle)
+    whole = influence(body.static(patch), 0.0, drive, drive)
+    changes = np.concatenate([*body.changes, np.zeros(1)])
+    waves = sum(modes.frequencies.size * (2 if modes.order else 1) for modes in body.orders)
+    return pd.DataFrame(
+        {
+            "gear": [gear],
+            "mass_kg": [mass],
+            "inertia_kg_m2": [polar],
+            "diametral_inertia_kg_m2": [diametral],
+            "elements": [len(body.mesh.quads)],
+            "coordinates": [waves],
+            "own_compliance_m_per_n": [whole],
+            "modal_fraction": [influence(body.modal(patch), 0.0, drive, drive) / whole],
+            "frequency_change": [float(changes.max())],
+        }
+    )
+
+
+def mode_table(gear: str, body: SolvedBody, speed: float, teeth: int, ratio: float) -> pd.DataFrame:
+    """One row a mode, hub held: frequencies in Hz at rest and of waves in space at the body's speed (rad/s),
+    and speeds of the pinions (rpm, `ratio` times the body's) at which the mesh frequency meets each wave.
+    """
+    parts = []
+    for modes, changes in zip(body.orders, body.changes, strict=True):
+        forward, backward = wave_frequencies(modes, speed)
+        met = [ratio * RPM * speeds for speeds in resonant_speeds(modes, teeth, 1)]
+        parts.append(
+            pd.DataFrame(
+                {
+                    "gear": gear,
+                    "nodal_diameters": modes.order,
+                    "mode": np.arange(1, modes.frequencies.size + 1),
+                    "frequency_hz": modes.frequencies,
+                    "round_fraction": modes.torsional,
+                    "gyroscopic_factor": modes.gyroscopic_factors,
+                    "stiffening_factor": modes.stiffening_factors,
+                    "forward_hz": forward,
+                    "backward_hz": backward,
+                    "forward_met_rpm": met[0],
+                    "backward_met_rpm": met[1],
+                    "frequency_change": changes,
+                }
+            )
+        )
+    return pd.concat(parts, ignore_index=True)
+
+
+def compliance_table(gear: str, body: SolvedBody, patch: Patch) -> pd.DataFrame:
+    """One row an order: motions along the axis and round it below a mesh by unit forces, m/N."""
+    static = body.static(patch)
+    return pd.DataFrame(
+        {
+            "gear": gear,
+            "order": np.arange(len(static)),
+            "axial_m_per_n": static[:, 0, 0],
+            "round_m_per_n": static[:, 1, 1],
+            "axial_round_m_per_n": static[:, 0, 1],
+        }
+    )
+
+
+def influence_table(
+    gear: str, body: SolvedBody, patch: Patch, pressure_angle: float, sign: float, meshes: dict[str, float]
+) -> pd.DataFrame:
+    """One row for two flanks: motion of the first against its force by a force on the second, m/N, hub held.
+
+    meshes: angle (rad) of each pinion as the upper gear turns; sign: 1 for the upper gear, -1 for the lower.
+    """
+    static = body.static(patch)
+    flanks = {name: flank_direction(pressure_angle, name == "back") for name in ("drive", "back")}
+    rows = []
+    for first, second in combinations_with_replacement(meshes, 2):
+        angle = sign * (meshes[first] - meshes[second])
+        for one, other in (("drive", "drive"), ("drive", "back"), ("back", "drive")):
+            value = influence(static, angle, flanks[one], flanks[other])
+            rows.append((gear, first, one, second, other, value))
+    columns = ["gear", "first", "first_flank", "second", "second_flank", "compliance_m_per_n"]
+    return pd.DataFrame(rows, columns=columns)
+
+
+def shape_arrays(gear: str, body: SolvedBody) -> dict[str, Array]:
+    """Nodes, quadrilaterals and displacements (U, V, W) at the nodes of the lowest modes, for pictures."""
+    places = body.elements.basis.dofs.nodal_dofs[0]
+    shapes, labels = [], []
+    for modes in body.orders[:DRAWN_ORDERS]:
+        for number in range(min(DRAWN_MODES, modes.frequencies.size)):
+            shapes.append(modes.shapes[:, number].reshape(-1, 3)[places])
+            labels.append((modes.order, number + 1))
+    return {
+        f"{gear}_nodes": body.mesh.nodes,
+        f"{gear}_quads": body.mesh.quads,
+        f"{gear}_shapes": np.array(shapes).reshape(-1, len(body.mesh.nodes), 3),
+        f"{gear}_labels": np.array(labels, np.int64).reshape(-1, 2),
+    }

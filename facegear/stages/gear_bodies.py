@@ -1,0 +1,84 @@
+"""Face gears that bend: their modes and their compliance below the teeth, with their hubs held."""
+
+from collections.abc import Mapping
+
+import pandas as pd
+
+from facegear.config.elastic_bodies import body_shape, contact_patch, elastic_gears
+from facegear.config.gear_body import BodySection
+from facegear.config.lumped_model import ToothNumbers, layout
+from facegear.config.tooth_pair import ToothPair
+from facegear.config.transmission import Transmission
+from facegear.errors import ConfigError
+from facegear.gear_body import tables
+from facegear.gear_body.body import SolvedBody, solve_body
+from facegear.stages.outcome import Outcome
+from facegear.transmission.layout import Layout
+
+
+def gear_bodies(transmission: Transmission, tooth_pair: ToothPair, speed_rpm: float) -> Outcome:
+    """`bodies`, `modes`, `compliance`, `influence` (tables) and `shapes` (arrays) of the gears that bend.
+
+    Raises ConfigError where all face gears are rigid, NotConverged.
+    """
+    sections = elastic_gears(transmission)
+    if not sections:
+        raise ConfigError("transmission.face_gear.body", None, "given: all face gears are rigid")
+    machine = layout(transmission, ToothNumbers.of_config(tooth_pair.model_dump()))
+    solved = _solved(sections, tooth_pair)
+    parts = [_parts(gear, solved[gear], sections[gear], tooth_pair, machine, speed_rpm) for gear in sections]
+    names = ("bodies", "modes", "compliance", "influence")
+    content = {name: pd.concat([part[name] for part in parts], ignore_index=True) for name in names}
+    shapes = {
+        key: value for gear in sections for key, value in tables.shape_arrays(gear, solved[gear]).items()
+    }
+    return Outcome({**content, "shapes": dict(shapes)}, _summary(content["bodies"], content["modes"]))
+
+
+def _solved(sections: Mapping[str, BodySection], tooth_pair: ToothPair) -> dict[str, SolvedBody]:
+    """Every gear's body; those that are alike are solved once."""
+    done: dict[BodySection, SolvedBody] = {}
+    for section in sections.values():
+        if section not in done:
+            done[section] = solve_body(
+                body_shape(section, tooth_pair),
+                section.highest_frequency_hz,
+                section.nodal_diameters,
+                tooth_pair.face_gear_teeth,
+            )
+    return {gear: done[section] for gear, section in sections.items()}
+
+
+def _parts(
+    gear: str,
+    body: SolvedBody,
+    section: BodySection,
+    tooth_pair: ToothPair,
+    machine: Layout,
+    speed_rpm: float,
+) -> dict[str, pd.DataFrame]:
+    """Tables of one gear."""
+    patch = contact_patch(section, tooth_pair)
+    ratio = tooth_pair.face_gear_teeth / tooth_pair.pinion_teeth
+    speed = speed_rpm / ratio / tables.RPM
+    sign = next(one.sign for one in machine.gears if one.side == gear)
+    angles = dict(zip((pinion.name for pinion in machine.pinions), machine.angles.tolist(), strict=True))
+    angle = machine.pressure_angle
+    return {
+        "bodies": tables.body_table(gear, body, patch, angle),
+        "modes": tables.mode_table(gear, body, speed, tooth_pair.face_gear_teeth, ratio),
+        "compliance": tables.compliance_table(gear, body, patch),
+        "influence": tables.influence_table(gear, body, patch, angle, sign, angles),
+    }
+
+
+def _summary(bodies: pd.DataFrame, modes: pd.DataFrame) -> str:
+    parts = []
+    for row in bodies.itertuples():
+        own = modes[modes["gear"] == row.gear]
+        lowest = f"from {own['frequency_hz'].min():.1f} Hz" if len(own) else "none"
+        parts.append(
+            f"{row.gear}: {row.mass_kg:.4g} kg, {len(own)} modes {lowest} "
+            f"(+-{100 * row.frequency_change:.2g} %), {1e9 * row.own_compliance_m_per_n:.4g} nm/N at a mesh"
+        )
+    return "; ".join(parts)

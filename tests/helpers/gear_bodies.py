@@ -1,0 +1,53 @@
+"""The gear body whose numbers other programs gave, and simple bodies with closed forms; each solved once."""
+
+from functools import cache
+from math import pi
+
+import numpy as np
+
+from facegear.gear_body.body import SolvedBody, solve_body
+from facegear.gear_body.matrices import BodyMatrices, body_matrices
+from facegear.gear_body.mesh import body_mesh
+from facegear.gear_body.patch import Patch
+from facegear.gear_body.section import Hub, Rim, Section, Web, rectangle, wheel
+from facegear.geometry.design import Material
+
+STEEL = Material(206e9, 0.3)
+TEETH = 143
+PATCH = Patch(height=16.6875e-3, half_width=2 * 2 * pi / TEETH)
+HUB, RIM = Hub(0.120, 0.140, -0.050, 0.0), Rim(0.250, 0.275, -0.012, 0.012)
+WEB = Web(0.018, 0.012, -0.006, 25 / 110)
+
+
+def section(held: bool = True, layer=None) -> Section:
+    """Hub, conical web of 18 to 12 mm and ring of the tables below, bore held or free."""
+    corners = wheel(HUB, WEB, RIM)
+    bore = np.isclose(corners[:, 0], HUB.bore_radius) & np.isclose(
+        np.roll(corners[:, 0], -1), HUB.bore_radius
+    )
+    return Section(corners, tuple((bore & held).tolist()), (0.250, 0.275), STEEL, 7850.0, layer)
+
+
+@cache
+def reference_body() -> SolvedBody:
+    """The section with its modes below 10 kHz of 0 to 6 nodal diameters."""
+    return solve_body(section(), 10_000.0, 6, TEETH)
+
+
+@cache
+def reference_matrices() -> BodyMatrices:
+    """Its matrices."""
+    return body_matrices(section(), body_mesh(section()))
+
+
+def rectangular(inner: float, outer: float, thickness: float, material: Material, held: bool, across: int):
+    """Matrices of a disc or ring of density 1 kg/m3 with its bore held or free."""
+    corners = rectangle(inner, outer, -0.5 * thickness, 0.5 * thickness)
+    edges = (False, False, False, held)
+    shape = Section(corners, edges, (0.5 * (inner + outer), outer), material, 1.0)
+    return body_matrices(shape, body_mesh(shape, across))
+
+
+def at(body: BodyMatrices, r: float, height: float) -> int:
+    """Number of the scalar shape that stands at a place."""
+    return int(np.argmin(np.hypot(*(body.elements.places - np.array([[r], [height]])))))

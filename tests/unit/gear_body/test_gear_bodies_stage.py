@@ -1,0 +1,81 @@
+"""What the stage writes of a machine whose face gears bend."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import facegear
+from facegear.config.base import parse
+from facegear.config.gear_body import BodySection
+from facegear.config.load import load_config
+from facegear.errors import ConfigError
+from facegear.stages import gear_bodies as stage
+
+FLEXIBLE = load_config(Path(__file__).parents[3] / "config" / "flexible.yaml")
+DISC = {
+    "rim": {"inner_radius_mm": 180.0, "back_mm": -12.0},
+    "highest_frequency_hz": 6000.0,
+    "nodal_diameters": 3,
+}
+
+
+@pytest.fixture(scope="module")
+def outcome():
+    """A disc in place of every web."""
+    section = FLEXIBLE.transmission
+    gear = section.face_gear.model_copy(update={"body": parse(BodySection, DISC)})
+    return stage.gear_bodies(section.model_copy(update={"face_gear": gear}), FLEXIBLE.tooth_pair, 7500.0)
+
+
+def test_equal_gears_have_equal_modes_and_both_stand_in_the_tables(outcome):
+    modes = outcome.content["modes"]
+    lower, upper = (modes[modes["gear"] == gear].drop(columns="gear") for gear in ("lower", "upper"))
+    assert len(lower) and np.array_equal(lower.to_numpy(), upper.to_numpy())
+    assert (modes["frequency_hz"] <= 6000.0).all() and modes["nodal_diameters"].max() == 3
+    waves = modes[modes["nodal_diameters"] > 0]
+    assert (waves["forward_hz"] > waves["backward_hz"]).all()
+    assert (modes["frequency_change"] < 1e-2).all()
+
+
+def test_gears_alike_are_solved_once(monkeypatch):
+    solved = []
+    monkeypatch.setattr(stage, "solve_body", lambda *given: solved.append(given) or "body")
+    one = parse(BodySection, DISC)
+    other = one.model_copy(update={"density_kg_per_m3": 7800.0})
+    assert stage._solved({"lower": one, "upper": one}, FLEXIBLE.tooth_pair) == {
+        "lower": "body",
+        "upper": "body",
+    }
+    assert len(solved) == 1
+    stage._solved({"lower": one, "upper": other}, FLEXIBLE.tooth_pair)
+    assert len(solved) == 3
+
+
+def test_own_compliance_is_the_sum_over_the_orders_along_the_line_of_action(outcome):
+    compliance = outcome.content["compliance"].groupby("gear").sum()
+    own = outcome.content["bodies"].set_index("gear")["own_compliance_m_per_n"]
+    angle = np.radians(25.0)
+    along = (
+        compliance["axial_m_per_n"] * np.sin(angle) ** 2 + compliance["round_m_per_n"] * np.cos(angle) ** 2
+    )
+    assert own.to_numpy() == pytest.approx(along.to_numpy(), rel=1e-12)
+
+
+def test_lower_gear_is_the_mirror_image_of_the_upper_one(outcome):
+    """It turns the other way, so that what drives follows what drove: flanks of two meshes change places."""
+    influence = outcome.content["influence"]
+    keys = ["first", "first_flank", "second", "second_flank"]
+    upper, lower = (influence[influence["gear"] == gear].set_index(keys) for gear in ("upper", "lower"))
+    column = "compliance_m_per_n"
+    for (first, one, second, other), value in upper[column].items():
+        if first != second:
+            assert lower.loc[(first, other, second, one), column] == pytest.approx(value, rel=1e-9, abs=1e-18)
+    mixed = upper.xs(("drive", "back"), level=("first_flank", "second_flank"))[column]
+    turned = upper.xs(("back", "drive"), level=("first_flank", "second_flank"))[column]
+    assert np.abs(mixed - turned).max() > 1e-11
+
+
+def test_machine_of_rigid_gears_has_no_gear_bodies():
+    with pytest.raises(ConfigError, match=r"transmission\.face_gear\.body = None: must be given"):
+        facegear.example().gear_bodies()
