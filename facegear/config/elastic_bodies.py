@@ -194,9 +194,9 @@ def crosses_rectangle(edges: Array, inner: float, outer: float, back: float, fro
     low, high = np.array([inner, back]) + ON_LINE, np.array([outer, front]) - ON_LINE
     first, way = edges[:, 0], edges[:, 1] - edges[:, 0]
     with np.errstate(divide="ignore", invalid="ignore"):
-        one, other = (low - first) / way, (high - first) / way
+        to_low, to_high = (low - first) / way, (high - first) / way
     still = way == 0.0
     inside = (first > low) & (first < high)
-    enter = np.where(still, np.where(inside, 0.0, np.inf), np.minimum(one, other)).max(axis=1)
-    leave = np.where(still, np.where(inside, 1.0, -np.inf), np.maximum(one, other)).min(axis=1)
+    enter = np.where(still, np.where(inside, 0.0, np.inf), np.minimum(to_low, to_high)).max(axis=1)
+    leave = np.where(still, np.where(inside, 1.0, -np.inf), np.maximum(to_low, to_high)).min(axis=1)
     return bool((np.maximum(enter, 0.0) < np.minimum(leave, 1.0)).any())

@@ -59,7 +59,7 @@ class BodySection(Section):
     material: MaterialSection | None = Field(None, description="null: that of the face gear's teeth")
     density_kg_per_m3: float = Field(7850.0, ge=500, le=25000)
     teeth: bool = Field(True, description="whether the teeth's mass and stiffness belong to the body")
-    highest_frequency_hz: float = Field(
+    max_frequency_hz: float = Field(
         10000.0, gt=0, le=1e6, description="modes up to it are kept; what the others give counts as static"
     )
     nodal_diameters: int = Field(12, ge=0, le=40, description="largest number of which modes are kept")
@@ -75,7 +75,7 @@ class BodySection(Section):
             return values
         if isinstance(values.get("corners_mm"), list):
             corners = values["corners_mm"]
-            paired = tuple(tuple(one) if isinstance(one, list) else one for one in corners)
+            paired = tuple(tuple(corner) if isinstance(corner, list) else corner for corner in corners)
             values = {**values, "corners_mm": paired}
         if isinstance(values.get("held_edges"), list):
             values = {**values, "held_edges": tuple(values["held_edges"])}

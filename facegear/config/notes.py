@@ -23,8 +23,8 @@ EXTERNAL = (
     "duty cycle"
 )
 RIGID_ELSEWHERE = (
-    "transmission.face_gear.body: stage gear_bodies computes modes and compliance of the bodies with their hubs "
-    "held; all other results take the face gears as rigid (docs/bodies.md)"
+    "transmission.face_gear.body: stage gear_bodies computes modes and compliance of the bodies with their "
+    "hubs held; all other results take the face gears as rigid (docs/bodies.md)"
 )
 
 WITHOUT_FRICTION = (

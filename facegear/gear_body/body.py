@@ -61,17 +61,17 @@ class SolvedBody:
         return result
 
 
-def solve_body(section: Section, highest: float, last_order: int, teeth: int) -> SolvedBody:
-    """Modes up to the frequency `highest` (Hz) of the orders 0 to `last_order`, and static compliances.
+def solve_body(section: Section, max_frequency: float, last_order: int, teeth: int) -> SolvedBody:
+    """Modes up to the frequency `max_frequency` (Hz) of the orders 0 to `last_order`, and static compliances.
 
     teeth: their number, of which the waves that a discrete ring can tell apart follow. Raises InvalidInput
     for a section that cannot be meshed, NotConverged.
     """
     with threadpool_limits(1):
-        return _solved(section, highest, last_order, min(STATIC_ORDERS, (teeth - 1) // 2))
+        return _solved(section, max_frequency, last_order, min(STATIC_ORDERS, (teeth - 1) // 2))
 
 
-def _solved(section: Section, highest: float, last_order: int, last_static: int) -> SolvedBody:
+def _solved(section: Section, max_frequency: float, last_order: int, last_static: int) -> SolvedBody:
     mesh = body_mesh(section)
     body = body_matrices(section, mesh)
     modes: list[OrderModes] = []
@@ -80,7 +80,7 @@ def _solved(section: Section, highest: float, last_order: int, last_static: int)
         solve = held_solver(body, order)
         if order <= last_order:
             expected = modes[-1].frequencies.size if modes else FIRST_TRY
-            modes.append(order_modes(body, order, highest, solve, expected))
+            modes.append(order_modes(body, order, max_frequency, solve, expected))
         if order <= last_static:
             compliances[order] = mean_compliance(body, order, solve)
     return SolvedBody(

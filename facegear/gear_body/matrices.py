@@ -126,13 +126,13 @@ def _materials(section: Section, mesh: BodyMesh) -> tuple[Array, Array]:
     density = np.full(len(mesh.quads), section.density)
     if (layer := section.layer) is not None:
         modulus, shear = section.material.young_modulus, body[3, 3]
-        share = layer.density
-        moduli = modulus * np.array([share, layer.hoop, share])
-        shears = shear * np.array([share, layer.shear, layer.shear])
+        fraction = layer.density
+        moduli = modulus * np.array([fraction, layer.hoop, fraction])
+        shears = shear * np.array([fraction, layer.shear, layer.shear])
         elasticity[:, :, mesh.in_layer] = orthotropic(moduli, section.material.poisson_ratio, shears)[
             ..., None
         ]
-        density[mesh.in_layer] *= share
+        density[mesh.in_layer] *= fraction
     return elasticity[..., None], density[:, None]
 
 
@@ -143,8 +143,8 @@ def _free(section: Section, elements: Elements) -> Integers:
     for (first, last), fixed in zip(section.edges, section.held, strict=True):
         if fixed:
             way = last - first
-            place = np.clip((places - first) @ way / (way @ way), 0.0, 1.0)
-            held |= np.linalg.norm(places - first - place[:, None] * way, axis=1) < ON_EDGE
+            fraction = np.clip((places - first) @ way / (way @ way), 0.0, 1.0)
+            held |= np.linalg.norm(places - first - fraction[:, None] * way, axis=1) < ON_EDGE
     return np.flatnonzero(np.repeat(~held, 3))
 
 
@@ -168,8 +168,8 @@ def _centrifugal_stresses(
     strained = np.einsum("ibeq,be->ieq", strain, motion[elements.dofs])
     stress = np.einsum("ijeq,jeq->ieq", np.broadcast_to(elasticity, (6, 6, *strained.shape[1:])), strained)
     tensor = np.zeros((3, 3, *stress.shape[1:]))
-    for first, second, place in STRESSES:
-        tensor[first, second] = stress[place]
+    for first, second, number in STRESSES:
+        tensor[first, second] = stress[number]
     return tensor
 
 
@@ -201,10 +201,10 @@ def teeth_means(section: Section, elements: Elements) -> tuple[Array, Array, Arr
     edges = np.flatnonzero(below.all(axis=0))
     numbers = np.concatenate([dofs.nodal_dofs[0, mesh.facets[:, edges]], dofs.facet_dofs[:1, edges]])
     first, last = ends[0][:, edges]
-    place = GAUSS[0][:, None]
-    shapes = np.stack([0.5 * place * (place - 1.0), 0.5 * place * (place + 1.0), 1.0 - place**2])
+    at = GAUSS[0][:, None]
+    shapes = np.stack([0.5 * at * (at - 1.0), 0.5 * at * (at + 1.0), 1.0 - at**2])
     weights = 0.5 * GAUSS[1][:, None] * np.abs(last - first) / (outer - inner)
-    r = 0.5 * (first + last) + 0.5 * place * (last - first)
+    r = 0.5 * (first + last) + 0.5 * at * (last - first)
     plain, over_r = np.zeros((2, elements.places.shape[1]))
     np.add.at(plain, numbers, (shapes * weights).sum(axis=1))
     np.add.at(over_r, numbers, (shapes * (weights / r)).sum(axis=1))

@@ -140,7 +140,7 @@ def reentrant(corners: Array) -> Array:
 
 
 def _quads(surface: int) -> Integers:
-    kinds, _, nodes = gmsh.model.mesh.getElements(2, surface)
-    if list(kinds) != [QUADRANGLE]:
+    types, _, nodes = gmsh.model.mesh.getElements(2, surface)
+    if list(types) != [QUADRANGLE]:
         raise InvalidInput("corners of the section", "no mesh of quadrilaterals", "a simpler section")
     return np.asarray(nodes[0], np.int64).reshape(-1, 4)

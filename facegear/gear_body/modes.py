@@ -78,9 +78,13 @@ def held_solver(body: BodyMatrices, order: int) -> Solve:
 
 
 def order_modes(
-    body: BodyMatrices, order: int, highest: float, solve: Solve | None = None, expected: int = FIRST_TRY
+    body: BodyMatrices,
+    order: int,
+    max_frequency: float,
+    solve: Solve | None = None,
+    expected: int = FIRST_TRY,
 ) -> OrderModes:
-    """All modes of an order up to the frequency `highest` (Hz), or without a limit the lowest `expected` + 1.
+    """All modes of an order up to `max_frequency` (Hz), or where it is infinite the first `expected` + 1.
 
     Raises NotConverged.
 
@@ -98,31 +102,35 @@ def order_modes(
 
     count = expected + 1
     while True:
-        squares, vectors = _lowest(stiffness, mass, inverse, min(count, free.size - 2), order)
-        if squares[-1] > (2.0 * np.pi * highest) ** 2 or squares.size < count or np.isinf(highest):
+        squared, vectors = _smallest(stiffness, mass, inverse, min(count, free.size - 2), order)
+        if (
+            squared[-1] > (2.0 * np.pi * max_frequency) ** 2
+            or squared.size < count
+            or np.isinf(max_frequency)
+        ):
             break
         count += FIRST_TRY
-    kept = squares <= (2.0 * np.pi * highest) ** 2
+    kept = squared <= (2.0 * np.pi * max_frequency) ** 2
     shapes = np.zeros((body.elements.size, int(kept.sum())))
     shapes[free] = vectors[:, kept]
-    return _reduced(body, order, np.sqrt(squares[kept]) / (2.0 * np.pi), _signed(shapes))
+    return _reduced(body, order, np.sqrt(squared[kept]) / (2.0 * np.pi), _signed(shapes))
 
 
-def _lowest(
+def _smallest(
     stiffness: sp.csr_matrix, mass: sp.csr_matrix, inverse: Solve, count: int, order: int
 ) -> tuple[Array, Array]:
-    """Squares of the lowest angular frequencies and their shapes."""
+    """Squares of the smallest angular frequencies and their shapes."""
     operator = LinearOperator(stiffness.shape, matvec=inverse, dtype=float)
     start = np.ones(stiffness.shape[0])
     try:
         with threadpool_limits(1):
-            squares, vectors = eigsh(stiffness, count, mass, sigma=0.0, OPinv=operator, v0=start, tol=1e-11)
+            squared, vectors = eigsh(stiffness, count, mass, sigma=0.0, OPinv=operator, v0=start, tol=1e-11)
     except ArpackNoConvergence as error:
         raise NotConverged(
             "gear body", f"order {order}", f"{len(error.eigenvalues)} of {count} modes"
         ) from None
-    ascending = np.argsort(squares)
-    return squares[ascending], vectors[:, ascending]
+    ascending = np.argsort(squared)
+    return squared[ascending], vectors[:, ascending]
 
 
 def _signed(shapes: Array) -> Array:
@@ -170,9 +178,9 @@ def resonant_speeds(modes: OrderModes, teeth: int, harmonic: int) -> tuple[Array
     w = 2.0 * np.pi * modes.frequencies
     c = modes.gyroscopic_factors if modes.order else np.zeros(w.size)
     added = modes.stiffening_factors + c**2
-    found = []
+    met = []
     for sign in (1.0, -1.0):
         slope = harmonic * teeth - sign * ((modes.order + c) if modes.order else 0.0 * c)
         below = slope**2 - added
-        found.append(np.where((below > 0.0) & (slope > 0.0), w / np.sqrt(np.maximum(below, 1e-300)), np.nan))
-    return found[0], found[1]
+        met.append(np.where((below > 0.0) & (slope > 0.0), w / np.sqrt(np.maximum(below, 1e-300)), np.nan))
+    return met[0], met[1]

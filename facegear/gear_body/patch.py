@@ -30,10 +30,10 @@ class Patch:
 
     def factor(self, order: int) -> float:
         """c_n: the part of a wave of order n that the patch feels."""
-        wide = order * self.half_width
-        if abs(wide - np.pi) < 1e-6:
+        angle = order * self.half_width
+        if abs(angle - np.pi) < 1e-6:
             return 0.5
-        return float(np.sinc(wide / np.pi) / (1.0 - (wide / np.pi) ** 2))
+        return float(np.sinc(angle / np.pi) / (1.0 - (angle / np.pi) ** 2))
 
     def rows(self, order: int, teeth: Array) -> Array:
         """W_p and V_p, (2, ...), from <W>, <V> and <W / r> (3, ...)."""

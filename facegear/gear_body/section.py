@@ -223,8 +223,8 @@ def distance_between(first: Array, second: Array) -> float:
 
 def _from_edge(point: Array, edge: Array) -> float:
     way = edge[1] - edge[0]
-    place = np.clip(np.dot(point - edge[0], way) / np.dot(way, way), 0.0, 1.0)
-    return float(np.linalg.norm(point - edge[0] - place * way))
+    fraction = np.clip(np.dot(point - edge[0], way) / np.dot(way, way), 0.0, 1.0)
+    return float(np.linalg.norm(point - edge[0] - fraction * way))
 
 
 def thinnest(corners: Array) -> float:

@@ -98,15 +98,15 @@ def influence_table(
     rows = []
     for first, second in combinations_with_replacement(meshes, 2):
         angle = sign * (meshes[first] - meshes[second])
-        for one, other in (("drive", "drive"), ("drive", "back"), ("back", "drive")):
-            value = influence(static, angle, flanks[one], flanks[other])
-            rows.append((gear, first, one, second, other, value))
+        for own, other in (("drive", "drive"), ("drive", "back"), ("back", "drive")):
+            value = influence(static, angle, flanks[own], flanks[other])
+            rows.append((gear, first, own, second, other, value))
     columns = ["gear", "first", "first_flank", "second", "second_flank", "compliance_m_per_n"]
     return pd.DataFrame(rows, columns=columns)
 
 
 def shape_arrays(gear: str, body: SolvedBody) -> dict[str, Array]:
-    """Nodes, quadrilaterals and displacements (U, V, W) at the nodes of the lowest modes, for pictures."""
+    """Nodes, quadrilaterals and displacements (U, V, W) at the nodes of the first modes, for pictures."""
     places = body.elements.basis.dofs.nodal_dofs[0]
     shapes, labels = [], []
     for modes in body.orders[:DRAWN_ORDERS]:

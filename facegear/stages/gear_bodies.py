@@ -42,7 +42,7 @@ def _solved(sections: Mapping[str, BodySection], tooth_pair: ToothPair) -> dict[
         if section not in done:
             done[section] = solve_body(
                 body_shape(section, tooth_pair),
-                section.highest_frequency_hz,
+                section.max_frequency_hz,
                 section.nodal_diameters,
                 tooth_pair.face_gear_teeth,
             )
@@ -61,7 +61,7 @@ def _parts(
     patch = contact_patch(section, tooth_pair)
     ratio = tooth_pair.face_gear_teeth / tooth_pair.pinion_teeth
     speed = speed_rpm / ratio / tables.RPM
-    sign = next(one.sign for one in machine.gears if one.side == gear)
+    sign = next(member.sign for member in machine.gears if member.side == gear)
     angles = dict(zip((pinion.name for pinion in machine.pinions), machine.angles.tolist(), strict=True))
     angle = machine.pressure_angle
     return {
@@ -76,9 +76,9 @@ def _summary(bodies: pd.DataFrame, modes: pd.DataFrame) -> str:
     parts = []
     for row in bodies.itertuples():
         own = modes[modes["gear"] == row.gear]
-        lowest = f"from {own['frequency_hz'].min():.1f} Hz" if len(own) else "none"
+        first = f"from {own['frequency_hz'].min():.1f} Hz" if len(own) else "none"
         parts.append(
-            f"{row.gear}: {row.mass_kg:.4g} kg, {len(own)} modes {lowest} "
+            f"{row.gear}: {row.mass_kg:.4g} kg, {len(own)} modes {first} "
             f"(+-{100 * row.frequency_change:.2g} %), {1e9 * row.own_compliance_m_per_n:.4g} nm/N at a mesh"
         )
     return "; ".join(parts)

@@ -15,7 +15,7 @@ from facegear.stages import gear_bodies as stage
 FLEXIBLE = load_config(Path(__file__).parents[3] / "config" / "flexible.yaml")
 DISC = {
     "rim": {"inner_radius_mm": 180.0, "back_mm": -12.0},
-    "highest_frequency_hz": 6000.0,
+    "max_frequency_hz": 6000.0,
     "nodal_diameters": 3,
 }
 

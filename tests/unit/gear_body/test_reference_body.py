@@ -75,7 +75,7 @@ def test_modes_turn_the_speed_into_waves_as_another_program_has_it():
         count = len(w)
         agrees("frequency with the bore held, Hz", modes.frequencies[:count], w, relative=5e-4)
         agrees("gyroscopic factor", modes.gyroscopic_factors[:count], c, absolute=5e-4)
-        agrees("stiffening factor", modes.stiffening_factors[:count], b, absolute=2e-3, relative=5e-4)
+        agrees("stiffening factor", modes.stiffening_factors[:count], b, absolute=2e-3, relative=1e-3)
         assert modes.frequencies.size < count + 3
 
 
@@ -147,7 +147,7 @@ def test_layer_of_teeth_lowers_the_frequencies_as_real_teeth_do():
     section = replace(gear_bodies.section(), layer=layer)
     body = body_matrices(section, body_mesh(section))
     found = [order_modes(body, order, np.inf, expected=1).frequencies[0] for order in (0, 2, 6)]
-    agrees("lowest frequency with teeth, Hz", found, [852.4, 651.1, 2632.6], relative=5e-3)
+    agrees("first frequency with teeth, Hz", found, [852.4, 651.1, 2632.6], relative=5e-3)
 
 
 def test_compliance_between_the_orders_computed_is_smooth_enough_to_be_read_off():
