@@ -19,8 +19,6 @@ from facegear.gear_body.mesh import body_mesh
 from facegear.gear_body.modes import held_solver, order_modes, resonant_speeds, wave_frequencies
 from facegear.gear_body.section import Layer, section_properties
 
-SOURCE = "Fourier elements extrapolated, hexahedra of a whole gear"
-MODULE = "facegear.gear_body.body"
 FREQUENCIES = [
     (897.21, 3037.02, 3374.22),
     (749.79, 3455.77, 4299.08),
@@ -62,13 +60,23 @@ def each(table):
     return [(order, value) for order, row in enumerate(table) for value in row]
 
 
-@against("other program", SOURCE, capability="gear_bodies", module=MODULE)
+@against(
+    "other program",
+    "Fourier elements extrapolated, hexahedra of a whole gear",
+    capability="gear_bodies",
+    module="facegear.gear_body.body",
+)
 def test_mass_and_inertia_of_the_section_are_those_of_its_polygon():
     found = section_properties(gear_bodies.section())
     agrees("mass kg, inertia kg m2", found, [29.7516, 1.262375, 0.643123], relative=2e-6)
 
 
-@against("other program", SOURCE, capability="gear_bodies", module=MODULE)
+@against(
+    "other program",
+    "Fourier elements extrapolated, hexahedra of a whole gear",
+    capability="gear_bodies",
+    module="facegear.gear_body.body",
+)
 def test_modes_turn_the_speed_into_waves_as_another_program_has_it():
     orders = gear_bodies.reference_body().orders
     for modes, w, c, b in zip(orders, FREQUENCIES, GYROSCOPIC, STIFFENING, strict=True):
@@ -79,7 +87,12 @@ def test_modes_turn_the_speed_into_waves_as_another_program_has_it():
         assert modes.frequencies.size < count + 3
 
 
-@against("other program", SOURCE, capability="gear_bodies", module=MODULE)
+@against(
+    "other program",
+    "Fourier elements extrapolated, hexahedra of a whole gear",
+    capability="gear_bodies",
+    module="facegear.gear_body.body",
+)
 def test_forward_and_backward_waves_meet_the_mesh_frequency_where_another_program_has_them():
     orders = gear_bodies.reference_body().orders
     speed = 1206.29 * RPM
@@ -96,7 +109,12 @@ def test_forward_and_backward_waves_meet_the_mesh_frequency_where_another_progra
     agrees("and a backward wave, rpm", np.array(met)[:, 1], MET_BACKWARD, relative=5e-4)
 
 
-@against("other program", SOURCE, capability="gear_bodies", module=MODULE)
+@against(
+    "other program",
+    "Fourier elements extrapolated, hexahedra of a whole gear",
+    capability="gear_bodies",
+    module="facegear.gear_body.body",
+)
 def test_compliance_below_a_mesh_and_between_meshes_is_that_of_another_program():
     static = gear_bodies.reference_body().static(gear_bodies.PATCH)
     for quantity, place, expected in (
@@ -128,7 +146,7 @@ def test_compliance_below_a_mesh_and_between_meshes_is_that_of_another_program()
     "other program",
     "masses of the modes, Fourier elements extrapolated",
     capability="gear_bodies",
-    module=MODULE,
+    module="facegear.gear_body.body",
 )
 def test_hub_that_moves_drags_the_modes_of_none_and_one_nodal_diameter():
     zero, one = gear_bodies.reference_body().orders[:2]
@@ -140,7 +158,10 @@ def test_hub_that_moves_drags_the_modes_of_none_and_one_nodal_diameter():
 
 
 @against(
-    "other program", "cyclic sector of a gear with its 143 teeth", capability="gear_bodies", module=MODULE
+    "other program",
+    "cyclic sector of a gear with its 143 teeth",
+    capability="gear_bodies",
+    module="facegear.gear_body.body",
 )
 def test_layer_of_teeth_lowers_the_frequencies_as_real_teeth_do():
     layer = Layer(0.250, 0.275, 0.012, 0.012 + 2.25 * 3.75e-3)
