@@ -1,21 +1,25 @@
-"""The command line: `python -m facegear run`, `check`, `limits` and `compare`."""
+"""The command line: `facegear new`, `check`, `run`, `report`, `limits` and `compare`."""
 
 import argparse
 import os
 import sys
 from collections.abc import Sequence
+from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
+from typing import NoReturn
 
 from facegear.config.load import load_config, read_layers
-from facegear.errors import EXTRAS, FacegearError, MissingExtra
+from facegear.errors import EXTRAS, ConfigErrors, FacegearError, MissingExtra
+from facegear.io.atomic import atomic_path
+from facegear.questions import QUESTIONS, answered, flag
 
 ROOT = Path(__file__).parents[1]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; a mistake of the user's ends it with one line each and exit code 1."""
-    given = _parser().parse_args(arguments)
+    given = parser().parse_args(arguments)
     try:
         return given.command(given)
     except FacegearError as error:
@@ -23,10 +27,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 1
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser("facegear", description="Spur pinion and face gear transmissions.")
-    commands = parser.add_subparsers(required=True)
-    run = commands.add_parser("run", help="compute a config, or some of its files, with Snakemake")
+def parser() -> argparse.ArgumentParser:
+    top = argparse.ArgumentParser("facegear", description="Spur pinion and face gear transmissions.")
+    top.add_argument("--version", action="version", version=f"facegear {installed_version()}")
+    commands = top.add_subparsers(required=True, metavar="command")
+    new = commands.add_parser("new", help="write a config to start from, asking for what is not given")
+    new.add_argument("config", type=Path, help="file to write, such as own.yaml")
+    for name, (kind, default, text) in QUESTIONS.items():
+        new.add_argument(flag(name), type=kind, help=text + ("" if default is None else f" ({default})"))
+    new.add_argument("--coarse", action="store_true", help="for a first answer soon")
+    new.set_defaults(command=_new)
+    run = commands.add_parser(
+        "run", help="compute all that a config asks for, with Snakemake if it is at hand"
+    )
     run.add_argument("config", type=Path)
     run.add_argument("targets", nargs="*", help="files to make; all of them without any")
     run.add_argument("--cores", default="2")
@@ -34,21 +47,25 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--verbose", action="store_true", help="show all that Snakemake says")
     run.add_argument("--dry-run", "-n", action="store_true", help="only tell what would be run, and why")
     run.set_defaults(command=_run)
+    report = commands.add_parser("report", help="write the report of a config as one html file")
+    report.add_argument("config", type=Path)
+    report.add_argument("--output", type=Path, help="<case>.html in this folder without it")
+    report.add_argument("--results", default="results", help="folder of stored results that are read")
+    report.set_defaults(command=_report)
     check = commands.add_parser("check", help="read and check a config, and compute nothing")
     check.add_argument("config", type=Path)
     check.set_defaults(command=_check)
     limits = commands.add_parser("limits", help="between which radii the face of a gear may lie")
     for name, default in LIMITS.items():
         kind = int if "teeth" in name else float
-        flag = f"--{name.replace('_', '-')}"
-        limits.add_argument(flag, type=kind, required=default is None, default=default)
+        limits.add_argument(flag(name), type=kind, required=default is None, default=default)
     limits.set_defaults(command=_limits)
     compare = commands.add_parser("compare", help="what moved between two folders of results, and why")
     compare.add_argument("old", help="a folder of results, or a release's stored answer such as 0.1.0/quick")
     compare.add_argument("new", help="the same")
     compare.add_argument("--page", type=Path, help="write a report page with both laid over each other")
     compare.set_defaults(command=_compare)
-    return parser
+    return top
 
 
 LIMITS = {
@@ -65,17 +82,74 @@ LIMITS = {
 """Arguments of `limits` and their defaults, if any. A shaper of 0 teeth has three more than the pinion."""
 
 
+def installed_version() -> str:
+    """Version of the package, as far as it is installed at all."""
+    try:
+        return version("facegear")
+    except PackageNotFoundError:
+        return "of a folder that is not installed"
+
+
+def _new(given: argparse.Namespace) -> int:
+    """Write a config and check it; one that is refused is not written."""
+    from facegear.config.starting import Known, starting_config
+
+    if given.config.exists():
+        raise FacegearError(f"{given.config}: exists already; choose another name")
+    if given.config.suffix not in (".yaml", ".yml"):
+        raise FacegearError(f"{given.config}: must end in .yaml")
+    known = Known(case=given.config.stem, coarse=given.coarse, **answered(vars(given)))
+    with atomic_path(given.config) as temporary:
+        temporary.write_text(starting_config(known), encoding="utf-8")
+        try:
+            load_config(temporary)
+        except ConfigErrors as error:
+            raise ConfigErrors("new", list(error.lines)) from None
+    print(f"{given.config}: written; `facegear report {given.config}` computes it")
+    return 0
+
+
 def _run(given: argparse.Namespace) -> int:
-    """Hand over to Snakemake, whose own reader of configs is not met by a file that cannot be read."""
+    """Hand over to Snakemake, whose own reader of configs is not met by a file that cannot be read.
+
+    Where the workflow is not at hand, as it is no part of the wheel, this process computes the same files.
+    """
     read_layers(given.config)
+    return _with_snakemake(given) if (ROOT / "Snakefile").is_file() else _run_here(given)
+
+
+def _with_snakemake(given: argparse.Namespace) -> NoReturn:
     if find_spec("snakemake") is None:
         raise MissingExtra("snakemake", EXTRAS["snakemake"])
-    if not (ROOT / "Snakefile").is_file():
-        raise FacegearError("the workflow is not part of an installed package: run this from its repository")
     command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")]
     command += ["--cores", given.cores, "--directory", given.directory, "--configfile", str(given.config)]
     command += ["--verbose"] * given.verbose + ["--dry-run"] * given.dry_run
     os.execv(sys.executable, [*command, "--", *given.targets])
+
+
+def _run_here(given: argparse.Namespace) -> int:
+    import facegear
+
+    if given.targets or given.dry_run:
+        hint = "the workflow is not part of an installed package: run this from its repository"
+        raise FacegearError(f"run: single files and --dry-run need Snakemake; {hint}")
+    gearbox = facegear.load(given.config, None)
+    folder = Path(given.directory) / "results" / gearbox.config.case
+    print(gearbox.run(folder, _printed))
+    return 0
+
+
+def _report(given: argparse.Namespace) -> int:
+    import facegear
+
+    gearbox = facegear.load(given.config, given.results)
+    path = given.output or Path(f"{gearbox.config.case}.html")
+    print(gearbox.report(path, _printed))
+    return 0
+
+
+def _printed(stage: str, summary: str) -> None:
+    print(f"{stage}: {summary}", file=sys.stderr, flush=True)
 
 
 def _check(given: argparse.Namespace) -> int:

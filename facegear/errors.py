@@ -74,6 +74,8 @@ EXTRAS = {
     "snakemake": "workflow",
     "pyarrow": "workflow",
     "pymoo": "search",
+    "openpyxl": "excel",
+    "trimesh": "exchange",
 }
 """Modules that the core does without, and the extra that holds each."""
 

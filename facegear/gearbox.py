@@ -1,6 +1,6 @@
 """The front door: one object that answers for a machine, from its teeth to its load sharing."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field
 from functools import cache, cached_property
@@ -8,7 +8,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from facegear.config.cases import changed_config
+from facegear.config.cases import changed_config, expand_cases
 from facegear.config.load import config_of, load_config, plain
 from facegear.config.model import Config, resolved
 from facegear.errors import ConfigError, extras_named
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from facegear.results.friction import FrictionResult
     from facegear.results.gear_bodies import GearBodiesResult
     from facegear.results.geometry import GeometryResult
+    from facegear.results.hunting import FollowingResult, HuntingResult, SensitivityResult
     from facegear.results.load_sharing import LoadSharingResult
     from facegear.results.machine_loss import MachineLossResult
     from facegear.results.mesh_law import MeshLawResult
@@ -31,10 +32,13 @@ if TYPE_CHECKING:
     from facegear.results.response import ResponseResult
     from facegear.results.root_stress import RootStressResult
     from facegear.results.search import SearchResult
+    from facegear.results.statics import StaticsResult
     from facegear.results.stiffness import StiffnessResult
     from facegear.results.stress_over_speed import StressOverSpeedResult
+    from facegear.results.study import Study
     from facegear.results.sweep import SweepResult
     from facegear.results.tolerances import LoadMapResult, TolerancesResult
+    from facegear.results.whole_case import WholeCase
     from facegear.scenarios.inverse import Loosest
 
 HOLDS = {"tolerances": "causes and what is asked of them", "search": "variables and objectives"}
@@ -378,6 +382,85 @@ class Gearbox:
         changed = self._changed("load_sharing", _given({"dynamics.speed_rpm": speed_rpm}))
         return changed._chain.result(LoadSharingResult)
 
+    def statics(self) -> "StaticsResult":
+        """Force of every mesh at rest under the mean torques; torque, speed and power of every body.
+
+        Raises NotConverged.
+
+        >>> import facegear
+        >>> facegear.example().statics().table()["flank"].value_counts().to_dict()
+        {'drive': 7, 'back': 3}
+        """
+        from facegear.results.statics import StaticsResult
+
+        return self._chain.result(StaticsResult)
+
+    def hunting(self, positions: int | None = None) -> "HuntingResult":
+        """Load sharing at rest over the hunting cycle, in which every tooth meets every other.
+
+        `positions`: of a mesh cycle, as in section `load_sharing` unless given. Raises NotConverged.
+
+        >>> import facegear
+        >>> table = facegear.example().hunting(positions=4).table()
+        >>> bool((table["k_gamma"].dropna() >= 1).all())
+        True
+        """
+        from facegear.results.hunting import HuntingResult
+
+        given = _given({"load_sharing.hunting_positions": positions})
+        return self._changed("hunting", given)._chain.result(HuntingResult)
+
+    def sensitivity(self, positions: int | None = None) -> "SensitivityResult":
+        """By how much each error of the machine, alone, changes its load sharing at rest; as `hunting`."""
+        from facegear.results.hunting import SensitivityResult
+
+        given = _given({"load_sharing.hunting_positions": positions})
+        return self._changed("sensitivity", given)._chain.result(SensitivityResult)
+
+    def following(self, speed_rpm: float | None = None, cycles: int | None = None) -> "FollowingResult":
+        """Load sharing of the running machine while its runouts and pitch deviations turn.
+
+        `cycles`: mesh cycles that are followed, as in section `load_sharing` unless given.
+
+        Raises NotConverged.
+        """
+        from facegear.results.hunting import FollowingResult
+
+        given = _given({"dynamics.speed_rpm": speed_rpm, "load_sharing.followed_cycles": cycles})
+        return self._changed("following", given)._chain.result(FollowingResult)
+
+    def study(self, values: Mapping[str, Iterable[Any]]) -> "Study":
+        """The machine with some keys changed, in every combination of their values.
+
+        `values`: of each dotted config key. Raises ConfigErrors with one line for every value that the config
+        would refuse.
+
+        >>> import facegear
+        >>> study = facegear.example().study({"transmission.backlash_um": [80, 120]})
+        >>> list(study.machines)
+        ['transmission.backlash_um = 80', 'transmission.backlash_um = 120']
+        """
+        from facegear.results.study import Study, combinations
+
+        changes = combinations(values)
+        return Study({label: self._changed(label, given) for label, given in changes.items()}, changes)
+
+    def report(self, path: str | Path, on_stage: Callable[[str, str], None] | None = None) -> Path:
+        """Write the report of all that the config asks for on one page that needs no other file.
+
+        `on_stage` is called with the name of each stage and its summary as soon as it is known. Returns the
+        path. Raises MissingExtra where a library of the report is not installed, and what the stages raise.
+        """
+        return self._whole_case(on_stage).write_report(path)
+
+    def run(self, folder: str | Path, on_stage: Callable[[str, str], None] | None = None) -> Path:
+        """Compute all that the config asks for in this process and write it, with figures and report.
+
+        Files have the names that the workflow gives them below `folder`. Returns the path of the report;
+        arguments and errors as of `report`.
+        """
+        return self._whole_case(on_stage).write(folder)
+
     def export(self, path: str | Path, body: str = "pinion", teeth: int | None = None) -> Path:
         """Write the exact teeth of a body, modifications included, as STEP or STL (mm), by the path's ending.
 
@@ -496,6 +579,12 @@ class Gearbox:
             return self
         config = changed_config(self.config.model_dump(mode="json"), plain(changes), where)
         return Gearbox(config, self.store)
+
+    def _whole_case(self, on_stage: Callable[[str, str], None] | None) -> "WholeCase":
+        from facegear.results.whole_case import WholeCase
+
+        chain = Chain(self._values, self.store, expand_cases(self.config))
+        return WholeCase(chain) if on_stage is None else WholeCase(chain, on_stage)
 
     @cached_property
     def _chain(self) -> Chain:

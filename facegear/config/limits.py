@@ -1,37 +1,44 @@
 """The radii between which a gear's face may lie, from tooth numbers alone."""
 
 from math import radians
+from typing import Any
 
 from facegear.errors import ConfigError
 from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometry, Shaper
-from facegear.geometry.limits import face_range, radius_limits
+from facegear.geometry.limits import FaceRange, face_range, radius_limits
 from facegear.geometry.validate import check_shaper
 
 
-def limits_in_words(
+def limits_in_words(shaper_teeth: int, pinion_teeth: int, **given: Any) -> str:
+    """One line with both radii (mm) and what limits them; a shaper of 0 teeth has three more than the pinion.
+
+    `given`: the other arguments of `face_limits`. Raises ConfigError for numbers that no pair can have.
+    """
+    shaper = shaper_teeth or pinion_teeth + 3
+    allowed = face_limits(shaper_teeth=shaper, pinion_teeth=pinion_teeth, **given)
+    return f"face_gear radii in mm, with a shaper of {shaper} teeth: {allowed}"
+
+
+def face_limits(
     pinion_teeth: int,
     face_gear_teeth: int,
     module_mm: float,
     pressure_angle_deg: float,
     shaper_teeth: int,
-    pinion_addendum_modules: float,
-    pinion_dedendum_modules: float,
-    profile_shift_modules: float,
-    gear_addendum_modules: float,
-    shaper_addendum_modules: float,
-    shaper_tip_rounding_modules: float,
-) -> str:
-    """One line with both radii (mm) and what limits them; a shaper of 0 teeth has three more than the pinion.
-
-    Raises ConfigError for numbers that no pair can have.
-    """
+    pinion_addendum_modules: float = 1.0,
+    pinion_dedendum_modules: float = 1.25,
+    profile_shift_modules: float = 0.0,
+    gear_addendum_modules: float = 1.0,
+    shaper_addendum_modules: float = 1.25,
+    shaper_tip_rounding_modules: float = 0.0,
+) -> FaceRange:
+    """Radii between which the face may lie. Raises ConfigError for numbers that no pair can have."""
     if not 5 <= pinion_teeth < face_gear_teeth:
         raise ConfigError("pinion_teeth", pinion_teeth, f"from 5 to less than the gear's {face_gear_teeth}")
     if not 0.0 < module_mm <= 100.0:
         raise ConfigError("module_mm", module_mm, "above 0, at most 100")
     if not 10.0 <= pressure_angle_deg <= 40.0:
         raise ConfigError("pressure_angle_deg", pressure_angle_deg, "from 10 to 40")
-    shaper = shaper_teeth or pinion_teeth + 3
     for name, value, low, high in (
         ("pinion_addendum_modules", pinion_addendum_modules, 0.1, 2.0),
         ("pinion_dedendum_modules", pinion_dedendum_modules, 0.1, 2.5),
@@ -59,8 +66,7 @@ def limits_in_words(
         addendum=m * gear_addendum_modules,
         rim_thickness=m,
     )
-    tool = Shaper(shaper, m * shaper_addendum_modules, m * shaper_tip_rounding_modules)
+    tool = Shaper(shaper_teeth, m * shaper_addendum_modules, m * shaper_tip_rounding_modules)
     design = PairDesign(m, radians(pressure_angle_deg), pinion, gear, tool)
     check_shaper(design)
-    allowed = face_range(design, radius_limits(design))
-    return f"face_gear radii in mm, with a shaper of {shaper} teeth: {allowed}"
+    return face_range(design, radius_limits(design))

@@ -38,7 +38,7 @@ def write_manifest(
             "summary": summary,
             "made_at": datetime.now(UTC).isoformat(timespec="seconds"),
             "seconds": round(seconds, 3),
-            "versions": {"python": platform.python_version(), **_versions()},
+            "versions": versions(),
             "machine": {"system": platform.platform(), "cpu": platform.machine(), "cores": os.cpu_count()},
             "params": {key: value for key, value in params.items() if key != "code"},
             "code": params.get("code"),
@@ -52,8 +52,9 @@ def write_manifest(
     )
 
 
-def _versions() -> dict[str, str]:
-    versions = {}
+def versions() -> dict[str, str]:
+    """Versions of Python and of those of LIBRARIES that were imported."""
+    versions = {"python": platform.python_version()}
     for name in LIBRARIES:
         module = name.replace("scikit-fem", "skfem")
         if module in sys.modules or name == "numpy":

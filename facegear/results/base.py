@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
+from facegear.errors import extras_named
 from facegear.pipeline.run import write_stage
 from facegear.pipeline.table import STAGES
 
@@ -46,6 +47,17 @@ class Result:
         stage = STAGES[self.STAGE]
         paths = {name: str(Path(folder) / file.path) for name, file in stage.files.items()}
         return write_stage(stage, self.content, paths)
+
+    def to_excel(self, path: str | Path) -> Path:
+        """Write every table as a sheet of one workbook (.xlsx); returns the path.
+
+        Raises MissingExtra where openpyxl is not installed.
+        """
+        from facegear.io.workbook import write
+
+        tables = {name: part for name, part in self.content.items() if hasattr(part, "columns")}
+        with extras_named():
+            return write(path, tables)
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.source}: {self.summary})"

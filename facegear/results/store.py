@@ -4,6 +4,7 @@ import json
 import warnings
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -25,20 +26,28 @@ ROOT = Path(__file__).parents[2]
 class Store:
     """Results by the part of the config that they depend on; `values` are those of a whole config.
 
-    `folder` is that of the case in the workflow's results, None to read nothing. Changed copies of a machine
-    share a store: what a change does not touch is found again.
+    `folder` is that of the case in the workflow's results, None to read nothing; `others` are folders of
+    cases of the same config, with which this case may share files. Changed copies of a machine share a store:
+    what a change does not touch is found again.
     """
 
     folder: Path | None = None
     known: dict[str, Any] = field(default_factory=dict)
+    others: tuple[Path, ...] = ()
+
+    @property
+    def folders(self) -> tuple[Path, ...]:
+        """All folders in which a file may lie."""
+        return () if self.folder is None else (self.folder, *self.others)
 
     def output(self, name: str, values: Values, compute: Callable[[], "Outcome"]) -> StageOutput:
         """All that a stage gives: known already, else stored and current, else computed."""
 
         def find() -> StageOutput:
-            stored = self._stored(name, values)
-            if stored is not None:
-                return stored
+            for folder in self.folders:
+                stored = self._stored(name, values, folder)
+                if stored is not None:
+                    return stored
             outcome = compute()
             return StageOutput(outcome.content, outcome.summary, "computed")
 
@@ -51,11 +60,11 @@ class Store:
 
         def find() -> Any:
             kept = STAGES[name].files[file]
-            path = None if self.folder is None else self.folder / kept.at(wildcards)
-            if path is not None and self._current_manifest(path, values):
-                stored = _unless_corrupt(lambda: kept.read(path))
-                if stored is not None:
-                    return stored
+            for path in (folder / kept.at(wildcards) for folder in self.folders):
+                if self._current_manifest(path, values):
+                    stored = _unless_corrupt(partial(kept.read, path))
+                    if stored is not None:
+                        return stored
             return compute()
 
         return self._once(name, (file, *wildcards.values()), values, find)
@@ -69,10 +78,8 @@ class Store:
                 self.known[key] = find()
         return self.known[key]
 
-    def _stored(self, name: str, values: Values) -> StageOutput | None:
-        if self.folder is None:
-            return None
-        folder, summary, files = self.folder, "", STAGES[name].readable
+    def _stored(self, name: str, values: Values, folder: Path) -> StageOutput | None:
+        summary, files = "", STAGES[name].readable
         for file in files.values():
             manifest = self._current_manifest(folder / file.path, values)
             if manifest is None:

@@ -1,10 +1,11 @@
 """Speed sweep."""
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
-from facegear.errors import chosen
+from facegear.errors import FacegearError, chosen
 from facegear.results.base import Result
 
 if TYPE_CHECKING:
@@ -36,10 +37,30 @@ class SweepResult(Result):
         """One row a peak of the RMS without mean, with the mode it belongs to."""
         return self.content["resonances"].copy()
 
-    def plot(self, what: str = "meshes") -> "Figure":
-        """RMS of `meshes`, `pinions` or `gears` over speed, `campbell` diagram or `waterfall`."""
+    def plot(
+        self,
+        what: str = "meshes",
+        label: str = "as configured",
+        beside: "Mapping[str, SweepResult] | None" = None,
+    ) -> "Figure":
+        """RMS of `meshes`, `pinions` or `gears` over speed, `campbell` diagram or `waterfall`.
+
+        `beside`: sweeps of other gearboxes with the same meshes by label, drawn in the same axes; of the
+        meshes alone.
+        """
         from facegear.plots.dynamics import SWEEP_FIGURES, drawn_machine
 
         draw = SWEEP_FIGURES[chosen(what, tuple(SWEEP_FIGURES), "plot")]
         teeth = self.values["tooth_pair"]["pinion_teeth"]
-        return draw(self.content, drawn_machine(self.values["transmission"], teeth))
+        machine = drawn_machine(self.values["transmission"], teeth)
+        if not beside:
+            return draw(self.content, machine)
+        from facegear.plots.sweeps_beside import mesh_sweeps_beside
+
+        chosen(what, ("meshes",), "plot beside other sweeps")
+        sweeps = {name: result.content["sweep"] for name, result in {label: self, **beside}.items()}
+        meshes = [f"{pinion}/{side}" for side in machine.sides for pinion in machine.shown]
+        known = [set(sweep["body_or_mesh"]) for sweep in sweeps.values()]
+        if not all(set(meshes) <= names for names in known):
+            raise FacegearError("beside: must be sweeps of machines with the same meshes")
+        return mesh_sweeps_beside(sweeps, meshes)

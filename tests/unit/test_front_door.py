@@ -234,3 +234,73 @@ def test_values_of_a_gearbox_and_of_its_results_are_copies():
     assert facegear.example().values["transmission"]["pinions"]
     again = gearbox.with_values({"dynamics.speed_rpm": 7000}).modes().table()["frequency_hz"].to_list()
     assert gearbox.modes().table()["frequency_hz"].to_list() == again == before
+
+
+def test_the_machine_at_rest_is_in_balance(gearbox):
+    """Every pinion's meshes take the torque that it brings; the gears' torques are those of the teeth."""
+    found = gearbox.statics()
+    bodies, meshes = found.bodies().set_index("body"), found.table()
+    pinions = meshes.groupby(meshes["mesh"].str.rpartition("/")[0])["pinion_torque_n_m"].sum()
+    torque = bodies["torque_n_m"]
+    np.testing.assert_allclose(pinions, torque[pinions.index], atol=1e-7 * torque.abs().max())
+    assert bodies["power_kw"].sum() == pytest.approx(0.0, abs=1e-9 * bodies["power_kw"].abs().max())
+
+
+def test_the_sensitivity_to_an_error_is_the_change_that_the_error_makes(gearbox):
+    """Per um, against a machine with that error of half a micrometre."""
+    found = gearbox.sensitivity(positions=8)
+    row = found.table().query("error == 'error right input/upper' and group == 'right input'").iloc[0]
+
+    def k_gamma(error_um):
+        mesh = {"right input/upper": {"error_um": error_um}}
+        changed = gearbox.with_values({"transmission.single_meshes": mesh})
+        return changed.hunting(positions=8).table().set_index("group").loc["right input", "k_gamma"]
+
+    assert row["per_um"] == pytest.approx(k_gamma(0.5) - k_gamma(-0.5), rel=2e-3)
+
+
+def test_a_study_holds_every_combination_and_says_what_was_changed(gearbox):
+    keys = ("transmission.backlash_um", "mesh_stiffness.mean_n_per_m")
+    study = gearbox.study({keys[0]: [80, 120], keys[1]: np.array([4e8, 5e8])})
+    table = study.table("modes")
+    assert len(study.machines) == 4 and len(table) == 4 * len(gearbox.modes().table())
+    largest = table.groupby(keys[1])["frequency_hz"].agg(["max", "count"])
+    assert largest.loc[5e8, "max"] > largest.loc[4e8, "max"]
+    assert set(largest["count"]) == {len(table) // 2}
+
+
+@pytest.mark.parametrize(
+    ("mistake", "line"),
+    [
+        (lambda g: g.study({"transmission.backlash_um": []}), "must be at least one value"),
+        (lambda g: g.study({"transmission.backlash_um": [-1]}), "backlash_um = -1: must be greater"),
+        (lambda g: g.study({"transmission.backlash_um": [80]}).table("mods"), "answer = 'mods': must be"),
+        (lambda g: g.study({"transmission.backlash_um": [80]}).plot("modes"), "one of load_sharing, sweep"),
+        (lambda g: g.report("own.pdf"), "own.pdf: must end in .html"),
+    ],
+)
+def test_a_mistake_in_a_study_or_a_report_is_one_clear_line(gearbox, mistake, line):
+    with pytest.raises(FacegearError) as caught:
+        mistake(gearbox)
+    assert line in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_sweeps_of_two_machines_stand_in_the_same_axes(gearbox):
+    found = gearbox.sweep(1000, 1200, points=3, directions=["up"])
+    figure = found.plot(label="one", beside={"other": found})
+    assert [text.get_text() for text in figure.legends[0].texts] == ["one, up", "other, up"]
+    curve = found.table()["deflection_ac_rms_um"].sel(direction="up", mesh="tail idler/upper")
+    for line in figure.axes[0].lines:
+        np.testing.assert_array_equal(line.get_ydata(), curve)
+    with pytest.raises(FacegearError, match="must be one of meshes"):
+        found.plot("gears", beside={"other": found})
+
+
+def test_tables_of_an_answer_go_to_a_workbook_and_come_back(gearbox, tmp_path):
+    from facegear.io.workbook import read
+
+    found = gearbox.modes()
+    sheets = read(found.to_excel(tmp_path / "modes.xlsx"))
+    assert set(sheets) == set(found.content)
+    read_back = sheets["frequencies"]["frequency_hz"]
+    np.testing.assert_allclose(read_back, found.table()["frequency_hz"], rtol=1e-15)

@@ -43,15 +43,21 @@ def test_a_report_without_its_template_engine_names_the_extra():
 
 
 @pytest.mark.parametrize("missing", ["snakemake", "Snakefile"])
-def test_run_of_an_installed_package_says_what_it_lacks(tmp_path, monkeypatch, capsys, missing):
+def test_run_says_what_it_lacks_for_single_files(tmp_path, monkeypatch, capsys, missing):
     """From the wheel it ended in the error of a missing module."""
     (tmp_path / "own.yaml").write_text("case: own\n")
-    monkeypatch.setattr(command_line, "ROOT", tmp_path)
     if missing == "snakemake":
         monkeypatch.setattr(command_line, "find_spec", lambda name: None)
-    assert command_line.main(("run", str(tmp_path / "own.yaml"))) == 1
+    else:
+        monkeypatch.setattr(command_line, "ROOT", tmp_path)
+    assert command_line.main(("run", str(tmp_path / "own.yaml"), "-n")) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert ('pip install "facegear[workflow]"' if missing == "snakemake" else "from its repository") in line
+
+
+def test_a_workbook_without_its_library_names_the_extra():
+    line = 'openpyxl is not installed; get it with: pip install "facegear[excel]"'
+    assert message("openpyxl", "gearbox.modes().to_excel('modes.xlsx')") == line
 
 
 def test_a_library_of_no_extra_fails_as_python_says():

@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 from projects import Project, environment
 
+import facegear.__main__ as command_line
+
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), ROOT / "results" / "README.md"]
 COMMANDS = sorted(
@@ -41,6 +43,9 @@ def test_shown_command_is_accepted(command, tmp_path):
         return
     if "workflow/profiles/slurm" in words and find_spec("snakemake_executor_plugin_slurm") is None:
         pytest.skip("snakemake-executor-plugin-slurm is not installed (extra `cluster`, as by `make ci`)")
+    if words[0] == "facegear":
+        assert callable(command_line.parser().parse_args(words[1:]).command)
+        return
     if words[0] == "make":
         done = subprocess.run(
             [*words, "-n"], cwd=ROOT, capture_output=True, text=True, env=environment(), check=False

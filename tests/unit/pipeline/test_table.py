@@ -1,6 +1,5 @@
 """The table of stages is whole: every file once, every argument from somewhere, every page in step."""
 
-import ast
 import inspect
 import re
 from collections.abc import Mapping
@@ -12,6 +11,7 @@ import facegear
 from facegear.config.arguments import typed_arguments
 from facegear.pipeline.listing import listing
 from facegear.pipeline.needs import resolved_needs, stages_before
+from facegear.pipeline.reported import REPORTED
 from facegear.pipeline.stage import FIGURES, Case, load
 from facegear.pipeline.table import STAGES
 from facegear.provenance.fingerprint import reached_modules
@@ -132,13 +132,7 @@ def test_the_page_shows_the_table_as_it_is():
 
 
 def test_the_report_is_given_every_table_that_its_chapters_read():
-    targets = ast.parse((ROOT / "workflow/rules/functions/targets.smk").read_text())
-    (reported,) = (
-        ast.literal_eval(one.value)
-        for one in targets.body
-        if isinstance(one, ast.Assign) and ast.unparse(one.targets[0]) == "REPORTED"
-    )
-    stems = [Path(STAGES[stage].files[file].path).stem for stage, files in reported.items() for file in files]
+    stems = [Path(STAGES[stage].files[file].path).stem for stage, files in REPORTED.items() for file in files]
     assert len(set(stems)) == len(stems)
     sources = [path.read_text() for path in (ROOT / "facegear/report").glob("*.py")]
     read = {name for text in sources for name in re.findall(r'\btables\["(\w+)"\]', text)}

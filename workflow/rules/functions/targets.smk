@@ -1,4 +1,5 @@
 from facegear.pipeline import asked, studies
+from facegear.pipeline.reported import REPORTED
 
 
 def files_of(rule, case):
@@ -12,28 +13,6 @@ def targets(case):
     names = [stage.name for stage in made] + [f"{stage.name}{FIGURES}" for stage in made if stage in DRAWN]
     found = [getattr(rules, name) for name in names] + ([rules.scorecard] if REPRODUCTION else [])
     return [path for rule in found for path in files_of(rule, case)]
-
-
-REPORTED = {
-    "stiffness": ["harmonics"],
-    "ratings": ["ratings", "bodies", "meshes"],
-    "modal": ["frequencies", "contacts"],
-    "dynamics_sweep": ["jumps", "sweep"],
-    "dynamics_response": ["bearings"],
-    "load_sharing_summary": ["summary"],
-    "following": ["groups"],
-    "contact": ["ltca", "by_torque"],
-    "root_stress": ["summary"],
-    "contact_studies": ["table"],
-    "tolerances": ["percentiles", "fractions", "sampling"],
-    "lubrication": ["by_torque", "limits"],
-    "machine_loss": ["machine", "meshes", "bodies"],
-    "friction_studies": ["table"],
-    "rating": ["safety", "rating"],
-    "dynamic_root_stress": ["dynamic_stress"],
-    "stress_over_speed": ["stress_over_speed"],
-}
-"""Tables of each stage that the report reads."""
 
 
 def report_tables(wildcards):

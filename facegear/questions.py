@@ -1,0 +1,53 @@
+"""What `facegear new` asks for."""
+
+import sys
+from collections.abc import Mapping
+from typing import Any
+
+from facegear.errors import ConfigError, FacegearError
+
+QUESTIONS: dict[str, tuple[type[int] | type[float], float | None, str]] = {
+    "pinion_teeth": (int, None, "Teeth of a pinion"),
+    "face_gear_teeth": (int, None, "Teeth of the face gear"),
+    "module_mm": (float, None, "Module in mm"),
+    "torque_n_m": (float, None, "Torque on each pinion in N m"),
+    "speed_rpm": (float, None, "Speed of the pinions in rpm"),
+    "pinions": (int, 1, "Pinions that drive the gear"),
+    "pressure_angle_deg": (float, 25.0, "Pressure angle in degrees"),
+}
+"""What `new` asks: kind of number, default if there is one, and the question."""
+
+
+def flag(name: str) -> str:
+    """The option of an argument."""
+    return f"--{name.replace('_', '-')}"
+
+
+def answered(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Values of QUESTIONS: as given, else as answered at the terminal, else by default.
+
+    Raises FacegearError where there is neither, or an answer is no number.
+    """
+    missing = [name for name in QUESTIONS if given[name] is None]
+    needed = [flag(name) for name in missing if QUESTIONS[name][1] is None]
+    if needed and not sys.stdin.isatty():
+        raise FacegearError(f"new: {', '.join(needed)} must be given, as nobody can be asked")
+    return {
+        name: asked(name) if name in missing and needed else _or_default(name, given) for name in QUESTIONS
+    }
+
+
+def asked(name: str) -> float:
+    """What a user answers to a question; nothing takes the default."""
+    kind, default, text = QUESTIONS[name]
+    answer = input(f"{text}{'' if default is None else f' [{default}]'}: ").strip()
+    if not answer and default is not None:
+        return default
+    try:
+        return kind(answer)
+    except ValueError:
+        raise ConfigError(name, answer, "a whole number" if kind is int else "a number") from None
+
+
+def _or_default(name: str, given: Mapping[str, Any]) -> Any:
+    return QUESTIONS[name][1] if given[name] is None else given[name]

@@ -1,0 +1,78 @@
+"""Load sharing at rest over the hunting cycle, and of the running machine while its runouts turn."""
+
+from typing import TYPE_CHECKING, ClassVar
+
+import pandas as pd
+
+from facegear.errors import FacegearError
+from facegear.results.base import Result
+
+if TYPE_CHECKING:
+    from facegear.plots.style import Figure
+
+
+class HuntingResult(Result):
+    """How the machine at rest shares its load, tooth by tooth, until every pair of teeth has met."""
+
+    STAGE: ClassVar = "hunting"
+
+    def table(self) -> pd.DataFrame:
+        """One row a group: loads of its meshes and K_gamma, the largest over the nominal even share."""
+        return self.content["groups"].copy()
+
+    def meshes(self) -> pd.DataFrame:
+        """One row a mesh: loads (N), K_gamma, fractions of the cycle on each flank, open and wedged."""
+        return self.content["meshes"].copy()
+
+    def bearings(self) -> pd.DataFrame:
+        """One row a body: force on its bearing (N)."""
+        return self.content["bearings"].copy()
+
+    def cycles(self) -> pd.DataFrame:
+        """One row a mesh cycle: share of each mesh in its group's load."""
+        return self.content["cycles"].copy()
+
+    def plot(self) -> "Figure":
+        """Share of each mesh in its group's load over the hunting cycle."""
+        from facegear.plots.hunting import hunting_figure
+
+        return hunting_figure(self.content["cycles"], self.content["meshes"], self._torque)
+
+    @property
+    def _torque(self) -> float:
+        groups = self.content["groups"]
+        if groups.empty:
+            raise FacegearError(f"{self.values['case']}: no meshes share a load, there is nothing to draw")
+        return float(groups["torque_n_m"].iloc[0])
+
+
+class SensitivityResult(HuntingResult):
+    """By how much each error, one at a time, changes the load sharing at rest."""
+
+    def table(self) -> pd.DataFrame:
+        """One row an error and group, largest first: change of K_gamma per um."""
+        return self.content["sensitivity"].copy()
+
+    def bearing_stiffness(self) -> pd.DataFrame:
+        """K_gamma against the bearing stiffness of the pinions of each role."""
+        return self.content["scan"].copy()
+
+    def plot(self) -> "Figure":
+        """The errors that matter most."""
+        from facegear.plots.hunting import sensitivity_figure
+
+        return sensitivity_figure(self.content["sensitivity"], self._torque)
+
+
+class FollowingResult(Result):
+    """How the running machine shares its load while runouts and pitch deviations turn."""
+
+    STAGE: ClassVar = "following"
+
+    def table(self) -> pd.DataFrame:
+        """One row a group: K_gamma and K_v of the running machine beside K_gamma at rest."""
+        return self.content["groups"].copy()
+
+    def meshes(self) -> pd.DataFrame:
+        """One row a mesh: loads (N), K_gamma and K_v."""
+        return self.content["meshes"].copy()

@@ -1,0 +1,80 @@
+"""Variants of one machine side by side."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from facegear.config.load import plain
+from facegear.errors import FacegearError
+from facegear.results.base import Result
+
+if TYPE_CHECKING:
+    from facegear.plots.style import Figure
+
+Changes = Mapping[str, Mapping[str, Any]]
+"""Changed keys and their values by the label of a machine."""
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """Machines by label, and what was changed in each.
+
+    >>> import facegear
+    >>> study = facegear.example().study({"mesh_stiffness.mean_n_per_m": [4e8, 5e8]})
+    >>> study.table("modes").groupby("mesh_stiffness.mean_n_per_m")["frequency_hz"].max().round(1).to_list()
+    [5921.6, 6231.0]
+    """
+
+    machines: Mapping[str, Any]
+    changes: Changes
+
+    def results(self, answer: str, **arguments: Any) -> dict[str, Result]:
+        """What each machine answers, by label; `answer` is a method of a gearbox, `arguments` are its own.
+
+        Raises FacegearError for an answer that there is not, and what the answer raises.
+        """
+        asked = {label: getattr(machine, answer, None) for label, machine in self.machines.items()}
+        results = {}
+        for label, ask in asked.items():
+            given = ask(**arguments) if callable(ask) and not answer.startswith("_") else None
+            if not isinstance(given, Result):
+                raise FacegearError(f"answer = {answer!r}: must be a method of a gearbox that gives a result")
+            results[label] = given
+        return results
+
+    def table(self, answer: str, **arguments: Any) -> pd.DataFrame:
+        """The tables of an answer under each other, with the changed keys as columns in front."""
+        parts = []
+        for label, result in self.results(answer, **arguments).items():
+            part = result.table()  # type: ignore[attr-defined]
+            if not isinstance(part, pd.DataFrame):
+                part = part.to_dataframe().reset_index()
+            values = {
+                key: str(value) if isinstance(value, list | dict) else value
+                for key, value in self.changes[label].items()
+            }
+            parts.append(pd.concat([pd.DataFrame(values, index=part.index), part], axis=1))
+        return pd.concat(parts, ignore_index=True)
+
+    def plot(self, answer: str, plot: Mapping[str, Any] | None = None, **arguments: Any) -> "Figure":
+        """All machines in the same axes, for answers whose plot takes others `beside` it.
+
+        `plot`: further arguments of that plot. Those answers are load_sharing and sweep.
+        """
+        (label, first), *others = self.results(answer, **arguments).items()
+        if answer not in ("load_sharing", "sweep"):
+            raise FacegearError(f"answer = {answer!r}: must be one of load_sharing, sweep")
+        return first.plot(label=label, beside=dict(others), **(plot or {}))  # type: ignore[attr-defined]
+
+
+def combinations(values: Mapping[str, Iterable[Any]]) -> dict[str, dict[str, Any]]:
+    """Label -> keys and values, in every combination. Raises FacegearError for a key without values."""
+    axes = {key: plain(list(given)) for key, given in values.items()}
+    for key, given in axes.items():
+        if not given:
+            raise FacegearError(f"study: {key} = []: must be at least one value")
+    points = [dict(zip(axes, point, strict=True)) for point in product(*axes.values())]
+    return {", ".join(f"{key} = {value}" for key, value in point.items()): point for point in points}

@@ -1,0 +1,132 @@
+"""All that a config asks for, computed in this process: the report, and every file of the case."""
+
+import time
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from facegear.config.arguments import typed_arguments
+from facegear.errors import FacegearError, extras_named
+from facegear.io.atomic import atomic_path
+from facegear.pipeline.asked import machine_loads
+from facegear.pipeline.needs import resolved_needs
+from facegear.pipeline.reported import REPORTED, asked_for, reported_tables, shown_pair
+from facegear.pipeline.run import write_stage
+from facegear.pipeline.stage import Stage, load
+from facegear.pipeline.table import STAGES
+from facegear.provenance.manifest import versions
+from facegear.results.base import StageOutput
+from facegear.results.chain import Chain
+
+OnStage = Callable[[str, str], None]
+"""Is called with the name of each stage and its summary as soon as it is known."""
+NOT_REPORTED = ("mesh", "mesh_law", "machine_code")
+"""Stages whose files only other programs and stages read."""
+
+
+@dataclass(frozen=True, eq=False)
+class WholeCase:
+    """A case by its chain, which must know all cases of the config."""
+
+    chain: Chain
+    on_stage: OnStage = lambda name, summary: None
+    records: list[Mapping[str, Any]] = field(default_factory=list)
+
+    def write_report(self, path: str | Path) -> Path:
+        """Write the report as one page that needs no other file; returns its path."""
+        path = Path(path)
+        if path.suffix != ".html":
+            raise FacegearError(f"{path}: must end in .html")
+        with extras_named(), TemporaryDirectory() as folder:
+            stages = [stage for stage in self._asked() if _is_reported(stage)]
+            text = self._page(Path(folder), stages, png=False)
+        with atomic_path(path) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+        return path
+
+    def write(self, folder: str | Path) -> Path:
+        """Write the files of every stage, its figures and the report below `folder`.
+
+        They have the names and contents that the workflow gives them, without records of what made them.
+        Returns the path of the report.
+        """
+        folder = Path(folder)
+        for stage in self._asked():
+            content = self._output(stage).content
+            paths = {
+                name: [str(folder / file.at({"each": text})) for text in file.each(self.chain.case)]
+                if file.each
+                else str(folder / file.path)
+                for name, file in stage.files.items()
+            }
+            write_stage(stage, content, paths)
+        with extras_named():
+            text = self._page(folder / "figures", self._asked(), png=True)
+        with atomic_path(folder / "report.html") as temporary:
+            temporary.write_text(text, encoding="utf-8")
+        return folder / "report.html"
+
+    def _asked(self) -> list[Stage]:
+        return [stage for name, stage in STAGES.items() if asked_for(name, self.chain.case)]
+
+    def _output(self, stage: Stage) -> StageOutput:
+        """What a stage gives; recorded the first time."""
+        start = time.perf_counter()
+        output = self.chain.output(stage.name)
+        if stage.name not in [record["rule"] for record in self.records]:
+            seconds = round(time.perf_counter() - start, 3)
+            record = {"rule": stage.name, "summary": output.summary, "seconds": seconds}
+            self.records.append({**record, "versions": versions()})
+            self.on_stage(stage.name, output.summary)
+        return output
+
+    def _page(self, folder: Path, stages: list[Stage], png: bool) -> str:
+        from facegear.report.case import case_report
+
+        for stage in stages:
+            self._output(stage)
+        wanted = reported_tables(self.chain.case)
+        if machine_loads(self.chain.case):
+            wanted.append(("duty_loads", "duty_loads"))
+        tables = {
+            Path(STAGES[name].files[file].path).stem: self.chain.part(name, file) for name, file in wanted
+        }
+        pictures = {name: path for stage in stages for name, path in self._drawn(stage, folder, png)}
+        values = {**self.chain.values, "reproduction": False}
+        return case_report(
+            values, tables, pictures, self.records, self._part("geometry", "pair"), self._view()
+        )
+
+    def _drawn(self, stage: Stage, folder: Path, png: bool) -> Iterator[tuple[str, Path]]:
+        """Names and paths (svg) of a stage's figures, drawn into a folder.
+
+        `png`: each as a png as well, not only one that the report shows so for its size.
+        """
+        if stage.figures is None or not stage.figures.named(self.chain.case):
+            return
+        from facegear.plots.style import save
+        from facegear.report.case import LARGEST_SVG
+
+        draw, needs = load(stage.figures.draw), resolved_needs(stage.figures.needs, self.chain.case)
+        figures = draw(**self.chain.given(stage.figures.upstream), **typed_arguments(draw, needs))
+        for name, figure in zip(stage.figures.named(self.chain.case), figures, strict=True):
+            path = folder / f"{name}.svg"
+            save(figure, path)
+            if png or path.stat().st_size > LARGEST_SVG:
+                save(figure, path.with_suffix(".png"))
+            yield name, path
+
+    def _part(self, stage: str, file: str) -> Any:
+        return self.chain.part(stage, file) if asked_for(stage, self.chain.case) else None
+
+    def _view(self) -> Any:
+        if (loads := self._part("contact", "pressure")) is None:
+            return None
+        stress, friction = self._part("root_stress", "stress"), self._part("lubrication", "local")
+        return shown_pair(self.chain.values, self.chain.part("contact", "ltca"), loads, stress, friction)
+
+
+def _is_reported(stage: Stage) -> bool:
+    return stage.name in REPORTED or (stage.figures is not None and stage.name not in NOT_REPORTED)

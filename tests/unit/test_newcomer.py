@@ -1,0 +1,100 @@
+"""From nothing to the report of a machine by the commands of docs/first_machine.md, without Snakemake."""
+
+import io
+import re
+import shlex
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+import facegear
+import facegear.__main__ as command_line
+from facegear.config.yaml_file import read_yaml
+from facegear.gearbox import load
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "first_machine.md").read_text()
+COMMANDS = [shlex.split(line) for line in re.findall(r"(?m)^(facegear .*)$", PAGE)]
+LIGHT = {
+    "mesh_stiffness: {torque_n_m: 600, harmonics_kept: 3}": "mesh_stiffness: {source: harmonics, table: "
+    "[{order: 0, b_n_per_m: 4.1e8}, {order: 1, a_n_per_m: 2.0e7}]}",
+    "transmission_error: from_contact": "transmission_error: {amplitude_um: 5}",
+    "points: 12, chunks: 1": "points: 2, chunks: 1",
+}
+"""What a test changes in the config, so that no contact is solved."""
+
+
+@cache
+def computed_once(path):
+    """The gearbox of a config, whichever command asks for it."""
+    return load(path, None)
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """An empty folder, and a package installed without its workflow; a config is computed once."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(command_line, "ROOT", tmp_path)
+    monkeypatch.setattr(facegear, "load", lambda path, results: computed_once(path))
+    return tmp_path
+
+
+def test_each_command_of_the_page_works_in_turn(folder, capsys):
+    new, *others = COMMANDS
+    assert command_line.main(new[1:]) == 0
+    text = (folder / "own.yaml").read_text()
+    for old, light in LIGHT.items():
+        assert old in text
+        text = text.replace(old, light)
+    (folder / "own.yaml").write_text(text)
+    assert [command[1] for command in others] == ["check", "report", "run"]
+    for command in others:
+        assert command_line.main(command[1:]) == 0, capsys.readouterr().err
+    page = (folder / "own.html").read_text()
+    assert "1 pinion of 23 teeth and 1 face gear" in page
+    written = (folder / "results" / "own" / "report.html").read_text()
+    assert re.findall(r"<figcaption>.*?</figcaption>", page) == re.findall(
+        r"<figcaption>.*?</figcaption>", written
+    )
+    for name in ("modal/frequencies.csv", "dynamics/sweep.csv", "figures/campbell.svg"):
+        assert (folder / "results" / "own" / name).is_file(), name
+
+
+def test_what_is_not_given_is_asked_and_an_empty_answer_takes_the_default(folder, monkeypatch):
+    answers = iter(["23", "143", "3.75", "600", "7500", "", "20"])
+    monkeypatch.setattr("sys.stdin", type("Terminal", (io.StringIO,), {"isatty": lambda self: True})())
+    monkeypatch.setattr("builtins.input", lambda question: next(answers))
+    assert command_line.main(("new", "own.yaml")) == 0
+    values = read_yaml("own.yaml")
+    assert values["tooth_pair"]["pressure_angle_deg"] == 20
+    assert len(values["transmission"]["pinions"]) == 1
+
+
+GIVEN = ("--pinion-teeth=23", "--face-gear-teeth=143", "--module-mm=3.75", "--torque-n-m=600")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (("own.yaml", *GIVEN), "new: --speed-rpm must be given"),
+        (("there.yaml", *GIVEN, "--speed-rpm=1"), "there.yaml: exists already"),
+        (("own.txt", *GIVEN, "--speed-rpm=1"), "own.txt: must end in .yaml"),
+        (("own.yaml", *GIVEN, "--speed-rpm=0"), "speed_rpm = 0.0: must be above 0"),
+        (("own.yaml", *GIVEN, "--speed-rpm=1", "--module-mm=-1"), "module_mm = -1.0: must be above 0"),
+        (("own.yaml", *GIVEN, "--speed-rpm=1", "--torque-n-m=1"), "new: mesh.resolution = "),
+    ],
+)
+def test_a_mistake_ends_new_in_one_line_and_writes_nothing(folder, monkeypatch, capsys, arguments, line):
+    (folder / "there.yaml").write_text("case: there\n")
+    monkeypatch.setattr("sys.stdin", io.StringIO())
+    assert command_line.main(("new", *arguments)) == 1
+    message = capsys.readouterr().err
+    assert message.startswith(line) and message.count("\n") == 1
+    assert [path.name for path in folder.iterdir()] == ["there.yaml"]
+
+
+def test_the_command_says_its_version(capsys):
+    with pytest.raises(SystemExit) as ended:
+        command_line.main(("--version",))
+    assert ended.value.code == 0 and re.fullmatch(r"facegear \S.*\n", capsys.readouterr().out)
