@@ -36,18 +36,13 @@ class HuntingResult(Result):
         """Share of each mesh in its group's load over the hunting cycle."""
         from facegear.plots.hunting import hunting_figure
 
-        return hunting_figure(self.content["cycles"], self.content["meshes"], self._torque)
-
-    @property
-    def _torque(self) -> float:
-        groups = self.content["groups"]
-        if groups.empty:
-            raise FacegearError(f"{self.values['case']}: no meshes share a load, there is nothing to draw")
-        return float(groups["torque_n_m"].iloc[0])
+        return hunting_figure(self.content["cycles"], self.content["meshes"], _torque(self))
 
 
-class SensitivityResult(HuntingResult):
+class SensitivityResult(Result):
     """By how much each error, one at a time, changes the load sharing at rest."""
+
+    STAGE: ClassVar = "hunting"
 
     def table(self) -> pd.DataFrame:
         """One row an error and group, largest first: change of K_gamma per um."""
@@ -61,7 +56,7 @@ class SensitivityResult(HuntingResult):
         """The errors that matter most."""
         from facegear.plots.hunting import sensitivity_figure
 
-        return sensitivity_figure(self.content["sensitivity"], self._torque)
+        return sensitivity_figure(self.content["sensitivity"], _torque(self))
 
 
 class FollowingResult(Result):
@@ -76,3 +71,11 @@ class FollowingResult(Result):
     def meshes(self) -> pd.DataFrame:
         """One row a mesh: loads (N), K_gamma and K_v."""
         return self.content["meshes"].copy()
+
+
+def _torque(result: Result) -> float:
+    """Torque that the figures name, N m. Raises FacegearError where no meshes share a load."""
+    groups = result.content["groups"]
+    if groups.empty:
+        raise FacegearError(f"{result.values['case']}: no meshes share a load, there is nothing to draw")
+    return float(groups["torque_n_m"].iloc[0])

@@ -72,7 +72,17 @@ def test_wheel_holds_every_module_template_and_schema(installed):
 
 @pytest.mark.xdist_group("wheel")
 def test_wheel_holds_neither_the_reproduction_nor_the_validation(installed):
-    assert {path.name for path in installed.iterdir() if path.suffix != ".dist-info"} == {"facegear"}
+    assert {path.name for path in installed.iterdir() if path.suffix != ".dist-info"} == {"facegear", "bin"}
+
+
+@pytest.mark.xdist_group("wheel")
+def test_wheel_brings_the_command_facegear(installed):
+    assert [path.name for path in (installed / "bin").iterdir()] == ["facegear"]
+    given = {**os.environ, "PYTHONPATH": str(installed)}
+    done = subprocess.run(
+        [installed / "bin" / "facegear", "--version"], env=given, capture_output=True, text=True, check=True
+    )
+    assert re.fullmatch(r"facegear \d\S*\n", done.stdout)
 
 
 @pytest.mark.xdist_group("wheel")
