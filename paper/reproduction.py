@@ -9,12 +9,21 @@ from facegear.config.load import located
 from facegear.config.yaml_file import read_yaml
 
 
+class InputSet(Section):
+    """Inputs for what the publication leaves out, in a config of their own."""
+
+    label: str = Field(min_length=1, description="what they are called on the page of the figures")
+    case: str = Field(min_length=1, description="case of that config, the folder of its results")
+    config: str = Field(min_length=1, description="name of the config from the folder of the Snakefile")
+
+
 class Reproduction(Section):
     """What the results of a case are held against."""
 
     claims: str = Field(min_length=1, description="its claims (yaml)")
     sets: str | None = Field(None, min_length=1, description="sets of undisclosed inputs that fit (csv)")
     runs: str | None = Field(None, min_length=1, description="runs of those sets and of the config (csv)")
+    inputs: tuple[InputSet, ...] = Field((), description="whose figures one may switch between")
     random: str | None = Field(None, min_length=1, description="claims held by random inputs (csv)")
 
 
@@ -24,5 +33,5 @@ def read_reproduction(path: str | Path) -> Reproduction:
     Raises ConfigErrors with one line for every mistake.
     """
     read, folder = parse(Reproduction, read_yaml(path), str(path)), Path(path).parent
-    files = {key: file for key, file in read.model_dump().items() if file is not None}
+    files = {key: file for key, file in read.model_dump(exclude={"inputs"}).items() if file is not None}
     return read.model_copy(update={key: located(file, folder) for key, file in files.items()})
