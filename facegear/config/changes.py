@@ -12,7 +12,11 @@ PAIR = "tooth_pair."
 LUBRICATION = "lubrication."
 TEETH = ("pinion_teeth", "face_gear_teeth", "module_mm", "pressure_angle_deg")
 """Keys of the tooth pair that the lumped model needs; its other data must not rerun modes or dynamics."""
-GAPS = ("assembly", "pinion.tip_relief", "pinion.root_relief", "pinion.lead_crowning")
+GAPS = (
+    "assembly",
+    *("pinion.tip_relief", "pinion.root_relief", "pinion.lead_crowning"),
+    "face_gear.modifications",
+)
 """Keys of the tooth pair that move unloaded flanks, and no node of the bodies."""
 MODULI = tuple(f"{body}material.young_modulus_gpa" for body in ("", "pinion.", "face_gear."))
 """Keys of the tooth pair that a compliance is inversely proportional to."""

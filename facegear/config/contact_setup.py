@@ -20,7 +20,7 @@ class ContactSetup:
 
 
 def contact_setup(tooth_pair: ToothPair, mesh: Mesh, contact: Contact) -> ContactSetup:
-    """With as many cuts along the face as the contact ellipse of a crowned pinion asks for.
+    """With as many cuts along the face as the contact ellipse of a crowned pair asks for.
 
     Raises ConfigError for a pair without bodies, and for an ellipse that no cuts resolve.
     """

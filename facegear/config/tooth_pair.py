@@ -10,6 +10,7 @@ from facegear.errors import ConfigError, NotConverged
 from facegear.geometry.design import (
     AssemblyErrors,
     FaceGearGeometry,
+    GearModifications,
     Material,
     PairDesign,
     PinionGeometry,
@@ -27,13 +28,13 @@ class MaterialSection(Section):
 
 
 class ReliefSection(Section):
-    """A modification of the pinion's flank, removed along the normal."""
+    """A modification of a flank, removed along the normal."""
 
     amount_um: float = Field(default=0.0, ge=0, le=500)
     start_mm: float = Field(
         default=0.0,
         ge=0,
-        description="tip, root: roll length from the end with the full amount; crowning: plain half width",
+        description="tip, root, end: length from the end with the full amount; crowning: plain half width",
     )
     length_mm: float = Field(default=0.0, ge=0, description="over which it grows from nothing to the amount")
 
@@ -57,6 +58,25 @@ class PinionSection(Section):
     material: MaterialSection | None = Field(default=None, description="if not the pair's")
 
 
+class GearModificationsSection(Section):
+    """What is taken off both flanks of the face gear along the normal, as docs/geometry.md draws it."""
+
+    tip_relief: ReliefSection = ReliefSection()
+    root_relief: ReliefSection = ReliefSection()
+    end_relief: ReliefSection = ReliefSection()
+    profile_crowning: ReliefSection = ReliefSection()
+    lead_crowning: ReliefSection = ReliefSection()
+    lead_slope_um: float = Field(
+        default=0.0, ge=-500, le=500, description="off the outer end, onto the inner"
+    )
+    profile_slope_um: float = Field(
+        default=0.0, ge=-500, le=500, description="off the tip, onto as far below the pitch plane"
+    )
+    bias_um: float = Field(
+        default=0.0, ge=-500, le=500, description="off the outer tip and inner root, onto the other two"
+    )
+
+
 class FaceGearSection(Section):
     """Face gear blank."""
 
@@ -64,6 +84,7 @@ class FaceGearSection(Section):
     outer_radius_mm: float = Field(gt=0, le=10000)
     addendum_modules: float = Field(default=1.0, gt=0, le=2)
     rim_thickness_mm: float = Field(gt=0, description="from the root land to the back, which is clamped")
+    modifications: GearModificationsSection = GearModificationsSection()
     material: MaterialSection | None = Field(default=None, description="if not the pair's")
 
 
@@ -151,6 +172,7 @@ def pair_design(section: ToothPair) -> PairDesign:
             outer_radius=1e-3 * gear.outer_radius_mm,
             addendum=m * gear.addendum_modules,
             rim_thickness=1e-3 * gear.rim_thickness_mm,
+            modifications=_modifications(gear.modifications),
         ),
         shaper=Shaper(shaper.teeth, m * shaper.addendum_modules, m * shaper.tip_rounding_modules),
         assembly=AssemblyErrors(
@@ -187,6 +209,19 @@ def pair(section: ToothPair) -> Pair:
 
 def _material(section: MaterialSection) -> Material:
     return Material(1e9 * section.young_modulus_gpa, section.poisson_ratio)
+
+
+def _modifications(section: GearModificationsSection) -> GearModifications:
+    return GearModifications(
+        tip_relief=_relief(section.tip_relief),
+        root_relief=_relief(section.root_relief),
+        end_relief=_relief(section.end_relief),
+        profile_crowning=_relief(section.profile_crowning),
+        lead_crowning=_relief(section.lead_crowning),
+        lead_slope=1e-6 * section.lead_slope_um,
+        profile_slope=1e-6 * section.profile_slope_um,
+        bias=1e-6 * section.bias_um,
+    )
 
 
 def _relief(section: ReliefSection) -> Relief:

@@ -83,26 +83,29 @@ def resolves(spacing: float, design: PairDesign, materials: tuple[Material, Mate
 
 
 def ellipse_half_length(design: PairDesign, materials: tuple[Material, Material], torque: float) -> float:
-    """Half-length (m) along the face of a crowned pinion's contact ellipse at a torque (N m).
+    """Half-length (m) along the face of a crowned pair's contact ellipse at a torque (N m).
 
-    inf without crowning. Two pairs share the torque evenly; each touches the nearly flat gear flank at the
-    pitch point.
+    inf without lead crowning of either gear. Two pairs share the torque evenly; each touches the nearly flat
+    gear flank at the pitch point.
     """
-    crowning = design.pinion.lead_crowning
-    if crowning.amount <= 0.0 or crowning.length <= 0.0:
+    both = (design.pinion.lead_crowning, design.face_gear.modifications.lead_crowning)
+    crownings = [crowning for crowning in both if crowning.amount > 0.0 and crowning.length > 0.0]
+    if not crownings:
         return inf
     from facegear.contact.hertz import contact_modulus, longer_semi_axis
 
-    along = 2.0 * crowning.amount / crowning.length**2
+    along = sum(2.0 * crowning.amount / crowning.length**2 for crowning in crownings)
     across = 1.0 / (design.pinion_pitch_radius * sin(design.pressure_angle))
     force = torque / design.pinion_base_radius / 2.0
-    return crowning.start + longer_semi_axis(force, across, along, contact_modulus(materials))
+    return min(crowning.start for crowning in crownings) + longer_semi_axis(
+        force, across, along, contact_modulus(materials)
+    )
 
 
 def along_the_ellipse(
     design: PairDesign, materials: tuple[Material, Material], sizes: MeshSizes, plan: ContactPlan
 ) -> ContactPlan:
-    """The plan with as many cuts along the face as the contact ellipse of a crowned pinion asks for.
+    """The plan with as many cuts along the face as the contact ellipse of a crowned pair asks for.
 
     At the smallest torque its half-length holds PLANES planes of nodes. Raises InvalidInput where that takes
     more than MAX_CUTS cuts.
@@ -115,7 +118,7 @@ def along_the_ellipse(
         raise InvalidInput(
             "element size",
             f"{1e3 * sizes.width:.3g} mm along the face",
-            f"at most {needed:.3g} mm: at {torque:g} N m the crowned pinion's contact ellipse is "
+            f"at most {needed:.3g} mm: at {torque:g} N m the crowned pair's contact ellipse is "
             f"{2e3 * half:.3g} mm long",
         )
     return replace(plan, refinement=replace(plan.refinement, width=cuts))

@@ -34,10 +34,10 @@ def involute(angle: float) -> float:
 class Relief:
     """A flank modification removed along the normal: `amount` (m) over `length` (m) beyond `start` (m).
 
-    Tip and root relief measure roll length along the line of action from the flank's tip or root end inwards:
-    the full amount holds within `start` of the end and falls linearly to zero over the next `length`.
-    Lead crowning measures from the middle of the face: nothing within `start`, then a parabola reaching
-    `amount` after `length`.
+    Tip, root and end relief measure from an end of the flank inwards: the full amount holds within `start` of
+    the end and falls linearly to zero over the next `length`. Crownings measure from a middle: nothing within
+    `start`, then a parabola reaching `amount` after `length`. Across the pinion's profile lengths are roll
+    lengths along the line of action, across the gear's they are depths below the tip plane.
     """
 
     amount: float = 0.0
@@ -65,6 +65,25 @@ class PinionGeometry:
 
 
 @dataclass(frozen=True)
+class GearModifications:
+    """What is taken off both flanks of the face gear along the normal; see `gear_modifications`.
+
+    lead_slope: amount (m) at the outer end of the face, added at the inner end. profile_slope: amount (m) at
+    the tip plane, added as far below the pitch plane. bias: amount (m) at the outer end of the tip, with the
+    sign of the product of both.
+    """
+
+    tip_relief: Relief = field(default_factory=Relief)
+    root_relief: Relief = field(default_factory=Relief)
+    end_relief: Relief = field(default_factory=Relief)
+    profile_crowning: Relief = field(default_factory=Relief)
+    lead_crowning: Relief = field(default_factory=Relief)
+    lead_slope: float = 0.0
+    profile_slope: float = 0.0
+    bias: float = 0.0
+
+
+@dataclass(frozen=True)
 class FaceGearGeometry:
     """Face gear blank (m): ends are coaxial cylinders, tip and root lands are planes."""
 
@@ -73,6 +92,7 @@ class FaceGearGeometry:
     outer_radius: float
     addendum: float
     rim_thickness: float
+    modifications: GearModifications = field(default_factory=GearModifications)
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
-from facegear.geometry.design import PairDesign, Relief
+from facegear.geometry.design import PairDesign
+from facegear.geometry.reliefs import linear, parabola
 
 
 def involute_point(design: PairDesign, roll: ArrayLike) -> tuple[Array, Array]:
@@ -96,19 +97,7 @@ def removed(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> Array:
     from_root = base * (roll - junction_roll(design))
     from_middle = np.abs(np.asarray(y, float) - design.mean_radius)
     return (
-        _linear(part.tip_relief, from_tip)
-        + _linear(part.root_relief, from_root)
-        + _parabola(part.lead_crowning, from_middle)
+        linear(part.tip_relief, from_tip)
+        + linear(part.root_relief, from_root)
+        + parabola(part.lead_crowning, from_middle)
     )
-
-
-def _linear(relief: Relief, from_end: Array) -> Array:
-    if relief.amount == 0:
-        return np.zeros_like(from_end)
-    return relief.amount * np.clip((relief.start + relief.length - from_end) / relief.length, 0, 1)
-
-
-def _parabola(relief: Relief, from_middle: Array) -> Array:
-    if relief.amount == 0:
-        return np.zeros_like(from_middle)
-    return relief.amount * np.maximum((from_middle - relief.start) / relief.length, 0) ** 2

@@ -3,7 +3,7 @@
 A ray from each pinion point along its outward normal is cut with the gear's flank, fillet, tip land and root
 land in turn until one is hit (Newton on the closed forms, `facegear.geometry.rays`). Positive: a gap;
 negative: the point is inside the gear. The gear ends at its inner and outer cylinders: a ray that misses the
-tooth there has gap inf.
+tooth there has gap inf. What modifications take off the gear lengthens the rays, to first order.
 """
 
 from dataclasses import dataclass
@@ -11,9 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from facegear.arrays import Array
+from facegear.arrays import Array, Mask
 from facegear.errors import NotConverged
-from facegear.geometry.design import PairDesign
+from facegear.geometry.design import GearModifications, PairDesign
+from facegear.geometry.gear_modifications import opened
 from facegear.geometry.pinion_surface import SurfacePoints
 from facegear.geometry.placement import to_left_flank
 from facegear.geometry.ray_blank import gear_rays
@@ -90,6 +91,17 @@ def separation(
             raise NotConverged(
                 "separation", f"{lost} rays at the gear", "Newton from two starts, 40 steps each"
             )
+        hit[0] = hit[0] + _opened(design, starts, ways, hit[0], hit[1] != ROOT_LAND)
+        hit[4] = hit[4] + _opened(design, starts, ways, hit[4], True)
         for target, values in zip((gap, part, u, v, continued), hit, strict=True):
             target[rows] = values.reshape(-1, count)
     return Separation(gap=gap, part=part, u=u, v=v, continued=continued)
+
+
+def _opened(design: PairDesign, starts: Array, ways: Array, length: Array, where: Mask | bool) -> Array:
+    """How much longer rays of a length (n,) become by the gear's modifications where they count."""
+    if design.face_gear.modifications == GearModifications():
+        return np.zeros_like(length)
+    length = np.where(where, length, np.inf)
+    with np.errstate(invalid="ignore"):
+        return opened(design, starts + length[:, None] * ways, ways)

@@ -9,6 +9,7 @@ import numpy as np
 from facegear.errors import GeometryError
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign, Relief
+from facegear.geometry.gear_modifications import flank_depth
 from facegear.geometry.limits import THINNEST_LAND, RadiusLimits, face_range, radius_limits
 from facegear.geometry.roots import root
 
@@ -27,7 +28,9 @@ def check(design: PairDesign) -> RadiusLimits:
     _check_pinion(design)
     _check_relief(design)
     check_shaper(design)
-    return _check_gear(design)
+    limits = _check_gear(design)
+    _check_gear_modifications(design)
+    return limits
 
 
 def _refuse(key: str, value: float, allowed: str) -> None:
@@ -96,12 +99,39 @@ def _check_relief(design: PairDesign) -> None:
         ("root_relief", part.root_relief, flank),
         ("lead_crowning", part.lead_crowning, inf),
     ):
-        _check_modification(name, relief, room, MAX_RELIEF * design.module)
-    _check_crowning_at_end(part.lead_crowning, part.width / 2, MAX_RELIEF * design.module)
+        _check_modification(f"pinion.{name}", relief, room, MAX_RELIEF * design.module, "roll length")
+    where = "pinion.lead_crowning", "the pinion's face"
+    _check_crowning_at_end(part.lead_crowning, part.width / 2, MAX_RELIEF * design.module, *where)
 
 
-def _check_crowning_at_end(crowning: Relief, half_width: float, max_relief: float) -> None:
-    """The parabola of a crowning goes on beyond its length, up to the ends of the pinion's face."""
+def _check_gear_modifications(design: PairDesign) -> None:
+    gear, made, at_most = design.face_gear, design.face_gear.modifications, MAX_RELIEF * design.module
+    half, depth = 0.5 * (gear.outer_radius - gear.inner_radius), float(flank_depth(design)(gear.inner_radius))
+    for name, relief, room, what in (
+        ("tip_relief", made.tip_relief, depth, "depth at the inner end"),
+        ("root_relief", made.root_relief, depth, "depth at the inner end"),
+        ("end_relief", made.end_relief, half, "half-length along the face"),
+        ("profile_crowning", made.profile_crowning, inf, ""),
+        ("lead_crowning", made.lead_crowning, inf, ""),
+    ):
+        _check_modification(f"face_gear.modifications.{name}", relief, room, at_most, what)
+    for name, crowning, reach in (
+        ("lead_crowning", made.lead_crowning, half),
+        ("profile_crowning", made.profile_crowning, gear.addendum),
+    ):
+        where = f"face_gear.modifications.{name}", "the gear's flank"
+        _check_crowning_at_end(crowning, reach, at_most, *where)
+    for name in ("lead_slope", "profile_slope", "bias"):
+        amount = getattr(made, name)
+        if abs(amount) > at_most:
+            allowed = f"within {1e6 * at_most:.1f}, {MAX_RELIEF:g} modules"
+            _refuse(f"face_gear.modifications.{name}_um", 1e6 * amount, allowed)
+
+
+def _check_crowning_at_end(
+    crowning: Relief, half_width: float, max_relief: float, key: str, face: str
+) -> None:
+    """The parabola of a crowning goes on beyond its length, up to the ends of the face."""
     beyond = half_width - crowning.start
     if crowning.amount == 0 or beyond <= 0:
         return
@@ -110,24 +140,22 @@ def _check_crowning_at_end(crowning: Relief, half_width: float, max_relief: floa
         min_length = beyond * sqrt(crowning.amount / max_relief)
         allowed = (
             f"at least {1e3 * min_length:.4g}: the parabola would take {1e6 * at_end:.0f} um off the ends "
-            f"of the pinion's face, and at most {1e6 * max_relief:.1f}, {MAX_RELIEF:g} modules, may come off"
+            f"of {face}, and at most {1e6 * max_relief:.1f}, {MAX_RELIEF:g} modules, may come off"
         )
-        _refuse("pinion.lead_crowning.length_mm", 1e3 * crowning.length, allowed)
+        _refuse(f"{key}.length_mm", 1e3 * crowning.length, allowed)
 
 
-def _check_modification(name: str, relief: Relief, room: float, max_relief: float) -> None:
+def _check_modification(key: str, relief: Relief, room: float, max_relief: float, what: str) -> None:
     if relief.amount == 0:
         return
     if relief.amount > max_relief:
         allowed = f"at most {1e6 * max_relief:.1f}, {MAX_RELIEF:g} modules"
-        _refuse(f"pinion.{name}.amount_um", 1e6 * relief.amount, allowed)
+        _refuse(f"{key}.amount_um", 1e6 * relief.amount, allowed)
     if relief.length <= 0:
-        _refuse(f"pinion.{name}.length_mm", 1e3 * relief.length, "greater than 0 where an amount is given")
+        _refuse(f"{key}.length_mm", 1e3 * relief.length, "greater than 0 where an amount is given")
     if relief.start + relief.length > room:
         end = 1e3 * (relief.start + relief.length)
-        _refuse(
-            f"pinion.{name}.length_mm", end, f"with start at most {1e3 * room:.3f}, the flank's roll length"
-        )
+        _refuse(f"{key}.length_mm", end, f"with start at most {1e3 * room:.3f}, the flank's {what}")
 
 
 def check_shaper(design: PairDesign) -> None:

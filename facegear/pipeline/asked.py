@@ -190,11 +190,12 @@ def without_gaps(case: Case) -> Any:
 def without_loads(case: Case) -> Any:
     """Section contact without LOADING, so that cases that differ in loads share their compliance.
 
-    Its cuts along the face are those that the contact ellipse of a crowned pinion asks for.
+    Its cuts along the face are those that the contact ellipse of a crowned pair asks for.
     """
     section = {key: value for key, value in case.values["contact"].items() if key not in LOADING}
-    pinion = case.values["tooth_pair"]["pinion"]
-    if pinion is None or not pinion["lead_crowning"]["amount_um"]:
+    pinion, gear = (case.values["tooth_pair"][body] for body in BODIES)
+    crowned = (pinion, gear and gear["modifications"])
+    if not any(made and made["lead_crowning"]["amount_um"] for made in crowned):
         return section
     from facegear.config.arguments import typed_arguments
     from facegear.config.contact_setup import contact_setup

@@ -9,7 +9,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from facegear.errors import GeometryError
-from facegear.geometry.design import FaceGearGeometry, PairDesign, PinionGeometry, Relief, Shaper
+from facegear.geometry.design import (
+    FaceGearGeometry,
+    GearModifications,
+    PairDesign,
+    PinionGeometry,
+    Relief,
+    Shaper,
+)
 from facegear.geometry.limits import face_range, radius_limits
 from facegear.geometry.outline import pinion_outline
 from facegear.geometry.pinion import removed
@@ -18,6 +25,8 @@ from facegear.geometry.validate import MAX_RELIEF, check
 from facegear.mesh.quality import scaled_jacobians
 from facegear.mesh.sizes import named_sizes
 from facegear.mesh.tooth import gear_tooth, pinion_tooth
+
+GEAR, MADE = "face_gear__modifications", "face_gear.modifications"
 
 
 def changed(design, **changes):
@@ -48,6 +57,11 @@ def changed(design, **changes):
         ({"pinion__tip_relief": Relief(1e-5, 0.0, 0.0)}, "pinion.tip_relief.length_mm"),
         ({"pinion__root_relief": Relief(1e-5, 0.01, 0.02)}, "pinion.root_relief.length_mm"),
         ({"pinion__lead_crowning": Relief(20e-6, 0.0, 1e-3)}, "pinion.lead_crowning.length_mm"),
+        ({GEAR: GearModifications(tip_relief=Relief(1e-3, 0.0, 1e-3))}, f"{MADE}.tip_relief.amount_um"),
+        ({GEAR: GearModifications(root_relief=Relief(1e-5, 0.0, 0.0))}, f"{MADE}.root_relief.length_mm"),
+        ({GEAR: GearModifications(end_relief=Relief(1e-5, 8e-3, 8e-3))}, f"{MADE}.end_relief.length_mm"),
+        ({GEAR: GearModifications(lead_crowning=Relief(1e-5, 0.0, 1e-3))}, f"{MADE}.lead_crowning.length_mm"),
+        ({GEAR: GearModifications(bias=-1e-3)}, f"{MADE}.bias_um"),
     ],
 )
 def test_impossible_designs_name_the_key(pair, change, key):

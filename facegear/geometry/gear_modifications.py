@@ -1,0 +1,85 @@
+"""Modifications of the face gear's flanks: material taken off along the normal, and the gap that this opens.
+
+Everything is for the right flank of tooth 0 in the gear body frame (see `design`). A place on the flank is
+its gear radius and its depth below the tip plane. Beyond the edges of the flank, on the tip land and in the
+fillet, the amount at the edge stands.
+"""
+
+from functools import lru_cache
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike
+
+from facegear.arrays import Array
+from facegear.geometry import face_gear
+from facegear.geometry.design import PairDesign
+from facegear.geometry.reliefs import linear, parabola, parabola_curvature
+
+GRAZING = 0.1
+"""Cosine between ray and normal below which the gap along the ray is not extended further."""
+
+
+@lru_cache(maxsize=16)
+def flank_depth(design: PairDesign) -> "scipy.interpolate.CubicSpline":
+    """Depth (m) below the tip plane of the flank's end at the fillet, by gear radius (m)."""
+    gear, roll = design.face_gear, design.shaper_tip_roll
+    radius = np.linspace(gear.inner_radius, gear.outer_radius, 65)
+    ends = face_gear.flank_point(design, roll, face_gear.psi_at(design, radius, roll))
+    return scipy.interpolate.CubicSpline(radius, design.gear_tip_plane - ends[..., 2])
+
+
+def removed(design: PairDesign, radius: ArrayLike, depth: ArrayLike) -> Array:
+    """Material (m) taken off along the normal at gear radius and depth below the tip plane (m).
+
+    Negative where slopes or bias add material. Tip relief is measured from the tip plane, root relief from
+    where the flank ends, end relief from either end of the face, crownings from the middle of the face and
+    from the pitch plane.
+    """
+    gear, made = design.face_gear, design.face_gear.modifications
+    at: Array = np.clip(np.asarray(radius, float), gear.inner_radius, gear.outer_radius)
+    deepest: Array = flank_depth(design)(at)
+    below: Array = np.clip(np.asarray(depth, float), 0.0, deepest)
+    along = (at - design.mean_radius) / (0.5 * (gear.outer_radius - gear.inner_radius))
+    across = 1.0 - below / gear.addendum
+    return (
+        linear(made.tip_relief, below)
+        + linear(made.root_relief, deepest - below)
+        + linear(made.end_relief, np.minimum(at - gear.inner_radius, gear.outer_radius - at))
+        + parabola(made.lead_crowning, np.abs(at - design.mean_radius))
+        + parabola(made.profile_crowning, np.abs(below - gear.addendum))
+        + made.lead_slope * along
+        + made.profile_slope * across
+        + made.bias * along * across
+    )
+
+
+def crowned(design: PairDesign, points: Array) -> tuple[Array, Array]:
+    """Curvatures (1/m) that crownings add at points (..., 3) of the flank, convex positive: along the depth
+    below the tip plane, and along the gear radius.
+    """
+    made = design.face_gear.modifications
+    from_middle = np.abs(np.hypot(points[..., 0], points[..., 1]) - design.mean_radius)
+    from_pitch_plane = np.abs(design.gear_tip_plane - points[..., 2] - design.face_gear.addendum)
+    return (
+        parabola_curvature(made.profile_crowning, from_pitch_plane),
+        parabola_curvature(made.lead_crowning, from_middle),
+    )
+
+
+def opened(design: PairDesign, points: Array, directions: Array) -> Array:
+    """How much longer (n,) m rays become that end at `points` (n, 3) of the unmodified gear.
+
+    directions (n, 3): of unit length, from the pinion. First order in what is removed: against the exactly
+    displaced flank 0.1 um at 50 um. Points that are not finite open nothing.
+    """
+    opening = np.zeros(len(points))
+    ends = np.flatnonzero(np.isfinite(points).all(axis=-1))
+    gear, points = design.face_gear, points[ends]
+    radius = np.clip(np.hypot(points[:, 0], points[:, 1]), gear.inner_radius, gear.outer_radius)
+    depth = np.clip(design.gear_tip_plane - points[:, 2], 0.0, flank_depth(design)(radius))
+    roll, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane - depth)
+    normal = face_gear.flank_normal(design, roll, psi)
+    cosine = np.maximum(-np.einsum("ij,ij->i", normal, directions[ends]), GRAZING)
+    opening[ends] = removed(design, radius, depth) / cosine
+    return opening
