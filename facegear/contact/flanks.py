@@ -14,6 +14,7 @@ from facegear.contact.options import Refinement
 from facegear.contact.teeth import ContactSide, pinion_points
 from facegear.geometry import face_gear
 from facegear.geometry.design import PairDesign
+from facegear.geometry.gear_modifications import tip_edge_as_made
 from facegear.geometry.opposite import FilletCurve, GearHits, fillet_curve
 from facegear.geometry.pinion_surface import SurfacePoints
 
@@ -142,7 +143,7 @@ class GearSurface:
         gear, columns = self.design.face_gear, self.lattice.shape[1]
         along, _, _ = edge_hats(columns)
         radius = gear.inner_radius + along / (columns - 1) * (gear.outer_radius - gear.inner_radius)
-        points = face_gear.tip_edge(self.design, radius) * np.array([-1.0, 1.0, 1.0])
+        points = tip_edge_as_made(self.design, radius) * np.array([-1.0, 1.0, 1.0])
         return np.stack([np.zeros(along.size), along], axis=1), points
 
     @cached_property

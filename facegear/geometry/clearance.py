@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from facegear.arrays import Array
 from facegear.geometry import face_gear
 from facegear.geometry.design import PairDesign
+from facegear.geometry.gear_modifications import fillet_as_made, flank_as_made
 from facegear.geometry.outline import PINION_PARTS, pinion_outline, signed_distance
 from facegear.geometry.placement import mirrored, to_pinion_section
 
@@ -79,13 +80,12 @@ def gear_points(design: PairDesign) -> dict[str, Array]:
     top, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
     roll = top + np.linspace(0, 1, 12)[1:, None] * (design.shaper_tip_roll - top)
     slopes = face_gear.fillet_slopes(design, radius, np.linspace(0, 1, 12)[:, None])
-    beta, z = face_gear.fillet_section(design, radius, slopes)
     half_pitch = pi / face.teeth
     land = np.linspace(half_pitch - face_gear.root_half_angle(design), half_pitch, 4)[:, None]
     points = {
-        "tip edge": face_gear.flank_point(design, top, psi),
-        "flank": face_gear.flank_point(design, roll, face_gear.psi_at(design, radius, roll)),
-        "fillet": face_gear.cylindrical(radius, beta, z),
+        "tip edge": flank_as_made(design, top, psi),
+        "flank": flank_as_made(design, roll, face_gear.psi_at(design, radius, roll)),
+        "fillet": fillet_as_made(design, radius, slopes),
         "root land": face_gear.cylindrical(radius, land, design.gear_root_plane),
     }
     return {name: part.reshape(-1, 3) * [-1, 1, 1] for name, part in points.items()}

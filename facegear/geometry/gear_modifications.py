@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
 from facegear.geometry import face_gear
-from facegear.geometry.design import PairDesign
+from facegear.geometry.design import GearModifications, PairDesign
 from facegear.geometry.reliefs import linear, parabola, parabola_curvature
 
 GRAZING = 0.1
@@ -52,6 +52,29 @@ def removed(design: PairDesign, radius: ArrayLike, depth: ArrayLike) -> Array:
         + made.profile_slope * across
         + made.bias * along * across
     )
+
+
+def flank_as_made(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
+    """Points (..., 3) of the flank, see `face_gear.flank_point`, less what is taken off there."""
+    points = face_gear.flank_point(design, roll, psi)
+    if design.face_gear.modifications == GearModifications():
+        return points
+    taken = removed(design, np.hypot(points[..., 0], points[..., 1]), design.gear_tip_plane - points[..., 2])
+    return points - taken[..., None] * face_gear.flank_normal(design, roll, psi)
+
+
+def tip_edge_as_made(design: PairDesign, radius: ArrayLike) -> Array:
+    """Points (..., 3) of the flank's tip edge at gear radii (m) of the unmodified gear."""
+    return flank_as_made(design, *face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane))
+
+
+def fillet_as_made(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Array:
+    """Points (..., 3) of the fillet, see `face_gear.fillet_section`, less what the end of the flank loses."""
+    points = face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, psi))
+    if design.face_gear.modifications == GearModifications():
+        return points
+    taken = removed(design, radius, flank_depth(design)(radius))
+    return points - taken[..., None] * face_gear.fillet_normal(design, radius, psi)
 
 
 def crowned(design: PairDesign, points: Array) -> tuple[Array, Array]:

@@ -17,6 +17,7 @@ from facegear.arrays import Array
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.bodies import Body
 from facegear.geometry.design import PairDesign, Relief
+from facegear.geometry.gear_modifications import fillet_as_made, flank_as_made
 from facegear.geometry.pinion_surface import fillet_points, flank_points
 from facegear.geometry.placement import body_rotation
 
@@ -153,9 +154,9 @@ def _gear_half(design: PairDesign, profile: int, width: int) -> HalfTooth:
     fraction = np.linspace(0.0, 1.0, profile)[:, None]
     top, _ = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane)
     roll = top + fraction * (design.shaper_tip_roll - top)
-    flank = face_gear.flank_point(design, roll, face_gear.psi_at(design, radius, roll))
+    flank = flank_as_made(design, roll, face_gear.psi_at(design, radius, roll))
     slopes = face_gear.fillet_slopes(design, radius, fraction)
-    fillet = face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, slopes))
+    fillet = fillet_as_made(design, radius, slopes)
     fillet[0] = flank[-1]
     step = np.linspace(0.0, 1.0, few)[:, None]
     tip, last = (np.arctan2(line[:, 0], line[:, 1]) for line in (flank[0], fillet[-1]))

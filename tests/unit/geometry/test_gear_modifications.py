@@ -103,3 +103,11 @@ def test_crowned_flanks_are_curved_more_by_the_second_derivative_of_what_is_take
     before, after = (opposite_curvatures(one, roll, roll, psi, to_gear)[0] for one in (plain, design))
     added = 2 * 20 * UM / (3.0 * MM) ** 2
     assert 0.7 * added < after[0] - before[0] < added
+
+
+def test_the_tip_edge_stands_back_from_the_pinion_by_what_is_taken_off_there(pair):
+    design = modified(pair(25), KINDS["tip relief"])
+    radius = np.linspace(0.251, 0.274, 7)
+    moved = face_gear.tip_edge(design, radius) - gear_modifications.tip_edge_as_made(design, radius)
+    np.testing.assert_allclose(np.linalg.norm(moved, axis=1), 50 * UM, rtol=1e-9)
+    assert (moved[:, 0] > 0).all()
