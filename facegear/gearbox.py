@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from facegear.results.tolerances import LoadMapResult, TolerancesResult
     from facegear.results.whole_case import WholeCase
     from facegear.scenarios.inverse import Loosest
+    from facegear.transmission.machine import Machine
 
 HOLDS = {"tolerances": "causes and what is asked of them", "search": "variables and objectives"}
 """Sections that a config may leave out, and what they say."""
@@ -461,11 +462,17 @@ class Gearbox:
         return self._whole_case(on_stage).write(folder)
 
     def export(self, path: str | Path, body: str = "pinion", teeth: int | None = None) -> Path:
-        """Write the exact teeth of a body, modifications included, as STEP or STL (mm), by the path's ending.
+        """Write a model for another program, by the path's ending; returns the path.
 
-        `body`: pinion or face_gear; `teeth`: a sector of so many, the whole gear unless given. Returns the
-        path. Raises FacegearError for anything else, ConfigError for a pair without bodies.
+        STEP or STL (mm): the exact teeth of a body, modifications included; `body`: pinion or face_gear;
+        `teeth`: a sector of so many, the whole gear unless given. FMU: the dynamic model as C sources for
+        co-simulation (FMI 3.0), at the config's speed. Raises FacegearError for anything else and for what an
+        FMU cannot hold, ConfigError for a pair without bodies and for a config without a transmission.
         """
+        if Path(path).suffix == ".fmu":
+            from facegear.exchange.fmu import write_fmu
+
+            return write_fmu(path, self._machine(), self._values["dynamics"]["speed_rpm"])
         with extras_named():
             from facegear.stages.cad import export
 
@@ -578,6 +585,16 @@ class Gearbox:
             return self
         config = changed_config(self.config.model_dump(mode="json"), plain(changes), where)
         return Gearbox(config, self.store)
+
+    def _machine(self) -> "Machine":
+        """The lumped machine as the dynamics take it. Raises ConfigError without a transmission."""
+        from facegear.config.arguments import typed_arguments
+        from facegear.config.machines import wired_machine
+
+        given = self._chain.arguments("dynamics_response")
+        named = {"section": given["transmission"], "teeth": given["teeth"], "stiffness": given["harmonics"]}
+        named |= {name: given[name] for name in ("friction", "law") if name in given}
+        return wired_machine(**typed_arguments(wired_machine, named))
 
     def _whole_case(self, on_stage: Callable[[str, str], None] | None) -> "WholeCase":
         from facegear.results.whole_case import WholeCase

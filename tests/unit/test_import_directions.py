@@ -38,6 +38,7 @@ MAY_IMPORT = {
     "scenarios": set(),
     "strength": {"geometry", "contact", "transmission", "dynamics", "load_sharing"},
     "lubrication": {"geometry", "contact", "harmonics"},
+    "exchange": {"dynamics", "transmission", "harmonics", "mesh_law"},
     "variants": {
         *("config", "geometry", "contact", "stiffness", "harmonics"),
         *("transmission", "dynamics", "load_sharing", "scenarios", "strength", "lubrication"),
