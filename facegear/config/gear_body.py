@@ -63,6 +63,7 @@ class BodySection(Section):
         10000.0, gt=0, le=1e6, description="modes up to it are kept; what the others give counts as static"
     )
     nodal_diameters: int = Field(12, ge=0, le=40, description="largest number of which modes are kept")
+    damping_ratio: float = Field(0.002, ge=0, le=0.5, description="of every mode, in the steel that turns")
     contact_width_pitches: float = Field(
         4.0, gt=0, le=40, description="width of the raised cosine by which a mesh loads the rim; 4 fits"
     )

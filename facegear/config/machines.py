@@ -10,8 +10,11 @@ from facegear.arrays import Arrays
 from facegear.config.lumped_model import ToothNumbers, lumped_sections, machine
 from facegear.config.mesh_law import flank_tables
 from facegear.config.transmission import Transmission
+from facegear.gear_body.reduced import ReducedBody
 from facegear.harmonics.series import Harmonics
 from facegear.stiffness.tables import series_of, unloaded_error
+from facegear.transmission.elastic_gears import ElasticGears
+from facegear.transmission.layout import Layout
 from facegear.transmission.machine import Machine
 
 
@@ -22,12 +25,13 @@ def wired_machine(
     unloaded: Harmonics | None = None,
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    bodies: Arrays | None = None,
 ) -> Machine:
     """The machine of section `transmission`; the mesh stiffness as a series or as the table of its stage.
 
     A table from contact brings the pair's own e(t); with a series it is `unloaded`, in m. friction: table
     `excitation` of stage lubrication, where friction disturbs the motion. law: arrays of stage mesh_law,
-    where forces depend on the load.
+    where forces depend on the load. bodies: arrays `reduced` of stage gear_bodies, where face gears bend.
     """
     if isinstance(stiffness, Harmonics):
         built = machine(section, teeth, stiffness, unloaded)
@@ -35,11 +39,27 @@ def wired_machine(
         built = machine(section, teeth, series_of(stiffness), unloaded_error(stiffness))
     if law is not None:
         built = replace(built, tables=flank_tables(law, built.layout))
+    if bodies is not None:
+        elastic = elastic_gears(bodies, built.layout)
+        built = replace(built, bodies=elastic, softening=elastic.softening())
     if friction is None:
         return built
     from facegear.config.mesh_friction import with_friction  # only friction needs compiled statics
 
     return with_friction(built, friction)
+
+
+def elastic_gears(bodies: Arrays, layout: Layout) -> ElasticGears:
+    """The gears of a layout that bend, from the arrays `reduced` of stage gear_bodies."""
+    numbered = {gear.side.value: number for number, gear in enumerate(layout.gears)}
+    return ElasticGears(
+        layout,
+        {
+            number: ReducedBody.of_arrays(bodies, side)
+            for side, number in numbered.items()
+            if f"{side}_order" in bodies
+        },
+    )
 
 
 def case_machine(values: Mapping[str, Any], stiffness: Harmonics | pd.DataFrame) -> Machine:

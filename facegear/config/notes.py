@@ -5,7 +5,6 @@ from typing import Any
 
 from facegear.config.buildable import preloads
 from facegear.config.checks import geometric_backlash
-from facegear.config.elastic_bodies import any_elastic
 from facegear.config.lumped_model import lumped_sections
 from facegear.config.tooth_pair import ToothPair
 from facegear.geometry.design import BACKLASH_DIFFERS_UM
@@ -22,11 +21,6 @@ EXTERNAL = (
     "transmission: external forces on {} act at rest and in motion, the same at every speed and torque of a "
     "duty cycle"
 )
-RIGID_ELSEWHERE = (
-    "transmission.face_gear.body: stage gear_bodies computes modes and compliance of the bodies with their "
-    "hubs held; all other results take the face gears as rigid (docs/bodies.md)"
-)
-
 WITHOUT_FRICTION = (
     "lubrication.friction.effect = excitation: {} leave out how friction disturbs the motion; loss, "
     "temperature and film of samples are those of the forces without it (docs/friction.md)"
@@ -36,8 +30,7 @@ WITHOUT_FRICTION = (
 def notes(values: Mapping[str, Any]) -> list[str]:
     """Lines for a config of one's own that counts as the publication does, for errors that turn, for dynamics
     with a backlash other than that of the teeth, for preloads and external forces, for numbers that several
-    causes move, for face gears that bend in one stage alone, and for friction that samples and designs leave
-    out of their motion.
+    causes move, and for friction that samples and designs leave out of their motion.
     """
     transmission = values["transmission"]
     if transmission is None:
@@ -46,7 +39,6 @@ def notes(values: Mapping[str, Any]) -> list[str]:
     return (
         [PRINTED] * own
         + [SLOW] * turns(transmission)
-        + [RIGID_ELSEWHERE] * any_elastic(transmission)
         + _backlash(values)
         + _preloads(values)
         + _pushes(transmission)

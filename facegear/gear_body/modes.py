@@ -37,6 +37,8 @@ class OrderModes:
         <W>, <V> and <W / r> on height 0 below the teeth.
     hub : (2, m)
         Coupling of masses Q with the rigid motions of `rigid_motions`; none above order 1, where it is zero.
+    hub_spin : (m,)
+        Coupling g with a rotation of the hub about its axis; none above order 0.
     """
 
     order: int
@@ -47,6 +49,7 @@ class OrderModes:
     centrifugal: Array
     teeth: Array
     hub: Array
+    hub_spin: Array
 
     @property
     def gyroscopic_factors(self) -> Array:
@@ -153,6 +156,7 @@ def _reduced(body: BodyMatrices, order: int, frequencies: Array, shapes: Array) 
         centrifugal=factor * shapes.T @ (body.centrifugal @ shapes),
         teeth=np.stack(body.on_teeth) @ shapes,
         hub=factor * rigid.T @ (body.mass @ shapes),
+        hub_spin=(1.0 if order == 0 else 0.0) * factor * rigid[:, 1] @ (body.coriolis @ shapes),
     )
 
 

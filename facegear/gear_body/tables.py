@@ -8,6 +8,7 @@ import pandas as pd
 from facegear.arrays import Array
 from facegear.gear_body.body import SolvedBody
 from facegear.gear_body.compliance import flank_direction, influence
+from facegear.gear_body.excitation import phase_factors
 from facegear.gear_body.modes import resonant_speeds, wave_frequencies
 from facegear.gear_body.patch import Patch
 from facegear.gear_body.section import section_properties
@@ -16,6 +17,8 @@ RPM = 30.0 / np.pi
 DRAWN_MODES = 2
 """Modes of each order whose shapes are stored."""
 DRAWN_ORDERS = 7
+HARMONICS = (1, 2, 3)
+"""Multiples of the mesh frequency whose crossings are listed."""
 
 
 def body_table(gear: str, body: SolvedBody, patch: Patch, pressure_angle: float) -> pd.DataFrame:
@@ -61,6 +64,7 @@ def mode_table(gear: str, body: SolvedBody, speed: float, teeth: int, ratio: flo
                     "round_fraction": modes.torsional,
                     "gyroscopic_factor": modes.gyroscopic_factors,
                     "stiffening_factor": modes.stiffening_factors,
+                    "speed_rpm": ratio * RPM * speed,
                     "forward_hz": forward,
                     "backward_hz": backward,
                     "forward_met_rpm": met[0],
@@ -70,6 +74,30 @@ def mode_table(gear: str, body: SolvedBody, speed: float, teeth: int, ratio: flo
             )
         )
     return pd.concat(parts, ignore_index=True)
+
+
+def crossing_table(
+    gear: str, body: SolvedBody, teeth: int, ratio: float, last_rpm: float, angles: Array
+) -> pd.DataFrame:
+    """One row a crossing of a mesh harmonic with a wave, hub held, up to the pinion speed `last_rpm`.
+
+    phase_factor: how many times the force of one mesh drives the wave where all meshes of the gear, at angles
+    (n,), carry the same force; their number where all add up, 0 where they cancel.
+    """
+    rows = []
+    for modes in body.orders:
+        waves = ("forward", "backward") if modes.order else ("standing",)
+        for harmonic in HARMONICS:
+            speeds = resonant_speeds(modes, teeth, harmonic)
+            factors = phase_factors(modes.order, harmonic, teeth, angles)
+            for wave, met, factor in zip(waves, speeds, factors, strict=False):
+                for number, speed in enumerate(met):
+                    frequency = harmonic * teeth * speed / (2.0 * np.pi)
+                    rpm = ratio * RPM * speed
+                    if rpm <= last_rpm:
+                        rows.append((gear, modes.order, number + 1, wave, harmonic, rpm, frequency, factor))
+    columns = ("gear", "nodal_diameters", "mode", "wave", "harmonic", "speed_rpm", "frequency_hz")
+    return pd.DataFrame(rows, columns=[*columns, "phase_factor"])
 
 
 def compliance_table(gear: str, body: SolvedBody, patch: Patch) -> pd.DataFrame:

@@ -77,6 +77,16 @@ class Harmonics:
         """The series times `factor`."""
         return Harmonics(self.a * factor, self.b * factor)
 
+    def softened(self, compliance: float) -> "Harmonics":
+        """The series of 1 / (1 / k + compliance) up to the same order; compliance in m/N."""
+        points = 64 * (self.order + 1)
+        stiff = self(np.arange(points) / points)
+        spectrum = np.fft.rfft(stiff / (1.0 + compliance * stiff))[: self.order + 1] / points
+        spectrum[1:] *= 2.0
+        a = -spectrum.imag
+        a[0] = 0.0
+        return Harmonics(a, spectrum.real)
+
     def varied(self, factor: float) -> "Harmonics":
         """The series with the same mean and `factor` times its variation about it."""
         b = self.b * factor

@@ -87,6 +87,59 @@ def body_waves(modes: pd.DataFrame) -> Figure:
     return figure
 
 
-def figures(modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> tuple[Figure, ...]:
-    """Mode shapes on the section, and waves."""
-    return body_shapes(modes, shapes), body_waves(modes)
+def body_campbell(modes: pd.DataFrame, crossings: pd.DataFrame, last_rpm: float, teeth: int) -> Figure:
+    """Waves over pinion speed as meshes meet them, with mesh harmonics; one gear, as most are alike.
+
+    Marks: crossings with a mesh harmonic, larger where the phases of the meshes add up.
+    """
+    gear = modes["gear"].iloc[0] if len(modes) else ""
+    own, met = modes[modes["gear"] == gear], crossings[crossings["gear"] == gear]
+    top = 1.02 * own["frequency_hz"].max() if len(own) else 1.0
+    speeds = np.linspace(0.0, last_rpm, 60)
+    with styled():
+        figure, axis = plt.subplots(figsize=(NARROW, 5.0))
+        for row in own.itertuples():
+            shift = (row.forward_hz - row.backward_hz) / 2.0
+            colours = ("tab:red", "tab:blue") if row.nodal_diameters else ("0.3",)
+            for sign, colour in zip((1.0, -1.0), colours, strict=False):
+                bend = (row.forward_hz + row.backward_hz) / 2.0
+                curve = _wave(row.frequency_hz, bend, sign * shift, row.speed_rpm, speeds)
+                axis.plot(speeds, 1e-3 * curve, color=colour, lw=0.6, alpha=0.7)
+        for harmonic in sorted(set(met["harmonic"]) | {1}):
+            axis.plot(speeds, 1e-3 * harmonic * teeth * speeds / 60.0, color="0.6", lw=0.8)
+            end = min(last_rpm, 60.0 * top / (harmonic * teeth))
+            height = 1e-3 * harmonic * teeth * end / 60.0
+            axis.annotate(f"{harmonic}x", (end, height), (2, 2), textcoords="offset points", color="0.3")
+        for wave, colour in (("standing", "0.3"), ("forward", "tab:red"), ("backward", "tab:blue")):
+            marks = met[met["wave"] == wave]
+            size = 6.0 * marks["phase_factor"] ** 2
+            axis.scatter(marks["speed_rpm"], 1e-3 * marks["frequency_hz"], size, color=colour, label=wave)
+        axis.set_xlim(0.0, last_rpm)
+        axis.set_ylim(0.0, 1e-3 * top)
+        axis.set_xlabel("input rotation speed (rpm)")
+        axis.set_ylabel("frequency (kHz)")
+        figure.suptitle(f"{gear} face gear, hub held", fontsize=9)
+        legend_above(axis, 3)
+    return figure
+
+
+def _wave(frequency: float, middle: float, shift: float, at: float, speeds: Array) -> Array:
+    """A wave's frequency over speed: its middle's square and its shift grow with the speed squared and with
+    the speed, from their values at the speed `at`.
+    """
+    over = speeds / at
+    return np.asarray(
+        np.sqrt(np.maximum(frequency**2 + (middle**2 - frequency**2) * over**2, 0.0)) + shift * over
+    )
+
+
+def figures(
+    modes: pd.DataFrame,
+    crossings: pd.DataFrame,
+    shapes: Mapping[str, AnyArray],
+    last_rpm: float,
+    teeth: int,
+) -> tuple[Figure, ...]:
+    """Mode shapes on the section, waves over nodal diameters, and over speed."""
+    campbell = body_campbell(modes, crossings, last_rpm, teeth)
+    return body_shapes(modes, shapes), body_waves(modes), campbell

@@ -28,6 +28,8 @@ CAPTIONS = {
     "body_shapes": "Sections of the face gears and their first mode shapes at a crest, hubs held.",
     "body_waves": "Frequencies of the face gears over nodal diameters, hubs held: at rest, and of waves in "
     "space at the nominal speed.",
+    "body_campbell": "Waves of a face gear over speed, hub held; marks: crossings with mesh harmonics, "
+    "larger where the phases of the meshes add up.",
     "campbell": "Campbell diagram: natural frequencies against multiples of the mesh frequency.",
     "mesh_deflections": "Mesh deflections at the nominal speed and their spectra.",
     "pinion_sweep": "RMS of the pinions' translations over speed.",

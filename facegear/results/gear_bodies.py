@@ -23,6 +23,10 @@ class GearBodiesResult(Result):
         """One row a gear: mass and inertia of its section, compliance at a mesh, numerical error."""
         return self.content["bodies"].copy()
 
+    def crossings(self) -> pd.DataFrame:
+        """One row a speed at which a mesh harmonic meets a wave, with how the meshes' phases add up."""
+        return self.content["crossings"].copy()
+
     def compliance(self) -> pd.DataFrame:
         """One row a gear and order: motions below a mesh by unit forces."""
         return self.content["compliance"].copy()

@@ -33,6 +33,7 @@ def branches(
     speed_rpm: float,
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    bodies: Arrays | None = None,
 ) -> Outcome:
     """`branches`, `ends`, `unfollowed`, `multipliers`, `special`, `coexistence`, `ranges`, `margins`, `swept`
     and `jumps` (tables) and `orbits` (arrays).
@@ -40,7 +41,9 @@ def branches(
     starts: arrays of the random starts, speed by speed. chunks, jumps: of the sweep, direction by direction
     in the order of the config. Raises NotConverged if no motion of period one is found.
     """
-    model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction, law=law))
+    model = build_model(
+        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, bodies=bodies)
+    )
     plan, layout = branch_plan(branches, speed_rpm), model.machine.layout
     period_map, swept_plan = machine_period_map(model, plan), sweep_plan(sweep)
     starting = [from_arrays(period_map, arrays) for arrays in starts]

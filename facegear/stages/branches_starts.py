@@ -23,9 +23,12 @@ def branches_starts(
     speed_rpm: float,
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    bodies: Arrays | None = None,
 ) -> Outcome:
     """`motions` (arrays) at one of the config's speeds. Raises NotConverged naming the speed."""
-    model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction, law=law))
+    model = build_model(
+        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, bodies=bodies)
+    )
     plan = branch_plan(branches, speed_rpm)
     speed = plan.speeds_rpm[number]
     motions = random_starts(model, plan, speed, Progress("random starts", plan.starts).step)

@@ -27,12 +27,15 @@ def dynamics_response(
     speed_rpm: float,
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    bodies: Arrays | None = None,
 ) -> Outcome:
     """`response`, `spectrum`, `summary`, `multipliers` and `bearings` (tables).
 
     Raises NotConverged naming the speed.
     """
-    model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction, law=law))
+    model = build_model(
+        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, bodies=bodies)
+    )
     response = simulate(model, speed_rpm, settings(accuracy))
     layout = model.machine.layout
     content = {

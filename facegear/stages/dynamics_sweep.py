@@ -28,12 +28,15 @@ def dynamics_sweep(
     threads: int = 1,
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    bodies: Arrays | None = None,
 ) -> Outcome:
     """`sweep`, `jumps`, `resonances`, `seams` (tables) and `waterfall` (arrays).
 
     `chunks`: the arrays of all chunks, direction by direction in the order of the config.
     """
-    model = build_model(wired_machine(transmission, teeth, harmonics, friction=friction, law=law))
+    model = build_model(
+        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, bodies=bodies)
+    )
     plan, layout = sweep_plan(sweep), model.machine.layout
     stored = iter(chunks)
     pieces = {name: [from_arrays(next(stored)) for _ in range(plan.chunks)] for name in plan.directions}

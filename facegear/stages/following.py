@@ -25,12 +25,13 @@ def following(
     cycles: int | None,
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    bodies: Arrays | None = None,
 ) -> Outcome:
     """`groups` and `meshes` (tables) over `cycles` mesh cycles, or all of the hunting cycle.
 
     Raises NotConverged naming the position or the mesh phase.
     """
-    machine = wired_machine(transmission, teeth, harmonics, friction=friction, law=law)
+    machine = wired_machine(transmission, teeth, harmonics, friction=friction, law=law, bodies=bodies)
     length = hunting_length(machine)
     part = length if cycles is None else min(cycles, length)
     moving = running(machine, speed_rpm, part, FINER * positions, settings(accuracy))

@@ -1,23 +1,30 @@
 """Face gears that bend: their modes and their compliance below the teeth, with their hubs held."""
 
 from collections.abc import Mapping
+from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from facegear.config.elastic_bodies import body_shape, contact_patch, elastic_gears
 from facegear.config.gear_body import BodySection
-from facegear.config.lumped_model import ToothNumbers, layout
+from facegear.config.lumped_model import ToothNumbers, given_torques, layout
 from facegear.config.tooth_pair import ToothPair
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.gear_body import tables
 from facegear.gear_body.body import SolvedBody, solve_body
+from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduction import reduced_body
 from facegear.stages.outcome import Outcome
 from facegear.transmission.layout import Layout
 
 
-def gear_bodies(transmission: Transmission, tooth_pair: ToothPair, speed_rpm: float) -> Outcome:
-    """`bodies`, `modes`, `compliance`, `influence` (tables) and `shapes` (arrays) of the gears that bend.
+def gear_bodies(
+    transmission: Transmission, tooth_pair: ToothPair, speed_rpm: float, last_rpm: float
+) -> Outcome:
+    """`bodies`, `modes`, `crossings`, `compliance`, `influence` (tables), `reduced` and `shapes` (arrays) of
+    the gears that bend.
 
     Raises ConfigError where all face gears are rigid, NotConverged.
     """
@@ -26,13 +33,42 @@ def gear_bodies(transmission: Transmission, tooth_pair: ToothPair, speed_rpm: fl
         raise ConfigError("transmission.face_gear.body", None, "given: all face gears are rigid")
     machine = layout(transmission, ToothNumbers.of_config(tooth_pair.model_dump()))
     solved = _solved(sections, tooth_pair)
-    parts = [_parts(gear, solved[gear], sections[gear], tooth_pair, machine, speed_rpm) for gear in sections]
-    names = ("bodies", "modes", "compliance", "influence")
-    content = {name: pd.concat([part[name] for part in parts], ignore_index=True) for name in names}
-    shapes = {
-        key: value for gear in sections for key, value in tables.shape_arrays(gear, solved[gear]).items()
+    parts = [
+        _parts(gear, solved[gear], sections[gear], tooth_pair, machine, (speed_rpm, last_rpm))
+        for gear in sections
+    ]
+    names = ("bodies", "modes", "crossings", "compliance", "influence")
+    content: dict[str, Any] = {
+        name: pd.concat([part[name] for part in parts], ignore_index=True) for name in names
     }
-    return Outcome({**content, "shapes": dict(shapes)}, _summary(content["bodies"], content["modes"]))
+    shapes = [item for gear in sections for item in tables.shape_arrays(gear, solved[gear]).items()]
+    reduced = [
+        item
+        for gear, section in sections.items()
+        for item in _reduced(solved[gear], section, tooth_pair).arrays(gear).items()
+    ]
+    content |= {"reduced": dict(reduced), "shapes": dict(shapes)}
+    gives = _gives_way(content["bodies"], transmission, machine)
+    return Outcome(content, _summary(content["bodies"], content["modes"]) + gives)
+
+
+def _gives_way(bodies: pd.DataFrame, transmission: Transmission, machine: Layout) -> str:
+    """What a reader should know where a body gives more than the backlash takes up: contacts that the config
+    did not mean then open or close.
+
+    The load is that of the pinion with the largest torque, shared evenly by its meshes.
+    """
+    torque = float(np.abs(given_torques(transmission, machine)).max())
+    force = torque / machine.pinion_arm / len(machine.gears)
+    gives = 1e6 * force * float(bodies["own_compliance_m_per_n"].max())
+    backlash = transmission.backlash_um
+    if backlash is None or gives <= backlash:
+        return ""
+    return f"; at {force:.4g} N a mesh gives {gives:.4g} um, more than its backlash of {backlash:.4g} um"
+
+
+def _reduced(body: SolvedBody, section: BodySection, tooth_pair: ToothPair) -> ReducedBody:
+    return reduced_body(body, contact_patch(section, tooth_pair), section.damping_ratio)
 
 
 def _solved(sections: Mapping[str, BodySection], tooth_pair: ToothPair) -> dict[str, SolvedBody]:
@@ -55,18 +91,21 @@ def _parts(
     section: BodySection,
     tooth_pair: ToothPair,
     machine: Layout,
-    speed_rpm: float,
+    speeds_rpm: tuple[float, float],
 ) -> dict[str, pd.DataFrame]:
-    """Tables of one gear."""
+    """Tables of one gear at a pinion speed, and up to the last one."""
     patch = contact_patch(section, tooth_pair)
     ratio = tooth_pair.face_gear_teeth / tooth_pair.pinion_teeth
-    speed = speed_rpm / ratio / tables.RPM
+    speed = speeds_rpm[0] / ratio / tables.RPM
     sign = next(member.sign for member in machine.gears if member.side == gear)
     angles = dict(zip((pinion.name for pinion in machine.pinions), machine.angles.tolist(), strict=True))
     angle = machine.pressure_angle
     return {
         "bodies": tables.body_table(gear, body, patch, angle),
         "modes": tables.mode_table(gear, body, speed, tooth_pair.face_gear_teeth, ratio),
+        "crossings": tables.crossing_table(
+            gear, body, tooth_pair.face_gear_teeth, ratio, speeds_rpm[1], machine.angles
+        ),
         "compliance": tables.compliance_table(gear, body, patch),
         "influence": tables.influence_table(gear, body, patch, angle, sign, angles),
     }

@@ -11,6 +11,7 @@ from facegear.load_sharing.hunting_tables import bearing_table, cycle_table, gro
 from facegear.load_sharing.sensitivity import bearing_scan, sensitivities
 from facegear.stages.outcome import Outcome
 from facegear.transmission.flanks import past_law
+from facegear.transmission.static_gears import at_rest
 
 
 def hunting(
@@ -19,9 +20,10 @@ def hunting(
     teeth: ToothNumbers,
     positions: int,
     law: Arrays | None = None,
+    bodies: Arrays | None = None,
 ) -> Outcome:
     """Tables `meshes`, `groups`, `bearings`, `cycles`, `scan`, `sensitivity`. Raises NotConverged."""
-    machine = wired_machine(transmission, teeth, harmonics, law=law)
+    machine = at_rest(wired_machine(transmission, teeth, harmonics, law=law, bodies=bodies))
     cycle = hunting_cycle(machine, positions)
     content = {
         "meshes": mesh_table(cycle),

@@ -38,8 +38,7 @@ def flank_gaps(machine: Machine) -> Array:
 
 def stiffness_series(machine: Machine) -> list[Harmonics]:
     """k of every flank over the reference's mesh cycle, N/m."""
-    factors = machine.imperfections.stiffness
-    return _both([machine.stiffness.scaled(float(factor)) for factor in factors], machine.phases)
+    return _both(list(machine.mesh_stiffness), machine.phases)
 
 
 @dataclass(frozen=True, eq=False)

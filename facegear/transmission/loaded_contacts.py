@@ -77,7 +77,7 @@ def loaded_contacts(machine: Machine) -> LoadedContacts:
     pinions = len(machine.layout.pinions)
     rings, positions = np.full(pinions, np.nan), np.full((pinions, 2), np.nan)
     forces = forces_by_active_sets(machine)
-    constant = machine.stiffness.mean * np.tile(machine.imperfections.stiffness, 2)
+    constant = np.tile(machine.mean_stiffness, 2)
     if forces is not None:
         return LoadedContacts(forces, constant, np.zeros(constant.size, bool), rings, positions)
     from facegear.transmission.statics import bearing_forces, mean_equilibrium  # compiled
@@ -108,7 +108,7 @@ def forces_by_active_sets(machine: Machine) -> Array | None:
     jacobian = linear.rows * scale
     bearing = linear.stiffness * np.outer(scale, scale)
     applied = linear.loads * scale
-    stiffness = machine.stiffness.mean * np.tile(machine.imperfections.stiffness, 2)
+    stiffness = np.tile(machine.mean_stiffness, 2)
     gaps = constant_errors(machine) + flank_gaps(machine)
     closed = np.arange(gaps.size) < len(machine.layout.meshes)
     for _ in range(MAX_SETS):

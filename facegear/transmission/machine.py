@@ -86,6 +86,8 @@ class Machine:
         Of the meshes; it disturbs the motion, and nothing at rest.
     bodies
         What makes more of them than rigid masses on springs.
+    softening : (meshes,)
+        What each mesh gives in series with its teeth, m/N; nothing by default.
     """
 
     layout: Layout
@@ -102,6 +104,7 @@ class Machine:
     tables: tuple[FlankTables, ...] | None = None
     friction: MeshFriction | None = None
     bodies: Bodies | None = None
+    softening: Array | None = None
 
     def __post_init__(self) -> None:
         if self.imperfections is None:
@@ -113,6 +116,7 @@ class Machine:
         for quantity, given in (
             ("lags of the transmission error", self.error_lags),
             ("half backlashes", self.imperfections.half_backlash),
+            ("softening of the meshes", self.softening),
         ):
             if given is not None and len(given) != meshes:
                 raise InvalidInput(quantity, f"{len(given)} meshes", f"one for each of {meshes}")
@@ -130,6 +134,19 @@ class Machine:
             self.layout, self.torques, self.forces, damping, self.imperfections.bearing_clearance
         )
         return lumped if self.bodies is None else self.bodies(lumped)
+
+    @cached_property
+    def mesh_stiffness(self) -> tuple[Harmonics, ...]:
+        """Stiffness of each mesh over the reference's mesh cycle with its factor and its softening, N/m."""
+        own = [self.stiffness.scaled(float(factor)) for factor in self.imperfections.stiffness]
+        if self.softening is None:
+            return tuple(own)
+        return tuple(series.softened(float(soft)) for series, soft in zip(own, self.softening, strict=True))
+
+    @property
+    def mean_stiffness(self) -> Array:
+        """Mean stiffness of each mesh, (meshes,), N/m."""
+        return np.array([series.mean for series in self.mesh_stiffness])
 
     @property
     def constant_stiffness(self) -> bool:

@@ -43,7 +43,7 @@ def contact_table(machine: Machine, vibrating: VibratingMachine, stiffness_name:
     meshes, all of which are closed.
     """
     layout, contacts = machine.layout, vibrating.contacts
-    stiffness = machine.stiffness.mean * machine.imperfections.stiffness
+    stiffness = machine.mean_stiffness
     if contacts is None:
         rows = [
             (name, "closed", np.nan, k, stiffness_name)

@@ -84,7 +84,7 @@ def _symbols(layout: Layout, labels: Sequence[str], amplitudes: Array) -> str:
 
 def _motion(moves: set[str]) -> str:
     """`T-R-A-tilt` from the letters of the coordinates that move; a single direction of translation is named,
-    and so is what is neither a motion nor a tilt of the rigid body.
+    and so is what is neither a motion nor a tilt of the rigid body, up to its first blank.
     """
     letters = []
     if moves & {"x", "y"}:
@@ -95,4 +95,5 @@ def _motion(moves: set[str]) -> str:
         letters.append("A")
     if moves & set(TILT_LETTERS):
         letters.append("tilt")
-    return "-".join([*letters, *sorted(moves - {*DOF_LETTERS, *TILT_LETTERS})])
+    added = {letter.split()[0] for letter in moves - {*DOF_LETTERS, *TILT_LETTERS}}
+    return "-".join([*letters, *sorted(added)])

@@ -9,6 +9,8 @@ from facegear.gear_body.body import SolvedBody, solve_body
 from facegear.gear_body.matrices import BodyMatrices, body_matrices
 from facegear.gear_body.mesh import body_mesh
 from facegear.gear_body.patch import Patch
+from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.reduction import reduced_body
 from facegear.gear_body.section import Hub, Rim, Section, Web, rectangle, wheel
 from facegear.geometry.design import Material
 
@@ -30,8 +32,14 @@ def section(held: bool = True, layer=None) -> Section:
 
 @cache
 def reference_body() -> SolvedBody:
-    """The section with its modes below 10 kHz of 0 to 6 nodal diameters."""
-    return solve_body(section(), 10_000.0, 6, TEETH)
+    """The section with its modes below 10 kHz of 0 to 12 nodal diameters."""
+    return solve_body(section(), 10_000.0, 12, TEETH)
+
+
+@cache
+def reference_modes() -> ReducedBody:
+    """Its modes alone, as a machine takes them."""
+    return reduced_body(reference_body(), PATCH, 0.002)
 
 
 @cache

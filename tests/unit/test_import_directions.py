@@ -22,7 +22,7 @@ MAY_IMPORT = {
     "gear_body": {"geometry"},
     "stiffness": {"harmonics", "mesh_law"},
     "mesh_law": {"harmonics"},
-    "transmission": {"harmonics", "mesh_law"},
+    "transmission": {"harmonics", "mesh_law", "gear_body"},
     "dynamics": {"transmission", "harmonics", "mesh_law"},
     "load_sharing": {"dynamics", "transmission", "harmonics"},
     "config": {

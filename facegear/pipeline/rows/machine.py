@@ -1,38 +1,46 @@
 """The machine at rest: ratings and modes."""
 
 from facegear.pipeline import asked
-from facegear.pipeline.rows.shared import HARMONICS, LAW, MACHINE, SPEED
+from facegear.pipeline.rows.shared import BODIES, HARMONICS, LAW, MACHINE, SPEED
 from facegear.pipeline.stage import Figures, File, From, Stage, from_stage
 
 ROWS = (
     Stage(
-        name="ratings",
-        title="Gear ratio, speeds, torques and powers",
-        needs={**MACHINE, **SPEED},
-        upstream=HARMONICS,
-        files={name: File(f"machine/{name}.csv") for name in ("ratings", "bodies", "meshes")},
-        asked=asked.machine,
-        local=True,
-    ),
-    Stage(
         name="gear_bodies",
         title="Face gears that bend: modes and compliance with their hubs held",
-        needs={"transmission": "transmission", "tooth_pair": "tooth_pair", **SPEED},
+        needs={
+            "transmission": "transmission",
+            "tooth_pair": "tooth_pair",
+            **SPEED,
+            "last_rpm": "dynamics.sweep.to_rpm",
+        },
         files={
             "bodies": File("bodies/bodies.csv", ("gear", "mass_kg", "frequency_change")),
             "modes": File("bodies/modes.csv", ("gear", "nodal_diameters", "frequency_hz"), may_be_empty=True),
+            "crossings": File("bodies/crossings.csv", ("gear", "speed_rpm"), may_be_empty=True),
             "compliance": File("bodies/compliance.csv", ("gear", "order", "axial_m_per_n")),
             "influence": File("bodies/influence.csv", ("gear", "first", "second", "compliance_m_per_n")),
+            "reduced": File("bodies/reduced.npz"),
             "shapes": File("bodies/shapes.npz"),
         },
         figures=Figures(
             draw="facegear.plots.gear_bodies:figures",
-            names=("body_shapes", "body_waves"),
+            names=("body_shapes", "body_waves", "body_campbell"),
             chapter="modes",
-            upstream=from_stage("gear_bodies", "modes", "shapes"),
+            upstream=from_stage("gear_bodies", "modes", "crossings", "shapes"),
+            needs={"last_rpm": "dynamics.sweep.to_rpm", "teeth": "tooth_pair.pinion_teeth"},
         ),
         asked=asked.elastic_gears,
         memory_mb=500,
+        local=True,
+    ),
+    Stage(
+        name="ratings",
+        title="Gear ratio, speeds, torques and powers",
+        needs={**MACHINE, **SPEED},
+        upstream={**HARMONICS, **BODIES},
+        files={name: File(f"machine/{name}.csv") for name in ("ratings", "bodies", "meshes")},
+        asked=asked.machine,
         local=True,
     ),
     Stage(
@@ -44,7 +52,11 @@ ROWS = (
             "source": "mesh_stiffness.source",
             "definition": "modal.stiffness",
         },
-        upstream={"harmonics": From("stiffness", "harmonics", when=asked.modes_from_contact), **LAW},
+        upstream={
+            "harmonics": From("stiffness", "harmonics", when=asked.modes_from_contact),
+            **LAW,
+            **BODIES,
+        },
         files={
             "frequencies": File("modal/frequencies.csv", ("order", "frequency_hz", "symbols", "class")),
             "shapes": File("modal/shapes.csv", ("order", "body", "dof", "relative")),

@@ -15,5 +15,7 @@ FLANKS = {name: From("compliance", "arrays", where={"body": name}) for name in a
 LAW = {"law": From("mesh_law", "law", when=asked.load_dependent)}
 HARMONICS = {**from_stage("stiffness", "harmonics"), **LAW}
 """What meshes transmit."""
-MOVING = {**HARMONICS, "friction": From("lubrication", "excitation", when=asked.friction_in_motion)}
+BODIES = {"bodies": From("gear_bodies", "reduced", when=asked.elastic_gears)}
+"""Face gears that bend."""
+MOVING = {**HARMONICS, **BODIES, "friction": From("lubrication", "excitation", when=asked.friction_in_motion)}
 """What stages take that set the machine in motion."""

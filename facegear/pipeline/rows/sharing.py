@@ -1,7 +1,7 @@
 """How meshes share the load."""
 
 from facegear.pipeline import asked, studies
-from facegear.pipeline.rows.shared import ACCURACY, HARMONICS, MACHINE, MOVING, SHARING, SPEED
+from facegear.pipeline.rows.shared import ACCURACY, BODIES, HARMONICS, MACHINE, MOVING, SHARING, SPEED
 from facegear.pipeline.stage import Computed, Figures, File, From, Stage, from_stage
 
 CASE_COLUMNS = ("study", "point", "label")
@@ -69,7 +69,7 @@ ROWS = (
         name="hunting",
         title="Quasi-static load sharing over the hunting cycle",
         needs={**MACHINE, "positions": "load_sharing.hunting_positions"},
-        upstream=HARMONICS,
+        upstream={**HARMONICS, **BODIES},
         files={
             "meshes": File(
                 "load_sharing/hunting_meshes.csv",

@@ -1,7 +1,7 @@
 """Root stress, and safety and life under a duty cycle."""
 
 from facegear.pipeline import asked
-from facegear.pipeline.rows.shared import ACCURACY, FLANKS, HARMONICS, MACHINE, MOVING, PAIR, SPEED
+from facegear.pipeline.rows.shared import ACCURACY, BODIES, FLANKS, HARMONICS, MACHINE, MOVING, PAIR, SPEED
 from facegear.pipeline.stage import Computed, Figures, File, From, Stage, from_stage
 
 GEARS = {"gears": Computed(asked.gears_met, ("transmission",))}
@@ -95,6 +95,7 @@ ROWS = (
             "branches": From("branches", "branches", when=asked.branches),
             **STRESS,
             **HARMONICS,
+            **BODIES,
         },
         files={
             "stress_over_speed": File(

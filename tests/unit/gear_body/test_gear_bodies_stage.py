@@ -10,6 +10,7 @@ from facegear.config.base import parse
 from facegear.config.gear_body import BodySection
 from facegear.config.load import load_config
 from facegear.errors import ConfigError
+from facegear.gear_body.reduced import ReducedBody
 from facegear.stages import gear_bodies as stage
 
 FLEXIBLE = load_config(Path(__file__).parents[3] / "config" / "flexible.yaml")
@@ -25,7 +26,9 @@ def outcome():
     """A disc in place of every web."""
     section = FLEXIBLE.transmission
     gear = section.face_gear.model_copy(update={"body": parse(BodySection, DISC)})
-    return stage.gear_bodies(section.model_copy(update={"face_gear": gear}), FLEXIBLE.tooth_pair, 7500.0)
+    return stage.gear_bodies(
+        section.model_copy(update={"face_gear": gear}), FLEXIBLE.tooth_pair, 7500.0, 20000.0
+    )
 
 
 def test_equal_gears_have_equal_modes_and_both_stand_in_the_tables(outcome):
@@ -74,6 +77,44 @@ def test_lower_gear_is_the_mirror_image_of_the_upper_one(outcome):
     mixed = upper.xs(("drive", "back"), level=("first_flank", "second_flank"))[column]
     turned = upper.xs(("back", "drive"), level=("first_flank", "second_flank"))[column]
     assert np.abs(mixed - turned).max() > 1e-11
+
+
+def test_mesh_harmonics_meet_waves_at_speeds_where_both_have_one_frequency(outcome):
+    crossings, modes = outcome.content["crossings"], outcome.content["modes"]
+    assert (
+        set(crossings["wave"]) == {"standing", "forward", "backward"}
+        and (crossings["speed_rpm"] <= 20000).all()
+    )
+    mesh = crossings["harmonic"] * 23 * crossings["speed_rpm"] / 60.0
+    assert mesh.to_numpy() == pytest.approx(crossings["frequency_hz"].to_numpy(), rel=1e-12)
+    keys = ["gear", "nodal_diameters", "mode"]
+    both = crossings[crossings["harmonic"] == 1].merge(modes, on=keys)
+    forward = both[both["wave"] == "forward"]
+    assert len(forward) and np.array_equal(forward["speed_rpm_x"], forward["forward_met_rpm"])
+    assert crossings["phase_factor"].between(0, 5).all()
+
+
+def test_body_that_gives_more_than_the_backlash_is_named_with_both_numbers(outcome):
+    softer = FLEXIBLE.transmission.model_copy(update={"backlash_um": 1.0})
+    layout = stage.layout(softer, stage.ToothNumbers.of_config(FLEXIBLE.tooth_pair.model_dump()))
+    bodies = outcome.content["bodies"]
+    force = 1328.0 / layout.pinion_arm / 2
+    gives = 1e6 * force * bodies["own_compliance_m_per_n"].max()
+    said = stage._gives_way(bodies, softer, layout)
+    assert said == f"; at {force:.4g} N a mesh gives {gives:.4g} um, more than its backlash of 1 um"
+    enough = softer.model_copy(update={"backlash_um": 2.0 * gives})
+    assert stage._gives_way(bodies, enough, layout) == ""
+
+
+def test_reduced_bodies_come_back_from_their_arrays(outcome):
+    arrays = outcome.content["reduced"]
+    body = ReducedBody.of_arrays(arrays, "upper")
+    assert body.arrays("upper") == {key: value for key, value in arrays.items() if key.startswith("upper_")}
+    static = outcome.content["bodies"].set_index("gear").loc["upper"]
+    angle = np.radians(25.0)
+    own = body.own_residual(np.array([-np.sin(angle), np.cos(angle)]))
+    left = (1.0 - static["modal_fraction"]) * static["own_compliance_m_per_n"]
+    assert own == pytest.approx(left, rel=1e-9)
 
 
 def test_machine_of_rigid_gears_has_no_gear_bodies():

@@ -78,7 +78,7 @@ def test_mass_and_inertia_of_the_section_are_those_of_its_polygon():
     module="facegear.gear_body.body",
 )
 def test_modes_turn_the_speed_into_waves_as_another_program_has_it():
-    orders = gear_bodies.reference_body().orders
+    orders = gear_bodies.reference_body().orders[:7]
     for modes, w, c, b in zip(orders, FREQUENCIES, GYROSCOPIC, STIFFENING, strict=True):
         count = len(w)
         agrees("frequency with the bore held, Hz", modes.frequencies[:count], w, relative=5e-4)
@@ -94,7 +94,7 @@ def test_modes_turn_the_speed_into_waves_as_another_program_has_it():
     module="facegear.gear_body.body",
 )
 def test_forward_and_backward_waves_meet_the_mesh_frequency_where_another_program_has_them():
-    orders = gear_bodies.reference_body().orders
+    orders = gear_bodies.reference_body().orders[:7]
     speed = 1206.29 * RPM
     waves = np.array([[wave[0] for wave in wave_frequencies(modes, speed)] for modes in orders])
     agrees("forward wave, Hz", waves[1:, 0], FORWARD, relative=5e-4)

@@ -1,0 +1,67 @@
+"""A gear body by its modes alone: what a machine takes of it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Self
+
+import numpy as np
+
+from facegear.arrays import AnyArray, Array, Integers
+
+
+@dataclass(frozen=True, eq=False)
+class ReducedBody:
+    """m modes of all orders with unit modal mass and the hub held; SI units, in the body's own frame.
+
+    Attributes
+    ----------
+    order, frequency : (m,)
+        Nodal diameters; Hz at rest.
+    coriolis, stiffening : (m, m)
+        g and S - P, between modes of one order.
+    mesh : (2, m)
+        W_p and V_p: motion of the pitch point along the axis and round it.
+    hub : (2, m)
+        Coupling of masses Q with motions of the hub: along and round the axis in order 0, sideways (and tilt)
+        in order 1.
+    hub_spin : (m,)
+        Coupling g of the hub's rotation with modes of order 0.
+    round : (m,)
+        1 for modes of order 0 that move round the axis, 0 for all others.
+    residual : (2, 2)
+        What the static compliance below a mesh has beyond the modes, m/N, of W_p and V_p.
+    damping_ratio : ()
+        Of every mode, in the steel.
+    """
+
+    order: Integers
+    frequency: Array
+    coriolis: Array
+    stiffening: Array
+    mesh: Array
+    hub: Array
+    hub_spin: Array
+    round: Array
+    residual: Array
+    damping_ratio: Array
+
+    @property
+    def damping(self) -> Array:
+        """Damping of every mode for unit modal mass, (m,), 1/s."""
+        return np.asarray(4.0 * np.pi * self.damping_ratio * self.frequency)
+
+    @classmethod
+    def of_arrays(cls, arrays: Mapping[str, AnyArray], gear: str) -> Self:
+        """From what `arrays` gave for a gear."""
+        return cls(**{field.name: arrays[f"{gear}_{field.name}"] for field in fields(cls)})
+
+    def arrays(self, gear: str) -> dict[str, AnyArray]:
+        """All of it by names that begin with the gear's."""
+        return {f"{gear}_{field.name}": getattr(self, field.name) for field in fields(self)}
+
+    def own_residual(self, direction: Array) -> float:
+        """What a flank gives way under its own force beyond the modes, m/N; direction (2,) of the force.
+
+        Motions along the axis and round it are a quarter wave apart, so that they do not mix.
+        """
+        return float(direction**2 @ np.diagonal(self.residual))

@@ -1,0 +1,36 @@
+"""From a solved body to its modes alone."""
+
+import numpy as np
+import scipy.linalg
+
+from facegear.arrays import Array
+from facegear.gear_body.body import SolvedBody
+from facegear.gear_body.patch import Patch
+from facegear.gear_body.reduced import ReducedBody
+
+
+def reduced_body(body: SolvedBody, patch: Patch, damping_ratio: float) -> ReducedBody:
+    """The modes of a body, and what they leave out of its static compliance below a mesh."""
+    orders = body.orders
+    order = np.concatenate([np.full(modes.frequencies.size, modes.order) for modes in orders])
+    zero = orders[0]
+    return ReducedBody(
+        order=order,
+        frequency=np.concatenate([modes.frequencies for modes in orders]),
+        coriolis=_blocks([modes.coriolis for modes in orders]),
+        stiffening=_blocks([modes.stress - modes.centrifugal for modes in orders]),
+        mesh=np.concatenate([patch.rows(modes.order, modes.teeth) for modes in orders], axis=1),
+        hub=np.concatenate([modes.hub for modes in orders], axis=1),
+        hub_spin=np.concatenate([modes.hub_spin for modes in orders]),
+        round=np.concatenate([np.round(zero.torsional), np.zeros(order.size - zero.frequencies.size)]),
+        residual=(body.static(patch) - body.modal(patch)).sum(axis=0),
+        damping_ratio=np.array(damping_ratio),
+    )
+
+
+def _blocks(matrices: list[Array]) -> Array:
+    """Matrices along the diagonal; those without entries take no room."""
+    size = sum(len(matrix) for matrix in matrices)
+    return np.asarray(scipy.linalg.block_diag(*(m for m in matrices if m.size), np.zeros((0, 0)))).reshape(
+        size, size
+    )

@@ -1,0 +1,218 @@
+"""Face gears that bend in a machine: modes with the hub held, beside the hub's own coordinates.
+
+Meshes stand still in space and bodies turn below them. A wave of n nodal diameters is described by what a
+point in space sees of it: `z_s = z e^(i n W t)` with W the body's speed towards growing angles (that of a
+lower gear is negative), as two real coordinates q_c + i q_s. With J = ((0, 1), (-1, 0)) they obey
+
+    M = 1 x M,   C = 1 x D + 2 W J x (n M + g),   K = 1 x [K + W^2 (S - P - n^2 M - 2 n g)] + n W J x D
+
+(Kronecker products). The last term is circulatory: damping sits in the steel and turns with it. Modes of
+order 0 are single coordinates, along the axis or round it, which the Coriolis force couples. The hub's own
+motions couple with orders 0 and 1 by masses alone, and its rotation with order 0 by the Coriolis force.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from facegear.arrays import Array, Integers, Mask
+from facegear.gear_body.reduced import ReducedBody
+from facegear.transmission.layout import DOF_PER_BODY, Layout
+from facegear.transmission.linear_model import LinearModel, Spin
+
+TURN = np.array([[0.0, 1.0], [-1.0, 0.0]])
+X, Y, Z, THETA = range(4)
+
+
+@dataclass(frozen=True, eq=False)
+class Coordinates:
+    """Elastic coordinates of one gear, k of them; SI units.
+
+    Attributes
+    ----------
+    letters : (k,)
+        `n2 1c`: nodal diameters, number of the mode, cosine or sine; `n0 1` has no such pair.
+    mode : (k,)
+        Which mode of the body each belongs to.
+    mass_hub : (4, k)
+        Masses between the hub's x, y, z, theta and them.
+    stiffness, damping : (k,)
+        Of each at rest.
+    gyroscopic, circulatory, centrifugal : (k, k)
+        For a body's speed of 1 rad/s, the last for its square.
+    gyroscopic_hub : (4, k)
+        Velocity terms on the hub's coordinates by theirs; those on theirs are the negative.
+    rows : (2 meshes of the gear, k)
+        Derivative of the deflections of its flanks, drive flanks first.
+    lengths : (k,)
+        Motion of the pitch point by a unit of each, m.
+    """
+
+    letters: tuple[str, ...]
+    mass_hub: Array
+    stiffness: Array
+    damping: Array
+    gyroscopic: Array
+    circulatory: Array
+    centrifugal: Array
+    gyroscopic_hub: Array
+    rows: Array
+    lengths: Array
+
+
+def coordinates(body: ReducedBody, sign: float, angles: Array, pressure_angle: float) -> Coordinates:
+    """Coordinates of a gear with meshes at angles (n,), rad; sign 1 for the upper, -1 for the lower gear."""
+    mode, part, letters = _numbered(body)
+    order, cosine = body.order[mode], part == 0
+    pair = TURN[part[:, None], part]
+    same = (part[:, None] == part) * 1.0
+    shift = np.diag(body.order.astype(float)) + body.coriolis
+    n = body.order[:, None].astype(float)
+    slowed = body.stiffening - np.diag(body.order.astype(float) ** 2) - 2.0 * n * body.coriolis
+    axial, around = body.mesh[:, mode]
+    stiffness = (2.0 * np.pi * body.frequency[mode]) ** 2
+    coriolis = 2.0 * pair * np.where(order[:, None] > 0, shift[np.ix_(mode, mode)], 0.0)
+    coriolis += _order_zero(body, mode)
+    turned = pair * order * body.damping[mode] * (mode[:, None] == mode)
+    return Coordinates(
+        letters=letters,
+        mass_hub=_hub_masses(body.hub[:, mode], order, cosine, body.round[mode], sign),
+        stiffness=stiffness,
+        damping=body.damping[mode],
+        gyroscopic=coriolis,
+        circulatory=turned,
+        centrifugal=same * slowed[np.ix_(mode, mode)],
+        gyroscopic_hub=_hub_coriolis(body, mode, sign),
+        rows=_flank_rows(order, part, axial, around, body.round[mode], sign, angles, pressure_angle),
+        lengths=np.maximum(np.hypot(axial, around), 1e-9 * np.hypot(axial, around).max(initial=1.0)),
+    )
+
+
+def _numbered(body: ReducedBody) -> tuple[Integers, Integers, tuple[str, ...]]:
+    """Mode and part (0 cosine, 1 sine) of every coordinate, and their letters."""
+    mode, part, letters = [], [], []
+    for number, order in enumerate(body.order.tolist()):
+        rank = number - int(np.searchsorted(body.order, order)) + 1
+        for which, letter in enumerate(("c", "s") if order else ("",)):
+            mode.append(number)
+            part.append(which)
+            letters.append(f"n{order} {rank}{letter}")
+    return np.array(mode, np.int64), np.array(part, np.int64), tuple(letters)
+
+
+def _order_zero(body: ReducedBody, mode: Integers) -> Array:
+    """Coriolis terms between modes along the axis and round it: -2 g on the first, 2 g on the second."""
+    order, turning = body.order[mode], body.round[mode] > 0.5
+    both = (order[:, None] == 0) & (order == 0)
+    sign = np.where(turning, 1.0, -1.0)[:, None] * (turning[:, None] != turning)
+    return np.asarray(2.0 * sign * both * body.coriolis[np.ix_(mode, mode)])
+
+
+def _hub_masses(hub: Array, order: Integers, cosine: Mask, turning: Array, sign: float) -> Array:
+    """Heights count towards the teeth, against z of the upper gear; X = -y and Y = x of the hub."""
+    masses = np.zeros((4, order.size))
+    zero, single = order == 0, order == 1
+    masses[Z, zero] = -sign * (hub[0] * (1.0 - turning))[zero]
+    masses[THETA, zero] = sign * (hub[1] * turning)[zero]
+    masses[Y, single & cosine] = -hub[0, single & cosine]
+    masses[X, single & ~cosine] = hub[0, single & ~cosine]
+    return masses
+
+
+def _hub_coriolis(body: ReducedBody, mode: Integers, sign: float) -> Array:
+    terms = np.zeros((4, mode.size))
+    terms[THETA] = 2.0 * sign * (body.hub_spin * (1.0 - body.round))[mode]
+    return terms
+
+
+def _flank_rows(
+    order: Integers,
+    part: Integers,
+    axial: Array,
+    around: Array,
+    turning: Array,
+    sign: float,
+    angles: Array,
+    pressure_angle: float,
+) -> Array:
+    """d loses what the pitch point moves along the force on the gear, -sin a axially and +-cos a round it."""
+    phase = order * angles[:, None]
+    cos, sin = np.cos(phase), np.sin(phase)
+    up = axial * np.where(part == 0, cos, sin)
+    along = around * np.where(part == 0, sin, -cos)
+    along = np.where((order == 0), around * turning, along)
+    up = np.where((order == 0), axial * (1.0 - turning), up)
+    separating, tangential = np.sin(pressure_angle) * up, sign * np.cos(pressure_angle) * along
+    return np.concatenate([separating - tangential, separating + tangential])
+
+
+@dataclass(frozen=True, eq=False)
+class ElasticGears:
+    """The bodies of a machine whose face gears bend, by the gears' numbers in the layout."""
+
+    layout: Layout
+    bodies: Mapping[int, ReducedBody]
+
+    def softening(self) -> Array:
+        """What each mesh gives beyond the modes, (meshes,), m/N: a spring in series with its teeth."""
+        angle = self.layout.pressure_angle
+        drive = np.array([-np.sin(angle), np.cos(angle)])
+        given = {gear: body.own_residual(drive) for gear, body in self.bodies.items()}
+        return np.array([given.get(gear, 0.0) for _, gear in self.layout.meshes])
+
+    def __call__(self, lumped: LinearModel) -> LinearModel:
+        """The model with the coordinates of every gear behind its own.
+
+        The lumped damping stays on the coordinates that it is given for.
+        """
+        model = lumped
+        for gear, body in self.bodies.items():
+            model = self._with_gear(model, gear, body)
+        return model
+
+    def _with_gear(self, model: LinearModel, gear: int, body: ReducedBody) -> LinearModel:
+        layout, own = self.layout, self.layout.gears[gear]
+        added = coordinates(body, own.sign, layout.angles, layout.pressure_angle)
+        old, new = model.size, len(added.letters)
+        hub = DOF_PER_BODY * (len(layout.pinions) + gear) + np.arange(DOF_PER_BODY)
+        speed = own.sign * layout.pinion_teeth / layout.gear_teeth
+        mass = _bordered(model.mass, np.eye(new), hub, added.mass_hub)
+        stiffness = _bordered(model.stiffness, np.diag(added.stiffness))
+        lumped = model.mass_damping * mass + model.bearing_damping * stiffness
+        lumped[:old, :old] = 0.0
+        dampers = _bordered(model.dampers, np.diag(added.damping)) - lumped
+        meshes = np.array([g == gear for _, g in layout.meshes] * 2)
+        rows = np.zeros((len(model.rows), new))
+        rows[meshes] = added.rows
+        none = Spin(*(np.zeros((old, old)) for _ in range(3)))
+        before = none if model.spin is None else model.spin
+        gyroscopic = _bordered(before.gyroscopic, speed * added.gyroscopic, hub, speed * added.gyroscopic_hub)
+        gyroscopic[old:, :old] *= -1.0
+        return replace(
+            model,
+            labels=(*model.labels, *(f"{own.name}:{letter}" for letter in added.letters)),
+            mass=mass,
+            stiffness=stiffness,
+            rows=np.hstack([model.rows, rows]),
+            torques=np.append(model.torques, np.zeros(new)),
+            forces=np.append(model.forces, np.zeros(new)),
+            lengths=np.append(model.lengths, added.lengths),
+            dampers=dampers,
+            spin=Spin(
+                gyroscopic,
+                _bordered(before.circulatory, speed * added.circulatory),
+                _bordered(before.centrifugal, speed**2 * added.centrifugal),
+            ),
+        )
+
+
+def _bordered(matrix: Array, corner: Array, at: Integers | None = None, border: Array | None = None) -> Array:
+    """A matrix with another behind it on the diagonal, joined by rows `border` at the places `at`."""
+    old, new = len(matrix), len(corner)
+    whole = np.zeros((old + new, old + new))
+    whole[:old, :old], whole[old:, old:] = matrix, corner
+    if at is not None and border is not None:
+        whole[at, old:] = border
+        whole[old:, at] = border.T
+    return whole
