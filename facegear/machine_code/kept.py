@@ -51,8 +51,8 @@ def trim(limit: int) -> None:
     files = []
     for path in folder().glob("*"):
         with suppress(OSError):
-            found = path.stat()
-            files.append((found.st_mtime_ns, found.st_size, path))
+            stat = path.stat()
+            files.append((stat.st_mtime_ns, stat.st_size, path))
     size = sum(bytes_of for _, bytes_of, _ in files)
     for _, bytes_of, path in sorted(files):
         if size <= limit:

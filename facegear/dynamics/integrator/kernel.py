@@ -15,7 +15,7 @@ kernel = compiler(*SOURCES, **FAST)
 """Compiled, and called from Python."""
 
 longest = compiler(*SOURCES, announced="the time integration once, some 30 s", **FAST)
-"""The same for the one that takes so long to compile that a user is told."""
+"""The same for the one that takes so long to compile that the user reads so."""
 
 inlined = for_callers(**FAST)
 """The same for functions of a Packed and a Work: handing over these hundreds of words would cost more than
