@@ -86,6 +86,12 @@ def read_layers(path: str | Path, below: Sequence[Path] = ()) -> dict[str, Any]:
     return merged(read_layers(path.with_name(base), (path, *below)), values)
 
 
+def extended(path: str | Path) -> Path | None:
+    """The config file that a config file names under `extends`, if it does."""
+    base = read_yaml(Path(path)).get("extends")
+    return None if base is None else Path(path).with_name(str(base))
+
+
 def located(name: str, folder: Path) -> str:
     """A file's name as it is read from the working directory, from its name as `folder` counts it."""
     return name if os.path.isabs(name) else os.path.relpath(folder / name)

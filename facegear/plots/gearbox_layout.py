@@ -9,11 +9,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyArrowPatch, Polygon
 
+from facegear.config.lumped_model import ToothNumbers
+from facegear.config.lumped_model import layout as layout_of
+from facegear.config.transmission import Transmission
 from facegear.plots.style import NARROW, styled
 from facegear.transmission.layout import Layout, Role, Side
 
 ROLE_COLOUR = {Role.INPUT: "tab:blue", Role.IDLER: "0.55", Role.TAIL: "tab:purple"}
 MESH, BEARING = "tab:red", "tab:green"
+ON_BEARINGS = "force on bearings, same scale"
 LONGEST = 0.55
 """Longest arrow over the mesh radius."""
 HALF_FACE = 0.06
@@ -29,17 +33,27 @@ BESIDE = 0.4
 """Cosine of the direction to a pinion below which its label is centred."""
 
 
-def layout_figure(layout: Layout, meshes: pd.DataFrame, bearings: pd.DataFrame) -> Figure:
+def figures(meshes: pd.DataFrame, transmission: Transmission, teeth: ToothNumbers) -> tuple[Figure, ...]:
+    """The machine with the forces at rest of the table `meshes` of stage ratings."""
+    drives = (meshes["flank"] != "back").astype(float)
+    loads = pd.DataFrame({"mesh": meshes["mesh"], "mean_n": meshes["force_n"].abs()})
+    loads = loads.assign(drive_fraction=drives, back_fraction=1.0 - drives)
+    return (layout_figure(layout_of(transmission, teeth), loads),)
+
+
+def layout_figure(layout: Layout, meshes: pd.DataFrame, bearings: pd.DataFrame | None = None) -> Figure:
     """One panel a face gear, upper on top; tables as the hunting cycle's.
 
     Red: mean tangential force of each pinion on the gear; green: mean force on bearings, of the pinions
-    (tangential) inside the upper gear, of the gear from its centre.
+    (tangential) inside the upper gear, of the gear from its centre, where they are given.
     """
     loads = meshes.set_index("mesh")
-    forces = bearings.set_index("body")
+    forces = None if bearings is None else bearings.set_index("body")
     cosine = np.cos(layout.pressure_angle)
     pushed = loads["mean_n"].max() * cosine
-    largest = max(pushed, forces[["mean_x_n", "mean_y_n"]].abs().to_numpy().max())
+    largest = (
+        pushed if forces is None else max(pushed, forces[["mean_x_n", "mean_y_n"]].abs().to_numpy().max())
+    )
     order = sorted(range(len(layout.gears)), key=lambda g: -layout.gears[g].sign)
     with styled():
         figure, axes = plt.subplots(len(order), 1, figsize=(NARROW, 4.7 * len(order) + 1.0), squeeze=False)
@@ -49,7 +63,7 @@ def layout_figure(layout: Layout, meshes: pd.DataFrame, bearings: pd.DataFrame) 
             plt.Line2D(
                 [], [], color=MESH, lw=2, label=f"tangential force on the gear, largest {_kilo(pushed)} kN"
             ),
-            plt.Line2D([], [], color=BEARING, lw=2, label="force on bearings, same scale"),
+            *([] if forces is None else [plt.Line2D([], [], color=BEARING, lw=2, label=ON_BEARINGS)]),
             *(plt.Line2D([], [], color=c, lw=6, label=f"{r.value} pinion") for r, c in ROLE_COLOUR.items()),
         ]
         figure.legend(handles=handles, loc="outside lower center", ncols=1)
@@ -57,7 +71,7 @@ def layout_figure(layout: Layout, meshes: pd.DataFrame, bearings: pd.DataFrame) 
 
 
 def _panel(
-    axis: Axes, layout: Layout, g: int, loads: pd.DataFrame, forces: pd.DataFrame, metres: float
+    axis: Axes, layout: Layout, g: int, loads: pd.DataFrame, forces: pd.DataFrame | None, metres: float
 ) -> None:
     gear, radius = layout.gears[g], layout.mesh_radius
     turns = gear.sign
@@ -79,15 +93,16 @@ def _panel(
         drives = 1.0 if row["drive_fraction"] >= row["back_fraction"] else -1.0
         force = turns * drives * row["mean_n"] * np.cos(layout.pressure_angle) * along
         _arrow(axis, middle, metres * force, MESH)
-        if gear.side is Side.UPPER or len(layout.gears) == 1:
+        if forces is not None and (gear.side is Side.UPPER or len(layout.gears) == 1):
             inside = (1.0 - 2.5 * HALF_FACE) * radius * outwards
             _arrow(axis, inside, metres * forces.loc[pinion.name, "mean_x_n"] * along, BEARING)
         name = textwrap.fill(pinion.name, LETTERS)
         _label(axis, radius, outwards, f"{name}\n{np.degrees(angle):.2f} deg\n{_kilo(row['mean_n'])} kN")
-    own = forces.loc[gear.name]
-    _arrow(axis, np.zeros(2), metres * own[["mean_x_n", "mean_y_n"]].to_numpy(float), BEARING)
-    axial = f"axial on its bearing {own['mean_z_n'] / 1e3:+.1f} kN"
-    title = f"{gear.name.capitalize()}, seen from above\n{axial}"
+    title = f"{gear.name.capitalize()}, seen from above"
+    if forces is not None:
+        own = forces.loc[gear.name]
+        _arrow(axis, np.zeros(2), metres * own[["mean_x_n", "mean_y_n"]].to_numpy(float), BEARING)
+        title += f"\naxial on its bearing {own['mean_z_n'] / 1e3:+.1f} kN"
     axis.text(0.0, TITLE * radius, title, ha="center", va="bottom", fontsize=10)
     axis.set(xlim=(-REACH * radius, REACH * radius), aspect="equal")
     axis.set_ylim(-BELOW * radius, (2.0 * REACH - BELOW) * radius)

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from facegear.io.atomic import atomic_path
+from facegear.plots import interactive
 
 STYLE = {
     "figure.dpi": 110,
@@ -37,11 +38,15 @@ def styled() -> Iterator[None]:
 
 
 def save(figure: Figure, *paths: str | Path) -> None:
-    """Write a figure to each path (the suffix names the format) and close it.
+    """Write a figure to each path (the suffix names the format; json: its interactive form) and close it.
 
     The same figure gives the same bytes: without a date, names inside a svg by a fixed salt.
     """
     for path in paths:
+        if str(path).endswith(".json"):
+            with atomic_path(path) as temporary:
+                interactive.write(figure, temporary)
+            continue
         dates = {"Date": None} if str(path).endswith(".svg") else None
         with atomic_path(path) as temporary, styled():
             figure.savefig(temporary, metadata=dates)

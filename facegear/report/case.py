@@ -8,7 +8,7 @@ import pandas as pd
 
 from facegear.report.contents import CHAPTERS, FRICTION, STUDIED_CONTACT, caption_of
 from facegear.report.glance import glance_chapter
-from facegear.report.machine import machine_chapter
+from facegear.report.machine import Base, machine_chapter
 from facegear.report.page import Chapter, Picture, Table, View, render
 
 BY_TORQUE = (
@@ -78,7 +78,7 @@ JUMPS = (
     f"multiple meets the mode's frequency, blank where the jump is more than {100 * NEAR_RESONANCE:.0f} % "
     "away from it and so belongs to no linear resonance of that mode"
 )
-DRAWINGS = ("layout", "tooth_pair")
+DRAWINGS = ("layout", "machine", "tooth_pair")
 """Figures that show the machine; the first that exists stands on the first screen."""
 LARGEST_SVG = 1_500_000
 """Bytes; a larger drawing is shown as its png."""
@@ -91,26 +91,29 @@ def case_report(
     manifests: Sequence[Mapping[str, Any]],
     pair: Mapping[str, Any] | None = None,
     view: View | None = None,
+    base: Base | None = None,
+    notes: Sequence[str] = (),
 ) -> str:
     """The HTML page of a case.
 
     values: its config; tables by file name without ending; pictures (svg) by name; manifests of all rules;
-    pair: the record of the tooth geometry, view: the pair in mesh, if they were computed.
+    pair: the record of the tooth geometry, view: the pair in mesh, if they were computed; base: the config
+    file that the case's own extends; notes: what a run says of its config when it starts.
     Chapters without a picture or table are left out.
     """
     known = {name for _, _, names in CHAPTERS for name in names}
-    others = [name for name in pictures if name not in known]
+    others = [name for name in pictures if name not in known and name not in DRAWINGS]
     studied = [name for name in others if name.startswith("contact_")]
     added = {STUDIED_CONTACT: studied, "Load sharing": [name for name in others if name not in studied]}
     drawing = next((name for name in DRAWINGS if name in pictures), None)
     drawn = () if drawing is None else (_picture(pictures[drawing], caption_of(drawing, values)),)
-    chapters = [glance_chapter(values, tables, drawn, pair), machine_chapter(values, tables)]
+    chapters = [glance_chapter(values, tables, drawn, pair, notes), machine_chapter(values, tables, base)]
     for title, text, names in CHAPTERS:
         shown = [*names, *added.get(title, ())]
         shown_pictures = [
             _picture(pictures[name], caption_of(name, values))
             for name in shown
-            if name in pictures and name != drawing
+            if name in pictures and name not in (drawing, "machine")
         ]
         own = _tables(title, tables, values["dynamics"]["speed_rpm"])
         seen = view if title == "Loaded contact" else None
@@ -120,7 +123,10 @@ def case_report(
         chapters.append(_scorecard(tables["scorecard"]))
     chapters.append(_errors(tables))
     chapters.append(_provenance(manifests))
-    lead = f"Case {values['case']}: what facegear computed from its config, in the order of computation."
+    lead = (
+        f"Case {values['case']}: what facegear computed from its config, in the order of computation. "
+        "Every table can be kept as csv."
+    )
     return render(f"facegear: {values['case']}", lead, chapters)
 
 

@@ -36,6 +36,7 @@ CAPTIONS = {
     "gear_sweep": "RMS of the face gears' translations over speed.",
     "mesh_sweep": "RMS of the mesh deflections, speed rising and falling; ticks mark jumps.",
     "waterfall": "Spectra over speed.",
+    "machine": "The machine to scale: directions of rotation, and mean forces of meshes at rest.",
     "layout": "The machine to scale: directions of rotation, mean forces of meshes and on bearings, at rest.",
     "hunting": "Share of each mesh in its group's load over the hunting cycle, quasi-static.",
     "bearing_stiffness": "K_gamma against the bearing stiffness of inputs and idlers, both kinematics.",

@@ -1,8 +1,8 @@
 """The report's first screen: machine drawing, key numbers, verdicts and warnings."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import nan
-from typing import Any
+from typing import Any, NamedTuple
 
 import pandas as pd
 
@@ -14,8 +14,15 @@ from facegear.report.page import Chapter, Picture, Table, scientific
 
 POSITIONS_MATTER = 0.05
 """Relative change of a peak-to-peak value with half of the positions that is worth a warning."""
-LISTED = 6
-"""Names that a warning lists at most."""
+GREEN, AMBER, RED = "green", "amber", "red"
+
+
+class Finding(NamedTuple):
+    """What was found about a subject; `light`: its verdict, where there is a limit to judge it by."""
+
+    about: str
+    finding: str
+    light: str = ""
 
 
 def glance_chapter(
@@ -23,42 +30,63 @@ def glance_chapter(
     tables: Mapping[str, pd.DataFrame],
     drawing: Sequence[Picture],
     pair: Mapping[str, Any] | None,
+    notes: Sequence[str] = (),
 ) -> Chapter:
-    """What is read first, from the same inputs as the whole report; `drawing` shows the machine."""
-    listed = []
-    for caption, rows in (("Verdicts", verdicts(tables, pair)), ("Warnings", warnings(values, tables, pair))):
-        listed.append(Table(caption, pd.DataFrame(list(rows), columns=["about", "what was found"])))
-    numbers = key_numbers(tables, pair)
-    first = [] if numbers.empty else [Table("Key numbers", numbers)]
-    return Chapter("At a glance", "", drawing, [*first, *listed])
+    """What is read first, from the same inputs as the whole report; `drawing` shows the machine.
+
+    notes: what a run says of its config when it starts, `key: words`.
+    """
+    rows = list(findings(tables, pair))
+    lights = (RED, AMBER, GREEN)
+    judged = [(row.light, row.about, row.finding) for light in lights for row in rows if row.light == light]
+    others = [(row.about, row.finding) for row in rows if not row.light]
+    said = [tuple(note.split(": ", 1)) for note in notes]
+    warned = [*warnings(values, tables, pair), *said]
+    listed = [
+        Table(_counted(judged), pd.DataFrame(judged, columns=["verdict", "about", "what was found"])),
+        Table("Warnings", pd.DataFrame(warned, columns=["about", "what to keep in mind"])),
+        Table("Key numbers", key_numbers(tables, pair)),
+        Table("What was found", pd.DataFrame(others, columns=["about", "what was found"])),
+    ]
+    return Chapter(
+        "At a glance", "", drawing, [table for table in listed if len(table.frame) or table is listed[1]]
+    )
 
 
-def verdicts(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None) -> Iterator[tuple[str, str]]:
-    """Subject and finding, in the order of computation."""
+def _counted(judged: Sequence[tuple[str, str, str]]) -> str:
+    """The caption of the verdicts: how many there are of each colour, the worst first."""
+    counts = {light: sum(row[0] == light for row in judged) for light in (RED, AMBER, GREEN)}
+    return "Verdicts: " + ", ".join(f"{count} {light}" for light, count in counts.items() if count)
+
+
+def findings(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None) -> Iterator[Finding]:
+    """What was found, in the order of computation."""
     if pair is not None:
         gap = pair["interference"] or pair["smallest_gap"]
         parts = f"gear {gap['gear_part']} against pinion {gap['pinion_part']}"
         where = f"{parts}, radius {gap['gear_radius_mm']:.1f} mm"
         state = "interference" if pair["interference"] else "free; smallest gap beside the contact"
-        yield "teeth", f"{state} {gap['gap_um']:.1f} um ({where})"
+        light = RED if pair["interference"] else GREEN
+        yield Finding("teeth", f"{state} {gap['gap_um']:.1f} um ({where})", light)
     for row in tables.get("by_torque", pd.DataFrame()).itertuples():
         mean = row.k_average_mean_n_per_m
         known = f"mean stiffness {scientific(mean, 4)} N/m" if mean == mean else "no mean stiffness"
         error = f"peak-to-peak transmission error {row.ste_peak_to_peak_um:.2f} um"
-        yield f"contact at {row.torque_n_m:g} N m", f"{known}, {error}{_pressure(row)}"
+        yield Finding(f"contact at {row.torque_n_m:g} N m", f"{known}, {error}{_pressure(row)}")
     for row in _nearest(tables.get("rating")).itertuples():
-        yield (
+        yield Finding(
             f"{row.body.replace('_', ' ')}, {row.flank} flank, {row.failure} ({row.method})",
-            f"{row.verdict}: safety {row.safety:.2f} where {row.required:g} is required"
+            f"safety {row.safety:.2f} where {row.required:g} is required"
             f"{'; ' + row.reason if row.reason else ''}"
             f"{'' if row.within_torques_solved else '; outside the torques of the contact analysis'}",
+            row.verdict,
         )
     yield from _lubricated(tables.get("mesh_losses"))
     for row in _nominal(tables).itertuples():
         width = f" ± {row.half_width:.2f}" if row.half_width > 0.005 else ""
-        yield f"load sharing, {row.group}", f"mean coefficient {row.mean:.3f}{width}, {row.motion}"
+        yield Finding(f"load sharing, {row.group}", f"mean coefficient {row.mean:.3f}{width}, {row.motion}")
     for row in tables.get("following_groups", pd.DataFrame()).itertuples():
-        yield (
+        yield Finding(
             f"K_gamma, {row.group}",
             f"{row.k_gamma:.3f} (K_v {row.k_v:.3f}) at {row.speed_rpm:.0f} rpm and {row.torque_n_m:g} N m, "
             f"{row.k_gamma_static:.3f} at rest, over "
@@ -67,10 +95,10 @@ def verdicts(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None)
     if "jumps" in tables:
         speeds = tables["jumps"].groupby("direction")["speed_after_rpm"].unique()
         counts = [f"{len(at)} {name} ({_range(at.min(), at.max())} rpm)" for name, at in speeds.items()]
-        yield "jumps in the sweep", ", ".join(counts) or "none"
+        yield Finding("jumps in the sweep", ", ".join(counts) or "none")
     if "scorecard" in tables:
         counted = tables["scorecard"][tables["scorecard"]["counted"]]["verdict"].value_counts(sort=False)
-        yield "claims of the paper", ", ".join(f"{name} {rows}" for name, rows in counted.items())
+        yield Finding("claims of the paper", ", ".join(f"{name} {rows}" for name, rows in counted.items()))
 
 
 def _nearest(rating: pd.DataFrame | None) -> pd.DataFrame:
@@ -81,8 +109,11 @@ def _nearest(rating: pd.DataFrame | None) -> pd.DataFrame:
     return rating.loc[spare.groupby([rating["gear"], rating["failure"]], sort=False).idxmin()]
 
 
-def _lubricated(losses: pd.DataFrame | None) -> Iterator[tuple[str, str]]:
-    """Scuffing, film and micropitting of the mesh that is nearest to each limit, in any bin."""
+def _lubricated(losses: pd.DataFrame | None) -> Iterator[Finding]:
+    """Scuffing, film and micropitting of the mesh that is nearest to each limit, in any bin.
+
+    A safety below 1 is red; one that was not solved for, beyond the torques of the contact analysis, amber.
+    """
     for about, column in (
         ("scuffing", "scuffing_safety"),
         ("smallest film", "smallest_film_ratio"),
@@ -95,10 +126,11 @@ def _lubricated(losses: pd.DataFrame | None) -> Iterator[tuple[str, str]]:
         outside = "" if row["within_torques_solved"] else "; outside the torques of the contact analysis"
         where = f"{row['mesh']}, {row['flank']} flank, at {at}{outside}"
         if column == "smallest_film_ratio":
-            yield about, f"{row[column]:.2f} times the roughness of both flanks ({where})"
+            yield Finding(about, f"{row[column]:.2f} times the roughness of both flanks ({where})")
             continue
         margin = f", {row['scuffing_margin_k']:.0f} K to the limit" if about == "scuffing" else ""
-        yield about, f"safety {row[column]:.2f}{margin} ({where})"
+        light = RED if row[column] < 1.0 else GREEN if row["within_torques_solved"] else AMBER
+        yield Finding(about, f"safety {row[column]:.2f}{margin} ({where})", light)
 
 
 def _range(first: float, last: float) -> str:
@@ -125,6 +157,7 @@ def warnings(
             "there and no mean stiffness; all that follows without contact leaves the interference out",
         )
     yield from _contact_warnings(values, tables)
+    yield from _beyond_warnings(tables)
     transmission = values["transmission"]
     if transmission is None:
         return
@@ -135,6 +168,7 @@ def warnings(
     missing = rated(tables).get("power_imbalance", 0.0)
     if abs(missing) > BALANCED:
         yield "power", f"in less out {100 * missing:.3g} %: lever arms as printed are not those of the teeth"
+    yield from _undecided_warnings(tables)
     yield from _open_warnings(tables)
     yield from _sweep_warnings(tables)
     for row in _nominal(tables).itertuples():
@@ -147,13 +181,41 @@ def warnings(
             yield f"load sharing, {row.group}", f"the motion is {row.motion}: numbers are averages"
 
 
+def _beyond_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[tuple[str, str]]:
+    """Numbers that were taken from beyond what was solved, or where a model holds."""
+    for about, name, rows in (
+        ("strength", "rating", "ratings"),
+        ("stress over speed", "stress_over_speed", "motions and speeds"),
+        ("friction", "mesh_losses", "losses of a flank"),
+    ):
+        table = tables.get(name, pd.DataFrame())
+        if len(table) and not table["within_torques_solved"].all():
+            outside = int((~table["within_torques_solved"].astype(bool)).sum())
+            yield about, f"{outside} of {len(table)} {rows} lie outside the torques of the contact analysis"
+    for row in tables.get("limits", pd.DataFrame()).itertuples():
+        if row.loss_outside_percent > 0.0:
+            yield (
+                "friction",
+                f"{row.loss_outside_percent:.2g} % of the loss at {row.torque_n_m:g} N m lies outside the "
+                f"limits of {row.friction_model}: {row.limit}",
+            )
+
+
+def _undecided_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[tuple[str, str]]:
+    """Contacts of which the modes do not know whether they carry."""
+    contacts = tables.get("contacts", pd.DataFrame(columns=["contact", "state"]))
+    names = contacts.loc[contacts["state"] == "undecided", "contact"]
+    if len(names):
+        yield "modes", f"too little load to tell from rounding, taken as open: {', '.join(names)}"
+
+
 def _open_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[tuple[str, str]]:
     """Meshes that carry nothing at rest."""
     if "meshes" not in tables:
         return
     open_ones = tables["meshes"].loc[tables["meshes"]["flank"] == "open", "mesh"]
     if len(open_ones):
-        yield "meshes at rest", f"no load at {_listed(open_ones)}"
+        yield "meshes at rest", f"no load at {', '.join(open_ones)}"
 
 
 def _sweep_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[tuple[str, str]]:
@@ -172,18 +234,11 @@ def _sweep_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[tuple[str, s
     gaps = sweep[sweep["quantity"] == "open_fraction"].groupby("body_or_mesh", sort=False)["value"]
     min_open, max_open = gaps.min(), gaps.max()
     if (always := min_open.index[min_open >= 1.0]).size:
-        yield "speed sweep", f"open at every speed: {_listed(always)}"
+        yield "speed sweep", f"open at every speed: {', '.join(always)}"
     lost = max_open.index[(max_open > 0.0) & (min_open < 1.0)]
     if lost.size:
         time = f"up to {100 * max_open[lost].max():.2g} % of the time"
-        yield "speed sweep", f"contact is lost at some speeds, {time}: {_listed(lost)}"
-
-
-def _listed(names: Iterable[str]) -> str:
-    """Names in a row; of many the first few, and how many more there are."""
-    names = list(names)
-    more = f" and {len(names) - LISTED} more" if len(names) > LISTED else ""
-    return ", ".join(names[:LISTED]) + more
+        yield "speed sweep", f"contact is lost at some speeds, {time}: {', '.join(lost)}"
 
 
 def _contact_warnings(

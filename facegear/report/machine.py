@@ -1,11 +1,11 @@
 """The chapter on the machine as configured: what it is, its key numbers, torques and powers of every path."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import pandas as pd
 
-from facegear.report.page import Chapter, Table
+from facegear.report.page import Chapter, Table, number
 
 KINEMATICS = {
     "geometric": "geometric, lever arms and signs as gears have them",
@@ -13,7 +13,23 @@ KINEMATICS = {
 }
 BALANCED = 1e-9
 """Relative difference of power in and out that is rounding."""
+EXACT = 12
+"""Significant digits of the config's numbers."""
+
+
+class Base(NamedTuple):
+    """The config file that a case's own file extends: its name and its values."""
+
+    name: str
+    values: Mapping[str, Any]
+
+
 NUMBERS = {
+    "bending_safety": ("Smallest safety against bending", "", 3),
+    "pitting_safety": ("Smallest safety against pitting", "", 3),
+    "k_gamma": ("Mesh load factor K_gamma, largest, running", "", 4),
+    "k_v": ("Dynamic factor K_v, largest, running", "", 4),
+    "loss_percent": ("Friction loss of all meshes at the nominal load", "%", 3),
     "gear_ratio": ("Gear ratio (gear teeth over pinion teeth)", "", 5),
     "speed_ratio": ("Ratio of speeds, input over output pinion", "", 5),
     "pinion_speed_rpm": ("Speed of the pinions", "rpm", 6),
@@ -34,7 +50,9 @@ NUMBERS = {
 """Key numbers in their order: words, unit, significant digits."""
 
 
-def machine_chapter(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> Chapter:
+def machine_chapter(
+    values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame], base: Base | None = None
+) -> Chapter:
     """Config, torques and powers; `tables` may hold ratings, bodies, meshes."""
     listed = []
     if "bodies" in tables:
@@ -46,19 +64,35 @@ def machine_chapter(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame
                 5,
             ),
         ]
-    return Chapter("The machine as configured", _text(values, tables), (), [*listed, *_config_tables(values)])
+    config = _config_tables(values, base)
+    return Chapter("The machine as configured", _text(values, tables), (), [*listed, *config])
 
 
 def key_numbers(tables: Mapping[str, pd.DataFrame], pair: Mapping[str, Any] | None) -> pd.DataFrame:
     """Columns quantity, value, unit, as text; only what is known."""
-    known = rated(tables) | ({} if pair is None else _teeth(pair))
+    known = _signed(tables) | rated(tables) | ({} if pair is None else _teeth(pair))
     rows = []
     for name, (words, unit, digits) in NUMBERS.items():
         if name in known:
             value = known[name]
             parts = value if isinstance(value, tuple) else (value,)
-            rows.append((words, " to ".join(f"{part:.{digits}g}" for part in parts), unit))
+            rows.append((words, " to ".join(number(part, digits) for part in parts), unit))
     return pd.DataFrame(rows, columns=["quantity", "value", "unit"])
+
+
+def _signed(tables: Mapping[str, pd.DataFrame]) -> dict[str, float]:
+    """Safeties, factors of the load and loss, where they were computed."""
+    numbers: dict[str, float] = {}
+    if "rating" in tables:
+        smallest = tables["rating"].groupby("failure")["safety"].min()
+        numbers |= {f"{failure}_safety": float(safety) for failure, safety in smallest.items()}
+    if "following_groups" in tables:
+        largest = tables["following_groups"][["k_gamma", "k_v"]].max()
+        numbers |= {name: float(largest[name]) for name in largest.index}
+    if "machine_loss" in tables:
+        nominal = tables["machine_loss"].loc[lambda table: table["bin"] == 0, "loss_percent"]
+        numbers["loss_percent"] = float(nominal.iloc[0])
+    return numbers
 
 
 def rated(tables: Mapping[str, pd.DataFrame]) -> dict[str, Any]:
@@ -162,15 +196,31 @@ def _count(items: Sequence[Any], name: str) -> str:
     return f"{len(items)} {name}" + ("" if len(items) == 1 else "s")
 
 
-def _config_tables(values: Mapping[str, Any]) -> list[Table]:
-    """The pinions, and every other key of the config that holds something."""
-    rows = [row for section in values for row in _flat(section, values[section])]
-    rows = [row for row in rows if row[0] != "reproduction" and row[1] not in (None, "")]
-    config = Table("Config, defaults included", pd.DataFrame(rows, columns=["key", "value"]), folded=True)
+def _config_tables(values: Mapping[str, Any], base: Base | None) -> list[Table]:
+    """The pinions, and every key of the config that holds something; changes against the file extended."""
+    rows = _keys(values)
+    frame = pd.DataFrame(list(rows.items()), columns=["key", "value"], dtype=object)
+    caption = "Config, defaults included"
+    if base is not None:
+        before = _keys(base.values)
+        gone = [(key, "") for key in before if key not in rows]
+        frame = pd.DataFrame([*rows.items(), *gone], columns=["key", "value"], dtype=object)
+        changed = [rows.get(key) != before.get(key) for key in frame["key"]]
+        own = ["changed" if differs else "" for differs in changed]
+        there = [before.get(key, "") if rows.get(key) != before.get(key) else "" for key in frame["key"]]
+        frame = frame.assign(**{f"against {base.name}": own, f"in {base.name}": there})
+        caption += f"; {sum(changed)} keys differ from {base.name}, which it extends"
+    config = Table(caption, frame, EXACT, folded=True)
     if values["transmission"] is None:
         return [config]
     pinions = pd.DataFrame(values["transmission"]["pinions"]).dropna(axis=1, how="all")
     return [Table("Pinions", pinions), config]
+
+
+def _keys(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Dotted keys that hold something, with their values."""
+    rows = [row for section in values for row in _flat(section, values[section])]
+    return {key: value for key, value in rows if key != "reproduction" and value not in (None, "")}
 
 
 def _flat(key: str, value: Any) -> list[tuple[str, Any]]:

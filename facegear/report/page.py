@@ -1,18 +1,28 @@
 """A self-contained HTML page from chapters of text, tables and pictures."""
 
 import base64
+import gzip
+import json
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import floor, isfinite, log10
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from facegear.io import pages
 
-TEMPLATE = Path(__file__).with_name("page.html.j2")
-VIEWER = Path(__file__).with_name("pair_view.js")
+FOLDER = Path(__file__).parent
+TEMPLATE = FOLDER / "page.html.j2"
+LIBRARY = FOLDER / "plotly-cartesian.min.js"
+"""plotly.js as its makers publish it, the part with curves, bars and maps; its licence stands beside it."""
+PLAIN = (1e-3, 1e6)
+"""Numbers between these are written without a power of ten."""
+NAMED = 5
+"""Words of a caption that name its file."""
 SCREEN_DPI, PNG_DPI = 96, 160
 """Points an inch of a page, and of a stored png."""
 UNITS = {
@@ -51,6 +61,18 @@ class Picture:
             return 0 if match is None else round(float(match[1]) * (4 / 3 if match[2] == "pt" else 1.0))
         return round(int.from_bytes(self.path.read_bytes()[16:20], "big") * SCREEN_DPI / PNG_DPI)
 
+    @property
+    def anchor(self) -> str:
+        """Name of the figure inside the page."""
+        return f"figure-{self.path.stem}"
+
+    @property
+    def interactive(self) -> Any:
+        """What plotly.js draws in its place, from the file beside it; nothing where it has no such form."""
+        stored = self.path.with_suffix(".json")
+        content = json.loads(stored.read_text(encoding="utf-8")) if stored.exists() else {}
+        return content if content.get("data") else None
+
     def data_uri(self) -> str:
         """The picture's bytes as a data URI."""
         kind = {".svg": "image/svg+xml", ".png": "image/png"}[self.path.suffix]
@@ -70,6 +92,14 @@ class Table:
         """Column names as words, with their units as they are written."""
         return [words(str(name)) for name in self.frame.columns]
 
+    def numeric(self) -> list[bool]:
+        """Of each column whether it holds numbers."""
+        frame = self.frame
+        types = [frame.iloc[:, i].dtype for i in range(frame.shape[1])]
+        return [
+            pd.api.types.is_numeric_dtype(kind) and not pd.api.types.is_bool_dtype(kind) for kind in types
+        ]
+
     def rows(self) -> list[list[str]]:
         """Cells as text."""
         units = [_unit(str(name)) for name in self.frame.columns]
@@ -79,20 +109,33 @@ class Table:
             for row in self.frame.itertuples(index=False)
         ]
 
+    def csv_name(self, chapter: str) -> str:
+        """Name of the file in which a reader keeps the table."""
+        said = re.findall(r"[a-z0-9]+", self.caption.lower())[:NAMED]
+        return f"{chapter}-{'-'.join(said)}.csv"
+
+    def csv_uri(self) -> str:
+        """The table as csv with all its digits, as a data URI."""
+        text = self.frame.to_csv(index=False)
+        return f"data:text/csv;base64,{base64.b64encode(text.encode()).decode()}"
+
     def _largest(self, unit: str, units: Sequence[str]) -> float:
         """The largest number of all columns with a unit; nothing for numbers without one."""
         columns = [self.frame.iloc[:, i] for i, other in enumerate(units) if unit and other == unit]
-        numbers = [column.abs().max() for column in columns if pd.api.types.is_float_dtype(column)]
-        return max((float(number) for number in numbers if number == number), default=0.0)
+        floats = [column for column in columns if pd.api.types.is_float_dtype(column)]
+        sizes = [column[np.isfinite(column)].abs().max() for column in floats]
+        return max((float(size) for size in sizes if isfinite(size)), default=0.0)
 
     def _cell(self, value: object, unit: str, zero: float) -> str:
         """A cell; stiffnesses (N/m) all with a power of ten, so that they can be read down a column."""
+        if isinstance(value, bool | np.bool_):
+            return "yes" if value else "no"
         if not isinstance(value, float):
             return str(value)
         if value != value:
             return ""
-        number = 0.0 if abs(value) < zero else value
-        return scientific(number, self.digits) if unit == "n_per_m" else f"{number:.{self.digits}g}"
+        shown = 0.0 if abs(value) < zero else value
+        return scientific(shown, self.digits) if unit == "n_per_m" else number(shown, self.digits)
 
 
 @dataclass(frozen=True)
@@ -121,8 +164,29 @@ class Chapter:
 
 def render(title: str, lead: str, chapters: Sequence[Chapter]) -> str:
     """The page as HTML text that needs no other file."""
-    viewer = VIEWER.read_text(encoding="utf-8") if any(chapter.view for chapter in chapters) else ""
-    return pages.render(TEMPLATE, title=title, lead=lead, chapters=chapters, viewer=viewer)
+    pictures = [picture for chapter in chapters for picture in chapter.pictures]
+    figures = {picture.anchor: picture.interactive for picture in pictures if picture.interactive}
+    return pages.render(
+        TEMPLATE,
+        title=title,
+        lead=lead,
+        chapters=chapters,
+        css=_own("page.css"),
+        tables=_own("tables.js"),
+        viewer=_own("pair_view.js") if any(chapter.view for chapter in chapters) else "",
+        plots=_own("plots.js"),
+        figures=_packed(json.dumps(figures, separators=(",", ":")).encode()) if figures else "",
+        library=_packed(LIBRARY.read_bytes()) if figures else "",
+    )
+
+
+def _own(name: str) -> str:
+    return (FOLDER / name).read_text(encoding="utf-8")
+
+
+def _packed(content: bytes) -> str:
+    """Compressed, as text; the same content gives the same text."""
+    return base64.b64encode(gzip.compress(content, mtime=0)).decode()
 
 
 def words(name: str) -> str:
@@ -138,6 +202,24 @@ def words(name: str) -> str:
 def _unit(name: str) -> str:
     """The unit in a column's name, a key of UNITS; nothing where it has none."""
     return next((ending for ending in UNITS if f"_{ending} " in f"{name} "), "")
+
+
+def number(value: float, digits: int) -> str:
+    """A number as all tables write it: `digits` of it significant, whole numbers in full.
+
+    Below 1e-3 and from 1e6 on it has a power of ten.
+    """
+    if value == 0.0 or not isfinite(value):
+        return f"{value:g}"
+    if not PLAIN[0] <= abs(value) < PLAIN[1]:
+        mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+        return f"{_shortened(mantissa)}e{int(exponent)}"
+    return _shortened(f"{value:.{max(digits - 1 - floor(log10(abs(value))), 0)}f}")
+
+
+def _shortened(text: str) -> str:
+    """Without zeros at the end of a fraction."""
+    return text.rstrip("0").rstrip(".") if "." in text else text
 
 
 def scientific(value: float, digits: int) -> str:

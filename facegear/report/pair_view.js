@@ -201,7 +201,7 @@
       const phi1 = ((position - 0.5) * 2 * Math.PI) / pinion.teeth, phi2 = (phi1 * pinion.teeth) / gear.teeth;
       const { matrix, back } = cameraMatrix(view, data.centre, data.size, canvas.width / canvas.height);
       gl.viewport(0, 0, canvas.width, canvas.height);
-      gl.clearColor(1, 1, 1, 1);
+      gl.clearColor(...(matchMedia("(prefers-color-scheme: dark)").matches ? [0.08, 0.1, 0.12] : [1, 1, 1]), 1);
       gl.depthMask(true);
       gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
       gl.enable(gl.DEPTH_TEST);
@@ -276,5 +276,10 @@
     redraw();
   }
 
-  document.querySelectorAll(".pair-view").forEach(start);
+  // not before it is near: a page opens without waiting for it
+  const watcher = new IntersectionObserver((entries) => {
+    for (const { isIntersecting, target } of entries)
+      if (isIntersecting) { watcher.unobserve(target); start(target); }
+  }, { rootMargin: "600px" });
+  document.querySelectorAll(".pair-view").forEach((root) => watcher.observe(root));
 })();

@@ -15,7 +15,7 @@ for name, module in list(sys.modules.items()):  # the profile may have imported 
         del sys.modules[name]
 
 from facegear.config.cases import expand_cases
-from facegear.config.load import load_config
+from facegear.config.load import extended, load_config
 from facegear.config.notes import notes
 from facegear.errors import FacegearError
 from facegear.io.run_lock import hold

@@ -16,5 +16,6 @@ rule report:
     localrule: True
     params:
         values=report_values,
+        base=report_base,
     script:
         "../scripts/report.py"

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from facegear.config.notes import notes
 from facegear.config.tooth_pair import ToothPair
 from facegear.config.tooth_pair import pair as tooth_pair
 from facegear.contact.columns import PRESSURE_ARRAYS
@@ -10,6 +11,7 @@ from facegear.io.atomic import atomic_path
 from facegear.lubrication.columns import LOCAL_ARRAYS
 from facegear.provenance.stage import stage
 from facegear.report.case import case_report
+from facegear.report.machine import Base
 from facegear.report.pair_view import pair_view
 from facegear.strength.columns import ROOT_STRESS_ARRAYS
 
@@ -28,7 +30,9 @@ with stage(snakemake) as run:
         friction = arrays.read(given[0], LOCAL_ARRAYS) if given else None
         design = tooth_pair(ToothPair.of_config(snakemake.params.values["tooth_pair"])).design
         view = pair_view(design, loads, frames["ltca"], stress, friction)
-    page = case_report(snakemake.params.values, frames, pictures, manifests, pair, view)
+    values = snakemake.params.values
+    base = Base(*snakemake.params.base) if snakemake.params.base else None
+    page = case_report(values, frames, pictures, manifests, pair, view, base, notes(values))
     with atomic_path(snakemake.output.html) as temporary:
         temporary.write_text(page, encoding="utf-8")
     run.summary(f"{len(pictures)} pictures, {len(frames)} tables, {len(page) / 1e6:.1f} MB")

@@ -40,6 +40,13 @@ ROWS = (
         needs={**MACHINE, **SPEED},
         upstream={**HARMONICS, **BODIES},
         files={name: File(f"machine/{name}.csv") for name in ("ratings", "bodies", "meshes")},
+        figures=Figures(
+            draw="facegear.plots.gearbox_layout:figures",
+            names=("machine",),
+            chapter="load_sharing",
+            upstream=from_stage("ratings", "meshes"),
+            needs=MACHINE,
+        ),
         asked=asked.machine,
         local=True,
     ),

@@ -10,8 +10,8 @@ from facegear.pipeline.run import call
 from facegear.pipeline.table import STAGES
 from facegear.report.case import _tables as case_tables
 from facegear.report.contents import caption_of
-from facegear.report.glance import verdicts, warnings
-from facegear.report.machine import key_numbers, machine_chapter
+from facegear.report.glance import findings, glance_chapter, warnings
+from facegear.report.machine import Base, key_numbers, machine_chapter
 
 
 @pytest.fixture(scope="module")
@@ -100,8 +100,8 @@ def test_the_first_screen_warns_of_what_the_results_hide(example):
         row for row in warnings(values, found | {"by_torque": light}, pair) if "into fillets" in row[1]
     ]
     assert [about for about, _ in message] == ["contact at 600 N m"], "as the rating judges it"
-    known = dict(verdicts(found | {"by_torque": pressed}, pair))
-    assert known["contact at 600 N m"].startswith("no mean stiffness, ")
+    known = {row.about: row for row in findings(found | {"by_torque": pressed}, pair)}
+    assert known["contact at 600 N m"].finding.startswith("no mean stiffness, ")
     most = tables["meshes"]["pinion_torque_n_m"].abs().max()
     barely = found | {"by_torque": pd.DataFrame(contact).assign(torque_n_m=most * (1 - 1e-12))}
     assert not any("solved up to" in row[1] for row in warnings(values, barely, pair)), "rounding"
@@ -111,7 +111,9 @@ def test_the_first_screen_warns_of_what_the_results_hide(example):
     assert not [
         row for row in warnings(values, {**tables, "by_torque": quiet}, pair) if row[0] != "mesh stiffness"
     ]
-    assert next(verdicts(found, pair))[1].startswith("free; smallest gap beside the contact 7.8 um")
+    assert next(iter(findings(found, pair))).finding.startswith(
+        "free; smallest gap beside the contact 7.8 um"
+    )
 
 
 def test_a_green_rating_beside_loaded_tip_edges_is_amber_with_its_reason_on_the_first_screen():
@@ -127,10 +129,10 @@ def test_a_green_rating_beside_loaded_tip_edges_is_amber_with_its_reason_on_the_
         "reason": "tip edges carry 327 N/mm, where pressure has no limit",
         "within_torques_solved": False,
     }
-    message = dict(verdicts({"rating": pd.DataFrame([row])}, None))
+    message = {row.about: row for row in findings({"rating": pd.DataFrame([row])}, None)}
     line = message["pinion, drive flank, pitting (contact analysis)"]
-    assert line.startswith("amber") and "327 N/mm" in line
-    assert line.endswith("outside the torques of the contact analysis")
+    assert line.light == "amber" and "327 N/mm" in line.finding
+    assert line.finding.endswith("outside the torques of the contact analysis")
 
 
 def test_the_first_screen_names_k_gamma_of_the_running_machine_beside_that_at_rest():
@@ -143,8 +145,8 @@ def test_the_first_screen_names_k_gamma_of_the_running_machine_beside_that_at_re
         "speed_rpm": 7500.0,
         "mesh_cycles": 99,
     }
-    message = dict(verdicts({"following_groups": pd.DataFrame([row])}, None))
-    assert message["K_gamma, idlers"].startswith(
+    message = {row.about: row for row in findings({"following_groups": pd.DataFrame([row])}, None)}
+    assert message["K_gamma, idlers"].finding.startswith(
         "1.416 (K_v 1.100) at 7500 rpm and 1328 N m, 1.268 at rest, over 99 mesh cycles"
     )
 
@@ -228,3 +230,58 @@ def test_a_jump_far_from_a_linear_resonance_is_not_given_its_speed():
     assert table.header()[-3:] == ["moves most", "energy fraction", "linear resonance (rpm)"]
     assert [row[-1] for row in table.rows()] == ["", "12443"]
     assert not case_tables("Nominal response and speed sweeps", {"jumps": jumps[:0]}, 7500.0)[0].rows()
+
+
+def test_a_number_beyond_what_was_solved_or_undecided_is_warned_of(example):
+    """Half of the ratings lay outside the torques solved, and the first screen was silent."""
+    values, tables = example
+    beyond = {
+        "rating": pd.DataFrame({"within_torques_solved": [True, False]}),
+        "limits": pd.DataFrame(
+            [("xu_kahraman", "load", 600.0, 12.5), ("xu_kahraman", "speed", 600.0, 0.0)],
+            columns=["friction_model", "limit", "torque_n_m", "loss_outside_percent"],
+        ),
+        "contacts": pd.DataFrame({"contact": ["a/upper", "b/upper"], "state": ["undecided", "drive"]}),
+    }
+    message = [": ".join(row) for row in warnings(values, {**tables, **beyond}, None)]
+    for words in (
+        "strength: 1 of 2 ratings lie outside the torques of the contact analysis",
+        "friction: 12 % of the loss at 600 N m lies outside the limits of xu_kahraman: load",
+        "modes: too little load to tell from rounding, taken as open: a/upper",
+    ):
+        assert words in message, words
+    assert not any("speed" in one for one in message), "nothing of that limit is outside"
+
+
+def test_the_worst_verdict_stands_first_and_each_colour_is_counted(example):
+    values, tables = example
+    row = {"gear": "pinion", "method": "contact analysis", "safety": 1.2, "required": 1.0, "reason": ""}
+    rated = [
+        {
+            **row,
+            "body": "a",
+            "flank": "drive",
+            "failure": failure,
+            "verdict": light,
+            "within_torques_solved": True,
+        }
+        for failure, light in (("bending", "green"), ("pitting", "red"))
+    ]
+    chapter = glance_chapter(
+        values, {**tables, "rating": pd.DataFrame(rated)}, (), None, ["lubrication: a note"]
+    )
+    judged, warned = chapter.tables[:2]
+    assert judged.caption == "Verdicts: 1 red, 1 green" and list(judged.frame["verdict"]) == ["red", "green"]
+    assert ["lubrication", "a note"] in warned.frame.to_numpy().tolist()
+    numbers = key_numbers({"rating": pd.DataFrame(rated)}, None).set_index("quantity")["value"]
+    assert numbers["Smallest safety against pitting"] == "1.2"
+
+
+def test_a_changed_key_of_the_config_stands_beside_its_value_in_the_file_extended(example):
+    values, tables = example
+    other = facegear.example().with_values({"transmission.backlash_um": 55.0}).values
+    table = machine_chapter(values, tables, Base("paper.yaml", other)).tables[-1]
+    assert table.caption.endswith("1 keys differ from paper.yaml, which it extends")
+    row = table.frame.set_index("key").loc["transmission.backlash_um"]
+    assert row["against paper.yaml"] == "changed" and row["in paper.yaml"] == 55.0
+    assert machine_chapter(values, tables).tables[-1].header() == ["key", "value"]

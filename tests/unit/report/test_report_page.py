@@ -1,5 +1,6 @@
 """The report page stands alone and shows what it was given."""
 
+import base64
 import re
 
 import pandas as pd
@@ -25,7 +26,7 @@ def test_page_needs_no_other_file(tmp_path):
 def test_text_is_escaped_and_missing_numbers_are_blank(tmp_path):
     text = page(tmp_path)
     assert "pinion &lt;b&gt;" in text
-    assert "<td>756.71</td>" in text
+    assert '<td class="number">756.71</td>' in text
     assert "nan" not in text
     assert text.count("<p>") == 3
 
@@ -64,14 +65,26 @@ def test_stiffnesses_are_written_in_one_format():
 
 
 def test_text_of_pictures_keeps_its_size_on_a_telephone(tmp_path):
-    for name, points, narrow in (("a", 338.4, True), ("b", 792.0, False)):
+    for name, points in (("a", 338.4), ("b", 792.0)):
         path = tmp_path / f"{name}.svg"
         path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" width="{points}pt" height="9pt"/>')
         text = render("Case", "Lead", [Chapter("C", "", (Picture(path, "P"),))])
         assert f'width="{round(points * 4 / 3)}"' in text
-        assert ("class=narrow" in text) == narrow
 
 
 def test_rounding_is_written_as_zero_and_small_numbers_of_their_own_unit_are_kept():
     frame = pd.DataFrame({"mean_n": [3.3e-12, 2.1e4], "rms_n": [10.2, 0.5], "energy_fraction": [1e-12, 0.1]})
     assert Table("T", frame).rows() == [["0", "10.2", "1e-12"], ["21000", "0.5", "0.1"]]
+
+
+def test_every_number_is_written_alike_and_the_csv_keeps_all_its_digits():
+    """Numbers were 1.234e+04 in one column and 4.1e8 in the next."""
+    values = [12345.678, 1234567.0, 2.0e-2, -0.0123456, float("inf"), 10.0, 999999.9]
+    frame = pd.DataFrame({"force_n": values, "running": [True, False] * 3 + [True]})
+    table = Table("Forces, of every mesh", frame, 4)
+    shown = ["12346", "1.235e6", "0.02", "-0.01235", "inf", "10", "1000000"]
+    assert [row[0] for row in table.rows()] == shown
+    assert table.numeric() == [True, False] and table.rows()[0][1] == "yes"
+    kept = base64.b64decode(table.csv_uri().partition(",")[2]).decode()
+    assert kept == frame.to_csv(index=False) and "12345.678" in kept
+    assert table.csv_name("modes") == "modes-forces-of-every-mesh.csv"

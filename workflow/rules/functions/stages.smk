@@ -29,11 +29,12 @@ def outputs(stage):
 
 
 def pictures(figures):
-    """Lists `svg` and `png` of the files of figures; the first are marked for Snakemake's report."""
+    """Lists `svg`, `png` and `json` of the files of figures; the first are marked for Snakemake's report."""
     names = figures.named(BASE)
     return {
         "svg": [shown(name, figures.chapter) for name in names],
         "png": [f"results/{{case}}/figures/{name}.png" for name in names],
+        "json": [f"results/{{case}}/figures/{name}.json" for name in names],
     }
 
 

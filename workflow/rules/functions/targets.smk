@@ -30,6 +30,18 @@ def report_values(wildcards):
     return {**CASES[case], "reproduction": case == CASE and REPRODUCTION is not None}
 
 
+def report_base(wildcards):
+    """Name and plain values of the config file that the first one extends; none where it extends none.
+
+    A file that is no whole config has no values to compare with.
+    """
+    path = extended(CONFIGFILES[0])
+    try:
+        return path and [path.name, expand_cases(whole := load_config(path))[whole.case]]
+    except FacegearError:
+        return None
+
+
 def where_made(stage, file):
     """Function of the wildcards giving a file of a stage, none where a case does not ask for it."""
 

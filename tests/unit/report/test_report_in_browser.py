@@ -1,0 +1,181 @@
+"""A reader opens a page of the report in Chromium: values by pointer, zoom, tables, dark mode, print."""
+
+import io
+import re
+import shutil
+
+import numpy as np
+import pandas as pd
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import sync_playwright
+
+from facegear.plots.style import save
+from facegear.plots.sweep import mesh_sweeps, translations
+from facegear.report.page import Chapter, Picture, Table, render
+
+CHROMIUM = shutil.which("chromium")
+pytestmark = [
+    pytest.mark.xdist_group("browser"),
+    pytest.mark.skipif(CHROMIUM is None, reason="no chromium: .ci/run installs it"),
+]
+A4 = {"width": 710, "height": 1030}
+"""Pixels of a page of A4 within its margins."""
+OVER_SPEED = "figure-mesh_sweep"
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    """Two figures of a sweep, a narrow and the widest kind of table, and verdicts of each colour."""
+    folder = tmp_path_factory.mktemp("page")
+    speeds = np.linspace(1000.0, 9000.0, 9)
+    rows = [
+        (direction, speed, quantity, item, 1.0 + np.sin(1e-3 * speed), "period-1", True)
+        for direction in ("up", "down")
+        for quantity, item in (
+            ("deflection_ac_rms_um", "input/upper"),
+            ("deflection_ac_rms_um", "tail/upper"),
+        )
+        + (("x_ac_rms_um", "input"), ("y_ac_rms_um", "input"))
+        for speed in speeds
+    ]
+    columns = ["direction", "speed_rpm", "quantity", "body_or_mesh", "value", "class", "periodic"]
+    sweep = pd.DataFrame(rows, columns=columns)
+    jumps = pd.DataFrame({"direction": ["up"], "speed_after_rpm": [4000.0]})
+    drawn = {
+        "mesh_sweep": mesh_sweeps(sweep, jumps, ["input", "tail"], ["upper"]),
+        "pinion_sweep": translations(sweep, ["input"], "xy"),
+    }
+    for name, figure in drawn.items():
+        save(figure, folder / f"{name}.svg", folder / f"{name}.json")
+    pictures = [Picture(folder / f"{name}.svg", f"Sweep, {name}.") for name in drawn]
+    modes = pd.DataFrame({"mode": ["7", "8", "9"], "frequency_hz": [597.5591, 1010.1912, 812.3]})
+    wide = pd.DataFrame({f"largest_line_load_{n}_n_per_mm": [1234.5678 + n] * 4 for n in range(20)})
+    judged = pd.DataFrame({"verdict": ["green", "amber", "red"], "what was found": ["safety 1.0 " * 8] * 3})
+    chapters = [
+        Chapter("At a glance", "", tables=[Table("Verdicts", judged)]),
+        Chapter("Modes", "Text.", tables=[Table("Natural frequencies", modes), Table("Wide", wide)]),
+        Chapter("Sweeps", "", pictures),
+    ]
+    (folder / "report.html").write_text(render("A machine", "Lead.", chapters), encoding="utf-8")
+    return folder / "report.html"
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with sync_playwright() as playwright:
+        running = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield running
+        running.close()
+
+
+@pytest.fixture
+def opened(browser, report):
+    """Opens the report in a window of a width; afterwards no script has failed."""
+    contexts, failures = [], []
+
+    def opening(width=1280, script=True, **wishes):
+        size = {"width": width, "height": 900}
+        contexts.append(browser.new_context(viewport=size, java_script_enabled=script, **wishes))
+        page = contexts[-1].new_page()
+        page.on("pageerror", lambda error: failures.append(str(error)))
+        page.on("request", lambda request: failures.append(request.url) if "//" in request.url[5:] else None)
+        page.goto(report.as_uri())
+        if script:
+            page.wait_for_function("document.documentElement.dataset.plots === 'ready'")
+        return page
+
+    yield opening
+    for context in contexts:
+        context.close()
+    assert not [failure for failure in failures if not failure.startswith(("file:", "blob:", "data:"))]
+
+
+def drawn(page, name):
+    """The figure, in view and drawn."""
+    page.locator(f"#{name}").scroll_into_view_if_needed()
+    page.wait_for_selector(f"#{name}[data-drawn=true]")
+    return page.locator(f"#{name} .live")
+
+
+def middle_of(page, name):
+    """Where a figure's first panel is on the screen, and how wide it is."""
+    box = page.locator(f"#{name} .nsewdrag").first.bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2, box["width"]
+
+
+def test_the_pointer_shows_values_with_units_up_and_down_side_by_side(opened):
+    page = opened()
+    drawn(page, OVER_SPEED)
+    x, y, _ = middle_of(page, OVER_SPEED)
+    page.mouse.move(x, y)
+    label = page.wait_for_selector(f"#{OVER_SPEED} .hoverlayer .legend")
+    words = label.text_content()
+    assert re.search(r"up : [\d.]+ µm.*down : [\d.]+ µm", words) and re.search(r"speed [\d.]+ rpm", words), (
+        words
+    )
+
+
+def test_a_drag_zooms_every_figure_over_speed_and_a_legend_switches_a_curve_everywhere(opened):
+    page = opened()
+    drawn(page, "figure-pinion_sweep")
+    graph = drawn(page, OVER_SPEED)
+    before = graph.evaluate("graph => graph.layout.xaxis.range")
+    x, y, width = middle_of(page, OVER_SPEED)
+    page.mouse.move(x - width / 4, y)
+    page.mouse.down()
+    page.mouse.move(x + width / 4, y, steps=3)
+    page.mouse.up()
+    after = graph.evaluate("graph => [...graph.layout.xaxis.range]")
+    assert after[0] > before[0] and after[1] < before[1]
+    other = page.locator("#figure-pinion_sweep .live")
+    assert other.evaluate("graph => [...graph.layout.xaxis.range]") == after
+    page.locator(f"#{OVER_SPEED} .legendtoggle").first.click(force=True)
+    page.wait_for_function(f"document.querySelector('#{OVER_SPEED} .live').data[0].visible === 'legendonly'")
+    hidden = graph.evaluate("graph => graph.data.filter(t => t.visible === 'legendonly').map(t => t.name)")
+    assert hidden == ["up", "up"]
+
+
+def test_a_table_is_sorted_by_its_head_and_kept_as_csv_with_all_its_digits(opened):
+    page = opened()
+    head = page.locator("#modes th button", has_text="frequency (Hz)")
+    for order in (["597.56", "812.3", "1010.2"], ["1010.2", "812.3", "597.56"]):
+        head.click()
+        assert page.locator("#modes table").first.locator("td:nth-child(2)").all_inner_texts() == order
+    with page.expect_download() as download:
+        page.locator("#modes a.csv").first.click()
+    assert download.value.suggested_filename == "modes-natural-frequencies.csv"
+    kept = pd.read_csv(io.BytesIO(download.value.path().read_bytes()))
+    assert kept["frequency_hz"].tolist() == [597.5591, 1010.1912, 812.3]
+
+
+@pytest.mark.parametrize(("width", "scheme"), [(1280, "light"), (500, "dark")])
+def test_the_page_has_no_serious_fault_of_accessibility_and_fits_the_window(opened, width, scheme):
+    page = opened(width, color_scheme=scheme)
+    drawn(page, OVER_SPEED)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    paper = page.evaluate("getComputedStyle(document.body).backgroundColor")
+    assert (sum(map(int, re.findall(r"\d+", paper)[:3])) < 200) == (scheme == "dark")
+    faults = Axe().run(page).response["violations"]
+    serious = [fault for fault in faults if fault["impact"] in ("serious", "critical")]
+    assert not [(fault["id"], fault["nodes"][0]["html"][:120]) for fault in serious]
+
+
+def test_print_fits_a4_with_every_column_and_the_stills(opened):
+    page = opened()
+    drawn(page, OVER_SPEED)
+    page.emulate_media(media="print")
+    page.set_viewport_size(A4)
+    widths = page.evaluate("[...document.querySelectorAll('main table')].map(table => table.scrollWidth)")
+    assert len(widths) == 3 and max(widths) <= A4["width"]
+    assert page.locator(f"#{OVER_SPEED} img").is_visible()
+    assert not page.locator(f"#{OVER_SPEED} .live").is_visible()
+    printed = page.pdf(prefer_css_page_size=True)
+    assert len(re.findall(rb"/Type\s*/Page\b(?!s)", printed)) <= 2
+    assert re.search(rb"/MediaBox \[0 0 59[45]\S* 84[12]", printed), "A4"
+
+
+def test_without_scripts_the_stills_and_tables_are_there(opened):
+    page = opened(script=False)
+    assert page.locator(f"#{OVER_SPEED} img").is_visible() and page.locator("#modes table").first.is_visible()
+    assert page.locator("nav a").count() == 3
