@@ -8,6 +8,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from facegear.config.arguments import typed_arguments
+from facegear.config.notes import notes
 from facegear.errors import FacegearError, extras_named
 from facegear.io.atomic import atomic_path
 from facegear.pipeline.asked import machine_loads
@@ -96,7 +97,13 @@ class WholeCase:
         pictures = {name: path for stage in stages for name, path in self._drawn(stage, folder, png)}
         values = {**self.chain.values, "reproduction": False}
         return case_report(
-            values, tables, pictures, self.records, self._part("geometry", "pair"), self._view()
+            values,
+            tables,
+            pictures,
+            self.records,
+            self._part("geometry", "pair"),
+            self._view(),
+            notes=notes(self.chain.values),
         )
 
     def _drawn(self, stage: Stage, folder: Path, png: bool) -> Iterator[tuple[str, Path]]:
@@ -113,7 +120,7 @@ class WholeCase:
         figures = draw(**self.chain.given(stage.figures.upstream), **typed_arguments(draw, needs))
         for name, figure in zip(stage.figures.named(self.chain.case), figures, strict=True):
             path = folder / f"{name}.svg"
-            save(figure, path)
+            save(figure, path, path.with_suffix(".json"))
             if png or path.stat().st_size > LARGEST_SVG:
                 save(figure, path.with_suffix(".png"))
             yield name, path

@@ -17,6 +17,8 @@ FILES = {
     "facegear/example.yaml",
     "facegear/config/config.schema.json",
     "facegear/report/page.html.j2",
+    "facegear/report/page.css",
+    "facegear/report/plotly-cartesian.min.js",
 }
 
 

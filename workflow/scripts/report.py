@@ -32,7 +32,8 @@ with stage(snakemake) as run:
         view = pair_view(design, loads, frames["ltca"], stress, friction)
     values = snakemake.params.values
     base = Base(*snakemake.params.base) if snakemake.params.base else None
-    page = case_report(values, frames, pictures, manifests, pair, view, base, notes(values))
+    said = notes({**values, "reproduction": values["reproduction"] or None})
+    page = case_report(values, frames, pictures, manifests, pair, view, base, said)
     with atomic_path(snakemake.output.html) as temporary:
         temporary.write_text(page, encoding="utf-8")
     run.summary(f"{len(pictures)} pictures, {len(frames)} tables, {len(page) / 1e6:.1f} MB")
