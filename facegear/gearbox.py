@@ -466,13 +466,16 @@ class Gearbox:
 
         STEP or STL (mm): the exact teeth of a body, modifications included; `body`: pinion or face_gear;
         `teeth`: a sector of so many, the whole gear unless given. FMU: the dynamic model as C sources for
-        co-simulation (FMI 3.0), at the config's speed. Raises FacegearError for anything else and for what an
+        co-simulation (FMI 3.0), at the config's speed. GLB: a glTF scene of all gears in mesh, or of one
+        pinion and its gear without a transmission. Raises FacegearError for anything else and for what an
         FMU cannot hold, ConfigError for a pair without bodies and for a config without a transmission.
         """
         if Path(path).suffix == ".fmu":
             from facegear.exchange.fmu import write_fmu
 
             return write_fmu(path, self._machine(), self._values["dynamics"]["speed_rpm"])
+        if Path(path).suffix == ".glb":
+            return self._scene(Path(path))
         with extras_named():
             from facegear.stages.cad import export
 
@@ -585,6 +588,24 @@ class Gearbox:
             return self
         config = changed_config(self.config.model_dump(mode="json"), plain(changes), where)
         return Gearbox(config, self.store)
+
+    def _scene(self, path: Path) -> Path:
+        from math import radians, tau
+
+        from facegear.config.tooth_pair import pair_design
+        from facegear.exchange.gltf import write_gltf
+
+        design, machine = pair_design(self.config.tooth_pair), self.config.transmission
+        if machine is None:
+            return write_gltf(path, design, [("pinion", 0.0)], ["upper"])
+        angles = [
+            radians(pinion.angle_deg)
+            if pinion.angle_deg is not None
+            else tau * (pinion.angle_pitches or 0.0) / design.face_gear.teeth
+            for pinion in machine.pinions
+        ]
+        names = [pinion.name for pinion in machine.pinions]
+        return write_gltf(path, design, list(zip(names, angles, strict=True)), machine.face_gears)
 
     def _machine(self) -> "Machine":
         """The lumped machine as the dynamics take it. Raises ConfigError without a transmission."""

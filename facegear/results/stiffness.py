@@ -2,10 +2,12 @@
 
 from typing import TYPE_CHECKING, ClassVar
 
+import numpy as np
 import pandas as pd
 
-from facegear.errors import chosen
+from facegear.errors import FacegearError, chosen
 from facegear.results.base import Result
+from facegear.stiffness.tables import series_of
 
 if TYPE_CHECKING:
     from facegear.plots.style import Figure
@@ -23,6 +25,19 @@ class StiffnessResult(Result):
     def curve(self) -> pd.DataFrame:
         """k over a pitch and the series kept of it, N/m."""
         return self.content["tvms"].copy()
+
+    def over_angle(self, points: int = 64) -> pd.DataFrame:
+        """k at `points` angles of the pinion over one of its pitches: pinion_angle_deg, k_n_per_m.
+
+        The series that is kept, of a mesh that is in its reference phase at angle 0; for programs that take
+        a curve where ours takes Fourier orders.
+        """
+        if points < 1:
+            raise FacegearError(f"points = {points}: must be at least 1")
+        cycles = np.arange(points) / points
+        pitch = 360.0 / self.values["tooth_pair"]["pinion_teeth"]
+        stiffness = series_of(self.content["harmonics"])(cycles)
+        return pd.DataFrame({"pinion_angle_deg": pitch * cycles, "k_n_per_m": stiffness})
 
     def plot(self, what: str = "curve") -> "Figure":
         """`curve` over a mesh period, or amplitudes of its `harmonics`."""

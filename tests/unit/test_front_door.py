@@ -304,3 +304,15 @@ def test_tables_of_an_answer_go_to_a_workbook_and_come_back(gearbox, tmp_path):
     assert set(sheets) == set(found.content)
     read_back = sheets["frequencies"]["frequency_hz"]
     np.testing.assert_allclose(read_back, found.table()["frequency_hz"], rtol=1e-15)
+
+
+def test_stiffness_over_the_pinions_angle_is_the_series_over_one_pitch(gearbox):
+    found = gearbox.stiffness()
+    curve = found.over_angle(32)
+    orders = found.table()
+    np.testing.assert_allclose(curve["pinion_angle_deg"], np.arange(32) * 360 / (23 * 32))
+    spectrum = np.fft.rfft(curve["k_n_per_m"]) / 32
+    np.testing.assert_allclose(spectrum[0].real, orders["b_n_per_m"][0], rtol=1e-12)
+    own = spectrum[1 : len(orders)]
+    np.testing.assert_allclose(2 * own.real, orders["b_n_per_m"][1:], atol=1e-6 * 4e8)
+    np.testing.assert_allclose(-2 * own.imag, orders["a_n_per_m"][1:], atol=1e-6 * 4e8)

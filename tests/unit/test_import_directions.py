@@ -38,7 +38,7 @@ MAY_IMPORT = {
     "scenarios": set(),
     "strength": {"geometry", "contact", "transmission", "dynamics", "load_sharing"},
     "lubrication": {"geometry", "contact", "harmonics"},
-    "exchange": {"dynamics", "transmission", "harmonics", "mesh_law"},
+    "exchange": {"geometry", "dynamics", "transmission", "harmonics", "mesh_law"},
     "variants": {
         *("config", "geometry", "contact", "stiffness", "harmonics"),
         *("transmission", "dynamics", "load_sharing", "scenarios", "strength", "lubrication"),
@@ -50,7 +50,7 @@ MAY_IMPORT = {
     "pipeline": {"config", "load_sharing", "report", "stages"},
     "results": {
         *("pipeline", "config", "provenance", "stages", "contact", "dynamics", "load_sharing"),
-        *("plots", "report", "strength"),
+        *("plots", "report", "strength", "stiffness"),
     },
 }
 TENANTS = ("paper", "validation")
