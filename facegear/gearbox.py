@@ -269,7 +269,9 @@ class Gearbox:
         return self._chain.result(MeshLawResult)
 
     def modes(self) -> "ModesResult":
-        """Natural frequencies, classes and shapes; needs neither mesh nor contact.
+        """Natural frequencies, classes and shapes.
+
+        They need a contact analysis unless `modal.stiffness` is average or the mesh stiffness is given.
 
         >>> import facegear
         >>> int((facegear.example().modes().table()["class"] == "rigid body").sum())

@@ -45,6 +45,11 @@ def load_dependent(case: Case) -> bool:
     return case.values["mesh_stiffness"]["mesh_law"] == "load_dependent"
 
 
+def load_dependent_machine(case: Case) -> bool:
+    """Whether section transmission is given and mesh forces depend on the load."""
+    return machine(case) and load_dependent(case)
+
+
 def modes_from_contact(case: Case) -> bool:
     """Whether modes take their stiffness from the contact analysis."""
     from facegear.config.modal import modes_need_contact

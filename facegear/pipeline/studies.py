@@ -105,6 +105,34 @@ def _cases(case: Case, chosen: Points) -> list[Wildcards]:
     return [{"case": str(case.values["case"])}, *others]
 
 
+def law_points(case: Case) -> Points:
+    """The machine itself and the points whose mesh law is another one."""
+    own = case.values["mesh_stiffness"]["mesh_law"]
+    others = [
+        point
+        for point in points(case)
+        if case.cases[_id(case, *point[:2])]["mesh_stiffness"]["mesh_law"] != own
+    ]
+    return [NOMINAL, *others]
+
+
+def other_laws(case: Case) -> list[Wildcards]:
+    """The cases of `law_points` but for the machine itself."""
+    return _cases(case, law_points(case))[1:]
+
+
+def law_labels(case: Case) -> list[str]:
+    """What the laws of `law_points` are called in a figure."""
+    own = str(case.values["mesh_stiffness"]["mesh_law"]).replace("_", "-")
+    return [own, *(label for _, _, label in law_points(case)[1:])]
+
+
+def law_figures(case: Case) -> list[str]:
+    """Loads in the table, and sweeps with several laws where a study has them."""
+    compared = asked.load_dependent(case) and len(law_points(case)) > 1
+    return ["law_loads", *(["law_sweeps"] if compared else [])]
+
+
 def friction_studied(case: Case) -> bool:
     """Whether a study changes the loss of the machine's meshes."""
     return len(friction_points(case)) > 1

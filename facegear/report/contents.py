@@ -24,6 +24,11 @@ CAPTIONS = {
     "mesh_stiffness": "Mesh stiffness over a mesh period, and its Fourier series.",
     "stiffness_harmonics": "Amplitudes of the mesh stiffness harmonics.",
     "stiffness_load": "Mean stiffness and its harmonics against load.",
+    "mesh_law": "Force of a mesh over a mesh period at even deflections, up to the last level of its law.",
+    "mesh_law_surface": "The same force over mesh period and deflection.",
+    "law_loads": "Forces of the meshes at the nominal speed and in the sweep beside the table of their law; "
+    "beside a row: the fraction of the time past it.",
+    "law_sweeps": "RMS of mesh deflections over speed, with the mesh laws of the studies over each other.",
     "mode_shapes": "Typical mode shapes.",
     "body_shapes": "Sections of the face gears and their first mode shapes at a crest, hubs held.",
     "body_waves": "Frequencies of the face gears over nodal diameters, hubs held: at rest, and of waves in "
@@ -119,7 +124,7 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     (
         "Mesh stiffness",
         "What the lumped model is given.",
-        ("mesh_stiffness", "stiffness_harmonics", "stiffness_load"),
+        ("mesh_stiffness", "stiffness_harmonics", "stiffness_load", "mesh_law", "mesh_law_surface"),
     ),
     (
         "Modes",
@@ -130,7 +135,10 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "Nominal response and speed sweeps",
         "The state is carried over from speed to speed, upwards and downwards. A class of motion stands "
         "beside every number; where the motion is not periodic the number is an average.",
-        ("mesh_deflections", "pinion_sweep", "gear_sweep", "mesh_sweep", "waterfall"),
+        (
+            *("mesh_deflections", "pinion_sweep", "gear_sweep", "mesh_sweep", "law_sweeps", "law_loads"),
+            "waterfall",
+        ),
     ),
     (
         "Load sharing at rest",

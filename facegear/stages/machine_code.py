@@ -4,7 +4,7 @@ from facegear.dynamics.steady_state.prepare import prepare
 from facegear.stages.outcome import Outcome
 
 
-def machine_code() -> Outcome:
-    """Nothing but the compiled code in the user's cache."""
-    prepare()
+def machine_code(mesh_law: str) -> Outcome:
+    """Nothing but the compiled code in the user's cache, for a mesh law of the config."""
+    prepare(load_dependent=mesh_law == "load_dependent")
     return Outcome({}, "time integration ready")

@@ -1,9 +1,9 @@
 """The load-dependent mesh law of a flank from its contact at many torques, and how well it meets them.
 
-At every position the contact gives force and slope at the deflections of each torque; a cubic through two
-neighbours gives them at deflections common to all positions, the levels. Each level then has a Fourier
-series over the pitch. Below the first level the force is F1 (x / x1)^n with n = k1 x1 / F1, each pair's own:
-touching bodies are not linear, and the hats of the lattice do not resolve so light a touch.
+At every position the contact gives force and slope at the deflections of each torque; the cubics that come
+nearest to them begin and end at deflections common to all positions, the levels. Each level then has a
+Fourier series over the pitch. Below the first level the force is F1 (x / x1)^n with n = k1 x1 / F1, each
+pair's own: touching bodies are not linear, and the hats of the lattice do not resolve so light a touch.
 """
 
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from facegear.arrays import AnyArray, Array, Integers
+from facegear.arrays import AnyArray, Array, Arrays, Integers
 from facegear.errors import FacegearError
 from facegear.mesh_law.load_dependent import ForceTable, load_dependent_law
 
@@ -31,10 +31,16 @@ LIGHTEST = 1.0 / 32.0
 """Smallest torque solved, over the largest."""
 EXPONENT = 1.3
 """Of the force over the deflection, roughly: with it levels lie evenly in the root of the deflection."""
-INTERVALS = 12
-"""Between the torques that are solved."""
-CHOICES = ((0, 4, 8, 12), (0, 4, 7, 10, 12), (0, 2, 5, 7, 9, 12), (0, 2, 4, 6, 8, 10, 12))
-"""Those of them that give levels, the fewest first: a motion stops at every level that it passes."""
+SOLVED = 13
+"""Torques that are solved: every second one gives the table, those between show its error."""
+PIECES = (1, 2, 3, 4, 5)
+"""Numbers of cubics between the first level and the last, the fewest first: a motion stops at every level
+that it passes.
+"""
+CROWDING = (1.0, 1.5, 2.0)
+"""Exponents with which levels crowd towards the first; 1: they lie evenly."""
+SLOPE_WEIGHT = 0.25
+"""Part of the distance to the next solution over which a slope counts as much as a force."""
 REACH = 1.2
 """Largest torque solved over the one that the law is to reach at every position of the pitch."""
 BELOW = (0.5, 0.25, 0.125)
@@ -77,15 +83,20 @@ class TableError:
         return 100.0 * self.rms, 100.0 * self.largest
 
     @property
+    def excess(self) -> float:
+        """The larger of both over what is aimed at."""
+        return max(self.rms / RMS, self.largest / LARGEST)
+
+    @property
     def meets_aim(self) -> bool:
         """Whether no finer table is needed."""
-        return self.rms <= RMS and self.largest <= LARGEST
+        return self.excess <= 1.0
 
 
 def law_torques(largest: float) -> list[float]:
     """Torques (N m) at which contact is solved for a law that reaches the largest at every phase, rising."""
     power, largest = 2.0 * EXPONENT, REACH * largest
-    parts = np.linspace(LIGHTEST ** (1.0 / power), 1.0, INTERVALS + 1)
+    parts = np.linspace(LIGHTEST ** (1.0 / power), 1.0, SOLVED)
     return [float(largest * part**power) for part in parts[:-1]] + [float(largest)]
 
 
@@ -95,39 +106,52 @@ def fitted_tables(flanks: Sequence[FlankContacts], orders: int) -> tuple[list[Fo
     orders: harmonics kept, at most as many as the positions give. Raises FacegearError where the force falls
     while the deflection grows.
     """
-    for rows in CHOICES:
-        tables = [force_table(flank.at(rows), orders) for flank in flanks]
-        errors = [table_error(*both) for both in zip(tables, flanks, strict=True)]
-        if all(error.meets_aim for error in errors):
+    given = [flank.at(range(0, SOLVED, 2)) for flank in flanks]
+    between = [flank.at(range(1, SOLVED, 2)) for flank in flanks]
+    for pieces in PIECES:
+        found = [[force_table(flank, pieces, crowding, orders) for flank in given] for crowding in CROWDING]
+        errors = [[table_error(*both) for both in zip(tables, between, strict=True)] for tables in found]
+        best = int(np.argmin([max(error.excess for error in row) for row in errors]))
+        if all(error.meets_aim for error in errors[best]) and not any(map(falls, found[best])):
             break
-    return tables, errors
+    for table in found[best]:
+        if falls(table):
+            raise FacegearError(
+                f"mesh law: the force falls with the deflection, by {table.min_slope:.4g} N/m: the mesh of "
+                f"the flanks is too coarse for the lightest contact, {flanks[0].forces[0]:.3g} N"
+            )
+    return found[best], errors[best]
 
 
-def force_table(contacts: FlankContacts, orders: int) -> ForceTable:
-    """The table with a level for each force of the contacts. Raises FacegearError where it would fall."""
+def falls(table: ForceTable) -> bool:
+    """Whether the force falls somewhere while the deflection grows, by more than cutting the series does."""
+    return table.min_slope < -ROUNDING * table.steepest
+
+
+def force_table(contacts: FlankContacts, pieces: int, crowding: float, orders: int) -> ForceTable:
+    """The table whose cubics come nearest to the contacts' forces and slopes at every position, by least
+    squares. Its first level has the largest deflection of the lightest contact, the last the smallest of the
+    heaviest; there are `pieces` cubics between them.
+
+    Raises FacegearError where the levels overlap.
+    """
     kept = min(orders, (contacts.deflections.shape[1] - 1) // 2)
     reached = contacts.deflections
-    levels = reached.mean(axis=1)
-    levels[0], levels[-1] = reached[0].max(), reached[-1].min()
-    if (np.diff(levels) <= 0.0).any():
-        raise FacegearError("mesh law: the deflections over a pitch overlap those of the next torque")
+    first, last = reached[0].max(), reached[-1].min()
+    if first >= last:
+        raise FacegearError("mesh law: the deflections over a pitch overlap those of the largest torque")
+    levels = first + (last - first) * np.linspace(0.0, 1.0, pieces + 1) ** crowding
     forces, slopes = _at_levels(contacts, levels)
-    first, exponent = levels[0], levels[0] * slopes[0] / forces[0]
+    exponent = first * slopes[0] / forces[0]
     parts = np.sort(BELOW)[:, None]
     lower = forces[0] * parts**exponent
     lower_slopes = exponent * lower / (parts * first)
     nothing = np.zeros((1, reached.shape[1]))
-    table = ForceTable(
+    return ForceTable(
         np.concatenate([[0.0], parts[:, 0] * first, levels]),
         _series(np.concatenate([nothing, lower, forces]), kept),
         _series(np.concatenate([nothing, lower_slopes, slopes]), kept),
     )
-    if table.min_slope < -ROUNDING * table.steepest:
-        raise FacegearError(
-            f"mesh law: the force falls with the deflection, by {table.min_slope:.4g} N/m: the mesh of the "
-            f"flanks is too coarse for the lightest contact, {contacts.forces[0]:.3g} N"
-        )
-    return table
 
 
 def table_error(table: ForceTable, contacts: FlankContacts) -> TableError:
@@ -151,6 +175,13 @@ def law_arrays(tables: Sequence[ForceTable], numbers: Integers) -> dict[str, Any
     }
 
 
+def forces_over_pitch(law: Arrays, row: int, phases: Array, amounts: Array) -> Array:
+    """Forces (amounts, phases) in N of the table in a row of LAW_ARRAYS; amounts in m."""
+    table = ForceTable(law["level_m"][row], law["force_n"][row], law["slope_n_per_m"][row])
+    beyond = np.broadcast_to(amounts[:, None, None], (amounts.size, phases.size, 1))
+    return load_dependent_law([table]).force(phases, beyond)[..., 0]
+
+
 def level_table(
     tables: Sequence[ForceTable], errors: Sequence[TableError], numbers: Integers, base_radius: float
 ) -> pd.DataFrame:
@@ -168,18 +199,43 @@ def level_table(
 
 
 def _at_levels(contacts: FlankContacts, levels: Array) -> tuple[Array, Array]:
-    """Forces and slopes (levels, p) by the cubic between the two nearest solutions of each position."""
-    forces, slopes = np.empty((2, levels.size, contacts.deflections.shape[1]))
+    """Forces and slopes (levels, p) of the cubics that come nearest to the contacts of each position.
+
+    At the first level they are those of the cubic between the two lightest contacts, as the force below it
+    follows from them.
+    """
+    count = levels.size
+    found = np.empty((2 * count, contacts.deflections.shape[1]))
+    given, sought = np.array([0, count]), np.delete(np.arange(2 * count), [0, count])
+    units = np.repeat([1.0, levels[-1] / count], count)
     for p, (reached, stiffness) in enumerate(zip(contacts.deflections.T, contacts.slopes.T, strict=True)):
-        at = np.clip(np.searchsorted(reached, levels, side="right") - 1, 0, reached.size - 2)
-        width = reached[at + 1] - reached[at]
-        rise = (contacts.forces[at + 1] - contacts.forces[at]) / width
-        begin, end = stiffness[at], stiffness[at + 1]
-        ahead = levels - reached[at]
-        bend, twist = (3.0 * rise - 2.0 * begin - end) / width, (begin + end - 2.0 * rise) / width**2
-        forces[:, p] = contacts.forces[at] + ahead * (begin + ahead * (bend + ahead * twist))
-        slopes[:, p] = begin + ahead * (2.0 * bend + 3.0 * ahead * twist)
-    return forces, slopes
+        lightest = np.concatenate([contacts.forces[:2], stiffness[:2]])
+        found[given, p] = np.concatenate(_cubics(reached[:2], levels[:1])) @ lightest
+        weight = SLOPE_WEIGHT * np.gradient(reached)
+        values, slopes = _cubics(levels, reached)
+        rows = np.concatenate([values, weight[:, None] * slopes])
+        wanted = np.concatenate([contacts.forces, weight * stiffness]) - rows[:, given] @ found[given, p]
+        solved = np.linalg.lstsq((rows * units)[:, sought], wanted)[0]
+        found[sought, p] = units[sought] * solved
+    return found[:count], found[count:]
+
+
+def _cubics(levels: Array, amounts: Array) -> tuple[Array, Array]:
+    """Values and slopes (amounts, 2 levels) of the Hermite cubics at amounts: of those with unit force at one
+    level, then of those with unit slope. Beyond the levels the outer cubics go on.
+    """
+    at = np.clip(np.searchsorted(levels, amounts, side="right") - 1, 0, levels.size - 2)
+    width = levels[at + 1] - levels[at]
+    t = (amounts - levels[at]) / width
+    values, slopes = np.zeros((2, amounts.size, 2, levels.size))
+    rows = np.arange(amounts.size)
+    for side, force, slope, force_rise, slope_rise in (
+        (0, (1 + 2 * t) * (1 - t) ** 2, t * (1 - t) ** 2, 6 * t * (t - 1), (1 - t) * (1 - 3 * t)),
+        (1, t**2 * (3 - 2 * t), t**2 * (t - 1), 6 * t * (1 - t), t * (3 * t - 2)),
+    ):
+        values[rows, 0, at + side], values[rows, 1, at + side] = force, slope * width
+        slopes[rows, 0, at + side], slopes[rows, 1, at + side] = force_rise / width, slope_rise
+    return values.reshape(amounts.size, -1), slopes.reshape(amounts.size, -1)
 
 
 def _series(values: Array, orders: int) -> Array:

@@ -19,6 +19,7 @@ extends: tolerances.yaml
 tooth_pair: {pinion: null, face_gear: null, shaper: null}
 mesh_stiffness:
   source: harmonics
+  mesh_law: constant_load
   mean_n_per_m: 4.1e8
   torque_n_m: null
   table: [{order: 1, a_n_per_m: 2.0e7, b_n_per_m: 0}]

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.integrator.compiled import Packed
+from facegear.dynamics.integrator.compiled import TAU, Packed
 from facegear.dynamics.integrator.excitation import excitation
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.kernel import kernel
@@ -94,17 +94,29 @@ def linear(system: System) -> LinearLaw:
     return system.law
 
 
+def plain_forces(system: System) -> Callable[[float, Array], Array]:
+    """Elastic forces (m,) at a phase and the deflections (m,) beyond the edges, in NumPy."""
+    law = system.law
+    if not isinstance(law, LinearLaw):
+        return lambda s, gap: law.force(np.array([s / TAU]), gap[None])[0]
+    order, stiffness = np.arange(law.fourier.shape[2]), law.fourier[law.kind]
+
+    def forces(s: float, gap: Array) -> Array:
+        k = stiffness[:, 0] @ np.sin(order * s) + stiffness[:, 1] @ np.cos(order * s)
+        return np.asarray(k * gap)
+
+    return forces
+
+
 def plain_right_side(system: System, frequency: float, width: int) -> Callable[[float, Array], Array]:
     """f(s, z) in NumPy as people write it, z padded to 2 * width."""
     n = system.size
-    law = linear(system)
-    order_k, order_e = np.arange(law.fourier.shape[2]), np.arange(system.error.shape[2])
-    stiffness, error = law.fourier[law.kind], system.error[system.error_kind]
-    load = system.load
+    elastic = plain_forces(system)
+    order_e = np.arange(system.error.shape[2])
+    error, load = system.error[system.error_kind], system.load
 
     def derivative(s: float, z: Array) -> Array:
         displacement, velocity = z[:n], z[width : width + n] * frequency
-        k = stiffness[:, 0] @ np.sin(order_k * s) + stiffness[:, 1] @ np.cos(order_k * s)
         e = error[:, 0] @ np.sin(order_e * s) + error[:, 1] @ np.cos(order_e * s)
         e_rate = frequency * (
             error[:, 0] @ (order_e * np.cos(order_e * s)) - error[:, 1] @ (order_e * np.sin(order_e * s))
@@ -113,7 +125,7 @@ def plain_right_side(system: System, frequency: float, width: int) -> Callable[[
         applied = load[:, 0] @ np.sin(order_f * s) + load[:, 1] @ np.cos(order_f * s)
         d = system.mesh_jacobian @ displacement - e
         gap = np.where(d > system.upper, d - system.upper, np.where(d < system.lower, d - system.lower, 0.0))
-        force = k * gap + system.mesh_damping * (system.mesh_jacobian @ velocity - e_rate)
+        force = elastic(s, gap) + system.mesh_damping * (system.mesh_jacobian @ velocity - e_rate)
         acceleration = (
             applied
             - system.damping * velocity

@@ -6,26 +6,43 @@ import numpy as np
 
 from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.integrator.system import FlankRubbing, System
+from facegear.mesh_law.law import MeshLaw
 from facegear.mesh_law.linear import LinearLaw
+from facegear.mesh_law.load_dependent import ForceTable, LoadDependentLaw
+
+
+def prepare_for(system: System) -> None:
+    """`prepare` for the kind of a system."""
+    prepare(
+        system.ring_clearance.size > 0,
+        system.rubbing is not None,
+        isinstance(system.law, LoadDependentLaw),
+    )
 
 
 @cache
-def prepare(clearance: bool = False, friction: bool = False) -> None:
+def prepare(clearance: bool = False, friction: bool = False, load_dependent: bool = False) -> None:
     """Load the stored machine code of the time integration, or compile and store it while others wait.
 
-    clearance, friction: the machine code for machines with bearing clearance and with friction; the law is
-    linear.
+    clearance, friction, load_dependent: the machine code for machines with bearing clearance, with friction,
+    and with the load-dependent law in place of the linear one.
     """
-    Integrator(_smallest(clearance, friction), 1.0, 1e-2, 6).run(np.zeros((2, 1)), 1, fine=True)
+    Integrator(_smallest(clearance, friction, load_dependent), 1.0, 1e-2, 6).run(
+        np.zeros((2, 1)), 1, fine=True
+    )
 
 
-def _smallest(clearance: bool, friction: bool) -> System:
-    """One coordinate and one mesh, with a ring or without, rubbing or not: the types are those of any such
-    machine.
+def _smallest(clearance: bool, friction: bool, load_dependent: bool = False) -> System:
+    """One coordinate and one mesh, with a ring or without, rubbing or not, of either law: the types are those
+    of any such machine.
     """
     rings = np.ones(int(clearance))
     unit, rows, nothing = np.ones(1), np.ones(1 + 3 * rings.size), np.zeros((1, 2, 1))
     row_kinds = np.zeros(rows.size, dtype=np.int64)
+    law: MeshLaw = LinearLaw(nothing + 1.0, row_kinds[:1])
+    if load_dependent:
+        forces = np.arange(2.0)[:, None, None] * nothing
+        law = LoadDependentLaw((ForceTable(np.arange(2.0), forces, forces),), row_kinds[:1])
     return System(
         mesh_jacobian=rows[:, None],
         omega_squared=unit,
@@ -33,7 +50,7 @@ def _smallest(clearance: bool, friction: bool) -> System:
         mesh_damping=rows,
         lower=-rows,
         upper=rows,
-        law=LinearLaw(nothing + 1.0, row_kinds[:1]),
+        law=law,
         error=nothing,
         error_kind=row_kinds,
         load=nothing,

@@ -23,7 +23,7 @@ from facegear.dynamics.steady_state.mesh_samples import (
     mesh_fractions,
     past_law,
 )
-from facegear.dynamics.steady_state.prepare import prepare
+from facegear.dynamics.steady_state.prepare import prepare_for
 from facegear.dynamics.steady_state.settle import Settled, settle
 from facegear.dynamics.steady_state.statistics import drifts
 from facegear.dynamics.steady_state.window import Window, run_window
@@ -189,7 +189,7 @@ def steady_state(system: System, frequency: float, settings: Settings, start: St
     A run that shows no sign of closing while it is watched gets its largest exponent on the window that it is
     measured on, which is also a second watch. Where the two do not agree it is watched for longer.
     """
-    prepare(system.ring_clearance.size > 0, system.rubbing is not None)
+    prepare_for(system)
     integrator = Integrator(system, frequency, settings.tolerance, settings.order)
     state, ends = integrator.by_phase(start), None
     periods_run = 0

@@ -1,13 +1,14 @@
 """The machine in motion: response at one speed, and the speed sweep."""
 
-from facegear.pipeline import asked
+from facegear.pipeline import asked, studies
 from facegear.pipeline.rows.shared import ACCURACY, MACHINE, MOVING, SPEED, SWEEP
-from facegear.pipeline.stage import NUMBER, Figures, File, From, Stage, from_stage
+from facegear.pipeline.stage import NUMBER, Computed, Figures, File, From, Stage, from_stage
 
 ROWS = (
     Stage(
         name="machine_code",
         title="Machine code of the time integration",
+        needs={"mesh_law": "mesh_stiffness.mesh_law"},
         folder="dynamics",
         asked=asked.machine,
         priority=100,
@@ -79,5 +80,28 @@ ROWS = (
         memory_mb=1300,
         minutes=60,
         priority=60,
+    ),
+    Stage(
+        name="law_loads",
+        title="Loads in the table of the mesh law",
+        upstream={
+            **from_stage("mesh_law", "levels"),
+            **from_stage("dynamics_response", "response", "summary"),
+            **from_stage("dynamics_sweep", "sweep"),
+        },
+        files={"loads": File("dynamics/law_loads.csv", "facegear.dynamics.law_loads:LAW_LOAD_COLUMNS")},
+        figures=Figures(
+            draw="facegear.plots.mesh_law:load_figures",
+            names=studies.law_figures,
+            chapter="dynamics",
+            upstream={
+                **from_stage("law_loads", "loads"),
+                **from_stage("dynamics_sweep", "sweep"),
+                "others": From("dynamics_sweep", "sweep", each=studies.other_laws),
+            },
+            needs={"labels": Computed(studies.law_labels, ("studies", "mesh_stiffness"))},
+        ),
+        asked=asked.load_dependent_machine,
+        local=True,
     ),
 )

@@ -128,6 +128,12 @@ ROWS = (
             "law": File("stiffness/law.npz", "facegear.stiffness.load_dependent:LAW_ARRAYS"),
             "levels": File("stiffness/law.csv", "facegear.stiffness.load_dependent:LEVEL_COLUMNS"),
         },
+        figures=Figures(
+            draw="facegear.plots.mesh_law:figures",
+            names=("mesh_law", "mesh_law_surface"),
+            chapter="mesh_stiffness",
+            upstream=from_stage("mesh_law", "law"),
+        ),
         asked=asked.load_dependent,
         memory_mb=4000,
         minutes=30,

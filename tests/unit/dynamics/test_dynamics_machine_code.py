@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numba
 import numpy as np
 import pytest
+from force_tables import power_table
 from lumped_machines import PLACES
 from oscillators import backlash_oscillator
 from references import against, agrees
@@ -23,6 +24,7 @@ from facegear.machine_code.compiler import for_callers
 from facegear.machine_code.versions import KNOWN, is_known
 from facegear.mesh_law.terms import held_force
 from facegear.transmission.layout import Side
+from facegear.transmission.machine import FlankTables
 from facegear.transmission.mesh_friction import PARTS, MeshFriction
 from facegear.transmission.static_springs import static_springs
 from facegear.transmission.teeth import GEOMETRIC
@@ -149,15 +151,18 @@ def test_what_processes_compile_at_once_for_different_types_is_kept_of_each(tmp_
 
 
 def test_machines_of_any_size_run_the_machine_code_that_was_prepared_for_the_smallest(machine_of, layout_of):
-    """Friction on several flanks, and gears in bearings, had their kernels compiled a second time."""
+    """Friction on several flanks, and gears in bearings, had their kernels compiled a second time; before a
+    machine with the load-dependent law ran, the kernels of the other law were compiled.
+    """
     machine = machine_of(layout_of(kinematics=GEOMETRIC))
     small = machine_of(layout_of(PLACES[2:3], (Side.UPPER,), gear_bearing=0.0), tail_share=0.0)
     assert numba.typeof(static_springs(machine)) == numba.typeof(static_springs(small))
     rubs = replace(
         machine, friction=MeshFriction(np.tile([[0.0, 0.02], [0.02, 0.02]], (10, len(PARTS), 1, 1)))
     )
-    for one, friction in ((machine, False), (rubs, True)):
-        packed = (pack(system, 1.0) for system in (build_model(one).system, _smallest(False, friction)))
+    tabled = replace(machine, tables=2 * (FlankTables(power_table(7, 0.2), power_table(7)),))
+    for one, kind in ((machine, ()), (rubs, (True,)), (tabled, (False, True))):
+        packed = (pack(system, 1.0) for system in (build_model(one).system, _smallest(False, *kind)))
         assert len({numba.typeof(arrays) for arrays in packed}) == 1
 
 

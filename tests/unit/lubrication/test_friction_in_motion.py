@@ -26,7 +26,7 @@ ONE = {
 
 @pytest.fixture(scope="module")
 def gearbox():
-    return facegear.example().with_values({"lubrication": OIL})
+    return facegear.example().with_values({"lubrication": OIL, "mesh_stiffness.mesh_law": "constant_load"})
 
 
 def base_radius(gearbox):

@@ -25,7 +25,7 @@ OIL = {
 
 @pytest.fixture(scope="module")
 def gearbox():
-    return facegear.example().with_values({"lubrication": OIL})
+    return facegear.example().with_values({"lubrication": OIL, "mesh_stiffness.mesh_law": "constant_load"})
 
 
 @against(

@@ -25,6 +25,7 @@ pytestmark = pytest.mark.xdist_group("notebooks")  # the example's compliance is
 CROWNING = "tooth_pair.pinion.lead_crowning.amount_um"
 OFFSET = "tooth_pair.assembly.offset_um"
 YOUNG = "tooth_pair.material.young_modulus_gpa"
+CONSTANT = {"mesh_stiffness.mesh_law": "constant_load"}
 
 
 def cause(name, key, *values):
@@ -35,7 +36,7 @@ def machine(*causes, length_mm=10.0, **section):
     """The example, crowned over its whole face by nothing to start from."""
     given = {"causes": causes, "samples": 4, "chunk_samples": 4, "hunting_cycles": 1, **section}
     length = {"tooth_pair.pinion.lead_crowning.length_mm": length_mm}
-    return facegear.example().with_values({**length, "tolerances": given})
+    return facegear.example().with_values({**CONSTANT, **length, "tolerances": given})
 
 
 LONG = 30.0
@@ -178,7 +179,7 @@ def searched(**section):
         **section,
     }
     length = {"tooth_pair.pinion.lead_crowning.length_mm": 10.0}
-    return facegear.example().with_values({**length, "search": given})
+    return facegear.example().with_values({**CONSTANT, **length, "search": given})
 
 
 def test_a_search_over_teeth_weighs_error_against_pressure(monkeypatch):

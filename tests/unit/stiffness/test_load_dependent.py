@@ -8,10 +8,10 @@ from facegear.arrays import Array
 from facegear.errors import FacegearError
 from facegear.mesh_law.load_dependent import load_dependent_law
 from facegear.stiffness.load_dependent import (
-    CHOICES,
     FlankContacts,
     fitted_tables,
     force_table,
+    forces_over_pitch,
     law_arrays,
     law_torques,
     level_table,
@@ -22,12 +22,11 @@ PHASES = np.arange(32) / 32
 C, N = 2.4e11, 1.5
 
 
-def contacts(largest=24e3, depth=0.05, bump=0.0) -> FlankContacts:
-    """C (1 + depth cos) x^N solved for x at the forces of `law_torques`; `bump` scatters the deflections."""
+def contacts(largest=24e3, depth=0.05) -> FlankContacts:
+    """C (1 + depth cos) x^N solved for x at the forces of `law_torques`."""
     forces = np.array(law_torques(largest))
     factor = C * (1.0 + depth * np.cos(2.0 * np.pi * PHASES))
     deflections = (forces[:, None] / factor) ** (1.0 / N)
-    deflections[1::2] *= 1.0 + bump
     return FlankContacts(forces, deflections, N * forces[:, None] / deflections)
 
 
@@ -54,7 +53,12 @@ def test_a_table_meets_the_law_that_its_contacts_come_from_and_reaches_the_torqu
     law = load_dependent_law([table])
     for amount in np.linspace(table.levels[4], table.levels[-1], 23):
         found = law.force(PHASES, np.full((32, 1), amount))[:, 0]
-        agrees("force of the table, N", found, exact(np.full(32, amount)), absolute=1e-3 * error.force)
+        agrees(
+            "force of the table, N",
+            found,
+            exact(np.full(32, amount)),
+            absolute=1.3 * error.largest * error.force,
+        )
     reached = law.force(PHASES, np.full((32, 1), table.levels[-1]))
     assert reached.min() >= 24e3
 
@@ -75,18 +79,42 @@ def test_below_the_first_solution_the_force_falls_with_the_exponent_that_it_has_
 
 
 def test_a_table_of_more_levels_is_taken_only_where_fewer_miss_the_aim():
-    fine, coarse = contacts(depth=0.1), contacts(depth=0.1, bump=0.004)
-    counts = [fitted_tables([one], 8)[0][0].levels.size for one in (fine, coarse)]
+    """As where a second pair joins, the slope jumps by two thirds at a deflection."""
+    smooth, forces = contacts(depth=0.0), np.array(law_torques(24e3))
+    x = np.linspace(0.0, 1e-4, 20001)
+    over = np.maximum(x - 2e-5, 0.0)
+    reached = np.interp(forces, C * (x**N + 4e-3 * over), x)[:, None].repeat(32, axis=1)
+    stiffness = C * (N * reached ** (N - 1.0) + 4e-3 * (reached > 2e-5))
+    kinked = FlankContacts(forces, reached, stiffness)
+    counts = [fitted_tables([one], 8)[0][0].levels.size for one in (smooth, kinked)]
     assert counts[0] < counts[1]
-    error = table_error(force_table(coarse.at(CHOICES[-1]), 8), coarse)
+
+
+def test_the_error_is_that_at_torques_which_the_table_was_not_made_from():
+    """Every second solution is off by 1 %: the table meets the others, and says how far it misses these."""
+    scattered = contacts()
+    scattered.deflections[1::2] *= 1.01
+    _, (error,) = fitted_tables([scattered], 8)
     assert not error.meets_aim
-    assert error.largest > error.rms > 1e-4
+    parts = scattered.forces[1::2] / error.force
+    expected = N * 0.01 * np.sqrt((parts**2).mean())
+    assert error.rms == pytest.approx(expected, rel=0.05)
+
+
+def test_the_error_of_a_table_falls_with_the_number_of_its_cubics():
+    """On a smooth formula; on contact the kinks where pairs join decide."""
+    fine = contacts(depth=0.0)
+    errors = [
+        table_error(force_table(fine.at(range(0, 13, 2)), pieces, 1.5, 4), fine.at(range(1, 13, 2))).rms
+        for pieces in (1, 2, 4)
+    ]
+    assert errors[0] > 5.0 * errors[1] > 25.0 * errors[2]
 
 
 def test_contacts_whose_force_falls_are_refused():
     wrong = contacts()
     with pytest.raises(FacegearError, match="falls"):
-        force_table(FlankContacts(wrong.forces, wrong.deflections, -wrong.slopes), 8)
+        fitted_tables([FlankContacts(wrong.forces, wrong.deflections, -wrong.slopes)], 8)
 
 
 def test_every_flank_has_its_table_in_arrays_and_in_csv():
@@ -94,6 +122,8 @@ def test_every_flank_has_its_table_in_arrays_and_in_csv():
     numbers = np.array([[0, 1], [0, 0]])
     arrays = law_arrays(tables, numbers)
     np.testing.assert_array_equal(arrays["level_m"][1], tables[1].levels)
+    forces = forces_over_pitch(arrays, 1, PHASES, np.array([tables[1].levels[-1]]))
+    assert forces.mean() == pytest.approx(tables[1].forces[-1, 1, 0])
     rows = level_table(tables, errors, numbers, 0.04)
     assert len(rows) == 4 * tables[0].levels.size
     back = rows.query("gear == 'upper' and flank == 'back'")
