@@ -36,7 +36,7 @@ def law_loads_table(
                 last[side, flank],
                 *(carried.min(), carried.mean(), carried.max()),
                 _largest(summary, "past_law_fraction", mesh),
-                _largest(sweep, "largest_force_n", mesh),
+                _largest(sweep, "largest_elastic_force_n", mesh),
                 _largest(sweep, "past_law_fraction", mesh),
             )
         )

@@ -6,6 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from facegear.arrays import Arrays
 from facegear.plots.style import NARROW, styled
@@ -66,8 +67,8 @@ def loads_in_table(loads: pd.DataFrame) -> Figure:
         nominal = loads[["smallest_n", "mean_n", "largest_n"]].to_numpy().T / 1e3
         axis.barh(rows, 1e-3 * loads["last_level_n"], 0.8, color="0.92", label="in the table")
         axis.plot(1e-3 * loads["sweep_largest_n"], rows, "k|", ms=9, mew=1.4, label="largest in the sweep")
-        axis.hlines(rows, nominal[0], nominal[2], color="tab:blue", lw=4, label="nominal speed")
-        axis.plot(nominal[1], rows, "o", color="tab:orange", ms=4, label="mean there")
+        axis.hlines(rows, nominal[0], nominal[2], color="tab:blue", lw=4, label="range, nominal speed")
+        axis.plot(nominal[1], rows, "o", color="tab:orange", ms=4, label="mean, nominal speed")
         for row, load in zip(rows, loads.itertuples(), strict=True):
             if (past := max(load.past_fraction, load.sweep_past_fraction)) > 0.0:
                 end = 1e-3 * max(load.sweep_largest_n, load.last_level_n)
@@ -104,6 +105,8 @@ def swept_laws(sweeps: Sequence[pd.DataFrame], labels: Sequence[str], meshes: Se
             axis.set_ylabel("RMS of d (µm)")
             axis.set_ylim(bottom=0)
         axes[-1, 0].set_xlabel("input rotation speed (rpm)")
+        axes[-1, 0].set_xlim(0, sweeps[0]["speed_rpm"].max())
+        axes[-1, 0].xaxis.set_major_locator(MaxNLocator(5))
         figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return figure
 

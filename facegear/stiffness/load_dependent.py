@@ -8,6 +8,7 @@ pair's own: touching bodies are not linear, and the hats of the lattice do not r
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 import pandas as pd
@@ -101,26 +102,31 @@ def law_torques(largest: float) -> list[float]:
 
 
 def fitted_tables(flanks: Sequence[FlankContacts], orders: int) -> tuple[list[ForceTable], list[TableError]]:
-    """Tables of flanks with the fewest levels that meet the aim, else with the most, and their errors.
+    """Tables of flanks with the fewest and evenest levels that meet the aim, else with the smallest error of
+    all, and their errors.
 
     orders: harmonics kept, at most as many as the positions give. Raises FacegearError where the force falls
     while the deflection grows.
     """
     given = [flank.at(range(0, SOLVED, 2)) for flank in flanks]
     between = [flank.at(range(1, SOLVED, 2)) for flank in flanks]
-    for pieces in PIECES:
-        found = [[force_table(flank, pieces, crowding, orders) for flank in given] for crowding in CROWDING]
-        errors = [[table_error(*both) for both in zip(tables, between, strict=True)] for tables in found]
-        best = int(np.argmin([max(error.excess for error in row) for row in errors]))
-        if all(error.meets_aim for error in errors[best]) and not any(map(falls, found[best])):
+    best, smallest = None, np.inf
+    for pieces, crowding in product(PIECES, CROWDING):
+        tables = [force_table(flank, pieces, crowding, orders) for flank in given]
+        errors = [table_error(*both) for both in zip(tables, between, strict=True)]
+        excess = max(error.excess for error in errors)
+        if any(map(falls, tables)) or excess >= smallest:
+            continue
+        best, smallest = (tables, errors), excess
+        if excess <= 1.0:
             break
-    for table in found[best]:
-        if falls(table):
-            raise FacegearError(
-                f"mesh law: the force falls with the deflection, by {table.min_slope:.4g} N/m: the mesh of "
-                f"the flanks is too coarse for the lightest contact, {flanks[0].forces[0]:.3g} N"
-            )
-    return found[best], errors[best]
+    if best is None:
+        fall = min(table.min_slope for table in tables)
+        raise FacegearError(
+            f"mesh law: the force falls with the deflection, by {fall:.4g} N/m: the mesh of the flanks is "
+            f"too coarse for the lightest contact, {flanks[0].forces[0]:.3g} N"
+        )
+    return best
 
 
 def falls(table: ForceTable) -> bool:
