@@ -3,7 +3,7 @@
 >>> import facegear
 >>> gearbox = facegear.example()
 >>> gearbox.modes().table()["frequency_hz"].round(1).to_list()[6:9]
-[594.4, 1064.9, 1065.2]
+[596.7, 1065.7, 1066.0]
 """
 
 from importlib import import_module
