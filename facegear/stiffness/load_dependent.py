@@ -211,19 +211,19 @@ def _at_levels(contacts: FlankContacts, levels: Array) -> tuple[Array, Array]:
     follows from them.
     """
     count = levels.size
-    found = np.empty((2 * count, contacts.deflections.shape[1]))
+    fitted = np.empty((2 * count, contacts.deflections.shape[1]))
     given, sought = np.array([0, count]), np.delete(np.arange(2 * count), [0, count])
     units = np.repeat([1.0, levels[-1] / count], count)
     for p, (reached, stiffness) in enumerate(zip(contacts.deflections.T, contacts.slopes.T, strict=True)):
         lightest = np.concatenate([contacts.forces[:2], stiffness[:2]])
-        found[given, p] = np.concatenate(_cubics(reached[:2], levels[:1])) @ lightest
+        fitted[given, p] = np.concatenate(_cubics(reached[:2], levels[:1])) @ lightest
         weight = SLOPE_WEIGHT * np.gradient(reached)
         values, slopes = _cubics(levels, reached)
         rows = np.concatenate([values, weight[:, None] * slopes])
-        wanted = np.concatenate([contacts.forces, weight * stiffness]) - rows[:, given] @ found[given, p]
+        wanted = np.concatenate([contacts.forces, weight * stiffness]) - rows[:, given] @ fitted[given, p]
         solved = np.linalg.lstsq((rows * units)[:, sought], wanted)[0]
-        found[sought, p] = units[sought] * solved
-    return found[:count], found[count:]
+        fitted[sought, p] = units[sought] * solved
+    return fitted[:count], fitted[count:]
 
 
 def _cubics(levels: Array, amounts: Array) -> tuple[Array, Array]:

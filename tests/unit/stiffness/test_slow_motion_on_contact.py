@@ -58,7 +58,7 @@ def at_rest(machine):
 @against(
     "other program",
     "loaded contact of the pair at this torque",
-    capability="mesh_law dynamics_response",
+    capability="mesh_law",
     module="facegear.stiffness.load_dependent",
 )
 @pytest.mark.parametrize("torque", [300.0, 600.0, 1000.0])
