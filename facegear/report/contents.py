@@ -26,7 +26,8 @@ CAPTIONS = {
     "stiffness_load": "Mean stiffness and its harmonics against load.",
     "mesh_law": "Force of a mesh over a mesh period at even deflections, up to the last level of its law.",
     "mesh_law_surface": "The same force over mesh period and deflection.",
-    "law_loads": "Forces of the meshes at the nominal speed and in the sweep beside the table of their law; "
+    "law_loads": "Forces of the meshes at the nominal speed and in the sweep beside the table of their law, "
+    "which ends at the mean force of its last level; "
     "beside a row: the fraction of the time past it.",
     "law_sweeps": "RMS of mesh deflections over speed, with the mesh laws of the studies over each other.",
     "mode_shapes": "Typical mode shapes.",
