@@ -17,6 +17,8 @@ from facegear.transmission.machine import FlankTables, mesh_frequency
 from facegear.transmission.teeth import GEOMETRIC
 from validation.dynamics.right_side import plain_right_side
 
+pytestmark = pytest.mark.xdist_group("load_dependent")  # its compiled motion is that of other tests
+
 SAMPLES = 16
 TOLERANCES = (1e-3, 1e-6, 1e-10)
 """Three points of the work-precision diagram."""
