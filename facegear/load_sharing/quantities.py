@@ -13,10 +13,10 @@ from facegear.load_sharing.groups import load_groups
 from facegear.load_sharing.hardest_cycles import hardest_cycles
 from facegear.load_sharing.hunting import LoadHistory, hunting_cycle, hunting_length
 from facegear.load_sharing.options import SharingOptions
-from facegear.load_sharing.quantity_names import quantity_names
+from facegear.load_sharing.quantity_names import PAST_LAW, quantity_names
 from facegear.load_sharing.run import load_sharing
 from facegear.load_sharing.statistics import defined_mean
-from facegear.transmission.flanks import carried
+from facegear.transmission.flanks import carried, past_law
 from facegear.transmission.layout import Layout
 from facegear.transmission.machine import Machine
 
@@ -53,7 +53,11 @@ def quasi_static_quantities(machine: Machine, cycles: int) -> Found:
     )
     forces = run.flank_forces
     largest = np.maximum(forces.max(axis=0), hard.flank_forces.max(axis=0))
-    return _named(machine.layout, values, dynamic=False), FlankLoads(forces.mean(axis=0), largest)
+    named = _named(machine.layout, values, dynamic=False)
+    if machine.tables is not None:
+        past = (past_law(machine, one.cycles, one.flank_forces).max() for one in (run, hard))
+        named[PAST_LAW] = float(max(past))
+    return named, FlankLoads(forces.mean(axis=0), largest)
 
 
 def dynamic_quantities(
@@ -75,7 +79,10 @@ def dynamic_quantities(
         bearing_mass(bearing_history(model, response)),
     )
     loads = FlankLoads(flanks.mean(axis=0), flanks.max(axis=0))
-    return _named(machine.layout, values, dynamic=True), loads
+    named = _named(machine.layout, values, dynamic=True)
+    if machine.tables is not None:
+        named[PAST_LAW] = float(response.past_law.max())
+    return named, loads
 
 
 def _named(layout: Layout, values: tuple[float, ...], dynamic: bool) -> dict[str, float]:

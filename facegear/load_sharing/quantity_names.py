@@ -9,6 +9,7 @@ if TYPE_CHECKING:
 K_GAMMA, K_V = "k_gamma", "k_v"
 PEAK, OPEN, REVERSED = "peak_mesh_force_n", "open_fraction", "reversed_fraction"
 BEARINGS = "bearing_mass"
+PAST_LAW = "past_law_fraction"
 ERROR_RANGE, ERROR_HARMONIC, PRESSURE = "te_peak_to_peak_um", "te_first_harmonic_um", "pressure_mpa"
 ROOTS = {"pinion": "root_stress_pinion_mpa", "face_gear": "root_stress_face_gear_mpa"}
 CONTACT = (ERROR_RANGE, ERROR_HARMONIC, PRESSURE, *ROOTS.values())
@@ -33,7 +34,10 @@ MISSED = {name: f"{name}_missed" for name in (K_GAMMA, OPEN, REVERSED)}
 fraction of time, the difference."""
 JUMP_MARGIN = "jump_margin_rpm"
 """What sweeps around the operating speed alone tell."""
-QUANTITIES = (PEAK, OPEN, REVERSED, BEARINGS, *MISSED.values(), *CONTACT, *FRICTION, *SIMPLIFIED.values())
+QUANTITIES = (
+    *(PEAK, OPEN, REVERSED, BEARINGS, PAST_LAW),
+    *(*MISSED.values(), *CONTACT, *FRICTION, *SIMPLIFIED.values()),
+)
 """Columns of a sample that do not name a mesh or a group."""
 
 
@@ -44,6 +48,7 @@ def quantity_names(
     gauges: bool = False,
     jumps: bool = False,
     friction: bool = False,
+    law: bool = False,
 ) -> tuple[str, ...]:
     """Columns of a sample.
 
@@ -52,8 +57,9 @@ def quantity_names(
     `coefficient <group>`: mean over time of the largest load over the mean (equations (25), (26));
     then the largest load of a mesh, the fraction of time in which some mesh that shares a load carries
     nothing, and in which some mesh is loaded on the flank that it does not work on; the mass of bearings for
-    the loads on them (`facegear.load_sharing.bearings`). With `contact`, the loaded transmission error of the
-    tooth pair and its pressure, with `gauges` the root stress of both bodies
+    the loads on them (`facegear.load_sharing.bearings`). With `law`, the fraction of positions at which a
+    flank is past the last level of its load-dependent law, the largest of all. With `contact`, the loaded
+    transmission error of the tooth pair and its pressure, with `gauges` the root stress of both bodies
     (`facegear.strength.pair_answers`); with `friction` the columns FRICTION; with `jumps` the distance from
     the operating speed to the nearest jump (`facegear.dynamics.sweeps.jump_margin`).
     """
@@ -64,6 +70,7 @@ def quantity_names(
     shared = [layout.mesh_names[mesh] for group in groups for mesh in group.meshes]
     paths = [f"{factor} {mesh}" for factor in (K_GAMMA, K_V)[: 1 + dynamic] for mesh in shared]
     names = [*paths, *(f"coefficient {group.name}" for group in groups), PEAK, OPEN, REVERSED, BEARINGS]
+    names += [PAST_LAW] if law else []
     names += [ERROR_RANGE, ERROR_HARMONIC, PRESSURE] if contact else []
     names += ROOTS.values() if contact and gauges else []
     names += FRICTION if friction else ()

@@ -11,6 +11,7 @@ from facegear.load_sharing.quantity_names import (
     LOSS,
     MISSED,
     OPEN,
+    PAST_LAW,
     REVERSED,
     SIMPLIFIED,
     UNSOLVED,
@@ -28,6 +29,7 @@ from facegear.stages.outcome import Outcome
 EVENTS = {
     OPEN: "some mesh that shares a load opens",
     REVERSED: "some mesh is loaded on the flank that it does not work on",
+    PAST_LAW: "some mesh is past the last level of its load-dependent law",
     UNSOLVED: "some mesh loses under a torque outside those of the contact analysis",
 }
 CHECKS = {

@@ -102,8 +102,8 @@ class VariedMachine:
     def columns(self, layout: Layout, question: Question, jumps: bool = False) -> tuple[str, ...]:
         """Names of what a machine is judged by."""
         gauges = self.pair is not None and self.pair["contact"]["root_stress"]
-        contact, friction = self.pair is not None, self.friction
-        return quantity_names(layout, question.dynamic, contact, gauges, jumps, friction)
+        contact, law = self.pair is not None, self.law is not None
+        return quantity_names(layout, question.dynamic, contact, gauges, jumps, self.friction, law)
 
     @property
     def friction(self) -> bool:

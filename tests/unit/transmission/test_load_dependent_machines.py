@@ -8,6 +8,8 @@ from force_tables import power_table
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
+from facegear.load_sharing.quantities import quasi_static_quantities
+from facegear.load_sharing.quantity_names import PAST_LAW
 from facegear.mesh_law.load_dependent import ForceTable
 from facegear.transmission.flanks import constant_errors, flank_gaps, flank_law
 from facegear.transmission.layout import Role, Side
@@ -123,6 +125,15 @@ def test_a_table_of_one_torque_gives_the_deflection_and_the_slope_of_that_torque
     pressed = (flank_jacobian(machine.layout) @ found.displacements)[0] - machine.half_backlash
     assert pressed == pytest.approx(amount, rel=1e-9)
     assert loaded_contacts(machine).stiffness[0] == pytest.approx(1.3 * force / amount, rel=1e-6)
+
+
+def test_a_machine_of_a_series_says_for_how_much_of_the_time_it_is_past_its_table():
+    last = power_table(200, 0.0, 1e-7, 3e-5, C, N)
+    past = [
+        quasi_static_quantities(made(PINIONS, torque=torque, table=last), 4)[0][PAST_LAW]
+        for torque in (600.0, 6000.0)
+    ]
+    assert past == [0.0, 1.0]
 
 
 def test_a_torque_beyond_the_table_is_reported_and_goes_on_straight():
