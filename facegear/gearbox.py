@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from facegear.results.dynamic_stress import DynamicStressResult
     from facegear.results.friction import FrictionResult
     from facegear.results.gear_bodies import GearBodiesResult
+    from facegear.results.gear_waves import GearWavesResult
     from facegear.results.geometry import GeometryResult
     from facegear.results.hunting import FollowingResult, HuntingResult, SensitivityResult
     from facegear.results.load_sharing import LoadSharingResult
@@ -289,6 +290,15 @@ class Gearbox:
         from facegear.results.gear_bodies import GearBodiesResult
 
         return self._chain.result(GearBodiesResult)
+
+    def gear_waves(self) -> "GearWavesResult":
+        """Damped modes at the nominal speed of a machine whose face gears bend, and their waves.
+
+        Raises ConfigError for a machine whose face gears are rigid, NotConverged.
+        """
+        from facegear.results.gear_waves import GearWavesResult
+
+        return self._chain.result(GearWavesResult)
 
     def response(self, speed_rpm: float | None = None) -> "ResponseResult":
         """Steady state at a pinion speed, the config's unless given.

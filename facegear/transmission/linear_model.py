@@ -11,7 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
-from facegear.arrays import Array, Integers
+from facegear.arrays import AnyArray, Array, Integers
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +130,7 @@ class LinearModel:
         """Which coordinates are x and y of each bearing with clearance, (R, 2)."""
         return self.translations[self.rings.body, :2]
 
-    def momentum(self, velocities: Array) -> Array:
+    def momentum(self, velocities: AnyArray) -> AnyArray:
         """M times vectors (n, ...)."""
         if self.masses is None:
             return self.mass @ velocities

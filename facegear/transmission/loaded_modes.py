@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from facegear.arrays import Mask
+from facegear.arrays import Array, Mask
 from facegear.transmission.linear_model import LinearModel
 from facegear.transmission.loaded_contacts import Contact, LoadedContacts, loaded_contacts
 from facegear.transmission.machine import Machine
@@ -54,10 +54,23 @@ def vibrating_machine(machine: Machine, speed_rpm: float = 0.0) -> VibratingMach
 
 def _modes(machine: Machine, contacts: LoadedContacts, holding: tuple[Contact, ...], speed: float) -> Modes:
     """Modes with the contacts whose state is among `holding`."""
+    linear, pressed = _pressed(machine, contacts, holding)
+    return modes_of(linear, (pressed * linear.rows.T) @ linear.rows, speed)
+
+
+def pressed_springs(machine: Machine) -> tuple[LinearModel, Array]:
+    """The linear model with its bearings as they are pressed, and the stiffness (2 meshes,) of the flanks
+    that carry load, 0 for the others; of geometric meshes. Raises NotConverged.
+    """
+    return _pressed(machine, loaded_contacts(machine), (Contact.CLOSED,))
+
+
+def _pressed(
+    machine: Machine, contacts: LoadedContacts, holding: tuple[Contact, ...]
+) -> tuple[LinearModel, Array]:
     closed = [state in holding for state in contacts.flank_states()]
-    pressed = np.where(closed, contacts.stiffness, 0.0)
-    meshes = (pressed * machine.linear.rows.T) @ machine.linear.rows
-    return modes_of(_pressed_bearings(machine, contacts, holding), meshes, speed)
+    linear = _pressed_bearings(machine, contacts, holding)
+    return linear, np.where(closed, contacts.stiffness, 0.0)
 
 
 def _pressed_bearings(

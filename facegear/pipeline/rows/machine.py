@@ -51,6 +51,17 @@ ROWS = (
         local=True,
     ),
     Stage(
+        name="gear_waves",
+        title="Modes at the nominal speed and the waves of face gears that bend",
+        needs={**MACHINE, **SPEED},
+        upstream={**HARMONICS, **BODIES},
+        files={
+            "waves": File("bodies/waves.csv", ("order", "frequency_hz", "damping_ratio"), may_be_empty=True)
+        },
+        asked=asked.elastic_gears,
+        local=True,
+    ),
+    Stage(
         name="modal",
         title="Natural frequencies and mode shapes",
         needs={

@@ -1,0 +1,113 @@
+"""Modes of a machine that turns, with all its damping: frequencies, decay, and the waves in its face gears.
+
+    (l^2 M + l (C + W G) + K + W N + W^2 P) q = 0
+
+with W the speed of the pinions. Damping that turns with a body (N) may feed energy from its rotation into a
+motion that lags behind it: a mode whose l has a positive real part grows.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+import scipy.linalg
+
+from facegear.arrays import Array, ComplexArray
+from facegear.transmission.layout import Layout
+from facegear.transmission.linear_model import LinearModel
+from facegear.transmission.loaded_modes import pressed_springs
+from facegear.transmission.machine import Machine
+
+RIGID = 1e-6
+"""Part of the largest l below which an imaginary part is a rigid motion's or rounding."""
+GROWS = 1e-9
+"""Negative damping ratio that is not rounding."""
+SHOWN = 0.01
+"""Part of a mode's energy below which a gear's waves of one order are left out of the table."""
+
+
+@dataclass(frozen=True, eq=False)
+class TurningModes:
+    """m modes that vibrate: l (m,) in 1/s with positive imaginary part, ascending by it; shapes (n, m)."""
+
+    exponents: ComplexArray
+    shapes: ComplexArray
+
+    @property
+    def frequencies(self) -> Array:
+        """Hz, with damping."""
+        return np.asarray(self.exponents.imag / (2.0 * np.pi))
+
+    @property
+    def damping_ratios(self) -> Array:
+        """Fraction of critical damping; negative for a mode that grows."""
+        return np.asarray(-self.exponents.real / np.abs(self.exponents))
+
+
+def turning_modes(linear: LinearModel, springs: Array, dampers: Array, speed: float) -> TurningModes:
+    """Modes with flanks of stiffness `springs` and damping `dampers` (2 meshes,); pinion speed in rad/s."""
+    rows, size = linear.rows, linear.size
+    stiffness = linear.stiffness + (springs * rows.T) @ rows
+    damping = linear.damping + (dampers * rows.T) @ rows
+    if linear.spin is not None:
+        stiffness = stiffness + speed * linear.spin.circulatory + speed**2 * linear.spin.centrifugal
+        damping = damping + speed * linear.spin.gyroscopic
+    solved = scipy.linalg.solve(linear.mass, np.hstack([stiffness, damping]), assume_a="pos")
+    system = np.block([[np.zeros((size, size)), np.eye(size)], [-solved[:, :size], -solved[:, size:]]])
+    exponents, states = scipy.linalg.eig(system)
+    vibrating = np.flatnonzero(exponents.imag > RIGID * np.abs(exponents).max())
+    order = vibrating[np.argsort(exponents[vibrating].imag)]
+    return TurningModes(exponents[order], states[:size, order])
+
+
+def machine_at_speed(machine: Machine, speed_rpm: float) -> TurningModes:
+    """Modes of geometric meshes about their static load at a pinion speed. Raises NotConverged."""
+    linear, springs = pressed_springs(machine)
+    dampers = np.where(springs > 0.0, machine.damping.mesh, 0.0)
+    return turning_modes(linear, springs, dampers, speed_rpm * np.pi / 30.0)
+
+
+def wave_table(layout: Layout, linear: LinearModel, modes: TurningModes) -> pd.DataFrame:
+    """One row for each mode, gear and number of nodal diameters that holds SHOWN of its kinetic energy.
+
+    Columns order, frequency_hz, damping_ratio, gear, nodal_diameters, energy_fraction, forward_fraction: of
+    the wave's amplitude squared what travels as the gear turns, half of it for none.
+    """
+    shapes = modes.shapes
+    energy = np.real(shapes.conj() * linear.momentum(shapes))
+    energy = energy / energy.sum(axis=0)
+    rows = []
+    for gear in layout.gears:
+        for diameters, members in _members(linear, gear.name).items():
+            held = energy[list(members)].sum(axis=0)
+            forward = _forward(linear, shapes, members, gear.sign)
+            for mode in np.flatnonzero(held > SHOWN):
+                parts = (modes.frequencies[mode], modes.damping_ratios[mode])
+                rows.append((mode + 1, *parts, gear.side.value, diameters, held[mode], forward[mode]))
+    columns = ["order", "frequency_hz", "damping_ratio", "gear", "nodal_diameters"]
+    table = pd.DataFrame(rows, columns=[*columns, "energy_fraction", "forward_fraction"])
+    return table.sort_values(["order", "gear", "nodal_diameters"], ignore_index=True)
+
+
+def _members(linear: LinearModel, gear: str) -> dict[int, list[int]]:
+    """Elastic coordinates of a gear by nodal diameters."""
+    members: dict[int, list[int]] = {}
+    for number, label in enumerate(linear.labels):
+        owner, _, letter = label.rpartition(":")
+        if owner == gear and " " in letter:
+            members.setdefault(int(letter.split()[0][1:]), []).append(number)
+    return members
+
+
+def _forward(linear: LinearModel, shapes: ComplexArray, members: list[int], sign: float) -> Array:
+    """With q_c = Re[a e^(i w t)] and q_s = Re[b e^(i w t)] the wave towards growing angles has |a + i b| / 2,
+    the other |a - i b| / 2.
+    """
+    cosine = [number for number in members if linear.labels[number].endswith("c")]
+    sine = [number for number in members if linear.labels[number].endswith("s")]
+    if not cosine:
+        return np.full(shapes.shape[1], 0.5)
+    onwards = (np.abs(shapes[cosine] + 1j * shapes[sine]) ** 2).sum(axis=0)
+    back = (np.abs(shapes[cosine] - 1j * shapes[sine]) ** 2).sum(axis=0)
+    forward = onwards if sign > 0.0 else back
+    return np.asarray(forward / np.maximum(onwards + back, np.finfo(float).tiny))
