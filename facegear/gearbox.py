@@ -479,8 +479,9 @@ class Gearbox:
         STEP or STL (mm): the exact teeth of a body, modifications included; `body`: pinion or face_gear;
         `teeth`: a sector of so many, the whole gear unless given. FMU: the dynamic model as C sources for
         co-simulation (FMI 3.0), at the config's speed. GLB: a glTF scene of all gears in mesh, or of one
-        pinion and its gear without a transmission. Raises FacegearError for anything else and for what an
-        FMU cannot hold, ConfigError for a pair without bodies and for a config without a transmission.
+        pinion and its gear without a transmission. REXS: pinions, shafts, bearings and material as REXS 2.0,
+        which has no face gear; the file names what is lost. Raises FacegearError for anything else and for
+        what an FMU cannot hold, ConfigError for a pair without bodies and for a config without a transmission.
         """
         if Path(path).suffix == ".fmu":
             from facegear.exchange.fmu import write_fmu
@@ -488,6 +489,8 @@ class Gearbox:
             return write_fmu(path, self._machine(), self._values["dynamics"]["speed_rpm"])
         if Path(path).suffix == ".glb":
             return self._scene(Path(path))
+        if Path(path).suffix == ".rexs":
+            return self._gear_unit(Path(path))
         with extras_named():
             from facegear.stages.cad import export
 
@@ -618,6 +621,16 @@ class Gearbox:
         ]
         names = [pinion.name for pinion in machine.pinions]
         return write_gltf(path, design, list(zip(names, angles, strict=True)), machine.face_gears)
+
+    def _gear_unit(self, path: Path) -> Path:
+        from datetime import UTC, datetime
+        from importlib.metadata import version
+
+        from facegear.exchange.rexs import write_rexs
+        from facegear.variants.gear_unit import gear_unit
+
+        date = datetime.now(UTC).isoformat(timespec="seconds")
+        return write_rexs(path, gear_unit(self.config), date, version("facegear"))
 
     def _machine(self) -> "Machine":
         """The lumped machine as the dynamics take it. Raises ConfigError without a transmission."""

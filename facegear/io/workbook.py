@@ -9,7 +9,7 @@ from zipfile import BadZipFile
 
 import pandas as pd
 
-from facegear.errors import CorruptFile, FacegearError
+from facegear.errors import FacegearError
 from facegear.io.atomic import atomic_path
 from facegear.io.tables import NAMES
 
@@ -37,12 +37,12 @@ def write(path: str | Path, tables: Mapping[str, pd.DataFrame]) -> Path:
 
 
 def read(path: str | Path) -> dict[str, pd.DataFrame]:
-    """All sheets by name. Raises CorruptFile if there is no such workbook."""
+    """All sheets by name. Raises FacegearError if there is no such workbook."""
     try:
         with pd.ExcelFile(path, engine="openpyxl") as book:
             return {str(name): _sheet(book, str(name)) for name in book.sheet_names}
     except (OSError, ValueError, KeyError, BadZipFile) as error:
-        raise CorruptFile(path, f"not a readable workbook ({error})") from None
+        raise FacegearError(f"{path}: not a readable workbook ({error})") from None
 
 
 def _sheet(book: pd.ExcelFile, name: str) -> pd.DataFrame:

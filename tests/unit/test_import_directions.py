@@ -41,7 +41,7 @@ MAY_IMPORT = {
     "exchange": {"geometry", "dynamics", "transmission", "harmonics", "mesh_law"},
     "variants": {
         *("config", "geometry", "contact", "stiffness", "harmonics"),
-        *("transmission", "dynamics", "load_sharing", "scenarios", "strength", "lubrication"),
+        *("transmission", "dynamics", "load_sharing", "scenarios", "strength", "lubrication", "exchange"),
     },
     "stages": {
         *("config", "variants", "geometry", "mesh", "contact", "stiffness", "harmonics", "gear_body"),

@@ -1,0 +1,196 @@
+"""Pinions, shafts, bearings and material as REXS 2.0 (FVA's exchange of gear unit data), written and read.
+
+REXS has no face gear: what is lost stands in LOST, and in a comment of every file.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree as Xml
+
+from facegear.errors import FacegearError
+from facegear.io.atomic import atomic_path
+
+VERSION = "2.0"
+LOST = (
+    "face gears: their teeth and shapes; each is a shaft with its mass and bearing alone",
+    "distribution angles, torques, backlash, errors and damping",
+    "inertias; REXS takes them from the shapes of bodies",
+    "bearing stiffness along x and y where they differ: the smaller one is written",
+    "tooth thickness, addendum, dedendum, profile shift and modifications of the pinion",
+)
+"""What a file does not hold of a machine."""
+
+
+@dataclass(frozen=True)
+class Spur:
+    """A spur pinion: teeth, module and width (mm), pressure angle (deg), bore (mm); None where not given."""
+
+    teeth: int
+    module: float
+    width: float | None
+    pressure_angle: float | None
+    bore: float | None
+
+
+@dataclass(frozen=True)
+class Shaft:
+    """A body on its bearing: mass (kg), stiffness (N/m) across and along its axis; a pinion has teeth."""
+
+    name: str
+    mass: float | None
+    radial: float | None
+    axial: float | None
+    spur: Spur | None = None
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A gear unit: its shafts, Young's modulus (MPa) and Poisson's ratio of the pinions' material."""
+
+    shafts: tuple[Shaft, ...]
+    young: float | None
+    poisson: float | None
+
+
+class _Model:
+    """A document that grows: components and relations are numbered from 1."""
+
+    def __init__(self, date: str, version: str) -> None:
+        given = {"version": VERSION, "applicationId": "facegear", "applicationVersion": version, "date": date}
+        self.root = Xml.Element("model", given)
+        self.relations, self.components = (
+            Xml.SubElement(self.root, name) for name in ("relations", "components")
+        )
+
+    def component(self, kind: str, name: str, *attributes: tuple[str, str, float | None]) -> int:
+        number = len(self.components) + 1
+        element = Xml.SubElement(self.components, "component", id=str(number), type=kind, name=name)
+        for key, unit, value in attributes:
+            if value is not None:
+                Xml.SubElement(element, "attribute", id=key, unit=unit).text = repr(value)
+        return number
+
+    def relation(self, kind: str, *members: tuple[str, int]) -> None:
+        element = Xml.SubElement(self.relations, "relation", id=str(len(self.relations) + 1), type=kind)
+        for role, number in members:
+            hint = self.components[number - 1].attrib["type"]
+            Xml.SubElement(element, "ref", id=str(number), role=role, hint=hint)
+
+
+def write_rexs(path: str | Path, unit: Unit, date: str, version: str) -> Path:
+    """Write a gear unit; `date` (ISO 8601) and `version` of this program stand in it. Returns the path."""
+    model = _Model(date, version)
+    whole, casing = model.component("gear_unit", "gear unit"), model.component("gear_casing", "casing")
+    stuff = (("elastic_modulus", "MPa", unit.young), ("poisson_ratio", "none", unit.poisson))
+    material = model.component("material", "material of the pinions", *stuff)
+    model.relation("assembly", ("assembly", whole), ("part", casing))
+    for shaft in unit.shafts:
+        number = model.component("shaft", shaft.name, ("mass_of_component", "kg", shaft.mass))
+        stiffness = (("radial_stiffness", "N / m", shaft.radial), ("axial_stiffness", "N / m", shaft.axial))
+        bearing = model.component("concept_bearing", f"bearing of {shaft.name}", *stiffness)
+        model.relation("assembly", ("assembly", whole), ("part", number))
+        model.relation("side", ("assembly", bearing), ("inner_part", number), ("outer_part", casing))
+        if shaft.spur is not None:
+            _add_gear(model, shaft.name, shaft.spur, number, material)
+    model.root.insert(0, Xml.Comment(" Lost, as REXS has no face gear: " + "; ".join(LOST) + " "))
+    Xml.indent(model.root)
+    with atomic_path(path) as temporary:
+        Xml.ElementTree(model.root).write(temporary, encoding="UTF-8", xml_declaration=True)
+    return Path(path)
+
+
+def _add_gear(model: _Model, name: str, spur: Spur, shaft: int, material: int) -> None:
+    sizes = (
+        ("number_of_teeth", "none", spur.teeth),
+        ("normal_module", "mm", spur.module),
+        ("face_width", "mm", spur.width),
+        ("inner_diameter", "mm", None if spur.bore is None else 2.0 * spur.bore),
+    )
+    gear = model.component("cylindrical_gear", f"teeth of {name}", *sizes)
+    model.relation("assembly", ("assembly", shaft), ("part", gear))
+    model.relation("reference", ("origin", gear), ("referenced", material))
+    angle = ("normal_pressure_angle", "deg", spur.pressure_angle)
+    flanks = [
+        model.component("cylindrical_gear_flank", f"{side} flank of {name}", angle)
+        for side in ("left", "right")
+    ]
+    members = zip(("left", "right"), flanks, strict=True)
+    model.relation("flank", ("gear", gear), *members)
+
+
+def read_rexs(path: str | Path) -> Unit:
+    """The gear unit of a file, whoever wrote it: every shaft, with its first cylindrical gear and bearing.
+
+    Raises FacegearError for what is no REXS file, and for a gear without number of teeth or module.
+    """
+    try:
+        root = Xml.parse(path).getroot()
+    except (OSError, Xml.ParseError) as error:
+        raise FacegearError(f"{path}: not a readable REXS file ({error})") from None
+    if root.tag != "model":
+        raise FacegearError(f"{path}: a REXS file begins with model, not {root.tag}")
+    parts = {part.attrib["id"]: part for part in root.iter("component")}
+    relations = [
+        (relation.attrib["type"], {one.attrib["role"]: one.attrib["id"] for one in relation.iter("ref")})
+        for relation in root.iter("relation")
+    ]
+    shafts = [_shaft(path, number, parts, relations) for number in _of_kind(parts, "shaft")]
+    material = next((parts[number] for number in _of_kind(parts, "material")), None)
+    young, poisson = (_value(material, key) for key in ("elastic_modulus", "poisson_ratio"))
+    return Unit(tuple(shafts), young, poisson)
+
+
+Parts = dict[str, Xml.Element]
+Relations = list[tuple[str, dict[str, str]]]
+
+
+def _of_kind(parts: Parts, *kinds: str) -> Iterable[str]:
+    return (number for number, part in parts.items() if part.attrib["type"] in kinds)
+
+
+def _shaft(path: str | Path, number: str, parts: Parts, relations: Relations) -> Shaft:
+    gears = [
+        members["part"]
+        for kind, members in relations
+        if kind == "assembly" and members.get("assembly") == number
+    ]
+    teeth = next((gear for gear in gears if parts[gear].attrib["type"] == "cylindrical_gear"), None)
+    held = [
+        members["assembly"] for kind, members in relations if kind == "side" and number in members.values()
+    ]
+    bearing = next((parts[one] for one in held if parts[one].attrib["type"] == "concept_bearing"), None)
+    return Shaft(
+        name=parts[number].attrib.get("name", number),
+        mass=_value(parts[number], "mass_of_component"),
+        radial=_value(bearing, "radial_stiffness"),
+        axial=_value(bearing, "axial_stiffness"),
+        spur=None if teeth is None else _spur(path, teeth, parts, relations),
+    )
+
+
+def _spur(path: str | Path, gear: str, parts: Parts, relations: Relations) -> Spur:
+    count, module = (_value(parts[gear], key) for key in ("number_of_teeth", "normal_module"))
+    if count is None or module is None:
+        raise FacegearError(f"{path}: gear {gear} has no number of teeth or no normal module")
+    flanks = [
+        number
+        for kind, members in relations
+        if kind == "flank" and members.get("gear") == gear
+        for number in members.values()
+    ]
+    angles = [_value(parts[number], "normal_pressure_angle") for number in flanks]
+    bore = _value(parts[gear], "inner_diameter")
+    return Spur(
+        teeth=round(count),
+        module=module,
+        width=_value(parts[gear], "face_width"),
+        pressure_angle=next((angle for angle in angles if angle is not None), None),
+        bore=None if bore is None else 0.5 * bore,
+    )
+
+
+def _value(part: Xml.Element | None, key: str) -> float | None:
+    """A number of a component; None where it is not given."""
+    text = None if part is None else part.findtext(f"attribute[@id='{key}']")
+    return float(text) if text and text.strip() else None

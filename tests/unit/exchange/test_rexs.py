@@ -1,0 +1,105 @@
+"""A gear unit goes to REXS and comes back, and files of others are read."""
+
+from pathlib import Path
+from xml.etree import ElementTree as Xml
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import facegear
+from facegear.errors import FacegearError
+from facegear.exchange.rexs import LOST, Shaft, Spur, Unit, read_rexs, write_rexs
+from facegear.variants.gear_unit import gear_unit
+
+CONFIG = Path(__file__).parents[3] / "config" / "paper.yaml"
+KNOWN = {
+    "shaft": {"mass_of_component": "kg"},
+    "concept_bearing": {"radial_stiffness": "N / m", "axial_stiffness": "N / m"},
+    "material": {"elastic_modulus": "MPa", "poisson_ratio": "none"},
+    "cylindrical_gear": {
+        "number_of_teeth": "none",
+        "normal_module": "mm",
+        "face_width": "mm",
+        "inner_diameter": "mm",
+    },
+    "cylindrical_gear_flank": {"normal_pressure_angle": "deg"},
+    "gear_unit": {},
+    "gear_casing": {},
+}
+"""Components, attributes and units as rexs_schema_2.0.0.xml of FVA's rexs-api-java names them."""
+ROLES = {
+    "assembly": {"assembly", "part"},
+    "side": {"assembly", "inner_part", "outer_part"},
+    "reference": {"origin", "referenced"},
+    "flank": {"gear", "left", "right"},
+}
+"""Relations and their roles, from the same."""
+SIZES = st.none() | st.floats(min_value=1e-3, max_value=1e12, allow_nan=False)
+SPURS = st.builds(
+    Spur, st.integers(5, 500), st.floats(0.1, 100), width=SIZES, pressure_angle=SIZES, bore=SIZES
+)
+NAMES = st.text(
+    st.characters(categories=("L", "N", "Zs"), include_characters="<&\"'"), min_size=1, max_size=9
+)
+SHAFTS = st.builds(Shaft, NAMES, mass=SIZES, radial=SIZES, axial=SIZES, spur=st.none() | SPURS)
+UNITS = st.builds(Unit, st.lists(SHAFTS, max_size=4).map(tuple), young=SIZES, poisson=SIZES)
+
+
+@given(unit=UNITS)
+def test_a_unit_comes_back_as_it_went(tmp_path_factory, unit):
+    path = tmp_path_factory.getbasetemp() / "unit.rexs"
+    assert read_rexs(write_rexs(path, unit, "2026-01-01T00:00:00+00:00", "1.0")) == unit
+
+
+@pytest.fixture(scope="module")
+def machine(tmp_path_factory):
+    return facegear.load(CONFIG, None).export(tmp_path_factory.mktemp("rexs") / "paper.rexs")
+
+
+def test_the_papers_machine_keeps_its_pinions_and_bearings(machine):
+    found = read_rexs(machine)
+    assert found == gear_unit(facegear.load(CONFIG, None).config)
+    pinion, gear = found.shafts[0], found.shafts[-1]
+    assert (pinion.name, pinion.mass, pinion.radial, pinion.axial) == ("tail idler", 1.199, 6.5e7, 0.0)
+    assert pinion.spur == Spur(teeth=23, module=3.75, width=30, pressure_angle=25, bore=25)
+    assert (gear.name, gear.radial, gear.spur) == ("upper face gear", 8.7e9, None)
+    assert len(found.shafts) == 7 and found.young == 206e3
+
+
+def test_only_parts_and_units_of_rexs_are_written_and_every_reference_leads_somewhere(machine):
+    root = Xml.parse(machine).getroot()
+    kinds = {part.attrib["id"]: part.attrib["type"] for part in root.iter("component")}
+    assert len(kinds) == len(list(root.iter("component")))
+    for part in root.iter("component"):
+        units = {one.attrib["id"]: one.attrib["unit"] for one in part.iter("attribute")}
+        assert units.items() <= KNOWN[part.attrib["type"]].items()
+    for relation in root.iter("relation"):
+        assert {one.attrib["role"] for one in relation} == ROLES[relation.attrib["type"]]
+        assert all(kinds[one.attrib["id"]] == one.attrib["hint"] for one in relation)
+
+
+def test_what_is_lost_stands_in_the_file(machine):
+    text = machine.read_text()
+    assert all(lost in text for lost in LOST)
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("<model", "not a readable REXS file"),
+        ("<other/>", "begins with model, not other"),
+        (
+            '<model><relations><relation id="1" type="assembly"><ref id="1" role="assembly"/>'
+            '<ref id="2" role="part"/></relation></relations><components><component id="1" type="shaft"/>'
+            '<component id="2" type="cylindrical_gear"/></components></model>',
+            "gear 2 has no number of teeth",
+        ),
+    ],
+)
+def test_a_file_that_cannot_be_read_is_named_in_one_line(tmp_path, text, line):
+    path = tmp_path / "own.rexs"
+    path.write_text(text)
+    with pytest.raises(FacegearError, match=line) as caught:
+        read_rexs(path)
+    assert "\n" not in str(caught.value)
