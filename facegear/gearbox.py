@@ -481,7 +481,7 @@ class Gearbox:
         co-simulation (FMI 3.0), at the config's speed. GLB: a glTF scene of all gears in mesh, or of one
         pinion and its gear without a transmission. REXS: pinions, shafts, bearings and material as REXS 2.0,
         which has no face gear; the file names what is lost. Raises FacegearError for anything else and for
-        what an FMU cannot hold, ConfigError for a pair without bodies and for a config without a transmission.
+        what an FMU cannot hold, ConfigError for a pair without bodies and a config without a transmission.
         """
         if Path(path).suffix == ".fmu":
             from facegear.exchange.fmu import write_fmu
