@@ -36,12 +36,12 @@ def write_gltf(
 
     path, plain = Path(path), replace(design, assembly=AssemblyErrors())
     scene = trimesh.Scene()
-    placed = [(f"{side} face gear", BODIES[1], gear_place(plain, side)) for side in sides]
-    placed += [(name, BODIES[0], pinion_place(plain, angle)) for name, angle in pinions]
-    for name, body, place in placed:
+    placed = [(f"{side} face gear", BODIES[1], gear_transform(plain, side)) for side in sides]
+    placed += [(name, BODIES[0], pinion_transform(plain, angle)) for name, angle in pinions]
+    for name, body, transform in placed:
         if body not in scene.geometry:
             scene.geometry[body] = _shape(plain, body)  # once, however many of them there are
-        scene.graph.update(name, matrix=UPWARDS @ place, geometry=body)
+        scene.graph.update(name, matrix=UPWARDS @ transform, geometry=body)
     with atomic_path(path) as temporary:
         temporary.write_bytes(scene.export(file_type="glb"))
     return path
@@ -57,32 +57,32 @@ def _shape(design: PairDesign, body: Body) -> Any:
     return shape
 
 
-def pinion_place(design: PairDesign, angle: float) -> Array:
+def pinion_transform(design: PairDesign, angle: float) -> Array:
     """Matrix (4, 4) from the pinion's body frame to that of the upper gear, at a distribution angle (rad).
 
     The pinion stands as the teeth of the gear at that angle ask for: as if the gear had turned by it.
     """
     teeth = design.pinion.teeth
-    place = _about_axis(angle)
-    place[:3, :3] @= body_rotation("pinion", angle * design.face_gear.teeth / teeth - pi / teeth)
-    return place
+    transform = _about_axis(angle)
+    transform[:3, :3] @= body_rotation("pinion", angle * design.face_gear.teeth / teeth - pi / teeth)
+    return transform
 
 
-def gear_place(design: PairDesign, side: str) -> Array:
+def gear_transform(design: PairDesign, side: str) -> Array:
     """Matrix (4, 4) of a face gear. The lower one is the upper one turned half round the pinion's axis.
 
     With an odd number of the pinion's teeth its tooth stands where the upper one has a space.
     """
     if side == "upper":
         return np.eye(4)
-    place = np.eye(4)
+    transform = np.eye(4)
     turned = rotation(np.array([0.0, 1.0, 0.0]), pi)
     shift = pi / design.face_gear.teeth if design.pinion.teeth % 2 else 0.0
-    place[:3, :3] = turned @ body_rotation("face_gear", shift)
-    return place
+    transform[:3, :3] = turned @ body_rotation("face_gear", shift)
+    return transform
 
 
 def _about_axis(angle: float) -> Array:
-    place = np.eye(4)
-    place[:3, :3] = rotation(np.array([0.0, 0.0, 1.0]), angle)
-    return place
+    transform = np.eye(4)
+    transform[:3, :3] = rotation(np.array([0.0, 0.0, 1.0]), angle)
+    return transform

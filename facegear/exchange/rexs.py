@@ -132,7 +132,10 @@ def read_rexs(path: str | Path) -> Unit:
         raise FacegearError(f"{path}: a REXS file begins with model, not {root.tag}")
     parts = {part.attrib["id"]: part for part in root.iter("component")}
     relations = [
-        (relation.attrib["type"], {one.attrib["role"]: one.attrib["id"] for one in relation.iter("ref")})
+        (
+            relation.attrib["type"],
+            {member.attrib["role"]: member.attrib["id"] for member in relation.iter("ref")},
+        )
         for relation in root.iter("relation")
     ]
     shafts = [_shaft(path, number, parts, relations) for number in _of_kind(parts, "shaft")]
@@ -145,8 +148,8 @@ Parts = dict[str, Xml.Element]
 Relations = list[tuple[str, dict[str, str]]]
 
 
-def _of_kind(parts: Parts, *kinds: str) -> Iterable[str]:
-    return (number for number, part in parts.items() if part.attrib["type"] in kinds)
+def _of_kind(parts: Parts, *types: str) -> Iterable[str]:
+    return (number for number, part in parts.items() if part.attrib["type"] in types)
 
 
 def _shaft(path: str | Path, number: str, parts: Parts, relations: Relations) -> Shaft:
@@ -159,7 +162,9 @@ def _shaft(path: str | Path, number: str, parts: Parts, relations: Relations) ->
     held = [
         members["assembly"] for kind, members in relations if kind == "side" and number in members.values()
     ]
-    bearing = next((parts[one] for one in held if parts[one].attrib["type"] == "concept_bearing"), None)
+    bearing = next(
+        (parts[member] for member in held if parts[member].attrib["type"] == "concept_bearing"), None
+    )
     return Shaft(
         name=parts[number].attrib.get("name", number),
         mass=_value(parts[number], "mass_of_component"),

@@ -9,7 +9,7 @@ import trimesh
 
 import facegear
 from facegear.config.tooth_pair import pair_design
-from facegear.exchange.gltf import PROFILE, WIDTH, gear_place, pinion_place, write_gltf
+from facegear.exchange.gltf import PROFILE, WIDTH, gear_transform, pinion_transform, write_gltf
 from facegear.geometry.solids import solid, volume
 
 DESIGN = pair_design(facegear.example().config.tooth_pair)
@@ -85,8 +85,8 @@ def test_a_pinion_turned_by_half_a_tooth_would_stand_in_the_gear(machine):
 
 def test_pinions_a_whole_number_of_pitches_apart_stand_alike():
     pitch = 2 * np.pi / 143
-    first, other = pinion_place(DESIGN, 0.2), pinion_place(DESIGN, 0.2 + 23 * pitch)
-    turned = gear_place(DESIGN, "upper") @ np.linalg.inv(first) @ other
+    first, other = pinion_transform(DESIGN, 0.2), pinion_transform(DESIGN, 0.2 + 23 * pitch)
+    turned = gear_transform(DESIGN, "upper") @ np.linalg.inv(first) @ other
     assert turned[:3, :3] @ [0, 1, 0] != pytest.approx([0, 1, 0])
     angle = 23 * pitch
     about = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
