@@ -10,7 +10,7 @@ from facegear.contact.columns import FILLET_CONTACT
 from facegear.contact.hertz import DENTED
 from facegear.geometry.design import BACKLASH_DIFFERS_UM
 from facegear.report.machine import BALANCED, key_numbers, rated
-from facegear.report.page import Chapter, Picture, Table, scientific
+from facegear.report.page import Chapter, Picture, Table, number, scientific
 
 POSITIONS_MATTER = 0.05
 """Relative change of a peak-to-peak value with half of the positions that is worth a warning."""
@@ -196,7 +196,7 @@ def _beyond_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[tuple[str, 
         if row.loss_outside_percent > 0.0:
             yield (
                 "friction",
-                f"{row.loss_outside_percent:.2g} % of the loss at {row.torque_n_m:g} N m lies outside the "
+                f"{number(row.loss_outside_percent, 2)} % of the loss at {row.torque_n_m:g} N m lies outside the "
                 f"limits of {row.friction_model}: {row.limit}",
             )
 
@@ -237,7 +237,7 @@ def _sweep_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[tuple[str, s
         yield "speed sweep", f"open at every speed: {', '.join(always)}"
     lost = max_open.index[(max_open > 0.0) & (min_open < 1.0)]
     if lost.size:
-        time = f"up to {100 * max_open[lost].max():.2g} % of the time"
+        time = f"up to {number(100 * max_open[lost].max(), 2)} % of the time"
         yield "speed sweep", f"contact is lost at some speeds, {time}: {', '.join(lost)}"
 
 

@@ -13,6 +13,8 @@ KINEMATICS = {
 }
 BALANCED = 1e-9
 """Relative difference of power in and out that is rounding."""
+NAMES = ("case", "reproduction")
+"""Keys that say nothing of the machine."""
 EXACT = 12
 """Significant digits of the config's numbers."""
 
@@ -220,7 +222,7 @@ def _config_tables(values: Mapping[str, Any], base: Base | None) -> list[Table]:
 def _keys(values: Mapping[str, Any]) -> dict[str, Any]:
     """Dotted keys that hold something, with their values."""
     rows = [row for section in values for row in _flat(section, values[section])]
-    return {key: value for key, value in rows if key != "reproduction" and value not in (None, "")}
+    return {key: value for key, value in rows if key not in NAMES and value not in (None, "")}
 
 
 def _flat(key: str, value: Any) -> list[tuple[str, Any]]:
