@@ -196,8 +196,8 @@ def _beyond_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[tuple[str, 
         if row.loss_outside_percent > 0.0:
             yield (
                 "friction",
-                f"{number(row.loss_outside_percent, 2)} % of the loss at {row.torque_n_m:g} N m lies outside the "
-                f"limits of {row.friction_model}: {row.limit}",
+                f"{number(row.loss_outside_percent, 2)} % of the loss at {row.torque_n_m:g} N m lies outside "
+                f"the limits of {row.friction_model}: {row.limit}",
             )
 
 
