@@ -9,7 +9,7 @@ def phase_factors(order: int, harmonic: int, teeth: int, angles: Array) -> tuple
     """How many times the force of one mesh drives the forward and the backward wave of an order.
 
     Force k of the mesh harmonics at the pinion at angle psi is Re[F e^(i k (w t - N psi))], the same at all
-    pinions: the sizes of sum e^(i (k N - n) psi) and sum e^(i (k N + n) psi). angles (pinions,), rad; N teeth.
+    pinions: the sizes of sum e^(i (k N - n) psi) and sum e^(i (k N + n) psi). angles (n,), rad; teeth N.
     """
     turns = harmonic * teeth * angles
     return (
