@@ -40,3 +40,13 @@ def test_the_report_holds_every_key_of_the_config(quick):
         "transmission.pinions[0].role",
     ):
         assert f"<td>{key}</td>" in page, key
+
+
+def test_figures_of_the_report_are_interactive_and_it_stays_below_eight_megabytes(quick):
+    folder = quick.folder / "results" / "quick"
+    page = (folder / "report.html").read_text()
+    assert len(page) < 8_000_000
+    for name in ("mesh_sweep", "contact_pattern", "stiffness_harmonics", "campbell"):
+        assert json.loads((folder / "figures" / f"{name}.json").read_text())["data"], name
+        assert f'id="figure-{name}"' in page, name
+    assert page.count('id="plot-library"') == page.count('id="plot-figures"') == 1
