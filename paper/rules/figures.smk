@@ -20,13 +20,13 @@ rule paper_figures_page:
         svg=paper_figures("svg"),
         png=paper_figures("png"),
         csv=paper_figures("csv"),
-        manifest="results/{case}/paper_figures/paper_figures.provenance.json",
+        manifest="results/{case}/paper_figures/paper_figures_page.provenance.json",
     localrule: True
     params:
         values=sections("tooth_pair", "transmission", "mesh_stiffness"),
         inputs=[one.model_dump() for one in REPRODUCTION.inputs] if REPRODUCTION else [],
     script:
-        "../scripts/paper_figures.py"
+        "../scripts/paper_figures_page.py"
 
 
 rule paper_figures:
