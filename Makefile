@@ -72,9 +72,10 @@ ci: lint docs release $(CLUSTER) test
 release: tools
 	PATH=$(CURDIR)/$(BIN):$$PATH .ci/release dist
 
-# Known faults of the locked versions. It asks PyPI's own service, which a mirror of packages need not have.
+# Known faults of the locked versions. It asks PyPI's own service, which a mirror of packages need not have: without
+# --strict the audit would then end well, with every version left out.
 audit: tools
-	$(BIN)/uv tool run pip-audit --requirement requirements-run.lock --disable-pip
+	$(BIN)/uv tool run pip-audit --strict --requirement requirements-run.lock --disable-pip
 
 notebooks: tools
 	$(BIN)/jupyter execute --inplace examples/*.ipynb
