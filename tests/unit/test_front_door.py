@@ -11,6 +11,8 @@ from ruamel.yaml import YAML
 
 import facegear
 from facegear import errors
+from facegear.compare.answers import opened
+from facegear.compare.judge import compare
 from facegear.errors import FacegearError
 
 pytestmark = pytest.mark.xdist_group("notebooks")  # the example's contact is computed once a process
@@ -108,13 +110,30 @@ def test_the_files_of_a_sweep_are_saved_although_its_figures_use_more(gearbox, t
     assert all(path.stat().st_size for path in gearbox.sweep(1000, 1200, points=3).save(tmp_path))
 
 
-@pytest.mark.parametrize("name", ["geometry", "contact", "stiffness", "modes", "response", "load_sharing"])
-def test_every_answer_has_a_table_a_figure_and_files(gearbox, name, tmp_path):
+ANSWERS = "geometry", "contact", "stiffness", "modes", "response", "load_sharing"
+
+
+@pytest.fixture(scope="module")
+def saved(gearbox, tmp_path_factory):
+    """A folder with the files of all answers, and the files of each."""
+    folder = tmp_path_factory.mktemp("answers")
+    return folder, {name: getattr(gearbox, name)().save(folder) for name in ANSWERS}
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_every_answer_has_a_table_a_figure_and_files(gearbox, saved, name):
     found = getattr(gearbox, name)()
     assert len(found.table())
     assert found.plot().axes
-    assert all(path.stat().st_size for path in found.save(tmp_path))
+    assert all(path.stat().st_size for path in saved[1][name])
     assert found.source == "computed"
+
+
+def test_the_example_gives_the_stored_answers(saved):
+    with opened("current/example") as stored:
+        found = compare(stored, saved[0])
+    renewed = "save these answers to results/example: python -m facegear.compare.answers current results/example"
+    assert found.equal, f"{found.rows.to_string(max_rows=20)}\nwhere this is meant, {renewed}"
 
 
 @pytest.mark.parametrize("name", ["teeth.step", "teeth.STL"])
