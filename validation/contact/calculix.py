@@ -6,10 +6,8 @@ The moment at the bore is what the turn costs.
 """
 
 import re
-import resource
 import shutil
-import subprocess
-import time
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,15 +23,19 @@ from facegear.mesh.orderings import SERENDIPITY20
 from facegear.mesh.sector import SectorMesh, sector
 from facegear.mesh.sizes import MeshSizes
 from facegear.mesh.tooth import gear_tooth, pinion_tooth
+from validation.contact.process import run_alone
 
 PROGRAM = "ccx"
+HELD = {"pinion": ("bore",), "face_gear": ("rim_back",)}
+"""Groups of faces that are held; the pinion's turn as one about its axis."""
 
 
 @dataclass(frozen=True)
 class CalculixRun:
-    """Wall time (s), memory (GB) and version of a run."""
+    """Wall and processor time (s), memory (GB) and version of a run."""
 
     seconds: float
+    cpu_seconds: float
     gigabytes: float
     version: str
 
@@ -61,12 +63,15 @@ def write_deck(
     angles: tuple[float, float],
     turn: float,
     slave: str = "pinion",
+    held: Mapping[str, Sequence[str]] = HELD,
+    output: str = "",
 ) -> int:
     """Write the deck of the pair at angles (phi1, phi2) with the pinion turned by `turn` (rad); returns its
     dof.
 
     `slave` is the body, pinion or face_gear, on whose flank CalculiX integrates the contact pressure. Both
-    sectors have `teeth` teeth around the pairs in mesh. Lengths are in mm, stresses in MPa.
+    sectors have `teeth` teeth around the pairs in mesh; `held` are the groups of faces that supports hold,
+    `output` further lines that ask for results. Lengths are in mm, stresses in MPa.
     """
     first = -(teeth // 2)
     bodies = {
@@ -94,19 +99,20 @@ def write_deck(
             for row in np.column_stack([labels, mesh.hexes[:, SERENDIPITY20] + shift + 1]).tolist():
                 deck.write(", ".join(map(str, row[:11])) + ",\n" + ", ".join(map(str, row[11:])) + "\n")
             side = LOADED_SIDE[body]
-            faces = [f for name in ("flank", "fillet") for f in element_faces(mesh, f"{name}_{side}")]
+            touching = [f for name in ("flank", "fillet") for f in element_faces(mesh, f"{name}_{side}")]
             per_tooth = len(mesh.hexes) // teeth
             for tooth in range(teeth):
                 deck.write(f"*SURFACE, NAME={_surface(body, tooth)}, TYPE=ELEMENT\n")
-                own = [(element, name) for element, name in faces if element // per_tooth == tooth]
+                own = [(element, name) for element, name in touching if element // per_tooth == tooth]
                 deck.writelines(f"{start + element}, {name}\n" for element, name in own)
-            held = np.intersect1d(mesh.faces("bore" if body == "pinion" else "rim_back") + shift, used)
-            deck.write(f"*NSET, NSET=H_{body.upper()}\n" + "".join(f"{node + 1},\n" for node in held))
+            faces = np.concatenate([mesh.faces(name) for name in held[body]])
+            fixed = np.intersect1d(faces + shift, used)
+            deck.write(f"*NSET, NSET=H_{body.upper()}\n" + "".join(f"{node + 1},\n" for node in fixed))
             deck.write(f"*MATERIAL, NAME=M_{body.upper()}\n*ELASTIC\n")
             deck.write(f"{1e-6 * material.young_modulus:.10g}, {material.poisson_ratio:.10g}\n")
             deck.write(f"*SOLID SECTION, ELSET={body.upper()}, MATERIAL=M_{body.upper()}\n")
             start += len(mesh.hexes)
-        deck.write(_step(reference, rotation, turn, teeth, slave))
+        deck.write(_step(reference, rotation, turn, teeth, slave, output))
     return 3 * len(used)
 
 
@@ -133,28 +139,22 @@ def run_program(path: Path, threads: int, timeout: float = 3600.0) -> CalculixRu
     executable = program()
     if executable is None:
         raise FacegearError(f"{PROGRAM} is not installed (Debian: apt-get install calculix-ccx)")
-    before, start = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss, time.perf_counter()
     environment = {
         "OMP_NUM_THREADS": str(threads),
         "CCX_NPROC_EQUATION_SOLVER": str(threads),
         "PATH": "/usr/bin:/bin",
     }
-    done = subprocess.run(
-        [executable, "-i", path.stem],
-        cwd=path.parent,
-        env=environment,
-        capture_output=True,
-        text=True,
-        timeout=timeout,
-    )
-    seconds = time.perf_counter() - start
-    memory = max(before, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
     log = path.with_suffix(".log")
-    log.write_text(done.stdout + done.stderr, encoding="utf-8")
-    if done.returncode != 0:
+    done = run_alone((executable, "-i", path.stem), path.parent, log, environment, timeout)
+    if done.code != 0:
         raise FacegearError(f"{PROGRAM} failed on {path}: see {log}")
-    version = re.search(r"Version ([\d.]+)", done.stdout)
-    return CalculixRun(seconds, memory * 1024 / 1e9, version.group(1) if version else "unknown")
+    version = re.search(r"Version ([\d.]+)", log.read_text(encoding="utf-8", errors="replace"))
+    return CalculixRun(
+        seconds=done.seconds,
+        cpu_seconds=done.cpu_seconds,
+        gigabytes=done.gigabytes,
+        version=version.group(1) if version else "unknown",
+    )
 
 
 def _placed(
@@ -171,7 +171,7 @@ def _surface(body: str, tooth: int) -> str:
     return f"S_{body.upper()}_{tooth}"
 
 
-def _step(reference: int, rotation: int, turn: float, teeth: int, slave: str) -> str:
+def _step(reference: int, rotation: int, turn: float, teeth: int, slave: str, output: str) -> str:
     """Supports, contact and the one step: the bore turned about the pinion's axis, positive towards +x.
 
     Each tooth is paired with its own opposite: with all flanks in one pair and the gear's as the slave
@@ -198,5 +198,5 @@ H_FACE_GEAR, 1, 3
 {rotation}, 2, 2, {-turn:.12e}
 *NODE PRINT, NSET=TURNED
 RF
-*END STEP
+{output}*END STEP
 """.replace("*STEP", f"*NSET, NSET=TURNED\n{rotation}\n*STEP", 1)

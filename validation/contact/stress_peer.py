@@ -145,7 +145,7 @@ def along_the_face(tooth: LoadedTooth, results: Path, material: Material) -> tup
     """
     grid = tooth.mesh.surfaces[f"fillet_{fillet_sides(tooth.mesh.body)[0]}"].nodes
     labels = _sector(tooth).tooth_nodes[TEETH // 2][grid] + 1
-    moved = _on_grid(read_nodes(results, "DISP", 3), labels)
+    moved = on_grid(read_nodes(results, "DISP", 3), labels)
     displaced = np.zeros_like(tooth.mesh.nodes)
     displaced[grid] = moved
     read = gauges_on(tooth.mesh.nodes, grid, material).normal @ displaced.ravel()
@@ -158,7 +158,7 @@ def along_the_face(tooth: LoadedTooth, results: Path, material: Material) -> tup
     return ours, theirs, np.interp(own[inside], at, down_the_fillet(nodal).max(axis=0))
 
 
-def _on_grid(values: Mapping[int, Array], labels: Integers) -> Array:
+def on_grid(values: Mapping[int, Array], labels: Integers) -> Array:
     """Displacements (nu, nv, 3) of a surface, in the middle of each face by the functions of its 8 nodes."""
     nothing = np.zeros(3)
     grid = np.array([[values.get(label, nothing) for label in row] for row in labels])

@@ -109,3 +109,14 @@ rule kratos_peer:
     threads: 2
     script:
         "../scripts/kratos_peer.py"
+
+
+rule pair_peer:
+    "The pair by three programs"
+    output:
+        table="results/{case}/benchmarks/pair_peer.csv",
+        manifest="results/{case}/benchmarks/pair_peer.provenance.json",
+    params:
+        **values_of("tooth_pair"),
+    script:
+        "../scripts/pair_peer.py"

@@ -24,6 +24,7 @@ rule benchmarks:
 rule peers:
     input:
         expand(
-            f"results/{CASE}/benchmarks/{{name}}.csv", name=["calculix", "calculix_stress", "kratos_hertz"]
+            f"results/{CASE}/benchmarks/{{name}}.csv",
+            name=["calculix", "calculix_stress", "kratos_hertz", "pair_peer"],
         ),
     localrule: True

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from facegear.io import tables
 from facegear.provenance.stage import stage
-from validation.contact.kratos import hertz_peer
+from validation.contact.kratos_hertz import hertz_peer
 
 with stage(snakemake) as run:
     table = hertz_peer(Path(snakemake.output.table).parent / "kratos", (0.06, 0.03), snakemake.threads)

@@ -3,14 +3,15 @@
 import numpy as np
 import pytest
 
-from validation.contact.kratos import RADIUS, hertz, write_hertz
+from validation.contact.kratos import write
+from validation.contact.kratos_hertz import RADIUS, cylinder_on_block, hertz
 
 
 @pytest.fixture(scope="module")
 def blocks(tmp_path_factory):
     """Nodes (n, 3), and the nodes of each block of elements and conditions, as written."""
     folder = tmp_path_factory.mktemp("kratos")
-    write_hertz(folder, 0.1)
+    write(folder, cylinder_on_block(0.1)[0], (1.0,), None)
     tables, lines = [], iter((folder / "pair.mdpa").read_text().splitlines())
     for line in lines:
         if line.startswith(("Begin Nodes", "Begin Elements", "Begin Conditions")):

@@ -1,0 +1,123 @@
+"""Our solution of the pair cut out, in a process of its own, so that its time and memory can be measured.
+
+`python -m validation.contact.pair_own FOLDER` reads what `solve` was asked for there and writes its answer.
+"""
+
+import json
+import os
+import pickle
+import sys
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.contact.bodies.compliance import FlankCompliance, flank_compliance
+from facegear.contact.flanks import flank_pair
+from facegear.contact.options import Element, Refinement
+from facegear.contact.pressure import flank_pressure
+from facegear.contact.root_gauges import RootGauges, root_gauges
+from facegear.contact.teeth import ContactSide, elastic_tooth
+from facegear.errors import FacegearError
+from facegear.geometry.design import Material
+from facegear.mesh.tooth import FeTooth
+from validation.contact.pair_bodies import PairBodies, along, largest_inside
+from validation.contact.process import Finished, run_alone
+from validation.contact.sector_model import SectorPair
+
+ASKED, ANSWER = "asked.pickle", "answer.json"
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A pair under a torque (N m), its flank layers cut by `refinement`, its elements as `element`."""
+
+    pair: PairBodies
+    torque: float
+    refinement: Refinement
+    element: Element
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a program makes of the pair under its torque (N m).
+
+    Turn (rad) of the pinion; largest `pressure` (Pa) on its flank and largest tension (Pa) at both fillets;
+    `exponent` of the torque as a power of the turn, nan where the program does not say.
+    """
+
+    torque: float
+    turn: float
+    pressure: float
+    pinion_root: float
+    gear_root: float
+    exponent: float = np.nan
+
+
+@dataclass(frozen=True, eq=False)
+class _OwnBody:
+    """A tooth's contact surface, compliance and gauges."""
+
+    side: ContactSide
+    compliance: FlankCompliance
+    gauges: RootGauges
+
+    def root(self, body: str, force: Array) -> float:
+        """Largest tension (Pa) by forces (n,) N on the nodes of the flank before refinement."""
+        stress = -(self.compliance.readings[0] @ force).reshape(self.gauges.position.shape[:3])[0]
+        return largest_inside(stress, along(body, self.gauges.position[0]))
+
+
+def solve(folder: Path, asked: Asked, threads: int) -> tuple[Answer, Finished]:
+    """Solve in a process of its own. Raises FacegearError if it fails."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / ASKED).write_bytes(pickle.dumps(asked))
+    root = Path(__file__).parents[2]
+    names = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")
+    environment = os.environ | dict.fromkeys(names, str(threads)) | {"PYTHONPATH": str(root)}
+    command = (sys.executable, "-m", "validation.contact.pair_own", str(folder.resolve()))
+    done = run_alone(command, root, folder / "own.log", environment, 3600.0)
+    if done.code != 0:
+        raise FacegearError(f"our own solution failed: see {folder / 'own.log'}")
+    return Answer(**json.loads((folder / ANSWER).read_text(encoding="ascii"))), done
+
+
+def own_answer(asked: Asked) -> Answer:
+    """Contact of the pair's flanks, and the stress at its fillets by the forces on them."""
+    pair = asked.pair
+    pinion, gear = (
+        _own_body(asked, tooth, material)
+        for tooth, material in zip(pair.teeth.values(), pair.materials, strict=True)
+    )
+    cuts = asked.refinement
+    flanks = flank_pair(pair.design, (pinion.side, gear.side), (cuts, cuts), asked.element != "hex27")
+    blocks = ({(0, 0): body.compliance.own} for body in (pinion, gear))
+    result = SectorPair(flanks, *blocks).solve(pair.position, (asked.torque,))[0]
+    (spot,) = result.spots
+    pressure, _ = flank_pressure([result], flanks, pair.materials).loads[0].largest()
+    return Answer(
+        torque=asked.torque,
+        turn=result.ste / pair.design.pinion_base_radius,
+        pressure=pressure,
+        pinion_root=pinion.root("pinion", spot.on_pinion),
+        gear_root=gear.root("face_gear", spot.on_gear),
+        exponent=result.k_local / result.k_average,
+    )
+
+
+def _own_body(asked: Asked, tooth: FeTooth, material: Material) -> _OwnBody:
+    elastic, side = elastic_tooth(asked.pair.design, tooth, material)
+    gauges, rows = root_gauges(tooth, material)
+    held = elastic.held.copy()
+    nowhere = np.zeros(0, dtype=np.int64)
+    held[np.union1d(elastic.left, elastic.right)] = True
+    cut_out = replace(elastic, held=held, left=nowhere, right=nowhere)
+    compliance = flank_compliance(cut_out, asked.refinement, element=asked.element, gauges=rows)
+    return _OwnBody(side, compliance, gauges)
+
+
+if __name__ == "__main__":
+    place = Path(sys.argv[1])
+    found = own_answer(pickle.loads((place / ASKED).read_bytes()))
+    (place / ANSWER).write_text(json.dumps(asdict(found)), encoding="ascii")

@@ -1,0 +1,202 @@
+"""Three programs on one pair: stiffness, largest contact pressure and root stress at the same torque.
+
+One tooth of each gear, cut out and held at the cuts, on the same nodes: our solution, CalculiX (20-node
+hexahedra) and Kratos (8-node ones). The reference is ours with the strip of contact resolved.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from facegear.arrays import Array
+from facegear.contact.options import Element, Refinement
+from facegear.errors import FacegearError
+from facegear.geometry.design import Material, PairDesign
+from facegear.mesh.sizes import MeshSizes
+from facegear.progress import Progress
+from validation.contact import calculix, kratos, pair_own
+from validation.contact.pair_bodies import HELD, PairBodies
+from validation.contact.pair_own import Answer, Asked
+from validation.contact.stress_peer import on_grid, read_nodes
+
+POSITION = 0.34
+SLICE = 2.1
+"""Middle part of the face, in modules: small enough for meshes that see the strip of contact."""
+LEVELS = {"medium": (0.10, 0.60, 0.60), "fine": (0.05, 0.60, 0.60)}
+"""Sizes of its meshes, as in `facegear.mesh.sizes.RESOLUTIONS`."""
+RESOLVED = Refinement(2, 1, 2, 2.0)
+"""Cuts of the fine mesh's flank layer in the reference."""
+PARTS = (0.3, 0.6, 0.9)
+"""Steps in which Kratos takes our turn, before it looks for the torque."""
+CLOSE = 2e-3
+"""How near CalculiX' torque must come to the one asked for, and the runs it may take."""
+RUNS = 3
+COMPARED = {
+    "stiffness": "stiffness_n_per_um",
+    "pressure": "pressure_mpa",
+    "pinion_root": "pinion_root_mpa",
+    "gear_root": "gear_root_mpa",
+}
+
+Row = dict[str, float | str]
+
+
+def middle(design: PairDesign) -> PairDesign:
+    """The middle of the pair's face alone."""
+    face, gear = SLICE * design.module, design.face_gear
+    ends = design.mean_radius - face / 2, design.mean_radius + face / 2
+    return replace(
+        design,
+        face_gear=replace(gear, inner_radius=ends[0], outer_radius=ends[1]),
+        pinion=replace(design.pinion, width=0.75 * face),
+    )
+
+
+def pair_peer_study(
+    design: PairDesign,
+    materials: tuple[Material, Material],
+    torque: float,
+    levels: Mapping[str, MeshSizes],
+    folder: Path,
+    threads: int,
+) -> pd.DataFrame:
+    """A row for each program and mesh, from the coarsest to the finest, `torque` N m on the pinion.
+
+    Stiffness on the line of action, largest pressure on the pinion's flank, largest tension at the fillets,
+    each with its distance in percent from the first row, ours on the last mesh with the strip resolved.
+    Raises FacegearError if a program is missing, fails, or does not come to the torque.
+    """
+    progress = Progress("pair by three programs", 1 + 4 * len(levels))
+    rows = []
+    for row in _rows(design, materials, torque, levels, folder, threads):
+        rows.append(row)
+        progress.step()
+    table = pd.DataFrame(rows)
+    for name, column in COMPARED.items():
+        table[f"{name}_error_percent"] = 100.0 * (table[column] / table[column].iloc[0] - 1.0)
+    return table
+
+
+def _rows(
+    design: PairDesign,
+    materials: tuple[Material, Material],
+    torque: float,
+    levels: Mapping[str, MeshSizes],
+    folder: Path,
+    threads: int,
+) -> Iterator[Row]:
+    pairs = {level: PairBodies(design, sizes, materials, POSITION) for level, sizes in levels.items()}
+    finest = list(pairs)[-1]
+    plain = Refinement()
+    yield _own(pairs[finest], finest, "facegear, strip resolved", torque, RESOLVED, folder, threads)[0]
+    for level, pair in pairs.items():
+        row, own = _own(pair, level, "facegear", torque, plain, folder, threads)
+        yield row
+        yield _own(pair, level, "facegear, 8-node", torque, plain, folder, threads)[0]
+        yield _calculix(pair, level, own, folder, threads)
+        yield _kratos(pair, level, own, folder / f"kratos_{level}", threads)
+
+
+def _own(
+    pair: PairBodies,
+    level: str,
+    program: str,
+    torque: float,
+    cuts: Refinement,
+    folder: Path,
+    threads: int,
+) -> tuple[Row, Answer]:
+    element: Element = "hex8" if "8-node" in program else "hex27"
+    answer, done = pair_own.solve(
+        folder / f"own_{level}_{program.split()[-1]}", Asked(pair, torque, cuts, element), threads
+    )
+    dof = 3 * sum(len(tooth.nodes) for tooth in pair.teeth.values())
+    return _row(pair, level, program, dof, answer, done.cpu_seconds, done.gigabytes), answer
+
+
+def _calculix(pair: PairBodies, level: str, own: Answer, folder: Path, threads: int) -> Row:
+    """The last of the runs until the torque is met: it grows as a power of the turn."""
+    deck, turn = folder / f"pair_{level}.inp", own.turn
+    for _ in range(RUNS):
+        dof = calculix.write_deck(
+            deck,
+            pair.design,
+            pair.sizes,
+            pair.materials,
+            1,
+            pair.angles,
+            turn,
+            held=HELD,
+            output="*NODE FILE\nU\n*CONTACT FILE\nCDIS, CSTR\n",
+        )
+        result = calculix.run_deck(deck, threads, dof)
+        if abs(result.torque / own.torque - 1.0) < CLOSE:
+            break
+        turn *= (own.torque / result.torque) ** (1.0 / own.exponent)
+    else:
+        raise FacegearError(f"CalculiX did not come to {own.torque:g} N m: see {deck}")
+    run, found = result.run, deck.with_suffix(".frd")
+    displaced = 1e-3 * _calculix_displacement(pair, found)
+    pressure = np.zeros(len(pair.teeth["pinion"].nodes))
+    for label, (*_, value) in read_nodes(found, "CONTACT", 4).items():
+        if label <= len(pressure):
+            pressure[label - 1] = 1e6 * value
+    answer = _read(pair, result.torque, turn, displaced, pressure)
+    return _row(pair, level, f"CalculiX {run.version}", dof, answer, run.cpu_seconds, run.gigabytes)
+
+
+def _calculix_displacement(pair: PairBodies, results: Path) -> Array:
+    """Displacements (n, 3), mm, of all nodes of both bodies that its elements or their faces have."""
+    values = read_nodes(results, "DISP", 3)
+    count = sum(len(tooth.nodes) for tooth in pair.teeth.values())
+    moved, shift = np.zeros((count, 3)), 0
+    for tooth in pair.teeth.values():
+        for surface in tooth.surfaces.values():
+            moved[shift + surface.nodes] = on_grid(values, shift + surface.nodes + 1)
+        shift += len(tooth.nodes)
+    return moved
+
+
+def _kratos(pair: PairBodies, level: str, own: Answer, folder: Path, threads: int) -> Row:
+    bodies = pair.linear(own.turn)
+    run = kratos.solve(folder, bodies, PARTS, threads, work=1e3 * own.torque * own.turn)
+    work = float(np.nansum(bodies.moved * run.reaction))
+    answer = _read(
+        pair, 1e-3 * work / own.turn, run.part * own.turn, 1e-3 * run.displacement, 1e6 * run.pressure
+    )
+    dof = 3 * len(run.displacement)
+    return _row(pair, level, f"Kratos {kratos.VERSION}", dof, answer, run.cpu_seconds, run.gigabytes)
+
+
+def _read(pair: PairBodies, torque: float, turn: float, displaced: Array, pressure: Array) -> Answer:
+    """Of displacements (n, 3) m of both bodies and pressures (Pa) of their nodes."""
+    count = len(pair.teeth["pinion"].nodes)
+    return Answer(
+        torque=torque,
+        turn=turn,
+        pressure=pair.largest_pressure(pressure),
+        pinion_root=pair.root_stress("pinion", displaced[:count]),
+        gear_root=pair.root_stress("face_gear", displaced[count:]),
+    )
+
+
+def _row(
+    pair: PairBodies, level: str, program: str, dof: int, answer: Answer, seconds: float, gigabytes: float
+) -> Row:
+    base = pair.design.pinion_base_radius
+    return {
+        "level": level,
+        "program": program,
+        "dof": dof,
+        "torque_n_m": answer.torque,
+        "turn_rad": answer.turn,
+        "stiffness_n_per_um": 1e-6 * answer.torque / (base**2 * answer.turn),
+        "pressure_mpa": 1e-6 * answer.pressure,
+        "pinion_root_mpa": 1e-6 * answer.pinion_root,
+        "gear_root_mpa": 1e-6 * answer.gear_root,
+        "cpu_seconds": seconds,
+        "memory_gb": gigabytes,
+    }

@@ -1,0 +1,85 @@
+"""The numbers of three programs on one pair, on the page about contact and as references."""
+
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from references import against, agrees
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "contact.md").read_text()
+MEASURED = ROOT / "docs" / "measured"
+PEERS = ("CalculiX", "Kratos")
+
+
+def pair_table():
+    return pd.read_csv(MEASURED / "pair_peer.csv")
+
+
+def by_program(name):
+    """Rows of a program, by mesh."""
+    table = pair_table()
+    return table[table["program"].str.startswith(name)].set_index("level")
+
+
+def pair_rows():
+    for one in pair_table().itertuples():
+        numbers = (
+            (one.stiffness_n_per_um, one.stiffness_error_percent, ".1f"),
+            (one.pressure_mpa, one.pressure_error_percent, ".0f"),
+            (one.pinion_root_mpa, one.pinion_root_error_percent, ".1f"),
+            (one.gear_root_mpa, one.gear_root_error_percent, ".1f"),
+        )
+        cells = [f"{value:{form}} ({error:+.1f} %)" for value, error, form in numbers]
+        costs = f"{one.cpu_seconds:.0f} | {one.memory_gb:.2f}"
+        yield f"| {one.program} | {one.level} | {1e-3 * one.dof:.0f} | {' | '.join(cells)} | {costs} |"
+
+
+@pytest.mark.parametrize("message", pair_rows())
+def test_a_row_about_the_pair_is_the_stored_measurement(message):
+    assert message in PAGE
+
+
+def test_all_programs_carry_the_same_torque():
+    table = pair_table()
+    assert table["torque_n_m"].max() < 1.002 * table["torque_n_m"].min()
+    assert set(table["level"]) == {"medium", "fine"} and len(table) == 9
+
+
+@against(
+    "other program",
+    "CalculiX, and Kratos with the elements of 8 nodes that it has (docs/measured/pair_peer.csv, `make peers`)",
+    capability="contact compliance stiffness",
+    module="facegear.contact.position",
+)
+def test_two_other_programs_find_our_stiffness_and_pressure_where_the_mesh_sees_the_strip():
+    ours = by_program("facegear, strip").loc["fine"]
+    for peer, same in (("CalculiX", ours), ("Kratos", by_program("facegear, 8").loc["fine"])):
+        found = by_program(peer).loc["fine"]
+        stiffness, pressure = (
+            f"{name} by {peer}" for name in ("stiffness, N/um,", "largest pressure, N/mm2,")
+        )
+        agrees(stiffness, same["stiffness_n_per_um"], found["stiffness_n_per_um"], relative=5e-3)
+        agrees(pressure, ours["pressure_mpa"], found["pressure_mpa"], relative=2e-2)
+
+
+@against(
+    "other program",
+    "CalculiX, and Kratos with the elements of 8 nodes that it has (docs/measured/pair_peer.csv, `make peers`)",
+    capability="root_stress",
+    module="facegear.contact.root_gauges",
+)
+def test_two_other_programs_find_our_root_stress_under_the_same_contact():
+    for peer, same in (("CalculiX", "facegear, strip"), ("Kratos", "facegear, 8")):
+        found, ours = by_program(peer).loc["fine"], by_program(same).loc["fine"]
+        for column in ("pinion_root_mpa", "gear_root_mpa"):
+            agrees(f"{column} by {peer}", ours[column], found[column], relative=5e-3)
+
+
+def test_the_distance_of_both_peers_falls_with_the_mesh():
+    for peer in PEERS:
+        rows = by_program(peer)
+        for name in ("stiffness", "pressure", "pinion_root", "gear_root"):
+            assert abs(rows.loc["fine", f"{name}_error_percent"]) < abs(
+                rows.loc["medium", f"{name}_error_percent"]
+            )
