@@ -51,7 +51,7 @@ def test_all_programs_carry_the_torque_that_the_page_names():
 @against(
     "other program",
     "CalculiX, and Kratos with 8-node elements (docs/measured/pair_peer.csv, `make peers`)",
-    capability="contact compliance stiffness",
+    capability="contact compliance",
     module="facegear.contact.position",
 )
 def test_two_other_programs_find_our_stiffness_and_pressure_where_the_mesh_sees_the_strip():
