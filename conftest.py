@@ -5,6 +5,7 @@
 
 import os
 
+import blas_threads  # noqa: F401 - before all that imports NumPy
 import pytest
 from hypothesis import settings
 from hypothesis.internal.conjecture import providers

@@ -55,7 +55,7 @@ def quasi_static_quantities(machine: Machine, cycles: int) -> Found:
     largest = np.maximum(forces.max(axis=0), hard.flank_forces.max(axis=0))
     named = _named(machine.layout, values, dynamic=False)
     if machine.tables is not None:
-        past = (past_law(machine, one.cycles, one.flank_forces).max() for one in (run, hard))
+        past = (past_law(machine, motion.cycles, motion.flank_forces).max() for motion in (run, hard))
         named[PAST_LAW] = float(max(past))
     return named, FlankLoads(forces.mean(axis=0), largest)
 

@@ -112,8 +112,8 @@ def along(body: str, points: Array) -> Array:
 
 def largest_inside(stress: Array, at: Array) -> float:
     """Largest of stress (a, b) down a fillet, at places (a, b) along the face but at its ends."""
-    place = at.mean(axis=0)
-    inside = np.abs(place - place.mean()) < (0.5 - ENDS) * np.ptp(place)
+    along = at.mean(axis=0)
+    inside = np.abs(along - along.mean()) < (0.5 - ENDS) * np.ptp(along)
     return float(down_the_fillet(stress).max(axis=0)[inside].max())
 
 

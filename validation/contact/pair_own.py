@@ -118,6 +118,6 @@ def _own_body(asked: Asked, tooth: FeTooth, material: Material) -> _OwnBody:
 
 
 if __name__ == "__main__":
-    place = Path(sys.argv[1])
-    found = own_answer(pickle.loads((place / ASKED).read_bytes()))
-    (place / ANSWER).write_text(json.dumps(asdict(found)), encoding="ascii")
+    folder = Path(sys.argv[1])
+    answer = own_answer(pickle.loads((folder / ASKED).read_bytes()))
+    (folder / ANSWER).write_text(json.dumps(asdict(answer)), encoding="ascii")

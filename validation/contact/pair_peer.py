@@ -138,10 +138,10 @@ def _calculix(pair: PairBodies, level: str, own: Answer, folder: Path, threads: 
         turn *= (own.torque / result.torque) ** (1.0 / own.exponent)
     else:
         raise FacegearError(f"CalculiX did not come to {own.torque:g} N m: see {deck}")
-    run, found = result.run, deck.with_suffix(".frd")
-    displaced = 1e-3 * _calculix_displacement(pair, found)
+    run, answers = result.run, deck.with_suffix(".frd")
+    displaced = 1e-3 * _calculix_displacement(pair, answers)
     pressure = np.zeros(len(pair.teeth["pinion"].nodes))
-    for label, (*_, value) in read_nodes(found, "CONTACT", 4).items():
+    for label, (*_, value) in read_nodes(answers, "CONTACT", 4).items():
         if label <= len(pressure):
             pressure[label - 1] = 1e6 * value
     answer = _read(pair, result.torque, turn, displaced, pressure)
