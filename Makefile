@@ -5,9 +5,6 @@ READY := $(VENV)/.locked
 TOOLS := $(VENV)/.tools
 CLUSTER := $(VENV)/.cluster
 CORES ?= 2
-# Of the tests. One more than cores: those that watch, kill or await runs leave a core idle now and then.
-WORKERS ?= $(shell expr $(CORES) + 1)
-
 .PHONY: all env tools check test random lint docs release audit ci notebooks benchmarks peers verification platforms mutation lock clean
 
 all: check
@@ -49,11 +46,11 @@ check: env
 	@$(BIN)/python -m facegear.system_check
 
 test: check tools
-	$(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup
+	$(BIN)/python -m pytest -n $(CORES) --dist loadgroup
 
 # Properties alone, with fresh random examples each time: what one of them finds becomes a named case of its test.
 random: check tools
-	$(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup -m hypothesis --hypothesis-profile=random
+	$(BIN)/python -m pytest -n $(CORES) --dist loadgroup -m hypothesis --hypothesis-profile=random
 
 lint: tools
 	$(BIN)/ruff check .
@@ -88,7 +85,7 @@ peers: check tools
 
 # The table of what was checked against which reference, for docs/verification.md.
 verification: check tools
-	$(BIN)/python -m pytest -n $(WORKERS) --dist loadgroup -m reference --references=validation/references.csv
+	$(BIN)/python -m pytest -n $(CORES) --dist loadgroup -m reference --references=validation/references.csv
 
 # How far these references move without MKL, on two threads and with old kernels.
 platforms: check tools

@@ -415,7 +415,7 @@ class Gearbox:
 
         >>> import facegear
         >>> facegear.example().hunting(positions=4).table()["k_gamma"].round(2).to_list()
-        [1.4, 1.4, 0.66]
+        [1.41, 1.41, 0.65]
         """
         from facegear.results.hunting import HuntingResult
 

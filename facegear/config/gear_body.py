@@ -6,7 +6,7 @@ from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse, require_all
 from facegear.config.csv_file import CsvFault, read_numbers
-from facegear.config.tooth_pair import MaterialSection
+from facegear.config.material import MaterialSection
 
 COLUMNS = ("r_mm", "height_mm")
 

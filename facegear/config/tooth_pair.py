@@ -6,6 +6,7 @@ from math import pi, radians
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse, require_all
+from facegear.config.material import MaterialSection
 from facegear.errors import ConfigError, NotConverged
 from facegear.geometry.design import (
     AssemblyErrors,
@@ -18,13 +19,6 @@ from facegear.geometry.design import (
     Shaper,
 )
 from facegear.geometry.validate import check
-
-
-class MaterialSection(Section):
-    """Linear elastic, isotropic."""
-
-    young_modulus_gpa: float = Field(gt=0, le=2000, description="Young's modulus")
-    poisson_ratio: float = Field(ge=0, le=0.49)
 
 
 class ReliefSection(Section):

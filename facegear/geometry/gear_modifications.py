@@ -23,10 +23,15 @@ GRAZING = 0.1
 @lru_cache(maxsize=16)
 def flank_depth(design: PairDesign) -> "scipy.interpolate.CubicSpline":
     """Depth (m) below the tip plane of the flank's end at the fillet, by gear radius (m)."""
-    gear, roll = design.face_gear, design.shaper_tip_roll
+    gear = design.face_gear
     radius = np.linspace(gear.inner_radius, gear.outer_radius, 65)
-    ends = face_gear.flank_point(design, roll, face_gear.psi_at(design, radius, roll))
-    return scipy.interpolate.CubicSpline(radius, design.gear_tip_plane - ends[..., 2])
+    return scipy.interpolate.CubicSpline(radius, design.gear_tip_plane - flank_end(design, radius)[..., 2])
+
+
+def flank_end(design: PairDesign, radius: ArrayLike) -> Array:
+    """Points (..., 3) where the flank ends at the fillet, at gear radii (m)."""
+    roll = design.shaper_tip_roll
+    return face_gear.flank_point(design, roll, face_gear.psi_at(design, radius, roll))
 
 
 def removed(design: PairDesign, radius: ArrayLike, depth: ArrayLike) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 from facegear.errors import GeometryError
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign, Relief
-from facegear.geometry.gear_modifications import flank_depth
+from facegear.geometry.gear_modifications import flank_end
 from facegear.geometry.limits import THINNEST_LAND, RadiusLimits, face_range, radius_limits
 from facegear.geometry.roots import root
 
@@ -106,7 +106,8 @@ def _check_relief(design: PairDesign) -> None:
 
 def _check_gear_modifications(design: PairDesign) -> None:
     gear, made, at_most = design.face_gear, design.face_gear.modifications, MAX_RELIEF * design.module
-    half, depth = 0.5 * (gear.outer_radius - gear.inner_radius), float(flank_depth(design)(gear.inner_radius))
+    half = 0.5 * (gear.outer_radius - gear.inner_radius)
+    depth = float(design.gear_tip_plane - flank_end(design, gear.inner_radius)[2])
     for name, relief, room, what in (
         ("tip_relief", made.tip_relief, depth, "depth at the inner end"),
         ("root_relief", made.root_relief, depth, "depth at the inner end"),

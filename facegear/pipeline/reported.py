@@ -1,13 +1,14 @@
 """What of each stage the report of a case reads."""
 
 from collections.abc import Mapping
-from typing import Any
-
-import pandas as pd
+from typing import TYPE_CHECKING, Any
 
 from facegear.arrays import Arrays
 from facegear.pipeline.stage import Case
 from facegear.pipeline.table import STAGES
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 REPORTED = {
     "stiffness": ["harmonics"],
@@ -44,7 +45,7 @@ def asked_for(stage: str, case: Case) -> bool:
 
 def shown_pair(
     values: Mapping[str, Any],
-    ltca: pd.DataFrame,
+    ltca: "pd.DataFrame",
     loads: Arrays,
     stress: Arrays | None,
     friction: Arrays | None,

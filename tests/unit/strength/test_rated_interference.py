@@ -3,7 +3,7 @@
 import pytest
 
 import facegear
-from facegear.report.glance import verdicts
+from facegear.report.glance import findings
 
 pytestmark = pytest.mark.xdist_group("notebooks")  # the example's contact is computed once a process
 
@@ -30,5 +30,5 @@ def test_teeth_that_interfere_are_amber_at_best_and_the_report_says_why():
     assert share > 0.1
     assert set(found["safety"]["verdict"]) == {"amber"}
     assert found["safety"]["reason"].str.contains(message).all()
-    shown = [finding for about, finding in verdicts({"rating": found["rating"]}, None) if "bending" in about]
-    assert shown and all(finding.startswith("amber") and message in finding for finding in shown)
+    shown = [row for row in findings({"rating": found["rating"]}, None) if "bending" in row.about]
+    assert shown and all(row.light == "amber" and message in row.finding for row in shown)

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from facegear.report.glance import verdicts
+from facegear.report.glance import findings
 from facegear.strength.scuffed_flanks import with_scuffing
 
 SPECTRUM = pd.DataFrame(
@@ -65,14 +65,15 @@ def test_a_contact_too_hot_for_the_oil_is_never_green_and_says_why():
 
 
 def test_the_first_screen_names_the_mesh_nearest_to_scuffing():
-    known = dict(verdicts({"mesh_losses": losses()}, None))
+    known = {row.about: row.finding for row in findings({"mesh_losses": losses()}, None)}
     assert known["scuffing"].startswith(
         "safety 0.20, -90 K to the limit (engine/upper, drive flank, at the nominal"
     )
     assert "outside the torques" in known["scuffing"] and "micropitting" not in known
     assert "0.01 times" in known["smallest film"]
     of_duty = losses()[lambda table: table["bin"] > 0]
-    assert "bin 1 of the duty cycle" in dict(verdicts({"mesh_losses": of_duty}, None))["scuffing"]
+    scuffing = [row.finding for row in findings({"mesh_losses": of_duty}, None) if row.about == "scuffing"]
+    assert "bin 1 of the duty cycle" in scuffing[0]
 
 
 def test_only_meshes_of_the_flank_count():

@@ -31,15 +31,18 @@ def report_values(wildcards):
 
 
 def report_base(wildcards):
-    """Name and plain values of the config file that the first one extends; none where it extends none.
+    """Name and values, as `report_values`, of the config file that the first one extends, if it does.
 
     A file that is no whole config has no values to compare with.
     """
     path = extended(CONFIGFILES[0])
+    if path is None:
+        return None
     try:
-        return path and [path.name, expand_cases(whole := load_config(path))[whole.case]]
+        values = expand_cases(whole := load_config(path))[whole.case]
     except FacegearError:
         return None
+    return [path.name, {**values, "reproduction": values["reproduction"] is not None}]
 
 
 def where_made(stage, file):
