@@ -18,6 +18,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from facegear.plots.interactive_layout import NUMBER, frame_of, layout_of, legends_of, titles
+from facegear.plots.plotly_values import colour, markup, name_and_unit
 from facegear.plots.traces import (
     DASHES,
     SYMBOLS,
@@ -25,11 +26,8 @@ from facegear.plots.traces import (
     Panel,
     StillOnly,
     Trace,
-    colour,
     convert,
     look,
-    markup,
-    name_and_unit,
 )
 
 ALIGNED = 0.02

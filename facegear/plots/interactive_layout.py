@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.ticker import FixedLocator
 
-from facegear.plots.traces import Panel, Trace, markup, numbers
+from facegear.plots.plotly_values import markup, numbers
+from facegear.plots.traces import Panel, Trace
 
 DPI = 96
 NUMBER = ".5~g"

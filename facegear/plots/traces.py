@@ -1,6 +1,5 @@
 """Artists of a matplotlib figure as traces of plotly.js, with the values that they were drawn from."""
 
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -10,7 +9,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import Collection, LineCollection, PathCollection, PolyCollection, QuadMesh
-from matplotlib.colors import to_hex, to_rgba
+from matplotlib.colors import to_hex
 from matplotlib.container import BarContainer
 from matplotlib.contour import ContourSet
 from matplotlib.lines import Line2D
@@ -18,13 +17,13 @@ from matplotlib.patches import Polygon, Rectangle
 from matplotlib.text import Annotation, Text
 
 from facegear.arrays import Array
+from facegear.plots.plotly_values import colour, markup, name_and_unit, numbers, scale
 
 Trace = dict[str, Any]
 PIXELS = 96 / 72
 """Of a page, to a point of a figure."""
-DIGITS = 6
 MAP_DIGITS = 4
-"""Significant digits of a value of a curve, and of a map."""
+"""Significant digits of a value of a map."""
 ROWS = 160
 """Of a map whose rows are not even, drawn again on even ones."""
 SYMBOLS = {
@@ -46,7 +45,6 @@ SYMBOLS = {
 UNDRAWN = ("None", "none", "", " ")
 """Styles of a line, or markers, that are not drawn."""
 DASHES = {"-": "solid", "--": "dash", ":": "dot", "-.": "dashdot"}
-LETTERS = {r"\gamma": "γ", r"\mu": "µ", r"\theta": "θ", r"\delta": "δ", r"\lambda": "λ"}
 
 
 class StillOnly(Exception):
@@ -70,41 +68,6 @@ class Panel:
     def quantity(self, axis: str) -> tuple[str, str]:
         """Name and unit of what an axis (`x` or `y`) shows."""
         return name_and_unit(getattr(self.axes, f"get_{axis}label")())
-
-
-def markup(text: str) -> str:
-    """Text of matplotlib as that of plotly.js: formulas and line ends."""
-    formula = re.sub(r"\$([^$]*)\$", lambda match: _formula(match[1]), text)
-    return formula.replace("\n", "<br>")
-
-
-def _formula(text: str) -> str:
-    for name, letter in LETTERS.items():
-        text = text.replace(name, letter)
-    for sign, tag in (("^", "sup"), ("_", "sub")):
-        text = re.sub(rf"\{sign}(?:\{{([^}}]*)\}}|(.))", rf"<{tag}>\1\2</{tag}>", text)
-    return text.replace("-", "−")
-
-
-def name_and_unit(label: str) -> tuple[str, str]:
-    """An axis label's first words, and the unit in its last brackets."""
-    unit = re.search(r"\(([^()]*)\)", label)
-    name = label.partition("(")[0] if unit else label
-    return markup(" ".join(name.split())), markup(unit[1]) if unit else ""
-
-
-def numbers(values: Any, digits: int = DIGITS) -> list[float | None]:
-    """Plain values with so many significant digits; None where there is none."""
-    given: Array = np.ma.filled(np.ma.asarray(values, dtype=float), np.nan).ravel()
-    return [float(f"{value:.{digits}g}") if np.isfinite(value) else None for value in given]
-
-
-def colour(value: Any) -> str:
-    """A colour as CSS writes it."""
-    red, green, blue, alpha = to_rgba(value)
-    if alpha >= 1.0:
-        return str(to_hex(value))
-    return f"rgba({round(255 * red)},{round(255 * green)},{round(255 * blue)},{alpha:.3g})"
 
 
 def look(artist: Artist) -> tuple[str, str]:
@@ -334,11 +297,6 @@ def even_rows(y: Array, values: Array) -> tuple[Array, Array]:
             inside = (heights >= min(ends)) & (heights <= max(ends)) & np.isfinite(known).all()
             even[inside, column] = np.interp(heights[inside], np.take(ends, order), np.take(known, order))
     return heights, even
-
-
-def scale(colours: Any, steps: int = 12) -> list[list[Any]]:
-    """A colour map as plotly.js takes it."""
-    return [[round(float(at), 4), to_hex(colours(float(at)))] for at in np.linspace(0.0, 1.0, steps)]
 
 
 def note(panel: Panel, artist: Text) -> Trace:
