@@ -16,7 +16,7 @@ from facegear.contact.position import FIRST_GUESS, LoadedPosition, solve_positio
 from facegear.contact.search import find_candidates
 from facegear.geometry.design import AssemblyErrors, PairDesign
 from facegear.geometry.placement import pinion_angle
-from facegear.geometry.unloaded import unloaded_contact
+from facegear.geometry.unloaded import unloaded_motion
 from facegear.progress import Progress
 
 
@@ -58,7 +58,7 @@ def loaded_contact(
     """
     options = options or ContactOptions()
     phi1 = pinion_angle(model.design, positions)
-    unloaded = unloaded_contact(model.design, phi1)
+    phi2, unloaded = unloaded_motion(model.design, phi1)
     guess = first = FIRST_GUESS / model.design.pinion_base_radius
     progress = Progress("loaded contact", len(phi1))
     results: list[LoadedPosition] = []
@@ -68,8 +68,8 @@ def loaded_contact(
                 model=model,
                 options=options,
                 position=float(position),
-                placement=(float(phi1[row]), float(unloaded.phi2[row])),
-                unloaded=-float(unloaded.transmission_error[row]),
+                placement=(float(phi1[row]), float(phi2[row])),
+                unloaded=-float(unloaded[row]),
             )
             solved, turned = solve_position(pair, torques, guess)
             guess = turned if turned > 0.0 else first  # fillets in the way turn the pinion back

@@ -4,6 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from facegear.geometry.conjugate import exact_contact
 from facegear.geometry.design import AssemblyErrors, PairDesign
 from facegear.geometry.placement import mirrored, pinion_angle
 
@@ -19,6 +20,13 @@ def normal_backlash(design: PairDesign) -> float:
     """
     if design.assembly == AssemblyErrors():
         return design.pinion.thinning
+    drive, back = exact_contact(design), exact_contact(mirrored(design))
+    if drive is not None and back is not None:
+        return -back.transmission_error - drive.transmission_error
+    return _searched(design)
+
+
+def _searched(design: PairDesign) -> float:
     # Imported here: a start reads configs, most of them without the errors that need compiled geometry.
     from facegear.geometry.unloaded import unloaded_contact
 

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from facegear.arrays import Array, Integers
 from facegear.errors import NotConverged
 from facegear.geometry.closest import PAIRS, closest
+from facegear.geometry.conjugate import exact_contact
 from facegear.geometry.design import PairDesign
 from facegear.geometry.placement import conjugate_angle
 
@@ -51,11 +52,41 @@ class UnloadedContact:
 
 
 def unloaded_contact(design: PairDesign, phi1: ArrayLike) -> UnloadedContact:
-    """Turn the gear against the drive side of the pinion until the flanks just touch, for every phi1 (rad).
+    """The gear turned against the drive side of the pinion until the flanks just touch, for every phi1 (rad).
 
-    Flank against flank only, edges of both included; what fillets and tips do then is `clearance`'s.
-    Raises NotConverged where no pair of flanks faces each other or the touch is not found to TOLERANCE.
+    Flank against flank only, edges of both included; what fillets and tips do then is `clearance`'s. In
+    closed form where `facegear.geometry.conjugate` has one, else by search. Raises NotConverged where no pair
+    of flanks faces each other or the touch is not found to TOLERANCE.
     """
+    exact = exact_contact(design)
+    if exact is None:
+        return searched_contact(design, phi1)
+    phi1 = np.atleast_1d(np.asarray(phi1, float))
+    phi2, error = unloaded_motion(design, phi1)
+    nearest = closest(design, phi1, phi2)
+    facing = np.isfinite(nearest.gap)
+    roll, y = (np.where(facing, part, np.nan) for part in (nearest.roll, nearest.y))
+    rows, column = np.arange(phi1.size), np.argmin(nearest.gap, axis=1)
+    roll[rows, column] = exact.normal_roll + phi1 + 2 * np.pi / design.pinion.teeth * PAIRS[column]
+    y[rows, column] = exact.y
+    return UnloadedContact(phi1, phi2, error, PAIRS[column], nearest.gap, roll, y)
+
+
+def unloaded_motion(design: PairDesign, phi1: ArrayLike) -> tuple[Array, Array]:
+    """phi2 (rad) and transmission error (m), (p,) each, of `unloaded_contact`, with no search if there is an
+    exact answer. Raises what it raises.
+    """
+    exact = exact_contact(design)
+    if exact is None:
+        contact = searched_contact(design, phi1)
+        return contact.phi2, contact.transmission_error
+    conjugate = np.atleast_1d(conjugate_angle(design, phi1))
+    error = np.full(conjugate.size, exact.transmission_error)
+    return conjugate + error / design.gear_base_radius, error
+
+
+def searched_contact(design: PairDesign, phi1: ArrayLike) -> UnloadedContact:
+    """`unloaded_contact` by search, for flanks of any kind and edges; raises NotConverged as it does."""
     phi1 = np.atleast_1d(np.asarray(phi1, float))
     conjugate = conjugate_angle(design, phi1)
     errors, angle = design.assembly, design.pressure_angle

@@ -1,0 +1,184 @@
+"""Unloaded contact of flanks without modifications, in closed form for every assembly.
+
+The pinion is a cylinder, so that conjugate action survives any displacement of it: all contact stands on one
+normal, at one place y along the pinion's axis, with one slope psi, and the transmission error is constant.
+With c the place of the middle of the pinion's face in the gear's frame, e the turn of the normal about the
+gear's axis and h = m (N_s - N_1) / 2, psi solves the condition that the normal touches the pinion's base
+cylinder; the transmission error is stationary there. For parallel planes of the axes (no error of the shaft
+angle) it reads cos psi (h - dq) - sin psi dE = h cos a0. Derived for this project from the generated flank of
+`face_gear`; confirmed against rigid displacements of either body.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import acos, asin, atan2, cos, hypot, isfinite, pi, sin, tan
+
+from facegear.geometry import pinion
+from facegear.geometry.design import AssemblyErrors, GearModifications, PairDesign
+
+STEPS = 60
+ROUNDING = 1e-12
+"""Step of psi (rad) by which differences for the slope are off."""
+
+
+@dataclass(frozen=True)
+class ConjugateContact:
+    """Where flanks that go on beyond their edges touch on the drive side, the same at every pinion angle.
+
+    Attributes
+    ----------
+    psi
+        Slope of the common normal against the plane of the gear (rad), the pressure angle there.
+    turn
+        Of that normal about the gear's axis (rad).
+    transmission_error
+        m, as in `UnloadedContact`.
+    y
+        Place along the pinion's axis, counted on the pinion (m).
+    normal_roll
+        Roll angle (rad) of the contact of pair 0 on the pinion at phi1 = 0.
+    """
+
+    psi: float
+    turn: float
+    transmission_error: float
+    y: float
+    normal_roll: float
+
+
+def conjugate_contact(design: PairDesign) -> ConjugateContact | None:
+    """None where no normal of the flanks continued without end touches, and where teeth touch along lines
+    that an assembly error turns into an edge (as many teeth of the shaper as of the pinion).
+    """
+    errors, unmoved = design.assembly, design.pressure_angle
+    if design.shaper_lift <= 0.0:
+        return None
+    psi = unmoved if errors == AssemblyErrors() else _slope(design)
+    if psi is None:
+        return None
+    turn = _turn(design, psi)
+    height, base = design.shaper_lift, design.shaper_base_radius
+    x, y, z = _placed(design)
+    tilt = errors.shaft_angle_error
+    on_pinion = acos(cos(psi) * cos(turn))
+    half_tooth = design.pinion_half_base_angle - pi / design.pinion.teeth
+    error = (
+        _dot(_turned((cos(psi), 0.0, -sin(psi)), turn), (x, y, z))
+        + design.pinion_base_radius * (on_pinion + half_tooth)
+        + height * sin(psi)
+        - base * (psi - design.shaper_half_space_angle)
+        - design.gear_base_radius * turn
+    )
+    point = _turned((-base * sin(psi), design.gear_base_radius / cos(psi), height - base * cos(psi)), turn)
+    along = design.mean_radius + cos(tilt) * (point[1] - y) + sin(tilt) * (point[2] - z)
+    return ConjugateContact(psi, turn, error, along, on_pinion + half_tooth)
+
+
+@lru_cache(maxsize=256)
+def exact_contact(design: PairDesign) -> ConjugateContact | None:
+    """`conjugate_contact` where it is that of the teeth: None where a flank is modified or ends before.
+
+    It holds where a whole pitch of the contact's way lies on both flanks, within both faces.
+    """
+    if _modified(design):
+        return None
+    contact = conjugate_contact(design)
+    if contact is None:
+        return None
+    first, last = _rolls(design, contact)
+    if last - first < 2 * pi / design.pinion.teeth:
+        return None
+    if abs(contact.y - design.mean_radius) > design.pinion.width / 2:
+        return None
+    radii = [hypot(*_point(design, contact, roll)[:2]) for roll in (first, last)]
+    nearest = _nearest(design, contact)
+    inside = design.face_gear.inner_radius <= nearest and max(radii) <= design.face_gear.outer_radius
+    return contact if inside else None
+
+
+def _slope(design: PairDesign) -> float | None:
+    """psi by Newton's method from the pressure angle, with differences for the slope; None without any."""
+    psi, width = design.pressure_angle, 1e-5
+    for _ in range(STEPS):
+        if not abs(psi) < 0.5 * pi - width:
+            return None
+        below, middle, above = (_condition(design, psi + step) for step in (-width, 0.0, width))
+        rise = (above - below) / (2 * width)
+        step = middle / rise if rise else float("nan")
+        if not isfinite(step):
+            return None
+        psi -= max(-0.2, min(0.2, step))
+        if abs(step) < ROUNDING:
+            return psi if psi > 0.0 else None
+    return None
+
+
+def _condition(design: PairDesign, psi: float) -> float:
+    """By how much (m) the normal of slope psi misses the pinion's base cylinder."""
+    tilt, turn = design.assembly.shaft_angle_error, _turn(design, psi)
+    across = cos(turn) * cos(tilt)
+    from_axis = _turned((across * sin(psi), -sin(tilt) / cos(psi), across * cos(psi)), turn)
+    return (
+        across * (design.shaper_lift * cos(psi) - design.shaper_base_radius)
+        - sin(tilt) * design.gear_base_radius / cos(psi) ** 2
+        - _dot(from_axis, _placed(design))
+        + design.pinion_base_radius
+    )
+
+
+def _turn(design: PairDesign, psi: float) -> float:
+    """The normal is square to the pinion's axis."""
+    return asin(max(-1.0, min(1.0, tan(psi) * tan(design.assembly.shaft_angle_error))))
+
+
+def _placed(design: PairDesign) -> tuple[float, float, float]:
+    """The middle of the pinion's face in the gear's frame (m)."""
+    return design.assembly.offset, design.mean_radius, design.assembly.axial_shift
+
+
+def _modified(design: PairDesign) -> bool:
+    made = design.pinion
+    reliefs = (made.tip_relief, made.root_relief, made.lead_crowning)
+    on_pinion = any(relief.amount != 0.0 for relief in reliefs)
+    return on_pinion or design.face_gear.modifications != GearModifications()
+
+
+def _rolls(design: PairDesign, contact: ConjugateContact) -> tuple[float, float]:
+    """First and last roll angle (rad) of the pinion that lie on both flanks."""
+    start, slope = (_point(design, contact, roll)[2] for roll in (0.0, 1.0))
+    slope -= start
+    base, lift = design.shaper_base_radius, design.shaper_lift
+    deepest = lift - base * (cos(contact.psi) + design.shaper_tip_roll * sin(contact.psi))
+    first, last = ((height - start) / slope for height in (design.gear_tip_plane, deepest))
+    return max(first, pinion.junction_roll(design), 0.0), min(last, design.pinion_tip_roll)
+
+
+def _point(design: PairDesign, contact: ConjugateContact, roll: float) -> tuple[float, float, float]:
+    """Contact (m) in the gear's frame where it stands at a roll angle of the pinion."""
+    base, on_pinion = design.pinion_base_radius, acos(cos(contact.psi) * cos(contact.turn))
+    x = base * (roll * cos(on_pinion) - sin(on_pinion))
+    z = -base * (roll * sin(on_pinion) + cos(on_pinion))
+    tilt, along = design.assembly.shaft_angle_error, contact.y - design.mean_radius
+    placed = _placed(design)
+    return (
+        placed[0] + x,
+        placed[1] + cos(tilt) * along - sin(tilt) * z,
+        placed[2] + sin(tilt) * along + cos(tilt) * z,
+    )
+
+
+def _nearest(design: PairDesign, contact: ConjugateContact) -> float:
+    """Distance (m) of the way of contact from the gear's axis."""
+    x, y, _ = _point(design, contact, 0.0)
+    other = _point(design, contact, 1.0)
+    direction = atan2(other[1] - y, other[0] - x)
+    return abs(y * cos(direction) - x * sin(direction))
+
+
+def _turned(vector: tuple[float, float, float], angle: float) -> tuple[float, float, float]:
+    x, y, z = vector
+    return x * cos(angle) - y * sin(angle), x * sin(angle) + y * cos(angle), z
+
+
+def _dot(first: tuple[float, float, float], second: tuple[float, float, float]) -> float:
+    return first[0] * second[0] + first[1] * second[1] + first[2] * second[2]
