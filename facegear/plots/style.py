@@ -40,16 +40,19 @@ def styled() -> Iterator[None]:
 def save(figure: Figure, *paths: str | Path) -> None:
     """Write a figure to each path (the suffix names the format; json: its interactive form) and close it.
 
-    The same figure gives the same bytes: without a date, names inside a svg by a fixed salt.
+    The same figure gives the same bytes: without a date, names inside a svg by a fixed salt. Its parts are
+    laid out once for all formats; matplotlib would do so, and draw the whole figure, before each of them.
     """
-    for path in paths:
-        if str(path).endswith(".json"):
+    with styled(), plt.rc_context({"figure.constrained_layout.use": False}):
+        figure.draw_without_rendering()
+        figure.set_layout_engine(None)
+        for path in paths:
             with atomic_path(path) as temporary:
-                interactive.write(figure, temporary)
-            continue
-        dates = {"Date": None} if str(path).endswith(".svg") else None
-        with atomic_path(path) as temporary, styled():
-            figure.savefig(temporary, metadata=dates)
+                if str(path).endswith(".json"):
+                    interactive.write(figure, temporary)
+                else:
+                    dates = {"Date": None} if str(path).endswith(".svg") else None
+                    figure.savefig(temporary, metadata=dates)
     plt.close(figure)
 
 
