@@ -12,6 +12,7 @@ from facegear.harmonics.series import stacked
 from facegear.lubrication.columns import EXCITATION_COLUMNS
 from facegear.transmission.machine import Machine
 from facegear.transmission.mesh_friction import MeshFriction
+from facegear.transmission.static_gears import at_rest
 from facegear.transmission.statics import mean_equilibrium
 
 ORDERS = 8
@@ -25,7 +26,7 @@ def with_friction(machine: Machine, table: pd.DataFrame) -> Machine:
     analysis as their logarithm has it, outside them that of the nearest. Raises NotConverged where there is
     no rest.
     """
-    torques = machine.layout.pinion_arm * np.abs(mean_equilibrium(machine).forces[0])
+    torques = machine.layout.pinion_arm * np.abs(mean_equilibrium(at_rest(machine)).forces[0])
     known, ratios = _ratios(table)
     ratios[..., 3] /= 1e3 * machine.layout.pinion_arm
     ratios[..., 4] /= 1e3 * machine.layout.gear_arm

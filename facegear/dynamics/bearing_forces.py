@@ -8,6 +8,7 @@ from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.steady_state.simulate import Model, SteadyState
 from facegear.dynamics.steady_state.statistics import moments
+from facegear.transmission.static_gears import at_rest
 from facegear.transmission.statics import static_bearing_forces
 
 DIRECTIONS = ("x", "y", "z", "radial")
@@ -74,7 +75,7 @@ def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:
     """
     layout = model.machine.layout
     moving = _with_radial(bearing_history(model, response))
-    static = _with_radial(static_bearing_forces(model.machine)[None])[0]
+    static = _with_radial(static_bearing_forces(at_rest(model.machine))[None])[0]
     statistics = moments(moving.reshape(len(moving), -1), response.per_period, response.period > 0)
     names = [(body, direction) for body in layout.body_names for direction in DIRECTIONS]
     table = pd.DataFrame(names, columns=["body", "direction"])

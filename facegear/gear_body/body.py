@@ -67,8 +67,9 @@ def solve_body(section: Section, max_frequency: float, last_order: int, teeth: i
     teeth: their number, of which the waves that a discrete ring can tell apart follow. Raises InvalidInput
     for a section that cannot be meshed, NotConverged.
     """
+    last_static = min(STATIC_ORDERS, (teeth - 1) // 2)
     with threadpool_limits(1):
-        return _solved(section, max_frequency, last_order, min(STATIC_ORDERS, (teeth - 1) // 2))
+        return _solved(section, max_frequency, min(last_order, last_static), last_static)
 
 
 def _solved(section: Section, max_frequency: float, last_order: int, last_static: int) -> SolvedBody:

@@ -28,8 +28,8 @@ class ReducedBody:
         Coupling g of the hub's rotation with modes of order 0.
     round : (m,)
         1 for modes of order 0 that move round the axis, 0 for all others.
-    residual : (2, 2)
-        What the static compliance below a mesh has beyond the modes, m/N, of W_p and V_p.
+    static : (orders, 2, 2)
+        Compliance H_n below a mesh of W_p and V_p with all modes there are, m/N, from order 0.
     damping_ratio : ()
         Of every mode, in the steel.
     """
@@ -42,13 +42,26 @@ class ReducedBody:
     hub: Array
     hub_spin: Array
     round: Array
-    residual: Array
+    static: Array
     damping_ratio: Array
 
     @property
     def damping(self) -> Array:
         """Damping of every mode for unit modal mass, (m,), 1/s."""
         return np.asarray(4.0 * np.pi * self.damping_ratio * self.frequency)
+
+    @property
+    def modal(self) -> Array:
+        """The part of `static` that the modes hold, (orders, 2, 2), m/N."""
+        held = np.zeros((max(len(self.static), 1 + self.order.max(initial=0)), 2, 2))
+        given = self.mesh / (2.0 * np.pi * self.frequency)
+        np.add.at(held, self.order, np.einsum("im,jm->mij", given, given))
+        return held[: len(self.static)]
+
+    @property
+    def residual(self) -> Array:
+        """What the static compliance below a mesh has beyond the modes, (orders, 2, 2), m/N."""
+        return self.static - self.modal
 
     @classmethod
     def of_arrays(cls, arrays: Mapping[str, AnyArray], gear: str) -> Self:
@@ -64,4 +77,4 @@ class ReducedBody:
 
         Motions along the axis and round it are a quarter wave apart, so that they do not mix.
         """
-        return float(direction**2 @ np.diagonal(self.residual))
+        return float(direction**2 @ np.diagonal(self.residual.sum(axis=0)))

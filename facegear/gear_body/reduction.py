@@ -10,7 +10,7 @@ from facegear.gear_body.reduced import ReducedBody
 
 
 def reduced_body(body: SolvedBody, patch: Patch, damping_ratio: float) -> ReducedBody:
-    """The modes of a body, and what they leave out of its static compliance below a mesh."""
+    """The modes of a body, and its static compliance below a mesh."""
     orders = body.orders
     order = np.concatenate([np.full(modes.frequencies.size, modes.order) for modes in orders])
     zero = orders[0]
@@ -23,7 +23,7 @@ def reduced_body(body: SolvedBody, patch: Patch, damping_ratio: float) -> Reduce
         hub=np.concatenate([modes.hub for modes in orders], axis=1),
         hub_spin=np.concatenate([modes.hub_spin for modes in orders]),
         round=np.concatenate([np.round(zero.torsional), np.zeros(order.size - zero.frequencies.size)]),
-        residual=(body.static(patch) - body.modal(patch)).sum(axis=0),
+        static=body.static(patch),
         damping_ratio=np.array(damping_ratio),
     )
 

@@ -21,10 +21,13 @@ HARMONICS = (1, 2, 3)
 """Multiples of the mesh frequency whose crossings are listed."""
 
 
-def body_table(gear: str, body: SolvedBody, patch: Patch, pressure_angle: float) -> pd.DataFrame:
+def body_table(
+    gear: str, body: SolvedBody, patch: Patch, pressure_angle: float, angles: Array
+) -> pd.DataFrame:
     """One row: mass (kg) and inertia (kg m2) of the section, coordinates that its modes make, own compliance
-    along the line of action (m/N), the part of it that the modes hold, and the largest relative change of a
-    frequency from a coarser mesh.
+    along the line of action (m/N), the part of it that the modes hold, the largest compliance between two
+    flanks at angles (n,) rad that they do not hold (m/N), and the largest relative change of a frequency from
+    a coarser mesh.
     """
     mass, polar, diametral = section_properties(body.section)
     drive = flank_direction(pressure_angle)
@@ -41,9 +44,19 @@ def body_table(gear: str, body: SolvedBody, patch: Patch, pressure_angle: float)
             "coordinates": [waves],
             "own_compliance_m_per_n": [whole],
             "modal_fraction": [influence(body.modal(patch), 0.0, drive, drive) / whole],
+            "left_out_between_m_per_n": [_left_out(body, patch, pressure_angle, angles)],
             "frequency_change": [float(changes.max())],
         }
     )
+
+
+def _left_out(body: SolvedBody, patch: Patch, pressure_angle: float, angles: Array) -> float:
+    """Largest influence between two flanks, of one mesh or of two, that the modes do not hold, m/N."""
+    missing = body.static(patch) - body.modal(patch)
+    drive, back = (flank_direction(pressure_angle, side) for side in (False, True))
+    apart = (angles[:, None] - angles)[~np.eye(angles.size, dtype=bool)]
+    pairs = [(0.0, back), *((angle, other) for angle in apart.tolist() for other in (drive, back))]
+    return max(abs(influence(missing, angle, drive, other)) for angle, other in pairs)
 
 
 def mode_table(gear: str, body: SolvedBody, speed: float, teeth: int, ratio: float) -> pd.DataFrame:

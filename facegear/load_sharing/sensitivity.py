@@ -165,7 +165,8 @@ def _with_kinematics(machine: Machine, kinematics: Kinematics) -> Machine:
     pinions = len(layout.pinions)
     lower = machine.torques[pinions] if len(layout.gears) > 1 else 0.0
     torques = balanced_torques(other, machine.torques[:pinions], float(lower))
-    return replace(machine, layout=other, torques=torques, imperfections=errors, bodies=None, softening=None)
+    changed = replace(machine, layout=other, torques=torques, imperfections=errors)
+    return changed if kinematics is layout.kinematics else replace(changed, bodies=None, softening=None)
 
 
 def _with_bearings(machine: Machine, roles: tuple[Role, ...], stiffness: float) -> Machine:

@@ -5,6 +5,7 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.transmission.flanks import carried
 from facegear.transmission.machine import Machine
+from facegear.transmission.static_gears import at_rest
 from facegear.transmission.statics import static_equilibrium
 
 
@@ -14,10 +15,10 @@ def static_forces(machine: Machine, positions: int) -> Array:
     This is the limit of slow running: damping and inertia vanish, and who carries load follows from
     stiffness, backlash and transmission error alone. Raises NotConverged naming the position.
     """
-    cycles = np.arange(positions) / positions
-    return carried(np.array([[static_equilibrium(machine, float(at)).forces for at in cycles]]))
+    standing, cycles = at_rest(machine), np.arange(positions) / positions
+    return carried(np.array([[static_equilibrium(standing, float(at)).forces for at in cycles]]))
 
 
 def mean_equilibrium_forces(machine: Machine) -> Array:
     """Elastic mesh forces at mean stiffness without transmission error, shape (1, 1, meshes), N."""
-    return carried(static_equilibrium(machine).forces[None, None, :])
+    return carried(static_equilibrium(at_rest(machine)).forces[None, None, :])

@@ -101,7 +101,7 @@ def _parts(
     angles = dict(zip((pinion.name for pinion in machine.pinions), machine.angles.tolist(), strict=True))
     angle = machine.pressure_angle
     return {
-        "bodies": tables.body_table(gear, body, patch, angle),
+        "bodies": tables.body_table(gear, body, patch, angle, machine.angles),
         "modes": tables.mode_table(gear, body, speed, tooth_pair.face_gear_teeth, ratio),
         "crossings": tables.crossing_table(
             gear, body, tooth_pair.face_gear_teeth, ratio, speeds_rpm[1], machine.angles
@@ -118,6 +118,7 @@ def _summary(bodies: pd.DataFrame, modes: pd.DataFrame) -> str:
         first = f"from {own['frequency_hz'].min():.1f} Hz" if len(own) else "none"
         parts.append(
             f"{row.gear}: {row.mass_kg:.4g} kg, {len(own)} modes {first} "
-            f"(+-{100 * row.frequency_change:.2g} %), {1e9 * row.own_compliance_m_per_n:.4g} nm/N at a mesh"
+            f"(+-{100 * row.frequency_change:.2g} %), {1e9 * row.own_compliance_m_per_n:.4g} nm/N at a mesh, "
+            f"of which the modes hold {100 * row.modal_fraction:.1f} %"
         )
     return "; ".join(parts)

@@ -13,6 +13,7 @@ from facegear.config.transmission import Transmission
 from facegear.stages.outcome import Outcome
 from facegear.strength.flank_contacts import contacts_of, flank_contacts
 from facegear.strength.stress_over_speed import branch_forces, stress_table, swept_forces
+from facegear.transmission.static_gears import at_rest
 from facegear.transmission.statics import static_equilibrium
 
 
@@ -35,7 +36,7 @@ def stress_over_speed(
     stress of its own gear, of `gears`, on the flank where it is more. Raises NotConverged.
     """
     machine = wired_machine(transmission, teeth, harmonics, law=law, bodies=bodies)
-    at_rest = float(np.abs(static_equilibrium(machine).forces).max())
+    at_standstill = float(np.abs(static_equilibrium(at_rest(machine)).forces).max())
     forces = swept_forces(sweep)
     if branches is not None:
         followed = branch_forces(branches, np.unique(forces["speed_rpm"]))
@@ -43,7 +44,7 @@ def stress_over_speed(
     contacts = flank_contacts(stress, by_flank)
     own = {mesh: contacts_of(mesh, contacts, gears).values() for mesh in forces["mesh"].unique()}
     radius = pair(tooth_pair).design.pinion_base_radius
-    table = stress_table(forces, at_rest, radius, own)
+    table = stress_table(forces, at_standstill, radius, own)
     worst = table.loc[table["largest_force_n"].idxmax()]
     where = f"{worst['speed_rpm']:.0f} rpm ({worst['motion']}, {worst['class']})"
     stresses = f"face gear {worst['face_gear_mpa']:.0f} MPa, pinion {worst['pinion_mpa']:.0f} MPa"

@@ -84,7 +84,7 @@ def coordinates(body: ReducedBody, sign: float, angles: Array, pressure_angle: f
         circulatory=turned,
         centrifugal=same * slowed[np.ix_(mode, mode)],
         gyroscopic_hub=_hub_coriolis(body, mode, sign),
-        rows=_flank_rows(order, part, axial, around, body.round[mode], sign, angles, pressure_angle),
+        rows=flank_rows(order, part, axial, around, body.round[mode], sign, angles, pressure_angle),
         lengths=np.maximum(np.hypot(axial, around), 1e-9 * np.hypot(axial, around).max(initial=1.0)),
     )
 
@@ -126,7 +126,7 @@ def _hub_coriolis(body: ReducedBody, mode: Integers, sign: float) -> Array:
     return terms
 
 
-def _flank_rows(
+def flank_rows(
     order: Integers,
     part: Integers,
     axial: Array,
@@ -136,7 +136,10 @@ def _flank_rows(
     angles: Array,
     pressure_angle: float,
 ) -> Array:
-    """d loses what the pitch point moves along the force on the gear, -sin a axially and +-cos a round it."""
+    """Derivatives of the deflections, as `Coordinates.rows`; part 0 is the cosine, 1 the sine.
+
+    d loses what the pitch point moves along the force on the gear, -sin a axially and +-cos a round it.
+    """
     phase = order * angles[:, None]
     cos, sin = np.cos(phase), np.sin(phase)
     up = axial * np.where(part == 0, cos, sin)
@@ -177,17 +180,17 @@ class ElasticGears:
         old, new = model.size, len(added.letters)
         hub = DOF_PER_BODY * (len(layout.pinions) + gear) + np.arange(DOF_PER_BODY)
         speed = own.sign * layout.pinion_teeth / layout.gear_teeth
-        mass = _bordered(model.mass, np.eye(new), hub, added.mass_hub)
-        stiffness = _bordered(model.stiffness, np.diag(added.stiffness))
+        mass = bordered(model.mass, np.eye(new), hub, added.mass_hub)
+        stiffness = bordered(model.stiffness, np.diag(added.stiffness))
         lumped = model.mass_damping * mass + model.bearing_damping * stiffness
         lumped[:old, :old] = 0.0
-        dampers = _bordered(model.dampers, np.diag(added.damping)) - lumped
+        dampers = bordered(model.dampers, np.diag(added.damping)) - lumped
         meshes = np.array([g == gear for _, g in layout.meshes] * 2)
         rows = np.zeros((len(model.rows), new))
         rows[meshes] = added.rows
         none = Spin(*(np.zeros((old, old)) for _ in range(3)))
         before = none if model.spin is None else model.spin
-        gyroscopic = _bordered(before.gyroscopic, speed * added.gyroscopic, hub, speed * added.gyroscopic_hub)
+        gyroscopic = bordered(before.gyroscopic, speed * added.gyroscopic, hub, speed * added.gyroscopic_hub)
         gyroscopic[old:, :old] *= -1.0
         return replace(
             model,
@@ -201,13 +204,13 @@ class ElasticGears:
             dampers=dampers,
             spin=Spin(
                 gyroscopic,
-                _bordered(before.circulatory, speed * added.circulatory),
-                _bordered(before.centrifugal, speed**2 * added.centrifugal),
+                bordered(before.circulatory, speed * added.circulatory),
+                bordered(before.centrifugal, speed**2 * added.centrifugal),
             ),
         )
 
 
-def _bordered(matrix: Array, corner: Array, at: Integers | None = None, border: Array | None = None) -> Array:
+def bordered(matrix: Array, corner: Array, at: Integers | None = None, border: Array | None = None) -> Array:
     """A matrix with another behind it on the diagonal, joined by rows `border` at the places `at`."""
     old, new = len(matrix), len(corner)
     whole = np.zeros((old + new, old + new))

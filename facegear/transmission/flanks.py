@@ -20,6 +20,7 @@ from facegear.mesh_law.load_dependent import LoadDependentLaw, load_dependent_la
 from facegear.transmission.assembly import assembly
 from facegear.transmission.layout import Layout, Side
 from facegear.transmission.machine import Machine, OpenFlanks
+from facegear.transmission.soft_tables import softened
 
 NO_LOAD = 1e-9
 """Part of the largest force of all meshes below which a force is rounding and counts as none."""
@@ -107,7 +108,7 @@ def past_law(machine: Machine, cycles: Array, flank_forces: Array) -> Array:
 
 
 def _tables_of_flanks(machine: Machine) -> LoadDependentLaw:
-    """The tables of all flanks, each as its mesh passes through the cycle."""
+    """The tables of all flanks with their softening, each as its mesh passes through the cycle."""
     assert machine.tables is not None
     gears = [machine.tables[g] for _, g in machine.layout.meshes]
     factors = machine.imperfections.stiffness.tolist()
@@ -116,9 +117,11 @@ def _tables_of_flanks(machine: Machine) -> LoadDependentLaw:
     back = [
         gear_tables.back.mirrored().scaled(factor) for gear_tables, factor in zip(gears, factors, strict=True)
     ]
-    return load_dependent_law(
-        [table.shifted(lag) for table, lag in zip([*drive, *back], 2 * lags, strict=True)]
-    )
+    flanks = [*drive, *back]
+    if machine.softening is not None:
+        soft = 2 * machine.softening.tolist()
+        flanks = [softened(table, compliance) for table, compliance in zip(flanks, soft, strict=True)]
+    return load_dependent_law([table.shifted(lag) for table, lag in zip(flanks, 2 * lags, strict=True)])
 
 
 def _lags(machine: Machine) -> list[float]:

@@ -13,6 +13,7 @@ from facegear.arrays import Array, Mask
 from facegear.mesh_law.law import past_levels
 from facegear.transmission.flanks import constant_errors, flank_gaps, flank_law
 from facegear.transmission.machine import Machine
+from facegear.transmission.static_gears import at_rest
 
 NOTHING, LOADED = 1e-9, 1e-6
 RIGID = 1e-13
@@ -74,19 +75,23 @@ class LoadedContacts:
 
 def loaded_contacts(machine: Machine) -> LoadedContacts:
     """Contacts of geometric meshes with the mean law and constant errors. Raises NotConverged."""
-    pinions = len(machine.layout.pinions)
+    pinions, standing = len(machine.layout.pinions), at_rest(machine)
     rings, positions = np.full(pinions, np.nan), np.full((pinions, 2), np.nan)
-    forces = forces_by_active_sets(machine)
+    forces = forces_by_active_sets(standing)
     constant = np.tile(machine.mean_stiffness, 2)
     if forces is not None:
         return LoadedContacts(forces, constant, np.zeros(constant.size, bool), rings, positions)
     from facegear.transmission.statics import bearing_forces, mean_equilibrium  # compiled
 
-    equilibrium = mean_equilibrium(machine)
+    equilibrium = mean_equilibrium(standing)
     ringed = machine.linear.rings.body
-    rings[ringed] = np.hypot(*bearing_forces(machine, equilibrium)[0, ringed, :2].T)
+    rings[ringed] = np.hypot(*bearing_forces(standing, equilibrium)[0, ringed, :2].T)
     positions[ringed] = equilibrium.displacements[0, machine.linear.ring_coordinates]
-    over = machine.linear.rows @ equilibrium.displacements[0] - constant_errors(machine) - flank_gaps(machine)
+    over = (
+        standing.linear.rows @ equilibrium.displacements[0] - constant_errors(machine) - flank_gaps(machine)
+    )
+    if machine.softening is not None:
+        over += np.tile(machine.softening, 2) * equilibrium.flank_forces[0]
     law, pressed = flank_law(machine).mean(), np.maximum(over, 0.0)[None]
     stiffness = constant if machine.constant_stiffness else law.slope(np.zeros(1), pressed)[0]
     return LoadedContacts(

@@ -8,6 +8,7 @@ import pandas as pd
 from facegear.arrays import Array
 from facegear.transmission.layout import Layout
 from facegear.transmission.machine import Machine, mesh_frequency
+from facegear.transmission.static_gears import at_rest
 from facegear.transmission.statics import static_equilibrium
 
 ROUNDING = 1e-9
@@ -105,7 +106,7 @@ def mesh_table(machine: Machine, speed_rpm: float) -> pd.DataFrame:
     largest counts as none, its mesh as open. Raises NotConverged.
     """
     layout = machine.layout
-    mesh_forces = static_equilibrium(machine).forces
+    mesh_forces = static_equilibrium(at_rest(machine)).forces
     forces = np.where(np.abs(mesh_forces) > ROUNDING * np.abs(mesh_forces).max(), mesh_forces, 0.0)
     torque = forces * layout.pinion_arm
     flank = np.select([forces > 0.0, forces < 0.0], ["drive", "back"], "open")

@@ -1,8 +1,9 @@
-"""Face gears that bend, at rest: as few elastic coordinates as the forces of the meshes can move.
+"""Face gears that bend, at rest: the whole influence between flanks, in as few coordinates as it needs.
 
-At rest nothing but the flanks loads the elastic coordinates q, so that `K q = -R^T F` with K their diagonal
-stiffness, R the rows of the flanks and F their forces: q lies in the span of K^-1 R^T, which holds two
-vectors for each mesh of a gear, however many modes the gear has. Statics in these coordinates are exact.
+At rest nothing but the flanks loads a body, so that forces F on the flanks of a gear move all of them by A F
+against their forces, with A the static compliance of all orders. A = R R^T, with two columns in R for each
+mesh of the gear, is the answer of as many coordinates with unit stiffness and rows R. Which modes are kept
+for motion does not matter.
 """
 
 from dataclasses import dataclass, replace
@@ -10,8 +11,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.transmission.elastic_gears import ElasticGears
-from facegear.transmission.linear_model import LinearModel, Spin
+from facegear.gear_body.reduced import ReducedBody
+from facegear.transmission.elastic_gears import ElasticGears, bordered, flank_rows
+from facegear.transmission.layout import Layout
+from facegear.transmission.linear_model import LinearModel
 from facegear.transmission.machine import Machine
 
 NOTHING = 1e-10
@@ -19,59 +22,72 @@ NOTHING = 1e-10
 
 
 def at_rest(machine: Machine) -> Machine:
-    """The machine for static questions alone: the same answers from fewer coordinates."""
+    """The machine for static questions alone, with all that its bodies give between any two meshes.
+
+    Masses of its coordinates beyond the lumped ones are of no use but to scale them.
+    """
     if not isinstance(machine.bodies, ElasticGears):
         return machine
-    return replace(machine, bodies=StaticGears(machine.bodies))
+    return replace(machine, bodies=StaticGears(machine.bodies), softening=None)
 
 
 @dataclass(frozen=True, eq=False)
 class StaticGears:
-    """The gears of `elastic` in coordinates p, q = X p, with unit stiffness."""
+    """The gears of `elastic` by their static compliance alone."""
 
     elastic: ElasticGears
 
     def __call__(self, lumped: LinearModel) -> LinearModel:
-        """The lumped model with these coordinates behind its own."""
-        model, first = self.elastic(lumped), lumped.size
-        owners = np.array([label.rpartition(":")[0] for label in model.labels])
-        kept, labels = [np.eye(model.size)[:, :first]], list(lumped.labels)
-        for gear in dict.fromkeys(owners[first:].tolist()):
-            own = first + np.flatnonzero(owners[first:] == gear)
-            inside = static_vectors(model.rows[:, own], model.stiffness.diagonal()[own])
-            vectors = np.zeros((model.size, inside.shape[1]))
-            vectors[own] = inside
-            kept.append(vectors)
-            labels += [f"{gear}:bent {number + 1}" for number in range(inside.shape[1])]
-        return transformed(model, np.concatenate(kept, axis=1), tuple(labels), lumped.lengths)
+        """The lumped model with the coordinates of every gear behind its own."""
+        model, layout = lumped, self.elastic.layout
+        for gear, body in self.elastic.bodies.items():
+            own = static_rows(body, layout, gear)
+            rows = np.zeros((len(model.rows), own.shape[1]))
+            rows[np.array([g == gear for _, g in layout.meshes] * 2)] = own
+            lengths = np.abs(own).max(axis=0)
+            mass = bordered(model.mass, np.diag(lengths**2))
+            none = np.zeros(lengths.size)
+            model = replace(
+                model,
+                labels=(
+                    *model.labels,
+                    *(f"{layout.gears[gear].name}:bent {n + 1}" for n in range(none.size)),
+                ),
+                mass=mass,
+                stiffness=bordered(model.stiffness, np.eye(none.size)),
+                rows=np.hstack([model.rows, rows]),
+                torques=np.append(model.torques, none),
+                forces=np.append(model.forces, none),
+                lengths=np.append(model.lengths, lengths),
+                dampers=bordered(model.dampers, np.diag(none)),
+            )
+        return model
 
 
-def static_vectors(rows: Array, stiffness: Array) -> Array:
-    """Vectors X (k, p) that span K^-1 R^T with X^T K X = 1; rows R (m, k), stiffness K (k,)."""
-    root = np.sqrt(stiffness)
-    left, sizes, _ = np.linalg.svd(rows.T / root[:, None], full_matrices=False)
-    return np.asarray(left[:, sizes > NOTHING * sizes.max()] / root[:, None])
+def static_rows(body: ReducedBody, layout: Layout, gear: int) -> Array:
+    """R (2 meshes of the gear, p) of A = R R^T, drive flanks first; A in m/N.
 
-
-def transformed(model: LinearModel, vectors: Array, labels: tuple[str, ...], lengths: Array) -> LinearModel:
-    """A model in coordinates p, q = vectors p (n, m); lengths: of the first of them, others from the rows."""
-
-    def within(matrix: Array) -> Array:
-        return np.asarray(vectors.T @ matrix @ vectors)
-
-    rows = model.rows @ vectors
-    spin = model.spin
-    if spin is not None:
-        spin = Spin(within(spin.gyroscopic), within(spin.circulatory), within(spin.centrifugal))
-    return replace(
-        model,
-        labels=labels,
-        mass=within(model.mass),
-        stiffness=within(model.stiffness),
-        rows=rows,
-        torques=vectors.T @ model.torques,
-        forces=vectors.T @ model.forces,
-        lengths=np.append(lengths, np.abs(rows[:, lengths.size :]).max(axis=0)),
-        dampers=within(model.dampers),
-        spin=spin,
-    )
+    Every order counts as two modes with unit stiffness that have its compliance.
+    """
+    sizes, vectors = np.linalg.eigh(body.static)
+    shapes = vectors * np.sqrt(np.maximum(sizes, 0.0))[:, None, :]
+    shapes[0] = np.diag(np.sqrt(np.diagonal(body.static[0])))  # along the axis or round it, never both
+    orders = np.repeat(np.arange(len(shapes)), 2)
+    axial, around = shapes.transpose(1, 0, 2).reshape(2, -1)
+    turning = np.where(orders == 0, np.arange(orders.size) % 2, 0.0)
+    parts = [
+        flank_rows(
+            orders,
+            np.full(orders.size, part),
+            axial,
+            around,
+            turning,
+            layout.gears[gear].sign,
+            layout.angles,
+            layout.pressure_angle,
+        )[:, orders >= part]  # order 0 has no sine
+        for part in (0, 1)
+    ]
+    left, values, _ = np.linalg.svd(np.concatenate(parts, axis=1), full_matrices=False)
+    kept = values > NOTHING * values.max()
+    return np.asarray(left[:, kept] * values[kept])

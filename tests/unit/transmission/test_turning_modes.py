@@ -90,7 +90,7 @@ def test_damping_that_turns_makes_a_mass_on_a_shaft_grow_beyond_its_natural_freq
         hub=np.zeros((2, 1)),
         hub_spin=np.zeros(1),
         round=np.zeros(1),
-        residual=np.zeros((2, 2)),
+        static=np.zeros((2, 2, 2)),
         damping_ratio=np.array(ratio),
     )
     machine = held_gears()
