@@ -127,9 +127,6 @@ class Config(Section):
         """What does not know face gears that bend."""
         if not elastic_gears(machine):
             return
-        if self.mesh_stiffness.mesh_law != "constant_load":
-            allowed = "constant_load, where transmission.face_gear.body is given"
-            raise ConfigError("mesh_stiffness.mesh_law", self.mesh_stiffness.mesh_law, allowed)
         for key in ("tolerances", "search"):
             if getattr(self, key) is not None:
                 allowed = "left out, where transmission.face_gear.body is given: it takes gears as rigid"

@@ -84,16 +84,6 @@ def test_body_that_cannot_be_is_refused_in_one_line_with_key_and_value(changes, 
     assert len(said) == 1 and line in said[0], said
 
 
-def test_mesh_law_that_knows_no_gears_that_bend_is_refused_beside_a_body():
-    values = FLEXIBLE.model_dump(mode="json")
-    values["mesh_stiffness"]["mesh_law"] = "load_dependent"
-    with pytest.raises(ConfigErrors) as refused:
-        parse(Config, values)
-    assert any(
-        "must be constant_load, where transmission.face_gear.body" in line for line in refused.value.lines
-    )
-
-
 @pytest.mark.parametrize(
     ("corners", "line"),
     [

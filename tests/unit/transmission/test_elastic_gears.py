@@ -10,6 +10,7 @@ import gear_bodies
 import numpy as np
 import pytest
 import scipy.linalg
+from force_tables import linear_table
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
@@ -19,8 +20,9 @@ from facegear.gear_body.reduced import ReducedBody
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.elastic_gears import ElasticGears, coordinates
 from facegear.transmission.layout import Side
-from facegear.transmission.loaded_contacts import forces_by_active_sets
+from facegear.transmission.loaded_contacts import forces_by_active_sets, loaded_contacts
 from facegear.transmission.loaded_modes import loaded_modes
+from facegear.transmission.machine import FlankTables
 from facegear.transmission.static_gears import at_rest
 from facegear.transmission.statics import mean_equilibrium
 from facegear.transmission.teeth import GEOMETRIC
@@ -234,6 +236,19 @@ def below(body: ReducedBody, highest) -> ReducedBody:
         hub_spin=body.hub_spin[kept],
         round=body.round[kept],
     )
+
+
+def test_law_that_depends_on_the_load_acts_behind_a_body_as_the_stiffness_that_it_is_the_same_as():
+    """Of forces in proportion to the amount, at rest and with the modes of motion."""
+    table = linear_table(4, 1e-3, 4.1e8)
+    constant = gearbox(gear_bodies.reference_modes())
+    lawful = replace(constant, tables=(FlankTables(table, table),) * 2)
+    for standing in (lambda machine: machine, at_rest):
+        expected = mean_equilibrium(standing(constant)).forces[0]
+        assert mean_equilibrium(standing(lawful)).forces[0] == pytest.approx(expected, rel=1e-9)
+    pressed = loaded_contacts(lawful)
+    closed = pressed.flanks > 0.0
+    assert pressed.stiffness[closed] == pytest.approx(np.tile(constant.mean_stiffness, 2)[closed], rel=1e-9)
 
 
 def test_flanks_at_rest_stand_where_teeth_and_the_influence_of_all_flanks_let_them():
