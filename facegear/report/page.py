@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.io import pages
+from facegear.report.stills import data_uri
 
 FOLDER = Path(__file__).parent
 TEMPLATE = FOLDER / "page.html.j2"
@@ -74,9 +75,8 @@ class Picture:
         return content if content.get("data") else None
 
     def data_uri(self) -> str:
-        """The picture's bytes as a data URI."""
-        kind = {".svg": "image/svg+xml", ".png": "image/png"}[self.path.suffix]
-        return f"data:{kind};base64,{base64.b64encode(self.path.read_bytes()).decode()}"
+        """The picture as a data URI."""
+        return data_uri(self.path)
 
 
 @dataclass(frozen=True)
@@ -145,6 +145,10 @@ class View:
     data: Mapping[str, Any]
     caption: str
 
+    def packed(self) -> str:
+        """The data as the page carries them."""
+        return _packed(_json(self.data))
+
 
 @dataclass(frozen=True)
 class Chapter:
@@ -166,6 +170,7 @@ def render(title: str, lead: str, chapters: Sequence[Chapter]) -> str:
     """The page as HTML text that needs no other file."""
     pictures = [picture for chapter in chapters for picture in chapter.pictures]
     figures = {picture.anchor: picture.interactive for picture in pictures if picture.interactive}
+    viewed = any(chapter.view for chapter in chapters)
     return pages.render(
         TEMPLATE,
         title=title,
@@ -173,15 +178,20 @@ def render(title: str, lead: str, chapters: Sequence[Chapter]) -> str:
         chapters=chapters,
         css=_own("page.css"),
         tables=_own("tables.js"),
-        viewer=_own("pair_view.js") if any(chapter.view for chapter in chapters) else "",
+        packed=_own("packed.js") if viewed or figures else "",
+        viewer=_own("pair_view.js") if viewed else "",
         plots=_own("plots.js"),
-        figures=_packed(json.dumps(figures, separators=(",", ":")).encode()) if figures else "",
+        figures=_packed(_json(figures)) if figures else "",
         library=_packed(LIBRARY.read_bytes()) if figures else "",
     )
 
 
 def _own(name: str) -> str:
     return (FOLDER / name).read_text(encoding="utf-8")
+
+
+def _json(content: Any) -> bytes:
+    return json.dumps(content, separators=(",", ":")).encode()
 
 
 def _packed(content: bytes) -> str:

@@ -1,4 +1,4 @@
-// Draws every `.pair-view` of the page with WebGL 2 from the JSON inside it (facegear/report/pair_view.py).
+// Draws every `.pair-view` of the page with WebGL 2 from the packed JSON inside it (facegear/report/pair_view.py).
 "use strict";
 (() => {
   const VERTEX = `#version 300 es
@@ -62,11 +62,11 @@
     return { matrix, back };
   }
 
-  function start(root) {
-    const data = JSON.parse(root.querySelector("script").textContent);
+  async function start(root) {
     const canvas = root.querySelector("canvas");
     const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
-    if (!gl) { root.querySelector("p.missing").hidden = false; return; }
+    if (!gl || !window.DecompressionStream) { root.querySelector("p.missing").hidden = false; return; }
+    const data = JSON.parse(await unpacked(root.querySelector("script")));
     const find = (name) => root.querySelector(`[name=${name}]`);
     const program = gl.createProgram();
     for (const [kind, text] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {

@@ -6,17 +6,10 @@
   const ranges = new Map();
   let library = null, specs = null;
 
-  async function unpacked(id) {
-    const text = document.getElementById(id).textContent.trim();
-    const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-    return new Response(stream).text();
-  }
-
   async function load() {
-    specs = JSON.parse(await unpacked("plot-figures"));
+    specs = JSON.parse(await unpacked(document.getElementById("plot-figures")));
     const script = document.createElement("script");
-    script.textContent = await unpacked("plot-library");
+    script.textContent = await unpacked(document.getElementById("plot-library"));
     document.head.append(script);
     library = window.Plotly;
   }

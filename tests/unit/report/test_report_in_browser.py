@@ -1,5 +1,6 @@
 """A reader opens a page of the report in Chromium: values by pointer, zoom, tables, dark mode, print."""
 
+import base64
 import io
 import re
 import shutil
@@ -13,6 +14,7 @@ from playwright.sync_api import sync_playwright
 from facegear.plots.style import save
 from facegear.plots.sweep import mesh_sweeps, translations
 from facegear.report.page import Chapter, Picture, Table, render
+from facegear.report.stills import data_uri
 
 CHROMIUM = shutil.which("chromium")
 pytestmark = [
@@ -22,6 +24,18 @@ pytestmark = [
 A4 = {"width": 710, "height": 1030}
 """Pixels of a page of A4 within its margins."""
 OVER_SPEED = "figure-mesh_sweep"
+DOTS = """async sources => Promise.all(sources.map(async source => {
+  const image = new Image(), canvas = document.createElement("canvas");
+  image.src = source;
+  await image.decode();
+  Object.assign(canvas, { width: 800, height: 800 * image.height / image.width });
+  const dots = canvas.getContext("2d");
+  dots.fillStyle = "white";
+  dots.fillRect(0, 0, canvas.width, canvas.height);
+  dots.drawImage(image, 0, 0, canvas.width, canvas.height);
+  return [...dots.getImageData(0, 0, canvas.width, canvas.height).data].filter((_, k) => k % 4 === 1).map(x => 255 - x);
+}))"""
+"""Darkness of every dot of pictures drawn 800 px wide."""
 
 
 @pytest.fixture(scope="module")
@@ -179,3 +193,17 @@ def test_without_scripts_the_stills_and_tables_are_there(opened):
     page = opened(script=False)
     assert page.locator(f"#{OVER_SPEED} img").is_visible() and page.locator("#modes table").first.is_visible()
     assert page.locator("nav a").count() == 3
+
+
+def test_a_still_on_the_page_shows_the_stored_drawing_dot_for_dot(browser, report):
+    """A page holds its stills shortened, a third smaller; what a reader sees is what the file shows."""
+    stored = report.parent / "mesh_sweep.svg"
+    still = data_uri(stored)
+    assert len(still) < 0.8 * len(base64.b64encode(stored.read_bytes()))
+    whole = f"data:image/svg+xml;base64,{base64.b64encode(stored.read_bytes()).decode()}"
+    page = browser.new_page()
+    blackness = page.evaluate(DOTS, [whole, still])
+    page.close()
+    seen, shown = (np.array(dots) for dots in blackness)
+    assert np.mean(seen > 100) > 0.01, "the drawing is not empty"
+    assert np.mean(np.abs(seen - shown) > 25) < 1e-3

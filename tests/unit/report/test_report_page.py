@@ -19,8 +19,8 @@ def page(tmp_path):
 
 def test_page_needs_no_other_file(tmp_path):
     text = page(tmp_path)
-    assert "data:image/svg+xml;base64," in text
-    assert not re.search(r'(src|href)="(?!data:|#)', text)
+    assert "src='data:image/svg+xml,%3Csvg " in text
+    assert not re.search(r"""(src|href)=["'](?!data:|#)""", text)
 
 
 def test_text_is_escaped_and_missing_numbers_are_blank(tmp_path):

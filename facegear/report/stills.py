@@ -1,0 +1,35 @@
+"""Stored pictures as text inside a page."""
+
+import base64
+import re
+from pathlib import Path
+from urllib.parse import quote
+
+DECIMALS = 2
+"""Of a coordinate (1/72 inch) of a drawing on the page: a hundredth is not seen."""
+KEPT = " !\"$()*+,/:;=?@[]^`{|}"
+"""Characters that a data URI between single quotes may hold as they are, letters and digits aside."""
+GAPS = re.compile(r"\s+")
+NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]?\d+)?")
+
+
+def data_uri(path: Path) -> str:
+    """A stored svg or png as a data URI that holds no single quote, for an attribute between such quotes.
+
+    A drawing keeps its text and colours; its coordinates are rounded to DECIMALS.
+    """
+    if path.suffix == ".png":
+        return f"data:image/png;base64,{base64.b64encode(path.read_bytes()).decode()}"
+    return f"data:image/svg+xml,{quote(shortened(path.read_text(encoding='utf-8')), safe=KEPT)}"
+
+
+def shortened(svg: str) -> str:
+    """The same drawing without its metadata, with rounded coordinates and without needless gaps."""
+    drawn = re.sub(r"(?s)<metadata>.*?</metadata>|<\?xml.*?\?>|<!DOCTYPE.*?>", "", svg)
+    drawn = re.sub(r'(?<=[ \n])(d|x|y|points)="([^"]*)"', _rounded, drawn)
+    return GAPS.sub(" ", re.sub(r">\s+<", "><", drawn)).strip()
+
+
+def _rounded(attribute: re.Match[str]) -> str:
+    numbers = NUMBER.sub(lambda written: f"{round(float(written[0]), DECIMALS):g}", attribute[2])
+    return f'{attribute[1]}="{GAPS.sub(" ", numbers).strip()}"'
