@@ -33,7 +33,8 @@ DOTS = """async sources => Promise.all(sources.map(async source => {
   dots.fillStyle = "white";
   dots.fillRect(0, 0, canvas.width, canvas.height);
   dots.drawImage(image, 0, 0, canvas.width, canvas.height);
-  return [...dots.getImageData(0, 0, canvas.width, canvas.height).data].filter((_, k) => k % 4 === 1).map(x => 255 - x);
+  const { data } = dots.getImageData(0, 0, canvas.width, canvas.height);
+  return [...data].filter((_, k) => k % 4 === 1).map(green => 255 - green);
 }))"""
 """Darkness of every dot of pictures drawn 800 px wide."""
 

@@ -1,0 +1,65 @@
+"""The report of a whole machine on paper: config/concentric.yaml, from tables that a run of it wrote.
+
+concentric.zip holds them and the sizes of the figures: `python -m validation.report_pages results/concentric
+--store tests/unit/report/concentric.zip` after `snakemake --cores 2 --configfile config/concentric.yaml`.
+"""
+
+import json
+import shutil
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from facegear.config.load import extended, load_config
+from facegear.config.model import resolved
+from facegear.config.notes import notes
+from facegear.io import tables
+from facegear.report.case import case_report
+from facegear.report.machine import Base
+from validation.report_pages import A4, chromium, printed
+
+ROOT = Path(__file__).parents[3]
+CONFIG = ROOT / "config" / "concentric.yaml"
+MOST_PAGES = 25
+pytestmark = [
+    pytest.mark.xdist_group("browser"),
+    pytest.mark.skipif(shutil.which("chromium") is None, reason="no chromium: .ci/run installs it"),
+]
+
+
+@pytest.fixture(scope="module")
+def concentric(tmp_path_factory):
+    """The page as the report writes it today, of stored tables; figures are empty and as large as drawn."""
+    folder = tmp_path_factory.mktemp("concentric")
+    with zipfile.ZipFile(Path(__file__).with_name("concentric.zip")) as archive:
+        archive.extractall(folder)
+    values = {**resolved(load_config(CONFIG)), "reproduction": False}
+    base = extended(CONFIG)
+    text = case_report(
+        values,
+        {path.stem: tables.read(path, allow_empty=True) for path in folder.glob("*.csv")},
+        {path.stem: path for path in sorted(folder.glob("*.svg"))},
+        json.loads((folder / "manifests.json").read_text()),
+        json.loads((folder / "pair.json").read_text()),
+        base=None
+        if base is None
+        else Base(base.name, {**resolved(load_config(base)), "reproduction": False}),
+        notes=notes({**values, "reproduction": None}),
+    )
+    page = folder / "report.html"
+    page.write_text(text, encoding="utf-8")
+    return page
+
+
+def test_a_whole_machine_prints_on_at_most_25_pages_of_a4_with_every_column_of_every_table(concentric):
+    with chromium() as browser:
+        page = browser.new_page()
+        page.goto(concentric.as_uri())
+        pages, right_edges = printed(page)
+        figures = page.locator("figure[id] img").count()
+        unread = page.evaluate("[...document.images].filter(image => !image.naturalWidth).length")
+    assert len(right_edges) >= 20 and figures >= 25, "a whole machine"
+    assert pages <= MOST_PAGES
+    assert max(right_edges) <= A4["width"]
+    assert unread == 0, "stills that no reader scrolled to are printed, too"
