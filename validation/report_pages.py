@@ -17,7 +17,7 @@ from statistics import median
 from typing import Any
 
 import pandas as pd
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
 from facegear.compare.answers import SAME_DATE
 from facegear.io import documents, tables
@@ -26,7 +26,7 @@ from facegear.pipeline.table import STAGES
 from validation.references import ROOT
 
 MEASURED = ROOT / "docs" / "measured" / "report_pages.csv"
-A4 = {"width": 710, "height": 1030}
+A4: ViewportSize = {"width": 710, "height": 1030}
 """Pixels of a page of A4 within its margins."""
 TIMES = 5
 """How often a page is opened for the times printed."""
