@@ -89,6 +89,13 @@ class TiltSection(Section):
 
     inertia_kg_m2: float = Field(ge=SMALLEST_KG_M2, le=1e6, description="about a diameter")
     stiffness_n_m_per_rad: float = Field(gt=0, le=1e14)
+    centre_below_pitch_plane_mm: float = Field(
+        0.0,
+        ge=-1e4,
+        le=1e4,
+        description="how far from the pitch plane of the meshes, away from the pinions, lies the point that "
+        "stays in place, as the bearings have it",
+    )
 
 
 def _elastic(value: object) -> object:

@@ -11,7 +11,7 @@ from typing import Any, Self
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.config.bodies import GearBody, PinionBody, RunoutSection, SingleGear, SinglePinion
+from facegear.config.bodies import GearBody, PinionBody, RunoutSection, SingleGear, SinglePinion, TiltSection
 from facegear.config.changes import TEETH
 from facegear.config.transmission import PinionPlace, SingleMesh, Transmission
 from facegear.config.transmission_error import error_series
@@ -208,8 +208,13 @@ def _body(section: PinionBody | GearBody, own: SinglePinion | SingleGear | None)
         section.inertia_kg_m2 if own.inertia_kg_m2 is None else own.inertia_kg_m2,
         (stiffness.x, stiffness.y, stiffness.z),
         stiffness.xy,
-        Tilt(tilt.inertia_kg_m2, tilt.stiffness_n_m_per_rad) if tilt else None,
+        _tilt(tilt) if tilt else None,
     )
+
+
+def _tilt(section: TiltSection) -> Tilt:
+    below = 1e-3 * section.centre_below_pitch_plane_mm
+    return Tilt(section.inertia_kg_m2, section.stiffness_n_m_per_rad, below)
 
 
 def _runout(section: RunoutSection | None) -> Runout:

@@ -31,10 +31,15 @@ class Side(StrEnum):
 
 @dataclass(frozen=True)
 class Tilt:
-    """Rocking of a face gear about its two diameters: moment of inertia (kg m2) and stiffness (N m/rad)."""
+    """Rocking of a face gear about its two diameters: moment of inertia (kg m2) and stiffness (N m/rad).
+
+    below: distance (m) of the point that stays in place from the pitch plane of its meshes, away from the
+    pinions.
+    """
 
     inertia: float
     stiffness: float
+    below: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -174,6 +179,12 @@ class Layout:
     def tilting(self) -> tuple[int, ...]:
         """The gears that may rock."""
         return tuple(g for g, gear in enumerate(self.gears) if gear.body.tilt is not None)
+
+    def tilt_distance(self, gear: int) -> float:
+        """Distance (m) from the pinions' axes to the point that a gear tilts about."""
+        tilt = self.gears[gear].body.tilt
+        pitch_radius = self.pinion_arm / float(np.cos(self.pressure_angle))
+        return pitch_radius + (0.0 if tilt is None else tilt.below)
 
     @property
     def first_tilts(self) -> dict[int, int]:

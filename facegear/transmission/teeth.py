@@ -66,6 +66,10 @@ def mesh_parts(layout: Layout) -> tuple[Array, Array]:
         tangential[row, [pinion + 3, gear + 3]] = layout.pinion_arm, -layout.gear_arm
         separating[row, [pinion + 1, gear + 2]] = side * sine, -side * sine
         if g in tilted:
-            # Tilts about x and y lift the rim at the mesh by its distance from the diameter.
+            # Tilts about x and y lift the rim at the mesh by its distance from the diameter, and move it
+            # along the tangent where they are about a point below the pitch plane.
+            away = np.array([along[1], -along[0]])
+            below = getattr(layout.gears[g].body.tilt, "below", 0.0)
+            tangential[row, tilted[g] : tilted[g] + 2] -= below * cosine * away
             separating[row, tilted[g] : tilted[g] + 2] = side * sine * layout.mesh_radius * along
     return tangential, separating

@@ -1,0 +1,61 @@
+"""The assembly errors that a pair meets when both of its bodies have moved."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.geometry.design import AssemblyErrors
+from facegear.geometry.placement import RigidMotion
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Where a pinion stands against its gear, and how far both have turned.
+
+    Attributes
+    ----------
+    errors
+        Of assembly.
+    outward
+        Shift of the pinion along its axis, away from the gear's axis (m): it moves no normal of the flanks,
+        only the ends of the face and what is taken off along it.
+    ahead
+        Turn of the pinion about its axis, ahead as it drives (rad).
+    behind
+        Turn of the gear about its axis, against its motion (rad).
+    """
+
+    errors: AssemblyErrors
+    outward: float
+    ahead: float
+    behind: float
+
+
+def pose_of(pinion: RigidMotion, gear: RigidMotion, mean_radius: float) -> Pose:
+    """Pose of a pinion and a gear that have moved in the mesh frame from where they were nominally, exactly.
+
+    mean_radius: where the middle of the pinion's face is on its axis (m). Motions of any size, of one pair
+    of bodies; the shaft angle's error within a quarter turn.
+    """
+    back = gear.inverse()
+    turn = back.matrix @ pinion.matrix
+    middle = back.points(pinion.points(np.array([[0.0, mean_radius, 0.0]])))[0]
+    axis = turn @ np.array([0.0, 1.0, 0.0])
+    around = float(np.arctan2(-axis[0], axis[1]))
+    tilt = float(np.arcsin(axis[2]))
+    unturned = _about_z(-around)
+    middle, turn = unturned @ middle, unturned @ turn
+    outward = (middle[1] - mean_radius) / np.cos(tilt)
+    errors = AssemblyErrors(
+        offset=float(middle[0]),
+        shaft_angle_error=tilt,
+        axial_shift=float(middle[2] - outward * np.sin(tilt)),
+    )
+    # What is left of the turn is about the pinion's own axis, -y, before the tilt about x.
+    return Pose(errors, float(outward), float(np.arctan2(-turn[0, 2], turn[0, 0])), -around)
+
+
+def _about_z(angle: float) -> Array:
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])

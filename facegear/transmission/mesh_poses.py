@@ -1,0 +1,115 @@
+"""Pose of every mesh of a machine from the displacements and tilts of its bodies, to first order.
+
+A pose is what the pair of a mesh meets as assembly errors. The frame of a mesh has x, y, z along s x, z and
+-s y of the machine at the pinion: x along its tangent, y along the gears' axis, z outwards along the pinion,
+and s = 1 for the upper, -1 for the lower gear. Pinions tilt about the middle of their faces, gears about a
+point on their axis. The line of action's part of a displacement is what the meshes' deflections hold already:
+it moves no path.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.geometry.design import AssemblyErrors
+from facegear.geometry.placement import RigidMotion, rotation
+from facegear.transmission.layout import DOF_PER_BODY, TILT_LETTERS, Layout
+from facegear.transmission.linear_model import LinearModel
+
+PARTS = ("offset", "axial_shift", "shaft_angle_error", "outward")
+
+
+@dataclass(frozen=True, eq=False)
+class MeshPoses:
+    """Poses of all meshes, each (..., meshes), m and rad, as the drive flanks of their own gears meet them.
+
+    outward: shift of the pinion along its axis, away from the gears'.
+    """
+
+    offset: Array
+    axial_shift: Array
+    shaft_angle_error: Array
+    outward: Array
+
+    def errors(self, mesh: int, back: bool = False) -> AssemblyErrors:
+        """What a flank of a mesh meets, as errors of a drive flank; of a single pose of every mesh."""
+        offset = float(self.offset[mesh])
+        return AssemblyErrors(
+            offset=-offset if back else offset,
+            shaft_angle_error=float(self.shaft_angle_error[mesh]),
+            axial_shift=float(self.axial_shift[mesh]),
+        )
+
+
+def mesh_poses(linear: LinearModel, layout: Layout, mean_radius: float, displacements: Array) -> MeshPoses:
+    """Poses at displacements (..., n) of the linear model's coordinates.
+
+    mean_radius: where the middle of the pinion's face is on its axis, m.
+    """
+    return MeshPoses(*(displacements @ part.T for part in pose_rows(linear, layout, mean_radius)))
+
+
+def pose_rows(linear: LinearModel, layout: Layout, mean_radius: float) -> Array:
+    """Derivatives of PARTS by the coordinates, (4, meshes, n).
+
+    Tilts of a pinion count where the model has coordinates `tilt_x`, `tilt_y` of it, in the machine's frame
+    at the pinion. Coordinates of gears that bend lift the teeth: a shift along the axis, no tilt.
+    """
+    offset, shift, angle, outward = rows = np.zeros((len(PARTS), len(layout.meshes), linear.size))
+    place = {label: number for number, label in enumerate(linear.labels)}
+    for mesh, (i, g) in enumerate(layout.meshes):
+        side, at = layout.gears[g].sign, layout.angles[i]
+        tangent = np.array([np.cos(at), np.sin(at)])
+        away = np.array([np.sin(at), -np.cos(at)])
+        pinion, gear = DOF_PER_BODY * i, DOF_PER_BODY * (len(layout.pinions) + g)
+        offset[mesh, pinion], shift[mesh, pinion + 1], outward[mesh, pinion + 2] = side, -side, 1.0
+        offset[mesh, gear : gear + 2] = -side * tangent
+        shift[mesh, gear + 2] = side
+        outward[mesh, gear : gear + 2] = -away
+        leaning, yawing = (place.get(f"{layout.pinions[i].name}:{letter}") for letter in TILT_LETTERS)
+        if leaning is not None and yawing is not None:
+            angle[mesh, leaning] = side
+            offset[mesh, yawing] = -side * mean_radius
+        if g in layout.first_tilts:
+            tilts = slice(layout.first_tilts[g], layout.first_tilts[g] + 2)
+            height = side * layout.tilt_distance(g)
+            shift[mesh, tilts] = -side * mean_radius * tangent
+            angle[mesh, tilts] = -side * tangent
+            offset[mesh, tilts] = -side * height * away
+            outward[mesh, tilts] = height * tangent
+    _bending(linear, layout, shift)
+    return rows
+
+
+def _bending(linear: LinearModel, layout: Layout, shift: Array) -> None:
+    """Lift of the teeth by coordinates of gears that bend, from what the flanks' deflections have of it."""
+    gears = {gear.name for gear in layout.gears}
+    added = [
+        number
+        for number, label in enumerate(linear.labels)
+        if number >= layout.dof and label.rpartition(":")[0] in gears
+    ]
+    meshes = len(layout.meshes)
+    separating = 0.5 * (linear.rows[:meshes, added] + linear.rows[meshes : 2 * meshes, added])
+    shift[:, added] = -separating / np.sin(layout.pressure_angle)
+
+
+def to_mesh_frame(sign: float) -> Array:
+    """Matrix (3, 3) from the machine's frame at a pinion to that of its mesh with the gear of a sign."""
+    return np.array([[sign, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -sign, 0.0]])
+
+
+def body_motion(shift: Sequence[float], turn: Sequence[float], pivot: Sequence[float]) -> RigidMotion:
+    """A turn about a point by a rotation vector (rad), followed by a shift (m), all (3,) in one frame."""
+    vector, point = np.asarray(turn, float), np.asarray(pivot, float)
+    angle = float(np.linalg.norm(vector))
+    matrix = rotation(vector / angle, angle) if angle else np.eye(3)
+    return RigidMotion(matrix, np.asarray(shift, float) + point - matrix @ point)
+
+
+def in_mesh_frame(motion: RigidMotion, sign: float) -> RigidMotion:
+    """A motion given in the machine's frame at a pinion, in that of its mesh."""
+    frame = to_mesh_frame(sign)
+    return RigidMotion(frame @ motion.matrix @ frame.T, frame @ motion.shift)
