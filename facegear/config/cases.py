@@ -47,6 +47,9 @@ def changed_config(base: Mapping[str, Any], changes: Mapping[str, Any], where: s
         raise ConfigErrors(where, lines)
     if "mesh_stiffness.csv" in changes:
         changed["mesh_stiffness"]["table"] = []
+    for body in ("pinion", "face_gear"):
+        if f"tooth_pair.{body}.flanks.file" in changes:
+            changed["tooth_pair"][body]["flanks"]["grids"] = []
     return parse(Config, changed, source=where)
 
 

@@ -14,8 +14,8 @@ TEETH = ("pinion_teeth", "face_gear_teeth", "module_mm", "pressure_angle_deg")
 """Keys of the tooth pair that the lumped model needs; its other data must not rerun modes or dynamics."""
 GAPS = (
     "assembly",
-    *("pinion.tip_relief", "pinion.root_relief", "pinion.lead_crowning"),
-    "face_gear.modifications",
+    *("pinion.tip_relief", "pinion.root_relief", "pinion.lead_crowning", "pinion.flanks"),
+    *("face_gear.modifications", "face_gear.flanks"),
 )
 """Keys of the tooth pair that move unloaded flanks, and no node of the bodies."""
 MODULI = tuple(f"{body}material.young_modulus_gpa" for body in ("", "pinion.", "face_gear."))

@@ -12,6 +12,8 @@ from facegear.errors import ConfigErrors
 
 FILE_KEYS = (
     ("reproduction",),
+    ("tooth_pair", "pinion", "flanks", "file"),
+    ("tooth_pair", "face_gear", "flanks", "file"),
     ("mesh_stiffness", "csv"),
     ("strength", "duty_csv"),
     ("strength", "pinion", "card"),

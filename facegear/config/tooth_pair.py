@@ -1,13 +1,17 @@
 """The section tooth_pair: teeth, blanks, tools, material and assembly of one pinion and face gear."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from math import pi, radians
+from typing import Any
 
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse, require_all
+from facegear.config.flanks import FlanksSection, check_flanks, common_flanks, read_files
 from facegear.config.material import MaterialSection
 from facegear.errors import ConfigError, NotConverged
+from facegear.geometry.bodies import BODIES, Body
 from facegear.geometry.design import (
     AssemblyErrors,
     FaceGearGeometry,
@@ -18,6 +22,7 @@ from facegear.geometry.design import (
     Relief,
     Shaper,
 )
+from facegear.geometry.nominal import flank_face
 from facegear.geometry.validate import check
 
 
@@ -49,6 +54,7 @@ class PinionSection(Section):
     tip_relief: ReliefSection = ReliefSection()
     root_relief: ReliefSection = ReliefSection()
     lead_crowning: ReliefSection = ReliefSection()
+    flanks: FlanksSection = FlanksSection()
     material: MaterialSection | None = Field(default=None, description="if not the pair's")
 
 
@@ -79,6 +85,7 @@ class FaceGearSection(Section):
     addendum_modules: float = Field(default=1.0, gt=0, le=2)
     rim_thickness_mm: float = Field(gt=0, description="from the root land to the back, which is clamped")
     modifications: GearModificationsSection = GearModificationsSection()
+    flanks: FlanksSection = FlanksSection()
     material: MaterialSection | None = Field(default=None, description="if not the pair's")
 
 
@@ -115,6 +122,12 @@ class ToothPair(Section):
     shaper: ShaperSection | None = None
     assembly: AssemblySection = AssemblySection()
 
+    @model_validator(mode="before")
+    @classmethod
+    def _measured(cls, values: Any) -> Any:
+        """Files of measured flanks are read here, so that a fault is reported before any work."""
+        return read_files(values)
+
     @model_validator(mode="after")
     def _possible(self) -> "ToothPair":
         require_all(self._check_teeth, self._check_bodies)
@@ -131,14 +144,38 @@ class ToothPair(Section):
             return
         if missing:
             refuse(missing[0], None, "given: pinion, face_gear and shaper go together")
+        nominal = _nominal(self)
         try:
-            check(pair_design(self))
+            check(nominal)
         except NotConverged as error:
             refuse("face_gear", self.face_gear_teeth, f"other teeth or radii: {error}")
+        for body, section, teeth in _measured_bodies(self):
+            check_flanks(section, f"{body}.flanks", flank_face(nominal, body), teeth)
 
 
 def pair_design(section: ToothPair) -> PairDesign:
-    """The pair in SI units. Raises ConfigError for a section without bodies."""
+    """The pair in SI units, its flanks with the mean deviations of their teeth.
+
+    Raises ConfigError for a section without bodies.
+    """
+    design = _nominal(section)
+    for body, own, teeth in _measured_bodies(section):
+        flanks = common_flanks(own, flank_face(design, body), teeth)
+        design = replace(design, **{body: replace(getattr(design, body), flanks=flanks)})
+    return design
+
+
+def _measured_bodies(section: ToothPair) -> Iterator[tuple[Body, FlanksSection, int]]:
+    """Bodies with grids, and their numbers of teeth."""
+    teeth = section.pinion_teeth, section.face_gear_teeth
+    for body, count in zip(BODIES, teeth, strict=True):
+        own: PinionSection | FaceGearSection | None = getattr(section, body)
+        if own is not None and own.flanks.grids:
+            yield body, own.flanks, count
+
+
+def _nominal(section: ToothPair) -> PairDesign:
+    """The pair with all flanks as designed."""
     m = 1e-3 * section.module_mm
     pinion, gear, shaper = section.pinion, section.face_gear, section.shaper
     if pinion is None or gear is None or shaper is None:

@@ -16,12 +16,12 @@ from facegear.contact.pressure import FlankPressure, flank_pressure
 from facegear.contact.summary import by_flank, by_torque
 from facegear.contact.tables import ltca_table, pressure_arrays
 from facegear.geometry.design import Material, PairDesign
-from facegear.geometry.flank_errors import distinct_errors
+from facegear.geometry.flank_errors import distinct_pairs
 
 
 @dataclass(frozen=True, eq=False)
 class ContactAnalysis:
-    """Tables and arrays of the contact; those in lists stand once for each set of assembly errors.
+    """Tables and arrays of the contact; those in lists stand once for each pair that flanks are part of.
 
     - ltca, pressure, by_torque: the first are those of the upper gear's drive flank
     - by_flank: `by_torque` of both flanks of both gears
@@ -44,14 +44,14 @@ def contact_analysis(
 ) -> ContactAnalysis:
     """Contact of the flanks of pinion and face gear, or of the upper gear's drive flank alone.
 
-    All sets of assembly errors are solved on the same compliances. Raises NotConverged naming position and
-    torque.
+    All pairs that differ in assembly errors and deviations are solved on the same compliances. Raises
+    NotConverged naming position and torque.
     """
     model = contact_model(design, *flanks)
-    different, numbers = distinct_errors(design.assembly)
+    different, numbers = distinct_pairs(design)
     if not every_flank:
         different, numbers = different[:1], np.zeros_like(numbers)
-    models = [model.assembled(result) for result in different]
+    models = [model.of(other) for other in different]
     solved = [_solved(result, materials, plan) for result in models]
     tables = [ltca_table(*result) for result in solved]
     pressures = [

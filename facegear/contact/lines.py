@@ -61,8 +61,9 @@ def contact_lines(design: PairDesign, phi1: Array, phi2: Array, tooth: ArrayLike
     gear_roll, psi = np.where(flank, seen.u, np.nan), np.where(flank, seen.v, np.nan)
     curvature, slope = (np.full(roll.shape, np.nan) for _ in range(2))
     turns = np.broadcast_to(to_left_flank(design, phi1, phi2, tooth).matrix[:, None], (*roll.shape, 3, 3))
+    on_pinion = roll[flank], np.broadcast_to(y, roll.shape)[flank]
     curvature[flank], _, slope[flank] = opposite_curvatures(
-        design, roll[flank], gear_roll[flank], psi[flank], turns[flank]
+        design, on_pinion, gear_roll[flank], psi[flank], turns[flank]
     )
     point = face_gear.flank_point(design, gear_roll, psi)
     radius = _radius(y, np.hypot(point[..., 0], point[..., 1]))

@@ -34,7 +34,10 @@ class ContactModel:
 
     def assembled(self, errors: AssemblyErrors) -> "ContactModel":
         """The same bodies in another assembly, which moves no node of theirs."""
-        design = replace(self.design, assembly=errors)
+        return self.of(replace(self.design, assembly=errors))
+
+    def of(self, design: PairDesign) -> "ContactModel":
+        """The same bodies of a design that differs in what moves no node of theirs."""
         pinion, gear = self.flanks.pinion, self.flanks.gear
         flanks = FlankPair(replace(pinion, design=design), replace(gear, design=design))
         return replace(self, flanks=flanks)

@@ -7,6 +7,7 @@ from facegear.contact.options import ContactPlan
 from facegear.errors import InvalidInput
 from facegear.geometry.bodies import BODIES
 from facegear.geometry.design import Material, PairDesign
+from facegear.geometry.deviations import mean_crowning
 from facegear.geometry.fillets import smallest_radius
 from facegear.mesh.sizes import MeshSizes
 
@@ -85,21 +86,24 @@ def resolves(spacing: float, design: PairDesign, materials: tuple[Material, Mate
 def ellipse_half_length(design: PairDesign, materials: tuple[Material, Material], torque: float) -> float:
     """Half-length (m) along the face of a crowned pair's contact ellipse at a torque (N m).
 
-    inf without lead crowning of either gear. Two pairs share the torque evenly; each touches the nearly flat
-    gear flank at the pitch point.
+    inf without lead crowning of either gear, be it a modification or that of its deviations. Two pairs share
+    the torque evenly; each touches the nearly flat gear flank at the pitch point.
     """
     both = (design.pinion.lead_crowning, design.face_gear.modifications.lead_crowning)
     crownings = [crowning for crowning in both if crowning.amount > 0.0 and crowning.length > 0.0]
-    if not crownings:
+    plain = min((crowning.start for crowning in crownings), default=0.0)
+    bent = max(
+        mean_crowning(pair.pinion.flanks.right) + mean_crowning(pair.face_gear.flanks.left)
+        for pair in (design, design.exchanged)
+    )
+    if not crownings and bent == 0.0:
         return inf
     from facegear.contact.hertz import contact_modulus, longer_semi_axis
 
-    along = sum(2.0 * crowning.amount / crowning.length**2 for crowning in crownings)
+    along = sum(2.0 * crowning.amount / crowning.length**2 for crowning in crownings) + bent
     across = 1.0 / (design.pinion_pitch_radius * sin(design.pressure_angle))
     force = torque / design.pinion_base_radius / 2.0
-    return min(crowning.start for crowning in crownings) + longer_semi_axis(
-        force, across, along, contact_modulus(materials)
-    )
+    return plain + longer_semi_axis(force, across, along, contact_modulus(materials))
 
 
 def along_the_ellipse(

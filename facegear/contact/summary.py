@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from facegear.arrays import Arrays, Integers
-from facegear.geometry.design import AssemblyErrors
+from facegear.geometry.design import PairDesign
 from facegear.geometry.flank_errors import FLANKS, GEARS
 
 COLUMNS = (
@@ -42,16 +42,16 @@ def by_torque(ltca: pd.DataFrame, pressure: Arrays) -> pd.DataFrame:
 
 
 def by_flank(
-    variants: Sequence[pd.DataFrame], different: Sequence[AssemblyErrors], numbers: Integers
+    variants: Sequence[pd.DataFrame], different: Sequence[PairDesign], numbers: Integers
 ) -> pd.DataFrame:
     """Tables of `by_torque` of all gears and flanks, columns as BY_FLANK_COLUMNS.
 
-    `variants`: those under each of the `different` errors that the flanks meet; `numbers` as
-    `distinct_errors` has them.
+    `variants`: those of each of the `different` pairs that the flanks are part of; `numbers` as
+    `distinct_pairs` has them.
     """
     parts = []
     for (row, column), number in np.ndenumerate(numbers):
-        met = different[int(number)]
+        met = different[int(number)].assembly
         known = {
             "gear": GEARS[row],
             "flank": FLANKS[column],

@@ -46,7 +46,7 @@ def analyse(design: PairDesign, positions: int = 32, tolerance: float = 1e-7) ->
     limits = check(design)
     phi1 = pinion_angle(design, (np.arange(positions) + 0.5) / positions)
     drive = unloaded_contact(design, phi1)
-    back = drive if design.assembly.offset == 0 else unloaded_contact(mirrored(design), phi1)
+    back = drive if design == mirrored(design) else unloaded_contact(mirrored(design), phi1)
     # the back side of phi1 is the mirrored pair at -phi1: positions are symmetric, so it is the reversed list
     backlash = (-back.phi2[::-1] - drive.phi2) * design.gear_base_radius
     gaps = _refined_gaps(design, drive)

@@ -15,10 +15,10 @@ POSITIONS = 4
 def normal_backlash(design: PairDesign) -> float:
     """Backlash (m) along the line of action, smallest of a few positions of a pitch; negative where it jams.
 
-    Without assembly errors it is the thinning of the pinion's teeth. Raises NotConverged where the flanks
-    do not face each other.
+    Without assembly errors and deviations it is the thinning of the pinion's teeth. Raises NotConverged where
+    the flanks do not face each other.
     """
-    if design.assembly == AssemblyErrors():
+    if design.assembly == AssemblyErrors() and not design.measured:
         return design.pinion.thinning
     drive, back = exact_contact(design), exact_contact(mirrored(design))
     if drive is not None and back is not None:
@@ -32,5 +32,5 @@ def _searched(design: PairDesign) -> float:
 
     phi1 = pinion_angle(design, (np.arange(POSITIONS) + 0.5) / POSITIONS)
     drive = unloaded_contact(design, phi1)
-    back = drive if design.assembly.offset == 0 else unloaded_contact(mirrored(design), phi1)
+    back = drive if design == mirrored(design) else unloaded_contact(mirrored(design), phi1)
     return float(((-back.phi2[::-1] - drive.phi2) * design.gear_base_radius).min())

@@ -6,6 +6,7 @@ from numpy.typing import ArrayLike
 from facegear.arrays import Array
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign
+from facegear.geometry.deviations import derivative
 from facegear.geometry.gear_modifications import crowned
 
 
@@ -22,28 +23,46 @@ def relative_curvatures(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> 
     c, s = np.cos(turn), np.sin(turn)
     profile = np.stack([np.sin(psi) * c, np.sin(psi) * s, -np.cos(psi)], axis=-1)
     axial = np.stack([-s, c, np.zeros_like(turn)], axis=-1)
-    return _principal(design, roll, psi, profile, axial, 1 / (base * roll - lift * np.sin(psi)))
+    nominal = 1 / (base * roll - lift * np.sin(psi)), 0.0, 0.0
+    return _principal(design, roll, psi, profile, axial, nominal)
 
 
 def opposite_curvatures(
-    design: PairDesign, pinion_roll: ArrayLike, roll: ArrayLike, psi: ArrayLike, to_gear: Array
+    design: PairDesign,
+    pinion_place: tuple[ArrayLike, ArrayLike],
+    roll: ArrayLike,
+    psi: ArrayLike,
+    to_gear: Array,
 ) -> tuple[Array, Array, Array]:
-    """The same in any assembly: pinion point at `pinion_roll` (rad) opposite the gear flank point (th, psi).
+    """The same in any assembly: pinion point at roll (rad) and y (m) opposite the gear flank point (th, psi).
 
     `to_gear` (..., 3, 3) turns directions of the pinion's body frame into those of the gear's flank, see
-    `placement.to_left_flank`. Crownings of the gear count; modifications of the pinion, whose curvature is
-    far smaller, are left out.
+    `placement.to_left_flank`. Crownings of the gear and deviations of both count; modifications of the
+    pinion, whose curvature is far smaller, are left out.
     """
-    pinion_roll, roll, psi = np.broadcast_arrays(
-        *(np.asarray(part, float) for part in (pinion_roll, roll, psi))
+    pinion_roll, y, roll, psi = np.broadcast_arrays(
+        *(np.asarray(part, float) for part in (*pinion_place, roll, psi))
     )
     nx, nz = pinion.involute_normal(design, pinion_roll)
     tangent = np.stack([-nz, np.zeros_like(nx), nx], axis=-1)
     profile = np.einsum("...ij,...j->...i", to_gear, tangent)
     axial = np.broadcast_to(to_gear[..., :, 1], profile.shape)
-    across, along = crowned(design, face_gear.flank_point(design, roll, psi))
-    added = 1 / (design.pinion_base_radius * pinion_roll) + across * profile[..., 2] ** 2
-    return _principal(design, roll, psi, profile, axial, added, along)
+    across, along, twist = crowned(design, face_gear.flank_point(design, roll, psi))
+    own = _pinion_deviation(design, pinion_roll, y)
+    added = 1 / (design.pinion_base_radius * pinion_roll) + across * profile[..., 2] ** 2 + own[0]
+    # depth below the gear's tip plane and roll both fall along the profile's tangent
+    twisted = -profile[..., 2] * twist + own[2]
+    return _principal(design, roll, psi, profile, axial, (added, along + own[1], twisted))
+
+
+def _pinion_deviation(design: PairDesign, roll: Array, y: Array) -> tuple[Array, Array, Array]:
+    """Curvatures (1/m) that deviations of the pinion add, convex positive: across the profile, where its arc
+    grows by r_b th dth, along the axis, and their twist.
+    """
+    grid, at = design.pinion.flanks.right, pinion.deviation_place(design, roll, y)
+    slope = derivative(grid, *at, (0, 1)) / (design.pinion_base_radius * roll**3)
+    across = slope - derivative(grid, *at, (0, 2)) / roll**2
+    return across, -derivative(grid, *at, (2, 0)), derivative(grid, *place, (1, 1)) / roll
 
 
 def _principal(
@@ -52,13 +71,12 @@ def _principal(
     psi: Array,
     profile: Array,
     axial: Array,
-    across: Array,
-    along: Array | float = 0.0,
+    added: tuple[Array, Array | float, Array | float],
 ) -> tuple[Array, Array, Array]:
     """From the gear's shape operator (exact derivatives) in the directions of the pinion's tangents.
 
-    across, along: curvatures (1/m) in these directions that the gear's nominal flank does not have, the
-    pinion's among them.
+    added: curvatures (1/m) in these directions, and their twist, that the gear's nominal flank does not have,
+    the pinion's among them.
     """
     _, ratio, space, _ = face_gear.shaper_numbers(design)
     turn = ratio * (psi - roll - space)
@@ -70,8 +88,10 @@ def _principal(
     basis = np.stack([profile, axial], axis=-2)
     shape = (basis @ changes) @ np.linalg.inv(basis @ tangents)
     shape = (shape + np.swapaxes(shape, -1, -2)) / 2
-    shape[..., 0, 0] += across
-    shape[..., 1, 1] += along
+    shape[..., 0, 0] += added[0]
+    shape[..., 1, 1] += added[1]
+    shape[..., 0, 1] += added[2]
+    shape[..., 1, 0] += added[2]
     values, vectors = np.linalg.eigh(shape)
     order = np.argsort(np.abs(values), axis=-1)
     small, large = (np.take_along_axis(values, order[..., i : i + 1], -1)[..., 0] for i in (0, 1))

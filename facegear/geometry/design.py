@@ -17,7 +17,7 @@ The drive side is pinion right against gear left, pair j being tooth j of both; 
 pinion drives towards +x. The back side (pinion tooth j left, gear tooth j - 1 right) is its mirror image.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import cos, pi, sqrt, tan
 
@@ -46,6 +46,40 @@ class Relief:
 
 
 @dataclass(frozen=True)
+class DeviationGrid:
+    """Deviations (m) from a nominal flank on a grid of places, along its outward normal, material positive.
+
+    face: of the pinion from its middle outwards, of the face gear the radius (m); profile: of the pinion the
+    length of roll r_b th, of the face gear the depth below the tip plane (m); both rise. deviation: one row
+    for each place along the face.
+    """
+
+    face: tuple[float, ...]
+    profile: tuple[float, ...]
+    deviation: tuple[tuple[float, ...], ...]
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash((self.face, self.profile, self.deviation))
+
+    def __hash__(self) -> int:
+        return self._hash
+
+
+@dataclass(frozen=True)
+class Flanks:
+    """Deviations of both flanks of all teeth of a gear; None for a flank as it is designed."""
+
+    right: DeviationGrid | None = None
+    left: DeviationGrid | None = None
+
+    @property
+    def exchanged(self) -> "Flanks":
+        """Those of the gear seen in a mirror."""
+        return Flanks(self.left, self.right)
+
+
+@dataclass(frozen=True)
 class PinionGeometry:
     """Spur pinion cut by a rack (lengths in m)."""
 
@@ -62,6 +96,7 @@ class PinionGeometry:
     tip_relief: Relief = field(default_factory=Relief)
     root_relief: Relief = field(default_factory=Relief)
     lead_crowning: Relief = field(default_factory=Relief)
+    flanks: Flanks = field(default_factory=Flanks)
 
 
 @dataclass(frozen=True)
@@ -93,6 +128,7 @@ class FaceGearGeometry:
     addendum: float
     rim_thickness: float
     modifications: GearModifications = field(default_factory=GearModifications)
+    flanks: Flanks = field(default_factory=Flanks)
 
 
 @dataclass(frozen=True)
@@ -131,6 +167,21 @@ class PairDesign:
     face_gear: FaceGearGeometry
     shaper: Shaper
     assembly: AssemblyErrors = field(default_factory=AssemblyErrors)
+
+    @property
+    def exchanged(self) -> "PairDesign":
+        """The pair whose right flanks deviate as its left ones do, and the reverse."""
+        pinion, gear = self.pinion, self.face_gear
+        return replace(
+            self,
+            pinion=replace(pinion, flanks=pinion.flanks.exchanged),
+            face_gear=replace(gear, flanks=gear.flanks.exchanged),
+        )
+
+    @property
+    def measured(self) -> bool:
+        """Whether a flank of either gear deviates."""
+        return any(body.flanks != Flanks() for body in (self.pinion, self.face_gear))
 
     @cached_property
     def pinion_pitch_radius(self) -> float:

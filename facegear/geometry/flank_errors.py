@@ -1,8 +1,10 @@
-"""The assembly errors that each flank of each face gear meets, of a pinion displaced as the config says.
+"""The pair that each flank of each face gear is part of: its assembly errors, of a pinion displaced as the
+config says, and its deviations.
 
 The errors of a design are those that the upper gear's drive flank meets. The lower gear sees the same pinion
 turned half round its axis: its offset and its tilt change sign, while a shift of a gear leads away from the
-pinion on either side. The back flank is the drive flank of the pair in a mirror, whose offset changes sign.
+pinion on either side. The back flank is the drive flank of the pair in a mirror, whose offset changes sign;
+what drives, turned half round, is the pinion's right flank again.
 """
 
 from dataclasses import replace
@@ -10,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from facegear.arrays import Integers
-from facegear.geometry.design import AssemblyErrors
+from facegear.geometry.design import AssemblyErrors, PairDesign
 
 GEARS = ("upper", "lower")
 FLANKS = ("drive", "back")
@@ -27,8 +29,14 @@ def errors_at(errors: AssemblyErrors, gear: str, flank: str) -> AssemblyErrors:
     )
 
 
-def distinct_errors(errors: AssemblyErrors) -> tuple[list[AssemblyErrors], Integers]:
-    """The different ones of all flanks, those of the design first, and which (gears, flanks) each meets."""
-    met = [errors_at(errors, gear, flank) for gear in GEARS for flank in FLANKS]
+def pair_at(design: PairDesign, gear: str, flank: str) -> PairDesign:
+    """The pair whose drive flank is that `flank` (drive or back) of the upper or lower `gear`."""
+    seen = design if flank == "drive" else design.exchanged
+    return replace(seen, assembly=errors_at(design.assembly, gear, flank))
+
+
+def distinct_pairs(design: PairDesign) -> tuple[list[PairDesign], Integers]:
+    """The different ones of all flanks, the design first, and which of them each is (gears, flanks)."""
+    met = [pair_at(design, gear, flank) for gear in GEARS for flank in FLANKS]
     different = list(dict.fromkeys(met))
-    return different, np.array([different.index(error) for error in met]).reshape(len(GEARS), len(FLANKS))
+    return different, np.array([different.index(pair) for pair in met]).reshape(len(GEARS), len(FLANKS))

@@ -1,8 +1,10 @@
-"""Modifications of the face gear's flanks: material taken off along the normal, and the gap that this opens.
+"""Modifications and deviations of the face gear's flanks: material taken off along the normal, and the gap
+that this opens.
 
-Everything is for the right flank of tooth 0 in the gear body frame (see `design`). A place on the flank is
-its gear radius and its depth below the tip plane. Beyond the edges of the flank, on the tip land and in the
-fillet, the amount at the edge stands.
+Everything is for the flank that meets the pinion's right one: the left flank of tooth 0 in a mirror, where it
+stands as the right one does in the gear body frame (see `design`). A place on the flank is its gear radius
+and its depth below the tip plane. Beyond the edges of the flank, on the tip land and in the fillet, the
+amount at the edge stands.
 """
 
 from functools import lru_cache
@@ -14,6 +16,7 @@ from numpy.typing import ArrayLike
 from facegear.arrays import Array
 from facegear.geometry import face_gear
 from facegear.geometry.design import GearModifications, PairDesign
+from facegear.geometry.deviations import derivative, deviation
 from facegear.geometry.reliefs import linear, parabola, parabola_curvature
 
 GRAZING = 0.1
@@ -37,9 +40,9 @@ def flank_end(design: PairDesign, radius: ArrayLike) -> Array:
 def removed(design: PairDesign, radius: ArrayLike, depth: ArrayLike) -> Array:
     """Material (m) taken off along the normal at gear radius and depth below the tip plane (m).
 
-    Negative where slopes or bias add material. Tip relief is measured from the tip plane, root relief from
-    where the flank ends, end relief from either end of the face, crownings from the middle of the face and
-    from the pitch plane.
+    Negative where slopes, bias or deviations add material. Tip relief is measured from the tip plane, root
+    relief from where the flank ends, end relief from either end of the face, crownings from the middle of the
+    face and from the pitch plane.
     """
     gear, made = design.face_gear, design.face_gear.modifications
     at: Array = np.clip(np.asarray(radius, float), gear.inner_radius, gear.outer_radius)
@@ -47,7 +50,7 @@ def removed(design: PairDesign, radius: ArrayLike, depth: ArrayLike) -> Array:
     below: Array = np.clip(np.asarray(depth, float), 0.0, deepest)
     along = (at - design.mean_radius) / (0.5 * (gear.outer_radius - gear.inner_radius))
     across = 1.0 - below / gear.addendum
-    return (
+    taken: Array = (
         linear(made.tip_relief, below)
         + linear(made.root_relief, deepest - below)
         + linear(made.end_relief, np.minimum(at - gear.inner_radius, gear.outer_radius - at))
@@ -57,12 +60,19 @@ def removed(design: PairDesign, radius: ArrayLike, depth: ArrayLike) -> Array:
         + made.profile_slope * across
         + made.bias * along * across
     )
+    return taken if gear.flanks.left is None else taken - deviation(gear.flanks.left, at, below)
+
+
+def as_generated(design: PairDesign) -> bool:
+    """Whether that flank is the one that the shaper generates, with nothing taken off or added."""
+    gear = design.face_gear
+    return gear.modifications == GearModifications() and gear.flanks.left is None
 
 
 def flank_as_made(design: PairDesign, roll: ArrayLike, psi: ArrayLike) -> Array:
     """Points (..., 3) of the flank, see `face_gear.flank_point`, less what is taken off there."""
     points = face_gear.flank_point(design, roll, psi)
-    if design.face_gear.modifications == GearModifications():
+    if as_generated(design):
         return points
     taken = removed(design, np.hypot(points[..., 0], points[..., 1]), design.gear_tip_plane - points[..., 2])
     return points - taken[..., None] * face_gear.flank_normal(design, roll, psi)
@@ -76,22 +86,24 @@ def tip_edge_as_made(design: PairDesign, radius: ArrayLike) -> Array:
 def fillet_as_made(design: PairDesign, radius: ArrayLike, psi: ArrayLike) -> Array:
     """Points (..., 3) of the fillet, see `face_gear.fillet_section`, less what the end of the flank loses."""
     points = face_gear.cylindrical(radius, *face_gear.fillet_section(design, radius, psi))
-    if design.face_gear.modifications == GearModifications():
+    if as_generated(design):
         return points
     taken = removed(design, radius, flank_depth(design)(radius))
     return points - taken[..., None] * face_gear.fillet_normal(design, radius, psi)
 
 
-def crowned(design: PairDesign, points: Array) -> tuple[Array, Array]:
-    """Curvatures (1/m) that crownings add at points (..., 3) of the flank, convex positive: along the depth
-    below the tip plane, and along the gear radius.
+def crowned(design: PairDesign, points: Array) -> tuple[Array, Array, Array]:
+    """Curvatures (1/m) that crownings and deviations add at points (..., 3) of the flank, convex positive:
+    along the depth below the tip plane, along the gear radius, and their twist.
     """
-    made = design.face_gear.modifications
-    from_middle = np.abs(np.hypot(points[..., 0], points[..., 1]) - design.mean_radius)
-    from_pitch_plane = np.abs(design.gear_tip_plane - points[..., 2] - design.face_gear.addendum)
+    made, grid = design.face_gear.modifications, design.face_gear.flanks.left
+    radius, depth = np.hypot(points[..., 0], points[..., 1]), design.gear_tip_plane - points[..., 2]
     return (
-        parabola_curvature(made.profile_crowning, from_pitch_plane),
-        parabola_curvature(made.lead_crowning, from_middle),
+        parabola_curvature(made.profile_crowning, np.abs(depth - design.face_gear.addendum))
+        - derivative(grid, radius, depth, (0, 2)),
+        parabola_curvature(made.lead_crowning, np.abs(radius - design.mean_radius))
+        - derivative(grid, radius, depth, (2, 0)),
+        -derivative(grid, radius, depth, (1, 1)),
     )
 
 

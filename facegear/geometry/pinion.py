@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from facegear.arrays import Array
 from facegear.geometry.design import PairDesign
+from facegear.geometry.deviations import deviation
 from facegear.geometry.reliefs import linear, parabola
 
 
@@ -89,15 +90,25 @@ def cartesian(radius: ArrayLike, angle: ArrayLike, y: ArrayLike) -> Array:
 def removed(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> Array:
     """Material (m) taken off along the normal at roll angle `roll` (rad) and axial position `y` (m).
 
-    Beyond the ends of the involute (in the fillet) the root relief keeps its full amount.
+    Beyond the ends of the involute (in the fillet) the root relief keeps its full amount, and the deviation
+    at the end stands. Negative where the right flank deviates towards more material.
     """
     part, base = design.pinion, design.pinion_base_radius
     roll = np.asarray(roll, float)
     from_tip = base * (design.pinion_tip_roll - roll)
     from_root = base * (roll - junction_roll(design))
     from_middle = np.abs(np.asarray(y, float) - design.mean_radius)
-    return (
+    taken: Array = (
         linear(part.tip_relief, from_tip)
         + linear(part.root_relief, from_root)
         + parabola(part.lead_crowning, from_middle)
     )
+    if part.flanks.right is None:
+        return taken
+    return taken - deviation(part.flanks.right, *deviation_place(design, roll, y))
+
+
+def deviation_place(design: PairDesign, roll: ArrayLike, y: ArrayLike) -> tuple[Array, Array]:
+    """Face and profile (m) of `DeviationGrid` at roll angle (rad) and axial position y (m)."""
+    on_flank = np.clip(np.asarray(roll, float), junction_roll(design), design.pinion_tip_roll)
+    return np.asarray(y, float) - design.mean_radius, design.pinion_base_radius * on_flank

@@ -88,7 +88,7 @@ def mirrored(design: PairDesign) -> PairDesign:
 
     Angles change sign; the back pair of pinion tooth j and gear tooth j - 1 becomes pair 1 - j.
     """
-    return replace(design, assembly=replace(design.assembly, offset=-design.assembly.offset))
+    return replace(design.exchanged, assembly=replace(design.assembly, offset=-design.assembly.offset))
 
 
 def to_pinion_section(design: PairDesign, phi1: Array, phi2: Array, teeth: Array) -> RigidMotion:

@@ -3,7 +3,8 @@
 A ray from each pinion point along its outward normal is cut with the gear's flank, fillet, tip land and root
 land in turn until one is hit (Newton on the closed forms, `facegear.geometry.rays`). Positive: a gap;
 negative: the point is inside the gear. The gear ends at its inner and outer cylinders: a ray that misses the
-tooth there has gap inf. What modifications take off the gear lengthens the rays, to first order.
+tooth there has gap inf. What modifications and deviations take off the gear
+lengthens the rays, to first order.
 """
 
 from dataclasses import dataclass
@@ -13,8 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from facegear.arrays import Array, Mask
 from facegear.errors import NotConverged
-from facegear.geometry.design import GearModifications, PairDesign
-from facegear.geometry.gear_modifications import opened
+from facegear.geometry.design import PairDesign
+from facegear.geometry.gear_modifications import as_generated, opened
 from facegear.geometry.pinion_surface import SurfacePoints
 from facegear.geometry.placement import to_left_flank
 from facegear.geometry.ray_blank import gear_rays
@@ -100,7 +101,7 @@ def separation(
 
 def _opened(design: PairDesign, starts: Array, ways: Array, length: Array, where: Mask | bool) -> Array:
     """How much longer rays of a length (n,) become by the gear's modifications where they count."""
-    if design.face_gear.modifications == GearModifications():
+    if as_generated(design):
         return np.zeros_like(length)
     length = np.where(where, length, np.inf)
     with np.errstate(invalid="ignore"):

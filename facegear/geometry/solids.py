@@ -2,8 +2,8 @@
 
 A patch is a grid (profile, width, 3) of points in m in the body frame of its gear (see `design`); its normal,
 first direction cross second, points outwards. Neighbouring patches share the points of their common edge.
-Unlike the finite element bodies, teeth are not idealised: lands, chamfer and modifications are those of the
-config, assembly errors are left out.
+Unlike the finite element bodies, teeth are not idealised: lands, chamfer, modifications and the deviations of
+all teeth are those of the config, assembly errors are left out.
 """
 
 from collections.abc import Sequence
@@ -44,13 +44,20 @@ def solid(
     """
     whole = teeth_of(design, body)
     count = whole if teeth is None else teeth
-    half = _pinion_half(design, profile, width) if body == "pinion" else _gear_half(design, profile, width)
-    tooth = [side for part in _sides(half) for side in (part, mirrored(part))]
+    right, left = _halves(design, body, profile, width)
+    tooth = [*_sides(right), *(mirrored(part) for part in _sides(left))]
     patches = [turned(part, body, 2 * pi * n / whole) for n in numbers(count) for part in tooth]
     if count < whole:
-        end, first, last = _cut(half), *(2 * pi * n / whole for n in (numbers(count)[0], numbers(count)[-1]))
+        end, first, last = _cut(right), *(2 * pi * n / whole for n in (numbers(count)[0], numbers(count)[-1]))
         patches += [turned(end, body, last), turned(mirrored(end), body, first)]
     return patches
+
+
+def _halves(design: PairDesign, body: Body, profile: int, width: int) -> tuple[HalfTooth, HalfTooth]:
+    """The right half of a tooth, and the left half in a mirror, which the pair's right flank meets."""
+    if body == "pinion":
+        return _pinion_half(design, profile, width), _pinion_half(design.exchanged, profile, width)
+    return _gear_half(design.exchanged, profile, width), _gear_half(design, profile, width)
 
 
 def teeth_of(design: PairDesign, body: Body) -> int:

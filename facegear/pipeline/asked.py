@@ -200,7 +200,8 @@ def without_loads(case: Case) -> Any:
     section = {key: value for key, value in case.values["contact"].items() if key not in LOADING}
     pinion, gear = (case.values["tooth_pair"][body] for body in BODIES)
     crowned = (pinion, gear and gear["modifications"])
-    if not any(made and made["lead_crowning"]["amount_um"] for made in crowned):
+    measured = any(body and body["flanks"]["grids"] for body in (pinion, gear))
+    if not measured and not any(made and made["lead_crowning"]["amount_um"] for made in crowned):
         return section
     from facegear.config.arguments import typed_arguments
     from facegear.config.contact_setup import contact_setup

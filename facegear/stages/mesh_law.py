@@ -13,7 +13,7 @@ from facegear.contact.options import ContactOptions
 from facegear.contact.pair import contact_model
 from facegear.contact.position import LoadedPosition
 from facegear.errors import FacegearError
-from facegear.geometry.flank_errors import distinct_errors
+from facegear.geometry.flank_errors import distinct_pairs
 from facegear.stages.outcome import Outcome
 from facegear.stiffness.curve import load_table
 from facegear.stiffness.load_dependent import (
@@ -36,7 +36,7 @@ def mesh_law(
     contact: Contact,
     mesh_stiffness: MeshStiffness,
 ) -> Outcome:
-    """`law` (arrays) and `levels` (table) of every flank that assembly errors part from the others.
+    """`law` (arrays) and `levels` (table) of every flank that errors part from the others.
 
     ltca: table of stage contact, which says what source fem_scaled scales by. Raises NotConverged naming
     position and torque, FacegearError where teeth interfere.
@@ -45,13 +45,10 @@ def mesh_law(
     request = stiffness_request(mesh_stiffness)
     design = pair(tooth_pair).design
     model = contact_model(design, from_arrays(pinion), from_arrays(face_gear))
-    different, numbers = distinct_errors(design.assembly)
+    different, numbers = distinct_pairs(design)
     scale = _scale(ltca, request)
     largest = plan.torques[-1] / scale
-    solved = [
-        flank_contacts(model.assembled(assembly), plan.positions, largest, plan.options)
-        for assembly in different
-    ]
+    solved = [flank_contacts(model.of(other), plan.positions, largest, plan.options) for other in different]
     tables, errors = fitted_tables(solved, request.kept)
     tables = [table.scaled(scale) for table in tables]
     levels = level_table(tables, errors, numbers, design.pinion_base_radius)

@@ -23,6 +23,16 @@ GAPS = {
     "tooth_pair.pinion.tip_relief": RELIEF,
     "tooth_pair.pinion.root_relief": RELIEF,
     "tooth_pair.pinion.lead_crowning": {**RELIEF, "length_mm": 20},
+    "tooth_pair.face_gear.flanks": {
+        "grids": [
+            {
+                "flank": "left",
+                "face_mm": [250, 275],
+                "profile_mm": [0, 5],
+                "deviation_um": [[0, 1], [2, 3]],
+            }
+        ]
+    },
 }
 
 

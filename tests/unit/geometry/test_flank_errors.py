@@ -11,7 +11,7 @@ from lumped_machines import make_layout
 from references import against, agrees
 
 from facegear.geometry.design import AssemblyErrors
-from facegear.geometry.flank_errors import FLANKS, GEARS, distinct_errors, errors_at
+from facegear.geometry.flank_errors import FLANKS, GEARS, distinct_pairs, errors_at
 from facegear.geometry.unloaded import unloaded_contact
 from facegear.transmission.layout import Side
 from facegear.transmission.matrices import flank_jacobian
@@ -85,10 +85,10 @@ ERRORS = st.builds(
 
 @settings(max_examples=12)
 @given(ERRORS)
-def test_only_flanks_that_errors_part_are_distinguished(errors):
+def test_only_flanks_that_errors_part_are_distinguished(pair, errors):
     """None without errors of the pinion: a shift of the gears away from it is the same for all four."""
-    different, numbers = distinct_errors(errors)
-    assert different[0] == errors == different[numbers[0, 0]]
+    different, numbers = distinct_pairs(replace(pair(), assembly=errors))
+    assert different[0].assembly == errors == different[numbers[0, 0]].assembly
     assert len(different) == (2 if errors.offset else 1) * (2 if errors.shaft_angle_error else 1)
     for (row, column), number in np.ndenumerate(numbers):
-        assert different[number] == errors_at(errors, GEARS[row], FLANKS[column])
+        assert different[number].assembly == errors_at(errors, GEARS[row], FLANKS[column])

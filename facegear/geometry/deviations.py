@@ -1,0 +1,64 @@
+"""Deviations of a flank between the places of a grid: bicubic, the value at the edge outside it."""
+
+from functools import lru_cache
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike
+
+from facegear.arrays import Array
+from facegear.geometry.design import DeviationGrid
+
+CUBIC = 3
+
+
+def deviation(grid: DeviationGrid | None, face: ArrayLike, profile: ArrayLike) -> Array:
+    """Material (m) added along the normal at places (m) as in `DeviationGrid`, broadcast together.
+
+    Of fourth order in the distance of the grid's places; fewer than four of them take a lower order.
+    """
+    along, across = np.broadcast_arrays(np.asarray(face, float), np.asarray(profile, float))
+    if grid is None:
+        return np.zeros(along.shape)
+    inside = (np.clip(part, *_ends(line)) for part, line in ((along, grid.face), (across, grid.profile)))
+    values: Array = _spline(grid).ev(*inside)
+    return values
+
+
+def derivative(
+    grid: DeviationGrid | None, face: ArrayLike, profile: ArrayLike, orders: tuple[int, int]
+) -> Array:
+    """Derivative of `deviation`, so many times along the face and the profile; 0 where the edge stands."""
+    along, across = np.broadcast_arrays(np.asarray(face, float), np.asarray(profile, float))
+    if grid is None:
+        return np.zeros(along.shape)
+    values: Array = np.zeros(along.shape)
+    places = (along, grid.face, orders[0]), (across, grid.profile, orders[1])
+    on = np.ones(along.shape, bool)
+    for at, line, order in places:
+        first, last = _ends(line)
+        on &= (at >= first) & (at <= last) | (order == 0)
+        if order > min(CUBIC, len(line) - 1):
+            return values
+    inside = (np.clip(at[on], *_ends(line)) for at, line, _ in places)
+    values[on] = _spline(grid).ev(*inside, dx=orders[0], dy=orders[1])
+    return values
+
+
+def mean_crowning(grid: DeviationGrid | None) -> float:
+    """Curvature (1/m) along the face of the parabola nearest to a grid's mean; 0 where it is hollow."""
+    if grid is None or len(grid.face) <= 2:
+        return 0.0
+    middle = np.array(grid.face) - np.mean(grid.face)
+    bent: float = np.polynomial.polynomial.polyfit(middle, np.mean(grid.deviation, axis=1), 2)[2]
+    return max(-2.0 * bent, 0.0)
+
+
+def _ends(line: tuple[float, ...]) -> tuple[float, float]:
+    return line[0], line[-1]
+
+
+@lru_cache(maxsize=512)
+def _spline(grid: DeviationGrid) -> "scipy.interpolate.RectBivariateSpline":
+    along, across = (min(CUBIC, len(line) - 1) for line in (grid.face, grid.profile))
+    return scipy.interpolate.RectBivariateSpline(grid.face, grid.profile, grid.deviation, kx=along, ky=across)

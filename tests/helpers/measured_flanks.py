@@ -1,0 +1,42 @@
+"""Deviations of flanks for tests: fields sampled on grids, and pairs that have them."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from facegear.geometry import face_gear
+from facegear.geometry.design import DeviationGrid
+from facegear.geometry.nominal import flank_face
+
+UM, MM = 1e-6, 1e-3
+
+
+def sampled(design, body, field, places=(13, 9), deepest=1.0):
+    """Values (m) of a field of face and profile (m) on a grid over a flank, or over a part of its depth."""
+    face = flank_face(design, body)
+    low, high = face.profile
+    along, across = (
+        np.linspace(*face.face, places[0]),
+        np.linspace(low, low + deepest * (high - low), places[1]),
+    )
+    values = np.broadcast_to(field(along[:, None], across), places)
+    return DeviationGrid(tuple(along), tuple(across), tuple(map(tuple, values.tolist())))
+
+
+def with_grid(design, body, grid, flank=None):
+    """The pair whose drive flank of a body, unless `flank` says another, deviates as the grid says."""
+    flank = flank or {"pinion": "right", "face_gear": "left"}[body]
+    own = getattr(design, body)
+    return replace(design, **{body: replace(own, flanks=replace(own.flanks, **{flank: grid}))})
+
+
+def constant(amount):
+    return lambda face, profile: amount + 0.0 * face * profile
+
+
+def place_on_pinion(design, radius, depth):
+    """Face and profile (m) on the pinion that conjugate action brings to places of the gear's flank."""
+    roll, psi = face_gear.roll_and_psi_at_height(design, radius, design.gear_tip_plane - depth)
+    y = design.gear_base_radius / np.cos(psi)
+    length = design.shaper_base_radius * roll - design.shaper_lift * np.sin(psi)
+    return y - design.mean_radius, length
