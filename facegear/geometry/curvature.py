@@ -62,7 +62,7 @@ def _pinion_deviation(design: PairDesign, roll: Array, y: Array) -> tuple[Array,
     grid, at = design.pinion.flanks.right, pinion.deviation_place(design, roll, y)
     slope = derivative(grid, *at, (0, 1)) / (design.pinion_base_radius * roll**3)
     across = slope - derivative(grid, *at, (0, 2)) / roll**2
-    return across, -derivative(grid, *at, (2, 0)), derivative(grid, *place, (1, 1)) / roll
+    return across, -derivative(grid, *at, (2, 0)), derivative(grid, *at, (1, 1)) / roll
 
 
 def _principal(
