@@ -56,7 +56,7 @@ class Project:
     def run(
         self, *arguments: str, check: bool = True, warm: bool = False
     ) -> subprocess.CompletedProcess[str]:
-        """warm: jobs begin where their imports were made; those of the quick case are processes of Python."""
+        """warm: jobs begin where their imports were made; only the plainest machine has Python start each."""
         assert not warm or self.sources == ROOT
         done = server().start(self._all(*arguments), environment(), warm)
         if check:

@@ -38,7 +38,7 @@ def test_the_plainest_machine_runs_to_its_report(tmp_path):
     """One input pinion on one face gear ended in `No objects to concatenate`, after all the contact work."""
     config = tmp_path / "plain.yaml"
     config.write_text(PLAINEST)
-    Project(tmp_path).run("--configfile", str(config), warm=True)
+    Project(tmp_path).run("--configfile", str(config))
     results = tmp_path / "results" / "plain"
     assert "1 pinion of 23 teeth and 1 face gear" in (results / "report.html").read_text()
     assert pd.read_csv(results / "dynamics" / "response.csv")["deflection_um"].notna().all()
