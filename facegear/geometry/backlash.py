@@ -18,7 +18,7 @@ def normal_backlash(design: PairDesign) -> float:
     Without assembly errors and deviations it is the thinning of the pinion's teeth. Raises NotConverged where
     the flanks do not face each other.
     """
-    if design.assembly == AssemblyErrors() and not design.measured:
+    if design.assembly == AssemblyErrors() and not (design.deviates or design.exchanged.deviates):
         return design.pinion.thinning
     drive, back = exact_contact(design), exact_contact(mirrored(design))
     if drive is not None and back is not None:

@@ -140,7 +140,7 @@ def _modified(design: PairDesign) -> bool:
     made = design.pinion
     reliefs = (made.tip_relief, made.root_relief, made.lead_crowning)
     on_pinion = any(relief.amount != 0.0 for relief in reliefs)
-    return on_pinion or design.face_gear.modifications != GearModifications()
+    return on_pinion or design.face_gear.modifications != GearModifications() or design.deviates
 
 
 def _rolls(design: PairDesign, contact: ConjugateContact) -> tuple[float, float]:

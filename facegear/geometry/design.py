@@ -59,6 +59,11 @@ class DeviationGrid:
     deviation: tuple[tuple[float, ...], ...]
 
     @cached_property
+    def zero(self) -> bool:
+        """Whether the flank is as designed."""
+        return not any(map(any, self.deviation))
+
+    @cached_property
     def _hash(self) -> int:
         return hash((self.face, self.profile, self.deviation))
 
@@ -179,9 +184,10 @@ class PairDesign:
         )
 
     @property
-    def measured(self) -> bool:
-        """Whether a flank of either gear deviates."""
-        return any(body.flanks != Flanks() for body in (self.pinion, self.face_gear))
+    def deviates(self) -> bool:
+        """Whether a flank that touches when the pinion drives deviates."""
+        grids = self.pinion.flanks.right, self.face_gear.flanks.left
+        return not all(grid is None or grid.zero for grid in grids)
 
     @cached_property
     def pinion_pitch_radius(self) -> float:
