@@ -1,5 +1,6 @@
 """Axes, titles and height of the interactive form of a figure."""
 
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -9,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.category import StrCategoryLocator
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
+from matplotlib.text import Annotation, Text
 from matplotlib.ticker import FixedLocator
 
 from facegear.plots.plotly_values import markup, numbers
@@ -27,8 +29,8 @@ MIN_HEIGHT = 280
 """Pixels that every figure is high."""
 LEGEND_WIDTH, ENTRY, LETTER = 430, 50, 6.5
 """In pixels: the narrowest legend; of its entries the part without letters, and each letter."""
-UPRIGHT = 7
-"""Letters of a tick's name that stand upright."""
+UPRIGHT, LABEL = 7, 46
+"""Letters of a tick's name that stand upright, and of the longest line of a label."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +83,7 @@ def layout_of(figure: Figure, panels: Sequence[Panel], traces: Sequence[Trace]) 
             "title": {"text": title, "side": "top"},
         },
         "barmode": "overlay",
-        "margin": {"l": EDGE, "r": EDGE, "t": round(above), "b": EDGE},
+        "margin": {"l": EDGE, "r": EDGE + _width_beside(panels), "t": round(above), "b": EDGE},
         "separators": ".\u2009",
     }
     for panel in panels:
@@ -136,6 +138,21 @@ def _legend_height(title: str, traces: Sequence[Trace]) -> float:
     return float(LINE * ((title != "") + 1.2 * rows))
 
 
+def _width_beside(panels: Sequence[Panel]) -> int:
+    """Pixels that texts at the right end of a panel, such as the names of its curves, take beside it."""
+    letters = [
+        len(text.get_text())
+        for panel in panels
+        for text in panel.axes.texts
+        if text.get_ha() == "left" and _position(text)[0] >= max(panel.axes.get_xlim())
+    ]
+    return round(LETTER * max(letters, default=0))
+
+
+def _position(text: Text) -> tuple[float, float]:
+    return text.xy if isinstance(text, Annotation) else text.get_position()
+
+
 def _height_below(axis: dict[str, Any]) -> float:
     """Pixels that ticks and label of the x axis take below all panels."""
     letters = max((len(name) for name in axis.get("ticktext", ())), default=0)
@@ -150,7 +167,14 @@ def _name_all(figure: Figure, layout: dict[str, Any], panels: Sequence[Panel]) -
         (f"yaxis{middle.y[1:]}", figure.get_supylabel()),
     ):
         title = layout[axis]["title"]
-        title["text"] = "<br>".join(text for text in (title["text"], markup(label)) if text)
+        title["text"] = "<br>".join(
+            text for text in (title["text"], markup(_narrow(label.replace("\n", " ")))) if text
+        )
+
+
+def _narrow(label: str) -> str:
+    """A label with lines that the narrowest figure holds; lines that fit stay as they are."""
+    return "\n".join(part for line in label.split("\n") for part in textwrap.wrap(line, LABEL) or [""])
 
 
 def _axis(axes: Axes, letter: str) -> dict[str, Any]:
@@ -159,7 +183,7 @@ def _axis(axes: Axes, letter: str) -> dict[str, Any]:
     ends = np.array(getattr(axes, f"get_{letter}lim")())
     logarithmic = axis.get_scale() == "log"
     described: dict[str, Any] = {
-        "title": {"text": markup(axis.get_label().get_text()), "standoff": 5},
+        "title": {"text": markup(_narrow(axis.get_label().get_text())), "standoff": 5},
         "type": "log" if logarithmic else "linear",
         "range": numbers(np.log10(ends) if logarithmic else ends),
         "automargin": True,

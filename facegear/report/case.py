@@ -293,10 +293,13 @@ def _errors(tables: Mapping[str, pd.DataFrame]) -> Chapter:
 
 def _provenance(manifests: Sequence[Mapping[str, Any]]) -> Chapter:
     columns = ["rule", "summary", "seconds", "made_at", "code"]
-    frame = pd.DataFrame(
-        [{name: manifest.get(name) for name in columns} for manifest in manifests], columns=columns
-    )
+    computed = [manifest for manifest in manifests if not manifest["rule"].endswith("_figures")]
+    rows = [{name: manifest.get(name) for name in columns} for manifest in computed]
+    frame = pd.DataFrame(rows, columns=columns)
     versions = dict(sorted({item for manifest in manifests for item in manifest["versions"].items()}))
-    text = "Each output has a manifest beside it with versions, config slice, code fingerprint and checksums."
+    text = (
+        "Each output has a manifest beside it with versions, config slice, code fingerprint and checksums. "
+        "Figures are drawn from these outputs alone; their own manifests are not listed."
+    )
     stored = pd.DataFrame(list(versions.items()), columns=["library", "version"])
     return Chapter("Provenance", text, (), [Table("Rules", frame, 4), Table("Versions", stored)])

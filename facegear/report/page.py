@@ -41,6 +41,12 @@ UNITS = {
     "n": "N",
 }
 """Units that end a column's name, as they are written."""
+PAPER_PT, COLUMN_GAP_PT, LETTER_WIDTH = 532.0, 8.0, 0.64
+"""On A4: width of a table, room beside a column (pt), and the mean width of a letter in its height."""
+PRINTED = (4.0, 8.0)
+"""Smallest and largest size of letters in a printed table, in pt."""
+LONG, LONG_COLUMN = 60, 22
+"""Letters of a cell from which on a printed table may break it anywhere, and of a line of it then."""
 ROUNDING = 1e-9
 """A number below this part of the largest one with its unit is zero but for rounding, and is written as 0."""
 
@@ -109,6 +115,15 @@ class Table:
             for row in self.frame.itertuples(index=False)
         ]
 
+    def print_pt(self) -> float:
+        """Size of the letters (pt) at which no word or number is broken on A4, within PRINTED."""
+        cells = [self.header(), *self.rows()]
+        longest = [
+            max((_longest_word(text) for text in column), default=1) for column in zip(*cells, strict=True)
+        ]
+        room = PAPER_PT - COLUMN_GAP_PT * len(longest)
+        return round(float(np.clip(room / (LETTER_WIDTH * sum(longest)), *PRINTED)), 2)
+
     def csv_name(self, chapter: str) -> str:
         """Name of the file in which a reader keeps the table."""
         said = re.findall(r"[a-z0-9]+", self.caption.lower())[:NAMED]
@@ -131,11 +146,11 @@ class Table:
         if isinstance(value, bool | np.bool_):
             return "yes" if value else "no"
         if not isinstance(value, float):
-            return str(value)
+            return "face gear" if value == "face_gear" else str(value)
         if value != value:
             return ""
         shown = 0.0 if abs(value) < zero else value
-        return scientific(shown, self.digits) if unit == "n_per_m" else number(shown, self.digits)
+        return scientific(shown, self.digits) if unit == "n_per_m" and shown else number(shown, self.digits)
 
 
 @dataclass(frozen=True)
@@ -207,6 +222,18 @@ def words(name: str) -> str:
         .replace("_", " ")
         .strip()
     )
+
+
+def _longest_word(text: str) -> int:
+    """Letters of the longest part of a cell that is not broken; a unit stays with its brackets."""
+    return (
+        LONG_COLUMN if len(text) > LONG else max((len(word) for word in unbroken(text).split(" ")), default=0)
+    )
+
+
+def unbroken(text: str) -> str:
+    """Text whose units in brackets are not broken."""
+    return re.sub(r"\(N m\)", "(N\u00a0m)", text)
 
 
 def _unit(name: str) -> str:

@@ -1,5 +1,4 @@
-// Tables are sorted by a click on a column's head; the contents are folded where they would cover a small screen;
-// stills are decoded where they are seen, or printed.
+// Tables are sorted by a click on a column's head; the contents are folded where they would cover a small screen.
 "use strict";
 (() => {
   const value = (row, column) => row.cells[column]?.textContent.trim() ?? "";
@@ -32,8 +31,6 @@
       head.append(button);
     });
   }
-
-  addEventListener("beforeprint", () => { for (const image of document.images) image.loading = "eager"; });
 
   const contents = document.querySelector("nav details");
   if (contents && matchMedia("(max-width: 75rem)").matches) contents.open = false;

@@ -1,6 +1,7 @@
 """The interactive form of a figure holds the numbers, names and units of the still picture."""
 
 import json
+import re
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -91,3 +92,19 @@ def test_a_drawing_stays_a_still_picture(panels, tmp_path):
     top.add_patch(Circle((0.0, 0.0), 1.0))
     save(figure, tmp_path / "a.json")
     assert json.loads((tmp_path / "a.json").read_text())["data"] == []
+
+
+def test_names_beside_the_last_panel_and_long_lines_below_it_are_not_cut_off(panels):
+    """Deflections beside the lines of a mesh law, and the inputs below a study, were cut off."""
+    figure, _, below = panels
+    below.plot([0.0, 1.0], [1.0, 2.0])
+    below.set_xlim(0.0, 1.0)
+    narrow = interactive(figure)["layout"]["margin"]["r"]
+    below.annotate("68.8 µm", (1.0, 2.0), (3, 0), textcoords="offset points", va="center")
+    first, second = "torque per engine 1328 N m; share of the power at the tail 3.4 %;", "meshes geometric"
+    figure.supxlabel(f"{first}\n{second}")
+    layout = interactive(figure)["layout"]
+    assert layout["margin"]["r"] > narrow + 40
+    (label,) = [text for text in re.findall(r"'text': '([^']*)'", str(layout)) if "torque" in text]
+    assert max(map(len, label.split("<br>"))) < 50
+    assert label.replace("<br>", " ") == f"{first} {second}"

@@ -56,10 +56,10 @@ def test_a_whole_machine_prints_on_at_most_25_pages_of_a4_with_every_column_of_e
     with chromium() as browser:
         page = browser.new_page()
         page.goto(concentric.as_uri())
+        unread = page.evaluate("[...document.images].filter(image => !image.naturalWidth).length")
         pages, right_edges = printed(page)
         figures = page.locator("figure[id] img").count()
-        unread = page.evaluate("[...document.images].filter(image => !image.naturalWidth).length")
     assert len(right_edges) >= 20 and figures >= 25, "a whole machine"
     assert pages <= MOST_PAGES
     assert max(right_edges) <= A4["width"]
-    assert unread == 0, "stills that no reader scrolled to are printed, too"
+    assert unread == 0, "stills that no reader has scrolled to are printed, too"

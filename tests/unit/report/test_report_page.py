@@ -62,6 +62,17 @@ def test_equal_modes_are_one_row_that_says_how_many():
 def test_stiffnesses_are_written_in_one_format():
     frame = pd.DataFrame({"mean_n_per_m": [4.1e8, 52.0, 9.99e5], "torque_n_m": [600.0, 5.0, 1e5]})
     assert [row[0] for row in Table("T", frame, 4).rows()] == ["4.100e8", "5.200e1", "9.990e5"]
+    none = pd.DataFrame({"a_n_per_m": [0.0, 2.9e7]})
+    assert Table("T", none, 4).rows() == [["0"], ["2.900e7"]]
+
+
+def test_letters_of_a_printed_table_shrink_with_the_words_of_its_row_and_not_with_its_length():
+    narrow = pd.DataFrame({"mesh": ["tail idler/upper"] * 3, "force_n": [7712.5] * 3})
+    wide = pd.concat([narrow.add_prefix(f"largest_{n}_") for n in range(8)], axis=1)
+    sentence = narrow.assign(reason="fillets carry up to 0.27 % of the torque, kept out of the pressure " * 3)
+    sizes = [Table("T", frame).print_pt() for frame in (narrow, pd.concat([narrow] * 9), sentence, wide)]
+    assert sizes[0] == sizes[1] == sizes[2] == 8.0
+    assert 4.0 < sizes[3] < 8.0
 
 
 def test_text_of_pictures_keeps_its_size_on_a_telephone(tmp_path):
