@@ -639,7 +639,7 @@ class Gearbox:
 
         given = self._chain.arguments("dynamics_response")
         named = {"section": given["transmission"], "teeth": given["teeth"], "stiffness": given["harmonics"]}
-        named |= {name: given[name] for name in ("friction", "law") if name in given}
+        named |= {name: given[name] for name in ("friction", "law", "bodies") if name in given}
         return wired_machine(**typed_arguments(wired_machine, named))
 
     def _whole_case(self, on_stage: Callable[[str, str], None] | None) -> "WholeCase":

@@ -28,7 +28,7 @@ from facegear.config.checks import (
 )
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.dynamics import Dynamics
-from facegear.config.elastic_bodies import check_bodies, elastic_gears
+from facegear.config.elastic_bodies import check_bodies
 from facegear.config.load_sharing import LoadSharing
 from facegear.config.lubrication import LubricationSection
 from facegear.config.mesh import Mesh, mesh_sizes
@@ -122,15 +122,6 @@ class Config(Section):
         if self.search is not None or moves_pair(keys) or (self.tolerances and self.tolerances.tooth_contact):
             allowed = f"constant_load, {CONTACT_ASKED}"
             raise ConfigError("mesh_stiffness.mesh_law", "load_dependent", allowed)
-
-    def _check_elastic(self, machine: Transmission) -> None:
-        """What does not know face gears that bend."""
-        if not elastic_gears(machine):
-            return
-        for key in ("tolerances", "search"):
-            if getattr(self, key) is not None:
-                allowed = "left out, where transmission.face_gear.body is given: it takes gears as rigid"
-                raise ConfigError(key, "given", allowed)
 
     def _check_branches(self) -> None:
         speed, section = self.dynamics.speed_rpm, self.branches
@@ -234,7 +225,6 @@ class Config(Section):
         check_machine_strain(pair, machine)
         check_torques(pair, machine)
         check_bodies(pair, machine)
-        self._check_elastic(machine)
         if machine.backlash_um is None and pair.pinion is None:
             allowed = "given, as tooth_pair has no bodies that it could be taken from"
             raise ConfigError("transmission.backlash_um", None, allowed)

@@ -89,6 +89,11 @@ def elastic_gears(case: Case) -> bool:
     return any_elastic(case.values["transmission"])
 
 
+def solid_pair(case: Case) -> Any:
+    """Section tooth_pair where the body of a face gear bends."""
+    return case.values["tooth_pair"] if elastic_gears(case) else None
+
+
 def machine_stress(case: Case) -> bool:
     """Whether section transmission is given and root stress asked for."""
     return machine(case) and root_stress(case)

@@ -72,7 +72,8 @@ def assessor(
     start = movable(given.values, [*keys, *moves])
     question = Question(section.model, cycles, given.accuracy, given.options)
     ask, ask_varied = (
-        judge(replace(question, jumps=within), given.meshes, "this design") for within in _jumps(section)
+        judge(replace(question, jumps=within), given.meshes, "this design", given.varied_bodies)
+        for within in _jumps(section)
     )
     names = given.columns(wired_layout(start["transmission"], given.tooth_pair), question, jumps=True)
     drawn = [changes(causes, row) for row in samples(causes, 0, count)] if causes else []

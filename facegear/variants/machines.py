@@ -32,17 +32,19 @@ from facegear.scenarios.chunks import identity
 from facegear.stiffness.tables import series_of, unloaded_error
 from facegear.transmission.layout import Layout
 from facegear.transmission.machine import Machine
+from facegear.transmission.static_gears import at_rest
 from facegear.variants.teeth import Flanks, Meshes, PairExcitation, Values
 
 if TYPE_CHECKING:
     from facegear.variants.rubbed_teeth import Rub, RubbedTeeth
+    from facegear.variants.varied_bodies import VariedBodies
 
 Judge = Callable[[Mapping[str, Any]], dict[str, float]]
 """What a machine is judged by, by column name, given the values of `facegear.config.changes.variable_part`.
 
 Raises the error that a config gets for a machine that cannot be built, NotConverged."""
 
-ARRAYS = ("flanks", "pressure")
+ARRAYS = ("flanks", "pressure", "bodies")
 """What a machine is given beside values and tables that say the same of it."""
 WHOLE = 2**31
 """More mesh cycles than any hunting cycle has: all of them."""
@@ -76,7 +78,8 @@ class VariedMachine:
 
     With `pair`, the sections that contact needs, and `flanks`, the compliance of its bodies, every tooth pair
     that differs is put into contact; without, all have the stiffness of `harmonics`, or the arrays `law` of
-    stage mesh_law where it depends on the load.
+    stage mesh_law where it depends on the load. With `solid`, section tooth_pair, face gears bend; `bodies`:
+    arrays `reduced` of stage gear_bodies.
     """
 
     harmonics: pd.DataFrame
@@ -88,6 +91,8 @@ class VariedMachine:
     pair: Values | None = None
     flanks: Flanks = field(default_factory=dict)
     law: Arrays | None = None
+    solid: Values | None = None
+    bodies: Arrays | None = None
 
     @classmethod
     def of_stage(cls, flanks: Sequence[Arrays] = (), **given: Any) -> Self:
@@ -98,6 +103,15 @@ class VariedMachine:
     def meshes(self) -> Meshes:
         """The mesh of each one's tooth pair."""
         return tooth_meshes(self.harmonics, self.pair, self.flanks, self.law)
+
+    @cached_property
+    def varied_bodies(self) -> "VariedBodies | None":
+        """The face gears of each one where they bend."""
+        if self.solid is None or self.bodies is None:
+            return None
+        from facegear.variants.varied_bodies import VariedBodies
+
+        return VariedBodies.of_stage(self.transmission, self.solid, self.bodies)
 
     def columns(self, layout: Layout, question: Question, jumps: bool = False) -> tuple[str, ...]:
         """Names of what a machine is judged by."""
@@ -150,8 +164,8 @@ def stored_flanks(arrays: Sequence[Arrays]) -> Flanks:
     return {body: from_arrays(arrays_of_body) for body, arrays_of_body in zip(BODIES, arrays, strict=True)}
 
 
-def judge(question: Question, meshes: Meshes, label: str) -> Judge:
-    """`label` names the machine in errors."""
+def judge(question: Question, meshes: Meshes, label: str, bodies: "VariedBodies | None" = None) -> Judge:
+    """`label` names the machine in errors; `bodies` of face gears that bend."""
     ask = _ask(question)
 
     def rubbed(
@@ -172,6 +186,8 @@ def judge(question: Question, meshes: Meshes, label: str) -> Judge:
         built = machine(section, mesh.numbers, mesh.stiffness, mesh.unloaded)
         if mesh.law is not None:
             built = replace(built, tables=flank_tables(mesh.law, built.layout))
+        if bodies is not None:
+            built = bodies.joined(built, section, values["tooth_pair"])
         speed = values["dynamics"]["speed_rpm"]
         quantities, loads = ask(built, speed)
         quantities |= mesh.quantities(quantities[PEAK])
@@ -186,7 +202,7 @@ def judge(question: Question, meshes: Meshes, label: str) -> Judge:
 
 def _ask(question: Question) -> Callable[[Any, float], Found]:
     if not question.dynamic:
-        return lambda built, speed: quasi_static_quantities(built, question.cycles)
+        return lambda built, speed: quasi_static_quantities(at_rest(built), question.cycles)
     precise = settings(Accuracy.of_config(question.accuracy))
     single_start = replace(sharing_options(LoadSharing.of_config(question.options)), starts=1)
     return lambda built, speed: dynamic_quantities(built, speed, precise, single_start)

@@ -115,7 +115,7 @@ class SampledMachine(VariedMachine):
     @cached_property
     def judge(self) -> Judge:
         """What a sample is judged by, given its values."""
-        return judge(self.question, self.meshes, "this sample")
+        return judge(self.question, self.meshes, "this sample", self.varied_bodies)
 
     def sample(self, values: Sequence[float]) -> dict[str, Any]:
         """The variable part of the config of a sample with these values of its causes."""
@@ -124,12 +124,12 @@ class SampledMachine(VariedMachine):
     @cached_property
     def whole_judge(self) -> Judge:
         """The same over the whole hunting cycle."""
-        return judge(replace(self.question, cycles=WHOLE), self.meshes, "this sample")
+        return judge(replace(self.question, cycles=WHOLE), self.meshes, "this sample", self.varied_bodies)
 
     @cached_property
     def thorough_judge(self) -> Judge:
         """The same by every place of the contact."""
-        return judge(replace(self.question, every_place=True), self.meshes, "this sample")
+        return judge(replace(self.question, every_place=True), self.meshes, "this sample", self.varied_bodies)
 
     @property
     def checks(self) -> tuple[str, ...]:

@@ -1,5 +1,6 @@
 """The gear body whose numbers other programs gave, and simple bodies with closed forms; each solved once."""
 
+from dataclasses import replace
 from functools import cache
 from math import pi
 
@@ -59,3 +60,28 @@ def rectangular(inner: float, outer: float, thickness: float, material: Material
 def at(body: BodyMatrices, r: float, height: float) -> int:
     """Number of the scalar shape that stands at a place."""
     return int(np.argmin(np.hypot(*(body.elements.places - np.array([[r], [height]])))))
+
+
+def small_body(seed=0) -> ReducedBody:
+    """Two modes of 0 to 3 nodal diameters with matrices that no symmetry simplifies."""
+    random = np.random.default_rng(seed)
+    order = np.repeat(np.arange(4), 2)
+    same = order[:, None] == order
+    coriolis, stiffening = (np.where(same, 0.5 * (a + a.T), 0.0) for a in random.uniform(-1, 1, (2, 8, 8)))
+    turning = np.array([0.0, 1.0, 0, 0, 0, 0, 0, 0])
+    coriolis[0, 0] = coriolis[1, 1] = stiffening[0, 1] = stiffening[1, 0] = 0.0
+    body = ReducedBody(
+        order=order,
+        frequency=random.uniform(20, 60, 8),
+        coriolis=coriolis,
+        stiffening=stiffening,
+        mesh=random.uniform(0.1, 0.3, (2, 8)),
+        hub=np.where(order < 2, random.uniform(0.1, 1.0, (2, 8)), 0.0),
+        hub_spin=np.where(order == 0, 0.3, 0.0),
+        round=turning,
+        static=np.zeros((5, 2, 2)),
+        damping_ratio=np.array(0.02),
+    )
+    residual = np.zeros((5, 2, 2))
+    residual[4] = np.diag([2e-10, 3e-10])
+    return replace(body, static=body.modal + residual)

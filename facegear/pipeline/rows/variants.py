@@ -1,18 +1,21 @@
 """Machines with their tolerances, and designs that are searched."""
 
 from facegear.pipeline import asked
-from facegear.pipeline.rows.shared import ACCURACY, HARMONICS, PAIR, SHARING, SPEED
+from facegear.pipeline.rows.shared import ACCURACY, BODIES, HARMONICS, PAIR, SHARING, SPEED
 from facegear.pipeline.stage import NUMBER, Computed, Figures, File, From, Needs, Stage, from_stage
 
 CAUSES = tuple(f"tolerances.{key}" for key in ("causes", "correlations", "model", "seed", "hunting_cycles"))
+SOLID = Computed(asked.solid_pair, ("transmission", "tooth_pair"))
 SAMPLED: Needs = {
     **SHARING,
     "tolerances": CAUSES,
     "pair": Computed(asked.pair_where(asked.sampled_contact), asked.PAIR_SECTIONS),
     "lubricated": Computed(asked.lubricated_samples, ("lubrication", "tooth_pair")),
+    "solid": SOLID,
 }
 SAMPLED_FROM = {
     **HARMONICS,
+    **BODIES,
     **{name: From("contact", name, when=asked.stored_rubbing) for name in ("ltca", "pressure")},
     "flanks": From("compliance", "arrays", each=asked.both_bodies, when=asked.sampled_contact),
 }
@@ -25,9 +28,11 @@ SEARCHED: Needs = {
     "search": "search",
     "tolerances": "tolerances",
     "pair": Computed(asked.pair_where(asked.searched_contact), asked.PAIR_SECTIONS),
+    "solid": SOLID,
 }
 SEARCHED_FROM = {
     **HARMONICS,
+    **BODIES,
     "flanks": From("compliance", "arrays", each=asked.both_bodies, when=asked.searched_contact),
 }
 

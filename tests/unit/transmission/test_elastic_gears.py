@@ -32,31 +32,6 @@ TEETH = gear_bodies.TEETH
 PAPER = 2 * np.pi * np.array([0, 22.5, 45.5, 97.5, 120.5]) / TEETH
 
 
-def small_body(seed=0) -> ReducedBody:
-    """Two modes of 0 to 3 nodal diameters with matrices that no symmetry simplifies."""
-    random = np.random.default_rng(seed)
-    order = np.repeat(np.arange(4), 2)
-    same = order[:, None] == order
-    coriolis, stiffening = (np.where(same, 0.5 * (a + a.T), 0.0) for a in random.uniform(-1, 1, (2, 8, 8)))
-    turning = np.array([0.0, 1.0, 0, 0, 0, 0, 0, 0])
-    coriolis[0, 0] = coriolis[1, 1] = stiffening[0, 1] = stiffening[1, 0] = 0.0
-    body = ReducedBody(
-        order=order,
-        frequency=random.uniform(20, 60, 8),
-        coriolis=coriolis,
-        stiffening=stiffening,
-        mesh=random.uniform(0.1, 0.3, (2, 8)),
-        hub=np.where(order < 2, random.uniform(0.1, 1.0, (2, 8)), 0.0),
-        hub_spin=np.where(order == 0, 0.3, 0.0),
-        round=turning,
-        static=np.zeros((5, 2, 2)),
-        damping_ratio=np.array(0.02),
-    )
-    residual = np.zeros((5, 2, 2))
-    residual[4] = np.diag([2e-10, 3e-10])
-    return replace(body, static=body.modal + residual)
-
-
 def after(system, load, time):
     """State at a time from rest, of x' = system x + load."""
     size = len(load)
@@ -107,7 +82,7 @@ def in_the_body(body, speed, force, time):
     module="facegear.transmission.elastic_gears",
 )
 def test_load_that_stands_in_space_moves_a_turning_body_as_in_the_frame_of_the_body():
-    body, speed, time = small_body(), 35.0, 0.05
+    body, speed, time = gear_bodies.small_body(), 35.0, 0.05
     own = coordinates(body, 1.0, PAPER, ANGLE)
     mode = np.repeat(np.arange(8), np.where(body.order > 0, 2, 1))
     sine = np.array([letter.endswith("s") for letter in own.letters])
@@ -131,7 +106,7 @@ def test_load_that_stands_in_space_moves_a_turning_body_as_in_the_frame_of_the_b
 
 def test_turning_bodies_add_skew_gyroscopic_and_symmetric_centrifugal_terms_and_keep_the_lumped_damping():
     layout = make_layout(kinematics=GEOMETRIC)
-    elastic = ElasticGears(layout, {0: small_body(1), 1: small_body(2)})
+    elastic = ElasticGears(layout, {0: gear_bodies.small_body(1), 1: gear_bodies.small_body(2)})
     machine = make_machine(layout)
     linear, lumped = replace(machine, bodies=elastic).linear, machine.linear
     assert np.array_equal(linear.spin.gyroscopic, -linear.spin.gyroscopic.T)
@@ -362,7 +337,7 @@ def test_mesh_behind_a_body_is_as_soft_at_every_instant_as_both_springs_in_serie
     same = series.softened(0.0)
     assert same.b == pytest.approx(series.b, abs=1.0) and same.a == pytest.approx(series.a, abs=1.0)
     layout = make_layout(kinematics=GEOMETRIC)
-    elastic = ElasticGears(layout, {1: small_body()})
+    elastic = ElasticGears(layout, {1: gear_bodies.small_body()})
     lower = np.array([layout.gears[g].side is Side.LOWER for _, g in layout.meshes])
     expected = np.sin(ANGLE) ** 2 * 2e-10 + np.cos(ANGLE) ** 2 * 3e-10
     assert elastic.softening() == pytest.approx(np.where(lower, 0.0, expected))

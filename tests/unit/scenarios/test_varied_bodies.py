@@ -1,0 +1,124 @@
+"""Samples and designs of a machine whose face gears bend."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import gear_bodies
+import numpy as np
+import pytest
+
+import facegear
+from facegear.config.base import parse
+from facegear.config.load import load_config
+from facegear.config.lumped_model import ToothNumbers
+from facegear.config.machines import wired_machine
+from facegear.config.model import resolved
+from facegear.config.transmission import Transmission
+from facegear.errors import ConfigError
+from facegear.gear_body.reduced import ReducedBody
+from facegear.harmonics.series import Harmonics
+from facegear.load_sharing.quantities import quasi_static_quantities
+from facegear.results.chain import Chain
+from facegear.transmission.static_gears import at_rest
+from facegear.variants import varied_bodies
+from facegear.variants.machines import Question, judge
+from facegear.variants.teeth import PairExcitation
+from facegear.variants.varied_bodies import VariedBodies
+
+FLEXIBLE = load_config(Path(__file__).parents[3] / "config" / "flexible.yaml")
+K = Harmonics(np.zeros(1), np.array([4.1e8]))
+QUESTION = Question("quasi_static", 1, {}, {})
+
+
+def stiff(times: float) -> ReducedBody:
+    body = gear_bodies.small_body()
+    return replace(body, frequency=body.frequency * np.sqrt(times), static=body.static / times)
+
+
+@pytest.fixture(scope="module")
+def values():
+    """Plain values without runouts: one mesh cycle is all of the hunting cycle."""
+    plain = resolved(FLEXIBLE)
+    for part in ("pinion", "face_gear"):
+        plain["transmission"][part]["runout"] = None
+    for single in plain["transmission"]["single_pinions"].values():
+        single["runout"] = None
+    plain["transmission"]["transmission_error"] = {"source": "given", "amplitude_um": 0}
+    plain["transmission"]["face_gear"]["mass_kg"] = 45
+    return {key: plain[key] for key in ("transmission", "tooth_pair", "dynamics")}
+
+
+@pytest.fixture
+def solved(monkeypatch):
+    """Thickness at the rim of every web that is solved; it makes the body stiffer."""
+    webs = []
+
+    def solve(section, pair):
+        webs.append(section.web.rim_thickness_mm)
+        return stiff(2e4 * section.web.rim_thickness_mm / 12.0)
+
+    monkeypatch.setattr(varied_bodies, "_solved", solve)
+    return webs
+
+
+def bodies_of(values) -> VariedBodies:
+    arrays = {**stiff(2e4).arrays("lower"), **stiff(2e4).arrays("upper")}
+    return VariedBodies.of_stage(values["transmission"], values["tooth_pair"], arrays)
+
+
+def with_web(values, thickness, at_hub=18.0):
+    web = {**values["transmission"]["face_gear"]["body"]["web"], "rim_thickness_mm": thickness}
+    web["hub_thickness_mm"] = at_hub
+    body = {**values["transmission"]["face_gear"]["body"], "web": web}
+    gear = {**values["transmission"]["face_gear"], "body": body}
+    return {**values, "transmission": {**values["transmission"], "face_gear": gear}}
+
+
+def test_machine_among_many_shares_load_as_the_same_machine_alone(values, solved):
+    numbers = ToothNumbers.of_config(values["tooth_pair"])
+    judged = judge(QUESTION, lambda pair: PairExcitation(numbers, K, None), "this", bodies_of(values))
+    rigid = judge(QUESTION, lambda pair: PairExcitation(numbers, K, None), "this")(values)
+    for thickness, times in ((12.0, 2e4), (9.0, 1.5e4)):
+        given = with_web(values, thickness)
+        arrays = {**stiff(times).arrays("lower"), **stiff(times).arrays("upper")}
+        section = parse(Transmission, given["transmission"])
+        alone = at_rest(wired_machine(section, numbers, K, bodies=arrays))
+        expected, _ = quasi_static_quantities(alone, 1)
+        found = judged(given)
+        assert found == pytest.approx(expected, rel=1e-12)
+        assert max(abs(found[name] - rigid[name]) for name in found) > 1e-3
+    assert solved == [9.0]
+
+
+def test_body_is_solved_once_for_every_section_and_not_for_what_it_does_not_depend_on(values, solved):
+    bodies, numbers = bodies_of(values), ToothNumbers.of_config(values["tooth_pair"])
+    for thickness in (12.0, 10.0, 12.0, 10.0, 11.0):
+        given = with_web(values, thickness)
+        given["transmission"]["face_gear"]["mass_kg"] = 40.0 + thickness
+        section = parse(Transmission, given["transmission"])
+        joined = bodies.joined(wired_machine(section, numbers, K), section, given["tooth_pair"])
+        assert joined.softening.size == 10
+    assert solved == [10.0, 11.0]
+
+
+def test_design_whose_mass_cannot_hold_its_web_is_refused_before_it_is_solved(values, solved):
+    given = with_web(values, 12.0, at_hub=30.0)
+    given["transmission"]["face_gear"]["mass_kg"] = 32
+    section = parse(Transmission, given["transmission"])
+    machine = wired_machine(section, ToothNumbers.of_config(values["tooth_pair"]), K)
+    with pytest.raises(ConfigError, match=r"transmission\.face_gear\.mass_kg = 32"):
+        bodies_of(values).joined(machine, section, given["tooth_pair"])
+    assert not solved
+
+
+def test_machine_that_is_exported_bends_as_the_one_that_is_computed(monkeypatch, values):
+    """An FMU was rigid where its gears bend; what it cannot hold is refused from the whole machine."""
+    box = facegear.load("config/flexible.yaml", results=None)
+    given = {
+        "transmission": parse(Transmission, values["transmission"]),
+        "teeth": ToothNumbers.of_config(FLEXIBLE.tooth_pair.model_dump()),
+        "harmonics": K,
+        "bodies": stiff(2e4).arrays("upper"),
+    }
+    monkeypatch.setattr(Chain, "arguments", lambda self, stage: given)
+    assert box._machine().bodies is not None
