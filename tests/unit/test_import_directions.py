@@ -23,11 +23,12 @@ MAY_IMPORT = {
     "stiffness": {"harmonics", "mesh_law"},
     "mesh_law": {"harmonics"},
     "transmission": {"harmonics", "mesh_law", "gear_body"},
+    "poses": {"geometry", "transmission", "harmonics"},
     "dynamics": {"transmission", "harmonics", "mesh_law"},
     "load_sharing": {"dynamics", "transmission", "harmonics"},
     "config": {
         *("geometry", "mesh", "contact", "harmonics", "stiffness", "transmission", "dynamics"),
-        *("load_sharing", "scenarios", "strength", "lubrication", "mesh_law", "gear_body"),
+        *("load_sharing", "scenarios", "strength", "lubrication", "mesh_law", "gear_body", "poses"),
     },
     "plots": {
         *("config", "geometry", "contact", "stiffness", "harmonics", "transmission"),
@@ -45,7 +46,7 @@ MAY_IMPORT = {
     },
     "stages": {
         *("config", "variants", "geometry", "mesh", "contact", "stiffness", "harmonics", "gear_body"),
-        *("transmission", "dynamics", "load_sharing", "scenarios", "strength", "lubrication"),
+        *("transmission", "dynamics", "load_sharing", "scenarios", "strength", "lubrication", "poses"),
     },
     "pipeline": {"config", "load_sharing", "report", "stages"},
     "results": {

@@ -58,7 +58,7 @@ def pose_rows(linear: LinearModel, layout: Layout, mean_radius: float) -> Array:
     at the pinion. Coordinates of gears that bend lift the teeth: a shift along the axis, no tilt.
     """
     offset, shift, angle, outward = rows = np.zeros((len(PARTS), len(layout.meshes), linear.size))
-    place = {label: number for number, label in enumerate(linear.labels)}
+    numbered = {label: number for number, label in enumerate(linear.labels)}
     for mesh, (i, g) in enumerate(layout.meshes):
         side, at = layout.gears[g].sign, layout.angles[i]
         tangent = np.array([np.cos(at), np.sin(at)])
@@ -68,7 +68,7 @@ def pose_rows(linear: LinearModel, layout: Layout, mean_radius: float) -> Array:
         offset[mesh, gear : gear + 2] = -side * tangent
         shift[mesh, gear + 2] = side
         outward[mesh, gear : gear + 2] = -away
-        leaning, yawing = (place.get(f"{layout.pinions[i].name}:{letter}") for letter in TILT_LETTERS)
+        leaning, yawing = (numbered.get(f"{layout.pinions[i].name}:{letter}") for letter in TILT_LETTERS)
         if leaning is not None and yawing is not None:
             angle[mesh, leaning] = side
             offset[mesh, yawing] = -side * mean_radius

@@ -15,10 +15,10 @@ from facegear.geometry.conjugate import conjugate_contact
 from facegear.geometry.design import AssemblyErrors
 from facegear.geometry.placement import body_rotation, mirrored, pinion_to_gear
 from facegear.geometry.pose import pose_of
+from facegear.poses.mesh_poses import body_motion, in_mesh_frame, mesh_poses, pose_rows
 from facegear.transmission.layout import Role, Tilt
 from facegear.transmission.linear_model import LinearModel
 from facegear.transmission.lumped import lumped_model
-from facegear.transmission.mesh_poses import body_motion, in_mesh_frame, mesh_poses, pose_rows
 from facegear.transmission.teeth import GEOMETRIC
 
 PITCHES = 143 * 30.0 / 360.0
