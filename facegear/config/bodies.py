@@ -60,7 +60,9 @@ class PinionBody(Section):
 
     mass_kg: float = Field(ge=LIGHTEST_KG, le=1e5)
     inertia_kg_m2: float = Field(ge=SMALLEST_KG_M2, le=1e5)
-    bearing_stiffness_n_per_m: BearingStiffness
+    bearing_stiffness_n_per_m: BearingStiffness | None = Field(
+        None, description="null only where each pinion has a shaft or a bearing stiffness of its own"
+    )
     base_radius_mm: float | None = Field(
         None,
         gt=0,

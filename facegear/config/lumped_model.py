@@ -13,10 +13,13 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.config.bodies import GearBody, PinionBody, RunoutSection, SingleGear, SinglePinion, TiltSection
 from facegear.config.changes import TEETH
+from facegear.config.shafts import OUTPUT, TurningMassSection
 from facegear.config.transmission import PinionPlace, SingleMesh, Transmission
 from facegear.config.transmission_error import error_series
 from facegear.errors import ConfigError
 from facegear.harmonics.series import Harmonics
+from facegear.shafts.condensed import condensed
+from facegear.transmission.drive_line import DriveLine, Seat, TurningMass
 from facegear.transmission.imperfections import Imperfections, Runout
 from facegear.transmission.kinematics import KINEMATICS
 from facegear.transmission.layout import Body, FaceGear, Layout, Pinion, Role, Side, Tilt
@@ -72,7 +75,7 @@ def layout(section: Transmission, teeth: ToothNumbers) -> Layout:
                 pinion.name,
                 Role(pinion.role),
                 _pitches(pinion, teeth.gear_teeth),
-                _body(section.pinion, section.single_pinions.get(pinion.name)),
+                _pinion_body(section, pinion),
             )
             for pinion in section.pinions
         ),
@@ -110,6 +113,7 @@ def machine(
         error_lags=error_lags(section, shape),
         imperfections=imperfections(section, shape, unloaded),
         forces=external_forces(section, shape),
+        drive_line=drive_line(section, shape),
     )
 
 
@@ -198,14 +202,43 @@ def _singles(section: Transmission, shape: Layout) -> tuple[list[SinglePinion], 
     )
 
 
+def drive_line(section: Transmission, shape: Layout) -> DriveLine | None:
+    """Shafts and turning masses of section `transmission`; None where it has neither."""
+    seats, masses = {}, {}
+    for number, pinion in enumerate(section.pinions):
+        if (shaft := section.shaft_of(pinion)) is not None:
+            seats[number] = Seat(condensed(shaft.shaft()), shaft.tilt_inertia_kg_m2)
+        if chain := section.torsion.get(pinion.name) or section.torsion.get(pinion.role):
+            masses[number] = _turning_masses(chain)
+    if chain := section.torsion.get(OUTPUT):
+        masses[len(section.pinions) + shape.output] = _turning_masses(chain)
+    return DriveLine(shape, seats, masses) if seats or masses else None
+
+
+def _turning_masses(chain: Sequence[TurningMassSection]) -> tuple[TurningMass, ...]:
+    return tuple(
+        TurningMass(part.name, part.spring(), part.inertia_kg_m2, part.damping_ratio) for part in chain
+    )
+
+
+def _pinion_body(section: Transmission, pinion: PinionPlace) -> Body:
+    """A pinion on its bearing stiffness, or on what its shaft is where no moment acts."""
+    own = section.single_pinions.get(pinion.name)
+    if (shaft := section.shaft_of(pinion)) is None:
+        return _body(section.pinion, own)
+    compliance = condensed(shaft.shaft()).compliance
+    (x, xy), (_, y) = np.linalg.inv(compliance[:2, :2]).tolist()
+    mass, inertia = _inertias(section.pinion, own)
+    return Body(mass, inertia, (x, y, 1.0 / float(compliance[2, 2])), xy)
+
+
 def _body(section: PinionBody | GearBody, own: SinglePinion | SingleGear | None) -> Body:
     """A body from what all have and what it has of its own."""
-    own = own or SinglePinion()
-    stiffness = own.bearing_stiffness_n_per_m or section.bearing_stiffness_n_per_m
+    stiffness = (own and own.bearing_stiffness_n_per_m) or section.bearing_stiffness_n_per_m
+    assert stiffness is not None
     tilt = getattr(own, "tilt", None) or getattr(section, "tilt", None)
     return Body(
-        section.mass_kg if own.mass_kg is None else own.mass_kg,
-        section.inertia_kg_m2 if own.inertia_kg_m2 is None else own.inertia_kg_m2,
+        *_inertias(section, own),
         (stiffness.x, stiffness.y, stiffness.z),
         stiffness.xy,
         _tilt(tilt) if tilt else None,
@@ -215,6 +248,15 @@ def _body(section: PinionBody | GearBody, own: SinglePinion | SingleGear | None)
 def _tilt(section: TiltSection) -> Tilt:
     below = 1e-3 * section.centre_below_pitch_plane_mm
     return Tilt(section.inertia_kg_m2, section.stiffness_n_m_per_rad, below)
+
+
+def _inertias(section: PinionBody | GearBody, own: SinglePinion | SingleGear | None) -> tuple[float, float]:
+    """Mass and inertia."""
+    own = own or SinglePinion()
+    return (
+        section.mass_kg if own.mass_kg is None else own.mass_kg,
+        section.inertia_kg_m2 if own.inertia_kg_m2 is None else own.inertia_kg_m2,
+    )
 
 
 def _runout(section: RunoutSection | None) -> Runout:

@@ -43,10 +43,10 @@ def _rows(
     yield (f"`{key}`", _default(field, required), _allowed(schema, inside), field.get("description", ""))
     for option in inside:
         item, name = option, key
-        if option.get("type") == "array" and isinstance(option.get("items"), dict):
-            item, name = _plain(schema, option["items"]), f"{key}[]"
-        elif isinstance(option.get("additionalProperties"), dict):
-            item, name = _plain(schema, option["additionalProperties"]), f"{key}.<name>"
+        if isinstance(item.get("additionalProperties"), dict):
+            item, name = _plain(schema, item["additionalProperties"]), f"{name}.<name>"
+        if item.get("type") == "array" and isinstance(item.get("items"), dict):
+            item, name = _plain(schema, item["items"]), f"{name}[]"
         for inner, value in item.get("properties", {}).items():
             yield from _rows(schema, f"{name}.{inner}", value, inner in item.get("required", ()))
 

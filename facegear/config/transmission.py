@@ -1,11 +1,12 @@
 """Config section `transmission`: bodies, bearings, damping, backlash, errors of single parts, torques."""
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse, require_all
 from facegear.config.bodies import GearBody, PinionBody, SingleGear, SinglePinion
+from facegear.config.shafts import OUTPUT, ShaftSection, TurningMassSection
 from facegear.config.transmission_error import TransmissionError
 
 MAX_PINIONS = 60
@@ -72,6 +73,14 @@ class Transmission(Section):
     face_gears: tuple[Literal["lower", "upper"], ...] = Field(("lower", "upper"), min_length=1, max_length=2)
     pinion: PinionBody
     face_gear: GearBody
+    shafts: dict[str, ShaftSection] = Field(
+        {}, description="by the pinions' role (input, idler, tail) or a pinion's name, which goes before"
+    )
+    torsion: dict[str, Annotated[tuple[TurningMassSection, ...], Field(max_length=20)]] = Field(
+        {},
+        description="turning masses on torsional springs, from the gear outwards, the torque on the last: by "
+        "the pinions' role, a pinion's name, or output for the face gear that gives the power out",
+    )
     damping: DampingSection
     backlash_um: float | None = Field(
         None, ge=0, le=1e5, description="2b along the line of action; null: that of the teeth as assembled"
@@ -89,14 +98,27 @@ class Transmission(Section):
     @model_validator(mode="after")
     def _possible(self) -> "Transmission":
         require_all(
-            self._known, self._lags, self._kinematics, self._clearance_in_round_bearings, self._distinct
+            self._known,
+            self._lags,
+            self._kinematics,
+            self._held_once,
+            self._clearance_in_round_bearings,
+            self._masses_named_apart,
+            self._distinct,
         )
         return self
+
+    def shaft_of(self, pinion: PinionPlace) -> ShaftSection | None:
+        """The shaft of a pinion by its name, or else by its role; None for a bearing stiffness."""
+        return self.shafts.get(pinion.name) or self.shafts.get(pinion.role)
 
     def _known(self) -> None:
         names = [pinion.name for pinion in self.pinions]
         meshes = [f"{name}/{side}" for side in self.face_gears for name in names]
+        driven = [*names, *dict.fromkeys(pinion.role for pinion in self.pinions)]
         for key, given, known in (
+            ("shafts", self.shafts, driven),
+            ("torsion", self.torsion, [*driven, OUTPUT]),
             ("single_meshes", self.single_meshes, meshes),
             ("single_pinions", self.single_pinions, names),
             ("single_gears", self.single_gears, list(self.face_gears)),
@@ -135,6 +157,9 @@ class Transmission(Section):
         for key in ("single_meshes", "single_pinions", "single_gears"):
             if named := list(getattr(self, key)):
                 refuse(key, named, "none where mesh_kinematics is printed: it knows no errors of one part")
+        for key in ("shafts", "torsion"):
+            if named := list(getattr(self, key)):
+                refuse(key, named, "none where mesh_kinematics is printed")
         for key, value in (
             ("pinion.clearance_um", self.pinion.bearing_clearance_um or None),
             ("pinion.runout", self.pinion.runout),
@@ -145,13 +170,46 @@ class Transmission(Section):
                 shown = value if isinstance(value, float) else value.model_dump()
                 refuse(key, shown, "none where mesh_kinematics is printed")
 
+    def _held_once(self) -> None:
+        """Every pinion has a shaft or a bearing stiffness, and no stiffness is given in vain."""
+        key, common = "pinion.bearing_stiffness_n_per_m", self.pinion.bearing_stiffness_n_per_m
+        by_common = []
+        for pinion in self.pinions:
+            own = self.single_pinions.get(pinion.name, SinglePinion()).bearing_stiffness_n_per_m
+            shaft = self.shaft_of(pinion)
+            if own is not None and shaft is not None:
+                allowed = "left out: the pinion has a shaft, which its bearings hold"
+                refuse(f"single_pinions.{pinion.name}.bearing_stiffness_n_per_m", own.model_dump(), allowed)
+            if own is None and shaft is None:
+                by_common.append(pinion.name)
+        if common is None and by_common:
+            refuse(key, None, f"given: {by_common[0]!r} has no shaft and no bearing stiffness of its own")
+        if common is not None and self.shafts and all(self.shaft_of(pinion) for pinion in self.pinions):
+            refuse(key, common.model_dump(), "null: every pinion has a shaft, which its bearings hold")
+
+    def _masses_named_apart(self) -> None:
+        for name, chain in self.torsion.items():
+            if not chain:
+                refuse(f"torsion.{name}", [], "one turning mass or more")
+            for number in range(len(chain)):
+                if chain[number].name in [mass.name for mass in chain[:number]]:
+                    allowed = "a name that no other mass of the chain has"
+                    refuse(f"torsion.{name}[{number}].name", chain[number].name, allowed)
+
     def _clearance_in_round_bearings(self) -> None:
         for pinion in self.pinions:
             single = self.single_pinions.get(pinion.name, SinglePinion())
-            bearing = single.bearing_stiffness_n_per_m or self.pinion.bearing_stiffness_n_per_m
             own = single.bearing_clearance_um is not None
             clearance = single.bearing_clearance_um if own else self.pinion.bearing_clearance_um
             key = f"single_pinions.{pinion.name}.clearance_um" if own else "pinion.clearance_um"
+            if (shaft := self.shaft_of(pinion)) is not None:
+                if clearance and not (shaft.is_round and shaft.tilt_inertia_kg_m2 is None):
+                    allowed = "0 beside a shaft with tilt_inertia_kg_m2 or with a bearing given by its matrix"
+                    refuse(key, clearance, allowed)
+                continue
+            bearing = single.bearing_stiffness_n_per_m or self.pinion.bearing_stiffness_n_per_m
+            if bearing is None:
+                continue
             if clearance and (bearing.x <= 0.0 or bearing.x != bearing.y or bearing.xy != 0.0):
                 refuse(key, clearance, "0 unless the bearing is round: x = y above 0, without xy")
 

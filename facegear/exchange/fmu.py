@@ -114,7 +114,7 @@ def _header(model: Model, speed_rpm: float) -> str:
     """The numbers of the machine as C."""
     machine, system, reduced = model.machine, model.system, model.reduced
     linear, layout = machine.linear, machine.layout
-    spins = reduced.basis[layout.spins].T  # load of each coordinate by each body's torque
+    spins = reduced.basis[machine.torque_coordinates].T  # load of each coordinate by each body's torque
     law = system.law
     assert isinstance(law, LinearLaw)
     held = linear.translations.ravel()

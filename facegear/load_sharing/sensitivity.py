@@ -165,12 +165,18 @@ def _with_kinematics(machine: Machine, kinematics: Kinematics) -> Machine:
     pinions = len(layout.pinions)
     lower = machine.torques[pinions] if len(layout.gears) > 1 else 0.0
     torques = balanced_torques(other, machine.torques[:pinions], float(lower))
-    changed = replace(machine, layout=other, torques=torques, imperfections=errors)
+    # At rest a drive line is what the layout has in its place.
+    changed = replace(machine, layout=other, torques=torques, imperfections=errors, drive_line=None)
     return changed if kinematics is layout.kinematics else replace(changed, bodies=None, softening=None)
 
 
 def _with_bearings(machine: Machine, roles: tuple[Role, ...], stiffness: float) -> Machine:
-    return replace(machine, layout=_stiffened(machine.layout, roles, stiffness))
+    """Bearings take the places of the shafts of these pinions, too."""
+    stiffened = replace(machine, layout=_stiffened(machine.layout, roles, stiffness))
+    if machine.drive_line is None:
+        return stiffened
+    named = {i for i, pinion in enumerate(machine.layout.pinions) if pinion.role in roles}
+    return replace(stiffened, drive_line=machine.drive_line.without_shafts(named, stiffened.layout))
 
 
 def _stiffened(layout: Layout, roles: tuple[Role, ...], stiffness: float) -> Layout:

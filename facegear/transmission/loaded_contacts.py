@@ -106,7 +106,7 @@ def forces_by_active_sets(machine: Machine) -> Array | None:
     clearance or a stiffness that depends on the load, and where the flanks do not settle or leave a loaded
     body free.
     """
-    linear = machine.linear
+    linear = machine.resting.linear
     if linear.rings.body.size or not machine.constant_stiffness:
         return None
     scale = 1.0 / np.sqrt(linear.mass.diagonal())

@@ -1,16 +1,17 @@
 """The lumped model with everything that drives it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
 
 import numpy as np
 
-from facegear.arrays import Array
+from facegear.arrays import Array, Integers
 from facegear.errors import InvalidInput
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.law import MeshLaw
 from facegear.mesh_law.load_dependent import ForceTable
+from facegear.transmission.drive_line import DriveLine
 from facegear.transmission.imperfections import Imperfections, perfect
 from facegear.transmission.layout import Layout, Role
 from facegear.transmission.linear_model import Bodies, LinearModel
@@ -88,6 +89,8 @@ class Machine:
         What makes more of them than rigid masses on springs.
     softening : (meshes,)
         What each mesh gives in series with its teeth, m/N; nothing by default.
+    drive_line
+        Shafts of pinions that bend, and turning masses behind torsional springs.
     """
 
     layout: Layout
@@ -105,6 +108,7 @@ class Machine:
     friction: MeshFriction | None = None
     bodies: Bodies | None = None
     softening: Array | None = None
+    drive_line: DriveLine | None = None
 
     def __post_init__(self) -> None:
         if self.imperfections is None:
@@ -129,11 +133,31 @@ class Machine:
     @cached_property
     def linear(self) -> LinearModel:
         """Masses, bearings, loads and the directions of the contacts."""
+        with_shafts = self.lumped if self.drive_line is None else self.drive_line(self.lumped)
+        return with_shafts if self.bodies is None else self.bodies(with_shafts)
+
+    @cached_property
+    def lumped(self) -> LinearModel:
+        """The same of the layout alone: rigid bodies on springs."""
         damping = (self.damping.mass, self.damping.bearing)
-        lumped = lumped_model(
+        return lumped_model(
             self.layout, self.torques, self.forces, damping, self.imperfections.bearing_clearance
         )
-        return lumped if self.bodies is None else self.bodies(lumped)
+
+    @cached_property
+    def resting(self) -> "Machine":
+        """The machine with its drive line as it is at rest, where its answer follows from that."""
+        line = self.drive_line
+        if line is None or not line.static_from_layout(self.lumped):
+            return self
+        return replace(self, drive_line=None)
+
+    @property
+    def torque_coordinates(self) -> Integers:
+        """Which coordinate the torque of each body turns, (bodies,)."""
+        if self.drive_line is not None:
+            return self.drive_line.torque_coordinates()
+        return np.arange(self.lumped.size)[self.layout.spins]
 
     @cached_property
     def mesh_stiffness(self) -> tuple[Harmonics, ...]:

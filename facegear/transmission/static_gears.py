@@ -26,6 +26,7 @@ def at_rest(machine: Machine) -> Machine:
 
     Masses of its coordinates beyond the lumped ones are of no use but to scale them.
     """
+    machine = machine.resting
     if not isinstance(machine.bodies, ElasticGears):
         return machine
     return replace(machine, bodies=StaticGears(machine.bodies), softening=None)

@@ -115,8 +115,10 @@ def settle(machine: Machine, law: MeshLaw, cycles: Array, errors: Array, names: 
     NotConverged.
     """
     held, gaps = law.held(cycles), errors + flank_gaps(machine)
-    if has_blocks(machine):
-        displacements, forces = _by_blocks(machine, held, gaps)
+    if has_blocks(machine.resting):
+        displacements, forces = _by_blocks(machine.resting, held, gaps)
+        if machine.drive_line is not None and machine.resting is not machine:
+            displacements = machine.drive_line.extended(machine.lumped, displacements)
     else:
         displacements, forces = _one_by_one(machine, law, cycles, gaps)
     checked = balance(machine, displacements, forces, held.stiffness, gaps)

@@ -20,15 +20,17 @@ MAY_IMPORT = {
     "mesh": {"geometry"},
     "contact": {"geometry", "mesh", "harmonics"},
     "gear_body": {"geometry"},
+    "shafts": set(),
     "stiffness": {"harmonics", "mesh_law"},
     "mesh_law": {"harmonics"},
-    "transmission": {"harmonics", "mesh_law", "gear_body"},
+    "transmission": {"harmonics", "mesh_law", "gear_body", "shafts"},
     "poses": {"geometry", "transmission", "harmonics"},
     "dynamics": {"transmission", "harmonics", "mesh_law"},
     "load_sharing": {"dynamics", "transmission", "harmonics"},
     "config": {
         *("geometry", "mesh", "contact", "harmonics", "stiffness", "transmission", "dynamics"),
         *("load_sharing", "scenarios", "strength", "lubrication", "mesh_law", "gear_body", "poses"),
+        "shafts",
     },
     "plots": {
         *("config", "geometry", "contact", "stiffness", "harmonics", "transmission"),

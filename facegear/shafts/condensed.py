@@ -1,0 +1,131 @@
+"""A shaft on its bearings, condensed statically to the middle of the pinion that sits on it."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from facegear.arrays import AnyArray, Array
+from facegear.errors import InvalidInput
+from facegear.shafts.beam import MOTIONS, Elasticity, Segment, carried, clamped_compliance
+
+HELD = 1e-9
+"""Stiffness of the softest rigid motion over the stiffest's below which bearings do not hold a shaft."""
+ROUNDED = 1e-12
+"""Part of a shaft's length by which rounding may put a bearing or the pinion beyond its end."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bearing:
+    """A bearing at a distance (m) from the beginning of the shaft, with its stiffness (5, 5) in x, y, z,
+    tilt_x, tilt_y, SI units.
+    """
+
+    position: float
+    stiffness: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Shaft:
+    """Segments from the end at the smallest z on, what they are made of, bearings, and where the pinion's
+    middle is, m from the beginning.
+    """
+
+    segments: tuple[Segment, ...]
+    material: Elasticity
+    bearings: tuple[Bearing, ...]
+    pinion: float
+
+    def __post_init__(self) -> None:
+        for name, position in (
+            ("position of a shaft's pinion", self.pinion),
+            *(("position of a shaft's bearing", bearing.position) for bearing in self.bearings),
+        ):
+            if not 0.0 <= position <= self.length * (1.0 + ROUNDED):
+                raise InvalidInput(name, position, f"on the shaft, from 0 to {self.length:g} m")
+
+    @property
+    def length(self) -> float:
+        """From end to end, m."""
+        return sum(segment.length for segment in self.segments)
+
+    def require_held(self) -> None:
+        """Raise InvalidInput where the bearings leave a motion of the rigid shaft free."""
+        held = np.zeros((MOTIONS, MOTIONS))
+        scale = np.array([1.0, 1.0, 1.0, self.length, self.length])
+        for bearing in self.bearings:
+            moved = carried(bearing.position - self.pinion)
+            held += moved.T @ bearing.stiffness @ moved
+        softest, *_, stiffest = np.linalg.eigvalsh(held / np.outer(scale, scale))
+        if softest <= HELD * stiffest:
+            allowed = "such that they hold it along its axis and against tilting"
+            raise InvalidInput("bearings of a shaft", f"{len(self.bearings)} bearings", allowed)
+
+
+@dataclass(frozen=True, eq=False)
+class CondensedShaft:
+    """What a pinion sits on: motions and loads are x, y, z, tilt_x, tilt_y at its middle, SI units.
+
+    Attributes
+    ----------
+    compliance : (5, 5)
+        Motions by loads.
+    reactions : (bearings, 5, 5)
+        Loads of the shaft on its bearings by those of the pinion on the shaft.
+    """
+
+    compliance: Array
+    reactions: Array
+
+    @cached_property
+    def stiffness(self) -> Array:
+        """Loads by motions (5, 5)."""
+        return _symmetric(np.linalg.inv(self.compliance))
+
+    @cached_property
+    def square(self) -> Array:
+        """Forces by displacements x, y, z (3, 3) where no moment acts: of a pinion that does not tilt in the
+        model.
+        """
+        return _symmetric(np.linalg.inv(self.compliance[:3, :3]))
+
+    def bearing_loads(self, loads: Array) -> Array:
+        """Loads (..., bearings, 5) on the bearings by those (..., 5) of the pinion on the shaft."""
+        return np.einsum("bij,...j->...bi", self.reactions, loads)
+
+
+def condensed(shaft: Shaft) -> CondensedShaft:
+    """Static condensation. Raises InvalidInput where the bearings do not hold the shaft.
+
+    The shaft is clamped at its beginning and moved as a rigid one besides: the motions of its bearings and
+    the rigid motion follow from what they give way and from the balance of all loads.
+    """
+    shaft.require_held()
+    at = np.array([shaft.pinion, *(bearing.position for bearing in shaft.bearings)])
+    compliance = clamped_compliance(shaft.segments, shaft.material, at)
+    count = len(shaft.bearings)
+    springs = np.array([bearing.stiffness for bearing in shaft.bearings])
+    rigid = np.array([carried(position) for position in at])
+    bearings = slice(0, MOTIONS * count)
+    size = MOTIONS * (count + 1)
+    system, load = np.zeros((size, size)), np.zeros((size, MOTIONS))
+    system[bearings, bearings] = _flat(np.einsum("ijkl,jlm->ijkm", compliance[1:, 1:], springs))
+    system[bearings, bearings] += np.eye(MOTIONS * count)
+    system[bearings, MOTIONS * count :] = -_flat(rigid[1:, None])
+    system[MOTIONS * count :, bearings] = _flat((rigid[1:].transpose(0, 2, 1) @ springs)[None])
+    load[bearings], load[MOTIONS * count :] = _flat(compliance[1:, :1]), rigid[0].T
+    solution = np.linalg.solve(system, load)
+    moved, drifted = solution[bearings].reshape(count, MOTIONS, MOTIONS), solution[MOTIONS * count :]
+    reactions = springs @ moved
+    bent = compliance[0, 0] - np.einsum("jkl,jlm->km", compliance[0, 1:], reactions)
+    return CondensedShaft(_symmetric(rigid[0] @ drifted + bent), reactions)
+
+
+def _flat(blocks: Array) -> Array:
+    """Blocks (rows, columns, 5, 5) as one matrix."""
+    rows, columns = blocks.shape[:2]
+    return blocks.transpose(0, 2, 1, 3).reshape(MOTIONS * rows, MOTIONS * columns)
+
+
+def _symmetric(matrix: AnyArray) -> Array:
+    return np.asarray(0.5 * (matrix + matrix.T))
