@@ -15,6 +15,7 @@ from facegear.io.atomic import atomic_path
 from facegear.questions import QUESTIONS, answered, flag
 
 ROOT = Path(__file__).parents[1]
+CONFIG = "config file (yaml)"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -35,35 +36,40 @@ def parser() -> argparse.ArgumentParser:
     new.add_argument("config", type=Path, help="file to write, such as own.yaml")
     for name, (kind, default, text) in QUESTIONS.items():
         new.add_argument(flag(name), type=kind, help=text + ("" if default is None else f" ({default})"))
-    new.add_argument("--coarse", action="store_true", help="for a first answer soon")
+    new.add_argument(
+        "--coarse", action="store_true", help="few positions and speeds, for a first answer soon"
+    )
     new.set_defaults(command=_new)
     run = commands.add_parser(
         "run", help="compute all that a config asks for, with Snakemake if it is at hand"
     )
-    run.add_argument("config", type=Path)
-    run.add_argument("targets", nargs="*", help="files to make; all of them without any")
-    run.add_argument("--cores", default="2")
+    run.add_argument("config", type=Path, help=CONFIG)
+    run.add_argument("targets", nargs="*", help="files to make (all of them)")
+    run.add_argument("--cores", default="2", help="processor cores to use (2)")
     run.add_argument("--directory", default=".", help="where results/ and .snakemake/ go")
     run.add_argument("--verbose", action="store_true", help="show all that Snakemake says")
-    run.add_argument("--dry-run", "-n", action="store_true", help="only tell what would be run, and why")
+    run.add_argument("--dry-run", "-n", action="store_true", help="only say what would be run, and why")
     run.set_defaults(command=_run)
     report = commands.add_parser("report", help="write the report of a config as one html file")
-    report.add_argument("config", type=Path)
-    report.add_argument("--output", type=Path, help="<case>.html in this folder without it")
-    report.add_argument("--results", default="results", help="folder of stored results that are read")
+    report.add_argument("config", type=Path, help=CONFIG)
+    report.add_argument("--output", type=Path, help="file to write (<case>.html in this folder)")
+    report.add_argument("--results", default="results", help="folder of stored results to read (results)")
     report.set_defaults(command=_report)
     check = commands.add_parser("check", help="read and check a config, and compute nothing")
-    check.add_argument("config", type=Path)
+    check.add_argument("config", type=Path, help=CONFIG)
     check.set_defaults(command=_check)
     limits = commands.add_parser("limits", help="between which radii the face of a gear may lie")
     for name, default in LIMITS.items():
         kind = int if "teeth" in name else float
-        limits.add_argument(flag(name), type=kind, required=default is None, default=default)
+        text = "required" if default is None else f"({default:g})"
+        limits.add_argument(flag(name), type=kind, required=default is None, default=default, help=text)
     limits.set_defaults(command=_limits)
     compare = commands.add_parser("compare", help="what moved between two folders of results, and why")
     compare.add_argument("old", help="a folder of results, or a release's stored answer such as 0.1.0/quick")
     compare.add_argument("new", help="the same")
-    compare.add_argument("--page", type=Path, help="write a report page with both laid over each other")
+    compare.add_argument(
+        "--page", type=Path, help="write an html page with the curves of both over each other"
+    )
     compare.set_defaults(command=_compare)
     return top
 
@@ -87,7 +93,7 @@ def installed_version() -> str:
     try:
         return version("facegear")
     except PackageNotFoundError:
-        return "of a folder that is not installed"
+        return "unknown: this folder is not installed"
 
 
 def _new(given: argparse.Namespace) -> int:

@@ -31,7 +31,7 @@ def answered(given: Mapping[str, Any]) -> dict[str, Any]:
     missing = [name for name in QUESTIONS if given[name] is None]
     needed = [flag(name) for name in missing if QUESTIONS[name][1] is None]
     if needed and not sys.stdin.isatty():
-        raise FacegearError(f"new: {', '.join(needed)} must be given, as nobody can be asked")
+        raise FacegearError(f"new: {', '.join(needed)} must be given, as there is no terminal to ask at")
     return {
         name: asked(name) if name in missing and needed else _or_default(name, given) for name in QUESTIONS
     }

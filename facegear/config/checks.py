@@ -138,7 +138,9 @@ def geometric_backlash(pair: ToothPair) -> float:
     try:
         backlash = normal_backlash(pair_design(pair))
     except NotConverged:
-        raise ConfigError("tooth_pair.assembly", assembly, "errors so small that the flanks meet") from None
+        raise ConfigError(
+            "tooth_pair.assembly", assembly, "smaller errors, with which the flanks meet"
+        ) from None
     if backlash < -JAM:
         min_thinning = (pair.pinion.thinning_um if pair.pinion else 0.0) - 1e6 * backlash
         allowed = (
@@ -165,7 +167,9 @@ def check_studies(studies: Sequence[Study]) -> None:
         if name in names[:number]:
             raise ConfigError(f"studies[{number}].name", name, "a name of its own for each study")
         if name in TAKEN_NAMES:
-            raise ConfigError(f"studies[{number}].name", name, "a name that load sharing has no file of")
+            raise ConfigError(
+                f"studies[{number}].name", name, "another name: load sharing writes a file of this one"
+            )
     if len(set(figures)) < len(figures):
         raise ConfigError("studies.figures", figures, "each number once")
     points = sum(int(np.prod([len(axis.resolved()) for axis in study.axes])) for study in studies)

@@ -45,7 +45,8 @@ class BodyStrength(Section):
     )
     both_ways: bool = Field(
         default=False,
-        description="the other flank is loaded as well, as on an idler; found where load_factors is machine",
+        description="the other flank is loaded as well, as on an idler; counted where load_factors "
+        "is machine",
     )
 
     @field_validator("card", mode="before")

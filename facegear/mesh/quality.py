@@ -36,7 +36,10 @@ def require_right_side_out(tooth: FeTooth) -> None:
     if turned:
         elements = f"{turned} elements of the {tooth.body.replace('_', ' ')} turned inside out"
         raise InvalidInput(
-            "element size", elements, "another one, or another `element depth below the fillets`"
+            "element size",
+            elements,
+            "a finer or coarser one (or another `element depth below the fillets`) with which no "
+            "element turns",
         )
 
 

@@ -12,71 +12,87 @@ from facegear.report.machine import Base, machine_chapter
 from facegear.report.page import Chapter, Picture, Table, View, render
 
 BY_TORQUE = (
-    "Over a pitch, for each torque on the pinion. Peak-to-peak transmission error (ste): largest less "
-    "smallest of the positions solved, so never more than the true value; half: of every second one. "
-    "Pressure: the largest away from edges, with the error that the mesh leaves. Tip line load: the "
-    "largest at a tip edge, where pressure has no limit, and the greatest length that carries any. "
-    "Path radius: where the contact forces have their centroid, distance from the gear's axis"
+    "One row for each torque on the pinion, over a pitch. ste peak to peak: the largest transmission error "
+    "less the smallest of the positions solved, which is never more than the true value; half: the same with "
+    "every second position only. pressure: the largest away from edges, with the error that the mesh leaves. "
+    "tip line load: the largest at a tip edge, where pressure has no limit; tip length: the greatest length "
+    "of a tip edge that carries load. path radius: distance of the contact forces' centroid from the gear's "
+    "axis"
 )
 BEARINGS = (
-    "Force of every body on its bearing at the nominal speed; static: at rest under the mean torques; peak: "
-    "largest magnitude. A pinion's x is tangential, its y along the gears' axis; a face gear's axis is z"
+    "Force of every body on its bearing at the nominal speed. static: at rest under the mean torques; peak: "
+    "the largest magnitude. x of a pinion is tangential and y is along the gears' axis; the axis of a face "
+    "gear is z"
 )
 ROOT_STRESS = (
-    "Largest and smallest stress of each fillet over a passage; loaded: below the flank that carries the "
-    "load. Radius: distance from the gear's axis; tangent: angle of the fillet to the tooth's middle line"
+    "Largest and smallest stress of each fillet over a passage. loaded: the fillet below the flank that "
+    "carries the load; radius: distance from the gear's axis; tangent: angle between the fillet and the "
+    "tooth's middle line"
 )
 FOLLOWING = (
-    "The running machine followed while runouts turn, beside the machine at rest. k_gamma: largest mean of "
-    "a mesh cycle over the nominal even share, running; k_v: largest load over that mean; static: at rest "
-    "over the same mesh cycles, and over the whole hunting cycle; cut: what leaving out the rest does to "
-    "the static one; sampling: what half of the samples do to the running k_gamma k_v; memory: difference "
-    "between two starts after the lead, over the largest force"
+    "The running machine, followed while its runouts turn, beside the machine at rest. k_gamma: the largest "
+    "mean of a mesh cycle over the nominal even share, running; k_v: the largest load over that "
+    "mean; static: "
+    "at rest over the same mesh cycles; static whole: at rest over the whole hunting cycle; cut: the "
+    "change of "
+    "the static factor from leaving out the other cycles; sampling: the change of the running "
+    "k_gamma k_v with "
+    "half of the samples; memory: difference between two starts after the lead, over the largest force"
 )
 STUDY_COLUMNS = [
     *("study", "label", "torque_n_m", "k_average_mean_n_per_m", "ste_peak_to_peak_um"),
     *("path_radius_mm", "path_shift_mm", "unloaded_path_shift_mm", "backlash_um"),
 ]
 SAFETY = (
-    "Safety and life of every flank under the duty cycle; drive: the flank with which a pinion drives. "
-    "Safety: factor on all stresses at which Miner's sum is 1. Bending by the finite elements' root stress, "
-    "of pinions after ISO 6336-3 (standard) as well; there is no standard for face gears, which are judged "
-    "by the same limits; pitting by the contact analysis' pressure away from edges, and after ISO 6336-2 "
-    "(standard) with the gear's flank as a rack's; edge: what tip edges carry under the largest torque, "
-    "where pressure has no limit. Life: the shortest; "
-    "inf: no load does damage. Reliability: at the end of the duty cycle, where the card gives a Weibull "
-    "shape and a load does damage. green: as safe as required, amber: lasts the duty cycle, red: does not"
+    "Safety and life of every flank under the duty cycle. drive: the flank with which a pinion drives. "
+    "Safety is the factor on all stresses at which Miner's sum is 1. Bending is judged by the root stress of "
+    "the finite elements, and for pinions after ISO 6336-3 (standard) as well; no standard exists for face "
+    "gears, which are judged by the same limits. Pitting is judged by the pressure of the contact analysis "
+    "away from edges, and after ISO 6336-2 (standard) with the gear's flank as that of a rack. edge: "
+    "what tip "
+    "edges carry under the largest torque, where pressure has no limit. life: the shortest of all; inf: no "
+    "load does damage. reliability: at the end of the duty cycle, where the material card gives a Weibull "
+    "shape and a load does damage. green: as safe as required; amber: less safe than required, but outlasts "
+    "the duty cycle; red: fails within the duty cycle"
 )
-RATING = "Every way to fail with its limits; stress: of the hardest load"
+RATING = "Every kind of failure with its limits; the stress is that of the hardest load"
 DUTY_LOADS = (
-    "Loads of the running machine in every bin of the duty cycle: the flank with the largest force. Mesh "
-    "load factor K_gamma: largest mean of a mesh cycle over the mesh's nominal even share; dynamic factor "
-    "K_v: largest force over that mean; followed: through the hunting cycle while runouts turn"
+    "Loads of the running machine in every bin of the duty cycle: the flank with the largest force. "
+    "mesh load factor (K_gamma): the largest mean of a mesh cycle over the mesh's nominal even "
+    "share; dynamic "
+    "factor (K_v): the largest force over that mean; followed: computed through the hunting cycle while "
+    "runouts turn"
 )
 EVERY_LOAD = "Loads of every flank in every bin"
 DYNAMIC = (
-    "Largest root stress of every mesh at the nominal speed; mean: with its mean force; running: the largest "
-    "of the history, every tooth with its share of the force of that moment; bound: with the largest force "
-    "all through the passage; pressure away from edges likewise. Beyond the torques of the contact analysis "
-    "stress is taken in proportion"
+    "Largest root stress of every mesh at the nominal speed. mean: with the mean force of the mesh; running: "
+    "the largest of the history, in which every tooth carries its share of the force of that moment; bound: "
+    "with the largest force throughout the passage. Pressure is that away from edges. Beyond the torques of "
+    "the contact analysis (contact.torques_n_m) stress is taken in proportion"
 )
 OVER_SPEED = (
-    "Hardest loads over the speed range: at the nominal speed, and the worst of each motion found. Dynamic "
-    "factor: largest mesh force over the largest at rest; stress and pressure with that force all through "
-    "the passage; worst: the hardest of all motions known at that speed"
+    "Hardest loads over the speed range: at the nominal speed, and the worst of each motion. dynamic factor: "
+    "the largest mesh force over the largest at rest; stress and pressure are those with that force "
+    "throughout "
+    "the passage; worst: whether the motion is the hardest of all that are known at that speed"
 )
 MODE_CONTACTS = (
-    "Contacts that the modes keep as the mean torques press them, and the mesh stiffness taken. Local: the "
-    "slope dF / d deflection that small vibrations feel; average: F / deflection; given: a number of the "
-    "config. What is undecided carries too little to tell it from rounding, and counts as open"
+    "Contacts that are closed in the modes, because the mean torques press them together, with the mesh "
+    "stiffness used. local: the slope dF / d deflection, which small vibrations feel; average: F / "
+    "deflection; "
+    "given: a number of the config. An undecided contact carries too little load to tell it from "
+    "rounding, and "
+    "counts as open"
 )
 NEAR_RESONANCE = 0.3
 """Largest relative distance of a jump from the linear resonance that it may belong to."""
 JUMPS = (
-    "Jumps. Moves most: linear mode with the largest fraction of the energy just beside the jump, and the "
-    "multiple of the mesh frequency at which it moves most. Linear resonance: the speed at which that "
-    f"multiple meets the mode's frequency, blank where the jump is more than {100 * NEAR_RESONANCE:.0f} % "
-    "away from it and so belongs to no linear resonance of that mode"
+    "Jumps of the motion. moves most: the linear mode with the largest fraction of the energy just "
+    "beside the "
+    "jump, and the multiple of the mesh frequency at which it moves most. linear resonance: the "
+    "speed at which "
+    "that multiple meets the mode's frequency; blank where the jump is more than "
+    f"{100 * NEAR_RESONANCE:.0f} % away from it, and so belongs to no linear resonance of that mode"
 )
 DRAWINGS = ("layout", "machine", "tooth_pair")
 """Figures that show the machine; the first that exists stands on the first screen."""
@@ -124,8 +140,8 @@ def case_report(
     chapters.append(_errors(tables))
     chapters.append(_provenance(manifests))
     lead = (
-        f"Case {values['case']}: what facegear computed from its config, in the order of computation. "
-        "Every table can be kept as csv."
+        f"Results of facegear for the case {values['case']}, in the order of computation. "
+        "Every table can be saved as csv."
     )
     return render(f"facegear: {values['case']}", lead, chapters)
 
@@ -169,7 +185,7 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
         held = [Table(MODE_CONTACTS, tables["contacts"], 4)] if "contacts" in tables else []
         return [
             *held,
-            Table("Natural frequencies, equal ones in one row", mode_rows(tables["frequencies"]), 6),
+            Table("Natural frequencies; equal ones share a row", mode_rows(tables["frequencies"]), 6),
         ]
     if title.startswith("Nominal"):
         bearings = [Table(BEARINGS, tables["bearings"], 4)] if "bearings" in tables else []
@@ -178,9 +194,12 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
         return [Table(FOLLOWING, tables["following_groups"], 4)]
     if title == "Tolerances" and "percentiles" in tables:
         limits = Table("Percentiles with their confidence intervals", tables["percentiles"], 4)
-        fractions = Table("Fraction of the samples in which", tables["fractions"], 4)
+        fractions = Table("Fraction of the samples for which each statement holds", tables["fractions"], 4)
         missed = Table(
-            "What the first samples miss, relative; of fractions and C the difference", tables["sampling"], 2
+            "Error from taking only some of the mesh cycles: relative; of fractions and temperatures "
+            "the difference",
+            tables["sampling"],
+            2,
         )
         return [limits, fractions, *([] if tables["sampling"].empty else [missed])]
     if title == "Load sharing" and "summary" in tables:
@@ -216,7 +235,7 @@ def _friction(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
         whole = tables["machine_loss"].dropna(axis="columns", how="all")
         meshes = tables["mesh_losses"].dropna(axis="columns", how="all")
         listed = [
-            Table("The machine: bin 0 at the nominal load, -1 the whole duty cycle", whole, 4),
+            Table("The machine; bin 0 is the nominal load, bin -1 the whole duty cycle", whole, 4),
             *listed,
             Table("Every loaded flank", meshes, 4, folded=True),
             Table("Heat of every body", tables["body_heat"], 4, folded=True),
@@ -226,7 +245,9 @@ def _friction(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     limits = tables["limits"]
     return [
         *listed,
-        Table("Part of the loss outside the limits of the friction model", limits, 3, folded=True),
+        Table(
+            "Fraction of the loss that lies outside the limits of the friction model", limits, 3, folded=True
+        ),
     ]
 
 
@@ -287,7 +308,10 @@ def _errors(tables: Mapping[str, pd.DataFrame]) -> Chapter:
         rows.append(("widest 95 % half-width of a load-sharing mean", tables["summary"]["half_width"].max()))
     frame = pd.DataFrame(rows, columns=["quantity", "value"])
     return Chapter(
-        "Numerical errors", "Estimates that the stages made themselves.", (), [Table("Estimates", frame, 3)]
+        "Numerical errors",
+        "Estimates that the stages made of their own errors.",
+        (),
+        [Table("Estimates", frame, 3)],
     )
 
 

@@ -9,8 +9,8 @@ CAPTIONS = {
     "separation": "Gap between the unloaded flanks, and the path of the contact over the gear's flank.",
     "contact_curves": "Static transmission error, stiffness and load share against position.",
     "contact_pattern": "Pressure on the flank that contact lines sweep; at edges only line loads are known.",
-    "life": "Every bin of the duty cycle beside the stress that may be repeated so often; of pinions and "
-    "of face gears the flank nearest to its limit.",
+    "life": "Stress of every bin of the duty cycle beside the stress that is allowed for as many "
+    "load cycles; of pinions and of face gears the flank nearest to its limit.",
     "damage": "Damage of every bin of the duty cycle to the same flanks; a sum of 1 is the end of life.",
     "stress_over_speed": "Largest root stress, pressure and dynamic factor of all meshes over speed; dots: "
     "stable motions that were followed; shaded: beyond the torques of the contact analysis.",
@@ -25,12 +25,12 @@ CAPTIONS = {
     "stiffness_harmonics": "Amplitudes of the mesh stiffness harmonics.",
     "stiffness_load": "Mean stiffness and its harmonics against load.",
     "mesh_law": "Force of a mesh over a mesh period at even deflections, up to the last level of its law.",
-    "mesh_law_surface": "The same force over mesh period and deflection.",
+    "mesh_law_surface": "Force of the same mesh over the mesh period and the deflection.",
     "law_loads": "Forces of the meshes at the nominal speed and in the sweep beside the table of their law, "
     "which ends at the mean force of its last level; "
     "beside a row: the fraction of the time past it.",
     "law_sweeps": "RMS of mesh deflections over speed, with the mesh laws of the studies over each other.",
-    "mode_shapes": "Typical mode shapes.",
+    "mode_shapes": "Shapes of typical modes.",
     "body_shapes": "Sections of the face gears and their first mode shapes at a crest, hubs held.",
     "body_waves": "Frequencies of the face gears over nodal diameters, hubs held: at rest, and of waves in "
     "space at the nominal speed.",
@@ -41,12 +41,13 @@ CAPTIONS = {
     "pinion_sweep": "RMS of the pinions' translations over speed.",
     "gear_sweep": "RMS of the face gears' translations over speed.",
     "mesh_sweep": "RMS of the mesh deflections, speed rising and falling; ticks mark jumps.",
-    "waterfall": "Spectra over speed.",
+    "waterfall": "Spectrum of a mesh deflection over speed.",
     "machine": "The machine to scale: directions of rotation, and mean forces of meshes at rest.",
     "layout": "The machine to scale: directions of rotation, mean forces of meshes and on bearings, at rest.",
     "hunting": "Share of each mesh in its group's load over the hunting cycle, quasi-static.",
     "bearing_stiffness": "K_gamma against the bearing stiffness of inputs and idlers, both kinematics.",
-    "tolerance_distributions": "Share of samples above each value, with percentiles and their intervals.",
+    "tolerance_distributions": "Fraction of the samples above each value, with percentiles and their "
+    "intervals.",
     "tolerance_importance": "Which tolerance matters: total Sobol indices, or rank correlations.",
     "tolerance_scatter": "Every sample against the two tolerances that matter most.",
     "tolerance_map": "Median and 99th percentile of the worst path over torque and, in motion, speed.",
@@ -124,12 +125,13 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ),
     (
         "Mesh stiffness",
-        "What the lumped model is given.",
+        "The mesh stiffness that the lumped model of the machine takes.",
         ("mesh_stiffness", "stiffness_harmonics", "stiffness_load", "mesh_law", "mesh_law_surface"),
     ),
     (
         "Modes",
-        "Constant mean stiffness, no backlash. T translation, R rotation, A axial.",
+        "Modes of the machine with constant mean mesh stiffness and without backlash. T: "
+        "translation, R: rotation, A: axial motion.",
         ("mode_shapes", "campbell"),
     ),
     (

@@ -43,10 +43,10 @@ def glance_chapter(
     said = [tuple(note.split(": ", 1)) for note in notes]
     warned = [*warnings(values, tables, pair), *said]
     listed = [
-        Table(_counted(judged), pd.DataFrame(judged, columns=["verdict", "about", "what was found"])),
+        Table(_counted(judged), pd.DataFrame(judged, columns=["verdict", "about", "result"])),
         Table("Warnings", pd.DataFrame(warned, columns=["about", "what to keep in mind"])),
         Table("Key numbers", key_numbers(tables, pair)),
-        Table("What was found", pd.DataFrame(others, columns=["about", "what was found"])),
+        Table("Results in short", pd.DataFrame(others, columns=["about", "result"])),
     ]
     return Chapter(
         "At a glance", "", drawing, [table for table in listed if len(table.frame) or table is listed[1]]
@@ -167,7 +167,11 @@ def warnings(
             yield "backlash", f"the dynamics take {own:g} um, the teeth as assembled have {teeth:.1f} um"
     missing = rated(tables).get("power_imbalance", 0.0)
     if abs(missing) > BALANCED:
-        yield "power", f"in less out {100 * missing:.3g} %: lever arms as printed are not those of the teeth"
+        yield (
+            "power",
+            f"power brought in, less power taken out, is {100 * missing:.3g} % of the larger: lever arms as "
+            "printed are not those of the teeth",
+        )
     yield from _undecided_warnings(tables)
     yield from _open_warnings(tables)
     yield from _sweep_warnings(tables)
@@ -191,7 +195,11 @@ def _beyond_warnings(tables: Mapping[str, pd.DataFrame]) -> Iterator[tuple[str, 
         table = tables.get(name, pd.DataFrame())
         if len(table) and not table["within_torques_solved"].all():
             outside = int((~table["within_torques_solved"].astype(bool)).sum())
-            yield about, f"{outside} of {len(table)} {rows} lie outside the torques of the contact analysis"
+            yield (
+                about,
+                f"{outside} of {len(table)} {rows} lie outside the torques of the contact analysis "
+                f"(contact.torques_n_m)",
+            )
     for row in tables.get("limits", pd.DataFrame()).itertuples():
         if row.loss_outside_percent > 0.0:
             yield (
@@ -245,7 +253,7 @@ def _contact_warnings(
     values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]
 ) -> Iterator[tuple[str, str]]:
     if values["mesh_stiffness"]["source"] == "fem_scaled":
-        yield "mesh stiffness", "only its shape is computed; its mean is the config's"
+        yield "mesh stiffness", "only its shape is computed; its mean is given (mesh_stiffness.mean_n_per_m)"
     if "ltca" in tables:
         columns = ["tip_line_load_n_per_mm", "tip_length_mm"]
         tips = tables["ltca"].groupby("torque_n_m")[columns].max()

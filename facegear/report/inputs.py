@@ -3,6 +3,13 @@
 from collections.abc import Mapping
 from typing import Any
 
+SOURCES = {
+    "fem": "computed by finite elements",
+    "fem_scaled": "computed by finite elements and scaled to a given mean",
+    "harmonics": "given as harmonics",
+}
+"""Where the mesh stiffness is from, in words, by the value of `mesh_stiffness.source`."""
+
 
 def inputs_in_words(values: Mapping[str, Any]) -> list[str]:
     """One phrase an input, from the plain values of a config."""
@@ -28,13 +35,13 @@ def inputs_in_words(values: Mapping[str, Any]) -> list[str]:
     given = "".join(f", {pinion['name']} {pinion['torque_n_m']:g} N m" for pinion in own)
     return [
         f"torque per engine {torque['per_input_n_m']:g} N m{given}",
-        f"share of the power at the tail {100 * torque['tail_share']:.3g} %",
+        f"power at the tail {100 * torque['tail_share']:.3g} %",
         "e(t) from contact"
         if error["source"] == "from_contact"
         else f"e(t): {error['amplitude_um']:.4g} um read as its {error['meaning']}, cosine, "
         f"phase {error['phase_deg']:g} deg, {phasing}" + (f", {more}" if more else ""),
         f"phases of the lower meshes {transmission['phase_convention']}",
-        f"mesh stiffness source {stiffness['source']}" + mean + _variation(stiffness["variation"]),
+        f"mesh stiffness {SOURCES[stiffness['source']]}" + mean + _variation(stiffness["variation"]),
         _kinematics(transmission),
         *teeth,
     ]

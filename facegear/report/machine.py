@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import pandas as pd
 
+from facegear.report.inputs import SOURCES
 from facegear.report.page import Chapter, Table, number
 
 KINEMATICS = {
@@ -59,9 +60,9 @@ def machine_chapter(
     listed = []
     if "bodies" in tables:
         listed = [
-            Table("Torque and power of every body; positive: brought in", tables["bodies"], 5),
+            Table("Torque and power of every body; positive values are brought in", tables["bodies"], 5),
             Table(
-                "Every mesh at rest with mean stiffness; the force is along the line of action",
+                "Every mesh at rest, with mean stiffness; the force acts along the line of action",
                 tables["meshes"],
                 5,
             ),
@@ -137,7 +138,7 @@ def _teeth(pair: Mapping[str, Any]) -> dict[str, Any]:
 def _text(values: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> str:
     pair, transmission = values["tooth_pair"], values["transmission"]
     teeth = f"module {pair['module_mm']:g} mm, pressure angle {pair['pressure_angle_deg']:g} deg. "
-    source = values["mesh_stiffness"]["source"]
+    source = SOURCES[values["mesh_stiffness"]["source"]]
     if transmission is None:
         return (
             f"A pinion of {pair['pinion_teeth']} teeth and a face gear of {pair['face_gear_teeth']} teeth, "
@@ -186,11 +187,11 @@ def _balance(tables: Mapping[str, pd.DataFrame]) -> str:
         return ""
     missing = numbers["power_imbalance"]
     if abs(missing) <= BALANCED:
-        return "\n\nPower in equals power out: bearings and meshes of the statics take none."
+        return "\n\nThe power brought in equals the power taken out: at rest, bearings and meshes lose none."
     return (
-        f"\n\nPower in less power out is {100 * missing:.3g} % of the larger. Bodies turn as their teeth "
-        "say, but the lever arms of equation (13) as printed are not those of the teeth; geometric meshes "
-        "are in balance."
+        f"\n\nThe power brought in, less the power taken out, is {100 * missing:.3g} % of the larger. Bodies "
+        "turn as their teeth say, but the lever arms of equation (13) as printed are not those of the teeth; "
+        "geometric meshes are in balance."
     )
 
 
@@ -202,7 +203,7 @@ def _config_tables(values: Mapping[str, Any], base: Base | None) -> list[Table]:
     """The pinions, and every key of the config that holds something; changes against the file extended."""
     rows = _keys(values)
     frame = pd.DataFrame(list(rows.items()), columns=["key", "value"], dtype=object)
-    caption = "Config, defaults included"
+    caption = "The whole config, with its defaults"
     if base is not None:
         before = _keys(base.values)
         gone = [(key, "") for key in before if key not in rows]

@@ -14,14 +14,16 @@
     library = window.Plotly;
   }
 
-  // in the dark, black and grey change places with white; colours stay
+  // in the dark, black and grey change places with white, and dim colours are lightened
   function seen(colour) {
     const parts = colour.startsWith("#")
       ? [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16))
       : (colour.match(/[\d.]+/g) || []).map(Number);
     const [r, g, b, alpha] = parts;
-    if (!dark.matches || Math.max(r, g, b) - Math.min(r, g, b) > 24) return colour;
-    const turned = [r, g, b].map((part) => Math.round(235 - 0.85 * part));
+    if (!dark.matches) return colour;
+    const grey = Math.max(r, g, b) - Math.min(r, g, b) <= 24, dim = 0.3 * r + 0.6 * g + 0.1 * b < 80;
+    if (!grey && !dim) return colour;
+    const turned = [r, g, b].map((part) => Math.round(grey ? 235 - 0.85 * part : part + 0.4 * (255 - part)));
     return `rgba(${turned.join(",")},${alpha === undefined ? 1 : alpha})`;
   }
 

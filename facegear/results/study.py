@@ -75,6 +75,6 @@ def combinations(values: Mapping[str, Iterable[Any]]) -> dict[str, dict[str, Any
     axes = {key: plain(list(given)) for key, given in values.items()}
     for key, given in axes.items():
         if not given:
-            raise FacegearError(f"study: {key} = []: must be at least one value")
+            raise FacegearError(f"study: {key} = []: must hold at least one value")
     points = [dict(zip(axes, point, strict=True)) for point in product(*axes.values())]
     return {", ".join(f"{key} = {value}" for key, value in point.items()): point for point in points}

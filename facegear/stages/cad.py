@@ -37,7 +37,7 @@ def export(path: str | Path, body: str, teeth: int | None, tooth_pair: ToothPair
     gear = next(name for name in BODIES if name == chosen(body, BODIES, "body"))
     design = pair(tooth_pair).design
     if teeth is not None and not 1 <= teeth <= teeth_of(design, gear):
-        raise FacegearError(f"teeth = {teeth}: 1 to {teeth_of(design, gear)}")
+        raise FacegearError(f"teeth = {teeth}: must be from 1 to {teeth_of(design, gear)}")
     patches = solid(design, gear, teeth)
     if ending == ".stl":
         write_stl(path, triangles(patches))

@@ -145,7 +145,10 @@ def force_table(contacts: FlankContacts, pieces: int, crowding: float, orders: i
     reached = contacts.deflections
     first, last = reached[0].max(), reached[-1].min()
     if first >= last:
-        raise FacegearError("mesh law: the deflections over a pitch overlap those of the largest torque")
+        raise FacegearError(
+            "mesh law: over a pitch the deflections under the smallest of contact.torques_n_m reach "
+            "those under the largest: the torques must lie further apart"
+        )
     levels = first + (last - first) * np.linspace(0.0, 1.0, pieces + 1) ** crowding
     forces, slopes = _at_levels(contacts, levels)
     exponent = first * slopes[0] / forces[0]

@@ -293,7 +293,9 @@ def hertz_stress(design: PairDesign, contact_ratio: float, request: RatingReques
         return lambda torque: factor * sqrt(torque / (base * _width(design)) / (base * roll))
 
     if inner <= 0.0:
-        raise FacegearError("the pinion's inner point of single contact lies below its base circle")
+        raise FacegearError(
+            "strength: the pinion's inner point of single contact must lie above its base circle"
+        )
     return {"pinion": at(min(inner, pitch)), "face_gear": at(pitch)}
 
 

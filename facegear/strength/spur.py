@@ -49,7 +49,8 @@ class SpurMesh:
 
     def __post_init__(self) -> None:
         if self.centre_distance <= self.pinion.base_radius + self.wheel.base_radius:
-            raise FacegearError("centre distance at or below the sum of the base radii")
+            minimum = self.pinion.base_radius + self.wheel.base_radius
+            raise FacegearError(f"centre_distance = {self.centre_distance:g}: must be above {minimum:g} m")
 
     @property
     def working_angle(self) -> float:

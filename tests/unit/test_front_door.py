@@ -150,7 +150,7 @@ def test_exact_teeth_are_exported_in_the_format_that_the_ending_names(gearbox, n
     [
         ({"path": "teeth.iges"}, "ending of the path = '.iges': must be one of .step, .stp, .stl"),
         ({"path": "teeth.stl", "body": "gear"}, "body = 'gear': must be one of pinion, face_gear"),
-        ({"path": "teeth.stl", "teeth": 24}, "teeth = 24: 1 to 23"),
+        ({"path": "teeth.stl", "teeth": 24}, "teeth = 24: must be from 1 to 23"),
     ],
 )
 def test_an_export_that_cannot_be_is_refused_in_one_line(gearbox, asked, line):
@@ -291,7 +291,7 @@ def test_a_study_holds_every_combination_and_says_what_was_changed(gearbox):
 @pytest.mark.parametrize(
     ("mistake", "line"),
     [
-        (lambda g: g.study({"transmission.backlash_um": []}), "must be at least one value"),
+        (lambda g: g.study({"transmission.backlash_um": []}), "must hold at least one value"),
         (lambda g: g.study({"transmission.backlash_um": [-1]}), "backlash_um = -1: must be greater"),
         (lambda g: g.study({"transmission.backlash_um": [80]}).table("mods"), "answer = 'mods': must be"),
         (lambda g: g.study({"transmission.backlash_um": [80]}).plot("modes"), "one of load_sharing, sweep"),

@@ -41,6 +41,7 @@ def sweep_summary(directions: Mapping[str, Direction]) -> str:
         counts = ", ".join(f"{count} {label}" for label, count in classes.most_common())
         irregular = sum(seam.kind.value == "irregular" for seam in direction.seams)
         rerun = sum(seam.rerun for seam in direction.seams)
+        jumps = f"{len(direction.jumps)} jump{'s' * (len(direction.jumps) != 1)}"
         seams = f"seams: {rerun} speeds run again, {irregular} irregular"
-        parts.append(f"{name}: {len(direction.jumps)} jumps; {counts}; {seams}")
+        parts.append(f"{name}: {jumps}; {counts}; {seams}")
     return " | ".join(parts)

@@ -33,7 +33,7 @@ def test_key_numbers_are_ratio_torque_speed_frequency_and_power(example):
 
 def test_a_machine_in_balance_says_so_and_one_out_of_balance_by_how_much(example):
     values, tables = example
-    assert "Power in equals power out" in machine_chapter(values, tables).text
+    assert "The power brought in equals the power taken out" in machine_chapter(values, tables).text
     off = tables["ratings"].assign(value=lambda t: t["value"].mask(t["quantity"] == "power_imbalance", -0.07))
     assert "-7 % of the larger" in machine_chapter(values, {**tables, "ratings": off}).text
 
@@ -245,7 +245,7 @@ def test_a_number_beyond_what_was_solved_or_undecided_is_warned_of(example):
     }
     message = [": ".join(row) for row in warnings(values, {**tables, **beyond}, None)]
     for words in (
-        "strength: 1 of 2 ratings lie outside the torques of the contact analysis",
+        "strength: 1 of 2 ratings lie outside the torques of the contact analysis (contact.torques_n_m)",
         "friction: 12 % of the loss at 600 N m lies outside the limits of xu_kahraman: load",
         "modes: too little load to tell from rounding, taken as open: a/upper",
     ):
