@@ -62,8 +62,8 @@ class VariedBodies:
 def _key(section: BodySection, pair: ToothPair) -> Hashable:
     """All that a body depends on."""
     shape = body_shape(section, pair)
-    place = (shape.teeth, shape.material, shape.layer, contact_patch(section, pair), pair.face_gear_teeth)
-    return (section, shape.corners.tobytes(), place)
+    mounting = (shape.teeth, shape.material, shape.layer, contact_patch(section, pair), pair.face_gear_teeth)
+    return (section, shape.corners.tobytes(), mounting)
 
 
 def _solved(section: BodySection, pair: ToothPair) -> ReducedBody:
