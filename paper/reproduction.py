@@ -15,6 +15,7 @@ class InputSet(Section):
     label: str = Field(min_length=1, description="what they are called on the page of the figures")
     case: str = Field(min_length=1, description="case of that config, the folder of its results")
     config: str = Field(min_length=1, description="name of the config from the folder of the Snakefile")
+    note: str = Field("", description="what its page says of them: whether they were fitted, what they hold")
 
 
 class Reproduction(Section):

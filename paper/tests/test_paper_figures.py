@@ -196,6 +196,8 @@ def test_the_page_holds_every_claim_with_its_verdict_and_leads_to_the_other_inpu
     for case in ("paper_likely", "paper_features"):
         assert f'href="../../{case}/paper_figures/index.html"' in page
     assert f"{sum(claim.counts for claim in CLAIMS.claims)} differs" in page
+    fitted = render("paper_features", ["torque"], CLAIMS, card, INPUTS)
+    assert "is no evidence for them" in fitted and "is no evidence for them" not in page
 
 
 def test_the_inputs_that_one_may_switch_between_are_configs_of_those_cases():
