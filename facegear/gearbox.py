@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from facegear.results.study import Study
     from facegear.results.sweep import SweepResult
     from facegear.results.tolerances import LoadMapResult, TolerancesResult
+    from facegear.results.tooth_errors import ToothErrorsResult
     from facegear.results.whole_case import WholeCase
     from facegear.scenarios.inverse import Loosest
     from facegear.transmission.machine import Machine
@@ -421,6 +422,15 @@ class Gearbox:
 
         given = _given({"load_sharing.hunting_positions": positions})
         return self._changed("hunting", given)._chain.result(HuntingResult)
+
+    def tooth_errors(self) -> "ToothErrorsResult":
+        """What teeth that deviate from the others of their gear add to the transmission error.
+
+        Raises FacegearError where `tooth_pair` has no grids of single teeth.
+        """
+        from facegear.results.tooth_errors import ToothErrorsResult
+
+        return self._chain.result(ToothErrorsResult)
 
     def sensitivity(self, positions: int | None = None) -> "SensitivityResult":
         """By how much each error of the machine, alone, changes its load sharing at rest; as `hunting`."""

@@ -16,6 +16,8 @@ from facegear.geometry.nominal import Face, nominal_points
 
 Side = Literal["right", "left"]
 SIDES: tuple[Side, ...] = ("right", "left")
+Teeth = tuple[DeviationGrid | None, ...]
+"""Deviations of one flank of every tooth."""
 COVERED = 0.5
 """Part of the flank, along the face and along the profile, that a grid must cover at least."""
 POINT_MM, NORMAL = 0.05, 0.02
@@ -206,3 +208,15 @@ def common_grid(section: FlanksSection, side: Side, face: Face, teeth: int) -> D
     fields = fields_of(section, side, face, teeth)
     assert fields is not None
     return deviation_grid(grids[0], fields.mean(axis=0))
+
+
+def differences(section: FlanksSection, side: Side, face: Face, teeth: int) -> Teeth | None:
+    """What each tooth deviates by from the mean of one flank of all teeth; None where all are alike."""
+    grids = [grid for grid in section.grids if grid.flank == side]
+    fields = fields_of(section, side, face, teeth)
+    if fields is None or len(grids) == 1:
+        return None
+    alike: dict[bytes, DeviationGrid] = {}
+    for values in fields - fields.mean(axis=0):
+        alike.setdefault(values.tobytes(), deviation_grid(grids[0], values))
+    return tuple(alike[values.tobytes()] for values in fields - fields.mean(axis=0))

@@ -16,6 +16,7 @@ from facegear.stiffness.tables import series_of, unloaded_error
 from facegear.transmission.elastic_gears import ElasticGears
 from facegear.transmission.layout import Layout
 from facegear.transmission.machine import Machine
+from facegear.transmission.tooth_errors import from_arrays
 
 
 def wired_machine(
@@ -26,12 +27,14 @@ def wired_machine(
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
     bodies: Arrays | None = None,
+    tooth_errors: Arrays | None = None,
 ) -> Machine:
     """The machine of section `transmission`; the mesh stiffness as a series or as the table of its stage.
 
     A table from contact brings the pair's own e(t); with a series it is `unloaded`, in m. friction: table
     `excitation` of stage lubrication, where friction disturbs the motion. law: arrays of stage mesh_law,
     where forces depend on the load. bodies: arrays `reduced` of stage gear_bodies, where face gears bend.
+    tooth_errors: arrays `curves` of that stage, where single teeth deviate from the others.
     """
     if isinstance(stiffness, Harmonics):
         built = machine(section, teeth, stiffness, unloaded)
@@ -42,6 +45,9 @@ def wired_machine(
     if bodies is not None:
         elastic = elastic_gears(bodies, built.layout)
         built = replace(built, bodies=elastic, softening=elastic.softening())
+    if tooth_errors is not None:
+        own = replace(built.imperfections, teeth=from_arrays(tooth_errors))
+        built = replace(built, imperfections=own)
     if friction is None:
         return built
     from facegear.config.mesh_friction import with_friction  # only friction needs compiled statics

@@ -8,7 +8,15 @@ from typing import Any
 from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse, require_all
-from facegear.config.flanks import FlanksSection, check_flanks, common_flanks, read_files
+from facegear.config.flanks import (
+    FlanksSection,
+    Side,
+    Teeth,
+    check_flanks,
+    common_flanks,
+    differences,
+    read_files,
+)
 from facegear.config.material import MaterialSection
 from facegear.errors import ConfigError, NotConverged
 from facegear.geometry.bodies import BODIES, Body
@@ -163,6 +171,23 @@ def pair_design(section: ToothPair) -> PairDesign:
         flanks = common_flanks(own, flank_face(design, body), teeth)
         design = replace(design, **{body: replace(getattr(design, body), flanks=flanks)})
     return design
+
+
+def single_teeth(section: ToothPair, flank: str) -> dict[Body, Teeth]:
+    """Of each gear what the `flank` (drive or back) of its teeth deviates by from their mean, tooth by tooth.
+
+    None where nothing does.
+    """
+    sides: tuple[Side, Side] = ("right", "left") if flank == "drive" else ("left", "right")
+    design = _nominal(section)
+    measured = {body: (own, teeth) for body, own, teeth in _measured_bodies(section)}
+    counts = {"pinion": section.pinion_teeth, "face_gear": section.face_gear_teeth}
+    by_body: dict[Body, Teeth] = {}
+    for body, side in zip(BODIES, sides, strict=True):
+        own = measured.get(body)
+        grids = own and differences(own[0], side, flank_face(design, body), own[1])
+        by_body[body] = grids or (None,) * counts[body]
+    return by_body
 
 
 def _measured_bodies(section: ToothPair) -> Iterator[tuple[Body, FlanksSection, int]]:

@@ -71,5 +71,8 @@ LOAD_ARRAYS = {
 (drive, back), see `facegear.geometry.flank_errors`.
 """
 
+TOOTH_ERROR_ARRAYS = {f"{body}_{side}_m": (None,) for body in BODIES for side in ("drive", "back")}
+"""What the teeth of a gear add to the transmission error of a flank over one of its turns, m."""
+
 EDGES = ("inside", "pinion tip", "gear tip", "end")
 """Where a loaded plane's strip of contact lies: `where` of the line loads numbers these."""

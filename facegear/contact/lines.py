@@ -84,6 +84,21 @@ def contact_lines(design: PairDesign, phi1: Array, phi2: Array, tooth: ArrayLike
     )
 
 
+def contact_gaps(
+    design: PairDesign, placement: tuple[Array, Array, Array], y: Array
+) -> tuple[Array, Array, Array]:
+    """Least gaps (p, n) m of flanks in planes y (n,) m, inf where there is none: roll (rad), gap and where on
+    the gear (p, n, 3), m.
+
+    placement: angles phi1, phi2 (rad) and pairs, (p,) each. Raises NotConverged as `separation` does.
+    """
+    roll = np.clip(_min_gap_roll(design, placement, y), _min_roll(design), design.pinion_tip_roll)
+    seen = separation(design, flank_points(design, roll, y), *placement)
+    on = seen.part == FLANK
+    points = face_gear.flank_point(design, np.where(on, seen.u, np.nan), np.where(on, seen.v, np.nan))
+    return roll, np.where(on, seen.gap, np.inf), points
+
+
 def unloaded_lines(
     design: PairDesign, position: Array, tooth: ArrayLike, unloaded: Mapping[float, float], y: Array
 ) -> ContactLines:

@@ -38,8 +38,6 @@ def derivative(
     for at, line, order in places:
         first, last = _ends(line)
         on &= (at >= first) & (at <= last) | (order == 0)
-        if order > min(CUBIC, len(line) - 1):
-            return values
     inside = (np.clip(at[on], *_ends(line)) for at, line, _ in places)
     values[on] = _spline(grid).ev(*inside, dx=orders[0], dy=orders[1])
     return values
@@ -60,5 +58,13 @@ def _ends(line: tuple[float, ...]) -> tuple[float, float]:
 
 @lru_cache(maxsize=512)
 def _spline(grid: DeviationGrid) -> "scipy.interpolate.RectBivariateSpline":
-    along, across = (min(CUBIC, len(line) - 1) for line in (grid.face, grid.profile))
-    return scipy.interpolate.RectBivariateSpline(grid.face, grid.profile, grid.deviation, kx=along, ky=across)
+    lines = [np.array(line) for line in (grid.face, grid.profile)]
+    orders = [min(CUBIC, line.size - 1) for line in lines]
+    values = np.array(grid.deviation)
+    if min(orders) < CUBIC:
+        # the polynomial through two or three places, at as many as a cubic takes
+        few = [np.linspace(line[0], line[-1], CUBIC + 1) for line in lines]
+        more = [line if line.size > CUBIC else even for line, even in zip(lines, few, strict=True)]
+        values = scipy.interpolate.RectBivariateSpline(*lines, values, kx=orders[0], ky=orders[1])(*more)
+        lines = more
+    return scipy.interpolate.RectBivariateSpline(*lines, values)

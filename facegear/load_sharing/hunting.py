@@ -95,10 +95,12 @@ class HuntingCycle(LoadHistory):
 
 
 def hunting_length(machine: Machine) -> int:
-    """Mesh cycles until the pattern repeats: 1 without runouts and pitch errors."""
+    """Mesh cycles until the pattern repeats: 1 without runouts, pitch errors and teeth that differ."""
     errors, layout = machine.imperfections, machine.layout
     pinions = bool(errors.pinion_pitch) or any(runout.amplitude != 0.0 for runout in errors.pinion_runout)
     gears = bool(errors.gear_pitch) or any(runout.amplitude != 0.0 for runout in errors.gear_runout)
+    if errors.teeth is not None:
+        pinions, gears = (a or b for a, b in zip((pinions, gears), errors.teeth.turning, strict=True))
     return lcm(layout.pinion_teeth if pinions else 1, layout.gear_teeth if gears else 1)
 
 

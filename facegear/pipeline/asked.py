@@ -40,6 +40,13 @@ def computed_stiffness(case: Case) -> bool:
     return case.values["mesh_stiffness"]["source"] != "harmonics"
 
 
+def single_teeth(case: Case) -> bool:
+    """Whether a contact analysis is made and deviations of single teeth are given."""
+    bodies = (case.values["tooth_pair"][body] for body in BODIES)
+    grids = (grid for body in bodies if body for grid in body["flanks"]["grids"])
+    return contact(case) and any(grid["tooth"] is not None for grid in grids)
+
+
 def load_dependent(case: Case) -> bool:
     """Whether mesh forces depend on the load."""
     return case.values["mesh_stiffness"]["mesh_law"] == "load_dependent"
@@ -132,10 +139,12 @@ def hunting(case: Case) -> bool:
 
 
 def following(case: Case) -> bool:
-    """Whether meshes are geometric and something has a runout or a cumulative pitch deviation."""
+    """Whether meshes are geometric and something has a runout or a cumulative pitch deviation, or teeth
+    differ.
+    """
     from facegear.config.notes import turns
 
-    return hunting(case) and turns(case.values["transmission"])
+    return hunting(case) and (turns(case.values["transmission"]) or single_teeth(case))
 
 
 def tolerances(case: Case) -> bool:

@@ -26,12 +26,15 @@ def following(
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
     bodies: Arrays | None = None,
+    tooth_errors: Arrays | None = None,
 ) -> Outcome:
     """`groups` and `meshes` (tables) over `cycles` mesh cycles, or all of the hunting cycle.
 
     Raises NotConverged naming the position or the mesh phase.
     """
-    machine = wired_machine(transmission, teeth, harmonics, friction=friction, law=law, bodies=bodies)
+    machine = wired_machine(
+        transmission, teeth, harmonics, friction=friction, law=law, bodies=bodies, tooth_errors=tooth_errors
+    )
     length = hunting_length(machine)
     part = length if cycles is None else min(cycles, length)
     moving = running(machine, speed_rpm, part, FINER * positions, settings(accuracy))

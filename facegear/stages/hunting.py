@@ -21,9 +21,12 @@ def hunting(
     positions: int,
     law: Arrays | None = None,
     bodies: Arrays | None = None,
+    tooth_errors: Arrays | None = None,
 ) -> Outcome:
     """Tables `meshes`, `groups`, `bearings`, `cycles`, `scan`, `sensitivity`. Raises NotConverged."""
-    machine = at_rest(wired_machine(transmission, teeth, harmonics, law=law, bodies=bodies))
+    machine = at_rest(
+        wired_machine(transmission, teeth, harmonics, law=law, bodies=bodies, tooth_errors=tooth_errors)
+    )
     cycle = hunting_cycle(machine, positions)
     content = {
         "meshes": mesh_table(cycle),

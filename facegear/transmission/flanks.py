@@ -163,7 +163,7 @@ def constant_errors(machine: Machine) -> Array:
 
 
 def slow_errors(machine: Machine, cycles: Array) -> Array:
-    """Error of every flank from runouts and pitch deviations, shape (K, 2 meshes), m.
+    """Error of every flank from runouts, pitch deviations and single teeth, shape (K, 2 meshes), m.
 
     `cycles` (K,) counts mesh cycles of the reference from the start. A face gear's high point stands at its
     phase from the first pinion at the start and goes on as the gear turns, the lower one against the angles.
@@ -185,7 +185,30 @@ def slow_errors(machine: Machine, cycles: Array) -> Array:
         on_pinion, on_gear = teeth_in_mesh(layout, mesh, cycles)
         tangential[:, mesh] -= cosine * _deviation(errors.pinion_pitch.get(i), on_pinion)
         tangential[:, mesh] += cosine * _deviation(errors.gear_pitch.get(g), on_gear)
-    return _flanks(tangential, separating)
+    return _flanks(tangential, separating) - _early_teeth(machine, cycles)
+
+
+def _early_teeth(machine: Machine, cycles: Array) -> Array:
+    """By how much every flank comes early, (K, 2 meshes) m, as single teeth of its gears deviate.
+
+    Both teeth are at that place of the mesh cycle at which the mesh is.
+    """
+    teeth, layout = machine.imperfections.teeth, machine.layout
+    early = np.zeros((2, cycles.size, len(layout.meshes)))
+    if teeth is None:
+        return _beside(early)
+    for mesh, lag in enumerate(_lags(machine)):
+        both = []
+        for counted in teeth_in_mesh(layout, mesh, cycles):
+            apart = cycles - lag - counted
+            both.append(counted + apart - np.round(apart))
+        early[:, :, mesh] = teeth.early(layout, *both)
+    return _beside(early)
+
+
+def _beside(both: Array) -> Array:
+    """Those (2, K, meshes) of drive and back flanks beside each other, (K, 2 meshes)."""
+    return np.concatenate([both[0], both[1]], axis=-1)
 
 
 def flank_places(phases: Array, cycles: Array) -> Array:

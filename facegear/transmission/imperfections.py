@@ -7,6 +7,7 @@ import numpy as np
 from facegear.arrays import Array
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.layout import Layout
+from facegear.transmission.tooth_errors import ToothErrors
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,8 @@ class Imperfections:
         nan takes the machine's.
     stiffness : (meshes,)
         Factor on k(t).
+    teeth
+        What single teeth add, alike on all pinions and on both gears.
     series
         e(t) of a mesh by its index, in place of the common one.
     position : (pinions, 2)
@@ -56,6 +59,7 @@ class Imperfections:
     clocking: Array
     pinion_runout: tuple[Runout, ...]
     gear_runout: tuple[Runout, ...]
+    teeth: ToothErrors | None = None
     series: dict[int, Harmonics] = field(default_factory=dict)
     pinion_pitch: dict[int, Array] = field(default_factory=dict)
     gear_pitch: dict[int, Array] = field(default_factory=dict)
@@ -64,7 +68,9 @@ class Imperfections:
     def any_slow(self) -> bool:
         """Whether an error changes from one mesh cycle to the next."""
         turning = (*self.pinion_runout, *self.gear_runout)
-        return bool(self.pinion_pitch or self.gear_pitch or any(curve.amplitude != 0.0 for curve in turning))
+        teeth = self.teeth is not None and any(self.teeth.turning)
+        pitch = bool(self.pinion_pitch or self.gear_pitch)
+        return teeth or pitch or any(curve.amplitude != 0.0 for curve in turning)
 
     @property
     def standing(self) -> "Imperfections":
@@ -76,6 +82,7 @@ class Imperfections:
             gear_runout=(Runout(),) * gears,
             pinion_pitch={},
             gear_pitch={},
+            teeth=None,
         )
 
 

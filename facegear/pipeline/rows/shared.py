@@ -17,5 +17,7 @@ HARMONICS = {**from_stage("stiffness", "harmonics"), **LAW}
 """What meshes transmit."""
 BODIES = {"bodies": From("gear_bodies", "reduced", when=asked.elastic_gears)}
 """Face gears that bend."""
+TOOTH_ERRORS = {"tooth_errors": From("tooth_errors", "curves", when=asked.single_teeth)}
+"""Teeth that deviate from the others."""
 MOVING = {**HARMONICS, **BODIES, "friction": From("lubrication", "excitation", when=asked.friction_in_motion)}
 """What stages take that set the machine in motion."""

@@ -1,7 +1,16 @@
 """How meshes share the load."""
 
 from facegear.pipeline import asked, studies
-from facegear.pipeline.rows.shared import ACCURACY, BODIES, HARMONICS, MACHINE, MOVING, SHARING, SPEED
+from facegear.pipeline.rows.shared import (
+    ACCURACY,
+    BODIES,
+    HARMONICS,
+    MACHINE,
+    MOVING,
+    SHARING,
+    SPEED,
+    TOOTH_ERRORS,
+)
 from facegear.pipeline.stage import Computed, Figures, File, From, Stage, from_stage
 
 CASE_COLUMNS = ("study", "point", "label")
@@ -69,7 +78,7 @@ ROWS = (
         name="hunting",
         title="Quasi-static load sharing over the hunting cycle",
         needs={**MACHINE, "positions": "load_sharing.hunting_positions"},
-        upstream={**HARMONICS, **BODIES},
+        upstream={**HARMONICS, **BODIES, **TOOTH_ERRORS},
         files={
             "meshes": File(
                 "load_sharing/hunting_meshes.csv",
@@ -107,7 +116,7 @@ ROWS = (
             "positions": "load_sharing.hunting_positions",
             "cycles": "load_sharing.followed_cycles",
         },
-        upstream=MOVING,
+        upstream={**MOVING, **TOOTH_ERRORS},
         files={
             "groups": File("load_sharing/following_groups.csv"),
             "meshes": File("load_sharing/following_meshes.csv"),

@@ -120,6 +120,26 @@ ROWS = (
         priority=75,
     ),
     Stage(
+        name="tooth_errors",
+        title="Teeth that deviate from the others of their gear",
+        needs={**PAIR, "torque": "mesh_stiffness.torque_n_m"},
+        upstream={**FLANKS, "loads": From("contact", "loads")},
+        files={
+            "curves": File("contact/tooth_errors.npz", "facegear.contact.columns:TOOTH_ERROR_ARRAYS"),
+            "orders": File(
+                "contact/tooth_errors.csv", ("order", "unloaded_um", "loaded_um"), may_be_empty=True
+            ),
+        },
+        figures=Figures(
+            draw="facegear.plots.tooth_errors:figures",
+            names=("tooth_errors",),
+            chapter="contact",
+            upstream=from_stage("tooth_errors", "curves", "orders"),
+        ),
+        asked=asked.single_teeth,
+        local=True,
+    ),
+    Stage(
         name="mesh_law",
         title="Load-dependent mesh law",
         needs={**PAIR, "contact": "contact", "mesh_stiffness": "mesh_stiffness"},

@@ -201,3 +201,10 @@ def test_a_wave_of_1_um_and_3_mm_has_the_curvature_of_its_second_derivative(pair
     design = pair()
     grid = sampled(design, "face_gear", lambda r, d: UM * np.cos(2 * np.pi * d / (3 * MM)) + 0.0 * r, (5, 65))
     assert -derivative(grid, 0.2625, 3 * MM, (0, 2)) == pytest.approx(4.386, rel=3e-3)
+
+
+@pytest.mark.parametrize("places", [(2, 2), (2, 5), (3, 3), (3, 6)])
+def test_few_places_have_the_derivatives_of_their_polynomial(pair, places):
+    grid = sampled(pair(), "face_gear", lambda r, d: (1.0 + r) * (1.0 + d) * 1e-3, places)
+    found = [derivative(grid, 0.26, 0.004, orders) for orders in ((1, 0), (0, 1), (1, 1), (2, 0), (0, 2))]
+    np.testing.assert_allclose(found, [1.004e-3, 1.26e-3, 1e-3, 0.0, 0.0], atol=1e-9)

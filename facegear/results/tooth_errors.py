@@ -1,0 +1,26 @@
+"""What single teeth that deviate from the others add to the transmission error."""
+
+from typing import TYPE_CHECKING, ClassVar
+
+import pandas as pd
+
+from facegear.results.base import Result
+
+if TYPE_CHECKING:
+    from facegear.plots.style import Figure
+
+
+class ToothErrorsResult(Result):
+    """Tooth to tooth, over a turn of either gear: at the orders of its turns, with and without load."""
+
+    STAGE: ClassVar = "tooth_errors"
+
+    def table(self) -> pd.DataFrame:
+        """One row an order of a gear's turns: amplitude (um) of the drive flank's transmission error."""
+        return self.content["orders"].copy()
+
+    def plot(self) -> "Figure":
+        """What the teeth of either gear add under load, over one of its turns."""
+        from facegear.plots.tooth_errors import tooth_error_figure
+
+        return tooth_error_figure(self.content["curves"], self.content["orders"])

@@ -1,0 +1,70 @@
+"""How teeth that deviate from the others of their gear disturb the mesh over the hunting cycle."""
+
+from math import lcm
+
+import numpy as np
+import pandas as pd
+
+from facegear.arrays import Array, Arrays
+from facegear.config.tooth_pair import ToothPair, pair_design, single_teeth
+from facegear.contact.gear_flank import from_arrays
+from facegear.contact.teeth import ContactSide
+from facegear.contact.tooth_errors import loaded_curves, orders, pair_gaps, unloaded_errors
+from facegear.geometry.bodies import BODIES, Body
+from facegear.geometry.flank_errors import FLANKS, pair_at
+from facegear.stages.outcome import Outcome
+
+POSITIONS = 16
+"""Positions of a pitch at which gaps without load are looked at."""
+ORDERS = 6
+
+
+def tooth_errors(
+    pinion: Arrays, face_gear: Arrays, loads: Arrays, tooth_pair: ToothPair, torque: float
+) -> Outcome:
+    """`curves` (arrays): what the teeth of each gear add to the transmission error at `torque` (N m) over one
+    of its turns; `orders` (table): amplitudes of the first orders of either gear, with and without load.
+
+    pinion, face_gear: arrays of stage compliance; loads: arrays of stage contact. Raises NotConverged.
+    """
+    sides: dict[Body, ContactSide] = {
+        "pinion": from_arrays(pinion).side,
+        "face_gear": from_arrays(face_gear).side,
+    }
+    design = pair_design(tooth_pair)
+    curves: dict[str, Array] = {}
+    for number, side in enumerate(FLANKS):
+        teeth = single_teeth(tooth_pair, side)
+        met = pair_at(design, "upper", side)
+        if side == "back":  # seen in a mirror, teeth come into mesh the other way round
+            teeth = {body: (own[0], *own[:0:-1]) for body, own in teeth.items()}
+        variant = int(loads["flank_variant"][0, number])
+        added = loaded_curves(met, sides, loads, torque, teeth, variant)
+        curves |= {f"{body}_{side}_m": added[body] for body in BODIES}
+    teeth = single_teeth(tooth_pair, "drive")
+    turns = [len(own) if len(set(own)) > 1 else 1 for own in teeth.values()]
+    unloaded = unloaded_errors(pair_gaps(design, POSITIONS), teeth, lcm(*turns))
+    table = pd.DataFrame(
+        [
+            {"body": body, "order": order + 1, "unloaded_um": 1e6 * free, "loaded_um": 1e6 * loaded}
+            for body in BODIES
+            if len(set(teeth[body])) > 1
+            for order, (free, loaded) in enumerate(
+                zip(
+                    orders(unloaded, len(teeth[body]), ORDERS),
+                    _curve_orders(curves[f"{body}_drive_m"]),
+                    strict=True,
+                )
+            )
+        ],
+        columns=["body", "order", "unloaded_um", "loaded_um"],
+    )
+    summary = (
+        f"tooth to tooth {1e6 * np.ptp(unloaded):.3g} um without load over {len(unloaded)} mesh cycles, "
+        f"{1e6 * sum(np.ptp(curves[f'{body}_drive_m']) for body in BODIES):.3g} um at {torque:g} N m"
+    )
+    return Outcome({"curves": curves, "orders": table}, summary)
+
+
+def _curve_orders(curve: Array) -> Array:
+    return (2.0 * np.abs(np.fft.rfft(curve)) / curve.size)[1 : ORDERS + 1]
