@@ -38,6 +38,8 @@ CONTACT_ASKED = "where machines among many differ in their teeth, or are judged 
 STRAIN, STEEL, WIDEST = 0.02, 206e9, 40.0
 """Force over module, face width and Young's modulus that no tooth stands; Pa; face width in modules."""
 BROKEN = "beyond it the tooth force is 2 % of Young's modulus times module and face width"
+SAME_PITCH = 1e-5
+"""Relative difference up to which a curve's period counts as the pinion's pitch."""
 TAKEN_NAMES = ("nominal", "nominal_summary", "summary", "reference", "speed_range")
 """Files that load sharing writes beside those of the studies."""
 
@@ -52,6 +54,14 @@ def with_backlash(pair: ToothPair, section: Transmission) -> Transmission:
     if section.backlash_um is not None:
         return section
     return section.model_copy(update={"backlash_um": round(geometric_backlash(pair), 6)})
+
+
+def check_pitch(stiffness: MeshStiffness, teeth: int) -> None:
+    """A stiffness over the pinion's angle covers a pitch of the pinion. Raises ConfigError."""
+    covered = stiffness.csv_pitch_deg
+    if covered is not None and abs(covered * teeth / 360.0 - 1.0) > SAME_PITCH:
+        allowed = f"over one pitch of the pinion, {360.0 / teeth:.8g} deg for {teeth} teeth"
+        raise ConfigError("mesh_stiffness.csv", f"{covered:.8g} deg of pinion_angle_deg", allowed)
 
 
 def check_load(stiffness: MeshStiffness, contact: Contact) -> None:

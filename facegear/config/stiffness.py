@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 
 from facegear.config.base import Section, refuse
 from facegear.config.csv_file import CsvFault, CsvRow, read_numbers
+from facegear.harmonics.fit import fit_harmonics
 from facegear.harmonics.series import Harmonics
 from facegear.stiffness.request import StiffnessRequest
 
@@ -30,6 +31,10 @@ class HarmonicSection(Section):
 
 
 COLUMNS = tuple(HarmonicSection.model_fields)
+CURVE = ("pinion_angle_deg", "k_n_per_m")
+"""Columns of a csv that holds k over the pinion's angle instead, as `StiffnessResult.over_angle` gives it."""
+EVEN = 1e-6
+"""Part of a step by which the angles of a curve may differ from even ones."""
 
 
 class MeshStiffness(Section):
@@ -74,7 +79,14 @@ class MeshStiffness(Section):
         default=None,
         min_length=1,
         description="for source harmonics, instead of table: a file with the columns order, a_n_per_m, "
-        "b_n_per_m; its path counts from this file's folder",
+        "b_n_per_m, or pinion_angle_deg, k_n_per_m over one pitch of the pinion; its path counts from this "
+        "file's folder",
+    )
+    csv_pitch_deg: float | None = Field(
+        default=None,
+        gt=0,
+        exclude=True,
+        description="left out: the pitch that the angles of a csv cover, which must be that of the pinion",
     )
 
     @model_validator(mode="before")
@@ -92,10 +104,10 @@ class MeshStiffness(Section):
         if values.get("source") != "harmonics":
             refuse("csv", name, "left out unless source is harmonics")
         try:
-            table = _harmonics(read_numbers(name, COLUMNS))
+            table, pitch = _given(name)
         except CsvFault as fault:
             refuse("csv", name, f"a csv of numbers; {fault}")
-        return {**values, "csv": None, "table": table}
+        return {**values, "csv": None, "table": table, "csv_pitch_deg": pitch}
 
     @model_validator(mode="after")
     def _complete(self) -> "MeshStiffness":
@@ -172,6 +184,36 @@ def _check_mean(mean: float | None, first: HarmonicSection) -> None:
     if mean is not None and abs(mean / first.b_n_per_m - 1.0) > SAME_MEAN:
         condition = f"the same as order 0 of the harmonics, {first.b_n_per_m:.10g}, or left out"
         refuse("mean_n_per_m", mean, condition)
+
+
+def _given(name: str) -> tuple[tuple[dict[str, Any], ...], float | None]:
+    """Rows of `table` from a csv of orders, or from one over the pinion's angle with the pitch it covers."""
+    try:
+        return _harmonics(read_numbers(name, COLUMNS)), None
+    except CsvFault as fault:
+        try:
+            return _of_curve(read_numbers(name, CURVE))
+        except CsvFault as other:
+            raise fault if f"column {CURVE[0]} must" in str(other) else other from None
+
+
+def _of_curve(curve: Sequence[CsvRow]) -> tuple[tuple[dict[str, Any], ...], float]:
+    """The same from rows over the angle, and the pitch (deg) that they cover."""
+    angle, stiffness = (np.array([row.values[column] for row in curve]) for column in CURVE)
+    if not 4 <= len(curve) <= 2 * MAX_ORDER:
+        raise CsvFault(f"it must have from 4 to {2 * MAX_ORDER} rows over the pitch, not {len(curve)}")
+    step = (angle[-1] - angle[0]) / (len(curve) - 1)
+    uneven = np.abs(angle - step * np.arange(len(curve))) > EVEN * abs(step)
+    if step <= 0.0 or uneven.any():
+        line = curve[int(np.argmax(uneven))].line
+        raise CsvFault(
+            f"line {line}: {CURVE[0]} must rise in even steps from 0, the end of the pitch left out"
+        )
+    if np.abs(stiffness).max() > 1e12:
+        raise CsvFault(f"line {curve[int(np.argmax(np.abs(stiffness)))].line}: {CURVE[1]} is beyond 1e12")
+    series = fit_harmonics(stiffness).series
+    terms = zip(range(series.order + 1), series.a.tolist(), series.b.tolist(), strict=True)
+    return tuple(dict(zip(COLUMNS, row, strict=True)) for row in terms), float(step * len(curve))
 
 
 def _harmonics(rows: Sequence[CsvRow]) -> tuple[dict[str, Any], ...]:

@@ -1,12 +1,19 @@
 """Given harmonics: one rule for a table and a csv, and every fault told when the config is read."""
 
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from facegear.config.base import parse
+from facegear.config.checks import check_pitch
 from facegear.config.stiffness import MeshStiffness, stiffness_request
-from facegear.errors import ConfigErrors
+from facegear.errors import ConfigError, ConfigErrors
+from facegear.harmonics.series import Harmonics
 from facegear.stiffness.source import stiffness_given
 
 HEADER = "order,a_n_per_m,b_n_per_m\n"
@@ -112,3 +119,46 @@ def test_any_csv_is_used_or_refused_in_one_line(tmp_path_factory, text, headed):
         assert len(error.lines) == 1
     else:
         assert stiffness_request(own).given.kept(own.harmonics_kept).minimum > 0.0
+
+
+@given(st.integers(2, 40), st.integers(0, 2**32 - 1))
+def test_a_curve_over_the_pinions_angle_that_was_written_is_read_as_the_same_series(orders, seed):
+    """Simulink and spreadsheets hold k over an angle; what `over_angle` gives comes back to rounding."""
+    chance = np.random.default_rng(seed)
+    a, b = chance.normal(size=(2, orders + 1)) * 1e6
+    a[0], b[0] = 0.0, 4e8
+    teeth, count = 23, 2 * orders + 2
+    cycles = np.arange(count) / count
+    curve = pd.DataFrame({"pinion_angle_deg": 360.0 / teeth * cycles, "k_n_per_m": Harmonics(a, b)(cycles)})
+    with TemporaryDirectory() as folder:
+        read = section(Path(folder), curve.to_csv(index=False))
+    found = stiffness_request(read).given
+    np.testing.assert_allclose(found.a, a, atol=1e-6 * 4e8 * 1e-6)
+    np.testing.assert_allclose(found.b, b, atol=1e-6 * 4e8 * 1e-6)
+    assert read.csv_pitch_deg == pytest.approx(360.0 / teeth) and "csv_pitch_deg" not in read.model_dump()
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        ("0,4e8\n1,4e8\n2,4e8\n", "must have from 4 to 1024 rows over the pitch, not 3"),
+        ("0,4e8\n1,4e8\n2,4e8\n4,4e8\n", "must rise in even steps from 0, the end of the pitch left out"),
+        ("1,4e8\n2,4e8\n3,4e8\n4,4e8\n", "must rise in even steps from 0, the end of the pitch left out"),
+        ("0,4e8\n1,soft\n2,4e8\n3,4e8\n", "line 3: k_n_per_m = 'soft' is not a finite number"),
+    ],
+)
+def test_a_curve_that_is_no_pitch_is_refused_with_its_line(tmp_path, rows, words):
+    with pytest.raises(ConfigErrors) as refused:
+        section(tmp_path, "pinion_angle_deg,k_n_per_m\n" + rows)
+    assert words in str(refused.value)
+
+
+def test_a_curve_over_another_angle_than_the_pinions_pitch_is_refused_with_the_pitch(tmp_path):
+    angles = np.arange(8) * 360.0 / 25 / 8
+    text = pd.DataFrame({"pinion_angle_deg": angles, "k_n_per_m": 4e8}).to_csv(index=False)
+    stiffness = section(tmp_path, text)
+    check_pitch(stiffness, 25)
+    with pytest.raises(
+        ConfigError, match=r"14\.4 deg of pinion_angle_deg': must be over one pitch.*15\.652174"
+    ):
+        check_pitch(stiffness, 23)
