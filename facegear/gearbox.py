@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from facegear.results.response import ResponseResult
     from facegear.results.root_stress import RootStressResult
     from facegear.results.search import SearchResult
+    from facegear.results.shafts import ShaftsResult
     from facegear.results.statics import StaticsResult
     from facegear.results.stiffness import StiffnessResult
     from facegear.results.stress_over_speed import StressOverSpeedResult
@@ -300,6 +301,15 @@ class Gearbox:
         from facegear.results.gear_waves import GearWavesResult
 
         return self._chain.result(GearWavesResult)
+
+    def shafts(self) -> "ShaftsResult":
+        """Stiffness and bearing loads of pinions' shafts, twist of engines and rotors, at rest.
+
+        Raises ConfigError for a machine without shafts and torsion, NotConverged.
+        """
+        from facegear.results.shafts import ShaftsResult
+
+        return self._chain.result(ShaftsResult)
 
     def response(self, speed_rpm: float | None = None) -> "ResponseResult":
         """Steady state at a pinion speed, the config's unless given.

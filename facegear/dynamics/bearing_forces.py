@@ -4,10 +4,11 @@ import numpy as np
 import pandas as pd
 import scipy
 
-from facegear.arrays import Array
+from facegear.arrays import Array, Integers
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.steady_state.simulate import Model, SteadyState
 from facegear.dynamics.steady_state.statistics import moments
+from facegear.transmission.shaft_loads import bearing_names, shaft_bearing_loads
 from facegear.transmission.static_gears import at_rest
 from facegear.transmission.statics import static_bearing_forces
 
@@ -32,20 +33,41 @@ def bearing_history(model: Model, response: SteadyState) -> Array:
     outside and is no bearing's. With clearance the spring acts beyond it, F = k (1 - c / r) (x, y), and its
     damping is beta dF/dt.
     """
-    machine, basis = model.machine, model.reduced.basis
-    linear = machine.linear
+    basis, linear = model.reduced.basis, model.machine.linear
     lag, rings = linear.bearing_damping, linear.rings
     rate, held = velocities(response), linear.translations
-    forces = (response.coordinates + lag * rate) @ (basis.T @ linear.stiffness[:, held.ravel()])
-    if linear.dampers.any():
-        forces += rate @ (basis.T @ linear.dampers[held.ravel()].T)
-    forces = forces.reshape(-1, *held.shape)
+    forces = _held_by(model, response, rate, held.ravel()).reshape(-1, *held.shape)
     for places, i, spring, clearance in zip(
         linear.ring_coordinates, rings.body, rings.stiffness, rings.clearance, strict=True
     ):
         rows = basis[places].T
         forces[:, i, :2] = _ring_force(response.coordinates @ rows, rate @ rows, spring, clearance, lag)
     return forces
+
+
+def _held_by(model: Model, response: SteadyState, rate: Array, coordinates: Integers) -> Array:
+    """Force or moment (K, coordinates) on springs and dampers along some coordinates."""
+    linear, basis = model.machine.linear, model.reduced.basis
+    forces = (response.coordinates + linear.bearing_damping * rate) @ (
+        basis.T @ linear.stiffness[:, coordinates]
+    )
+    if linear.dampers.any():
+        forces += rate @ (basis.T @ linear.dampers[coordinates].T)
+    return np.asarray(forces)
+
+
+def shaft_bearing_history(model: Model, response: SteadyState, forces: Array) -> Array:
+    """Loads of pinions' shafts on their bearings, (K, bearings, 5), N and N m, as shaft_bearing_loads() has
+    them.
+
+    forces (K, bodies, 3): bearing_history() of the response. Masses of shafts count nothing.
+    """
+    line = model.machine.drive_line
+    if line is None:
+        return np.zeros((len(forces), 0, 5))
+    rate = velocities(response)
+    moments = {i: _held_by(model, response, rate, line.tilts(i)) for i in line.tilting}
+    return shaft_bearing_loads(line, forces, moments)
 
 
 def _ring_force(displacement: Array, speed: Array, stiffness: float, clearance: float, lag: float) -> Array:
@@ -67,17 +89,24 @@ def velocities(response: SteadyState) -> Array:
 
 
 def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:
-    """BEARING_COLUMNS, four rows a body: along x, y, z, and the magnitude of x and y together.
+    """BEARING_COLUMNS, four rows a body: along x, y, z, and the magnitude of x and y together. Below them the
+    same of each bearing of a pinion's shaft, `right input bearing A`.
 
     static: at rest under the mean torques; peak: the largest magnitude of the samples; interval: 95 %
     half-width, 0 for a periodic motion. A pinion's x is tangential and y along the gears' axis, both radial
     for its bearing; a face gear's axis is z.
     """
-    layout = model.machine.layout
-    moving = _with_radial(bearing_history(model, response))
-    static = _with_radial(static_bearing_forces(at_rest(model.machine))[None])[0]
+    machine = model.machine
+    history, resting = bearing_history(model, response), static_bearing_forces(at_rest(machine))[None]
+    bodies = list(machine.layout.body_names)
+    if (line := machine.drive_line) is not None:
+        bodies += [f"{bodies[pinion]} bearing {letter}" for pinion, letter in bearing_names(line)]
+        own = shaft_bearing_history(model, response, history)[..., :3]
+        history = np.concatenate([history, own], axis=1)
+        resting = np.concatenate([resting, shaft_bearing_loads(line, resting)[..., :3]], axis=1)
+    moving, static = _with_radial(history), _with_radial(resting)[0]
     statistics = moments(moving.reshape(len(moving), -1), response.per_period, response.period > 0)
-    names = [(body, direction) for body in layout.body_names for direction in DIRECTIONS]
+    names = [(body, direction) for body in bodies for direction in DIRECTIONS]
     table = pd.DataFrame(names, columns=["body", "direction"])
     values = (
         static.ravel(),

@@ -6,6 +6,8 @@ import pandas as pd
 from facegear.arrays import Array
 from facegear.load_sharing.even_shares import even_shares
 from facegear.load_sharing.hunting import HuntingCycle, LoadHistory, largest
+from facegear.transmission.drive_line import DriveLine
+from facegear.transmission.shaft_loads import bearing_names, shaft_bearing_loads
 
 MESH_COLUMNS = (
     "mesh",
@@ -92,15 +94,18 @@ def group_table(run: HuntingCycle) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def bearing_table(run: HuntingCycle) -> pd.DataFrame:
-    """One row a body: mean force on its bearing along x, y, z and largest radial and axial force, N.
+def bearing_table(run: HuntingCycle, line: DriveLine | None = None) -> pd.DataFrame:
+    """One row a body: mean force on its bearing along x, y, z and largest radial and axial force, N; then one
+    a bearing of the drive line's shafts.
 
     A pinion's x is tangential and y along the gears' axis, both radial for its bearing; a face gear's axis
     is z.
     """
-    layout = run.machine.layout
-    rows = []
-    for name, force in zip(layout.body_names, run.bearings.transpose(1, 0, 2), strict=True):
+    names, forces, rows = list(run.machine.layout.body_names), run.bearings, []
+    if line is not None:
+        names += [f"{names[pinion]} bearing {letter}" for pinion, letter in bearing_names(line)]
+        forces = np.concatenate([forces, shaft_bearing_loads(line, forces)[..., :3]], axis=1)
+    for name, force in zip(names, forces.transpose(1, 0, 2), strict=True):
         radial = np.hypot(force[:, 0], force[:, 1])
         rows.append((name, *force.mean(axis=0), radial.mean(), radial.max(), np.abs(force[:, 2]).max()))
     columns = ("body", "mean_x_n", "mean_y_n", "mean_z_n", "mean_radial_n", "largest_radial_n")

@@ -101,6 +101,12 @@ def solid_pair(case: Case) -> Any:
     return case.values["tooth_pair"] if elastic_gears(case) else None
 
 
+def drive_line(case: Case) -> bool:
+    """Whether pinions have shafts, or torques turn masses behind torsional springs."""
+    transmission = case.values["transmission"]
+    return transmission is not None and bool(transmission["shafts"] or transmission["torsion"])
+
+
 def machine_stress(case: Case) -> bool:
     """Whether section transmission is given and root stress asked for."""
     return machine(case) and root_stress(case)

@@ -24,14 +24,13 @@ def hunting(
     tooth_errors: Arrays | None = None,
 ) -> Outcome:
     """Tables `meshes`, `groups`, `bearings`, `cycles`, `scan`, `sensitivity`. Raises NotConverged."""
-    machine = at_rest(
-        wired_machine(transmission, teeth, harmonics, law=law, bodies=bodies, tooth_errors=tooth_errors)
-    )
+    whole = wired_machine(transmission, teeth, harmonics, law=law, bodies=bodies, tooth_errors=tooth_errors)
+    machine = at_rest(whole)
     cycle = hunting_cycle(machine, positions)
     content = {
         "meshes": mesh_table(cycle),
         "groups": (groups := group_table(cycle)),
-        "bearings": bearing_table(cycle),
+        "bearings": bearing_table(cycle, whole.drive_line),
         "cycles": cycle_table(cycle),
         "scan": bearing_scan(machine),
         "sensitivity": sensitivities(cycle),

@@ -51,6 +51,20 @@ ROWS = (
         local=True,
     ),
     Stage(
+        name="shafts",
+        title="Shafts of pinions, engines and rotors under load",
+        needs=MACHINE,
+        upstream={**HARMONICS, **BODIES},
+        files={
+            "seats": File("shafts/seats.csv", ("pinion", "x_um", "tilt_y_urad"), may_be_empty=True),
+            "stiffness": File("shafts/stiffness.csv", ("pinion", "motion", "x"), may_be_empty=True),
+            "bearings": File("shafts/bearings.csv", ("pinion", "bearing", "radial_n"), may_be_empty=True),
+            "torsion": File("shafts/torsion.csv", ("body", "mass", "windup_deg"), may_be_empty=True),
+        },
+        asked=asked.drive_line,
+        local=True,
+    ),
+    Stage(
         name="gear_waves",
         title="Modes at the nominal speed and the waves of face gears that bend",
         needs={**MACHINE, **SPEED},

@@ -31,7 +31,7 @@ def overhung():
 @against(
     "analytic",
     "notes of the project, bodies.md 6: two bearings, pinion between them and overhung",
-    capability="modal",
+    capability="shafts",
     module="facegear.shafts.condensed",
 )
 def test_compliance_of_a_pinion_between_two_bearings_and_overhung_has_its_known_numbers():
@@ -87,7 +87,7 @@ def closed_form(length, reach, diameter, bore, first, second):
 @against(
     "analytic",
     "a beam on two springs, bodies.md 6",
-    capability="modal",
+    capability="shafts",
     module="facegear.shafts.condensed",
 )
 @given(

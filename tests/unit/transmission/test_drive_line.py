@@ -5,55 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.linalg
+from drive_lines import CHAINS, TILT_INERTIA, driven, on_bearings
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
-from facegear.shafts.beam import Elasticity, Segment
-from facegear.shafts.condensed import Bearing, Shaft, condensed
 from facegear.transmission import statics
-from facegear.transmission.drive_line import DriveLine, Seat, TurningMass
+from facegear.transmission.drive_line import DriveLine, TurningMass
 from facegear.transmission.loaded_modes import loaded_modes
 from facegear.transmission.mode_classes import name_modes
 from facegear.transmission.modes import modes_of
 from facegear.transmission.statics import equilibria, mean_equilibrium, static_bearing_forces
 from facegear.transmission.teeth import GEOMETRIC
 
-STEEL = Elasticity(206e9, 0.3)
-TILT_INERTIA = 1.5e-3
 CYCLES = np.array([0.0, 0.3, 0.71])
-
-
-def on_bearings(first, second, young=1.0, coupled=0.0):
-    """A pinion between two bearings; coupled (N/rad): z with tilt_y in the first."""
-    matrix = np.diag([first, first, 1e8, 2e5, 2e5])
-    matrix[2, 4] = matrix[4, 2] = coupled
-    bearings = (Bearing(0.0, matrix), Bearing(0.12, np.diag([second, second, 0.0, 0.0, 0.0])))
-    return condensed(Shaft((Segment(0.12, 0.04),), Elasticity(young * 206e9, 0.3), bearings, 0.05))
-
-
-def seated(shaft, layout, tilting=True, masses=None):
-    """A layout whose pinions all sit on a shaft, and its drive line."""
-    across = np.linalg.inv(shaft.compliance[:2, :2])
-    bearing = (across[0, 0], across[1, 1], 1.0 / shaft.compliance[2, 2])
-    pinions = tuple(replace(p, body=replace(p.body, bearing=bearing)) for p in layout.pinions)
-    placed = replace(layout, pinions=pinions)
-    seat = Seat(shaft, TILT_INERTIA if tilting else None)
-    return placed, DriveLine(placed, dict.fromkeys(range(len(pinions)), seat), masses or {})
-
-
-def gearbox(shaft=None, tilting=True, masses=None, **more):
-    layout = make_layout(kinematics=GEOMETRIC)
-    line = DriveLine(layout, {}, masses or {})
-    if shaft is not None:
-        layout, line = seated(shaft, layout, tilting, masses)
-    return replace(make_machine(layout, **more), drive_line=line if shaft or masses else None)
-
-
-ENGINES = {
-    2: (TurningMass("coupling", 6e5, 0.002, 0.02), TurningMass("engine", 2.5e4, 0.08, 0.01)),
-    3: (TurningMass("engine", 2.5e4, 0.08),),
-    6: (TurningMass("rotor", 5e6, 30.0, 0.005),),
-}
 SHAFTS = pytest.mark.parametrize(
     "shaft", [on_bearings(1.5e8, 2.5e8), on_bearings(1.5e8, 2.5e8, coupled=2e6)], ids=["even", "coupled"]
 )
@@ -75,7 +39,7 @@ def swings(inertia, chain, held=0.0):
     return np.sqrt(scipy.linalg.eigvalsh(matrix, linear.mass[np.ix_(own, own)]).clip(0.0)) / (2.0 * np.pi)
 
 
-@against("analytic", SWINGING, capability="modal", module="facegear.transmission.drive_line")
+@against("analytic", SWINGING, capability="shafts", module="facegear.transmission.drive_line")
 def test_masses_on_torsional_springs_swing_at_the_roots_of_their_closed_form():
     engine, pinion = TurningMass("engine", 2.5e4, 0.08), TurningMass("pinion", 6e5, 0.002)
     free, alone = swings(0.002, (engine,)), swings(0.9, (pinion, engine))
@@ -86,8 +50,8 @@ def test_masses_on_torsional_springs_swing_at_the_roots_of_their_closed_form():
 
 
 @SHAFTS
-def test_statics_with_shafts_and_branches_are_those_of_dense_algebra(shaft, monkeypatch):
-    machine = gearbox(shaft, masses=ENGINES)
+def test_statics_with_shafts_and_turning_masses_are_those_of_dense_algebra(shaft, monkeypatch):
+    machine = driven(shaft, masses=CHAINS)
     quick = equilibria(machine, CYCLES)
     monkeypatch.setattr(statics, "has_blocks", lambda machine: False)
     dense = equilibria(machine, CYCLES)
@@ -104,7 +68,7 @@ def test_statics_with_shafts_and_branches_are_those_of_dense_algebra(shaft, monk
 @pytest.mark.parametrize("tilting", [False, True])
 def test_at_rest_a_shaft_is_its_deflection_by_a_force_and_its_bearings_carry_the_pinion(tilting):
     shaft = on_bearings(1.5e8, 2.5e8)
-    machine = gearbox(shaft, tilting)
+    machine = driven(shaft, tilting)
     plain = replace(machine, drive_line=None)
     found, expected = mean_equilibrium(machine), mean_equilibrium(plain)
     np.testing.assert_allclose(found.flank_forces, expected.flank_forces, rtol=1e-12, atol=1e-9)
@@ -117,7 +81,7 @@ def test_at_rest_a_shaft_is_its_deflection_by_a_force_and_its_bearings_carry_the
 
 
 def test_a_torque_twists_its_branch_and_passes_it_whole():
-    machine = gearbox(masses=ENGINES)
+    machine = driven(masses=CHAINS)
     at, line = mean_equilibrium(machine).displacements[0], machine.drive_line
     plain = mean_equilibrium(replace(machine, drive_line=None))
     np.testing.assert_allclose(plain.flank_forces, mean_equilibrium(machine).flank_forces, rtol=1e-12)
@@ -135,12 +99,12 @@ def test_a_torque_twists_its_branch_and_passes_it_whole():
 def test_stiff_shafts_give_the_machine_on_its_bearings_alone():
     """Differences shrink as the shaft's compliance does, in frequencies and in forces."""
     rigid = on_bearings(1.5e8, 2.5e8, young=1e12)
-    reference = gearbox(rigid)
+    reference = driven(rigid)
     base = loaded_modes(reference, 7500.0).frequencies
     forces = mean_equilibrium(reference).forces[0]
     away = {}
     for factor in (1e3, 1e4):
-        machine = gearbox(on_bearings(1.5e8, 2.5e8, young=factor))
+        machine = driven(on_bearings(1.5e8, 2.5e8, young=factor))
         frequencies = loaded_modes(machine, 7500.0).frequencies
         away[factor] = np.array(
             [
@@ -154,7 +118,7 @@ def test_stiff_shafts_give_the_machine_on_its_bearings_alone():
 
 def test_stiff_torsion_gives_the_machine_with_the_masses_on_its_gears():
     masses = {2: (TurningMass("engine", 2.5e4, 0.004),), 6: (TurningMass("rotor", 5e6, 2.0),)}
-    heavy = gearbox()
+    heavy = driven()
     pinion, gear = heavy.layout.pinions[2], heavy.layout.gears[1]
     pinion = replace(pinion, body=replace(pinion.body, inertia=0.002 + 0.004))
     gear = replace(gear, body=replace(gear.body, inertia=0.54 + 2.0))
@@ -167,14 +131,14 @@ def test_stiff_torsion_gives_the_machine_with_the_masses_on_its_gears():
             body: tuple(replace(part, stiffness=factor * part.stiffness) for part in chain)
             for body, chain in masses.items()
         }
-        found = loaded_modes(gearbox(masses=stiff)).frequencies[: base.size]
+        found = loaded_modes(driven(masses=stiff)).frequencies[: base.size]
         away.append(np.abs(found - base)[base > 1.0] / base[base > 1.0])
     assert away[1].max() < 1e-4
     assert away[0].max() / away[1].max() == pytest.approx(10.0, rel=0.05)
 
 
-def test_without_shafts_and_branches_the_machine_is_what_it_was_to_the_bit():
-    plain = gearbox()
+def test_without_shafts_and_turning_masses_the_machine_is_what_it_was_to_the_bit():
+    plain = driven()
     empty = replace(plain, drive_line=DriveLine(plain.layout, {}, {}))
     for name in ("mass", "stiffness", "rows", "torques", "forces", "lengths", "dampers"):
         np.testing.assert_array_equal(getattr(empty.linear, name), getattr(plain.linear, name))
@@ -182,7 +146,7 @@ def test_without_shafts_and_branches_the_machine_is_what_it_was_to_the_bit():
 
 
 def test_lumped_damping_acts_on_no_branch():
-    machine = gearbox(masses=ENGINES)
+    machine = driven(masses=CHAINS)
     line, linear = machine.drive_line, machine.linear
     springs = line.springs()
     for row in np.arange(28, linear.size):
@@ -198,7 +162,7 @@ def test_lumped_damping_acts_on_no_branch():
 
 
 def test_forward_whirl_of_a_pinion_turns_against_its_z_as_its_spin_does_and_is_the_faster():
-    machine = gearbox(on_bearings(1.5e8, 2.5e8))
+    machine = driven(on_bearings(1.5e8, 2.5e8))
     tilts = machine.drive_line.tilts(2)
     free = modes_of(machine.linear, np.zeros_like(machine.linear.mass), 60000.0 * np.pi / 30.0)
     moves = np.abs(free.shapes[tilts]).max(axis=0) > 1e-6
@@ -213,8 +177,8 @@ def test_forward_whirl_of_a_pinion_turns_against_its_z_as_its_spin_does_and_is_t
     assert backward < still < forward
 
 
-def test_tilts_and_branches_are_named_in_the_modes_that_they_move_in():
-    machine = gearbox(on_bearings(1.5e8, 2.5e8), masses=ENGINES)
+def test_tilts_and_turning_masses_are_named_in_the_modes_that_they_move_in():
+    machine = driven(on_bearings(1.5e8, 2.5e8), masses=CHAINS)
     modes = loaded_modes(machine)
     symbols = {name.symbols for name in name_modes(machine.layout, machine.linear, modes)}
     assert any("tilt" in symbol for symbol in symbols)

@@ -1,0 +1,52 @@
+"""Shafts of pinions and masses behind torsional springs, with the machine at rest under its torques."""
+
+import numpy as np
+import pandas as pd
+
+from facegear.arrays import Arrays
+from facegear.config.lumped_model import ToothNumbers
+from facegear.config.machines import wired_machine
+from facegear.config.transmission import Transmission
+from facegear.errors import ConfigError
+from facegear.stages.outcome import Outcome
+from facegear.transmission.shaft_tables import load_table, seat_table, stiffness_table, torsion_table
+from facegear.transmission.static_gears import at_rest
+from facegear.transmission.statics import mean_equilibrium
+
+
+def shafts(
+    harmonics: pd.DataFrame,
+    transmission: Transmission,
+    teeth: ToothNumbers,
+    bodies: Arrays | None = None,
+    law: Arrays | None = None,
+) -> Outcome:
+    """`seats`, `stiffness`, `bearings`, `torsion` (tables). Raises ConfigError without shafts and torsion,
+    NotConverged.
+    """
+    machine = wired_machine(transmission, teeth, harmonics, law=law, bodies=bodies)
+    if (line := machine.drive_line) is None:
+        raise ConfigError("transmission.shafts", {}, "given, or transmission.torsion")
+    resting = at_rest(machine)
+    equilibrium = mean_equilibrium(resting)
+    content = {
+        "seats": seat_table(resting, line, equilibrium),
+        "stiffness": stiffness_table(line),
+        "bearings": load_table(resting, line, equilibrium),
+        "torsion": torsion_table(machine, line),
+    }
+    return Outcome(content, _summary(content))
+
+
+def _summary(content: dict[str, pd.DataFrame]) -> str:
+    parts, seats, bearings, torsion = [], content["seats"], content["bearings"], content["torsion"]
+    if len(seats):
+        sagged = np.hypot(seats["x_um"], seats["y_um"])
+        worst = bearings.loc[bearings["radial_n"].idxmax()]
+        parts.append(
+            f"shafts give way by up to {sagged.max():.4g} um ({seats['pinion'][int(sagged.argmax())]}), "
+            f"{worst['radial_n']:.5g} N on bearing {worst['bearing']} of {worst['pinion']}"
+        )
+    for row in torsion.itertuples():
+        parts.append(f"{row.mass} on {row.body}: {row.windup_deg:.4g} deg, {row.frequency_hz:.5g} Hz")
+    return "; ".join(parts)
