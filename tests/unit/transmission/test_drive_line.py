@@ -23,9 +23,6 @@ SHAFTS = pytest.mark.parametrize(
 )
 
 
-SWINGING = "masses on torsional springs by their characteristic equations, bodies.md 6"
-
-
 def swings(inertia, chain, held=0.0):
     """Frequencies (Hz) of a body of this inertia (kg m2) and a chain, the body on a spring (N m/rad)."""
     layout = make_layout(kinematics=GEOMETRIC)
@@ -39,7 +36,12 @@ def swings(inertia, chain, held=0.0):
     return np.sqrt(scipy.linalg.eigvalsh(matrix, linear.mass[np.ix_(own, own)]).clip(0.0)) / (2.0 * np.pi)
 
 
-@against("analytic", SWINGING, capability="shafts", module="facegear.transmission.drive_line")
+@against(
+    "analytic",
+    "masses on torsional springs by their characteristic equations, bodies.md 6",
+    capability="shafts",
+    module="facegear.transmission.drive_line",
+)
 def test_masses_on_torsional_springs_swing_at_the_roots_of_their_closed_form():
     engine, pinion = TurningMass("engine", 2.5e4, 0.08), TurningMass("pinion", 6e5, 0.002)
     free, alone = swings(0.002, (engine,)), swings(0.9, (pinion, engine))
