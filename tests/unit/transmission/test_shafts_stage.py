@@ -49,7 +49,7 @@ def outcome(**changes):
 
 @against(
     "analytic",
-    "two equal pinions opposite each other: lever rule and Euler-Bernoulli slopes of bodies.md 6",
+    "two equal pinions opposite each other: lever rule and compliance of bodies.md 6",
     capability="shafts",
     module="facegear.stages.shafts",
 )
