@@ -90,3 +90,12 @@ rule dynamics_labels:
         manifest="results/{case}/benchmarks/dynamics_labels.provenance.json",
     script:
         "../scripts/dynamics_labels.py"
+
+
+rule shaft_peer:
+    "Shafts by ROSS, torsional springs by openTorsion"
+    output:
+        table="results/{case}/benchmarks/shaft_peer.csv",
+        manifest="results/{case}/benchmarks/shaft_peer.provenance.json",
+    script:
+        "../scripts/shaft_peer.py"

@@ -1,0 +1,188 @@
+"""Shafts by ROSS and torsional springs by openTorsion: the same static and dynamic numbers as ours.
+
+Both run in an environment that uv makes.
+"""
+
+import json
+import os
+import shutil
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from facegear.arrays import Array
+from facegear.errors import FacegearError
+from facegear.harmonics.series import Harmonics
+from facegear.shafts.beam import Elasticity, Segment
+from facegear.shafts.condensed import Bearing, CondensedShaft, Shaft, condensed
+from facegear.transmission.drive_line import DriveLine, Seat, TurningMass
+from facegear.transmission.kinematics import KINEMATICS
+from facegear.transmission.layout import Body, FaceGear, Layout, Pinion, Role, Side
+from facegear.transmission.linear_model import LinearModel
+from facegear.transmission.machine import Damping, Machine
+from facegear.transmission.modes import modes_of
+from facegear.transmission.shaft_tables import chain_frequencies
+from validation.contact.process import run_alone
+
+ROSS, OPENTORSION = "2.3.0", "0.3.2"
+PACKAGES = (f"ross-rotordynamics=={ROSS}", f"opentorsion=={OPENTORSION}", "plotly<6.1")
+YOUNG, POISSON = 206e9, 0.3
+MASS, DIAMETRAL, POLAR = 1.199, 1.5e-3, 2e-3
+SPEEDS_RPM = (0.0, 20000.0, 60000.0)
+NAMES = ("x", "y", "z", "tilt_x", "tilt_y")
+SHAFTS: dict[str, dict[str, Any]] = {
+    "between bearings": {
+        "segments": [[0.12, 0.04, 0.0]],
+        "pinion": 0.05,
+        "bearings": [(0.0, 1.5e8, 1e8), (0.12, 2.5e8, 0.0)],
+    },
+    "overhung": {
+        "segments": [[0.135, 0.036, 0.0]],
+        "pinion": 0.135,
+        "bearings": [(0.0, 2e8, 1e8), (0.09, 3e8, 0.0)],
+    },
+    "stepped and hollow, three bearings": {
+        "segments": [[0.04, 0.04, 0.02], [0.05, 0.05, 0.02], [0.06, 0.036, 0.0]],
+        "pinion": 0.06,
+        "bearings": [(0.01, 4e8, 1e8), (0.09, 2e8, 0.0), (0.14, 6e8, 0.0)],
+    },
+}
+CHAINS: dict[str, tuple[list[float], list[float]]] = {
+    "engine and pinion": ([0.002, 0.08], [2.5e4]),
+    "three masses in a row": ([0.9, 0.002, 0.08], [6e5, 2.5e4]),
+    "six masses in a row": ([0.54, 3.0, 0.4, 0.02, 1.5, 0.006], [5e6, 2e6, 3e5, 8e4, 9e5]),
+}
+
+
+def shaft_peer(folder: Path) -> pd.DataFrame:
+    """Columns case, program, quantity, ours, theirs, difference (of the largest of its kind).
+
+    Raises FacegearError if uv is missing or a program fails.
+    """
+    theirs = _solve(folder)
+    rows: list[tuple[str, str, str, float, float, float]] = []
+    for (name, given), found in zip(SHAFTS.items(), theirs["shafts"], strict=True):
+        shaft = condensed_shaft(given)
+        rows += _compliances(name, shaft, np.array(found["compliance"]))
+        for speed, frequencies in zip(SPEEDS_RPM, found["frequencies"], strict=True):
+            own = whirling(shaft, speed)
+            rows += [
+                (name, f"ROSS {ROSS}", f"frequency {i + 1} at {speed:g} rpm, Hz", a, b, a / b - 1.0)
+                for i, (a, b) in enumerate(zip(own, frequencies, strict=True))
+            ]
+    for (name, (inertias, springs)), found in zip(CHAINS.items(), theirs["chains"], strict=True):
+        rows += [
+            (name, f"openTorsion {OPENTORSION}", f"frequency {i + 1}, Hz", a, b, a / b - 1.0)
+            for i, (a, b) in enumerate(zip(swinging(inertias, springs), found, strict=True))
+        ]
+    return pd.DataFrame(rows, columns=["case", "program", "quantity", "ours", "theirs", "difference"])
+
+
+def _compliances(name: str, shaft: CondensedShaft, theirs: Array) -> list[tuple[Any, ...]]:
+    """Entries that are not zero of the upper triangle."""
+    size = np.sqrt(np.outer(theirs.diagonal(), theirs.diagonal()))
+    return [
+        (
+            name,
+            f"ROSS {ROSS}",
+            f"{NAMES[i]} by load {NAMES[j]}, SI",
+            shaft.compliance[i, j],
+            theirs[i, j],
+            (shaft.compliance[i, j] - theirs[i, j]) / size[i, j],
+        )
+        for i in range(5)
+        for j in range(i, 5)
+        if abs(theirs[i, j]) > 1e-6 * size[i, j]
+    ]
+
+
+def whirling(shaft: CondensedShaft, speed_rpm: float) -> list[float]:
+    """Frequencies (Hz) of a pinion on a shaft across it, meshes open."""
+    bearing = 1.0 / np.diagonal(shaft.compliance)[:3]
+    linear = _linear(Body(MASS, POLAR, (bearing[0], bearing[1], bearing[2])), shaft)
+    own = np.array([0, 1, *range(linear.size - 2, linear.size)])
+    modes = modes_of(linear, np.zeros_like(linear.mass), speed_rpm * np.pi / 30.0)
+    energy = np.abs(modes.shapes) ** 2 * linear.mass.diagonal()[:, None]
+    inside = energy[own].sum(axis=0) > 0.5 * energy.sum(axis=0)
+    return modes.frequencies[inside].tolist()
+
+
+def swinging(inertias: list[float], springs: list[float]) -> list[float]:
+    """Frequencies (Hz) of masses in a row, the first of them a pinion."""
+    masses = tuple(
+        TurningMass(f"mass_{i}", k, j) for i, (k, j) in enumerate(zip(springs, inertias[1:], strict=True))
+    )
+    layout = _layout(Body(MASS, inertias[0], (1e8, 1e8, 1e8)))
+    return chain_frequencies(DriveLine(layout, {}, {0: masses}), 0, masses).tolist()
+
+
+def _layout(pinion: Body) -> Layout:
+    arm = 3.75e-3 * 11.5 * float(np.cos(np.radians(25.0)))
+    return Layout(
+        pinions=(Pinion("pinion", Role.INPUT, 0.0, pinion),),
+        gears=(FaceGear(Side.UPPER, Body(7.8, 0.54, (8.7e9, 8.7e9, 8.7e9))),),
+        pinion_teeth=23,
+        gear_teeth=143,
+        pressure_angle=float(np.radians(25.0)),
+        pinion_radius=arm,
+        gear_radius=arm * 143.0 / 23.0,
+        kinematics=KINEMATICS["geometric"],
+    )
+
+
+def _linear(pinion: Body, shaft: CondensedShaft) -> LinearModel:
+    layout = _layout(pinion)
+    constant = Harmonics(np.zeros(1), np.array([4.1e8]))
+    machine = Machine(
+        layout, np.zeros(2), constant, Harmonics(np.zeros(1), np.zeros(1)), 5e-5, Damping(0.0, 0.0, 0.0)
+    )
+    return DriveLine(layout, {0: Seat(shaft, DIAMETRAL)}, {})(machine.lumped)
+
+
+def condensed_shaft(given: dict[str, Any]) -> CondensedShaft:
+    """One of SHAFTS."""
+    bearings = tuple(
+        Bearing(position, np.diag([radial, radial, axial, 0.0, 0.0]))
+        for position, radial, axial in given["bearings"]
+    )
+    segments = tuple(Segment(*segment) for segment in given["segments"])
+    return condensed(Shaft(segments, Elasticity(YOUNG, POISSON), bearings, given["pinion"]))
+
+
+def _solve(folder: Path) -> dict[str, Any]:
+    uv = shutil.which("uv") or shutil.which("uv", path=str(Path(sys.executable).parent))
+    if uv is None:
+        raise FacegearError("uv is not installed, which makes the environment of ROSS (make tools)")
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "problem.json").write_text(json.dumps(_problem()), encoding="utf-8")
+    packages = [argument for name in (*PACKAGES, "numpy") for argument in ("--with", name)]
+    isolated = "run", "--no-project", "--isolated", "--python", sys.executable
+    command = [uv, *isolated, *packages, "python", str(Path(__file__).with_name("shaft_run.py"))]
+    log = folder / "peers.log"
+    if run_alone(command, folder, log, os.environ, 1800.0).code != 0:
+        raise FacegearError(f"ROSS or openTorsion failed: see {log}")
+    solved: dict[str, Any] = json.loads((folder / "result.json").read_text(encoding="utf-8"))
+    return solved
+
+
+def _problem() -> dict[str, Any]:
+    common = {"young": YOUNG, "poisson": POISSON, "mass": MASS, "diametral": DIAMETRAL, "polar": POLAR}
+    speeds = [speed * np.pi / 30.0 for speed in SPEEDS_RPM]
+    shafts = [
+        {
+            **common,
+            "segments": given["segments"],
+            "pinion": given["pinion"],
+            "bearings": [
+                {"position": position, "radial": radial, "axial": axial}
+                for position, radial, axial in given["bearings"]
+            ],
+            "speeds": speeds,
+        }
+        for given in SHAFTS.values()
+    ]
+    chains = [{"inertia": inertias, "stiffness": springs} for inertias, springs in CHAINS.values()]
+    return {"shafts": shafts, "chains": chains}
