@@ -37,6 +37,9 @@ def parser() -> argparse.ArgumentParser:
     for name, (kind, default, text) in QUESTIONS.items():
         new.add_argument(flag(name), type=kind, help=text + ("" if default is None else f" ({default})"))
     new.add_argument(
+        "--from", dest="rexs", type=Path, metavar="REXS", help="REXS file whose equal pinions are taken over"
+    )
+    new.add_argument(
         "--coarse", action="store_true", help="few positions and speeds, for a first answer soon"
     )
     new.set_defaults(command=_new)
@@ -99,12 +102,17 @@ def installed_version() -> str:
 def _new(given: argparse.Namespace) -> int:
     """Write a config and check it; one that is refused is not written."""
     from facegear.config.starting import Known, starting_config
+    from facegear.variants.gear_unit import known_of_rexs
 
     if given.config.exists():
         raise FacegearError(f"{given.config}: exists already; choose another name")
     if given.config.suffix not in (".yaml", ".yml"):
         raise FacegearError(f"{given.config}: must end in .yaml")
-    known = Known(case=given.config.stem, coarse=given.coarse, **answered(vars(given)))
+    read = {} if given.rexs is None else known_of_rexs(given.rexs)
+    if given.idlers and given.pinions is None and "pinions" in read:
+        read["pinions"] = max(read["pinions"] - given.idlers, 0)
+    own = {name: value for name, value in vars(given).items() if value is not None}
+    known = Known(case=given.config.stem, coarse=given.coarse, **(read | answered({**read, **own})))
     with atomic_path(given.config) as temporary:
         temporary.write_text(starting_config(known), encoding="utf-8")
         try:

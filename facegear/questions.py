@@ -10,10 +10,11 @@ QUESTIONS: dict[str, tuple[type[int] | type[float], float | None, str]] = {
     "pinion_teeth": (int, None, "Teeth of a pinion"),
     "face_gear_teeth": (int, None, "Teeth of the face gear"),
     "module_mm": (float, None, "Module in mm"),
-    "torque_n_m": (float, None, "Torque on each pinion in N m"),
+    "torque_n_m": (float, None, "Torque on each driving pinion in N m"),
     "speed_rpm": (float, None, "Speed of the pinions in rpm"),
     "pinions": (int, 1, "Pinions that drive the gear"),
     "pressure_angle_deg": (float, 25.0, "Pressure angle in degrees"),
+    "idlers": (int, 0, "Idlers between a lower and an upper face gear; 0 for a single gear"),
 }
 """What `new` asks: kind of number, default if there is one, and the question."""
 
@@ -28,7 +29,7 @@ def answered(given: Mapping[str, Any]) -> dict[str, Any]:
 
     Raises FacegearError where there is neither, or an answer is no number.
     """
-    missing = [name for name in QUESTIONS if given[name] is None]
+    missing = [name for name in QUESTIONS if given.get(name) is None]
     needed = [flag(name) for name in missing if QUESTIONS[name][1] is None]
     if needed and not sys.stdin.isatty():
         raise FacegearError(f"new: {', '.join(needed)} must be given, as there is no terminal to ask at")
@@ -50,4 +51,4 @@ def asked(name: str) -> float:
 
 
 def _or_default(name: str, given: Mapping[str, Any]) -> Any:
-    return QUESTIONS[name][1] if given[name] is None else given[name]
+    return QUESTIONS[name][1] if given.get(name) is None else given[name]

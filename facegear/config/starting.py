@@ -24,11 +24,14 @@ WITHIN = 0.1
 
 @dataclass(frozen=True)
 class Known:
-    """What is known of a machine: a face gear and the equal pinions that drive it.
+    """What is known of a machine: the equal pinions that drive it, and one face gear or two with idlers.
 
     - module_mm, pressure_angle_deg: of both gears
-    - torque_n_m: of each pinion
+    - torque_n_m: of each driving pinion
     - speed_rpm: of the pinions
+    - idlers: pinions that lead the power of a lower face gear to the upper one; 0: there is no lower gear
+    - pinion_width_mm, pinion_bore_radius_mm, pinion_mass_kg, bearing_radial_n_per_m: of every pinion; None
+      takes a rule of thumb
     - coarse: few positions, harmonics and speeds, for a first answer soon
     """
 
@@ -40,6 +43,11 @@ class Known:
     speed_rpm: float
     pinions: int = 1
     pressure_angle_deg: float = 25.0
+    idlers: int = 0
+    pinion_width_mm: float | None = None
+    pinion_bore_radius_mm: float | None = None
+    pinion_mass_kg: float | None = None
+    bearing_radial_n_per_m: float | None = None
     coarse: bool = False
 
 
@@ -48,18 +56,23 @@ def starting_config(known: Known) -> str:
     for key in ("torque_n_m", "speed_rpm", "pinions"):
         if not getattr(known, key) > 0.0:
             raise ConfigError(key, getattr(known, key), "above 0")
+    if known.idlers < 0:
+        raise ConfigError("idlers", known.idlers, "0 or more")
     inner, outer, allowed = _face(known)
-    module, torque, speed = known.module_mm, known.torque_n_m, known.speed_rpm
-    width, rim = outer - inner + 2.0 * module, 3.2 * module
-    bore = 0.65 * module * (0.5 * known.pinion_teeth - 1.25)
+    module, speed = known.module_mm, known.speed_rpm
+    torque = known.torque_n_m / len(_gears(known))
+    width, rim = known.pinion_width_mm or outer - inner + 2.0 * module, 3.2 * module
+    bore = known.pinion_bore_radius_mm or 0.65 * module * (0.5 * known.pinion_teeth - 1.25)
     pinion = _ring(0.5 * module * known.pinion_teeth, bore, width)
+    if known.pinion_mass_kg is not None:
+        pinion = (known.pinion_mass_kg, pinion[1] * known.pinion_mass_kg / pinion[0])
     gear = _ring(outer, inner, rim + 2.25 * module)
     stiffness = STIFFNESS * 1e-3 * (outer - inner)
     positions, kept, points, cycles = (8, 3, 12, 50) if known.coarse else (32, 8, 200, 200)
     template = Template((files("facegear.config") / "starting.yaml").read_text(encoding="utf-8"))
     return template.substitute(
         **{name: f"{value:.10g}" for name, value in vars(known).items() if isinstance(value, int | float)}
-        | {"case": known.case, "pinions": _places(known)},
+        | {"case": known.case, "pinions": _pinions(known), "gears": ", ".join(_gears(known))},
         inner=f"{inner:.6g}",
         outer=f"{outer:.6g}",
         allowed=allowed,
@@ -70,8 +83,10 @@ def starting_config(known: Known) -> str:
         pinion_body=_body(pinion),
         gear_body=_body(gear),
         percent=f"{100 * DAMPING_RATIO:g}",
-        bearing="{" + ", ".join(f"{axis}: {BEARING * stiffness:.3g}" for axis in "xyz") + "}",
+        bearing=_bearing(BEARING * stiffness),
+        pinion_bearing=_bearing(known.bearing_radial_n_per_m or BEARING * stiffness),
         damping=f"{_damping(known, stiffness, pinion[1], gear[1]):.4g}",
+        input_torque=f"{known.torque_n_m:.10g}",
         torque=f"{torque:.10g}",
         torques=", ".join(f"{factor * torque:.10g}" for factor in (1.0, 1.5, 2.0)),
         speed=f"{speed:.10g}",
@@ -120,10 +135,29 @@ def _damping(known: Known, stiffness: float, pinion: float, gear: float) -> floa
     return float(2.0 * DAMPING_RATIO * (stiffness * mass) ** 0.5)
 
 
-def _places(known: Known) -> str:
-    """The pinions, evenly around the gear."""
-    angles = [360.0 * number / known.pinions for number in range(known.pinions)]
-    return ", ".join(
-        f"{{name: input {number + 1}, role: input, angle_deg: {angle:.9g}}}"
-        for number, angle in enumerate(angles)
-    )
+def _bearing(stiffness: float) -> str:
+    return "{" + ", ".join(f"{axis}: {stiffness:.3g}" for axis in "xyz") + "}"
+
+
+def _gears(known: Known) -> tuple[str, ...]:
+    """Face gears; idlers need two."""
+    return ("lower", "upper") if known.idlers else ("upper",)
+
+
+def _pinions(known: Known) -> str:
+    """The pinions, evenly around the gear and the roles among each other.
+
+    Between two gears they stand at whole halves of a pitch, where the teeth of both fit.
+    """
+    count = known.pinions + known.idlers
+    listed, numbers = [], {"input": 0, "idler": 0}
+    for number in range(count):
+        drives = (number + 1) * known.pinions // count > number * known.pinions // count
+        role = "input" if drives else "idler"
+        numbers[role] += 1
+        if known.idlers:
+            where = f"angle_pitches: {round(2.0 * known.face_gear_teeth * number / count) / 2.0:g}"
+        else:
+            where = f"angle_deg: {360.0 * number / count:.9g}"
+        listed.append(f"{{name: {role} {numbers[role]}, role: {role}, {where}}}")
+    return ", ".join(listed)

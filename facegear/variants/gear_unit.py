@@ -1,9 +1,12 @@
 """What REXS holds of a machine."""
 
+from pathlib import Path
+from typing import Any
+
 from facegear.config.lumped_model import ToothNumbers, layout
 from facegear.config.model import Config
-from facegear.errors import ConfigError
-from facegear.exchange.rexs import Shaft, Spur, Unit
+from facegear.errors import ConfigError, FacegearError
+from facegear.exchange.rexs import Shaft, Spur, Unit, read_rexs
 from facegear.transmission.layout import Body
 
 
@@ -36,3 +39,30 @@ def _pinion(name: str, body: Body, spur: Spur) -> Shaft:
 def _gear(name: str, body: Body) -> Shaft:
     x, y, z = body.bearing
     return Shaft(name, body.mass, min(x, y), z)
+
+
+def known_of_rexs(path: str | Path) -> dict[str, Any]:
+    """What a REXS file says of a starting config, by the fields of `facegear.config.starting.Known`.
+
+    That is the pinions, with what their bearings and bodies are given; face gears, roles, torques and speeds
+    it has not. Raises FacegearError for a file without cylindrical gears, or with several kinds of them.
+    """
+    shafts = [shaft for shaft in read_rexs(path).shafts if shaft.spur is not None]
+    kinds = {shaft.spur for shaft in shafts if shaft.spur is not None}
+    if len(kinds) != 1:
+        sizes = sorted((spur.teeth, spur.module) for spur in kinds)
+        said = ", ".join(f"{teeth} teeth of {module:g} mm" for teeth, module in sizes) or "none"
+        raise FacegearError(f"{path}: cylindrical gears = {said}: must be equal pinions")
+    (spur,) = kinds
+    first = shafts[0]
+    known = {
+        "pinions": len(shafts),
+        "pinion_teeth": spur.teeth,
+        "module_mm": spur.module,
+        "pressure_angle_deg": spur.pressure_angle,
+        "pinion_width_mm": spur.width,
+        "pinion_bore_radius_mm": spur.bore,
+        "pinion_mass_kg": first.mass,
+        "bearing_radial_n_per_m": first.radial,
+    }
+    return {name: value for name, value in known.items() if value is not None}

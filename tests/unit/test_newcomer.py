@@ -11,11 +11,13 @@ import pytest
 import facegear
 import facegear.__main__ as command_line
 from facegear.config.yaml_file import read_yaml
+from facegear.exchange.rexs import Shaft, Spur, Unit, write_rexs
 from facegear.gearbox import load
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "first_machine.md").read_text()
 COMMANDS = [shlex.split(line) for line in re.findall(r"(?m)^(facegear .*)$", PAGE)]
+DATE = "2026-11-23T20:00:00+00:00"
 LIGHT = {
     "mesh_stiffness: {torque_n_m: 600, harmonics_kept: 3}": "mesh_stiffness: {source: harmonics, table: "
     "[{order: 0, b_n_per_m: 4.1e8}, {order: 1, a_n_per_m: 2.0e7}]}",
@@ -62,13 +64,39 @@ def test_each_command_of_the_page_works_in_turn(folder, capsys):
 
 
 def test_what_is_not_given_is_asked_and_an_empty_answer_takes_the_default(folder, monkeypatch):
-    answers = iter(["23", "143", "3.75", "600", "7500", "", "20"])
+    answers = iter(["23", "143", "3.75", "600", "7500", "", "20", ""])
     monkeypatch.setattr("sys.stdin", type("Terminal", (io.StringIO,), {"isatty": lambda self: True})())
     monkeypatch.setattr("builtins.input", lambda question: next(answers))
     assert command_line.main(("new", "own.yaml")) == 0
     values = read_yaml("own.yaml")
     assert values["tooth_pair"]["pressure_angle_deg"] == 20
     assert len(values["transmission"]["pinions"]) == 1
+
+
+def test_pinions_of_a_rexs_file_are_taken_over_and_what_it_lacks_is_asked_for_by_name(
+    folder, monkeypatch, capsys
+):
+    spur = Spur(teeth=25, module=4.0, width=33.0, pressure_angle=22.5, bore=20.0)
+    shafts = [Shaft(name, 1.5, 7e7, None, spur) for name in "abc"]
+    write_rexs("unit.rexs", Unit((*shafts, Shaft("gear", 9.0, 8e9, None)), 206e3, 0.3), DATE, "1")
+    monkeypatch.setattr("sys.stdin", io.StringIO())
+    assert command_line.main(("new", "own.yaml", "--from", "unit.rexs")) == 1
+    lacking = "new: --face-gear-teeth, --torque-n-m, --speed-rpm must be given"
+    assert capsys.readouterr().err.startswith(lacking)
+    known = ("--face-gear-teeth=140", "--torque-n-m=600", "--speed-rpm=3000")
+    assert command_line.main(("new", "own.yaml", "--from", "unit.rexs", "--idlers=1", *known)) == 0
+    values = read_yaml("own.yaml")
+    assert [pinion["role"] for pinion in values["transmission"]["pinions"]].count("input") == 2
+    assert values["transmission"]["pinion"]["mass_kg"] == 1.5
+    assert values["transmission"]["pinion"]["bearing_stiffness_n_per_m"]["x"] == 7e7
+    pair = values["tooth_pair"]
+    assert (pair["pinion_teeth"], pair["module_mm"], pair["pressure_angle_deg"]) == (25, 4, 22.5)
+    assert (pair["pinion"]["width_mm"], pair["pinion"]["bore_radius_mm"]) == (33, 20)
+    other = Shaft("d", 1.5, 7e7, None, Spur(26, 4.0, None, None, None))
+    write_rexs("two.rexs", Unit((shafts[0], other), None, None), DATE, "1")
+    assert command_line.main(("new", "two.yaml", "--from", "two.rexs", *known)) == 1
+    refusal = "two.rexs: cylindrical gears = 25 teeth of 4 mm, 26 teeth of 4 mm: must be equal pinions\n"
+    assert capsys.readouterr().err == refusal and not Path("two.yaml").exists()
 
 
 GIVEN = ("--pinion-teeth=23", "--face-gear-teeth=143", "--module-mm=3.75", "--torque-n-m=600")

@@ -2,6 +2,7 @@
 
 import pytest
 
+import facegear
 from facegear.config.load import config_of
 from facegear.config.model import resolved
 from facegear.config.starting import Known, starting_config
@@ -13,6 +14,8 @@ MACHINES = (
     Known("paper", 23, 143, 3.75, 1300, 7500, 2),
     Known("plain", 40, 120, 1, 5, 500, pressure_angle_deg=20),
     Known("large", 25, 160, 6.35, 800, 5000, coarse=True),
+    Known("split", 23, 143, 3.75, 1300, 7500, pinions=2, idlers=3),
+    Known("odd", 19, 57, 2, 50, 10000, pinions=1, idlers=2),
 )
 
 
@@ -27,12 +30,27 @@ def test_what_a_user_knows_is_enough_for_a_config_without_mistakes(known, tmp_pa
     values = resolved(config_of(written(known, tmp_path)))
     assert len(starting_config(known).splitlines()) <= 22
     assert values["tooth_pair"]["face_gear_teeth"] == known.face_gear_teeth
-    assert (
-        values["mesh_stiffness"]["torque_n_m"]
-        == values["transmission"]["torque"]["per_input_n_m"]
-        == known.torque_n_m
+    machine = values["transmission"]
+    assert machine["torque"]["per_input_n_m"] == known.torque_n_m
+    assert values["mesh_stiffness"]["torque_n_m"] * len(machine["face_gears"]) == known.torque_n_m
+    roles = [pinion["role"] for pinion in machine["pinions"]]
+    assert (roles.count("input"), roles.count("idler")) == (known.pinions, known.idlers)
+    assert len(machine["face_gears"]) == (2 if known.idlers else 1)
+
+
+def test_idlers_lead_what_the_lower_gear_takes_to_the_upper_one(tmp_path):
+    values = written(MACHINES[4], tmp_path)
+    values["mesh_stiffness"] = {"source": "harmonics", "table": [{"order": 0, "b_n_per_m": 4.1e8}]}
+    values["transmission"]["transmission_error"] = {"amplitude_um": 0}
+    statics = facegear.load(values).statics()
+    power = statics.table().set_index("mesh")["power_kw"]
+    lower = power[[mesh.endswith("/lower") for mesh in power.index]]
+    assert lower.sum() == pytest.approx(0.0, abs=1e-6 * power.abs().max()), (
+        "nothing is taken off the lower gear"
     )
-    assert len(values["transmission"]["pinions"]) == known.pinions
+    assert lower[["input 1/lower", "input 2/lower"]].min() > 0.0
+    led = lower[["idler 1/lower", "idler 2/lower", "idler 3/lower"]]
+    assert led.max() <= 0.0 and (led < 0.0).sum() >= 2, "an idler within its backlash carries nothing"
 
 
 def test_the_chosen_bodies_are_those_of_a_steel_ring(tmp_path):
