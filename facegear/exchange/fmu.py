@@ -72,7 +72,7 @@ def _require_plain(model: Model) -> None:
         "forces that depend on the load (mesh_law)": not isinstance(law, LinearLaw) or bool(law.pieces),
         "friction as an excitation": system.rubbing is not None,
         "bearing clearance": bool(system.ring_stiffness.size),
-        "coupling of turning bodies": system.coupling is not None,
+        "coupling of turning bodies or dampers of torsional springs": system.coupling is not None,
     }
     for what, there in lost.items():
         if there:

@@ -64,19 +64,19 @@ def shaft_peer(folder: Path) -> pd.DataFrame:
     """
     theirs = _solve(folder)
     rows: list[tuple[str, str, str, float, float, float]] = []
-    for (name, given), found in zip(SHAFTS.items(), theirs["shafts"], strict=True):
+    for (name, given), solved in zip(SHAFTS.items(), theirs["shafts"], strict=True):
         shaft = condensed_shaft(given)
-        rows += _compliances(name, shaft, np.array(found["compliance"]))
-        for speed, frequencies in zip(SPEEDS_RPM, found["frequencies"], strict=True):
+        rows += _compliances(name, shaft, np.array(solved["compliance"]))
+        for speed, frequencies in zip(SPEEDS_RPM, solved["frequencies"], strict=True):
             own = whirling(shaft, speed)
             rows += [
                 (name, f"ROSS {ROSS}", f"frequency {i + 1} at {speed:g} rpm, Hz", a, b, a / b - 1.0)
                 for i, (a, b) in enumerate(zip(own, frequencies, strict=True))
             ]
-    for (name, (inertias, springs)), found in zip(CHAINS.items(), theirs["chains"], strict=True):
+    for (name, (inertias, springs)), frequencies in zip(CHAINS.items(), theirs["chains"], strict=True):
         rows += [
             (name, f"openTorsion {OPENTORSION}", f"frequency {i + 1}, Hz", a, b, a / b - 1.0)
-            for i, (a, b) in enumerate(zip(swinging(inertias, springs), found, strict=True))
+            for i, (a, b) in enumerate(zip(swinging(inertias, springs), frequencies, strict=True))
         ]
     return pd.DataFrame(rows, columns=["case", "program", "quantity", "ours", "theirs", "difference"])
 

@@ -1,10 +1,14 @@
 """Shafts and turning masses in the config: one section for a role or a pinion, and one line of refusal."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
+import facegear
 from facegear.config.base import parse
+from facegear.config.changes import movable, moved
 from facegear.config.lumped_model import ToothNumbers, machine
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigErrors
@@ -12,6 +16,7 @@ from facegear.harmonics.series import Harmonics
 from facegear.transmission.statics import mean_equilibrium
 
 TEETH = ToothNumbers.of_teeth(23, 143, 3.75, 25)
+EXAMPLE = Path(__file__).parents[3] / "config" / "shafts.yaml"
 STIFFNESS = Harmonics(np.array([0.0, 1e7]), np.array([4.1e8, 2e7]))
 TEXT = """
 pinions:
@@ -84,6 +89,27 @@ def test_turning_masses_go_to_the_pinions_of_a_role_and_to_the_output():
     polar = np.pi / 32 * (0.06**4 - 0.04**4)
     assert found.drive_line.masses[4][0].stiffness == pytest.approx(206e9 / 2.6 * polar / 1.0, rel=1e-12)
     assert found.linear.torques[found.torque_coordinates].tolist() == found.torques.tolist()
+
+
+def test_a_stiffness_of_a_bearing_may_vary_from_machine_to_machine():
+    key = "transmission.shafts.input.bearings.0.radial_n_per_m"
+    values = {"transmission": section(shafts={"input": shaft()})}
+    softer = moved(movable(values, [key]), {key: -0.5e8})["transmission"]
+    found = machine(Transmission.of_config(softer), TEETH, STIFFNESS).layout.pinions[0].body.bearing[0]
+    assert found == pytest.approx(1.0 / (1.0 / 2.170162e8 + (7 / 12) ** 2 * (1e-8 - 1.0 / 1.5e8)), rel=1e-6)
+
+
+def test_branches_do_not_scale_bearings_beside_torsional_springs():
+    config = facegear.load(EXAMPLE)
+    for parameters, refused in ((["torque"], False), (["bearing_stiffness"], True)):
+        change = {"branches": {"loci": {"parameters": parameters}}}
+        if not refused:
+            config.with_values(change)
+            continue
+        with pytest.raises(
+            ConfigErrors, match=r"branches\.loci\.parameters = .* beside transmission\.torsion"
+        ):
+            config.with_values(change)
 
 
 @pytest.mark.parametrize(

@@ -48,12 +48,19 @@ def running():
     return machine, model, simulate(model, SPEED, settings)
 
 
-def harmonic(machine):
-    """Complex displacements (n,) of the first harmonic in full matrices, both drive flanks always closed."""
-    linear, rows, c = machine.linear, machine.linear.rows[:2], machine.damping.mesh
+def full(machine):
+    """Damping and stiffness (n, n) with both drive flanks always closed."""
+    linear, rows = machine.linear, machine.linear.rows[:2]
     closed = rows.T @ rows
-    damping = linear.damping + TURNING * linear.spin.gyroscopic + c * closed
-    dynamic = -(MESHING**2) * linear.mass + 1j * MESHING * damping + linear.stiffness + K * closed
+    damping = linear.damping + TURNING * linear.spin.gyroscopic + machine.damping.mesh * closed
+    return damping, linear.stiffness + K * closed
+
+
+def harmonic(machine):
+    """Complex displacements (n,) of the first harmonic in full matrices."""
+    rows, c = machine.linear.rows[:2], machine.damping.mesh
+    damping, spring = full(machine)
+    dynamic = -(MESHING**2) * machine.linear.mass + 1j * MESHING * damping + spring
     error = ERROR * np.exp(-2j * np.pi * machine.phases)
     return np.linalg.solve(dynamic, rows.T @ ((K + 1j * MESHING * c) * error))
 
@@ -78,6 +85,22 @@ def test_transmission_error_shakes_tilting_pinions_and_engines_as_the_closed_for
         ends = [spring.first, spring.second]
         twist, expected = np.diff(moving[:, ends]), np.diff(exact[:, ends])
         agrees("twist of a torsional spring, rad", twist, expected, absolute=1e-8 * np.abs(expected).max())
+
+
+@against(
+    "analytic",
+    "eigenvalues of the full matrices",
+    capability="dynamics_response",
+    module="facegear.transmission.drive_line",
+)
+def test_multipliers_with_tilts_and_torsional_springs_are_those_of_the_full_matrices(running):
+    machine, _, response = running
+    damping, spring = full(machine)
+    inverse, n = np.linalg.inv(machine.linear.mass), machine.linear.size
+    system = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ spring, -inverse @ damping]])
+    exact = np.exp(np.linalg.eigvals(system) * 2.0 * np.pi / MESHING)
+    nearest = exact[np.abs(response.multipliers[:, None] - exact).argmin(axis=1)]
+    agrees("multipliers", response.multipliers, nearest, absolute=1e-9)
 
 
 def test_bearings_of_a_shaft_carry_what_springs_and_dampers_of_its_pinion_do(running):

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import gear_bodies
 import numpy as np
 import pytest
 import scipy.linalg
@@ -11,6 +12,7 @@ from references import against, agrees
 
 from facegear.transmission import statics
 from facegear.transmission.drive_line import DriveLine, TurningMass
+from facegear.transmission.elastic_gears import ElasticGears
 from facegear.transmission.loaded_modes import loaded_modes
 from facegear.transmission.mode_classes import name_modes
 from facegear.transmission.modes import modes_of
@@ -186,3 +188,18 @@ def test_tilts_and_turning_masses_are_named_in_the_modes_that_they_move_in():
     assert any("tilt" in symbol for symbol in symbols)
     assert any("engine" in symbol for symbol in symbols) and any("rotor" in symbol for symbol in symbols)
     assert np.count_nonzero(modes.frequencies == 0.0) >= 1
+
+
+def test_gears_that_bend_take_pinions_on_shafts_and_masses_behind_springs(monkeypatch):
+    machine = driven(on_bearings(1.5e8, 2.5e8), masses=CHAINS)
+    elastic = ElasticGears(machine.layout, dict.fromkeys((0, 1), gear_bodies.small_body()))
+    bending = replace(machine, bodies=elastic, softening=elastic.softening())
+    quick = mean_equilibrium(bending)
+    linear, first = bending.linear, machine.linear.size
+    assert linear.labels[:first] == machine.linear.labels
+    np.testing.assert_array_equal(linear.stiffness[:first, :first], machine.linear.stiffness)
+    np.testing.assert_array_equal(linear.spin.gyroscopic[:first, :first], machine.linear.spin.gyroscopic)
+    monkeypatch.setattr(statics, "has_blocks", lambda machine: False)
+    np.testing.assert_allclose(quick.forces, mean_equilibrium(bending).forces, atol=1e-4)
+    modes = loaded_modes(bending)
+    assert modes.frequencies.size == linear.size
