@@ -127,12 +127,10 @@ class Config(Section):
 
     def _check_branches(self) -> None:
         speed, section = self.dynamics.speed_rpm, self.branches
-        if section and "bearing_stiffness" in section.loci.parameters and self.transmission:
-            if self.transmission.torsion:
-                allowed = (
-                    "without bearing_stiffness beside transmission.torsion, whose springs it would scale"
-                )
-                raise ConfigError("branches.loci.parameters", list(section.loci.parameters), allowed)
+        springs = self.transmission is not None and self.transmission.torsion
+        if section and springs and "bearing_stiffness" in section.loci.parameters:
+            allowed = "without bearing_stiffness beside transmission.torsion, whose springs it would scale"
+            raise ConfigError("branches.loci.parameters", list(section.loci.parameters), allowed)
         if section and not section.from_rpm <= speed <= section.to_rpm:
             allowed = f"from branches.from_rpm = {section.from_rpm:g} to {section.to_rpm:g}"
             raise ConfigError("dynamics.speed_rpm", speed, allowed)
