@@ -1,5 +1,6 @@
 """What `make release` is made of: notes, licences and the version; the builds themselves run in `make ci`."""
 
+import hashlib
 import importlib.util
 from pathlib import Path
 
@@ -42,6 +43,17 @@ def test_a_licence_that_nobody_looked_at_stops_the_release():
     assert check.unknown(rows, {"fine", "new-library", "gmsh"}) == [
         "New_Library 2: licence 'Own terms' must be looked at"
     ]
+
+
+def test_the_list_of_components_names_the_bundled_plotly_with_its_version_and_licence():
+    given = {"bomFormat": "CycloneDX", "components": [{"bom-ref": "numpy"}, {"bom-ref": "scipy"}]}
+    listed = script("name_bundled").named(given)
+    (plotly,) = [part for part in listed["components"] if part["bom-ref"].startswith("plotly.js")]
+    assert listed["components"][:2] == given["components"] and listed["bomFormat"] == "CycloneDX"
+    assert f"plotly.js-cartesian-dist-min` {plotly['version']}" in (ROOT / "CONTRIBUTING.md").read_text()
+    content = (ROOT / "facegear" / "report" / "plotly-cartesian.min.js").read_bytes()
+    assert plotly["hashes"] == [{"alg": "SHA-256", "content": hashlib.sha256(content).hexdigest()}]
+    assert plotly["licenses"] == [{"license": {"id": "MIT"}}]
 
 
 def test_the_lock_file_names_what_a_run_installs():
