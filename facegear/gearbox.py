@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from facegear.results.sweep import SweepResult
     from facegear.results.tolerances import LoadMapResult, TolerancesResult
     from facegear.results.tooth_errors import ToothErrorsResult
+    from facegear.results.topography import TopographyResult
     from facegear.results.whole_case import WholeCase
     from facegear.scenarios.inverse import Loosest
     from facegear.transmission.machine import Machine
@@ -433,6 +434,17 @@ class Gearbox:
         given = _given({"load_sharing.hunting_positions": positions})
         return self._changed("hunting", given)._chain.result(HuntingResult)
 
+    def topography(self) -> "TopographyResult":
+        """Nominal points and normals of all flanks, with the mean deviation of all teeth.
+
+        >>> import facegear
+        >>> facegear.example().topography().table()["deviation_um"].abs().max().item()
+        0.0
+        """
+        from facegear.results.topography import TopographyResult
+
+        return self._chain.result(TopographyResult)
+
     def tooth_errors(self) -> "ToothErrorsResult":
         """What teeth that deviate from the others of their gear add to the transmission error.
 
@@ -500,8 +512,10 @@ class Gearbox:
         `teeth`: a sector of so many, the whole gear unless given. FMU: the dynamic model as C sources for
         co-simulation (FMI 3.0), at the config's speed. GLB: a glTF scene of all gears in mesh, or of one
         pinion and its gear without a transmission. REXS: pinions, shafts, bearings and material as REXS 2.0,
-        which has no face gear; the file names what is lost. Raises FacegearError for anything else and for
-        what an FMU cannot hold, ConfigError for a pair without bodies and a config without a transmission.
+        which has no face gear; the file names what is lost. CSV: nominal points and normals of all flanks
+        for a measuring machine, as `flanks.file` of either body reads them. Raises FacegearError for anything
+        else and for what an FMU cannot hold, ConfigError for a pair without bodies and a config without a
+        transmission.
         """
         if Path(path).suffix == ".fmu":
             from facegear.exchange.fmu import write_fmu
@@ -509,6 +523,10 @@ class Gearbox:
             return write_fmu(path, self._machine(), self._values["dynamics"]["speed_rpm"])
         if Path(path).suffix == ".glb":
             return self._scene(Path(path))
+        if Path(path).suffix == ".csv":
+            from facegear.config.flank_table import write_nominal_points
+
+            return write_nominal_points(path, self.config.tooth_pair)
         if Path(path).suffix == ".rexs":
             return self._gear_unit(Path(path))
         with extras_named():

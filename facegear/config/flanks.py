@@ -103,6 +103,8 @@ def _read(values: Mapping[str, Any], body: str) -> dict[str, Any]:
     if isinstance(name := values.get("file"), str):
         if values.get("grids"):
             refuse(f"{body}.flanks.file", name, "either file or grids, not both")
+        if name.lower().endswith((".xml", ".gde")):
+            refuse(f"{body}.flanks.file", name, "a csv of deviations: GDE files (VDI/VDE 2610) are not read")
         try:
             read |= {"file": None, **read_flanks(name, body)}
         except CsvFault as fault:

@@ -51,6 +51,20 @@ def pattern(arrays: Arrays) -> Pattern:
     return Pattern(points=points, pressure=pressure, where=where, line_load=line_load)
 
 
+def imprint(arrays: Arrays, width: float) -> Array:
+    """Torque (N m) and the imprint of a passage along the pinion's axis, (torques, 4): its length (m), that
+    over a face width (m), and its middle (m) from the gear's axis. Of arrays as PRESSURE_ARRAYS.
+    """
+    swept = pattern(arrays)
+    step = float(np.diff(swept.points[0, :, 1]).mean())
+    rows = []
+    for torque, where in swept.where.items():
+        y = swept.points[..., 1][where >= 0]
+        length = float(np.ptp(y)) + step if y.size else 0.0
+        rows.append((torque, length, length / width, 0.5 * float(y.min() + y.max()) if y.size else np.nan))
+    return np.array(rows)
+
+
 def pressure_surface(
     arrays: Arrays,
 ) -> tuple[Array, dict[str, Integers], dict[str, Array]]:

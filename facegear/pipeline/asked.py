@@ -47,6 +47,12 @@ def single_teeth(case: Case) -> bool:
     return contact(case) and any(grid["tooth"] is not None for grid in grids)
 
 
+def measured_flanks(case: Case) -> bool:
+    """Whether deviations of flanks are given."""
+    bodies = (case.values["tooth_pair"][body] for body in BODIES)
+    return any(body and body["flanks"]["grids"] for body in bodies)
+
+
 def load_dependent(case: Case) -> bool:
     """Whether mesh forces depend on the load."""
     return case.values["mesh_stiffness"]["mesh_law"] == "load_dependent"

@@ -8,6 +8,8 @@ CAPTIONS = {
     "tooth_sections": "Sections of both teeth, with the radii between which the gear's teeth can exist.",
     "separation": "Gap between the unloaded flanks, and the path of the contact over the gear's flank.",
     "contact_curves": "Static transmission error, stiffness and load share against position.",
+    "topography_pinion": "Mean deviations of the pinion's teeth from the nominal flank.",
+    "topography_face_gear": "Mean deviations of the face gear's teeth from the nominal flank.",
     "tooth_errors": "What single teeth that deviate from the others add to the transmission error.",
     "contact_pattern": "Pressure on the flank that contact lines sweep; at edges only line loads are known.",
     "life": "Stress of every bin of the duty cycle beside the stress that is allowed for as many "

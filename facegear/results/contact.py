@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING, ClassVar
 
+import numpy as np
 import pandas as pd
 
 from facegear.errors import chosen
@@ -28,6 +29,18 @@ class ContactResult(Result):
         Peak-to-peak values are those of the positions solved, and so a lower bound of the true ones.
         """
         return self.content["by_torque"].copy()
+
+    def imprint(self) -> pd.DataFrame:
+        """One row a torque: length of the contact imprint along the face, over the gear's face width, its
+        middle. Planes across the pinion's axis that carry load count with the width that each stands for.
+        """
+        from facegear.contact.pattern import imprint
+
+        gear = self.values["tooth_pair"]["face_gear"]
+        face = gear["outer_radius_mm"] - gear["inner_radius_mm"]
+        found = imprint(self.content["pressure"], 1e-3 * face)
+        names = ("torque_n_m", "length_mm", "over_face_width", "middle_mm")
+        return pd.DataFrame(found * np.array([1.0, 1e3, 1.0, 1e3]), columns=list(names))
 
     def by_flank(self) -> pd.DataFrame:
         """`by_torque` for drive and back flank of the upper and the lower gear, with the errors of each.

@@ -120,6 +120,24 @@ ROWS = (
         priority=75,
     ),
     Stage(
+        name="topography",
+        title="Flanks as measured, with nominal points and normals",
+        needs=PAIR,
+        files={
+            "points": File(
+                "geometry/topography.csv", ("face_mm", "profile_mm", "deviation_um"), text=("tooth", "flank")
+            )
+        },
+        figures=Figures(
+            draw="facegear.plots.topography:figures",
+            names=("topography_pinion", "topography_face_gear"),
+            chapter="geometry",
+            upstream=from_stage("topography", "points"),
+        ),
+        asked=asked.measured_flanks,
+        local=True,
+    ),
+    Stage(
         name="tooth_errors",
         title="Teeth that deviate from the others of their gear",
         needs={**PAIR, "torque": "mesh_stiffness.torque_n_m"},

@@ -125,3 +125,9 @@ def test_nominal_points_and_normals_of_a_file_show_turned_and_mirrored_flanks(tm
         assert said in refusal(path, body)
     else:
         assert machine(path, body).config.tooth_pair
+
+
+def test_a_gde_file_is_refused_by_its_name(tmp_path):
+    path = tmp_path / "pinion.gde"
+    path.write_text("<x/>")
+    assert "GDE files (VDI/VDE 2610) are not read" in refusal(path)

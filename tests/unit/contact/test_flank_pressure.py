@@ -15,7 +15,7 @@ from facegear.contact.hertz import contact_modulus, strip_pressure
 from facegear.contact.lines import ContactLines, contact_lines
 from facegear.contact.ltca import loaded_contact
 from facegear.contact.options import Refinement
-from facegear.contact.pattern import pattern
+from facegear.contact.pattern import imprint, pattern
 from facegear.contact.position import Spot
 from facegear.contact.pressure import INSIDE, flank_pressure, line_loads
 from facegear.contact.resolution import PLANES, ellipse_half_length
@@ -266,6 +266,21 @@ def test_largest_pressure_in_the_table_is_where_the_pattern_and_its_scale_end(pr
     found = pattern(pressure_arrays(results, model.flanks.pinion, pressure))
     assert 1e-6 * found.largest == pytest.approx(table["pressure_mpa"].max(), rel=1e-12)
     assert found.points.shape[:2] == (4 * PAIRS.size, model.flanks.pinion.shape[1])
+
+
+def test_the_imprint_grows_with_load_and_ends_where_planes_carry_nothing(pressed_pair):
+    model, results, pressure = pressed_pair
+    found = imprint(pressure_arrays(results, model.flanks.pinion, pressure), 0.025)
+    planes = model.flanks.pinion.planes
+    for torque, length, part, middle in found:
+        mine = [
+            loads for loads, result in zip(pressure.loads, results, strict=True) if result.torque == torque
+        ]
+        loaded = np.unique(np.concatenate([loads.plane for loads in mine]))
+        assert length == pytest.approx(planes[loaded[-1]] - planes[loaded[0]] + planes[1] - planes[0])
+        assert middle == pytest.approx(0.5 * (planes[loaded[0]] + planes[loaded[-1]]))
+        assert part == pytest.approx(length / 0.025)
+    assert found[0, 1] < found[1, 1]
 
 
 def test_flank_pressure_grows_with_the_root_of_a_line_load():

@@ -1,0 +1,27 @@
+"""Flanks as measured or as wanted, beside nominal points and normals."""
+
+from typing import TYPE_CHECKING, ClassVar
+
+import pandas as pd
+
+from facegear.errors import chosen
+from facegear.results.base import Result
+
+if TYPE_CHECKING:
+    from facegear.plots.style import Figure
+
+
+class TopographyResult(Result):
+    """Nominal points and normals of all flanks, with the mean deviation of all teeth."""
+
+    STAGE: ClassVar = "topography"
+
+    def table(self) -> pd.DataFrame:
+        """One row a place: face_mm and profile_mm, deviation (um), nominal point (mm) and normal."""
+        return self.content["points"].copy()
+
+    def plot(self, body: str = "face_gear") -> "Figure":
+        """Chart of both flanks of `pinion` or `face_gear`."""
+        from facegear.plots.topography import topography_figure
+
+        return topography_figure(self.content["points"], chosen(body, ("pinion", "face_gear"), "plot"))
