@@ -51,17 +51,20 @@ def pattern(arrays: Arrays) -> Pattern:
     return Pattern(points=points, pressure=pressure, where=where, line_load=line_load)
 
 
-def imprint(arrays: Arrays, width: float) -> Array:
+def imprint(arrays: Arrays, face: tuple[float, float]) -> Array:
     """Torque (N m) and the imprint of a passage along the pinion's axis, (torques, 4): its length (m), that
-    over a face width (m), and its middle (m) from the gear's axis. Of arrays as PRESSURE_ARRAYS.
+    over the width of a face from `face[0]` to `face[1]` (m from the gear's axis), and its middle (m).
+
+    Of arrays as PRESSURE_ARRAYS; each loaded plane counts half way to its neighbours, within the face.
     """
     swept = pattern(arrays)
-    step = float(np.diff(swept.points[0, :, 1]).mean())
+    half = 0.5 * float(np.diff(swept.points[0, :, 1]).mean())
     rows = []
     for torque, where in swept.where.items():
         y = swept.points[..., 1][where >= 0]
-        length = float(np.ptp(y)) + step if y.size else 0.0
-        rows.append((torque, length, length / width, 0.5 * float(y.min() + y.max()) if y.size else np.nan))
+        ends = np.clip([y.min() - half, y.max() + half], *face) if y.size else np.zeros(2)
+        length = float(np.ptp(ends))
+        rows.append((torque, length, length / (face[1] - face[0]), float(ends.mean())))
     return np.array(rows)
 
 

@@ -37,10 +37,10 @@ class ContactResult(Result):
         from facegear.contact.pattern import imprint
 
         gear = self.values["tooth_pair"]["face_gear"]
-        face = gear["outer_radius_mm"] - gear["inner_radius_mm"]
-        found = imprint(self.content["pressure"], 1e-3 * face)
+        ends = 1e-3 * gear["inner_radius_mm"], 1e-3 * gear["outer_radius_mm"]
+        rows = imprint(self.content["pressure"], ends)
         names = ("torque_n_m", "length_mm", "over_face_width", "middle_mm")
-        return pd.DataFrame(found * np.array([1.0, 1e3, 1.0, 1e3]), columns=list(names))
+        return pd.DataFrame(rows * np.array([1.0, 1e3, 1.0, 1e3]), columns=list(names))
 
     def by_flank(self) -> pd.DataFrame:
         """`by_torque` for drive and back flank of the upper and the lower gear, with the errors of each.
