@@ -96,14 +96,14 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     (
         "Tooth pair",
         "Generated surfaces, limits and the unloaded pair.",
-        ("tooth_pair", "tooth_sections", "separation"),
+        ("tooth_pair", "tooth_sections", "separation", "topography_pinion", "topography_face_gear"),
     ),
     (
         "Loaded contact",
         "Unilateral contact of all candidate tooth pairs on the bodies' finite element compliance. Average "
         "stiffness is force over deflection, local stiffness the slope of that curve; both are along the "
         "line of action.",
-        ("contact_pattern", "contact_curves"),
+        ("contact_pattern", "contact_curves", "tooth_errors"),
     ),
     (
         "Strength",

@@ -131,7 +131,7 @@ ROWS = (
         figures=Figures(
             draw="facegear.plots.topography:figures",
             names=("topography_pinion", "topography_face_gear"),
-            chapter="geometry",
+            chapter="teeth",
             upstream=from_stage("topography", "points"),
         ),
         asked=asked.measured_flanks,
