@@ -14,27 +14,28 @@
     library = window.Plotly;
   }
 
-  // in the dark, black and grey change places with white, and dim colours are lightened
-  function seen(colour) {
+  // in the dark, black and grey change places with white, and dim lines are lightened; areas keep the colours of their scale
+  function seen(colour, area) {
     const parts = colour.startsWith("#")
       ? [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16))
       : (colour.match(/[\d.]+/g) || []).map(Number);
     const [r, g, b, alpha] = parts;
     if (!dark.matches) return colour;
-    const grey = Math.max(r, g, b) - Math.min(r, g, b) <= 24, dim = 0.3 * r + 0.6 * g + 0.1 * b < 80;
+    const grey = Math.max(r, g, b) - Math.min(r, g, b) <= 24, dim = !area && 0.3 * r + 0.6 * g + 0.1 * b < 80;
     if (!grey && !dim) return colour;
     const turned = [r, g, b].map((part) => Math.round(grey ? 235 - 0.85 * part : part + 0.4 * (255 - part)));
     return `rgba(${turned.join(",")},${alpha === undefined ? 1 : alpha})`;
   }
 
-  function themed(part, key = "") {
-    if (typeof part === "string") return /colou?r$/.test(key) && /^(#|rgba?\()/.test(part) ? seen(part) : part;
+  function themed(part, key = "", area = false) {
+    if (typeof part === "string") return /colou?r$/.test(key) && /^(#|rgba?\()/.test(part) ? seen(part, area) : part;
     if (Array.isArray(part)) {
       if (key === "colorscale" || typeof part[0] === "number") return part;
-      return part.map((item) => themed(item, key));
+      return part.map((item) => themed(item, key, area));
     }
     if (part === null || typeof part !== "object") return part;
-    return Object.fromEntries(Object.entries(part).map(([name, item]) => [name, themed(item, name)]));
+    const filled = area || "fillcolor" in part;
+    return Object.fromEntries(Object.entries(part).map(([name, item]) => [name, themed(item, name, filled)]));
   }
 
   function layoutOf(spec) {

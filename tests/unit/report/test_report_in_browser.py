@@ -5,6 +5,7 @@ import io
 import re
 import shutil
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
@@ -24,6 +25,7 @@ pytestmark = [
 A4 = {"width": 710, "height": 1030}
 """Pixels of a page of A4 within its margins."""
 OVER_SPEED = "figure-mesh_sweep"
+DIM = "#440154"
 DOTS = """async sources => Promise.all(sources.map(async source => {
   const image = new Image(), canvas = document.createElement("canvas");
   image.src = source;
@@ -37,6 +39,14 @@ DOTS = """async sources => Promise.all(sources.map(async source => {
   return [...data].filter((_, k) => k % 4 === 1).map(green => 255 - green);
 }))"""
 """Darkness of every dot of pictures drawn 800 px wide."""
+
+
+def dim_colours():
+    """A line and an area of the same dark violet."""
+    figure, axis = plt.subplots()
+    axis.plot([0.0, 1.0], [0.0, 1.0], color=DIM, label="line")
+    axis.fill_between([0.0, 1.0], [2.0, 2.0], [3.0, 3.0], color=DIM)
+    return figure
 
 
 @pytest.fixture(scope="module")
@@ -63,6 +73,8 @@ def report(tmp_path_factory):
     }
     for name, figure in drawn.items():
         save(figure, folder / f"{name}.svg", folder / f"{name}.json")
+    drawn["dim"] = dim_colours()
+    save(drawn["dim"], folder / "dim.svg", folder / "dim.json")
     pictures = [Picture(folder / f"{name}.svg", f"Sweep, {name}.") for name in drawn]
     modes = pd.DataFrame({"mode": ["7", "8", "9"], "frequency_hz": [597.5591, 1010.1912, 812.3]})
     wide = pd.DataFrame({f"largest_line_load_{n}_n_per_mm": [1234.5678 + n] * 4 for n in range(20)})
@@ -174,6 +186,20 @@ def test_the_page_has_no_serious_fault_of_accessibility_and_fits_the_window(open
     faults = Axe().run(page).response["violations"]
     serious = [fault for fault in faults if fault["impact"] in ("serious", "critical")]
     assert not [(fault["id"], fault["nodes"][0]["html"][:120]) for fault in serious]
+
+
+def test_in_the_dark_a_dim_line_is_light_and_an_area_keeps_the_colour_of_its_scale(opened):
+    """The darkest lines of a scale could not be seen on the dark page."""
+    colours = []
+    for scheme in ("light", "dark"):
+        graph = drawn(opened(color_scheme=scheme), "figure-dim")
+        traces = graph.evaluate("graph => graph.data.map(trace => [trace.line?.color, trace.fillcolor])")
+        ((line, _),) = [trace for trace in traces if trace[1] is None]
+        ((_, area),) = [trace for trace in traces if trace[1] is not None]
+        colours.append((line, area))
+    (line, area), (light_line, dark_area) = colours
+    assert dark_area == area
+    assert sum(map(int, re.findall(r"\d+", light_line)[:3])) > 250 and light_line != line
 
 
 def test_print_fits_a4_with_every_column_and_the_stills(opened):
