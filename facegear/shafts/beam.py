@@ -57,7 +57,7 @@ class Segment:
         return np.pi / 64.0 * (self.diameter**4 - self.bore**4)
 
     def shear_coefficient(self, poisson: float) -> float:
-        """Cowper (1966) for hollow circles; 6 (1 + nu) / (7 + 6 nu) for a solid one."""
+        """Of hollow circles (Cowper 1966); 6 (1 + nu) / (7 + 6 nu) for a solid one."""
         hollow = (self.bore / self.diameter) ** 2
         squared = (1.0 + hollow) ** 2
         below = (7.0 + 6.0 * poisson) * squared + (20.0 + 12.0 * poisson) * hollow
