@@ -110,8 +110,8 @@ class Packed(NamedTuple):
         Rows of the m that are meshes or flanks; the others belong to the rings of bearings with clearance.
     rings, rubbing
         Bearings with clearance, and friction.
-    coupled : (2 n, n)
-        Transposed matrices of what couples coordinates beside the meshes, by velocity, then by displacement.
+    coupled : (n, 2 n)
+        What couples coordinates beside the meshes, by velocity, then by displacement, without zeros.
     """
 
     n: int
@@ -141,7 +141,7 @@ class Packed(NamedTuple):
     contacts: int
     rings: Rings | None
     rubbing: Rubbing | None
-    coupled: Array | None
+    coupled: Sparse | None
 
 
 def pack(system: System, frequency: float) -> Packed:
@@ -241,14 +241,12 @@ def _rings(system: System, frequency: float) -> Rings | None:
     )
 
 
-def _coupled(coupling: Coupling, frequency: float, width: int) -> Array:
-    padded_terms = aligned(2 * width, width)
-    for at, matrix in (
-        (0, coupling.velocity_terms(frequency)),
-        (width, coupling.displacement_terms(frequency)),
-    ):
-        padded_terms[at : at + len(matrix), : len(matrix)] = matrix.T
-    return padded_terms
+def _coupled(coupling: Coupling, frequency: float, width: int) -> Sparse:
+    velocity, displacement = coupling.velocity_terms(frequency), coupling.displacement_terms(frequency)
+    both = np.zeros((len(velocity), 2 * width))
+    both[:, : len(velocity)] = velocity
+    both[:, width : width + len(velocity)] = displacement
+    return _sparse(both)
 
 
 @lru_cache(maxsize=16)

@@ -9,7 +9,7 @@ kept in several parts side by side, as a processor adds many numbers at once but
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.integrator.compiled import Packed
+from facegear.dynamics.integrator.compiled import Packed, Sparse
 from facegear.dynamics.integrator.kernel import inlined
 from facegear.dynamics.integrator.rings import ring_push, ring_row, ring_tangent_row
 from facegear.dynamics.integrator.rubbing import keep_elastic, rub
@@ -123,7 +123,7 @@ def recurrence(
 
 
 @inlined
-def _couple(coupled: Array | None, factors: Array, y: Array, i: int) -> None:
+def _couple(coupled: Sparse | None, factors: Array, y: Array, i: int) -> None:
     """Add what couples coordinates beside the meshes to row i + 2 of y from the two rows before it."""
     if coupled is None:
         return
@@ -132,7 +132,11 @@ def _couple(coupled: Array | None, factors: Array, y: Array, i: int) -> None:
     for c in range(0, n, LANES):
         store(factors, c, multiply(by_rate, load(y, (i + 1) * n + c)))
         store(factors, n + c, multiply(by_displacement, load(y, i * n + c)))
-    accumulate(coupled, 2 * n, factors, 0, y, (i + 2) * n)
+    for row in range(coupled.starts.size - 1):
+        total = 0.0
+        for entry in range(coupled.starts[row], coupled.starts[row + 1]):
+            total += coupled.values[entry] * factors[coupled.columns[entry]]
+        y[i + 2, row] += total
 
 
 @inlined
