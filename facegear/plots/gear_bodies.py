@@ -8,6 +8,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from facegear.arrays import AnyArray, Array
 from facegear.plots.style import NARROW, legend_above, styled
@@ -84,6 +85,7 @@ def body_waves(modes: pd.DataFrame) -> Figure:
             axis.set_ylim(bottom=0.0)
             legend_above(axis, 3)
         axes[-1, 0].set_xlabel("nodal diameters")
+        axes[-1, 0].xaxis.set_major_locator(MaxNLocator(integer=True))
     return figure
 
 
@@ -105,11 +107,11 @@ def body_campbell(modes: pd.DataFrame, crossings: pd.DataFrame, last_rpm: float,
                 bend = (row.forward_hz + row.backward_hz) / 2.0
                 curve = _wave(row.frequency_hz, bend, sign * shift, row.speed_rpm, speeds)
                 axis.plot(speeds, 1e-3 * curve, color=colour, lw=0.6, alpha=0.7)
-        for harmonic in sorted(set(met["harmonic"]) | {1}):
+        for number, harmonic in enumerate(sorted(set(met["harmonic"]) | {1})):
             axis.plot(speeds, 1e-3 * harmonic * teeth * speeds / 60.0, color="0.6", lw=0.8)
-            end = min(last_rpm, 60.0 * top / (harmonic * teeth))
+            end = min(0.96 * last_rpm, 60.0 * (0.5 + 0.1 * number) * top / (harmonic * teeth))
             height = 1e-3 * harmonic * teeth * end / 60.0
-            axis.annotate(f"{harmonic}x", (end, height), (2, 2), textcoords="offset points", color="0.3")
+            axis.annotate(f"{harmonic}x", (end, height), (3, -6), textcoords="offset points", color="0.3")
         for wave, colour in (("standing", "0.3"), ("forward", "tab:red"), ("backward", "tab:blue")):
             marks = met[met["wave"] == wave]
             size = 6.0 * marks["phase_factor"] ** 2

@@ -62,6 +62,15 @@ def lines(**changes):
         ),
         ({"body__rim__inner_radius_mm": 252.0}, "body.rim.inner_radius_mm = "),
         ({"body__rim__outer_radius_mm": 0.275}, "body.rim.inner_radius_mm = 250.0: must be below 0.275"),
+        ({"body__web__hub_thickness_mm": 0.018}, "body.web.hub_thickness_mm = 0.018: must be such that the"),
+        (
+            {"body__hub__outer_radius_mm": 0.14},
+            "body.hub.bore_radius_mm = 120.0: must be below outer radius of the hub, 0.14 mm",
+        ),
+        (
+            {"body__material": {"young_modulus_gpa": 206e9, "poisson_ratio": 0.3}},
+            "material.young_modulus_gpa = 206000000000.0: must be less than or equal to 2000",
+        ),
         ({"body__rim__back_mm": 3.0}, "body.rim.back_mm = 3.0: must be less than or equal to 0"),
         ({"body__rim": None}, "body.rim = null: must be given"),
         ({"body__hub": None}, "body.hub = null: must be given"),
