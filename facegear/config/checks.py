@@ -139,6 +139,24 @@ def check_torques(pair: ToothPair, section: Transmission) -> None:
         raise ConfigError("transmission.pinions", "torque_n_m: 0", no_load)
 
 
+def check_pitch_once(pair: ToothPair, section: Transmission) -> None:
+    """Grids of single teeth and pitch deviations do not say the same twice. Raises ConfigError."""
+    for body, part, bodies in (
+        ("pinion", "single_pinions", section.single_pinions),
+        ("face_gear", "single_gears", section.single_gears),
+    ):
+        own = getattr(pair, body)
+        if own is None or own.flanks.pitch_and_thickness == "left_out":
+            continue
+        if all(grid.tooth is None for grid in own.flanks.grids):
+            continue
+        for name, given in bodies.items():
+            if given.cumulative_pitch_um:
+                key = f"transmission.{part}.{name}.cumulative_pitch_um"
+                allowed = f"left out, as tooth_pair.{body}.flanks has pitch and thickness included"
+                raise ConfigError(key, "given", allowed)
+
+
 def geometric_backlash(pair: ToothPair) -> float:
     """Backlash of the pair as assembled, um. Raises ConfigError for a pair that jams or does not mesh."""
     # Imported here: only a pair with assembly errors needs compiled geometry to read its config.

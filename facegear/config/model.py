@@ -16,6 +16,7 @@ from facegear.config.checks import (
     check_load,
     check_machine_strain,
     check_pitch,
+    check_pitch_once,
     check_positions,
     check_search,
     check_strain,
@@ -231,6 +232,7 @@ class Config(Section):
         check_machine_strain(pair, machine)
         check_torques(pair, machine)
         check_bodies(pair, machine)
+        check_pitch_once(pair, machine)
         if machine.backlash_um is None and pair.pinion is None:
             allowed = "given, as tooth_pair has no bodies that it could be taken from"
             raise ConfigError("transmission.backlash_um", None, allowed)

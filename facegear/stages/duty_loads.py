@@ -25,6 +25,7 @@ def duty_loads(
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
     bodies: Arrays | None = None,
+    tooth_errors: Arrays | None = None,
 ) -> Outcome:
     """`duty_loads` and `duty_spectrum` (tables) from the machine's motion in every bin.
 
@@ -37,7 +38,15 @@ def duty_loads(
     progress, loads, spectrum = Progress("duty cycle", len(strength.duty)), [], []
     for number, load in enumerate(strength.duty, start=1):
         loaded = at_mesh_torque(transmission, load.torque_n_m)
-        machine = wired_machine(loaded, teeth, harmonics, friction=friction, law=law, bodies=bodies)
+        machine = wired_machine(
+            loaded,
+            teeth,
+            harmonics,
+            friction=friction,
+            law=law,
+            bodies=bodies,
+            tooth_errors=tooth_errors,
+        )
         history = history_of(machine, load.speed_rpm, known)
         key = (number, load.torque_n_m, load.speed_rpm)
         loads += [(*key, *row) for row in load_rows(history)]

@@ -1,7 +1,17 @@
 """Root stress, and safety and life under a duty cycle."""
 
 from facegear.pipeline import asked
-from facegear.pipeline.rows.shared import ACCURACY, BODIES, FLANKS, HARMONICS, MACHINE, MOVING, PAIR, SPEED
+from facegear.pipeline.rows.shared import (
+    ACCURACY,
+    BODIES,
+    FLANKS,
+    HARMONICS,
+    MACHINE,
+    MOVING,
+    PAIR,
+    SPEED,
+    TOOTH_ERRORS,
+)
 from facegear.pipeline.stage import Computed, Figures, File, From, Stage, from_stage
 
 GEARS = {"gears": Computed(asked.gears_met, ("transmission",))}
@@ -39,7 +49,7 @@ LOAD_ROWS = (
         title="Loads of the running machine in every bin of the duty cycle",
         needs={**MACHINE, **ACCURACY, "strength": "strength"},
         section="strength",
-        upstream=MOVING,
+        upstream={**MOVING, **TOOTH_ERRORS},
         files={
             "duty_loads": File("strength/duty_loads.csv"),
             "duty_spectrum": File(
