@@ -48,12 +48,12 @@ def known_of_rexs(path: str | Path) -> dict[str, Any]:
     it has not. Raises FacegearError for a file without cylindrical gears, or with several kinds of them.
     """
     shafts = [shaft for shaft in read_rexs(path).shafts if shaft.spur is not None]
-    kinds = {shaft.spur for shaft in shafts if shaft.spur is not None}
-    if len(kinds) != 1:
-        sizes = sorted((spur.teeth, spur.module) for spur in kinds)
+    spurs = {shaft.spur for shaft in shafts if shaft.spur is not None}
+    if len(spurs) != 1:
+        sizes = sorted((spur.teeth, spur.module) for spur in spurs)
         said = ", ".join(f"{teeth} teeth of {module:g} mm" for teeth, module in sizes) or "none"
         raise FacegearError(f"{path}: cylindrical gears = {said}: must be equal pinions")
-    (spur,) = kinds
+    (spur,) = spurs
     first = shafts[0]
     known = {
         "pinions": len(shafts),

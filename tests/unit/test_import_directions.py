@@ -43,7 +43,7 @@ MAY_IMPORT = {
     "lubrication": {"geometry", "contact", "harmonics"},
     "exchange": {"geometry", "dynamics", "transmission", "harmonics", "mesh_law"},
     "variants": {
-        *("config", "geometry", "contact", "stiffness", "harmonics"),
+        *("config", "geometry", "contact", "stiffness", "harmonics", "gear_body"),
         *("transmission", "dynamics", "load_sharing", "scenarios", "strength", "lubrication", "exchange"),
     },
     "stages": {

@@ -188,18 +188,18 @@ def test_left_and_right_idler_differ_on_gears_that_bend_by_as_much_as_another_pr
 def test_static_answers_do_not_depend_on_how_many_modes_are_kept_for_motion():
     """Two sets of modes besides none at all; what the whole machine of modes gives moves by 9 N."""
     whole, forces = gear_bodies.reference_modes(), []
-    for highest in (1e3, 4e3, 1e5):
-        body = below(whole, highest)
+    for max_frequency in (1e3, 4e3, 1e5):
+        body = below(whole, max_frequency)
         forces.append(mesh_forces(at_rest(gearbox(body))))
     assert forces[0] == pytest.approx(forces[2], rel=1e-6)
     assert forces[1] == pytest.approx(forces[2], rel=1e-6)
-    moving = [mesh_forces(gearbox(below(whole, highest))) for highest in (4e3, 1e5)]
+    moving = [mesh_forces(gearbox(below(whole, max_frequency))) for max_frequency in (4e3, 1e5)]
     assert np.abs(moving[0] - moving[1]).max() > 5.0
 
 
-def below(body: ReducedBody, highest) -> ReducedBody:
+def below(body: ReducedBody, max_frequency) -> ReducedBody:
     """The body with its modes below a frequency, Hz."""
-    kept = body.frequency < highest
+    kept = body.frequency < max_frequency
     return replace(
         body,
         order=body.order[kept],
