@@ -101,6 +101,16 @@ rule calculix_stress_peer:
         "../scripts/calculix_stress_peer.py"
 
 
+rule body_peer:
+    "Natural frequencies of a gear body by CalculiX"
+    output:
+        table="results/{case}/benchmarks/calculix_body.csv",
+        manifest="results/{case}/benchmarks/calculix_body.provenance.json",
+    threads: 2
+    script:
+        "../scripts/body_peer.py"
+
+
 rule kratos_peer:
     "Hertz's contact by Kratos"
     output:

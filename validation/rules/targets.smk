@@ -25,6 +25,13 @@ rule peers:
     input:
         expand(
             f"results/{CASE}/benchmarks/{{name}}.csv",
-            name=["calculix", "calculix_stress", "kratos_hertz", "pair_peer", "shaft_peer"],
+            name=[
+                "calculix",
+                "calculix_stress",
+                "calculix_body",
+                "kratos_hertz",
+                "pair_peer",
+                "shaft_peer",
+            ],
         ),
     localrule: True

@@ -1,0 +1,136 @@
+"""Natural frequencies of a gear body by CalculiX: its section revolved into bricks of 20 nodes, bore held.
+
+The section is that of docs/bodies.md without teeth: a hub, a conical web of 18 to 12 mm and a ring. CalculiX
+knows nothing of waves: it solves the whole body in space, and finds every mode with nodal diameters twice.
+"""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from facegear.arrays import Array, Integers
+from facegear.errors import FacegearError
+from facegear.gear_body.body import solve_body
+from facegear.gear_body.mesh import BodyMesh, body_mesh
+from facegear.gear_body.section import Hub, Rim, Section, Web, wheel
+from facegear.geometry.design import Material
+from validation.contact.calculix import run_program
+
+STEEL, DENSITY = Material(206e9, 0.3), 7850.0
+TEETH, HIGHEST, LAST_ORDER = 143, 3000.0, 6
+COMPARED = 6
+"""Different frequencies, from the lowest on."""
+MESHES = ((1, 2.0, 24), (2, 2.0, 36))
+"""Elements across the thinnest wall, how many times smaller at corners, and elements round the axis."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bricks:
+    """Points (n, 3) in m, bricks (e, 20) in CalculiX's order, and which points are held."""
+
+    points: Array
+    bricks: Integers
+    held: Integers
+
+
+def section() -> Section:
+    """Hub r 120..140, web, ring r 250..275 mm."""
+    web = Web(0.018, 0.012, -0.006, 25 / 110)
+    corners = wheel(Hub(0.12, 0.14, -0.05, 0.0), web, Rim(0.25, 0.275, -0.012, 0.012))
+    bore = np.isclose(corners[:, 0], 0.12)
+    held = bore & np.roll(bore, -1)
+    return Section(corners, tuple(held.tolist()), (0.25, 0.275), STEEL, DENSITY)
+
+
+def revolved(mesh: BodyMesh, around: int) -> Bricks:
+    """A section's quadrilaterals turned round the axis in `around` steps; edges bend with the circle."""
+    quads = mesh.quads
+    ends = np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2)
+    edges, number = np.unique(np.sort(ends, axis=1), axis=0, return_inverse=True)
+    middles = 0.5 * (mesh.nodes[edges[:, 0]] + mesh.nodes[edges[:, 1]])
+    flat, corners = np.concatenate([mesh.nodes, middles]), len(mesh.nodes)
+    per_step = len(flat) + corners
+    angle = -2.0 * np.pi / around * np.arange(2 * around) / 2.0  # backwards: bricks then have their volume
+    points = np.concatenate(
+        [_turned(flat if step % 2 == 0 else flat[:corners], angle[step]) for step in range(2 * around)]
+    )
+    on_edges = len(mesh.nodes) + number.reshape(quads.shape)
+    bricks = []
+    for step in range(around):
+        first, last = step * per_step, (step + 1) % around * per_step
+        between = first + len(flat)
+        parts = (quads + first, quads + last, on_edges + first, on_edges + last, quads + between)
+        bricks.append(np.concatenate(parts, axis=1))
+    held = np.flatnonzero(np.hypot(points[:, 0], points[:, 1]) < mesh.nodes[:, 0].min() + 1e-9)
+    return Bricks(points, np.concatenate(bricks), held)
+
+
+def _turned(flat: Array, angle: float) -> Array:
+    r, height = flat.T
+    return np.stack([r * np.cos(angle), r * np.sin(angle), height], axis=1)
+
+
+def write_deck(path: Path, bricks: Bricks, modes: int) -> None:
+    """Deck of the first modes; mm, MPa and t."""
+    with open(path, "w", encoding="ascii") as deck:
+        deck.write("*NODE, NSET=ALL_NODES\n")
+        numbers = np.arange(1, len(bricks.points) + 1)
+        np.savetxt(deck, np.column_stack([numbers, 1e3 * bricks.points]), fmt="%d, %.13e, %.13e, %.13e")
+        deck.write("*ELEMENT, TYPE=C3D20R, ELSET=BODY\n")
+        for label, row in enumerate((bricks.bricks + 1).tolist(), 1):
+            whole = [label, *row]
+            deck.write(", ".join(map(str, whole[:11])) + ",\n" + ", ".join(map(str, whole[11:])) + "\n")
+        deck.write("*NSET, NSET=BORE\n" + "".join(f"{node + 1},\n" for node in bricks.held))
+        deck.write("*MATERIAL, NAME=STEEL\n*ELASTIC\n")
+        deck.write(f"{1e-6 * STEEL.young_modulus:.10g}, {STEEL.poisson_ratio:.10g}\n")
+        deck.write(f"*DENSITY\n{1e-12 * DENSITY:.10g}\n")
+        deck.write("*SOLID SECTION, ELSET=BODY, MATERIAL=STEEL\n*BOUNDARY\nBORE, 1, 3\n")
+        deck.write(f"*STEP\n*FREQUENCY\n{modes}\n*END STEP\n")
+
+
+def frequencies_of(text: str) -> Array:
+    """Frequencies (Hz) in the text of CalculiX's .dat file."""
+    part = text.partition("E I G E N V A L U E   O U T P U T")[2].partition("P A R T I C I P A T I O N")[0]
+    rows = re.findall(r"^\s*\d+\s+\S+\s+\S+\s+(\S+)\s+\S+\s*$", part, re.MULTILINE)
+    if not rows:
+        raise FacegearError("CalculiX wrote no frequencies")
+    return np.array([float(value) for value in rows])
+
+
+def peer_table(folder: Path, threads: int) -> pd.DataFrame:
+    """One row for each mesh and nodal diameter: ours, CalculiX's (both of a pair) and the difference in %.
+
+    Raises FacegearError where ccx is not installed or fails.
+    """
+    shape = section()
+    solved = solve_body(shape, HIGHEST, LAST_ORDER, TEETH)
+    ours = sorted((float(f), modes.order) for modes in solved.orders for f in modes.frequencies)[:COMPARED]
+    expected = [f for f, order in ours for _ in range(2 if order else 1)]
+    rows = []
+    for across, finer, around in MESHES:
+        bricks = revolved(body_mesh(shape, across, finer), around)
+        deck = folder / f"body_{around}.inp"
+        write_deck(deck, bricks, len(expected) + 2)
+        run = run_program(deck, threads)
+        theirs = frequencies_of(deck.with_suffix(".dat").read_text(encoding="ascii"))
+        taken = 0
+        for frequency, order in ours:
+            own = theirs[taken : taken + (2 if order else 1)]
+            taken += own.size
+            rows.append(
+                {
+                    "elements": len(bricks.bricks),
+                    "around": around,
+                    "nodal_diameters": order,
+                    "ours_hz": frequency,
+                    "calculix_hz": own.mean(),
+                    "pair_hz": np.ptp(own),
+                    "difference_percent": 100.0 * (own.mean() / frequency - 1.0),
+                    "cpu_seconds": run.cpu_seconds,
+                    "calculix_version": run.version,
+                }
+            )
+    return pd.DataFrame(rows)
