@@ -30,7 +30,7 @@ from facegear.config.checks import (
 )
 from facegear.config.contact import Contact, contact_plan
 from facegear.config.dynamics import Dynamics
-from facegear.config.elastic_bodies import check_bodies
+from facegear.config.elastic_bodies import check_bodies, elastic_gears
 from facegear.config.load_sharing import LoadSharing
 from facegear.config.lubrication import LubricationSection
 from facegear.config.mesh import Mesh, mesh_sizes
@@ -128,10 +128,14 @@ class Config(Section):
 
     def _check_branches(self) -> None:
         speed, section = self.dynamics.speed_rpm, self.branches
-        springs = self.transmission is not None and self.transmission.torsion
-        if section and springs and "bearing_stiffness" in section.loci.parameters:
-            allowed = "without bearing_stiffness beside transmission.torsion, whose springs it would scale"
-            raise ConfigError("branches.loci.parameters", list(section.loci.parameters), allowed)
+        if section and self.transmission and "bearing_stiffness" in section.loci.parameters:
+            springs = {
+                "transmission.torsion": bool(self.transmission.torsion),
+                "a body of a face gear": bool(elastic_gears(self.transmission)),
+            }
+            for scaled in (name for name, given in springs.items() if given):
+                allowed = f"without bearing_stiffness beside {scaled}, whose springs it would scale"
+                raise ConfigError("branches.loci.parameters", list(section.loci.parameters), allowed)
         if section and not section.from_rpm <= speed <= section.to_rpm:
             allowed = f"from branches.from_rpm = {section.from_rpm:g} to {section.to_rpm:g}"
             raise ConfigError("dynamics.speed_rpm", speed, allowed)

@@ -71,7 +71,7 @@ def changed(model: Model, parameter: str, factor: float) -> System:
     if parameter == "mesh_damping":
         return replace(system, mesh_damping=system.mesh_damping * factor)
     if parameter == "bearing_stiffness":
-        # Of shafts, too; a config refuses it beside torsional springs, which have no bearing.
+        # Of shafts, too; a config refuses it beside torsional springs and bodies, which have no bearing.
         scaled = system.omega_squared * factor
         own = system.damping - modal_damping(linear, system.omega_squared)
         return replace(system, omega_squared=scaled, damping=modal_damping(linear, scaled) + own)

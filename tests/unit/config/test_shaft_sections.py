@@ -99,10 +99,14 @@ def test_a_stiffness_of_a_bearing_may_vary_from_machine_to_machine():
     assert found == pytest.approx(1.0 / (1.0 / 2.170162e8 + (7 / 12) ** 2 * (1e-8 - 1.0 / 1.5e8)), rel=1e-6)
 
 
-def test_branches_do_not_scale_bearings_beside_torsional_springs():
-    config = facegear.load(EXAMPLE)
+@pytest.mark.parametrize(
+    ("name", "beside"),
+    [("shafts.yaml", r"transmission\.torsion"), ("flexible.yaml", "a body of a face gear")],
+)
+def test_branches_do_not_scale_bearings_beside_springs_that_are_none(name, beside):
+    config = facegear.load(EXAMPLE.with_name(name))
     config.with_values({"branches": {"loci": {"parameters": ["torque"]}}})
-    with pytest.raises(ConfigErrors, match=r"branches\.loci\.parameters = .* beside transmission\.torsion"):
+    with pytest.raises(ConfigErrors, match=rf"branches\.loci\.parameters = .* beside {beside}"):
         config.with_values({"branches": {"loci": {"parameters": ["bearing_stiffness"]}}})
 
 
