@@ -20,7 +20,7 @@ from facegear.geometry.design import Material
 from validation.contact.calculix import run_program
 
 STEEL, DENSITY = Material(206e9, 0.3), 7850.0
-TEETH, HIGHEST, LAST_ORDER = 143, 3000.0, 6
+TEETH, MAX_FREQUENCY, LAST_ORDER = 143, 3000.0, 6
 COMPARED = 6
 """Different frequencies, from the lowest on."""
 MESHES = ((1, 2.0, 24), (2, 2.0, 36))
@@ -106,7 +106,7 @@ def peer_table(folder: Path, threads: int) -> pd.DataFrame:
     Raises FacegearError where ccx is not installed or fails.
     """
     shape = section()
-    solved = solve_body(shape, HIGHEST, LAST_ORDER, TEETH)
+    solved = solve_body(shape, MAX_FREQUENCY, LAST_ORDER, TEETH)
     ours = sorted((float(f), modes.order) for modes in solved.orders for f in modes.frequencies)[:COMPARED]
     expected = [f for f, order in ours for _ in range(2 if order else 1)]
     rows = []

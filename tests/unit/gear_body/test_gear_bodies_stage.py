@@ -55,6 +55,13 @@ def test_gears_alike_are_solved_once(monkeypatch):
     assert len(solved) == 3
 
 
+def test_what_the_modes_leave_out_between_flanks_is_less_than_at_a_flank_itself(outcome):
+    bodies = outcome.content["bodies"]
+    own = (1.0 - bodies["modal_fraction"]) * bodies["own_compliance_m_per_n"]
+    assert (bodies["left_out_between_m_per_n"] > 0.0).all()
+    assert (bodies["left_out_between_m_per_n"] < own).all()
+
+
 def test_own_compliance_is_the_sum_over_the_orders_along_the_line_of_action(outcome):
     compliance = outcome.content["compliance"].groupby("gear").sum()
     own = outcome.content["bodies"].set_index("gear")["own_compliance_m_per_n"]

@@ -18,6 +18,7 @@ from facegear.gear_body.compliance import flank_direction, influence
 from facegear.gear_body.excitation import phase_factors
 from facegear.gear_body.reduced import ReducedBody
 from facegear.harmonics.series import Harmonics
+from facegear.stages.gear_waves import _left_out
 from facegear.transmission.elastic_gears import ElasticGears, coordinates
 from facegear.transmission.layout import Side
 from facegear.transmission.loaded_contacts import forces_by_active_sets, loaded_contacts
@@ -195,6 +196,12 @@ def test_static_answers_do_not_depend_on_how_many_modes_are_kept_for_motion():
     assert forces[1] == pytest.approx(forces[2], rel=1e-6)
     moving = [mesh_forces(gearbox(below(whole, max_frequency))) for max_frequency in (4e3, 1e5)]
     assert np.abs(moving[0] - moving[1]).max() > 5.0
+
+
+def test_summary_says_how_far_what_motion_leaves_out_moves_forces_at_rest():
+    machine = gearbox(gear_bodies.reference_modes())
+    off = np.abs(mesh_forces(machine) - mesh_forces(at_rest(machine))).max()
+    assert 1.0 < off < 10.0 and f"by up to {off:.3g} N of 23647 N" in _left_out(machine)
 
 
 def below(body: ReducedBody, max_frequency) -> ReducedBody:
