@@ -79,8 +79,11 @@ def report(tmp_path_factory):
     modes = pd.DataFrame({"mode": ["7", "8", "9"], "frequency_hz": [597.5591, 1010.1912, 812.3]})
     wide = pd.DataFrame({f"largest_line_load_{n}_n_per_mm": [1234.5678 + n] * 4 for n in range(20)})
     judged = pd.DataFrame({"verdict": ["green", "amber", "red"], "what was found": ["safety 1.0 " * 8] * 3})
+    warned = pd.DataFrame(
+        {"about": ["transmission.mesh_kinematics"], "what to keep in mind": ["words " * 30]}
+    )
     chapters = [
-        Chapter("At a glance", "", tables=[Table("Verdicts", judged)]),
+        Chapter("At a glance", "", tables=[Table("Verdicts", judged), Table("Warnings", warned)]),
         Chapter("Modes", "Text.", tables=[Table("Natural frequencies", modes), Table("Wide", wide)]),
         Chapter("Sweeps", "", pictures),
     ]
@@ -181,6 +184,10 @@ def test_the_page_has_no_serious_fault_of_accessibility_and_fits_the_window(open
     page = opened(width, color_scheme=scheme)
     drawn(page, OVER_SPEED)
     assert page.evaluate("document.documentElement.scrollWidth") <= width
+    glance = (
+        "[...document.querySelectorAll('#at-a-glance .scroll')].map(box => box.scrollWidth - box.clientWidth)"
+    )
+    assert page.evaluate(glance) == [0, 0], "the first screen is read without scrolling sideways"
     paper = page.evaluate("getComputedStyle(document.body).backgroundColor")
     assert (sum(map(int, re.findall(r"\d+", paper)[:3])) < 200) == (scheme == "dark")
     faults = Axe().run(page).response["violations"]
@@ -208,7 +215,7 @@ def test_print_fits_a4_with_every_column_and_the_stills(opened):
     page.emulate_media(media="print")
     page.set_viewport_size(A4)
     widths = page.evaluate("[...document.querySelectorAll('main table')].map(table => table.scrollWidth)")
-    assert len(widths) == 3 and max(widths) <= A4["width"]
+    assert len(widths) == 4 and max(widths) <= A4["width"]
     assert page.locator(f"#{OVER_SPEED} img").is_visible()
     assert not page.locator(f"#{OVER_SPEED} .live").is_visible()
     printed = page.pdf(prefer_css_page_size=True)
