@@ -22,7 +22,7 @@ from validation.contact.calculix import run_program
 STEEL, DENSITY = Material(206e9, 0.3), 7850.0
 TEETH, MAX_FREQUENCY, LAST_ORDER = 143, 3000.0, 6
 COMPARED = 6
-"""Different frequencies, from the lowest on."""
+"""Different frequencies, in ascending order."""
 MESHES = ((1, 2.0, 24), (2, 2.0, 36))
 """Elements across the thinnest wall, how many times smaller at corners, and elements round the axis."""
 
