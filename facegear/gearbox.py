@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from facegear.results.machine_loss import MachineLossResult
     from facegear.results.mesh_law import MeshLawResult
     from facegear.results.modal import ModesResult
+    from facegear.results.operating_pose import OperatingPoseResult
     from facegear.results.rating import RatingResult
     from facegear.results.response import ResponseResult
     from facegear.results.root_stress import RootStressResult
@@ -420,6 +421,17 @@ class Gearbox:
 
         return self._chain.result(StaticsResult)
 
+    def operating_pose(self) -> "OperatingPoseResult":
+        """Where the machine's own forces put the teeth of every mesh, and what contact makes of it.
+
+        Raises ConfigErrors for a machine without contact analysis, InvalidInput for a pose outside those that
+        are solved, NotConverged.
+        """
+        from facegear.results.operating_pose import OperatingPoseResult
+
+        changed = self._changed("operating_pose", {"transmission.operating_pose": "static"})
+        return changed._chain.result(OperatingPoseResult)
+
     def hunting(self, positions: int | None = None) -> "HuntingResult":
         """Load sharing at rest over the hunting cycle, in which every tooth meets every other.
 
@@ -677,7 +689,7 @@ class Gearbox:
 
         given = self._chain.arguments("dynamics_response")
         named = {"section": given["transmission"], "teeth": given["teeth"], "stiffness": given["harmonics"]}
-        named |= {name: given[name] for name in ("friction", "law", "bodies") if name in given}
+        named |= {name: given[name] for name in ("friction", "law", "poses", "bodies") if name in given}
         return wired_machine(**typed_arguments(wired_machine, named))
 
     def _whole_case(self, on_stage: Callable[[str, str], None] | None) -> "WholeCase":

@@ -26,6 +26,7 @@ def wired_machine(
     unloaded: Harmonics | None = None,
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    poses: Arrays | None = None,
     bodies: Arrays | None = None,
     tooth_errors: Arrays | None = None,
 ) -> Machine:
@@ -33,7 +34,8 @@ def wired_machine(
 
     A table from contact brings the pair's own e(t); with a series it is `unloaded`, in m. friction: table
     `excitation` of stage lubrication, where friction disturbs the motion. law: arrays of stage mesh_law,
-    where forces depend on the load. bodies: arrays `reduced` of stage gear_bodies, where face gears bend.
+    where forces depend on the load. poses: arrays `surface` of stage pose_surface, where the meshes stand as
+    the machine's own forces put them. bodies: arrays `reduced` of stage gear_bodies, where face gears bend.
     tooth_errors: arrays `curves` of that stage, where single teeth deviate from the others.
     """
     if isinstance(stiffness, Harmonics):
@@ -48,6 +50,11 @@ def wired_machine(
     if tooth_errors is not None:
         own = replace(built.imperfections, teeth=from_arrays(tooth_errors))
         built = replace(built, imperfections=own)
+    if poses is not None:
+        from facegear.poses.fixed_point import posed_machine  # only poses need compiled statics
+        from facegear.poses.surface import PoseSurface
+
+        built = posed_machine(built, PoseSurface.of_arrays(poses))
     if friction is None:
         return built
     from facegear.config.mesh_friction import with_friction  # only friction needs compiled statics

@@ -55,6 +55,8 @@ from facegear.errors import ConfigError
 
 SAME_ELASTICITY = 1e-6
 
+LINES = "flanks that touch along lines meet any pose with an edge"
+
 
 class Config(Section):
     """One machine and what is to be computed for it."""
@@ -93,6 +95,7 @@ class Config(Section):
         require_all(
             self._check_branches,
             self._check_law,
+            self._check_poses,
             self._check_friction,
             self._check_reproduction,
             lambda: check_load(self.mesh_stiffness, self.contact),
@@ -125,6 +128,17 @@ class Config(Section):
         if self.search is not None or moves_pair(keys) or (self.tolerances and self.tolerances.tooth_contact):
             allowed = f"constant_load, {CONTACT_ASKED}"
             raise ConfigError("mesh_stiffness.mesh_law", "load_dependent", allowed)
+
+    def _check_poses(self) -> None:
+        if self.transmission is None or self.transmission.operating_pose == "none":
+            return
+        if self.mesh_stiffness.source == "harmonics":
+            allowed = "none where mesh_stiffness.source is harmonics: no contact says what a pose changes"
+            raise ConfigError("transmission.operating_pose", self.transmission.operating_pose, allowed)
+        shaper, teeth = self.tooth_pair.shaper, self.tooth_pair.pinion_teeth
+        if shaper is not None and shaper.teeth <= teeth:
+            allowed = f"more than {teeth} where transmission.operating_pose is static: {LINES}"
+            raise ConfigError("tooth_pair.shaper.teeth", shaper.teeth, allowed)
 
     def _check_branches(self) -> None:
         speed, section = self.dynamics.speed_rpm, self.branches

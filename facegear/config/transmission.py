@@ -89,6 +89,11 @@ class Transmission(Section):
     mesh_kinematics: Literal["geometric", "printed"] = Field(
         "geometric", description="printed: equation (13) of the paper to the letter, not what gears do"
     )
+    operating_pose: Literal["none", "static"] = Field(
+        "none",
+        description="static: every mesh has the contact of its teeth where bearings, tilts and loads put "
+        "them at rest; none: that of the pair as assembled",
+    )
     phase_convention: Literal["geometric", "printed"] = "geometric"
     torque: Torque
     single_meshes: dict[str, SingleMesh] = Field({}, description="by `pinion/lower` or `pinion/upper`")
@@ -160,6 +165,8 @@ class Transmission(Section):
         for key in ("shafts", "torsion"):
             if named := list(getattr(self, key)):
                 refuse(key, named, "none where mesh_kinematics is printed")
+        if self.operating_pose != "none":
+            refuse("operating_pose", self.operating_pose, "none where mesh_kinematics is printed")
         for key, value in (
             ("pinion.clearance_um", self.pinion.bearing_clearance_um or None),
             ("pinion.runout", self.pinion.runout),

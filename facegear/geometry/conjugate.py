@@ -9,16 +9,68 @@ angle) it reads cos psi (h - dq) - sin psi dE = h cos a0. Derived for this proje
 `face_gear`; confirmed against rigid displacements of either body.
 """
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from functools import lru_cache
 from math import acos, asin, atan2, cos, hypot, isfinite, pi, sin, tan
+from typing import Self
 
+import numpy as np
+
+from facegear.arrays import Array
 from facegear.geometry import pinion
 from facegear.geometry.design import AssemblyErrors, GearModifications, PairDesign
 
 STEPS = 60
 ROUNDING = 1e-12
 """Step of psi (rad) by which differences for the slope are off."""
+
+
+@dataclass(frozen=True)
+class PairNumbers:
+    """What of a pair the closed form and the ends of the faces need; m and rad.
+
+    first_end, last_end: ends of the common face, distances from the gear's axis along the pinion's.
+    """
+
+    pressure_angle: float
+    pinion_teeth: float
+    pinion_base_radius: float
+    pinion_half_base_angle: float
+    shaper_base_radius: float
+    shaper_half_space_angle: float
+    shaper_lift: float
+    gear_base_radius: float
+    mean_radius: float
+    first_end: float
+    last_end: float
+
+    @classmethod
+    def of_design(cls, design: PairDesign) -> Self:
+        """Those of a design."""
+        half, face = design.pinion.width / 2, design.face_gear
+        return cls(
+            pressure_angle=design.pressure_angle,
+            pinion_teeth=float(design.pinion.teeth),
+            pinion_base_radius=design.pinion_base_radius,
+            pinion_half_base_angle=design.pinion_half_base_angle,
+            shaper_base_radius=design.shaper_base_radius,
+            shaper_half_space_angle=design.shaper_half_space_angle,
+            shaper_lift=design.shaper_lift,
+            gear_base_radius=design.gear_base_radius,
+            mean_radius=design.mean_radius,
+            first_end=max(face.inner_radius, design.mean_radius - half),
+            last_end=min(face.outer_radius, design.mean_radius + half),
+        )
+
+    @classmethod
+    def of_array(cls, values: Array) -> Self:
+        """From what `array` gives."""
+        return cls(*(float(value) for value in values))
+
+    @property
+    def array(self) -> Array:
+        """All of them, (11,)."""
+        return np.array(astuple(self))
 
 
 @dataclass(frozen=True)
@@ -47,30 +99,34 @@ class ConjugateContact:
 
 
 def conjugate_contact(design: PairDesign) -> ConjugateContact | None:
+    """`contact_at` in the assembly of a design."""
+    return contact_at(PairNumbers.of_design(design), design.assembly)
+
+
+def contact_at(pair: PairNumbers, errors: AssemblyErrors) -> ConjugateContact | None:
     """None where no normal of the flanks continued without end touches, and where teeth touch along lines
     that an assembly error turns into an edge (as many teeth of the shaper as of the pinion).
     """
-    errors, unmoved = design.assembly, design.pressure_angle
-    if design.shaper_lift <= 0.0:
+    if pair.shaper_lift <= 0.0:
         return None
-    psi = unmoved if errors == AssemblyErrors() else _slope(design)
+    psi = pair.pressure_angle if errors == AssemblyErrors() else _slope(pair, errors)
     if psi is None:
         return None
-    turn = _turn(design, psi)
-    height, base = design.shaper_lift, design.shaper_base_radius
-    x, y, z = _placed(design)
+    turn = _turn(errors, psi)
+    height, base = pair.shaper_lift, pair.shaper_base_radius
+    x, y, z = _placed(pair, errors)
     tilt = errors.shaft_angle_error
     on_pinion = acos(cos(psi) * cos(turn))
-    half_tooth = design.pinion_half_base_angle - pi / design.pinion.teeth
+    half_tooth = pair.pinion_half_base_angle - pi / pair.pinion_teeth
     error = (
         _dot(_turned((cos(psi), 0.0, -sin(psi)), turn), (x, y, z))
-        + design.pinion_base_radius * (on_pinion + half_tooth)
+        + pair.pinion_base_radius * (on_pinion + half_tooth)
         + height * sin(psi)
-        - base * (psi - design.shaper_half_space_angle)
-        - design.gear_base_radius * turn
+        - base * (psi - pair.shaper_half_space_angle)
+        - pair.gear_base_radius * turn
     )
-    point = _turned((-base * sin(psi), design.gear_base_radius / cos(psi), height - base * cos(psi)), turn)
-    along = design.mean_radius + cos(tilt) * (point[1] - y) + sin(tilt) * (point[2] - z)
+    point = _turned((-base * sin(psi), pair.gear_base_radius / cos(psi), height - base * cos(psi)), turn)
+    along = pair.mean_radius + cos(tilt) * (point[1] - y) + sin(tilt) * (point[2] - z)
     return ConjugateContact(psi, turn, error, along, on_pinion + half_tooth)
 
 
@@ -80,7 +136,7 @@ def exact_contact(design: PairDesign) -> ConjugateContact | None:
 
     It holds where a whole pitch of the contact's way lies on both flanks, within both faces.
     """
-    if _modified(design):
+    if not without_modifications(design):
         return None
     contact = conjugate_contact(design)
     if contact is None:
@@ -96,13 +152,34 @@ def exact_contact(design: PairDesign) -> ConjugateContact | None:
     return contact if inside else None
 
 
-def _slope(design: PairDesign) -> float | None:
+def offset_for(pair: PairNumbers, path: float, errors: AssemblyErrors) -> float | None:
+    """The offset (m) with which contact stands at `path` (m) along the pinion, other errors as given.
+
+    None where there is none.
+    """
+    psi, tilt = acos(pair.gear_base_radius / path), errors.shaft_angle_error
+    lift, step = pair.shaper_lift, 1e-7
+    offset = ((lift - errors.axial_shift) * cos(psi) - lift * cos(pair.pressure_angle)) / sin(psi)
+    for _ in range(STEPS):
+        near = [
+            contact_at(pair, AssemblyErrors(at, tilt, errors.axial_shift)) for at in (offset, offset + step)
+        ]
+        if near[0] is None or near[1] is None:
+            return None
+        missing = near[0].y - path
+        if abs(missing) < 1e-12:
+            return offset
+        offset -= missing * step / (near[1].y - near[0].y)
+    return None
+
+
+def _slope(pair: PairNumbers, errors: AssemblyErrors) -> float | None:
     """psi by Newton's method from the pressure angle, with differences for the slope; None without any."""
-    psi, width = design.pressure_angle, 1e-5
+    psi, width = pair.pressure_angle, 1e-5
     for _ in range(STEPS):
         if not abs(psi) < 0.5 * pi - width:
             return None
-        below, middle, above = (_condition(design, psi + step) for step in (-width, 0.0, width))
+        below, middle, above = (_condition(pair, errors, psi + step) for step in (-width, 0.0, width))
         rise = (above - below) / (2 * width)
         step = middle / rise if rise else float("nan")
         if not isfinite(step):
@@ -113,34 +190,35 @@ def _slope(design: PairDesign) -> float | None:
     return None
 
 
-def _condition(design: PairDesign, psi: float) -> float:
+def _condition(pair: PairNumbers, errors: AssemblyErrors, psi: float) -> float:
     """By how much (m) the normal of slope psi misses the pinion's base cylinder."""
-    tilt, turn = design.assembly.shaft_angle_error, _turn(design, psi)
+    tilt, turn = errors.shaft_angle_error, _turn(errors, psi)
     across = cos(turn) * cos(tilt)
     from_axis = _turned((across * sin(psi), -sin(tilt) / cos(psi), across * cos(psi)), turn)
     return (
-        across * (design.shaper_lift * cos(psi) - design.shaper_base_radius)
-        - sin(tilt) * design.gear_base_radius / cos(psi) ** 2
-        - _dot(from_axis, _placed(design))
-        + design.pinion_base_radius
+        across * (pair.shaper_lift * cos(psi) - pair.shaper_base_radius)
+        - sin(tilt) * pair.gear_base_radius / cos(psi) ** 2
+        - _dot(from_axis, _placed(pair, errors))
+        + pair.pinion_base_radius
     )
 
 
-def _turn(design: PairDesign, psi: float) -> float:
+def _turn(errors: AssemblyErrors, psi: float) -> float:
     """The normal is square to the pinion's axis."""
-    return asin(max(-1.0, min(1.0, tan(psi) * tan(design.assembly.shaft_angle_error))))
+    return asin(max(-1.0, min(1.0, tan(psi) * tan(errors.shaft_angle_error))))
 
 
-def _placed(design: PairDesign) -> tuple[float, float, float]:
+def _placed(pair: PairNumbers | PairDesign, errors: AssemblyErrors) -> tuple[float, float, float]:
     """The middle of the pinion's face in the gear's frame (m)."""
-    return design.assembly.offset, design.mean_radius, design.assembly.axial_shift
+    return errors.offset, pair.mean_radius, errors.axial_shift
 
 
-def _modified(design: PairDesign) -> bool:
+def without_modifications(design: PairDesign) -> bool:
+    """Whether both flanks are as generated."""
     made = design.pinion
     reliefs = (made.tip_relief, made.root_relief, made.lead_crowning)
     on_pinion = any(relief.amount != 0.0 for relief in reliefs)
-    return on_pinion or design.face_gear.modifications != GearModifications() or design.deviates
+    return not (on_pinion or design.face_gear.modifications != GearModifications() or design.deviates)
 
 
 def _rolls(design: PairDesign, contact: ConjugateContact) -> tuple[float, float]:
@@ -159,7 +237,7 @@ def _point(design: PairDesign, contact: ConjugateContact, roll: float) -> tuple[
     x = base * (roll * cos(on_pinion) - sin(on_pinion))
     z = -base * (roll * sin(on_pinion) + cos(on_pinion))
     tilt, along = design.assembly.shaft_angle_error, contact.y - design.mean_radius
-    placed = _placed(design)
+    placed = _placed(design, design.assembly)
     return (
         placed[0] + x,
         placed[1] + cos(tilt) * along - sin(tilt) * z,

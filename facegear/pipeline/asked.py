@@ -63,6 +63,18 @@ def load_dependent_machine(case: Case) -> bool:
     return machine(case) and load_dependent(case)
 
 
+def poses(case: Case) -> bool:
+    """Whether meshes stand where the machine's own forces put them."""
+    return machine(case) and case.values["transmission"]["operating_pose"] == "static"
+
+
+def tilting(case: Case) -> bool:
+    """Whether a body of the machine may tilt, so that the error of the shaft angle changes."""
+    section: Any = case.values["transmission"]
+    gears = [section["face_gear"], *section["single_gears"].values()]
+    return bool(section["shafts"]) or any(gear.get("tilt") for gear in gears)
+
+
 def modes_from_contact(case: Case) -> bool:
     """Whether modes take their stiffness from the contact analysis."""
     from facegear.config.modal import modes_need_contact

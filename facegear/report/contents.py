@@ -4,6 +4,9 @@ from collections.abc import Mapping
 from typing import Any
 
 CAPTIONS = {
+    "pose_pattern": "Contact pattern of the mesh that its pose changes most, as assembled and where the "
+    "machine's own forces put its teeth, on one scale.",
+    "pose_paths": "Unloaded contact of every mesh along the pinion over the load, with the ends of the face.",
     "tooth_pair": "Pinion and face gear in mesh.",
     "tooth_sections": "Sections of both teeth, with the radii between which the gear's teeth can exist.",
     "separation": "Gap between the unloaded flanks, and the path of the contact over the gear's flank.",

@@ -33,6 +33,7 @@ def branches(
     speed_rpm: float,
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    poses: Arrays | None = None,
     bodies: Arrays | None = None,
 ) -> Outcome:
     """`branches`, `ends`, `unfollowed`, `multipliers`, `special`, `coexistence`, `ranges`, `margins`, `swept`
@@ -42,7 +43,7 @@ def branches(
     in the order of the config. Raises NotConverged if no motion of period one is found.
     """
     model = build_model(
-        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, bodies=bodies)
+        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, poses=poses, bodies=bodies)
     )
     plan, layout = branch_plan(branches, speed_rpm), model.machine.layout
     period_map, swept_plan = machine_period_map(model, plan), sweep_plan(sweep)

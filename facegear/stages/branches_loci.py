@@ -24,11 +24,12 @@ def branches_loci(
     speed_rpm: float,
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    poses: Arrays | None = None,
     bodies: Arrays | None = None,
 ) -> Outcome:
     """`loci` (table). orbits: arrays of the special points."""
     model = build_model(
-        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, bodies=bodies)
+        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, poses=poses, bodies=bodies)
     )
     plan = branch_plan(branches, speed_rpm)
     loci, missed = machine_loci(model, plan, special_points(machine_period_map(model, plan), orbits), tell)

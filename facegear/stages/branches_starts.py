@@ -23,11 +23,12 @@ def branches_starts(
     speed_rpm: float,
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    poses: Arrays | None = None,
     bodies: Arrays | None = None,
 ) -> Outcome:
     """`motions` (arrays) at one of the config's speeds. Raises NotConverged naming the speed."""
     model = build_model(
-        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, bodies=bodies)
+        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, poses=poses, bodies=bodies)
     )
     plan = branch_plan(branches, speed_rpm)
     speed = plan.speeds_rpm[number]

@@ -24,6 +24,7 @@ def duty_loads(
     strength: Strength | None,
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    poses: Arrays | None = None,
     bodies: Arrays | None = None,
     tooth_errors: Arrays | None = None,
 ) -> Outcome:
@@ -44,6 +45,7 @@ def duty_loads(
             harmonics,
             friction=friction,
             law=law,
+            poses=poses,
             bodies=bodies,
             tooth_errors=tooth_errors,
         )

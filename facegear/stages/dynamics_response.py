@@ -27,6 +27,7 @@ def dynamics_response(
     speed_rpm: float,
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    poses: Arrays | None = None,
     bodies: Arrays | None = None,
 ) -> Outcome:
     """`response`, `spectrum`, `summary`, `multipliers` and `bearings` (tables).
@@ -34,7 +35,7 @@ def dynamics_response(
     Raises NotConverged naming the speed.
     """
     model = build_model(
-        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, bodies=bodies)
+        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, poses=poses, bodies=bodies)
     )
     response = simulate(model, speed_rpm, settings(accuracy))
     layout = model.machine.layout

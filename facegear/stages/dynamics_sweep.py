@@ -28,6 +28,7 @@ def dynamics_sweep(
     threads: int = 1,
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    poses: Arrays | None = None,
     bodies: Arrays | None = None,
 ) -> Outcome:
     """`sweep`, `jumps`, `resonances`, `seams` (tables) and `waterfall` (arrays).
@@ -35,7 +36,7 @@ def dynamics_sweep(
     `chunks`: the arrays of all chunks, direction by direction in the order of the config.
     """
     model = build_model(
-        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, bodies=bodies)
+        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, poses=poses, bodies=bodies)
     )
     plan, layout = sweep_plan(sweep), model.machine.layout
     stored = iter(chunks)

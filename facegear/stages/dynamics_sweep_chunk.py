@@ -23,6 +23,7 @@ def dynamics_sweep_chunk(
     sweep: Sweep,
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    poses: Arrays | None = None,
     bodies: Arrays | None = None,
 ) -> Outcome:
     """`chunk` (arrays). Raises NotConverged naming the speed."""
@@ -30,7 +31,7 @@ def dynamics_sweep_chunk(
     total = sum(map(len, plan.chunk(direction, number)))
     progress = Progress(f"sweep {direction}, chunk {number}", total)
     model = build_model(
-        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, bodies=bodies)
+        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, poses=poses, bodies=bodies)
     )
     before, own = run_chunk(model, plan, direction, number, progress.step)
     summary = f"{len(own.speeds)} speeds {direction}, {len(before.speeds)} for overlap"

@@ -25,6 +25,7 @@ def following(
     cycles: int | None,
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    poses: Arrays | None = None,
     bodies: Arrays | None = None,
     tooth_errors: Arrays | None = None,
 ) -> Outcome:
@@ -33,7 +34,14 @@ def following(
     Raises NotConverged naming the position or the mesh phase.
     """
     machine = wired_machine(
-        transmission, teeth, harmonics, friction=friction, law=law, bodies=bodies, tooth_errors=tooth_errors
+        transmission,
+        teeth,
+        harmonics,
+        friction=friction,
+        law=law,
+        poses=poses,
+        bodies=bodies,
+        tooth_errors=tooth_errors,
     )
     length = hunting_length(machine)
     part = length if cycles is None else min(cycles, length)

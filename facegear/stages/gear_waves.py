@@ -22,6 +22,7 @@ def gear_waves(
     speed_rpm: float,
     bodies: Arrays | None = None,
     law: Arrays | None = None,
+    poses: Arrays | None = None,
 ) -> Outcome:
     """`waves` (table) of the machine about its static load, meshes at their mean stiffness.
 
@@ -29,7 +30,7 @@ def gear_waves(
     """
     if bodies is None:
         raise ConfigError("transmission.face_gear.body", None, "given: all face gears are rigid")
-    machine = wired_machine(transmission, teeth, harmonics, law=law, bodies=bodies)
+    machine = wired_machine(transmission, teeth, harmonics, law=law, poses=poses, bodies=bodies)
     modes = machine_at_speed(machine, speed_rpm)
     growing = modes.frequencies[modes.damping_ratios < -GROWS]
     summary = f"{modes.frequencies.size} modes at {speed_rpm:g} rpm"

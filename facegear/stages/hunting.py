@@ -20,11 +20,14 @@ def hunting(
     teeth: ToothNumbers,
     positions: int,
     law: Arrays | None = None,
+    poses: Arrays | None = None,
     bodies: Arrays | None = None,
     tooth_errors: Arrays | None = None,
 ) -> Outcome:
     """Tables `meshes`, `groups`, `bearings`, `cycles`, `scan`, `sensitivity`. Raises NotConverged."""
-    whole = wired_machine(transmission, teeth, harmonics, law=law, bodies=bodies, tooth_errors=tooth_errors)
+    whole = wired_machine(
+        transmission, teeth, harmonics, law=law, poses=poses, bodies=bodies, tooth_errors=tooth_errors
+    )
     machine = at_rest(whole)
     cycle = hunting_cycle(machine, positions)
     content = {

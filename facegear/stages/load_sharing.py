@@ -22,11 +22,12 @@ def load_sharing(
     options: LoadSharing,
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    poses: Arrays | None = None,
     bodies: Arrays | None = None,
 ) -> Outcome:
     """`curve` and `summary` (tables). Raises NotConverged naming the speed."""
     sharing = shared(
-        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, bodies=bodies),
+        wired_machine(transmission, teeth, harmonics, friction=friction, law=law, poses=poses, bodies=bodies),
         speed_rpm,
         settings(accuracy),
         sharing_options(options),

@@ -22,10 +22,13 @@ def load_sharing_reference(
     options: LoadSharing,
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    poses: Arrays | None = None,
     bodies: Arrays | None = None,
 ) -> Outcome:
     """`reference` and `speeds` (tables). Raises NotConverged naming the speed."""
-    machine = wired_machine(transmission, teeth, harmonics, friction=friction, law=law, bodies=bodies)
+    machine = wired_machine(
+        transmission, teeth, harmonics, friction=friction, law=law, poses=poses, bodies=bodies
+    )
     wanted = sharing_options(options)
     reference = reference_table(machine, settings(accuracy), wanted)
     speeds = speed_range_table(machine, settings(range_accuracy), wanted)

@@ -36,6 +36,7 @@ def machine_loss(
     duty_loads: pd.DataFrame | None = None,
     friction: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    poses: Arrays | None = None,
     bodies: Arrays | None = None,
     response: pd.DataFrame | None = None,
     *,
@@ -57,7 +58,7 @@ def machine_loss(
     section = lubrication_section(lubrication)
     loaded = loaded_pair(ltca, pressure, section, tooth_pair)
     states = list(
-        _states(loaded, harmonics, duty_loads, transmission, teeth, strength, speed_rpm, law, bodies)
+        _states(loaded, harmonics, duty_loads, transmission, teeth, strength, speed_rpm, law, poses, bodies)
     )
     content = {
         "meshes": mesh_loss_table(states, loaded.known, limits_of(section)),
@@ -65,7 +66,9 @@ def machine_loss(
         "machine": machine_loss_table(states),
     }
     if friction is not None and response is not None:
-        machine = wired_machine(transmission, teeth, harmonics, friction=friction, law=law, bodies=bodies)
+        machine = wired_machine(
+            transmission, teeth, harmonics, friction=friction, law=law, poses=poses, bodies=bodies
+        )
         rest = content["meshes"]["bin"] == 0
         moving = losses_in_motion(machine, response, speed_rpm)
         content["meshes"].loc[rest, "loss_in_motion_w"] = content["meshes"].loc[rest, "mesh"].map(moving)
@@ -90,10 +93,11 @@ def _states(
     strength: Strength | None,
     speed_rpm: float,
     law: Arrays | None,
+    poses: Arrays | None,
     bodies: Arrays | None,
 ) -> Iterator[MachineState]:
     """The machine at its nominal load at rest, then in every bin of its duty cycle."""
-    machine = wired_machine(transmission, teeth, harmonics, law=law, bodies=bodies)
+    machine = wired_machine(transmission, teeth, harmonics, law=law, poses=poses, bodies=bodies)
     table = mesh_table(machine, speed_rpm)
     table = table[table["flank"] != "open"]
     torque = table["pinion_torque_n_m"].abs().to_numpy()
@@ -104,7 +108,12 @@ def _states(
     for number, load in enumerate(strength.duty, start=1):
         rows = duty_loads[duty_loads["bin"] == number]
         machine = wired_machine(
-            at_mesh_torque(transmission, load.torque_n_m), teeth, harmonics, law=law, bodies=bodies
+            at_mesh_torque(transmission, load.torque_n_m),
+            teeth,
+            harmonics,
+            law=law,
+            poses=poses,
+            bodies=bodies,
         )
         arm = machine.layout.pinion_arm
         mean = arm * rows["mean_force_n"].to_numpy()

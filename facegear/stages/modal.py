@@ -23,6 +23,7 @@ def modal(
     definition: str,
     harmonics: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    poses: Arrays | None = None,
     bodies: Arrays | None = None,
 ) -> Outcome:
     """`frequencies`, `shapes` and `contacts` (tables) of the machine with the mean mesh stiffness (N/m).
@@ -39,7 +40,7 @@ def modal(
     if mean is None:
         raise ConfigError("mesh_stiffness.mean_n_per_m", None, "given where k(t) is not computed")
     constant, none = Harmonics(np.zeros(1), np.array([mean])), Harmonics(np.zeros(1), np.zeros(1))
-    machine = wired_machine(transmission, teeth, constant, unloaded=none, law=law, bodies=bodies)
+    machine = wired_machine(transmission, teeth, constant, unloaded=none, law=law, poses=poses, bodies=bodies)
     vibration = vibrating_machine(machine)
     modes, contacts = vibration.modes, contact_table(machine, vibration, source_text)
     rigid = int((modes.frequencies == 0.0).sum())

@@ -16,10 +16,11 @@ def ratings(
     teeth: ToothNumbers,
     speed_rpm: float,
     law: Arrays | None = None,
+    poses: Arrays | None = None,
     bodies: Arrays | None = None,
 ) -> Outcome:
     """`ratings`, `bodies` and `meshes` (tables). Raises NotConverged."""
-    machine = wired_machine(transmission, teeth, harmonics, law=law, bodies=bodies)
+    machine = wired_machine(transmission, teeth, harmonics, law=law, poses=poses, bodies=bodies)
     rating = rated(machine, speed_rpm)
     content = {
         "ratings": number_table(rating),

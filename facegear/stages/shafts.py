@@ -20,11 +20,12 @@ def shafts(
     teeth: ToothNumbers,
     bodies: Arrays | None = None,
     law: Arrays | None = None,
+    poses: Arrays | None = None,
 ) -> Outcome:
     """`seats`, `stiffness`, `bearings`, `torsion` (tables). Raises ConfigError without shafts and torsion,
     NotConverged.
     """
-    machine = wired_machine(transmission, teeth, harmonics, law=law, bodies=bodies)
+    machine = wired_machine(transmission, teeth, harmonics, law=law, poses=poses, bodies=bodies)
     if (line := machine.drive_line) is None:
         raise ConfigError("transmission.shafts", {}, "given, or transmission.torsion")
     resting = at_rest(machine)

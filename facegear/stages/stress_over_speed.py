@@ -28,6 +28,7 @@ def stress_over_speed(
     gears: Sequence[str],
     branches: pd.DataFrame | None = None,
     law: Arrays | None = None,
+    poses: Arrays | None = None,
     bodies: Arrays | None = None,
 ) -> Outcome:
     """`stress_over_speed` (table) from the sweep and, where there are any, the branches.
@@ -35,7 +36,7 @@ def stress_over_speed(
     stress: arrays of stage root_stress; by_flank: table of stage contact; every mesh has the
     stress of its own gear, of `gears`, on the flank where it is more. Raises NotConverged.
     """
-    machine = wired_machine(transmission, teeth, harmonics, law=law, bodies=bodies)
+    machine = wired_machine(transmission, teeth, harmonics, law=law, poses=poses, bodies=bodies)
     at_standstill = float(np.abs(static_equilibrium(at_rest(machine)).forces).max())
     forces = swept_forces(sweep)
     if branches is not None:

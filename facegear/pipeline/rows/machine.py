@@ -1,7 +1,7 @@
 """The machine at rest: ratings and modes."""
 
 from facegear.pipeline import asked
-from facegear.pipeline.rows.shared import BODIES, HARMONICS, LAW, MACHINE, SPEED
+from facegear.pipeline.rows.shared import BODIES, FLANKS, HARMONICS, LAW, MACHINE, MESHES, PAIR, POSES, SPEED
 from facegear.pipeline.stage import Figures, File, From, Stage, from_stage
 
 ROWS = (
@@ -65,6 +65,28 @@ ROWS = (
         local=True,
     ),
     Stage(
+        name="operating_pose",
+        title="Teeth where the machine's own forces put them",
+        needs={**MACHINE, **PAIR, "contact": "contact"},
+        upstream={"surface": From("pose_surface", "surface"), **FLANKS, **MESHES, **BODIES},
+        files={
+            "meshes": File("poses/meshes.csv", "facegear.poses.tables:FINITE", text=("mesh", "flank")),
+            "loads": File("poses/loads.csv", ("load_fraction", "unloaded_path_mm"), text=("mesh", "flank")),
+            "leaving": File("poses/leaving.csv", ("load_fraction",), may_be_empty=True, text=("mesh", "end")),
+            "check": File("poses/check.csv", ("surface", "direct"), text=("quantity",)),
+            "as_assembled": File("poses/as_assembled.npz", "facegear.contact.columns:PRESSURE_ARRAYS"),
+            "running": File("poses/running.npz", "facegear.contact.columns:PRESSURE_ARRAYS"),
+        },
+        figures=Figures(
+            draw="facegear.plots.operating_pose:figures",
+            names=("pose_pattern", "pose_paths"),
+            chapter="load_sharing",
+            upstream=from_stage("operating_pose", "meshes", "loads", "as_assembled", "running"),
+        ),
+        asked=asked.poses,
+        memory_mb=2000,
+    ),
+    Stage(
         name="gear_waves",
         title="Modes at the nominal speed and the waves of face gears that bend",
         needs={**MACHINE, **SPEED},
@@ -87,6 +109,7 @@ ROWS = (
         upstream={
             "harmonics": From("stiffness", "harmonics", when=asked.modes_from_contact),
             **LAW,
+            **POSES,
             **BODIES,
         },
         files={

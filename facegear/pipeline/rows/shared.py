@@ -13,7 +13,10 @@ SHARING: Needs = {**MACHINE, **ACCURACY, **SPEED, "options": "load_sharing"}
 
 FLANKS = {name: From("compliance", "arrays", where={"body": name}) for name in asked.BODIES}
 LAW = {"law": From("mesh_law", "law", when=asked.load_dependent)}
-HARMONICS = {**from_stage("stiffness", "harmonics"), **LAW}
+POSES = {"poses": From("pose_surface", "surface", when=asked.poses)}
+"""Contact over pose, where meshes stand where the machine's own forces put them."""
+MESHES = {**from_stage("stiffness", "harmonics"), **LAW}
+HARMONICS = {**MESHES, **POSES}
 """What meshes transmit."""
 BODIES = {"bodies": From("gear_bodies", "reduced", when=asked.elastic_gears)}
 """Face gears that bend."""

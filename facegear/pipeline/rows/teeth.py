@@ -178,6 +178,26 @@ ROWS = (
         priority=74,
     ),
     Stage(
+        name="pose_surface",
+        title="Contact over pose",
+        needs={
+            **PAIR,
+            "contact": "contact",
+            "torque_n_m": "mesh_stiffness.torque_n_m",
+            "tilting": Computed(asked.tilting, ("transmission",)),
+        },
+        upstream=FLANKS,
+        files={
+            "surface": File("poses/surface.npz", "facegear.poses.surface:SURFACE_ARRAYS"),
+            "nodes": File("poses/nodes.csv", ("unloaded_path_mm", "torque_n_m", "stiffness_n_per_m")),
+            "errors": File("poses/errors.csv", ("largest", "rms"), text=("quantity", "left_out")),
+        },
+        asked=asked.poses,
+        memory_mb=4000,
+        minutes=30,
+        priority=74,
+    ),
+    Stage(
         name="load_dependence",
         title="Stiffness against load",
         upstream=from_stage("contact", "ltca"),

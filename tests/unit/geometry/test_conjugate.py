@@ -53,7 +53,7 @@ def test_a_displaced_pair_touches_where_the_published_numbers_have_it(posed, pos
 
 @settings(max_examples=8, deadline=None)
 @given(st.floats(-120, 120), st.floats(-60, 60), st.floats(-0.03, 0.03), st.floats(-0.13, 0.13))
-def test_the_closed_form_is_what_a_search_over_the_flanks_finds(posed, offset, shift, angle, phi1):
+def test_the_closed_form_is_that_of_a_search_over_the_flanks(posed, offset, shift, angle, phi1):
     design = posed(offset, shift, angle)
     exact, search = exact_contact(design), searched_contact(design, [phi1])
     assert exact.transmission_error == pytest.approx(search.transmission_error[0], abs=1.2e-11)

@@ -1,0 +1,201 @@
+"""Contact of a pair over its pose: a response surface in torque, unloaded path and error of the shaft angle.
+
+At equal unloaded path the contact all but does not depend on how offset and axial shift share it, so that
+three coordinates are enough: ln T, the place y0 of the unloaded contact along the pinion, and dgamma.
+Logarithms of positive quantities are interpolated by cubic splines over y0 and over ln T, and linearly over
+dgamma. Nothing is extrapolated.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+import scipy
+
+from facegear.arrays import Array, Arrays
+from facegear.errors import InvalidInput
+from facegear.geometry.conjugate import PairNumbers, contact_at, offset_for
+from facegear.geometry.design import AssemblyErrors
+
+STIFFNESS, RADIUS = "stiffness_n_per_m", "path_radius_m"
+QUANTITIES = (
+    STIFFNESS,
+    "ste_peak_to_peak_m",
+    "pressure_pa",
+    RADIUS,
+    "pinion_root_pa",
+    "face_gear_root_pa",
+)
+"""Mean average stiffness, counted from where the flanks continued beyond their ends would touch; transmission
+error, largest pressure, radius of the loaded path, largest root stress of both gears."""
+PATHS, TORQUES, DEEPEST = 7, 5, 20.0
+"""Nodes of the path and of the torque, and the ratio of the largest to the smallest torque."""
+INSIDE, BEYOND = 0.32, 0.12
+"""Parts of the face by which nodes begin within the path at rest and go on beyond the outer end."""
+LEANING = float(np.radians(0.05))
+"""Error of the shaft angle (rad) to either side that the nodes cover where bodies tilt."""
+
+SURFACE_ARRAYS = {
+    "pair": (None,),
+    "errors": (3,),
+    "angle_rad": (None,),
+    "path_m": (None,),
+    "torque_n_m": (None,),
+    "reference_torque_n_m": (),
+    STIFFNESS: (None, None, None),
+    RADIUS: (None, None, None),
+}
+"""What is stored; quantities beside these are there where they are known."""
+
+
+@dataclass(frozen=True, eq=False)
+class Nodes:
+    """Where contact is solved: angles (a,) rad, paths (y,) m, torques (t,) N m."""
+
+    angles: Array
+    paths: Array
+    torques: Array
+
+    def assemblies(self, pair: PairNumbers) -> list[AssemblyErrors]:
+        """Errors of all angles and, within each, of all paths, by offsets alone."""
+        assemblies = []
+        for angle in self.angles.tolist():
+            for path in self.paths.tolist():
+                errors = AssemblyErrors(shaft_angle_error=angle)
+                offset = offset_for(pair, path, errors)
+                if offset is None:
+                    raise InvalidInput(
+                        "path of the contact", f"{1e3 * path:.6g} mm", "one that the pair can have"
+                    )
+                assemblies.append(AssemblyErrors(offset, angle))
+        return assemblies
+
+
+def surface_nodes(pair: PairNumbers, nominal: AssemblyErrors, largest: float, tilting: bool) -> Nodes:
+    """Nodes of a pair about its nominal assembly, up to a torque `largest` (N m).
+
+    tilting: whether the error of the shaft angle may change. Raises InvalidInput for a pair whose flanks
+    touch along lines.
+    """
+    if pair.shaper_lift <= 0.0:
+        allowed = "more than the pinion's for poses: flanks that touch along lines meet them with edges"
+        raise InvalidInput("teeth of the shaper", int(pair.pinion_teeth), allowed)
+    at_rest = contact_at(pair, nominal)
+    width = pair.last_end - pair.first_end
+    middle = pair.mean_radius if at_rest is None else at_rest.y
+    first = max(middle - INSIDE * width, 1.002 * pair.gear_base_radius)
+    last = max(pair.last_end, middle) + BEYOND * width
+    reach = np.array([-LEANING, LEANING]) if tilting else np.zeros(1)
+    return Nodes(
+        angles=nominal.shaft_angle_error + reach,
+        paths=np.linspace(first, last, PATHS),
+        torques=largest * np.geomspace(1.0 / DEEPEST, 1.0, TORQUES),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class PoseSurface:
+    """Quantities at nodes, each (angles, paths, torques).
+
+    Attributes
+    ----------
+    pair
+        What the closed form of the unloaded contact needs.
+    nominal
+        Assembly errors that the machine's own mesh stiffness was computed with.
+    nodes
+        Coordinates.
+    values
+        By their names in QUANTITIES; those that are not known are left out.
+    reference_torque
+        At which the machine takes a mesh stiffness that does not depend on the load (N m).
+    """
+
+    pair: PairNumbers
+    nominal: AssemblyErrors
+    nodes: Nodes
+    values: Mapping[str, Array]
+    reference_torque: float
+
+    @property
+    def arrays(self) -> dict[str, Array]:
+        """As SURFACE_ARRAYS."""
+        errors = self.nominal
+        return {
+            "pair": self.pair.array,
+            "errors": np.array([errors.offset, errors.shaft_angle_error, errors.axial_shift]),
+            "angle_rad": self.nodes.angles,
+            "path_m": self.nodes.paths,
+            "torque_n_m": self.nodes.torques,
+            "reference_torque_n_m": np.array(self.reference_torque),
+            **self.values,
+        }
+
+    @classmethod
+    def of_arrays(cls, arrays: Arrays) -> Self:
+        """From what `arrays` gives."""
+        return cls(
+            pair=PairNumbers.of_array(arrays["pair"]),
+            nominal=AssemblyErrors(*(float(value) for value in arrays["errors"])),
+            nodes=Nodes(arrays["angle_rad"], arrays["path_m"], arrays["torque_n_m"]),
+            values={name: arrays[name] for name in QUANTITIES if name in arrays},
+            reference_torque=float(arrays["reference_torque_n_m"]),
+        )
+
+    def at(self, quantity: str, torque: float, path: float, angle: float) -> float:
+        """A quantity at a torque (N m), unloaded path (m) and error of the shaft angle (rad), within nodes.
+
+        A torque below the smallest counts as that: light loads hardly care for the pose.
+        """
+        nodes = self.nodes
+        torque = max(torque, float(nodes.torques[0]))
+        over_torque = self._splines[quantity](path)
+        by_angle = scipy.interpolate.CubicSpline(np.log(nodes.torques), over_torque, axis=1)(np.log(torque))
+        value = float(np.interp(angle, nodes.angles, by_angle))
+        return value if quantity == RADIUS else float(np.exp(value))
+
+    def require(self, mesh: str, torque: float, path: float, angle: float) -> None:
+        """Raise InvalidInput, naming the mesh, for a pose outside the nodes."""
+        nodes = self.nodes
+        for quantity, value, known, unit in (
+            ("path of the contact", 1e3 * path, 1e3 * nodes.paths, "mm"),
+            ("error of the shaft angle", np.degrees(angle), np.degrees(nodes.angles), "deg"),
+            ("torque", torque, np.append(0.0, nodes.torques[-1]), "N m"),
+        ):
+            low, high = float(known[0]), float(known[-1])
+            if not low - 1e-9 <= value <= high + 1e-9:
+                allowed = (
+                    f"within {low:.6g} to {high:.6g} {unit} of the poses solved: nothing is extrapolated"
+                )
+                raise InvalidInput(f"{quantity} of mesh {mesh}", f"{value:.6g} {unit}", allowed)
+
+    def left_out(self, quantity: str) -> dict[str, Array]:
+        """Errors at inner nodes of `path` and `torque` if each had not been solved.
+
+        Relative; of the path's radius m. They belong to twice the distance of the nodes, and bound the error.
+        """
+        logs = self._logs(quantity)
+        over = {"path": (1, self.nodes.paths), "torque": (2, np.log(self.nodes.torques))}
+        return {name: _left_out(places, np.moveaxis(logs, axis, 0)) for name, (axis, places) in over.items()}
+
+    def _logs(self, quantity: str) -> Array:
+        values = self.values[quantity]
+        return values if quantity == RADIUS else np.log(values)
+
+    @cached_property
+    def _splines(self) -> dict[str, "scipy.interpolate.CubicSpline"]:
+        return {
+            name: scipy.interpolate.CubicSpline(self.nodes.paths, self._logs(name), axis=1)
+            for name in self.values
+        }
+
+
+def _left_out(places: Array, values: Array) -> Array:
+    """What splines over all other places miss at each inner one."""
+    missed = []
+    for inner in range(1, len(places) - 1):
+        fewer = scipy.interpolate.CubicSpline(np.delete(places, inner), np.delete(values, inner, axis=0))
+        missed.append(fewer(places[inner]) - values[inner])
+    return np.array(missed)

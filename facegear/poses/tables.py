@@ -1,0 +1,198 @@
+"""Poses of all meshes as tables, and the load at which a contact leaves the face."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+
+from facegear.arrays import Array
+from facegear.errors import InvalidInput, NotConverged
+from facegear.poses.fixed_point import OperatingPose, nominal_contact, operating_pose
+from facegear.poses.surface import QUANTITIES, RADIUS, STIFFNESS, PoseSurface
+from facegear.transmission.machine import Machine
+
+FRACTIONS = np.arange(1, 16) / 10.0
+"""Of the machine's mean torques at which its poses are looked for."""
+HALVINGS, REACHING = 8, 4
+"""Halvings of a step of the load at which a path crosses the face's end, and to the end of the surface."""
+SHORT = ("stiffness", "ste_peak_to_peak", "pressure", RADIUS, "pinion_root", "face_gear_root")
+PERCENT = {
+    name: f"{short}_by_pose_percent" for name, short in zip(QUANTITIES, SHORT, strict=True) if name != RADIUS
+}
+"""Columns of what the pose alone changes at the mesh's own load."""
+MESH_COLUMNS = (
+    *("mesh", "flank", "force_n", "force_as_assembled_n", "torque_n_m"),
+    *("offset_um", "axial_shift_um", "shaft_angle_error_deg", "outward_um", "closing_um"),
+    *("unloaded_path_mm", "path_mm", "path_as_assembled_mm", "to_inner_end_mm", "to_outer_end_mm"),
+    "stiffness_factor",
+)
+FINITE = tuple(
+    name for name in MESH_COLUMNS if name not in ("path_mm", "path_as_assembled_mm", "mesh", "flank")
+)
+"""Columns whose numbers are always finite: a mesh without load has no loaded path."""
+LOAD_COLUMNS = (
+    "load_fraction",
+    "mesh",
+    "flank",
+    "force_n",
+    "unloaded_path_mm",
+    "path_mm",
+    "stiffness_factor",
+)
+LEAVING_COLUMNS = ("mesh", "load_fraction", "end", "face_end_mm")
+
+
+def mesh_table(machine: Machine, surface: PoseSurface, result: OperatingPose, before: Array) -> pd.DataFrame:
+    """One row a mesh; `before` (meshes,): forces (N) as assembled.
+
+    Paths are places along the pinion: of the unloaded contact, and of the loaded one at the mesh's torque,
+    where the machine puts it and as assembled. Quantities of a mesh without load are nan.
+    """
+    layout, pair, rows = machine.layout, surface.pair, []
+    drive, back = np.split(result.closing, 2)
+    for mesh, name in enumerate(layout.mesh_names):
+        on_back, angle = result.forces[mesh] < 0.0, float(result.angle[mesh])
+        at = float(result.torque[mesh]), float(result.path[mesh]), angle
+        rest = nominal_contact(machine, surface, mesh, on_back)
+        known = {quantity: surface.at(quantity, *at) for quantity in surface.values}
+        nominal = {quantity: surface.at(quantity, at[0], *rest) for quantity in surface.values}
+        loaded = result.forces[mesh] != 0.0
+        rows.append(
+            {
+                "mesh": name,
+                "flank": _flank(result.forces[mesh]),
+                "force_n": result.forces[mesh],
+                "force_as_assembled_n": before[mesh],
+                "torque_n_m": at[0],
+                "offset_um": 1e6 * result.poses.offset[mesh],
+                "axial_shift_um": 1e6 * result.poses.axial_shift[mesh],
+                "shaft_angle_error_deg": np.degrees(angle),
+                "outward_um": 1e6 * result.poses.outward[mesh],
+                "closing_um": 1e6 * (back if on_back else drive)[mesh],
+                "unloaded_path_mm": 1e3 * at[1],
+                "path_mm": 1e3 * known[RADIUS] if loaded else np.nan,
+                "path_as_assembled_mm": 1e3 * nominal[RADIUS] if loaded else np.nan,
+                "to_inner_end_mm": 1e3 * (at[1] - pair.first_end),
+                "to_outer_end_mm": 1e3 * (pair.last_end - at[1]),
+                "stiffness_factor": result.factor[mesh],
+                **{
+                    column: 100.0 * (known[quantity] / nominal[quantity] - 1.0) if loaded else np.nan
+                    for quantity, column in PERCENT.items()
+                    if quantity in known
+                },
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def scaled_load(machine: Machine, fraction: float) -> Machine:
+    """The machine with all mean torques times `fraction`; other forces stay."""
+    return replace(machine, torques=fraction * machine.torques)
+
+
+def load_tables(machine: Machine, surface: PoseSurface) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Poses over FRACTIONS of the load as far as the surface reaches, and where contacts leave the face.
+
+    LOAD_COLUMNS and LEAVING_COLUMNS; a contact leaves where its unloaded path crosses an end of the face.
+    """
+    names, rows, leaving = machine.layout.mesh_names, [], []
+    last: tuple[float, Array] | None = None
+    for fraction, result in _loads(machine, surface):
+        rows += [
+            {
+                "load_fraction": fraction,
+                "mesh": name,
+                "flank": _flank(result.forces[mesh]),
+                "force_n": result.forces[mesh],
+                "unloaded_path_mm": 1e3 * result.path[mesh],
+                "path_mm": 1e3 * _radius(surface, result, mesh),
+                "stiffness_factor": result.factor[mesh],
+            }
+            for mesh, name in enumerate(names)
+        ]
+        for end, sign in (("inner", -1.0), ("outer", 1.0)):
+            radius = surface.pair.first_end if end == "inner" else surface.pair.last_end
+            now = sign * (result.path - radius) > 0.0
+            before = np.zeros(len(names), bool) if last is None else sign * (last[1] - radius) > 0.0
+            for mesh in np.flatnonzero(now & ~before).tolist():
+                start = 0.0 if last is None else last[0]
+                crossed = _crossing(machine, surface, mesh, sign, radius, (start, fraction))
+                leaving.append((names[mesh], crossed, end, 1e3 * radius))
+        last = fraction, result.path
+    return pd.DataFrame(rows, columns=list(LOAD_COLUMNS)), pd.DataFrame(
+        leaving, columns=list(LEAVING_COLUMNS)
+    )
+
+
+def _loads(machine: Machine, surface: PoseSurface) -> Iterator[tuple[float, OperatingPose]]:
+    """Poses at FRACTIONS of the load, and last at the largest one that the surface reaches."""
+    reached = 0.0
+    for fraction in FRACTIONS.tolist():
+        result = _at_load(machine, surface, fraction)
+        if result is None:
+            break
+        yield fraction, result
+        reached = fraction
+    else:
+        return
+    last, beyond = None, fraction
+    for _ in range(REACHING):
+        middle = 0.5 * (reached + beyond)
+        result = _at_load(machine, surface, middle)
+        if result is None:
+            beyond = middle
+        else:
+            last, reached = result, middle
+    if last is not None:
+        yield reached, last
+
+
+def leaving_text(leaving: pd.DataFrame) -> str:
+    """Sentences on contacts that leave the face."""
+    return "; ".join(
+        f"at {100 * row.load_fraction:.0f} % of the torque the contact of {row.mesh} leaves the face "
+        f"at {row.face_end_mm:.4g} mm"
+        for row in leaving.itertuples()
+    )
+
+
+def _at_load(machine: Machine, surface: PoseSurface, fraction: float) -> OperatingPose | None:
+    """None where poses lie beyond the surface or cannot be had."""
+    try:
+        return operating_pose(scaled_load(machine, fraction), surface)
+    except (InvalidInput, NotConverged):
+        return None
+
+
+def _crossing(
+    machine: Machine,
+    surface: PoseSurface,
+    mesh: int,
+    sign: float,
+    radius: float,
+    between: tuple[float, float],
+) -> float:
+    """Load fraction at which a path crosses a radius, by halving."""
+    low, high = between
+    for _ in range(HALVINGS if low > 0.0 else 0):
+        middle = 0.5 * (low + high)
+        result = _at_load(machine, surface, middle)
+        beyond = result is None or sign * (result.path[mesh] - radius) > 0.0
+        low, high = (low, middle) if beyond else (middle, high)
+    return high
+
+
+def _radius(surface: PoseSurface, result: OperatingPose, mesh: int) -> float:
+    if result.forces[mesh] == 0.0:
+        return float("nan")
+    return surface.at(RADIUS, float(result.torque[mesh]), float(result.path[mesh]), float(result.angle[mesh]))
+
+
+def _flank(force: float) -> str:
+    return "drive" if force > 0.0 else "back" if force < 0.0 else "open"
+
+
+def hardest_mesh(table: pd.DataFrame) -> int:
+    """The loaded mesh whose stiffness its pose changes most, by its number."""
+    return int(table[PERCENT[STIFFNESS]].abs().fillna(-1.0).to_numpy().argmax())

@@ -1,0 +1,32 @@
+"""Where the machine's own forces put the teeth of every mesh."""
+
+from typing import ClassVar
+
+import pandas as pd
+
+from facegear.results.base import Result
+
+
+class OperatingPoseResult(Result):
+    """Pose of every mesh under the machine's mean torques, and what contact makes of it."""
+
+    STAGE: ClassVar = "operating_pose"
+
+    def table(self) -> pd.DataFrame:
+        """One row a mesh: force, pose, unloaded and loaded path, distance to the ends of the face.
+
+        And what the pose alone changes of stiffness, transmission error, pressure and root stress, percent.
+        """
+        return self.content["meshes"].copy()
+
+    def loads(self) -> pd.DataFrame:
+        """One row a mesh and fraction of the torques: force, paths, stiffness over the machine's own."""
+        return self.content["loads"].copy()
+
+    def leaving(self) -> pd.DataFrame:
+        """One row a contact that leaves the face: mesh, fraction of the torques, end of the face, mm."""
+        return self.content["leaving"].copy()
+
+    def check(self) -> pd.DataFrame:
+        """The surface beside the contact solved directly, for the mesh that its pose changes most."""
+        return self.content["check"].copy()

@@ -1,0 +1,88 @@
+"""Where the machine's own forces put the teeth of every mesh, and what contact makes of it."""
+
+from dataclasses import replace
+
+import pandas as pd
+
+from facegear.arrays import AnyArray, Arrays
+from facegear.config.contact import Contact, contact_plan
+from facegear.config.lumped_model import ToothNumbers
+from facegear.config.machines import wired_machine
+from facegear.config.tooth_pair import ToothPair, pair
+from facegear.config.transmission import Transmission
+from facegear.contact.gear_flank import from_arrays
+from facegear.contact.posed import posed_contacts
+from facegear.poses.fixed_point import OperatingPose, assembled
+from facegear.poses.fixed_point import operating_pose as fixed_point
+from facegear.poses.surface import STIFFNESS, PoseSurface
+from facegear.poses.tables import PERCENT, hardest_mesh, leaving_text, load_tables, mesh_table
+from facegear.stages.outcome import Outcome
+from facegear.stages.pose_surface import quantities
+from facegear.transmission.static_gears import at_rest
+from facegear.transmission.statics import mean_equilibrium
+
+
+def operating_pose(
+    surface: Arrays,
+    pinion: Arrays,
+    face_gear: Arrays,
+    harmonics: pd.DataFrame,
+    transmission: Transmission,
+    teeth: ToothNumbers,
+    tooth_pair: ToothPair,
+    contact: Contact,
+    law: Arrays | None = None,
+    bodies: Arrays | None = None,
+) -> Outcome:
+    """`meshes`, `loads`, `leaving`, `check` (tables), `as_assembled` and `running` (arrays).
+
+    The arrays are the contact of the mesh that its pose changes most, solved directly, as stage contact has
+    pressures; `check` compares them with the surface. Raises InvalidInput for a pose outside the surface,
+    NotConverged.
+    """
+    known = PoseSurface.of_arrays(surface)
+    machine = wired_machine(transmission, teeth, harmonics, law=law, bodies=bodies)
+    result = fixed_point(machine, known)
+    before = mean_equilibrium(at_rest(machine)).forces[0]
+    meshes = mesh_table(machine, known, result, before)
+    loads, leaving = load_tables(machine, known)
+    worst = hardest_mesh(meshes)
+    back = bool(result.forces[worst] < 0.0)
+    assemblies = [assembled(machine, known, worst, back), result.poses.errors(worst, back)]
+    pair_here, plan = pair(tooth_pair), contact_plan(contact)
+    plan = replace(plan, torques=(float(result.torque[worst]),), root_stress=False)
+    flanks = from_arrays(pinion), from_arrays(face_gear)
+    solved = list(posed_contacts(pair_here.design, pair_here.materials, flanks, plan, assemblies))
+    check = _check(known, result, worst, [quantities(pair_here.design, flanks, posed) for posed in solved])
+    content = {
+        "meshes": meshes,
+        "loads": loads,
+        "leaving": leaving,
+        "check": check,
+        "as_assembled": solved[0].pressure,
+        "running": solved[1].pressure,
+    }
+    return Outcome(content, _summary(meshes, leaving, worst, result))
+
+
+def _check(
+    surface: PoseSurface, result: OperatingPose, mesh: int, direct: list[dict[str, AnyArray]]
+) -> pd.DataFrame:
+    """The surface at the pose of a mesh beside the contact that was solved there, a row a quantity."""
+    at = float(result.torque[mesh]), float(result.path[mesh]), float(result.angle[mesh])
+    rows = [
+        (name, surface.at(name, *at), float(direct[1][name][0]), float(direct[0][name][0]))
+        for name in surface.values
+        if name in direct[1]
+    ]
+    table = pd.DataFrame(rows, columns=["quantity", "surface", "direct", "direct_as_assembled"])
+    return table.assign(surface_error_percent=100.0 * (table["surface"] / table["direct"] - 1.0))
+
+
+def _summary(meshes: pd.DataFrame, leaving: pd.DataFrame, worst: int, result: OperatingPose) -> str:
+    row = meshes.iloc[worst]
+    text = (
+        f"converged in {result.steps} steps; contact of {row['mesh']} at {row['unloaded_path_mm']:.2f} mm, "
+        f"its stiffness changes by {row[PERCENT[STIFFNESS]]:.1f} %"
+    )
+    return f"{text}; {leaving_text(leaving)}" if len(leaving) else text

@@ -1,0 +1,1 @@
+"""Contact over pose at full accuracy, measured once."""
