@@ -26,11 +26,21 @@ WITHOUT_FRICTION = (
     "temperature and film of samples are those of the forces without it (docs/friction.md)"
 )
 
+AS_ASSEMBLED = (
+    "transmission.operating_pose = static: {} take the contact of teeth as assembled; poses/meshes.csv says "
+    "what poses change (docs/poses.md)"
+)
+SINGLE_TEETH = (
+    "{}: deviations of single teeth enter the hunting cycle, at rest and running, and duty loads; steady "
+    "states, sweeps, branches, samples and designs take the mean flank (docs/measured_flanks.md)"
+)
+
 
 def notes(values: Mapping[str, Any]) -> list[str]:
     """Lines for a config of one's own that counts as the publication does, for errors that turn, for dynamics
     with a backlash other than that of the teeth, for preloads and external forces, for numbers that several
-    causes move, and for friction that samples and designs leave out of their motion.
+    causes move, for friction that samples and designs leave out of their motion, for what takes teeth as
+    assembled beside an operating pose, and for single teeth.
     """
     transmission = values["transmission"]
     if transmission is None:
@@ -44,6 +54,8 @@ def notes(values: Mapping[str, Any]) -> list[str]:
         + _pushes(transmission)
         + _sums(values)
         + _without_friction(values)
+        + _as_assembled(values)
+        + _single_teeth(values)
     )
 
 
@@ -55,6 +67,33 @@ def _without_friction(values: Mapping[str, Any]) -> list[str]:
     named = {"tolerances": "samples of tolerances", "search": "designs of the search"}
     left = [words for section, words in named.items() if values.get(section)]
     return [WITHOUT_FRICTION.format(" and ".join(left))] if left else []
+
+
+def _as_assembled(values: Mapping[str, Any]) -> list[str]:
+    """What a machine leaves out of the poses that its loads give its teeth."""
+    if values["transmission"]["operating_pose"] == "none":
+        return []
+    named = {
+        "tolerances": "samples of tolerances",
+        "search": "designs of the search",
+        "strength": "root stress and ratings",
+    }
+    left = [words for section, words in named.items() if values.get(section)]
+    return [AS_ASSEMBLED.format(", ".join(left))] if left else []
+
+
+def _single_teeth(values: Mapping[str, Any]) -> list[str]:
+    """Gears with deviations of single teeth."""
+    pair = values.get("tooth_pair") or {}
+    keys = [
+        f"tooth_pair.{gear}.flanks"
+        for gear in ("pinion", "face_gear")
+        if any(
+            grid["tooth"] is not None
+            for grid in ((pair.get(gear) or {}).get("flanks") or {}).get("grids", ())
+        )
+    ]
+    return [SINGLE_TEETH.format(" and ".join(keys))] if keys else []
 
 
 def _preloads(values: Mapping[str, Any]) -> list[str]:

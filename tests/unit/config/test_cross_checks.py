@@ -133,6 +133,29 @@ def test_another_backlash_than_that_of_the_teeth_is_reported_when_a_run_starts()
         assert notes(parse(Config, values).model_dump(mode="json")) == []
 
 
+def test_what_takes_teeth_as_assembled_beside_an_operating_pose_is_reported_when_a_run_starts():
+    machine = load_config(ROOT / "config" / "tolerances.yaml").model_dump(mode="json")
+    before = notes(machine)
+    posed = notes(changed(machine, transmission__operating_pose="static"))
+    (line,) = (line for line in posed if line not in before)
+    assert line.startswith("transmission.operating_pose = static: samples of tolerances")
+
+
+def test_single_teeth_that_deviate_are_reported_when_a_run_starts():
+    grid = {
+        "flank": "right",
+        "face_mm": [-12, 12],
+        "profile_mm": [4, 20],
+        "deviation_um": [[0, 0], [0, 0]],
+    }
+    values = load_config(ROOT / "config" / "concentric.yaml").model_dump(mode="json")
+    before = notes(values)
+    for tooth, added in ((None, []), (5, ["tooth_pair.pinion.flanks: deviations of single teeth"])):
+        flanks = {**values["tooth_pair"]["pinion"]["flanks"], "grids": [{**grid, "tooth": tooth}]}
+        lines = notes(changed(values, tooth_pair__pinion__flanks=flanks))
+        assert [line[:54] for line in lines if line not in before] == [text[:54] for text in added]
+
+
 def test_the_dynamics_take_the_backlash_of_the_teeth_as_assembled():
     """Of the pair of docs/second_machine.md: 120 um of thinning, moved apart by the assembly errors."""
     found = resolved(parse(Config, changed(TWO, transmission__backlash_um=None, studies=[])))
