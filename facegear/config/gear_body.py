@@ -9,6 +9,7 @@ from facegear.config.csv_file import CsvFault, read_numbers
 from facegear.config.material import MaterialSection
 
 COLUMNS = ("r_mm", "height_mm")
+MAX_CORNERS = 200
 
 
 class HubSection(Section):
@@ -49,9 +50,16 @@ class BodySection(Section):
     web: WebSection | None = None
     rim: RimSection | None = None
     corners_mm: tuple[tuple[float, float], ...] = Field(
-        (), max_length=200, description="instead of hub, web and rim: distance and height of every corner"
+        (),
+        max_length=MAX_CORNERS,
+        description="instead of hub, web and rim: distance and height of every corner",
     )
     corners_csv: str | None = Field(None, description="the corners as a csv file, columns r_mm and height_mm")
+    step: str | None = Field(
+        None,
+        description="the corners as a STEP file: a solid of revolution about its z axis, or its half section "
+        "at y = 0, x > 0; z is the height",
+    )
     held_edges: tuple[int, ...] = Field(
         (),
         description="edges of corners_mm that the shaft holds, 1 from the first corner on; []: the bore",
@@ -70,8 +78,8 @@ class BodySection(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _from_csv(cls, values: Any) -> Any:
-        """The corners of the file `corners_csv`."""
+    def _from_file(cls, values: Any) -> Any:
+        """The corners of the file `corners_csv` or `step`."""
         if not isinstance(values, dict):
             return values
         if isinstance(values.get("corners_mm"), list):
@@ -80,16 +88,14 @@ class BodySection(Section):
             values = {**values, "corners_mm": paired}
         if isinstance(values.get("held_edges"), list):
             values = {**values, "held_edges": tuple(values["held_edges"])}
-        if not isinstance(name := values.get("corners_csv"), str):
-            return values
-        if values.get("corners_mm"):
-            refuse("corners_csv", name, "either corners_csv or corners_mm, not both")
-        try:
-            rows = read_numbers(name, COLUMNS)
-        except CsvFault as fault:
-            refuse("corners_csv", name, f"a csv of numbers; {fault}")
-        corners = tuple(tuple(row.values[column] for column in COLUMNS) for row in rows)
-        return {**values, "corners_csv": None, "corners_mm": corners}
+        given = [key for key in ("corners_mm", "corners_csv", "step") if values.get(key)]
+        if len(given) > 1 and all(isinstance(values[key], str) for key in given[1:]):
+            refuse(given[1], values[given[1]], f"left out beside {given[0]}")
+        if isinstance(name := values.get("corners_csv"), str):
+            return {**values, "corners_csv": None, "corners_mm": _csv_corners(name)}
+        if isinstance(name := values.get("step"), str):
+            return {**values, "step": None, "corners_mm": _step_corners(name)}
+        return values
 
     @model_validator(mode="after")
     def _complete(self) -> "BodySection":
@@ -114,3 +120,24 @@ class BodySection(Section):
         wrong = [edge for edge in self.held_edges if not 1 <= edge <= len(self.corners_mm)]
         if wrong:
             refuse("held_edges", wrong[0], f"from 1 to {len(self.corners_mm)}, the number of corners")
+
+
+def _csv_corners(name: str) -> tuple[tuple[float, ...], ...]:
+    try:
+        rows = read_numbers(name, COLUMNS)
+    except CsvFault as fault:
+        refuse("corners_csv", name, f"a csv of numbers; {fault}")
+    return tuple(tuple(row.values[column] for column in COLUMNS) for row in rows)
+
+
+def _step_corners(name: str) -> tuple[tuple[float, float], ...]:
+    from facegear.gear_body.step_file import StepFault, read_section  # loads gmsh
+
+    allowed = "a STEP file of one solid of revolution, or of its half section"
+    try:
+        corners = read_section(name)
+    except StepFault as fault:
+        refuse("step", name, f"{allowed}; {fault}")
+    if len(corners) > MAX_CORNERS:
+        refuse("step", name, f"{allowed}; its outline takes {len(corners)} corners, more than {MAX_CORNERS}")
+    return tuple(corners)

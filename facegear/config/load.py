@@ -20,8 +20,11 @@ FILE_KEYS = (
     ("strength", "face_gear", "card"),
     ("lubrication", "oil"),
     ("transmission", "face_gear", "body", "corners_csv"),
+    ("transmission", "face_gear", "body", "step"),
     ("transmission", "single_gears", "lower", "body", "corners_csv"),
+    ("transmission", "single_gears", "lower", "body", "step"),
     ("transmission", "single_gears", "upper", "body", "corners_csv"),
+    ("transmission", "single_gears", "upper", "body", "step"),
 )
 """Keys whose value is the name of a file; it counts from the folder of the config file that sets it."""
 

@@ -16,6 +16,8 @@ with extras_named():
 
 CORNER = 100.0
 """How many times smaller the elements at a reentrant corner are."""
+ROUNDED = np.radians(8.0)
+"""Angle below which a reentrant corner belongs to a rounded line and needs no smaller elements."""
 REACH = 2.0
 """Distance from a reentrant corner, in elements, at which they have their whole size."""
 MERGED = 1e-9
@@ -132,11 +134,10 @@ def _sizes(section: Section, size: float, finer: float) -> None:
 
 
 def reentrant(corners: Array) -> Array:
-    """Corners (m, 2) of an anticlockwise polygon at which its inner angle exceeds half a turn."""
+    """Corners (m, 2) of an anticlockwise polygon at which its inner angle exceeds half a turn by ROUNDED."""
     before, after = corners - np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0) - corners
-    turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    lengths = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
-    return corners[turn < -1e-9 * lengths]
+    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    return corners[np.arctan2(cross, np.sum(before * after, axis=1)) < -ROUNDED]
 
 
 def _quads(surface: int) -> Integers:

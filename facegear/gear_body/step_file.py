@@ -1,0 +1,210 @@
+"""The section of a gear body out of a STEP file: a solid of revolution or its half section."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.errors import extras_named
+
+with extras_named():
+    import gmsh
+
+CHORD = 0.01
+"""Distance (mm) by which a straight edge may miss the curve that it stands for."""
+TURN = np.radians(7.5)
+"""Angle by which the edges of a curve may turn from one to the next."""
+EQUAL = 1e-6
+"""Distance (mm) below which two points are one."""
+ALIKE = 2e-5
+"""Relative difference of areas, volumes and centres below which a solid is one of revolution: OpenCASCADE
+integrates the area inside a circle to 6e-6."""
+CUTS = (0.7, 2.9)
+"""Angles (rad) about the axis at which a solid is cut."""
+SMALLEST, LARGEST = 1.0, 1e4
+"""Outer radius (mm) of a body that is read."""
+LARGEST_FILE = 50_000_000
+"""Bytes that are read at most."""
+DECIMALS = 9
+"""Decimals of a coordinate in mm."""
+
+
+class StepFault(Exception):
+    """Why a file cannot be used; the text is one line."""
+
+
+def read_section(path: str | Path) -> list[tuple[float, float]]:
+    """Corners (r, z) in mm of the body in a STEP file, anticlockwise from the one nearest to the axis.
+
+    The axis is that of z through the origin. The file names its own unit. Curves become straight edges within
+    CHORD. Raises StepFault for anything but one solid of revolution or one face at y = 0, x > 0, with a bore.
+    """
+    _require_file(Path(path))
+    with _gmsh():
+        dimension, tag = _read_shape(path)
+        points = _outline(tag) if dimension == 2 else _cut(tag)
+    return [(float(r), float(z)) for r, z in _ordered(points).round(DECIMALS)]
+
+
+def _require_file(path: Path) -> None:
+    try:
+        size = path.stat().st_size
+    except (OSError, ValueError):
+        raise StepFault("no such file") from None
+    if not path.is_file():
+        raise StepFault("it is not a file")
+    if size > LARGEST_FILE:
+        raise StepFault(f"it is longer than {LARGEST_FILE} bytes")
+
+
+@contextmanager
+def _gmsh() -> Iterator[None]:
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setString("Geometry.OCCTargetUnit", "MM")
+        gmsh.model.add("section")
+        yield
+    finally:
+        gmsh.finalize()
+
+
+def _read_shape(path: str | Path) -> tuple[int, int]:
+    """Dimension and tag of the only solid or face of the file."""
+    try:
+        shapes = gmsh.model.occ.importShapes(str(path), format="step")
+    except Exception as error:  # the only class that gmsh raises
+        raise StepFault(f"gmsh cannot read it ({' '.join(str(error).split())[:100]})") from None
+    gmsh.model.occ.synchronize()
+    if len(shapes) != 1 or shapes[0][0] not in (2, 3):
+        raise StepFault(f"it holds {_counted(shapes)}")
+    return shapes[0]
+
+
+def _counted(shapes: list[tuple[int, int]]) -> str:
+    dimensions = [dimension for dimension, _ in shapes]
+    names = {3: "solids", 2: "faces without a solid", 1: "curves", 0: "points"}
+    counts = [f"{dimensions.count(key)} {name}" for key, name in names.items() if key in dimensions]
+    return " and ".join(counts) or "no shape"
+
+
+def _cut(solid: int) -> Array:
+    """Outline (n, 2) of a solid of revolution at the first of two half planes."""
+    occ = gmsh.model.occ
+    low, high = np.reshape(occ.getBoundingBox(3, solid), (2, 3))
+    reach = 1.1 * float(np.hypot(*np.maximum(-low, high)[:2]))
+    _require_size(float(max(*high[:2], *-low[:2])))
+    faces = []
+    for angle in CUTS:
+        plane = occ.addRectangle(0.0, 0.0, 0.0, reach, high[2] - low[2] + reach)
+        occ.translate([(2, plane)], 0.0, low[2] - 0.5 * reach, 0.0)
+        occ.rotate([(2, plane)], 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.5 * np.pi)
+        occ.rotate([(2, plane)], 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, angle)
+        pieces, _ = occ.intersect([(2, plane)], [(3, solid)], removeTool=False)
+        if len(pieces) != 1:
+            raise StepFault(f"a half plane through its z axis cuts it in {len(pieces)} pieces")
+        faces.append(pieces[0][1])
+    occ.synchronize()
+    _require_revolution(solid, faces)
+    return _outline(faces[0])
+
+
+def _require_revolution(solid: int, faces: list[int]) -> None:
+    """Both cuts are alike, the centre of mass is on the axis, and area times its way round is the volume."""
+    occ = gmsh.model.occ
+    cuts = []
+    for face in faces:
+        x, y, z = occ.getCenterOfMass(2, face)
+        cuts.append((occ.getMass(2, face), float(np.hypot(x, y)), z))
+    (area, radius, height), other = cuts
+    apart = np.hypot(other[1] - radius, other[2] - height)
+    if abs(other[0] - area) > ALIKE * area or apart > ALIKE * radius:
+        raise StepFault("its body is not one of revolution about the z axis: two cuts differ")
+    beside = float(np.hypot(*occ.getCenterOfMass(3, solid)[:2]))
+    if beside > ALIKE * radius:
+        where = f"its centre of mass lies {beside:.3g} mm beside the z axis"
+        raise StepFault(f"its body is not one of revolution: {where}")
+    volume, around = occ.getMass(3, solid), 2.0 * np.pi * area * radius
+    if abs(volume - around) > ALIKE * around:
+        turned = f"that of its section turned about the z axis {around:.7g} mm3"
+        raise StepFault(f"its body is not one of revolution: its volume is {volume:.7g} mm3, {turned}")
+
+
+def _outline(face: int) -> Array:
+    """Corners (n, 2) of the closed line round a face through the axis, in mm."""
+    curves = {tag: _sampled(tag) for _, tag in gmsh.model.getBoundary([(2, face)], oriented=False)}
+    first = next(iter(curves))
+    line = [curves.pop(first)]
+    while curves:
+        near = {tag: np.linalg.norm(ends[[0, -1]] - line[-1][-1], axis=1) for tag, ends in curves.items()}
+        tag = min(near, key=lambda tag: float(near[tag].min()))
+        if near[tag].min() > EQUAL:
+            raise StepFault("its section has a hole or an open line")
+        following = curves.pop(tag)
+        line.append(following if near[tag][0] <= near[tag][1] else following[::-1])
+    if np.linalg.norm(line[-1][-1] - line[0][0]) > EQUAL:
+        raise StepFault("its section has a hole or an open line")
+    points = np.concatenate([part[:-1] for part in line])
+    return _plane(points)
+
+
+def _plane(points: Array) -> Array:
+    """Distances from the axis and heights of points (n, 3) in one half plane."""
+    angles = np.unwrap(np.arctan2(points[:, 1], points[:, 0]))
+    r = np.hypot(points[:, 0], points[:, 1])
+    _require_size(float(r.max()))
+    if r.min() < EQUAL:
+        raise StepFault("its body has no bore: the section reaches the z axis")
+    if (r * np.abs(angles - angles[0])).max() > EQUAL:
+        raise StepFault("its face lies in no half plane through the z axis")
+    return np.stack([r, points[:, 2]], axis=1)
+
+
+def _require_size(radius: float) -> None:
+    if not SMALLEST <= radius <= LARGEST:
+        bounds = f"{SMALLEST:g} to {LARGEST:g} mm are read"
+        raise StepFault(f"its outer radius is {radius:.4g} mm by the unit of the file; {bounds}")
+
+
+def _sampled(curve: int) -> Array:
+    """Points (n, 3) of a curve from end to end, close enough for straight edges."""
+    (low,), (high,) = gmsh.model.getParametrizationBounds(1, curve)
+
+    def points(count: int) -> Array:
+        places = np.linspace(low, high, count + 1)
+        return np.reshape(gmsh.model.getValue(1, curve, places), (-1, 3))
+
+    if gmsh.model.getType(1, curve) == "Line":
+        return points(1)
+    edges = 2
+    while not _close(points(4 * edges)):
+        edges += 1 + edges // 5
+    return points(edges)
+
+
+def _close(fine: Array) -> bool:
+    """Whether every fourth of the points makes a line close to the points between."""
+    corners = fine[::4]
+    ways = np.diff(corners, axis=0)
+    lengths = np.linalg.norm(ways, axis=1)
+    offsets = np.stack([fine[part::4] - corners[:-1] for part in (1, 2, 3)], axis=1)
+    missed = np.linalg.norm(np.cross(offsets, ways[:, None]), axis=2) / lengths[:, None]
+    turns = [np.linalg.norm(np.cross(a, b)) for a, b in pairwise(ways / lengths[:, None])]
+    return bool(missed.max() <= CHORD and max(turns) <= np.sin(TURN))
+
+
+def _ordered(points: Array) -> Array:
+    """The outline without corners on a straight line, anticlockwise from the one of smallest r, then z."""
+    before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
+    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    lengths = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
+    corners = points[np.abs(cross) > 1e-9 * lengths]
+    r, z = corners.T
+    following = np.roll(corners, -1, axis=0)
+    if np.sum(r * following[:, 1] - z * following[:, 0]) < 0.0:
+        corners = corners[::-1]
+    start = np.lexsort(corners.round(6).T[::-1])[0]
+    return np.roll(corners, -start, axis=0)
