@@ -7,14 +7,12 @@ point on their axis. The line of action's part of a displacement is what the mes
 it moves no path.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from facegear.arrays import Array
 from facegear.geometry.design import AssemblyErrors
-from facegear.geometry.placement import RigidMotion, rotation
 from facegear.transmission.layout import DOF_PER_BODY, TILT_LETTERS, Layout
 from facegear.transmission.linear_model import LinearModel
 
@@ -94,22 +92,3 @@ def _bending(linear: LinearModel, layout: Layout, shift: Array) -> None:
     meshes = len(layout.meshes)
     separating = 0.5 * (linear.rows[:meshes, added] + linear.rows[meshes : 2 * meshes, added])
     shift[:, added] = -separating / np.sin(layout.pressure_angle)
-
-
-def to_mesh_frame(sign: float) -> Array:
-    """Matrix (3, 3) from the machine's frame at a pinion to that of its mesh with the gear of a sign."""
-    return np.array([[sign, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -sign, 0.0]])
-
-
-def body_motion(shift: Sequence[float], turn: Sequence[float], pivot: Sequence[float]) -> RigidMotion:
-    """A turn about a point by a rotation vector (rad), followed by a shift (m), all (3,) in one frame."""
-    vector, point = np.asarray(turn, float), np.asarray(pivot, float)
-    angle = float(np.linalg.norm(vector))
-    matrix = rotation(vector / angle, angle) if angle else np.eye(3)
-    return RigidMotion(matrix, np.asarray(shift, float) + point - matrix @ point)
-
-
-def in_mesh_frame(motion: RigidMotion, sign: float) -> RigidMotion:
-    """A motion given in the machine's frame at a pinion, in that of its mesh."""
-    frame = to_mesh_frame(sign)
-    return RigidMotion(frame @ motion.matrix @ frame.T, frame @ motion.shift)

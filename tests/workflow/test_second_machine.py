@@ -48,4 +48,4 @@ def test_contact_is_balanced_and_loaded_pairs_are_two_or_three(results):
 def test_report_of_the_machine_is_whole(results):
     page = (results / "report.html").read_text()
     assert "2 pinions of 25 teeth and 1 face gear of 90 teeth" in page
-    assert '<img src="data:image' in page
+    assert "<img src='data:image" in page

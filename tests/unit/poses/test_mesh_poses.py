@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from exact_pose import body_motion, in_mesh_frame, pose_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lumped_machines import make_layout
@@ -14,8 +15,7 @@ from facegear.config.tooth_pair import pair_design
 from facegear.geometry.conjugate import conjugate_contact
 from facegear.geometry.design import AssemblyErrors
 from facegear.geometry.placement import body_rotation, mirrored, pinion_to_gear
-from facegear.geometry.pose import pose_of
-from facegear.poses.mesh_poses import body_motion, in_mesh_frame, mesh_poses, pose_rows
+from facegear.poses.mesh_poses import mesh_poses, pose_rows
 from facegear.transmission.layout import Role, Tilt
 from facegear.transmission.linear_model import LinearModel
 from facegear.transmission.lumped import lumped_model
@@ -91,7 +91,7 @@ def moved_by(model: LinearModel, size=1.0):
     "other program",
     "both bodies displaced rigidly, contact searched at 1e-13 m",
     capability="geometry",
-    module="facegear.geometry.pose",
+    module="facegear.geometry.conjugate",
 )
 @pytest.mark.parametrize("side", SIDES)
 def test_a_pose_of_two_moved_bodies_is_the_published_one(design, side):

@@ -28,7 +28,7 @@ def one_tooth(count, tooth):
 @against(
     "other program",
     "cumulative pitch deviations of the same teeth",
-    capability="hunting tooth_errors",
+    capability="hunting",
     module="facegear.transmission.tooth_errors",
 )
 @pytest.mark.parametrize("body", ["pinion", "gear"])

@@ -1,12 +1,13 @@
 """The assembly errors that a pair meets when both of its bodies have moved."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from facegear.arrays import Array
 from facegear.geometry.design import AssemblyErrors
-from facegear.geometry.placement import RigidMotion
+from facegear.geometry.placement import RigidMotion, rotation
 
 
 @dataclass(frozen=True)
@@ -59,3 +60,22 @@ def pose_of(pinion: RigidMotion, gear: RigidMotion, mean_radius: float) -> Pose:
 def _about_z(angle: float) -> Array:
     cosine, sine = np.cos(angle), np.sin(angle)
     return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+
+
+def to_mesh_frame(sign: float) -> Array:
+    """Matrix (3, 3) from the machine's frame at a pinion to that of its mesh with the gear of a sign."""
+    return np.array([[sign, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -sign, 0.0]])
+
+
+def body_motion(shift: Sequence[float], turn: Sequence[float], pivot: Sequence[float]) -> RigidMotion:
+    """A turn about a point by a rotation vector (rad), followed by a shift (m), all (3,) in one frame."""
+    vector, point = np.asarray(turn, float), np.asarray(pivot, float)
+    angle = float(np.linalg.norm(vector))
+    matrix = rotation(vector / angle, angle) if angle else np.eye(3)
+    return RigidMotion(matrix, np.asarray(shift, float) + point - matrix @ point)
+
+
+def in_mesh_frame(motion: RigidMotion, sign: float) -> RigidMotion:
+    """A motion given in the machine's frame at a pinion, in that of its mesh."""
+    frame = to_mesh_frame(sign)
+    return RigidMotion(frame @ motion.matrix @ frame.T, frame @ motion.shift)
