@@ -13,7 +13,7 @@ from facegear.arrays import Array, Integers
 from facegear.contact.bodies.gauges import gauges_on
 from facegear.contact.pair import BUILDERS
 from facegear.contact.root_gauges import fillet_sides
-from facegear.contact.teeth import LOADED_SIDE
+from facegear.contact.teeth import LOADED_SIDE, contact_side
 from facegear.geometry.design import Material, PairDesign
 from facegear.geometry.placement import to_pinion_section
 from facegear.mesh.sizes import MeshSizes
@@ -93,6 +93,19 @@ class PairBodies:
         at = along("pinion", tooth.nodes[grid])
         inside = np.abs(at - at.mean()) < (0.5 - ENDS) * np.ptp(at)
         return float(pressure[grid[inside]].max())
+
+    def contact_nodes(self) -> Array:
+        """Places (nu, nv, 3) of the nodes of the pinion that can touch, m."""
+        tooth = self.teeth["pinion"]
+        return np.asarray(tooth.nodes[contact_side(self.design, tooth).nodes])
+
+    def path(self, pressure: Array) -> float:
+        """Middle (m) along the pinion's axis of the forces of a pressure (n,) at its nodes."""
+        points = self.contact_nodes()
+        down, beside = (np.asarray(np.gradient(points, axis=axis)) for axis in (0, 1))
+        areas = np.linalg.norm(np.cross(down, beside), axis=-1)
+        at = contact_side(self.design, self.teeth["pinion"]).nodes
+        return float(np.average(points[..., 1], weights=areas * pressure[at]))
 
 
 def contact_faces(tooth: FeTooth) -> Integers:

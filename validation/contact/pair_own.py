@@ -44,7 +44,8 @@ class Answer:
     """What a program makes of the pair under its torque (N m).
 
     Turn (rad) of the pinion; largest `pressure` (Pa) on its flank and largest tension (Pa) at both fillets;
-    `exponent` of the torque as a power of the turn, nan where the program does not say.
+    `path`, the middle of the contact forces along the pinion's axis (m); `exponent` of the torque as a power
+    of the turn, nan where the program does not say.
     """
 
     torque: float
@@ -52,6 +53,7 @@ class Answer:
     pressure: float
     pinion_root: float
     gear_root: float
+    path: float
     exponent: float = np.nan
 
 
@@ -102,6 +104,7 @@ def own_answer(asked: Asked) -> Answer:
         pressure=pressure,
         pinion_root=pinion.root("pinion", spot.on_pinion),
         gear_root=gear.root("face_gear", spot.on_gear),
+        path=float(np.average(pair.contact_nodes()[..., 1].ravel(), weights=spot.on_pinion)),
         exponent=result.k_local / result.k_average,
     )
 

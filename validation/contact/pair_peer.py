@@ -4,7 +4,7 @@ One tooth of each gear, cut out and held at the cuts, on the same nodes: our sol
 hexahedra) and Kratos (8-node ones). The reference is ours with the strip of contact resolved.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -44,10 +44,11 @@ COMPARED = {
 Row = dict[str, float | str]
 
 
-def middle(design: PairDesign) -> PairDesign:
-    """The middle of the pair's face alone."""
+def middle(design: PairDesign, radius: float | None = None) -> PairDesign:
+    """The part of the pair's face about a radius (m) alone, its middle by itself."""
     face, gear = SLICE * design.module, design.face_gear
-    ends = design.mean_radius - face / 2, design.mean_radius + face / 2
+    radius = design.mean_radius if radius is None else radius
+    ends = radius - face / 2, radius + face / 2
     return replace(
         design,
         face_gear=replace(gear, inner_radius=ends[0], outer_radius=ends[1]),
@@ -78,6 +79,31 @@ def pair_peer_study(
     for name, column in COMPARED.items():
         table[f"{name}_error_percent"] = 100.0 * (table[column] / table[column].iloc[0] - 1.0)
     return table
+
+
+def posed_peer_study(
+    design: PairDesign,
+    materials: tuple[Material, Material],
+    torque: float,
+    offsets: Sequence[float],
+    radius: float,
+    sizes: MeshSizes,
+    folder: Path,
+) -> pd.DataFrame:
+    """The pair at offsets (m) of its axes by ours and CalculiX, two rows each: bodies stand displaced.
+
+    radius: about which a part of the face is cut out, m.
+
+    Raises what `pair_peer_study` raises.
+    """
+    rows = []
+    for number, offset in enumerate(offsets):
+        posed = replace(middle(design, radius), assembly=replace(design.assembly, offset=offset))
+        pair = PairBodies(posed, sizes, materials, POSITION)
+        row, own = _own(pair, f"posed {number}", "facegear", torque, Refinement(), folder, 1)
+        peer = _calculix(pair, f"posed_{number}", own, folder, 1)
+        rows += [{"offset_um": 1e6 * offset, **known} for known in (row, peer)]
+    return pd.DataFrame(rows)
 
 
 def _rows(
@@ -180,6 +206,7 @@ def _read(pair: PairBodies, torque: float, turn: float, displaced: Array, pressu
         pressure=pair.largest_pressure(pressure),
         pinion_root=pair.root_stress("pinion", displaced[:count]),
         gear_root=pair.root_stress("face_gear", displaced[count:]),
+        path=pair.path(pressure[:count]),
     )
 
 
@@ -197,6 +224,7 @@ def _row(
         "pressure_mpa": 1e-6 * answer.pressure,
         "pinion_root_mpa": 1e-6 * answer.pinion_root,
         "gear_root_mpa": 1e-6 * answer.gear_root,
+        "path_mm": 1e3 * answer.path,
         "cpu_seconds": seconds,
         "memory_gb": gigabytes,
     }
