@@ -4,6 +4,9 @@ import numpy as np
 
 from facegear.arrays import Array
 
+HARMONICS = (1, 2, 3)
+"""Multiples of the mesh frequency whose crossings are listed."""
+
 
 def phase_factors(order: int, harmonic: int, teeth: int, angles: Array) -> tuple[float, float]:
     """How many times the force of one mesh drives the forward and the backward wave of an order.

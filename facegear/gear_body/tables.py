@@ -8,7 +8,7 @@ import pandas as pd
 from facegear.arrays import Array
 from facegear.gear_body.body import SolvedBody
 from facegear.gear_body.compliance import flank_direction, influence
-from facegear.gear_body.excitation import phase_factors
+from facegear.gear_body.excitation import HARMONICS, phase_factors
 from facegear.gear_body.modes import resonant_speeds, wave_frequencies
 from facegear.gear_body.patch import Patch
 from facegear.gear_body.section import section_properties
@@ -17,8 +17,6 @@ RPM = 30.0 / np.pi
 DRAWN_MODES = 2
 """Modes of each order whose shapes are stored."""
 DRAWN_ORDERS = 7
-HARMONICS = (1, 2, 3)
-"""Multiples of the mesh frequency whose crossings are listed."""
 
 
 def body_table(

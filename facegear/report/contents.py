@@ -40,6 +40,8 @@ CAPTIONS = {
     "body_shapes": "Sections of the face gears and their first mode shapes at a crest, hubs held.",
     "body_waves": "Frequencies of the face gears over nodal diameters, hubs held: at rest, and of waves in "
     "space at the nominal speed.",
+    "machine_campbell": "Modes of the whole machine over speed and the waves of its gears; marks: crossings "
+    "with mesh harmonics, larger where the phases of the meshes add up.",
     "body_campbell": "Waves of a face gear over speed, hub held; marks: crossings with mesh harmonics, "
     "larger where the phases of the meshes add up.",
     "campbell": "Campbell diagram: natural frequencies against multiples of the mesh frequency.",

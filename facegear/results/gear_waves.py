@@ -1,10 +1,13 @@
 """Modes at speed of a machine whose face gears bend."""
 
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
 from facegear.results.base import Result
+
+if TYPE_CHECKING:
+    from facegear.plots.style import Figure
 
 
 class GearWavesResult(Result):
@@ -15,3 +18,21 @@ class GearWavesResult(Result):
     def table(self) -> pd.DataFrame:
         """One row a mode, gear and nodal diameters: frequency, damping, energy, how much travels forward."""
         return self.content["waves"].copy()
+
+    def campbell(self) -> pd.DataFrame:
+        """One row a speed and mode: frequency, damping, the waves with most of its energy, and its line."""
+        return self.content["campbell"].copy()
+
+    def crossings(self) -> pd.DataFrame:
+        """One row a speed at which a mesh harmonic meets a mode, with how the meshes' phases add up."""
+        return self.content["campbell_crossings"].copy()
+
+    def plot(self) -> "Figure":
+        """Modes over pinion speed with mesh harmonics."""
+        from facegear.plots.gear_waves import machine_campbell
+
+        campbell = self.content["campbell"]
+        teeth = self.values["tooth_pair"]["pinion_teeth"]
+        return machine_campbell(
+            campbell, self.content["campbell_crossings"], campbell["speed_rpm"].max(), teeth
+        )

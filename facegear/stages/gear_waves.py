@@ -12,7 +12,11 @@ from facegear.stages.outcome import Outcome
 from facegear.transmission.machine import Machine
 from facegear.transmission.static_gears import at_rest
 from facegear.transmission.statics import mean_equilibrium
-from facegear.transmission.turning_modes import GROWS, machine_at_speed, wave_table
+from facegear.transmission.turning_modes import GROWS, machine_at_speeds, wave_table
+from facegear.transmission.waves_over_speed import campbell_crossings, campbell_table
+
+SPEEDS = 21
+"""Speeds of the Campbell diagram from rest to the last one of the sweep, beside the nominal one."""
 
 
 def gear_waves(
@@ -20,25 +24,38 @@ def gear_waves(
     transmission: Transmission,
     teeth: ToothNumbers,
     speed_rpm: float,
+    last_rpm: float,
     bodies: Arrays | None = None,
     law: Arrays | None = None,
     poses: Arrays | None = None,
 ) -> Outcome:
-    """`waves` (table) of the machine about its static load, meshes at their mean stiffness.
+    """`waves`, `campbell` and `campbell_crossings` (tables) of the machine about its static load, meshes at
+    their mean stiffness: at the nominal speed, and from rest to `last_rpm`.
 
     Raises ConfigError where all face gears are rigid, NotConverged.
     """
     if bodies is None:
         raise ConfigError("transmission.face_gear.body", None, "given: all face gears are rigid")
     machine = wired_machine(transmission, teeth, harmonics, law=law, poses=poses, bodies=bodies)
-    modes = machine_at_speed(machine, speed_rpm)
+    speeds = sorted({*np.linspace(0.0, last_rpm, SPEEDS).tolist(), float(speed_rpm)})
+    all_modes = machine_at_speeds(machine, speeds)
+    modes = all_modes[speeds.index(float(speed_rpm))]
     growing = modes.frequencies[modes.damping_ratios < -GROWS]
     summary = f"{modes.frequencies.size} modes at {speed_rpm:g} rpm"
     if growing.size:
         named = ", ".join(f"{frequency:.1f}" for frequency in growing)
         summary = f"{summary}; the damping that turns with the gears makes those grow at {named} Hz"
     summary += _left_out(machine)
-    return Outcome({"waves": wave_table(machine.layout, machine.linear, modes)}, summary)
+    layout, linear = machine.layout, machine.linear
+    campbell = campbell_table(layout, linear, speeds, all_modes)
+    tables = {
+        "waves": wave_table(layout, linear, modes),
+        "campbell": campbell,
+        "campbell_crossings": campbell_crossings(
+            campbell, (layout.pinion_teeth, layout.gear_teeth), layout.angles
+        ),
+    }
+    return Outcome(tables, summary)
 
 
 def _left_out(machine: Machine) -> str:

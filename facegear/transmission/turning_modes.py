@@ -6,6 +6,7 @@ with W the speed of the pinions. Damping that turns with a body (N) may feed ene
 motion that lags behind it: a mode whose l has a positive real part grows.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,9 +63,14 @@ def turning_modes(linear: LinearModel, springs: Array, dampers: Array, speed: fl
 
 def machine_at_speed(machine: Machine, speed_rpm: float) -> TurningModes:
     """Modes of geometric meshes about their static load at a pinion speed. Raises NotConverged."""
+    return machine_at_speeds(machine, [speed_rpm])[0]
+
+
+def machine_at_speeds(machine: Machine, speeds_rpm: Sequence[float]) -> list[TurningModes]:
+    """machine_at_speed() for every speed, with the static load of the machine solved once."""
     linear, springs = pressed_springs(machine)
     dampers = np.where(springs > 0.0, machine.damping.mesh, 0.0)
-    return turning_modes(linear, springs, dampers, speed_rpm * np.pi / 30.0)
+    return [turning_modes(linear, springs, dampers, speed * np.pi / 30.0) for speed in speeds_rpm]
 
 
 def wave_table(layout: Layout, linear: LinearModel, modes: TurningModes) -> pd.DataFrame:
@@ -73,20 +79,34 @@ def wave_table(layout: Layout, linear: LinearModel, modes: TurningModes) -> pd.D
     Columns order, frequency_hz, damping_ratio, gear, nodal_diameters, energy_fraction, forward_fraction: of
     the wave's amplitude squared what travels as the gear turns, half of it for none.
     """
-    shapes = modes.shapes
-    energy = np.real(shapes.conj() * linear.momentum(shapes))
-    energy = energy / energy.sum(axis=0)
     rows = []
-    for gear in layout.gears:
-        for diameters, members in _members(linear, gear.name).items():
-            held = energy[list(members)].sum(axis=0)
-            forward = _forward(linear, shapes, members, gear.sign)
-            for mode in np.flatnonzero(held > SHOWN):
-                parts = (modes.frequencies[mode], modes.damping_ratios[mode])
-                rows.append((mode + 1, *parts, gear.side.value, diameters, held[mode], forward[mode]))
+    for gear, diameters, held, forward in wave_parts(layout, linear, modes.shapes):
+        for mode in np.flatnonzero(held > SHOWN):
+            parts = (modes.frequencies[mode], modes.damping_ratios[mode])
+            rows.append((mode + 1, *parts, gear, diameters, held[mode], forward[mode]))
     columns = ["order", "frequency_hz", "damping_ratio", "gear", "nodal_diameters"]
     table = pd.DataFrame(rows, columns=[*columns, "energy_fraction", "forward_fraction"])
     return table.sort_values(["order", "gear", "nodal_diameters"], ignore_index=True)
+
+
+def wave_parts(
+    layout: Layout, linear: LinearModel, shapes: ComplexArray
+) -> list[tuple[str, int, Array, Array]]:
+    """For every gear that bends and number of nodal diameters: both, the part of the kinetic energy of every
+    mode (m,) in these waves, and what travels forward of them (m,).
+    """
+    energy = np.real(shapes.conj() * linear.momentum(shapes))
+    energy = energy / energy.sum(axis=0)
+    return [
+        (
+            gear.side.value,
+            diameters,
+            energy[members].sum(axis=0),
+            _forward(linear, shapes, members, gear.sign),
+        )
+        for gear in layout.gears
+        for diameters, members in _members(linear, gear.name).items()
+    ]
 
 
 def _members(linear: LinearModel, gear: str) -> dict[int, list[int]]:

@@ -89,11 +89,22 @@ ROWS = (
     Stage(
         name="gear_waves",
         title="Modes at the nominal speed and the waves of face gears that bend",
-        needs={**MACHINE, **SPEED},
+        needs={**MACHINE, **SPEED, "last_rpm": "dynamics.sweep.to_rpm"},
         upstream={**HARMONICS, **BODIES},
         files={
-            "waves": File("bodies/waves.csv", ("order", "frequency_hz", "damping_ratio"), may_be_empty=True)
+            "waves": File("bodies/waves.csv", ("order", "frequency_hz", "damping_ratio"), may_be_empty=True),
+            "campbell": File("bodies/campbell.csv", ("speed_rpm", "line", "frequency_hz")),
+            "campbell_crossings": File(
+                "bodies/campbell_crossings.csv", ("line", "speed_rpm", "phase_factor"), may_be_empty=True
+            ),
         },
+        figures=Figures(
+            draw="facegear.plots.gear_waves:figures",
+            names=("machine_campbell",),
+            chapter="modes",
+            upstream=from_stage("gear_waves", "campbell", "campbell_crossings"),
+            needs={"last_rpm": "dynamics.sweep.to_rpm", "teeth": "tooth_pair.pinion_teeth"},
+        ),
         asked=asked.elastic_gears,
         local=True,
     ),

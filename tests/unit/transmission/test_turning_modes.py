@@ -11,7 +11,8 @@ from facegear.gear_body.reduced import ReducedBody
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.elastic_gears import ElasticGears
 from facegear.transmission.teeth import GEOMETRIC
-from facegear.transmission.turning_modes import turning_modes, wave_table
+from facegear.transmission.turning_modes import machine_at_speed, machine_at_speeds, turning_modes, wave_table
+from facegear.transmission.waves_over_speed import campbell_crossings, campbell_table
 
 RPM = np.pi / 30
 
@@ -103,3 +104,61 @@ def test_damping_that_turns_makes_a_mass_on_a_shaft_grow_beyond_its_natural_freq
         near = modes.exponents[np.abs(modes.frequencies - 50.0) < 1.0]
         agrees("l over w", np.sort(near.real) / w, np.sort(roots[roots.imag > 0].real) / w, absolute=1e-9)
         assert (modes.damping_ratios.min() < -1e-5) == (speed > 1.0)
+
+
+def two_waves():
+    """Modes of two and three nodal diameters that nothing couples with the hub."""
+    return ReducedBody(
+        order=np.array([2, 3]),
+        frequency=np.array([650.0, 800.0]),
+        coriolis=np.diag([-0.2, -0.1]),
+        stiffening=np.diag([4.0, 6.0]),
+        mesh=np.array([[0.2, 0.1], [0.02, 0.01]]),
+        hub=np.zeros((2, 2)),
+        hub_spin=np.zeros(2),
+        round=np.zeros(2),
+        static=np.zeros((2, 2, 2)),
+        damping_ratio=np.array(0.0),
+    )
+
+
+@against(
+    "analytic",
+    "waves of one mode in space: sqrt(w^2 + (B + c^2) W^2) +- (n + c) W",
+    capability="gear_waves",
+    module="facegear.transmission.waves_over_speed",
+)
+def test_lines_over_speed_follow_the_waves_of_a_gear_that_nothing_couples():
+    machine = held_gears()
+    machine = replace(machine, bodies=ElasticGears(machine.layout, {1: two_waves()}))
+    gear_rpm = [300.0, 600.0, 1200.0, 2400.0]
+    modes = [modes_at(machine, speed) for speed in gear_rpm]
+    table = campbell_table(machine.layout, machine.linear, gear_rpm, modes)
+    bending = table[table["energy_fraction"] > 0.9]
+    lines = [line for _, line in bending.groupby("line")]
+    assert len(lines) == 4 and all(len(line) == len(gear_rpm) for line in lines)
+    turned = np.array(gear_rpm) * RPM
+    for line in lines:
+        order, forward = line["nodal_diameters"].iloc[0], line["forward_fraction"].to_numpy()
+        assert (forward > 0.99).all() or (forward < 0.01).all()
+        c, b, f = {2: (-0.2, 4.0, 650.0), 3: (-0.1, 6.0, 800.0)}[order]
+        middle = np.sqrt((2 * np.pi * f) ** 2 + (b + c**2) * turned**2)
+        wave = (middle + np.where(forward > 0.5, 1, -1) * (order + c) * turned) / (2 * np.pi)
+        agrees("frequency of a line, Hz", line["frequency_hz"], wave, relative=1e-6)
+
+
+def test_modes_over_speed_are_those_of_each_speed_and_meet_harmonics_where_both_have_one_frequency():
+    layout = make_layout(kinematics=GEOMETRIC)
+    machine = make_machine(layout, stiffness=Harmonics(np.zeros(1), np.array([4.1e8])))
+    machine = replace(machine, bodies=ElasticGears(layout, {0: two_waves(), 1: two_waves()}))
+    speeds = [0.0, 1000.0, 2000.0, 4000.0]
+    table = campbell_table(layout, machine.linear, speeds, machine_at_speeds(machine, speeds))
+    for speed in speeds[:2]:
+        alone = machine_at_speed(machine, speed)
+        own = table[table["speed_rpm"] == speed]
+        assert np.array_equal(own["frequency_hz"], alone.frequencies)
+        assert np.array_equal(own["damping_ratio"], alone.damping_ratios)
+    assert table.groupby("speed_rpm")["line"].nunique().equals(table.groupby("speed_rpm")["line"].size())
+    met = campbell_crossings(table, (23, gear_bodies.TEETH), layout.angles)
+    assert len(met) and np.allclose(met["frequency_hz"], met["harmonic"] * 23 * met["speed_rpm"] / 60.0)
+    assert met["phase_factor"].between(0.0, len(layout.angles)).all()
