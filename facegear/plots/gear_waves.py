@@ -56,7 +56,7 @@ def machine_campbell(campbell: pd.DataFrame, crossings: pd.DataFrame, last_rpm: 
 
 
 def _wave(line: pd.DataFrame) -> str:
-    if not line["nodal_diameters"].iloc[-1]:
+    if not line["nodal_diameters"].mode().iloc[0]:
         return "standing"
     return "forward" if np.median(line["forward_fraction"]) >= 0.5 else "backward"
 
