@@ -1,7 +1,7 @@
 """The pair at two poses by CalculiX and by ours; `python -m validation.poses.peer` renews the table.
 
-One tooth of each gear, the part of the face about the contact path, at rest and at the offset that the idlers
-of config/concentric.yaml have at their converged pose.
+One tooth of each gear, the part of the face about the contact path, without errors and at an offset as large
+as what the bearings of config/concentric.yaml let its pinions move.
 """
 
 import tempfile
