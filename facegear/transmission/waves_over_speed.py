@@ -1,7 +1,7 @@
 """Damped modes of a machine whose face gears bend, over speed: a coupled Campbell diagram.
 
 Modes at neighbouring speeds are the same line where their shapes are alike by the modal assurance criterion
-(MAC), |a^H M b|^2 / (a^H M a  b^H M b), with the mass matrix as its weight.
+(MAC), the square of `a^H M b` by the product of `a^H M a` and `b^H M b`, with the mass matrix M as weight.
 """
 
 from collections.abc import Sequence
