@@ -40,7 +40,8 @@ def test_the_plainest_machine_runs_to_its_report(tmp_path):
     config.write_text(PLAINEST)
     Project(tmp_path).run("--configfile", str(config))
     results = tmp_path / "results" / "plain"
-    assert "1 pinion of 23 teeth and 1 face gear" in (results / "report.html").read_text()
+    page = (results / "report.html").read_text()
+    assert "1 pinion of 23 teeth and 1 face gear" in page and "<img src='data:image" in page
     assert pd.read_csv(results / "dynamics" / "response.csv")["deflection_um"].notna().all()
 
 
