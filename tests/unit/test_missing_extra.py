@@ -8,6 +8,9 @@ import pytest
 import facegear
 import facegear.__main__ as command_line
 
+MEAN = {"mesh_stiffness.mesh_law": "constant_load", "modal.stiffness": "average"}
+"""Values with which modes take no contact."""
+
 
 def message(module, call):
     """What a call in a fresh interpreter says in which `module` cannot be imported."""
@@ -34,8 +37,7 @@ def test_teeth_without_finite_elements_name_the_extra(call):
 
 
 def test_modes_of_a_given_mean_stiffness_need_no_extra():
-    mean = {"mesh_stiffness.mesh_law": "constant_load", "modal.stiffness": "average"}
-    assert message("skfem", f"print(len(gearbox.with_values({mean}).modes().table()) > 6)") == "True"
+    assert message("skfem", f"print(len(gearbox.with_values({MEAN}).modes().table()) > 6)") == "True"
 
 
 def test_a_report_without_its_template_engine_names_the_extra():
@@ -58,7 +60,7 @@ def test_run_says_what_it_lacks_for_single_files(tmp_path, monkeypatch, capsys, 
 
 def test_a_workbook_without_its_library_names_the_extra():
     line = 'openpyxl is not installed; get it with: pip install "facegear[excel]"'
-    assert message("openpyxl", "gearbox.modes().to_excel('modes.xlsx')") == line
+    assert message("openpyxl", f"gearbox.with_values({MEAN}).modes().to_excel('modes.xlsx')") == line
 
 
 def test_a_library_of_no_extra_fails_as_python_says():
