@@ -235,3 +235,9 @@ def _flat(key: str, value: Any) -> list[tuple[str, Any]]:
             return [row for i, item in enumerate(value) for row in _flat(f"{key}[{i}]", item)]
         return [(key, ", ".join(str(item) for item in value))]
     return [(key, value)]
+
+
+def nominal(tables: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
+    """The summary of load sharing of the machine itself; empty where there is none."""
+    summary = tables.get("summary")
+    return pd.DataFrame() if summary is None else summary[summary["study"] == "nominal"]

@@ -5,31 +5,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 from ruamel.yaml import YAML
+from three_pinions import STIFFNESS, TEETH, TEXT
 
 import facegear
 from facegear.config.base import parse
 from facegear.config.changes import movable, moved
-from facegear.config.lumped_model import ToothNumbers, machine
+from facegear.config.lumped_model import machine
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigErrors
-from facegear.harmonics.series import Harmonics
 from facegear.transmission.statics import mean_equilibrium
 
-TEETH = ToothNumbers.of_teeth(23, 143, 3.75, 25)
 EXAMPLE = Path(__file__).parents[3] / "config" / "shafts.yaml"
-STIFFNESS = Harmonics(np.array([0.0, 1e7]), np.array([4.1e8, 2e7]))
-TEXT = """
-pinions:
-  - {name: one, role: input, angle_pitches: 0}
-  - {name: two, role: input, angle_pitches: 45.5}
-  - {name: tail, role: tail, angle_deg: 125.874}
-pinion: {mass_kg: 1.2, inertia_kg_m2: 0.002, bearing_stiffness_n_per_m: {x: 6.5e7, y: 6.5e7, z: 0}}
-face_gear: {mass_kg: 7.8, inertia_kg_m2: 0.54, bearing_stiffness_n_per_m: {x: 8.7e9, y: 8.7e9, z: 8.7e9}}
-damping: {mesh_n_s_per_m: 1200, mass_per_s: 800, bearing_s: 2.0e-6}
-backlash_um: 100
-transmission_error: {amplitude_um: 10}
-torque: {per_input_n_m: 800, tail_share: 0.1}
-"""
 SHAFT = """
 segments: [{length_mm: 120, diameter_mm: 40}]
 pinion_mm: 50

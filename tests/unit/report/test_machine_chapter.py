@@ -10,8 +10,9 @@ from facegear.pipeline.run import call
 from facegear.pipeline.table import STAGES
 from facegear.report.case import _tables as case_tables
 from facegear.report.contents import caption_of
-from facegear.report.glance import findings, glance_chapter, warnings
+from facegear.report.glance import findings, glance_chapter
 from facegear.report.machine import Base, key_numbers, machine_chapter
+from facegear.report.warnings import warnings
 
 
 @pytest.fixture(scope="module")
