@@ -1,10 +1,13 @@
-"""The gear body whose numbers other programs gave, and simple bodies with closed forms; each solved once."""
+"""The gear body whose numbers other programs gave, simple bodies with closed forms, each solved once, and the
+paper's gearbox on them.
+"""
 
 from dataclasses import replace
 from functools import cache
 from math import pi
 
 import numpy as np
+from lumped_machines import make_layout, make_machine
 
 from facegear.gear_body.body import SolvedBody, solve_body
 from facegear.gear_body.matrices import BodyMatrices, body_matrices
@@ -14,12 +17,20 @@ from facegear.gear_body.reduced import ReducedBody
 from facegear.gear_body.reduction import reduced_body
 from facegear.gear_body.section import Hub, Rim, Section, Web, rectangle, wheel
 from facegear.geometry.design import Material
+from facegear.harmonics.series import Harmonics
+from facegear.transmission.elastic_gears import ElasticGears
+from facegear.transmission.loaded_contacts import forces_by_active_sets
+from facegear.transmission.teeth import GEOMETRIC
 
 STEEL = Material(206e9, 0.3)
 TEETH = 143
 PATCH = Patch(height=16.6875e-3, half_width=2 * 2 * pi / TEETH)
 HUB, RIM = Hub(0.120, 0.140, -0.050, 0.0), Rim(0.250, 0.275, -0.012, 0.012)
 WEB = Web(0.018, 0.012, -0.006, 25 / 110)
+ANGLE = np.radians(25)
+RIGID = [-7511.2, -6367.7, 10123.2, 10123.2, -6367.7, 5200.7, 6367.7, 23854.4, 23854.4, 6367.7]
+FLEXIBLE = [-7791, -6308, 10331, 10564, -6796, 5481, 6308, 23647, 23413, 6796]
+"""Mesh forces of `gearbox`, N, on rigid gears and on two of `reference_body`, as another program has them."""
 
 
 def section(held: bool = True, layer=None) -> Section:
@@ -85,3 +96,22 @@ def small_body(seed=0) -> ReducedBody:
     residual = np.zeros((5, 2, 2))
     residual[4] = np.diag([2e-10, 3e-10])
     return replace(body, static=body.modal + residual)
+
+
+def gearbox(body=None, **changes):
+    """The paper's layout at 1328 N m, 2b = 100 um, k = 4.1e8 N/m, both gears with the same body."""
+    layout = make_layout(kinematics=GEOMETRIC)
+    gears = tuple(replace(gear, body=replace(gear.body, mass=31.0, inertia=1.3)) for gear in layout.gears)
+    layout = replace(layout, gears=gears)
+    constant = Harmonics(np.zeros(1), np.array([4.1e8]))
+    machine = make_machine(layout, torque=1328, tail_share=0.034, error=0.0, stiffness=constant, **changes)
+    if body is None:
+        return machine
+    elastic = ElasticGears(layout, {0: body, 1: body})
+    return replace(machine, bodies=elastic, softening=elastic.softening())
+
+
+def mesh_forces(machine):
+    """What each mesh transmits under the mean torques, N."""
+    drive, back = np.split(forces_by_active_sets(machine), 2)
+    return drive - back

@@ -1,4 +1,4 @@
-"""Deviations of flanks for tests: fields sampled on grids, and pairs that have them."""
+"""Deviations of flanks for tests: fields sampled on grids, pairs that have them, and rays at such flanks."""
 
 from dataclasses import replace
 
@@ -7,6 +7,9 @@ import numpy as np
 from facegear.geometry import face_gear
 from facegear.geometry.design import DeviationGrid
 from facegear.geometry.nominal import flank_face
+from facegear.geometry.pinion_surface import SurfacePoints
+from facegear.geometry.placement import to_left_flank
+from facegear.geometry.separation import Separation, separation
 
 UM, MM = 1e-6, 1e-3
 
@@ -40,3 +43,15 @@ def place_on_pinion(design, radius, depth):
     y = design.gear_base_radius / np.cos(psi)
     length = design.shaper_base_radius * roll - design.shaper_lift * np.sin(psi)
     return y - design.mean_radius, length
+
+
+def seen_from(design, displaced, normal, distance) -> Separation:
+    """What rays a little aslant to the normals (n, 3), as those of the pinion are, meet at or near the points
+    displaced (n, 3) of the gear's flank, from a distance (m) before them.
+    """
+    ways = -normal + 0.02 * np.array([1.0, -0.5, 1.0])
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    starts = displaced - distance * ways
+    back = to_left_flank(design, 0.0, 0.0, 0).inverse()
+    points = SurfacePoints(back.points(starts[None])[0], back.directions(ways[None])[0])
+    return separation(design, points, 0.0, 0.0)

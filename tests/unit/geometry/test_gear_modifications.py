@@ -4,17 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from measured_flanks import MM, UM, seen_from
 from references import against, agrees
 
 from facegear.geometry import face_gear, gear_modifications
 from facegear.geometry.curvature import opposite_curvatures
 from facegear.geometry.design import GearModifications, Relief
-from facegear.geometry.pinion_surface import SurfacePoints, flank_points
+from facegear.geometry.pinion_surface import flank_points
 from facegear.geometry.placement import mirrored, to_left_flank
 from facegear.geometry.separation import FLANK, separation
 from facegear.geometry.unloaded import unloaded_contact
 
-UM, MM = 1e-6, 1e-3
 KINDS = {
     "tip relief": GearModifications(tip_relief=Relief(50 * UM, 0.5 * MM, 1.5 * MM)),
     "root relief": GearModifications(root_relief=Relief(50 * UM, 0.3 * MM, 1.2 * MM)),
@@ -53,13 +53,7 @@ def test_rays_end_at_the_flank_that_is_displaced_along_its_normal(pair, kind):
     nominal, normal = face_gear.flank_point(design, roll, psi), face_gear.flank_normal(design, roll, psi)
     radius = np.hypot(nominal[:, 0], nominal[:, 1])
     taken = gear_modifications.removed(design, radius, design.gear_tip_plane - nominal[:, 2])
-    # Rays a little aslant, as those of the pinion are, that end 10 um on at the displaced flank.
-    ways = -normal + 0.02 * np.array([1.0, -0.5, 1.0])
-    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
-    starts = nominal - taken[:, None] * normal - 10 * UM * ways
-    back = to_left_flank(design, 0.0, 0.0, 0).inverse()
-    points = SurfacePoints(back.points(starts[None])[0], back.directions(ways[None])[0])
-    found = separation(design, points, 0.0, 0.0)
+    found = seen_from(design, nominal - taken[:, None] * normal, normal, 10 * UM)
     assert (found.part == FLANK).all()
     agrees("gap at 50 um, m", found.gap[0], 10 * UM, absolute=0.1 * UM)
 
