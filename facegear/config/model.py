@@ -35,6 +35,7 @@ from facegear.config.load_sharing import LoadSharing
 from facegear.config.lubrication import LubricationSection
 from facegear.config.mesh import Mesh, mesh_sizes
 from facegear.config.modal import Modal
+from facegear.config.poses import check_posed_variants, check_poses
 from facegear.config.search import Search
 from facegear.config.stiffness import MeshStiffness
 from facegear.config.strength import Strength
@@ -54,8 +55,6 @@ from facegear.contact.resolution import (
 from facegear.errors import ConfigError
 
 SAME_ELASTICITY = 1e-6
-
-LINES = "flanks that touch along lines meet any pose with an edge"
 
 
 class Config(Section):
@@ -130,15 +129,9 @@ class Config(Section):
             raise ConfigError("mesh_stiffness.mesh_law", "load_dependent", allowed)
 
     def _check_poses(self) -> None:
-        if self.transmission is None or self.transmission.operating_pose == "none":
-            return
-        if self.mesh_stiffness.source == "harmonics":
-            allowed = "none where mesh_stiffness.source is harmonics: no contact says what a pose changes"
-            raise ConfigError("transmission.operating_pose", self.transmission.operating_pose, allowed)
-        shaper, teeth = self.tooth_pair.shaper, self.tooth_pair.pinion_teeth
-        if shaper is not None and shaper.teeth <= teeth:
-            allowed = f"more than {teeth} where transmission.operating_pose is static: {LINES}"
-            raise ConfigError("tooth_pair.shaper.teeth", shaper.teeth, allowed)
+        if self.transmission is not None:
+            check_poses(self.transmission, self.tooth_pair, self.mesh_stiffness)
+            check_posed_variants(self.transmission, self.tolerances, self.search)
 
     def _check_branches(self) -> None:
         speed, section = self.dynamics.speed_rpm, self.branches

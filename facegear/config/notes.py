@@ -73,13 +73,7 @@ def _as_assembled(values: Mapping[str, Any]) -> list[str]:
     """What a machine leaves out of the poses that its loads give its teeth."""
     if values["transmission"]["operating_pose"] == "none":
         return []
-    named = {
-        "tolerances": "samples of tolerances",
-        "search": "designs of the search",
-        "strength": "root stress and ratings",
-    }
-    left = [words for section, words in named.items() if values.get(section)]
-    return [AS_ASSEMBLED.format(", ".join(left))] if left else []
+    return [AS_ASSEMBLED.format("root stress and ratings")] if values.get("strength") else []
 
 
 def _single_teeth(values: Mapping[str, Any]) -> list[str]:

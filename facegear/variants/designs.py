@@ -19,7 +19,7 @@ from facegear.dynamics.sweeps.plan import JumpRange
 from facegear.load_sharing.quantity_names import columns_of, of_jumps
 from facegear.scenarios.evolution import Task, Variable
 from facegear.scenarios.sampling import changes, samples
-from facegear.variants.machines import Question, VariedMachine, judge
+from facegear.variants.machines import Question, VariedMachine
 from facegear.variants.teeth import Values
 
 Quantities = dict[str, float]
@@ -72,8 +72,7 @@ def assessor(
     start = movable(given.values, [*keys, *moves])
     question = Question(section.model, cycles, given.accuracy, given.options)
     ask, ask_varied = (
-        judge(replace(question, jumps=within), given.meshes, "this design", given.varied_bodies)
-        for within in _jumps(section)
+        given.judge_of(replace(question, jumps=within), "this design") for within in _jumps(section)
     )
     names = given.columns(wired_layout(start["transmission"], given.tooth_pair), question, jumps=True)
     drawn = [changes(causes, row) for row in samples(causes, 0, count)] if causes else []

@@ -36,6 +36,7 @@ from facegear.transmission.static_gears import at_rest
 from facegear.variants.teeth import Flanks, Meshes, PairExcitation, Values
 
 if TYPE_CHECKING:
+    from facegear.poses.surface import PoseSurface
     from facegear.variants.rubbed_teeth import Rub, RubbedTeeth
     from facegear.variants.varied_bodies import VariedBodies
 
@@ -79,7 +80,8 @@ class VariedMachine:
     With `pair`, the sections that contact needs, and `flanks`, the compliance of its bodies, every tooth pair
     that differs is put into contact; without, all have the stiffness of `harmonics`, or the arrays `law` of
     stage mesh_law where it depends on the load. With `solid`, section tooth_pair, face gears bend; `bodies`:
-    arrays `reduced` of stage gear_bodies.
+    arrays `reduced` of stage gear_bodies. With `poses`, arrays `surface` of stage pose_surface, the meshes of
+    each one stand as its own forces put them.
     """
 
     harmonics: pd.DataFrame
@@ -93,6 +95,7 @@ class VariedMachine:
     law: Arrays | None = None
     solid: Values | None = None
     bodies: Arrays | None = None
+    poses: Arrays | None = None
 
     @classmethod
     def of_stage(cls, flanks: Sequence[Arrays] = (), **given: Any) -> Self:
@@ -113,6 +116,19 @@ class VariedMachine:
 
         return VariedBodies.of_stage(self.transmission, self.solid, self.bodies)
 
+    @cached_property
+    def surface(self) -> "PoseSurface | None":
+        """Contact over pose, where the machine's own forces put the teeth."""
+        if self.poses is None:
+            return None
+        from facegear.poses.surface import PoseSurface
+
+        return PoseSurface.of_arrays(self.poses)
+
+    def judge_of(self, question: Question, label: str) -> Judge:
+        """What each one is judged by; `label` names it in errors."""
+        return judge(question, self.meshes, label, self.varied_bodies, self.surface)
+
     def columns(self, layout: Layout, question: Question, jumps: bool = False) -> tuple[str, ...]:
         """Names of what a machine is judged by."""
         gauges = self.pair is not None and self.pair["contact"]["root_stress"]
@@ -128,8 +144,11 @@ class VariedMachine:
         """Text that differs whenever one of the parts or a value of the machine does."""
         plain = {field.name: getattr(self, field.name) for field in fields(self) if field.name not in ARRAYS}
         tables = {name: value.to_csv() for name, value in plain.items() if isinstance(value, pd.DataFrame)}
-        law = {name: values.tolist() for name, values in (self.law or {}).items()}
-        return identity(*parts, {**plain, **tables, "law": law})
+        arrays = {
+            text: {name: values.tolist() for name, values in (given or {}).items()}
+            for text, given in (("law", self.law), ("poses", self.poses))
+        }
+        return identity(*parts, {**plain, **tables, **arrays})
 
 
 def tooth_meshes(
@@ -164,9 +183,19 @@ def stored_flanks(arrays: Sequence[Arrays]) -> Flanks:
     return {body: from_arrays(arrays_of_body) for body, arrays_of_body in zip(BODIES, arrays, strict=True)}
 
 
-def judge(question: Question, meshes: Meshes, label: str, bodies: "VariedBodies | None" = None) -> Judge:
-    """`label` names the machine in errors; `bodies` of face gears that bend."""
+def judge(
+    question: Question,
+    meshes: Meshes,
+    label: str,
+    bodies: "VariedBodies | None" = None,
+    surface: "PoseSurface | None" = None,
+) -> Judge:
+    """`label` names the machine in errors; `bodies` of face gears that bend; `surface`: contact over pose,
+    where meshes stand as the forces of their own machine put them.
+    """
     ask = _ask(question)
+    if surface is not None:
+        from facegear.poses.fixed_point import posed_machine  # only poses need it
 
     def rubbed(
         teeth: "RubbedTeeth", lubrication: Values, built: Machine, speed: float, loads: FlankLoads
@@ -188,6 +217,8 @@ def judge(question: Question, meshes: Meshes, label: str, bodies: "VariedBodies 
             built = replace(built, tables=flank_tables(mesh.law, built.layout))
         if bodies is not None:
             built = bodies.joined(built, section, values["tooth_pair"])
+        if surface is not None:
+            built = posed_machine(built, surface)
         speed = values["dynamics"]["speed_rpm"]
         quantities, loads = ask(built, speed)
         quantities |= mesh.quantities(quantities[PEAK])

@@ -31,7 +31,7 @@ from facegear.load_sharing.quantity_names import (
 from facegear.progress import Progress
 from facegear.scenarios.chunks import Evaluate, run_chunk
 from facegear.scenarios.sampling import Population, changes, samples
-from facegear.variants.machines import WHOLE, Judge, Question, VariedMachine, judge, tooth_meshes
+from facegear.variants.machines import WHOLE, Judge, Question, VariedMachine, tooth_meshes
 from facegear.variants.teeth import Meshes, Values
 
 CHECKED = 8
@@ -115,7 +115,7 @@ class SampledMachine(VariedMachine):
     @cached_property
     def judge(self) -> Judge:
         """What a sample is judged by, given its values."""
-        return judge(self.question, self.meshes, "this sample", self.varied_bodies)
+        return self.judge_of(self.question, "this sample")
 
     def sample(self, values: Sequence[float]) -> dict[str, Any]:
         """The variable part of the config of a sample with these values of its causes."""
@@ -124,12 +124,12 @@ class SampledMachine(VariedMachine):
     @cached_property
     def whole_judge(self) -> Judge:
         """The same over the whole hunting cycle."""
-        return judge(replace(self.question, cycles=WHOLE), self.meshes, "this sample", self.varied_bodies)
+        return self.judge_of(replace(self.question, cycles=WHOLE), "this sample")
 
     @cached_property
     def thorough_judge(self) -> Judge:
         """The same by every place of the contact."""
-        return judge(replace(self.question, every_place=True), self.meshes, "this sample", self.varied_bodies)
+        return self.judge_of(replace(self.question, every_place=True), "this sample")
 
     @property
     def checks(self) -> tuple[str, ...]:

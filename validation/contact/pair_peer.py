@@ -90,19 +90,23 @@ def posed_peer_study(
     sizes: MeshSizes,
     folder: Path,
 ) -> pd.DataFrame:
-    """The pair at offsets (m) of its axes by ours and CalculiX, two rows each: bodies stand displaced.
+    """The pair at offsets (m) of its axes by ours, CalculiX and Kratos: bodies stand displaced.
 
-    radius: about which a part of the face is cut out, m.
-
-    Raises what `pair_peer_study` raises.
+    Ours a second time on the 8-node elements that Kratos has. radius: about which a part of the face is cut
+    out, m. Raises what `pair_peer_study` raises.
     """
     rows = []
     for number, offset in enumerate(offsets):
         posed = replace(middle(design, radius), assembly=replace(design.assembly, offset=offset))
         pair = PairBodies(posed, sizes, materials, POSITION)
-        row, own = _own(pair, f"posed {number}", "facegear", torque, Refinement(), folder, 1)
-        peer = _calculix(pair, f"posed_{number}", own, folder, 1)
-        rows += [{"offset_um": 1e6 * offset, **known} for known in (row, peer)]
+        level = f"posed_{number}"
+        row, own = _own(pair, level, "facegear", torque, Refinement(), folder, 1)
+        linear, _ = _own(pair, level, "facegear, 8-node", torque, Refinement(), folder, 1)
+        peers = (
+            _calculix(pair, level, own, folder, 1),
+            _kratos(pair, level, own, folder / f"kratos_{number}", 1),
+        )
+        rows += [{"offset_um": 1e6 * offset, **known} for known in (row, linear, *peers)]
     return pd.DataFrame(rows)
 
 

@@ -1,4 +1,4 @@
-"""The pair at two poses by CalculiX and by ours; `python -m validation.poses.peer` renews the table.
+"""The pair at two poses by three programs; `python -m validation.poses.peer` renews the table.
 
 One tooth of each gear, the part of the face about the contact path, without errors and at an offset as large
 as what the bearings of config/concentric.yaml let its pinions move.

@@ -1,7 +1,7 @@
 """Machines with their tolerances, and designs that are searched."""
 
 from facegear.pipeline import asked
-from facegear.pipeline.rows.shared import ACCURACY, BODIES, MESHES, PAIR, SHARING, SPEED
+from facegear.pipeline.rows.shared import ACCURACY, BODIES, HARMONICS, PAIR, SHARING, SPEED
 from facegear.pipeline.stage import NUMBER, Computed, Figures, File, From, Needs, Stage, from_stage
 
 CAUSES = tuple(f"tolerances.{key}" for key in ("causes", "correlations", "model", "seed", "hunting_cycles"))
@@ -14,7 +14,7 @@ SAMPLED: Needs = {
     "solid": SOLID,
 }
 SAMPLED_FROM = {
-    **MESHES,
+    **HARMONICS,
     **BODIES,
     **{name: From("contact", name, when=asked.stored_rubbing) for name in ("ltca", "pressure")},
     "flanks": From("compliance", "arrays", each=asked.both_bodies, when=asked.sampled_contact),
@@ -31,7 +31,7 @@ SEARCHED: Needs = {
     "solid": SOLID,
 }
 SEARCHED_FROM = {
-    **MESHES,
+    **HARMONICS,
     **BODIES,
     "flanks": From("compliance", "arrays", each=asked.both_bodies, when=asked.searched_contact),
 }
