@@ -45,6 +45,7 @@ MAY_IMPORT = {
     "variants": {
         *("config", "geometry", "contact", "stiffness", "harmonics", "gear_body"),
         *("transmission", "dynamics", "load_sharing", "scenarios", "strength", "lubrication", "exchange"),
+        "poses",
     },
     "stages": {
         *("config", "variants", "geometry", "mesh", "contact", "stiffness", "harmonics", "gear_body"),
