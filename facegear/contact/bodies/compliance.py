@@ -8,7 +8,7 @@ import scipy.sparse as sp
 from facegear.arrays import AnyArray, Array, Arrays
 from facegear.contact.bodies.body import ElasticBody
 from facegear.contact.bodies.layer import TiedSystem, tied_system
-from facegear.contact.bodies.ring import face_compliance, rest_stiffness
+from facegear.contact.bodies.ring import moved_faces, rest_stiffness
 from facegear.contact.bodies.substructure import Superelement, condense, held_by
 from facegear.contact.options import Element, Ends, Refinement
 from facegear.progress import Progress
@@ -104,9 +104,9 @@ def coupled_compliance(
     if body.left.size:
         rests = rest_stiffness(tooth.faces, neighbours, teeth, ends)
         seen = spread @ tooth.influence
-        moved = face_compliance(tooth.faces, rests)
-        others = seen @ moved @ seen.T
-        own, readings = readings[0], -(tooth.gauge_faces @ moved @ seen.T)
+        moved = moved_faces(tooth.faces, rests, seen.T)
+        others = seen @ moved
+        own, readings = readings[0], -(tooth.gauge_faces @ moved)
         readings[neighbours] += own
         rest = rests[0][0]
     own = on_lattice(system.spread, held_by(tooth, rest))

@@ -21,3 +21,8 @@ def inverse(factor: Array) -> Array:
     result = np.tril(lower)
     result += np.tril(lower, -1).T
     return result
+
+
+def solved(factor: Array, rhs: Array) -> Array:
+    """Solution (n, m) of a system given by its lower factor."""
+    return lapack.dpotrs(factor, rhs, lower=1)[0]

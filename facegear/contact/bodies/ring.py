@@ -9,7 +9,7 @@ import numpy as np
 import scipy.linalg as sl
 
 from facegear.arrays import Array
-from facegear.contact.bodies.dense import cholesky, inverse
+from facegear.contact.bodies.dense import cholesky, inverse, solved
 from facegear.contact.options import Ends
 
 
@@ -19,7 +19,8 @@ def joined(first: Array, second: Array) -> Array:
     middle = cholesky(first[s:, s:] + second[:s, :s])
     coupling = np.concatenate([first[:s, s:].T, second[:s, s:]], axis=1)
     half = sl.solve_triangular(middle, coupling, lower=True, check_finite=False)
-    chain = -half.T @ half
+    chain = half.T @ half
+    np.negative(chain, out=chain)
     chain[:s, :s] += first[:s, :s]
     chain[s:, s:] += second[s:, s:]
     return chain
@@ -69,22 +70,22 @@ def rest_stiffness(faces: Array, neighbours: int, teeth: int, ends: Ends) -> lis
     return rests
 
 
-def face_compliance(faces: Array, rests: list[tuple[Array, Array]]) -> Array:
+def moved_faces(faces: Array, rests: list[tuple[Array, Array]], force: Array) -> Array:
     """Displacements of the cut faces of a tooth and its neighbours by forces on the tooth's own faces.
 
-    `faces` (2s, 2s) is one tooth's stiffness, `rests` from `rest_stiffness` for n neighbours on each side.
-    Returns (2 n + 1, 2s, 2s): block t maps a force on both faces of the middle tooth to the face
-    displacements of the tooth t - n places further.
+    `faces` (2s, 2s) is one tooth's stiffness, `rests` from `rest_stiffness` for n neighbours on each side,
+    `force` (2s, m) on the left and right face of the middle tooth. Returns (2 n + 1, 2s, m): block t holds
+    the faces of the tooth t - n places further.
     """
     s = len(faces) // 2
     low, high = slice(0, s), slice(s, None)
-    held = inverse(cholesky(faces + rests[0][0]))
+    held = solved(cholesky(faces + rests[0][0]), force)
     left, right = [held[low]], [held[high]]
     for to_right, to_left in rests[1:]:
         push = faces[high, low] @ right[-1] + to_right[high, low] @ held[low]
-        right.append(-sl.solve(faces[high, high] + to_right[high, high], push, assume_a="pos"))
+        right.append(-solved(cholesky(faces[high, high] + to_right[high, high]), push))
         push = faces[low, high] @ left[-1] + to_left[low, high] @ held[high]
-        left.append(-sl.solve(faces[low, low] + to_left[low, low], push, assume_a="pos"))
+        left.append(-solved(cholesky(faces[low, low] + to_left[low, low]), push))
     planes = left[::-1] + right
     return np.stack([np.concatenate(planes[tooth : tooth + 2]) for tooth in range(len(planes) - 1)])
 
@@ -106,5 +107,5 @@ def _seen_from_end(stiffness: Array, near: slice, far: slice, ends: Ends) -> Arr
     """Stiffness (s, s) of a chain at its near end, the far one free or clamped."""
     if ends == "clamped":
         return stiffness[near, near]
-    follow = sl.solve(stiffness[far, far], stiffness[far, near], assume_a="pos")
+    follow = solved(cholesky(stiffness[far, far]), stiffness[far, near])
     return stiffness[near, near] - stiffness[near, far] @ follow
