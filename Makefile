@@ -5,6 +5,7 @@ READY := $(VENV)/.locked
 TOOLS := $(VENV)/.tools
 CLUSTER := $(VENV)/.cluster
 CORES ?= 2
+IDLE := tests?|testing|fontTools|lexers|docutils|cuda|distutils
 .PHONY: all env tools check test random lint docs release audit ci notebooks benchmarks peers verification platforms mutation lock clean
 
 all: check
@@ -18,7 +19,7 @@ tools: $(TOOLS)
 define install
 	$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r $(1) \
 		|| $(BIN)/python -m pip install --quiet --require-hashes -r $(1)
-	$(BIN)/python -m compileall -q -j $(CORES) -x '/tests?/' $(VENV)/lib
+	$(BIN)/python -m compileall -q -j $(CORES) -x '/($(IDLE))/' $(VENV)/lib
 endef
 
 # What a run needs. Without compiled modules every job would compile the libraries anew where Python may not write
