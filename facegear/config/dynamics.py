@@ -1,5 +1,6 @@
 """Config section `dynamics`: nominal speed, accuracy, how long to wait and measure, speed sweep."""
 
+from dataclasses import replace
 from typing import Literal
 
 from pydantic import Field, model_validator
@@ -9,6 +10,10 @@ from facegear.dynamics.motion import Settings
 from facegear.dynamics.sweeps.plan import SweepPlan
 
 MAX_SPEED_RPM = 200_000
+SECOND_LOOKS = 3
+"""Other starts from which a class of motion that is in doubt must come out again."""
+CARRIED = 1e-2
+"""How far they lie from a state that is carried from speed to speed, over the length scale."""
 
 
 class Accuracy(Section):
@@ -114,5 +119,5 @@ def sweep_plan(section: Sweep) -> SweepPlan:
         chunks=section.chunks,
         overlap=section.overlap_points,
         jump_resolution_rpm=section.jump_resolution_rpm,
-        settings=settings(section.accuracy),
+        settings=replace(settings(section.accuracy), second_looks=SECOND_LOOKS, aside=CARRIED),
     )

@@ -46,6 +46,11 @@ class Settings:
     extensions
         Times that the window of an undecided exponent is doubled, and that a motion is watched again whose
         exponent and window do not agree.
+    second_looks
+        Other starts that a class of motion which is in doubt must come out from again.
+    aside
+        How far they lie from the first, over the length scale. A state carried over from an irregular motion
+        may be any of its states.
     """
 
     tolerance: float = 1e-8
@@ -58,6 +63,8 @@ class Settings:
     samples: int = 64
     refine: bool = True
     extensions: int = 2
+    second_looks: int = 0
+    aside: float = 1e-6
 
     @property
     def taylor_order(self) -> int:

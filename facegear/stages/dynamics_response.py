@@ -1,9 +1,11 @@
 """Response at one speed: time history, spectrum, statistics, multipliers, forces on the bearings."""
 
+from dataclasses import replace
+
 import pandas as pd
 
 from facegear.arrays import Arrays
-from facegear.config.dynamics import Accuracy, settings
+from facegear.config.dynamics import SECOND_LOOKS, Accuracy, settings
 from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
 from facegear.config.transmission import Transmission
@@ -37,7 +39,7 @@ def dynamics_response(
     model = build_model(
         wired_machine(transmission, teeth, harmonics, friction=friction, law=law, poses=poses, bodies=bodies)
     )
-    response = simulate(model, speed_rpm, settings(accuracy))
+    response = simulate(model, speed_rpm, replace(settings(accuracy), second_looks=SECOND_LOOKS))
     layout = model.machine.layout
     content = {
         "response": response_table(layout, response),

@@ -24,6 +24,7 @@ from facegear.dynamics.steady_state.mesh_samples import (
     past_law,
 )
 from facegear.dynamics.steady_state.prepare import prepare_for
+from facegear.dynamics.steady_state.second_look import disagreeing
 from facegear.dynamics.steady_state.settle import Settled, settle
 from facegear.dynamics.steady_state.statistics import drifts
 from facegear.dynamics.steady_state.window import Window, run_window
@@ -72,6 +73,9 @@ class SteadyState:
         Largest Lyapunov exponent per mesh period with its 95 % half-width, for motions that are not periodic.
     periods_run
         For how many mesh periods the motion was watched in all before it was named so.
+    looks
+        Mesh periods of the motion that this start and another one came to (0: none), where the two differ
+        and the motion is called not settled for that reason alone; else None.
     state
         At the end.
     """
@@ -91,6 +95,7 @@ class SteadyState:
     liouville: float | None
     exponent: tuple[float, float] | None
     periods_run: int
+    looks: tuple[int, int] | None
     state: State
 
     @property
@@ -186,50 +191,93 @@ def simulate_many(
 def steady_state(system: System, frequency: float, settings: Settings, start: State) -> SteadyState:
     """Steady state of any system at an angular mesh frequency in rad/s.
 
-    A run that shows no sign of closing while it is watched gets its largest exponent on the window that it is
-    measured on, which is also a second watch. Where the two do not agree it is watched for longer.
+    A class of motion that does not come out again from starts a little aside is taken back: then the motion
+    is not settled, and `looks` says why.
     """
     prepare_for(system)
     integrator = Integrator(system, frequency, settings.tolerance, settings.order)
-    state, ends = integrator.by_phase(start), None
-    periods_run = 0
+    state = integrator.by_phase(start)
+    seen = _watched(integrator, state, settings)
+    other = disagreeing(integrator, state, settings, seen.settled, seen.motion)
+    looks = None
+    if other is not None:
+        looks = (seen.settled.period, other.period)
+        seen = _not_settled(integrator, seen, other, settings)
+    return _response(system, integrator, seen, looks)
+
+
+@dataclass(frozen=True, eq=False)
+class _Seen:
+    """What watching a run has shown: where it settled, its class, and the stretch that it is measured on."""
+
+    settled: Settled
+    motion: Motion
+    exponent: Exponent | None
+    window: Window
+    periods_run: int
+
+
+def _watched(integrator: Integrator, state: Array, settings: Settings) -> _Seen:
+    """Watch a run from a state (2, n) by phase until its class is known or patience ends.
+
+    A run that shows no sign of closing while it is watched gets its largest exponent on the window that it is
+    measured on, which is also a second watch. Where the two do not agree it is watched for longer.
+    """
+    ends, periods_run = None, 0
     for _ in range(settings.extensions + 1):
         settled = settle(integrator, state, settings, ends)
         periods_run += settled.periods_run
         if settled.period:
             window = run_window(integrator, settled.state, settled.period, settings.samples)
-            each = each_deflection(system, window.samples, window.per_period)
-            exponent, motion = None, Motion.PERIODIC
-            break
+            return _Seen(settled, Motion.PERIODIC, None, window, periods_run)
         exponent = largest_exponent(integrator, settled.state, settings)
         window = exponent.window
-        each = each_deflection(system, window.samples, window.per_period)
-        motion = _class(integrator, settled, exponent, window, by_mesh(system, each), settings)
+        motion = _class(integrator, settled, exponent, window, settings)
         periods_run += len(exponent.ends)
         if motion is not Motion.NOT_SETTLED or exponent.growth is Growth.UNKNOWN:
             break
         state, ends = window.ends[-1], exponent.ends
-    orbit = settled.orbit
+    return _Seen(settled, motion, exponent, window, periods_run)
+
+
+def _not_settled(integrator: Integrator, seen: _Seen, other: Settled, settings: Settings) -> _Seen:
+    """What is left where another start came to another motion: a stretch to be measured, that of the run
+    which did not close if one did not.
+    """
+    settled = other if seen.settled.period else seen.settled
+    periods_run = seen.periods_run + other.periods_run
+    if not seen.settled.period:
+        return replace(seen, motion=Motion.NOT_SETTLED, periods_run=periods_run)
+    exponent = largest_exponent(integrator, settled.state, settings)
+    periods_run += len(exponent.ends)
+    left = replace(settled, period=0, orbit=None)
+    return _Seen(left, Motion.NOT_SETTLED, exponent, exponent.window, periods_run)
+
+
+def _response(
+    system: System, integrator: Integrator, seen: _Seen, looks: tuple[int, int] | None
+) -> SteadyState:
+    settled, window, exponent = seen.settled, seen.window, seen.exponent
+    each = each_deflection(system, window.samples, window.per_period)
+    orbit, square = settled.orbit, integrator.frequency**2
+    averages = window.averages
     return SteadyState(
         system=system,
-        motion=motion,
+        motion=seen.motion,
         period=settled.period,
-        frequency=frequency,
+        frequency=integrator.frequency,
         residual=settled.residual,
         periods=window.periods,
         per_period=window.per_period,
         deflections=by_mesh(system, each),
         coordinates=window.samples,
-        averages=replace(
-            window.averages,
-            force=window.averages.force * frequency**2,
-            pull=window.averages.pull * frequency**2,
-        ),
+        averages=replace(averages, force=averages.force * square, pull=averages.pull * square),
         fractions=mesh_fractions(system, window.fractions[:, : system.contacts], each),
         multipliers=orbit.multipliers if orbit else None,
         liouville=orbit.liouville if orbit else None,
         exponent=(exponent.value, exponent.half_width) if exponent else None,
-        periods_run=periods_run,
+        periods_run=seen.periods_run,
+        looks=looks,
         state=integrator.by_time(window.ends[-1]),
     )
 
@@ -239,13 +287,14 @@ def _class(
     settled: Settled,
     exponent: Exponent,
     window: Window,
-    deflections: Array,
     settings: Settings,
 ) -> Motion:
     """Class of a motion that was watched without closing, by its exponent and the window after it."""
     motion = CLASSES.get(exponent.growth, Motion.NOT_SETTLED)
     near = closing(integrator, window.ends, settings)
     escaping = motion is Motion.CHAOTIC and min(settled.residual, near.residual) < ESCAPING
+    each = each_deflection(integrator.system, window.samples, window.per_period)
+    deflections = by_mesh(integrator.system, each)
     by_period = deflections.reshape(window.periods, window.per_period, -1).std(axis=1)
     converging = near.residual < SMALL and near.trend < FALLING
     drifting = motion is Motion.QUASI_PERIODIC and wanders(integrator, window.ends, near.period)

@@ -9,7 +9,13 @@ from facegear.arrays import AnyArray, Arrays
 from facegear.dynamics.sweeps.sweep import Piece
 
 NAMES = tuple(Piece.__dataclass_fields__)
-MAY_LACK = ("leading_multiplier", "exponent_per_period", "exponent_interval")
+MAY_LACK = (
+    "leading_multiplier",
+    "exponent_per_period",
+    "exponent_interval",
+    "first_look_period",
+    "second_look_period",
+)
 PER_SPEED = ("speeds", "motion", "period", "residual", "periods_run", "modal_order", *MAY_LACK)
 DIMENSIONS = {
     **dict.fromkeys(NAMES, 2),

@@ -15,6 +15,8 @@ PULLS = 1e-3
 def response_summary(response: SteadyState) -> str:
     """Class of motion with its evidence, largest fraction of time out of contact, pull of the dampers."""
     parts = [response.label, f"change over the period {response.residual:.1e} of the length scale"]
+    if response.looks is not None:
+        parts.append(" from one start and ".join(map(_closed, response.looks)) + " from another")
     if response.multipliers is not None:
         parts.append(f"leading multiplier {abs(response.multipliers[0]):.4f}")
     if response.liouville is not None and np.isfinite(response.liouville):
@@ -33,6 +35,10 @@ def response_summary(response: SteadyState) -> str:
     return ", ".join(parts)
 
 
+def _closed(period: int) -> str:
+    return f"period-{period}" if period else "irregular"
+
+
 def sweep_summary(directions: Mapping[str, Direction]) -> str:
     """Jumps and counts of the classes of motion in each direction, and seams that have not forgotten."""
     parts = []
@@ -41,6 +47,8 @@ def sweep_summary(directions: Mapping[str, Direction]) -> str:
         counts = ", ".join(f"{count} {label}" for label, count in classes.most_common())
         irregular = sum(seam.kind.value == "irregular" for seam in direction.seams)
         rerun = sum(seam.rerun for seam in direction.seams)
+        doubted = int(np.isfinite(direction.piece.first_look_period).sum())
+        counts += f" ({doubted} of them because another start came to another motion)" if doubted else ""
         jumps = f"{len(direction.jumps)} jump{'s' * (len(direction.jumps) != 1)}"
         seams = f"seams: {rerun} speeds run again, {irregular} irregular"
         parts.append(f"{name}: {jumps}; {counts}; {seams}")

@@ -28,8 +28,10 @@ class Piece:
     open_fraction, drive_fraction, back_fraction (P, M) of the time; past_law_fraction (P, M) of the samples,
     at which a mesh is pressed past the last level of its law. translation_* (P, B, 3): moments of x, y, z, m.
     residual, periods_run (P,); leading_multiplier, exponent_per_period, exponent_interval (P,): NaN where
-    there is none. spectrum (P, M, orders), m. modal (P, modes): RMS velocity scale omega * coordinate of
-    every natural mode without mean, sqrt(J). modal_order (P,): where in multiples of the mesh frequency the
+    there is none. first_look_period, second_look_period (P,): mesh periods of the motions that two starts
+    came to (0: not periodic) where the motion is not settled because they differ, else NaN. spectrum (P, M,
+    orders), m. modal (P, modes): RMS velocity scale omega * coordinate of every natural mode without mean,
+    sqrt(J). modal_order (P,): where in multiples of the mesh frequency the
     strongest mode moves most. displacement, velocity (P, n).
     """
 
@@ -59,6 +61,8 @@ class Piece:
     exponent_per_period: Array
     exponent_interval: Array
     periods_run: Array
+    first_look_period: Array
+    second_look_period: Array
     spectrum: Array
     modal: Array
     modal_order: Array
@@ -147,6 +151,7 @@ def _row(
     strongest = (by_period @ views[:, directions + modal.argmax()]).reshape(-1, 1)
     orders, lines = spectrum(strongest - strongest.mean(), response.per_period, periodic)
     exponent, half = response.exponent or (np.nan, np.nan)
+    first_look, second_look = response.looks or (np.nan, np.nan)
     leading = np.nan if response.multipliers is None else abs(response.multipliers[0])
     moved = (values[:directions].reshape(-1, 3) for values in (rms, ac_rms, interval))
     return {
@@ -165,6 +170,8 @@ def _row(
         "exponent_per_period": exponent,
         "exponent_interval": half,
         "periods_run": float(response.periods_run),
+        "first_look_period": float(first_look),
+        "second_look_period": float(second_look),
         "spectrum": order_spectrum(response.deflections, response.per_period, response.period),
         "modal": modal,
         "modal_order": orders[lines[1:, 0].argmax() + 1],

@@ -22,7 +22,15 @@ PER_MESH = {
     **{name: (1.0, name) for name in ("open_fraction", "drive_fraction", "back_fraction")},
 }
 """Quantity of the table: factor to its unit, and field of a Piece."""
-PER_SPEED = ("residual", "leading_multiplier", "exponent_per_period", "exponent_interval", "periods_run")
+PER_SPEED = (
+    "residual",
+    "leading_multiplier",
+    "exponent_per_period",
+    "exponent_interval",
+    "periods_run",
+    "first_look_period",
+    "second_look_period",
+)
 
 
 def sweep_table(layout: Layout, direction: str, piece: Piece) -> pd.DataFrame:

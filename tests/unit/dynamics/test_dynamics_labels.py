@@ -8,12 +8,14 @@ import pytest
 from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
+from facegear.config.dynamics import SECOND_LOOKS
 from facegear.config.load import load_config
 from facegear.config.machines import case_machine
 from facegear.config.model import resolved
 from facegear.dynamics.integrator.trajectory import record
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate, steady_state
+from facegear.dynamics.sweeps.summary import response_summary
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.teeth import GEOMETRIC
 from validation.dynamics.oscillators import (
@@ -173,3 +175,28 @@ def test_a_short_window_does_not_take_a_torus_for_chaos():
     model = build_model(case_machine(resolved(load_config(example)), stiffness))
     settings = Settings(tolerance=1e-6, settle=100, window=50)
     assert simulate(model, 5000.0, settings).motion is Motion.QUASI_PERIODIC
+
+
+@pytest.mark.parametrize("number", [31, 118])
+def test_starts_that_differ_by_rounding_are_never_given_two_classes_of_motion(number):
+    """Watched for 256 periods, these were chaotic from one start and period-1 from the next."""
+    oscillator = list(random_oscillators(number + 1))[number]
+    hasty = Settings(tolerance=1e-6, periodic_residual=1e-6, settle=256, window=160, extensions=1)
+    settings = replace(hasty, second_looks=SECOND_LOOKS)
+    starts = [replace(oscillator, displacement=oscillator.displacement + 1e-12 * k) for k in range(5)]
+    found = [steady_state(start.system, start.speed, settings, start.start) for start in starts]
+    assert len({each.label for each in found} - {Motion.NOT_SETTLED.value}) < 2
+    doubted = [each for each in found if each.looks is not None]
+    assert doubted and all(each.motion is Motion.NOT_SETTLED for each in doubted)
+    assert all(first != second for first, second in (each.looks for each in doubted))
+    assert all(" from one start and " in response_summary(each) for each in doubted)
+
+
+def test_a_motion_that_every_start_is_drawn_to_needs_no_second_look():
+    oscillator = next(random_oscillators(1))
+    once, again = (
+        steady_state(oscillator.system, oscillator.speed, Settings(second_looks=looks), oscillator.start)
+        for looks in (0, SECOND_LOOKS)
+    )
+    assert once.label == again.label == "period-1" and again.looks is None
+    assert once.periods_run == again.periods_run
