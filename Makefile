@@ -23,7 +23,7 @@ define install
 endef
 
 # What a run needs. Without compiled modules every job would compile the libraries anew where Python may not write
-# them (PYTHONDONTWRITEBYTECODE); nothing imports their tests.
+# them (PYTHONDONTWRITEBYTECODE). A run imports nothing from folders named in IDLE.
 # The repository installs itself editable, so that notebooks and scripts find it from any folder.
 $(READY): requirements-run.lock pyproject.toml
 	$(PYTHON) -m venv $(VENV)
