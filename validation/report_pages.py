@@ -21,7 +21,7 @@ from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
 
 from facegear.compare.answers import SAME_DATE
 from facegear.io import documents, tables
-from facegear.pipeline.reported import REPORTED
+from facegear.pipeline.reported import REPORTED, table_name
 from facegear.pipeline.table import STAGES
 from validation.references import ROOT
 
@@ -103,7 +103,7 @@ def stored_tables(folder: Path) -> dict[str, pd.DataFrame]:
     """What the report of a case reads, by name; of a sweep the quantity SWEPT."""
     wanted = [(name, file) for name, files in REPORTED.items() for file in files]
     paths = [folder / STAGES[name].files[file].path for name, file in (*wanted, ("duty_loads", "duty_loads"))]
-    read = {path.stem: tables.read(path, allow_empty=True) for path in paths if path.exists()}
+    read = {table_name(path): tables.read(path, allow_empty=True) for path in paths if path.exists()}
     if "sweep" in read:
         read["sweep"] = read["sweep"].loc[lambda sweep: sweep["quantity"] == SWEPT]
     return read

@@ -4,12 +4,16 @@ import itertools
 import re
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
+from dataclasses import dataclass
 from typing import Any
 
 from facegear.config.base import parse, suggestion
 from facegear.config.model import Config, resolved
 from facegear.config.studies import Study, StudyPoint
 from facegear.errors import ConfigError, ConfigErrors
+
+MANY = 3
+"""Numbers of a key from which a curve is drawn over them."""
 
 
 def expand_cases(config: Config) -> dict[str, dict[str, Any]]:
@@ -69,6 +73,43 @@ def study_points(study: Study) -> dict[str, StudyPoint]:
             set={key: value for point in combination for key, value in point.set.items()},
         )
     return points
+
+
+@dataclass(frozen=True)
+class NumberedStudy:
+    """A study with an axis of numbers: the dotted key that they belong to, the axis' label, and of each point
+    by its folder name its number and the label of its point on the other axis.
+    """
+
+    key: str
+    label: str
+    points: Mapping[str, tuple[float, str]]
+
+
+def numbered(study: Study) -> NumberedStudy | None:
+    """The first axis on which at least MANY points set a key to different numbers, if there is one."""
+    for number, axis in enumerate(study.axes):
+        numbers = axis.numbers()
+        if not numbers or len(axis.resolved()) < MANY:
+            continue
+        key, values = next(iter(numbers.items()))
+        combinations = itertools.product(*(range(len(other.resolved())) for other in study.axes))
+        points = {
+            name: (float(values[chosen[number]]), _others(study, number, chosen))
+            for name, chosen in zip(study_points(study), combinations, strict=True)
+        }
+        return NumberedStudy(key, axis.label, points)
+    return None
+
+
+def _others(study: Study, left_out: int, chosen: Sequence[int]) -> str:
+    """Label of a point on the axis beside the one that is left out."""
+    parts = [
+        f"{axis.label} = {axis.resolved()[point].label}" if axis.key else axis.resolved()[point].label
+        for position, (axis, point) in enumerate(zip(study.axes, chosen, strict=True))
+        if position != left_out
+    ]
+    return ", ".join(parts)
 
 
 def set_key(values: dict[str, Any], key: str, value: Any) -> None:

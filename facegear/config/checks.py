@@ -40,7 +40,7 @@ STRAIN, STEEL, WIDEST = 0.02, 206e9, 40.0
 BROKEN = "beyond it the tooth force is 2 % of Young's modulus times module and face width"
 SAME_PITCH = 1e-5
 """Relative difference up to which a curve's period counts as the pinion's pitch."""
-TAKEN_NAMES = ("nominal", "nominal_summary", "summary", "reference", "speed_range")
+TAKEN_NAMES = ("nominal", "nominal_summary", "summary", "reference", "speed_range", "study_forces")
 """Files that load sharing writes beside those of the studies."""
 
 

@@ -1,5 +1,6 @@
 """Config section `studies`: the same machine with some keys changed, in one or two dimensions."""
 
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from pydantic import Field, model_validator
@@ -40,6 +41,26 @@ class Axis(Section):
         if self.key:
             return tuple(StudyPoint(label=f"{value}", set={self.key: value}) for value in self.values)
         return self.points
+
+    def numbers(self) -> dict[str, tuple[float, ...]]:
+        """Number of each point under every dotted key that all points set to numbers, no two alike."""
+        every = [dict(_leaves(point.set)) for point in self.resolved()]
+        columns = {key: tuple(point.get(key) for point in every) for key in every[0]}
+        return {key: column for key, column in columns.items() if _all_differ(column)}
+
+
+def _leaves(values: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Dotted keys and values, also of whole sections."""
+    for key, value in values.items():
+        if isinstance(value, Mapping):
+            yield from ((f"{key}.{inner}", leaf) for inner, leaf in _leaves(value))
+        else:
+            yield key, value
+
+
+def _all_differ(column: tuple[Any, ...]) -> bool:
+    plain = all(isinstance(value, int | float) and not isinstance(value, bool) for value in column)
+    return plain and len(set(column)) == len(column)
 
 
 class Study(Section):

@@ -125,6 +125,17 @@ def drive_line(case: Case) -> bool:
     return transmission is not None and bool(transmission["shafts"] or transmission["torsion"])
 
 
+def shaft_figures(case: Case) -> list[str]:
+    """The shafts of pinions, where there are any."""
+    return ["shafts"] if drive_line(case) and case.values["transmission"]["shafts"] else []
+
+
+def pinion_width(case: Case) -> float | None:
+    """Face width (mm) of the pinions, where the tooth pair says it."""
+    pinion = case.values["tooth_pair"]["pinion"]
+    return pinion and float(pinion["width_mm"])
+
+
 def machine_stress(case: Case) -> bool:
     """Whether section transmission is given and root stress asked for."""
     return machine(case) and root_stress(case)

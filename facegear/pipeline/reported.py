@@ -1,6 +1,7 @@
 """What of each stage the report of a case reads."""
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from facegear.arrays import Arrays
@@ -28,8 +29,17 @@ REPORTED = {
     "rating": ["safety", "rating"],
     "dynamic_root_stress": ["dynamic_stress"],
     "stress_over_speed": ["stress_over_speed"],
+    "shafts": ["seats", "bearings", "torsion"],
 }
 """Tables of each stage that the report reads."""
+OWN_NAMES = ("shafts", "poses")
+"""Folders with tables that are called like others of the machine."""
+
+
+def table_name(path: str | Path) -> str:
+    """What the report calls a table: its file's name, behind that of a folder of OWN_NAMES."""
+    path = Path(path)
+    return f"{path.parent.name}_{path.stem}" if path.parent.name in OWN_NAMES else path.stem
 
 
 def reported_tables(case: Case) -> list[tuple[str, str]]:

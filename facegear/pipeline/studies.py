@@ -34,6 +34,41 @@ def nominal_and_every_point(case: Case) -> list[Wildcards]:
     return [{"case": str(case.values["case"])}, *every_point(case)]
 
 
+def numbered_points(case: Case) -> list[tuple[str, str, str, str, str, float]]:
+    """Study, point, label of the number with its unit, label on the other axis, key and number of every point
+    of the studies over numbers.
+    """
+    from facegear.config.cases import numbered
+    from facegear.config.studies import Study
+    from facegear.report.page import unit_of
+
+    listed = []
+    for study in (Study.of_config(study) for study in case.values["studies"]):
+        if (axis := numbered(study)) is not None:
+            unit = next(filter(None, map(unit_of, reversed(axis.key.split(".")))), "")
+            label = f"{axis.label} ({unit})" if unit and not axis.label.endswith(")") else axis.label
+            listed += [
+                (study.name, point, label, other, axis.key, value)
+                for point, (value, other) in axis.points.items()
+            ]
+    return listed
+
+
+def numbered_cases(case: Case) -> list[Wildcards]:
+    """The cases of `numbered_points`."""
+    return [{"case": _id(case, *point[:2])} for point in numbered_points(case)]
+
+
+def over_numbers(case: Case) -> bool:
+    """Whether a study changes a number of a machine three times or more."""
+    return asked.machine(case) and bool(numbered_points(case))
+
+
+def force_figures(case: Case) -> list[str]:
+    """A figure a study over numbers."""
+    return [f"study_{name}_forces" for name in dict.fromkeys(point[0] for point in numbered_points(case))]
+
+
 def names(case: Case) -> list[str]:
     """Names of the studies."""
     return [str(study["name"]) for study in case.values["studies"]]
@@ -54,6 +89,11 @@ def kinds_of_groups(case: Case) -> list[str]:
 def titles(case: Case) -> list[str]:
     """Title of each study."""
     return [str(study["title"]) for study in case.values["studies"]]
+
+
+def titles_by_name(case: Case) -> dict[str, str]:
+    """Title of each study by its name."""
+    return {str(study["name"]): str(study["title"]) for study in case.values["studies"]}
 
 
 def captions(case: Case) -> list[str]:

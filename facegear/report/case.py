@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from facegear.report.contents import CHAPTERS, FRICTION, STUDIED_CONTACT, caption_of
+from facegear.report.contents import CHAPTERS, FRICTION, SHAFTS, STUDIED_CONTACT, caption_of
 from facegear.report.glance import glance_chapter
 from facegear.report.machine import Base, machine_chapter
 from facegear.report.page import Chapter, Picture, Table, View, render
@@ -29,6 +29,13 @@ ROOT_STRESS = (
     "carries the load; radius: distance from the gear's axis; tangent: angle between the fillet and the "
     "tooth's middle line"
 )
+SHAFT_TABLES = {
+    "shafts_seats": "Stiffness of what each pinion sits on, without moments, and where it stands under the "
+    "mean torques",
+    "shafts_bearings": "Loads of the shafts on their bearings under the mean torques",
+    "shafts_torsion": "Masses behind torsional springs: twist of the spring, of all before it as well "
+    "(windup), and natural frequencies of the chain with its gear free",
+}
 FOLLOWING = (
     "The running machine, followed while its runouts turn, beside the machine at rest. k_gamma: the largest "
     "mean of a mesh cycle over the nominal even share, running; k_v: the largest load over that "
@@ -187,6 +194,9 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
             *held,
             Table("Natural frequencies; equal ones share a row", mode_rows(tables["frequencies"]), 6),
         ]
+    if title == SHAFTS:
+        listed = [Table(words, tables[name], 4) for name, words in SHAFT_TABLES.items() if name in tables]
+        return [table for table in listed if len(table.frame)]
     if title.startswith("Nominal"):
         bearings = [Table(BEARINGS, tables["bearings"], 4)] if "bearings" in tables else []
         return [*bearings, *_jumps(tables)]

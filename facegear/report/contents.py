@@ -40,6 +40,9 @@ CAPTIONS = {
     "body_shapes": "Sections of the face gears and their first mode shapes at a crest, hubs held.",
     "body_waves": "Frequencies of the face gears over nodal diameters, hubs held: at rest, and of waves in "
     "space at the nominal speed.",
+    "shafts": "Shafts of the pinions with the radial forces on their bearings, and how they deflect under "
+    "the mean torques; lengths and diameters have scales of their own. Pinions whose shafts do the same are "
+    "drawn once.",
     "machine_campbell": "Modes of the whole machine over speed and the waves of its gears; marks: crossings "
     "with mesh harmonics, larger where the phases of the meshes add up.",
     "body_campbell": "Waves of a face gear over speed, hub held; marks: crossings with mesh harmonics, "
@@ -88,6 +91,11 @@ def caption_of(name: str, values: Mapping[str, Any]) -> str:
             words = f"{title}: transmission error, stiffness and radius of the contact over a pitch."
         if name == f"contact_pattern_study_{study['name']}":
             words = f"{title}: contact patterns, largest pressure over a pitch."
+        if name == f"study_{study['name']}_forces":
+            words = (
+                f"{title}: mean fraction of each mesh of its group's load, and largest dynamic force, at the "
+                "nominal speed; hollow: motion that does not repeat with the mesh cycle."
+            )
         for i, kind in enumerate(KINDS):
             if name == f"study_{study['name']}_{kind}":
                 words = f"{title}: load sharing of the {KINDS[kind]}."
@@ -96,6 +104,7 @@ def caption_of(name: str, values: Mapping[str, Any]) -> str:
 
 
 FRICTION = "Friction and heat"
+SHAFTS = "Shafts"
 STUDIED_CONTACT = "Studies of the contact"
 CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     (
@@ -150,6 +159,12 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
             *("mesh_deflections", "pinion_sweep", "gear_sweep", "mesh_sweep", "law_sweeps", "law_loads"),
             "waterfall",
         ),
+    ),
+    (
+        SHAFTS,
+        "Pinions on shafts and bearings and masses behind torsional springs, at rest under the mean torques. "
+        "x is tangential to the face gear, y along its axis, z along the shaft.",
+        ("shafts",),
     ),
     (
         "Load sharing at rest",

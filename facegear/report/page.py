@@ -29,6 +29,7 @@ SCREEN_DPI, PNG_DPI = 96, 160
 UNITS = {
     "n_per_mm": "N/mm",
     "n_per_m": "N/m",
+    "n_m_per_rad": "N m/rad",
     "n_m": "N m",
     "rpm": "rpm",
     "deg": "deg",
@@ -37,6 +38,9 @@ UNITS = {
     "um": "um",
     "mm": "mm",
     "kw": "kW",
+    "kg_m2": "kg m2",
+    "kg": "kg",
+    "urad": "urad",
     "percent": "%",
     "n": "N",
 }
@@ -234,6 +238,11 @@ def _longest_word(text: str) -> int:
 def unbroken(text: str) -> str:
     """Text whose units in brackets are not broken."""
     return re.sub(r"\(N m\)", "(N\u00a0m)", text)
+
+
+def unit_of(name: str) -> str:
+    """The unit in a column's name or a key of the config, as it is written; nothing where it has none."""
+    return UNITS.get(_unit(name), "")
 
 
 def _unit(name: str) -> str:

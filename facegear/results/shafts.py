@@ -1,10 +1,14 @@
 """Shafts of pinions, and turning masses behind torsional springs."""
 
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import pandas as pd
 
+from facegear.errors import FacegearError
 from facegear.results.base import Result
+
+if TYPE_CHECKING:
+    from facegear.plots.style import Figure
 
 
 class ShaftsResult(Result):
@@ -27,3 +31,23 @@ class ShaftsResult(Result):
     def torsion(self) -> pd.DataFrame:
         """One row a turning mass: its spring, twist under load, natural frequencies of its chain."""
         return self.content["torsion"].copy()
+
+    def deflections(self) -> pd.DataFrame:
+        """Rows along each shaft: at_mm from its inner end, displacements x_um and y_um under load."""
+        return self.content["deflections"].copy()
+
+    def plot(self) -> "Figure":
+        """Shafts in side view with the forces on their bearings, over their deflections.
+
+        Raises FacegearError where no pinion has a shaft.
+        """
+        from facegear.config.lumped_model import lumped_sections
+        from facegear.plots.shafts import figures
+
+        pair = self.values["tooth_pair"]
+        sections = lumped_sections(self.values["transmission"], pair)
+        width = pair["pinion"] and pair["pinion"]["width_mm"]
+        drawn = figures(self.content["bearings"], self.content["deflections"], *sections, width)
+        if not drawn:
+            raise FacegearError(f"{self.values['case']}: no pinion has a shaft, there is nothing to draw")
+        return drawn[0]

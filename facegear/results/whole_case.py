@@ -13,7 +13,7 @@ from facegear.errors import FacegearError, extras_named
 from facegear.io.atomic import atomic_path
 from facegear.pipeline.asked import machine_loads
 from facegear.pipeline.needs import resolved_needs
-from facegear.pipeline.reported import REPORTED, asked_for, reported_tables, shown_pair
+from facegear.pipeline.reported import REPORTED, asked_for, reported_tables, shown_pair, table_name
 from facegear.pipeline.run import write_stage
 from facegear.pipeline.stage import Stage, load
 from facegear.pipeline.table import STAGES
@@ -92,7 +92,7 @@ class WholeCase:
         if machine_loads(self.chain.case):
             wanted.append(("duty_loads", "duty_loads"))
         tables = {
-            Path(STAGES[name].files[file].path).stem: self.chain.part(name, file) for name, file in wanted
+            table_name(STAGES[name].files[file].path): self.chain.part(name, file) for name, file in wanted
         }
         pictures = {name: path for stage in stages for name, path in self._drawn(stage, folder, png)}
         values = {**self.chain.values, "reproduction": False}

@@ -101,7 +101,19 @@ def condensed(shaft: Shaft) -> CondensedShaft:
     the rigid motion follow from what they give way and from the balance of all loads.
     """
     shaft.require_held()
-    at = np.array([shaft.pinion, *(bearing.position for bearing in shaft.bearings)])
+    reactions, drifted = _balanced(shaft)
+    return CondensedShaft(_symmetric(_moved(shaft, shaft.pinion, reactions, drifted)), reactions)
+
+
+def deflections(shaft: Shaft, at: AnyArray) -> Array:
+    """Motions (n, 5, 5) of the shaft at distances (n,) from its beginning (m) by the loads of its pinion."""
+    reactions, drifted = _balanced(shaft)
+    return np.array([_moved(shaft, float(position), reactions, drifted) for position in at])
+
+
+def _balanced(shaft: Shaft) -> tuple[Array, Array]:
+    """Loads on the bearings (bearings, 5, 5) and the rigid motion of the beginning (5, 5) by the pinion's."""
+    at = _loaded(shaft)
     compliance = clamped_compliance(shaft.segments, shaft.material, at)
     count = len(shaft.bearings)
     springs = np.array([bearing.stiffness for bearing in shaft.bearings])
@@ -115,10 +127,20 @@ def condensed(shaft: Shaft) -> CondensedShaft:
     system[MOTIONS * count :, bearings] = _flat((rigid[1:].transpose(0, 2, 1) @ springs)[None])
     load[bearings], load[MOTIONS * count :] = _flat(compliance[1:, :1]), rigid[0].T
     solution = np.linalg.solve(system, load)
-    moved, drifted = solution[bearings].reshape(count, MOTIONS, MOTIONS), solution[MOTIONS * count :]
-    reactions = springs @ moved
-    bent = compliance[0, 0] - np.einsum("jkl,jlm->km", compliance[0, 1:], reactions)
-    return CondensedShaft(_symmetric(rigid[0] @ drifted + bent), reactions)
+    return springs @ solution[bearings].reshape(count, MOTIONS, MOTIONS), solution[MOTIONS * count :]
+
+
+def _moved(shaft: Shaft, position: float, reactions: Array, drifted: Array) -> Array:
+    """Motion (5, 5) at a distance from the beginning by the pinion's loads."""
+    at = np.array([position, *_loaded(shaft)])
+    clamped = clamped_compliance(shaft.segments, shaft.material, at)[0, 1:]
+    bent = clamped[0] - np.einsum("jkl,jlm->km", clamped[1:], reactions)
+    return np.asarray(carried(position) @ drifted + bent)
+
+
+def _loaded(shaft: Shaft) -> Array:
+    """Distances from the beginning of pinion and bearings, m."""
+    return np.array([shaft.pinion, *(bearing.position for bearing in shaft.bearings)])
 
 
 def _flat(blocks: Array) -> Array:

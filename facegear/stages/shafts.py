@@ -9,7 +9,13 @@ from facegear.config.machines import wired_machine
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.stages.outcome import Outcome
-from facegear.transmission.shaft_tables import load_table, seat_table, stiffness_table, torsion_table
+from facegear.transmission.shaft_tables import (
+    deflection_table,
+    load_table,
+    seat_table,
+    stiffness_table,
+    torsion_table,
+)
 from facegear.transmission.static_gears import at_rest
 from facegear.transmission.statics import mean_equilibrium
 
@@ -22,18 +28,22 @@ def shafts(
     law: Arrays | None = None,
     poses: Arrays | None = None,
 ) -> Outcome:
-    """`seats`, `stiffness`, `bearings`, `torsion` (tables). Raises ConfigError without shafts and torsion,
-    NotConverged.
+    """`seats`, `stiffness`, `bearings`, `deflections`, `torsion` (tables).
+
+    Raises ConfigError without shafts and torsion, NotConverged.
     """
     machine = wired_machine(transmission, teeth, harmonics, law=law, poses=poses, bodies=bodies)
     if (line := machine.drive_line) is None:
         raise ConfigError("transmission.shafts", {}, "given, or transmission.torsion")
     resting = at_rest(machine)
     equilibrium = mean_equilibrium(resting)
+    sections = {i: transmission.shaft_of(pinion) for i, pinion in enumerate(transmission.pinions)}
+    stepped = {i: section.shaft() for i, section in sections.items() if section is not None}
     content = {
         "seats": seat_table(resting, line, equilibrium),
         "stiffness": stiffness_table(line),
         "bearings": load_table(resting, line, equilibrium),
+        "deflections": deflection_table(resting, line, equilibrium, stepped),
         "torsion": torsion_table(machine, line),
     }
     return Outcome(content, _summary(content))

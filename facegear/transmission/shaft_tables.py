@@ -1,16 +1,21 @@
 """Tables of shafts and of turning masses behind torsional springs, with the machine at rest under load."""
 
+from collections.abc import Mapping
+
 import numpy as np
 import pandas as pd
 import scipy.linalg
 
 from facegear.arrays import Array
+from facegear.shafts.condensed import Shaft, deflections
 from facegear.transmission.drive_line import DriveLine, TurningMass
 from facegear.transmission.machine import Machine
 from facegear.transmission.shaft_loads import bearing_names, shaft_bearing_loads
 from facegear.transmission.statics import Equilibria, bearing_forces
 
 MOTION_NAMES = ("x", "y", "z", "tilt_x", "tilt_y")
+STATIONS = 25
+"""Even stations from end to end at which a deflected shaft is listed, beside steps, bearings and pinion."""
 
 
 def stiffness_table(line: DriveLine) -> pd.DataFrame:
@@ -37,6 +42,28 @@ def seat_table(machine: Machine, line: DriveLine, at_rest: Equilibria) -> pd.Dat
     return pd.DataFrame(
         rows, columns=["pinion", *stiffness, "x_um", "y_um", "z_um", "tilt_x_urad", "tilt_y_urad"]
     )
+
+
+def deflection_table(
+    machine: Machine, line: DriveLine, at_rest: Equilibria, shafts: Mapping[int, Shaft]
+) -> pd.DataFrame:
+    """Rows along each shaft, by the number of its pinion: at_mm from its beginning, x_um and y_um under the
+    mean torques.
+    """
+    forces = bearing_forces(machine, at_rest)[0]
+    rows = []
+    for pinion, shaft in sorted(shafts.items()):
+        at = _stations(shaft)
+        moved = deflections(shaft, at)[:, :2, :3] @ forces[pinion]
+        name = line.layout.pinions[pinion].name
+        rows += [(name, *row) for row in np.column_stack([1e3 * at, 1e6 * moved]).tolist()]
+    return pd.DataFrame(rows, columns=["pinion", "at_mm", "x_um", "y_um"])
+
+
+def _stations(shaft: Shaft) -> Array:
+    ends = np.cumsum([segment.length for segment in shaft.segments])
+    held = [bearing.position for bearing in shaft.bearings]
+    return np.unique(np.round([*np.linspace(0.0, ends[-1], STATIONS), *ends, *held, shaft.pinion], 9))
 
 
 def load_table(machine: Machine, line: DriveLine, at_rest: Equilibria) -> pd.DataFrame:

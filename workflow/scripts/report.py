@@ -9,6 +9,7 @@ from facegear.contact.columns import PRESSURE_ARRAYS
 from facegear.io import arrays, documents, tables
 from facegear.io.atomic import atomic_path
 from facegear.lubrication.columns import LOCAL_ARRAYS
+from facegear.pipeline.reported import table_name
 from facegear.provenance.stage import stage
 from facegear.report.case import case_report
 from facegear.report.machine import Base
@@ -16,7 +17,7 @@ from facegear.report.pair_view import pair_view
 from facegear.strength.columns import ROOT_STRESS_ARRAYS
 
 with stage(snakemake) as run:
-    frames = {Path(path).stem: tables.read(path, allow_empty=True) for path in snakemake.input.tables}
+    frames = {table_name(path): tables.read(path, allow_empty=True) for path in snakemake.input.tables}
     pictures = {Path(path).stem: Path(path) for path in snakemake.input.pictures}
     case = Path(snakemake.output.html).parent
     manifests = [documents.read(path, ["rule"]) for path in sorted(case.glob("*/*.provenance.json"))]

@@ -2,7 +2,7 @@
 
 from facegear.pipeline import asked
 from facegear.pipeline.rows.shared import BODIES, FLANKS, HARMONICS, LAW, MACHINE, MESHES, PAIR, POSES, SPEED
-from facegear.pipeline.stage import Figures, File, From, Stage, from_stage
+from facegear.pipeline.stage import Computed, Figures, File, From, Stage, from_stage
 
 ROWS = (
     Stage(
@@ -59,8 +59,18 @@ ROWS = (
             "seats": File("shafts/seats.csv", ("pinion", "x_um", "tilt_y_urad"), may_be_empty=True),
             "stiffness": File("shafts/stiffness.csv", ("pinion", "motion", "x"), may_be_empty=True),
             "bearings": File("shafts/bearings.csv", ("pinion", "bearing", "radial_n"), may_be_empty=True),
+            "deflections": File(
+                "shafts/deflections.csv", ("at_mm", "x_um", "y_um"), may_be_empty=True, text=("pinion",)
+            ),
             "torsion": File("shafts/torsion.csv", ("body", "mass", "windup_deg"), may_be_empty=True),
         },
+        figures=Figures(
+            draw="facegear.plots.shafts:figures",
+            names=asked.shaft_figures,
+            chapter="load_sharing",
+            upstream=from_stage("shafts", "bearings", "deflections"),
+            needs={**MACHINE, "width_mm": Computed(asked.pinion_width, ("tooth_pair",))},
+        ),
         asked=asked.drive_line,
         local=True,
     ),

@@ -58,6 +58,28 @@ ROWS = (
         local=True,
     ),
     Stage(
+        name="study_forces",
+        title="Forces of meshes over the numbers of studies",
+        needs={"points": Computed(studies.numbered_points, ("studies",)), **MACHINE},
+        upstream={"summaries": From("dynamics_response", "summary", each=studies.numbered_cases)},
+        files={
+            "forces": File(
+                "load_sharing/study_forces.csv",
+                ("number", "mean_n", "largest_n"),
+                text=("study", "point", "axis", "beside", "key", "mesh", "group"),
+            )
+        },
+        figures=Figures(
+            draw="facegear.plots.study_forces:figures",
+            names=studies.force_figures,
+            chapter="load_sharing",
+            upstream=from_stage("study_forces", "forces"),
+            needs={"titles": Computed(studies.titles_by_name, ("studies",))},
+        ),
+        asked=studies.over_numbers,
+        local=True,
+    ),
+    Stage(
         name="load_sharing_reference",
         title="Load sharing at rest, running slowly and over a range of speeds",
         needs={

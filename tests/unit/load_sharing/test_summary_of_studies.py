@@ -1,9 +1,16 @@
-"""The summary of all studies holds the rows of each case, and says of how many the motion does not repeat."""
+"""The summary of all studies holds the rows of each case, and says of how many the motion does not repeat;
+over the numbers of a study stand the forces of its meshes."""
 
 import pandas as pd
 from references import against, agrees
 
+from facegear.config.base import parse
+from facegear.config.load import load_config
+from facegear.config.lumped_model import ToothNumbers
+from facegear.config.transmission import Transmission
+from facegear.dynamics.sweeps.sweep_tables import PER_MESH
 from facegear.stages.load_sharing_summary import load_sharing_summary
+from facegear.stages.study_forces import study_forces
 
 POINTS = [("backlash", "0", "80 um"), ("backlash", "1", "120 um"), ("bearing", "0", "soft")]
 
@@ -29,3 +36,49 @@ def test_each_case_stands_in_the_summary_with_its_own_numbers_and_in_its_own_stu
     agrees("coefficient over a cycle, first study", backlash["coefficient"], [1.2, 1.2, 1.3, 1.3])
     agrees("coefficient over a cycle, second study", bearing["coefficient"], [1.4, 1.4])
     assert outcome.summary == "4 cases, 1 of them not periodic"
+
+
+PATHS = ("right input/lower", "right input/upper", "idler/lower", "tail/lower", "idler/upper", "tail/upper")
+MEAN = (3000.0, 1000.0, 2000.0, 500.0, 700.0, 600.0)
+
+
+def response_of(scale):
+    """What stage dynamics_response says of forces, in another order than that of the meshes."""
+    rows = [
+        (path, quantity, value)
+        for path, mean in reversed(list(zip(PATHS, MEAN, strict=True)))
+        for quantity, value in (
+            ("mean_elastic_force_magnitude_n", mean),
+            ("largest_elastic_force_n", scale * mean),
+        )
+    ]
+    assert {quantity for _, quantity, _ in rows} <= set(PER_MESH)
+    frame = pd.DataFrame(rows, columns=["body_or_mesh", "quantity", "value"])
+    return frame.assign(**{"class": "period-1"})
+
+
+@against(
+    "manufactured",
+    "forces of two cases",
+    capability="study_forces",
+    module="facegear.load_sharing.study_forces",
+)
+def test_each_path_has_its_mean_part_of_what_its_group_carries_and_its_largest_force_beside_the_number():
+    places = [("right input", "input", 0.0), ("idler", "idler", 90.0), ("tail", "tail", 200.0)]
+    plain = load_config("config/harmonics_only.yaml").model_dump(mode="json")["transmission"]
+    pinions = [{"name": name, "role": role, "angle_deg": angle} for name, role, angle in places]
+    section = parse(Transmission, {**plain, "pinions": pinions, "single_pinions": {}, "single_meshes": {}})
+    points = [("web", f"{n}", "web (mm)", "", "key", n) for n in (8.0, 10.0)]
+    teeth = ToothNumbers.of_config(
+        {"pinion_teeth": 23, "face_gear_teeth": 143, "module_mm": 3.75, "pressure_angle_deg": 25}
+    )
+    forces = study_forces(points, section, teeth, [response_of(2.0), response_of(1.5)]).content["forces"]
+    by_mesh = forces.set_index(["number", "mesh"])
+    expected = {"right input/lower": 0.75, "right input/upper": 0.25, "idler/lower": 0.8, "tail/lower": 0.2}
+    for number, scale in ((8.0, 2.0), (10.0, 1.5)):
+        rows = by_mesh.loc[number]
+        agrees(
+            "part of the group's load", [rows["fraction"][path] for path in expected], list(expected.values())
+        )
+        agrees("largest force", [rows["largest_n"][path] for path in PATHS], [scale * mean for mean in MEAN])
+        assert rows["fraction"][["idler/upper", "tail/upper"]].isna().all()

@@ -8,7 +8,7 @@ from references import against, agrees
 
 from facegear.errors import InvalidInput
 from facegear.shafts.beam import Elasticity, Segment, carried
-from facegear.shafts.condensed import Bearing, Shaft, condensed
+from facegear.shafts.condensed import Bearing, Shaft, condensed, deflections
 
 STEEL = Elasticity(206e9, 0.3)
 THRUST = 1e8
@@ -197,3 +197,28 @@ def test_cowper_s_coefficient_of_a_thin_tube_and_of_a_solid_shaft():
 def test_a_shaft_that_cannot_be_is_refused(change, line):
     with pytest.raises(InvalidInput, match=line):
         change()
+
+
+@pytest.mark.parametrize("shaft", [between(), between(3), overhung()])
+def test_a_deflected_shaft_rests_on_its_springs_and_carries_its_pinion_where_that_stands(shaft):
+    load = np.array([3000.0, -800.0, 200.0, 0.0, 40.0])
+    sits = condensed(shaft)
+    at = [bearing.position for bearing in shaft.bearings]
+    springs = [bearing.stiffness for bearing in shaft.bearings]
+    moved = deflections(shaft, np.array([*at, shaft.pinion])) @ load
+    for spring, motion, force in zip(springs, moved, sits.bearing_loads(load), strict=False):
+        np.testing.assert_allclose(spring @ motion, force, rtol=1e-9, atol=1e-7)
+    np.testing.assert_allclose(moved[-1], sits.compliance @ load, rtol=1e-9, atol=1e-15)
+
+
+@against(
+    "analytic",
+    "rigid line beyond the last load",
+    capability="shafts",
+    module="facegear.shafts.condensed",
+)
+def test_beyond_its_last_load_a_shaft_is_straight():
+    at = np.array([0.12, 0.13, 0.15])
+    longer = Shaft((Segment(0.15, 0.04),), STEEL, between().bearings, 0.05)
+    first, middle, last = deflections(longer, at)[:, 0, 0]
+    agrees("deflection of the free end, m/N", last, first + 3.0 * (middle - first), relative=1e-9)
