@@ -45,7 +45,9 @@ class Axis(Section):
     def numbers(self) -> dict[str, tuple[float, ...]]:
         """Number of each point under every dotted key that all points set to numbers, no two alike."""
         every = [dict(_leaves(point.set)) for point in self.resolved()]
-        columns = {key: tuple(point.get(key) for point in every) for key in every[0]}
+        columns: dict[str, tuple[Any, ...]] = {
+            key: tuple(point.get(key) for point in every) for key in every[0]
+        }
         return {key: column for key, column in columns.items() if _all_differ(column)}
 
 

@@ -40,7 +40,7 @@ def numbered_points(case: Case) -> list[tuple[str, str, str, str, str, float]]:
     """
     from facegear.config.cases import numbered
     from facegear.config.studies import Study
-    from facegear.report.page import unit_of
+    from facegear.report.units import unit_of
 
     listed = []
     for study in (Study.of_config(study) for study in case.values["studies"]):

@@ -19,8 +19,10 @@ PERIODIC = "period-1"
 
 
 def figures(forces: pd.DataFrame, titles: Mapping[str, str]) -> list[Figure]:
-    """A figure for each study over numbers."""
-    return [forces_figure(rows, titles[str(name)]) for name, rows in forces.groupby("study", sort=False)]
+    """A figure for each study over numbers; cells without text may be nan, as they are read."""
+    text = {name: forces[name].astype(object).where(forces[name].notna(), "") for name in ("group", "beside")}
+    every = forces.assign(**text).groupby("study", sort=False)
+    return [forces_figure(rows, titles[str(name)]) for name, rows in every]
 
 
 def forces_figure(forces: pd.DataFrame, title: str) -> Figure:

@@ -15,6 +15,7 @@ import pandas as pd
 
 from facegear.io import pages
 from facegear.report.stills import data_uri
+from facegear.report.units import UNITS, ending_of
 
 FOLDER = Path(__file__).parent
 TEMPLATE = FOLDER / "page.html.j2"
@@ -26,25 +27,6 @@ NAMED = 5
 """Words of a caption that name its file."""
 SCREEN_DPI, PNG_DPI = 96, 160
 """Points an inch of a page, and of a stored png."""
-UNITS = {
-    "n_per_mm": "N/mm",
-    "n_per_m": "N/m",
-    "n_m_per_rad": "N m/rad",
-    "n_m": "N m",
-    "rpm": "rpm",
-    "deg": "deg",
-    "mpa": "MPa",
-    "hz": "Hz",
-    "um": "um",
-    "mm": "mm",
-    "kw": "kW",
-    "kg_m2": "kg m2",
-    "kg": "kg",
-    "urad": "urad",
-    "percent": "%",
-    "n": "N",
-}
-"""Units that end a column's name, as they are written."""
 PAPER_PT, COLUMN_GAP_PT, LETTER_WIDTH = 532.0, 8.0, 0.64
 """On A4: width of a table, room beside a column (pt), and the mean width of a letter in its height."""
 PRINTED = (4.0, 8.0)
@@ -112,7 +94,7 @@ class Table:
 
     def rows(self) -> list[list[str]]:
         """Cells as text."""
-        units = [_unit(str(name)) for name in self.frame.columns]
+        units = [ending_of(str(name)) for name in self.frame.columns]
         zero = [ROUNDING * self._largest(unit, units) for unit in units]
         return [
             [self._cell(*cell) for cell in zip(row, units, zero, strict=True)]
@@ -220,7 +202,7 @@ def _packed(content: bytes) -> str:
 
 def words(name: str) -> str:
     """A column's name as words, with its unit as it is written."""
-    ending = _unit(name)
+    ending = ending_of(name)
     return (
         (f"{name} ".replace(f"_{ending} ", f" ({UNITS[ending]}) ") if ending else name)
         .replace("_", " ")
@@ -238,16 +220,6 @@ def _longest_word(text: str) -> int:
 def unbroken(text: str) -> str:
     """Text whose units in brackets are not broken."""
     return re.sub(r"\(N m\)", "(N\u00a0m)", text)
-
-
-def unit_of(name: str) -> str:
-    """The unit in a column's name or a key of the config, as it is written; nothing where it has none."""
-    return UNITS.get(_unit(name), "")
-
-
-def _unit(name: str) -> str:
-    """The unit in a column's name, a key of UNITS; nothing where it has none."""
-    return next((ending for ending in UNITS if f"_{ending} " in f"{name} "), "")
 
 
 def number(value: float, digits: int) -> str:

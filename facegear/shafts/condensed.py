@@ -127,7 +127,8 @@ def _balanced(shaft: Shaft) -> tuple[Array, Array]:
     system[MOTIONS * count :, bearings] = _flat((rigid[1:].transpose(0, 2, 1) @ springs)[None])
     load[bearings], load[MOTIONS * count :] = _flat(compliance[1:, :1]), rigid[0].T
     solution = np.linalg.solve(system, load)
-    return springs @ solution[bearings].reshape(count, MOTIONS, MOTIONS), solution[MOTIONS * count :]
+    reactions = springs @ solution[bearings].reshape(count, MOTIONS, MOTIONS)
+    return np.asarray(reactions), np.asarray(solution[MOTIONS * count :])
 
 
 def _moved(shaft: Shaft, position: float, reactions: Array, drifted: Array) -> Array:

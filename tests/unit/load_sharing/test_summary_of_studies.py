@@ -1,6 +1,8 @@
 """The summary of all studies holds the rows of each case, and says of how many the motion does not repeat;
 over the numbers of a study stand the forces of its meshes."""
 
+import matplotlib.pyplot as plt
+import numpy as np
 import pandas as pd
 from references import against, agrees
 
@@ -9,6 +11,9 @@ from facegear.config.load import load_config
 from facegear.config.lumped_model import ToothNumbers
 from facegear.config.transmission import Transmission
 from facegear.dynamics.sweeps.sweep_tables import PER_MESH
+from facegear.io.files import write_part
+from facegear.pipeline.table import STAGES
+from facegear.plots.study_forces import figures
 from facegear.stages.load_sharing_summary import load_sharing_summary
 from facegear.stages.study_forces import study_forces
 
@@ -82,3 +87,33 @@ def test_each_path_has_its_mean_part_of_what_its_group_carries_and_its_largest_f
         )
         agrees("largest force", [rows["largest_n"][path] for path in PATHS], [scale * mean for mean in MEAN])
         assert rows["fraction"][["idler/upper", "tail/upper"]].isna().all()
+
+
+def test_the_stored_forces_of_a_study_are_drawn_over_its_numbers(tmp_path):
+    table = pd.DataFrame(
+        {
+            "study": "web",
+            "point": "x",
+            "axis": "web (mm)",
+            "beside": "",
+            "key": "web",
+            "number": [12.0, 12.0, 8.0, 8.0],
+            "mesh": ["a/lower", "b/lower", "a/lower", "b/lower"],
+            "group": ["", "idlers", "", "idlers"],
+            "fraction": [np.nan, 0.4, np.nan, 0.5],
+            "mean_n": 1e3,
+            "largest_n": [2e3, 3e3, 4e3, 5e3],
+            "motion": ["period-1"] * 3 + ["chaotic"],
+        }
+    )
+    write_part(str(tmp_path / "forces.csv"), table)
+    stored = STAGES["study_forces"].files["forces"].read(tmp_path / "forces.csv")
+    (figure,) = figures(stored, {"web": "Web"})
+    split, largest = ({line.get_label(): line for line in axes.lines} for axes in figure.axes)
+    assert list(split["b/lower"].get_xydata().ravel()) == [8.0, 50.0, 12.0, 40.0]
+    assert "a/lower" not in split
+    assert list(largest["a/lower"].get_xydata().ravel()) == [8.0, 4.0, 12.0, 2.0]
+    (hollow,) = [line for line in figure.axes[1].lines if line.get_markerfacecolor() == "white"]
+    assert list(hollow.get_xydata().ravel()) == [8.0, 5.0]
+    assert figure.axes[1].get_xlabel() == "web (mm)"
+    plt.close(figure)
