@@ -1,22 +1,28 @@
 """The machine with its teeth where its own forces put them: fixed point of statics and contact over pose.
 
-The pose of every mesh gives a factor on its stiffness, and what the exact unloaded contact closes each flank
-by beyond the first order that the meshes' deflections hold. Both are errors of single meshes, so that
-everything that is computed of a machine takes them. To first order the line of action's part of a
-displacement is the deflection itself and is counted once.
+The pose of every mesh gives a factor on its stiffness, what the exact unloaded contact closes each flank
+by beyond the first order that the meshes' deflections hold, and the direction of its force. Law, force and
+reactions of a mesh are the derivatives of one energy (`facegear.poses.energy`), so that the converged machine
+is at rest in a potential. Factor and closing are errors of single meshes and the directions are rows of the
+linear model, so that everything that is computed of a machine takes them. To first order the line of action's
+part of a displacement is the deflection itself and is counted once.
 """
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from facegear.arrays import Array
+from facegear.arrays import Array, Integers
 from facegear.errors import NotConverged
-from facegear.geometry.conjugate import ConjugateContact, contact_at
+from facegear.geometry.conjugate import ConjugateContact, PairNumbers, contact_at
+from facegear.geometry.conjugate_slopes import conjugate_slopes
 from facegear.geometry.design import AssemblyErrors
-from facegear.poses.mesh_poses import MeshPoses, mesh_poses
+from facegear.poses.directions import ForceDirections
+from facegear.poses.energy import MeshEnergy, linear_energy, mesh_energy
+from facegear.poses.mesh_poses import PARTS, MeshPoses, mesh_poses
 from facegear.poses.surface import STIFFNESS, PoseSurface
 from facegear.transmission.flanks import carried
+from facegear.transmission.linear_model import LinearModel
 from facegear.transmission.machine import Machine
 from facegear.transmission.static_gears import at_rest as static
 from facegear.transmission.statics import Equilibria, mean_equilibrium
@@ -24,6 +30,7 @@ from facegear.transmission.statics import Equilibria, mean_equilibrium
 TOLERANCE = 1e-6
 """Largest change of a mesh force in the last step, over the largest force."""
 STEPS = 60
+SAME_FACTOR, FACTOR_STEPS = 1e-13, 100
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +40,7 @@ class OperatingPose:
     Attributes
     ----------
     machine
-        With the factors and errors that the poses give to its meshes.
+        With the factors, errors and directions that the poses give to its meshes.
     forces : (m,)
         What each mesh transmits with mean stiffness and no e(t), N; negative on the back flank.
     poses
@@ -47,6 +54,11 @@ class OperatingPose:
         Stiffness at pose and load over the machine's own.
     closing : (2 m,)
         By what the exact contact closes every flank beyond first order, m, drive flanks first.
+    reactions : (m, 3)
+        Derivatives of the energy of each mesh by offset, axial shift (N) and error of the shaft angle (N m)
+        of the flank that carries, at the same turn of the gears.
+    stored : (m,)
+        Energy of each mesh, J.
     steps
         That were taken, and `change` of the last one relative to the largest force.
     """
@@ -59,6 +71,8 @@ class OperatingPose:
     torque: Array
     factor: Array
     closing: Array
+    reactions: Array
+    stored: Array
     steps: int
     change: float
 
@@ -67,24 +81,25 @@ def operating_pose(
     machine: Machine,
     surface: PoseSurface,
     load: float | None = None,
-    second_order: bool = True,
+    ideal: bool = False,
 ) -> OperatingPose:
     """The fixed point under the machine's mean torques, to TOLERANCE.
 
     load: torque (N m) at which all stiffnesses are taken whatever the meshes carry, None for their own.
-    second_order: whether `closing` counts. Raises InvalidInput for a pose outside the surface, NotConverged.
+    ideal: whether deflections and forces of the flanks keep to the normals of the ideal contact. Raises
+    InvalidInput for a pose outside the surface, NotConverged.
     """
     own = machine.imperfections.stiffness
     posed, forces = machine, mean_equilibrium(static(machine))
     change = np.inf
     for step in range(1, STEPS + 1):
-        result = _posed(machine, surface, forces, load, second_order)
+        result = pose_at(machine, surface, forces, load, ideal)
         posed, before = result.machine, result.forces
         forces = mean_equilibrium(static(posed))
         now = carried(forces.forces[0])
         change = float(np.abs(now - before).max() / max(np.abs(now).max(), 1e-300))
         if change < TOLERANCE:
-            last = _posed(machine, surface, forces, load, second_order)
+            last = pose_at(machine, surface, forces, load, ideal)
             return replace(last, steps=step, change=change)
     tried = f"{STEPS} steps; forces still change by {change:.1e} of the largest (own stiffness {own.max():g})"
     raise NotConverged("operating pose", f"{np.abs(machine.torques).max():g} N m", tried)
@@ -95,45 +110,66 @@ def posed_machine(machine: Machine, surface: PoseSurface) -> Machine:
     return operating_pose(machine, surface).machine
 
 
-def _posed(
-    machine: Machine, surface: PoseSurface, at_rest: Equilibria, load: float | None, second_order: bool
+def pose_at(
+    machine: Machine,
+    surface: PoseSurface,
+    at_rest: Equilibria,
+    load: float | None = None,
+    ideal: bool = False,
 ) -> OperatingPose:
-    """The machine with the poses of an equilibrium."""
+    """The machine with the poses of an equilibrium, one step of `operating_pose`."""
     layout, names = machine.layout, machine.layout.mesh_names
     meshes = len(names)
     forces = carried(at_rest.forces[0])
-    poses = _poses(machine, surface, at_rest)
-    back = forces < 0.0
+    linear, moved = _whole(machine, at_rest)
+    poses = _poses(machine, surface, linear, moved)
+    carrying = np.arange(meshes) + meshes * (forces < 0.0)
     contacts = _contacts(surface, poses, names)
-    path = np.array([contacts[mesh + meshes * int(back[mesh])].y for mesh in range(meshes)])
-    torque = np.abs(forces) * layout.pinion_arm
-    factor = np.ones(meshes)
+    path = np.array([contacts[flank].y for flank in carrying])
+    torque, angle = np.abs(forces) * layout.pinion_arm, poses.shaft_angle_error
+    factor, energies = np.ones(meshes), []
     for mesh, name in enumerate(names):
-        angle = float(poses.shaft_angle_error[mesh])
-        surface.require(name, float(torque[mesh]), float(path[mesh]), angle)
+        at = float(torque[mesh]), float(path[mesh]), float(angle[mesh])
+        surface.require(name, *at)
         if forces[mesh] != 0.0:
-            taken = float(torque[mesh]) if load is None else load
-            own = surface.at(STIFFNESS, taken, float(path[mesh]), angle)
-            factor[mesh] = own / _nominal(machine, surface, mesh, taken, bool(back[mesh]))
-    closing = _closing(machine, surface, poses, contacts) if second_order else np.zeros(2 * meshes)
+            factor[mesh] = _factor(machine, surface, mesh, at, bool(forces[mesh] < 0.0), load)
+        own = mesh_energy(surface, *at) if load is None else linear_energy(surface, load, *at)
+        energies.append(own.scaled(_scale(machine, surface, mesh)))
+    reactions = _reactions(surface, poses, contacts, energies, carrying)
+    closing = _closing(machine, surface, poses, contacts)
+    slopes = _slopes(surface, reactions, meshes)
+    if ideal:
+        slopes, closing = np.zeros_like(slopes), np.zeros_like(closing)
+    directions = ForceDirections(layout, surface.pair.mean_radius, slopes)
+    beyond = directions.beyond(linear) @ moved
     return OperatingPose(
-        machine=_with(machine, factor, closing),
+        machine=replace(_with(machine, factor, closing - beyond), directions=directions),
         forces=forces,
         poses=poses,
         path=path,
-        angle=poses.shaft_angle_error,
+        angle=angle,
         torque=torque,
         factor=factor,
         closing=closing,
+        reactions=np.abs(forces)[:, None] * reactions[carrying],
+        stored=np.array([energy.stored for energy in energies]),
         steps=0,
         change=0.0,
     )
 
 
-def _poses(machine: Machine, surface: PoseSurface, at_rest: Equilibria) -> MeshPoses:
+def _whole(machine: Machine, at_rest: Equilibria) -> tuple[LinearModel, Array]:
+    """The model at rest with the shafts of its pinions, and its displacements (n,)."""
+    resting, line = static(machine), machine.drive_line
+    if line is None or resting.drive_line is not None:
+        return resting.linear, at_rest.displacements[0]
+    moved = line.extended(machine.lumped, at_rest.displacements)[0]
+    return replace(resting, drive_line=line).linear, moved
+
+
+def _poses(machine: Machine, surface: PoseSurface, linear: LinearModel, displacements: Array) -> MeshPoses:
     """Poses at the displacements, of pinions that stand where their bearings are, in the pair's assembly."""
-    linear, nominal = static(machine).linear, surface.nominal
-    moved = at_rest.displacements[0].copy()
+    nominal, moved = surface.nominal, displacements.copy()
     for pinion, position in enumerate(machine.imperfections.position):
         moved[4 * pinion : 4 * pinion + 2] += position
     motion = mesh_poses(linear, machine.layout, surface.pair.mean_radius, moved)
@@ -164,7 +200,7 @@ def _closing(
     machine: Machine, surface: PoseSurface, poses: MeshPoses, contacts: list[ConjugateContact]
 ) -> Array:
     """Exact transmission error of every flank less what its deflection has of it, both from the nominal."""
-    pair, layout, meshes = surface.pair, machine.layout, len(machine.layout.meshes)
+    pair, meshes = surface.pair, len(machine.layout.meshes)
     closing = np.zeros(2 * meshes)
     for flank, contact in enumerate(contacts):
         mesh, back = flank % meshes, flank >= meshes
@@ -172,14 +208,85 @@ def _closing(
         at_rest = contact_at(pair, nominal)
         if at_rest is None:
             continue
-        met = poses.errors(mesh, back)
-        beyond = pair.gear_base_radius / np.cos(pair.pressure_angle) - pair.mean_radius
-        shift = met.axial_shift - nominal.axial_shift
-        shift += beyond * (met.shaft_angle_error - nominal.shaft_angle_error)
-        first = np.cos(layout.pressure_angle) * (met.offset - nominal.offset)
-        first -= np.sin(layout.pressure_angle) * shift
+        first = _ideal_slopes(pair) @ (_three(poses.errors(mesh, back)) - _three(nominal))
         closing[flank] = contact.transmission_error - at_rest.transmission_error - first
     return closing
+
+
+def _three(errors: AssemblyErrors) -> Array:
+    return np.array([errors.offset, errors.axial_shift, errors.shaft_angle_error])
+
+
+def _ideal_slopes(pair: PairNumbers) -> Array:
+    """By offset, axial shift and error of the shaft angle: what deflections have of them, (3,)."""
+    cosine, sine = np.cos(pair.pressure_angle), np.sin(pair.pressure_angle)
+    return np.array([cosine, -sine, -sine * (pair.gear_base_radius / cosine - pair.mean_radius)])
+
+
+def _reactions(
+    surface: PoseSurface,
+    poses: MeshPoses,
+    contacts: list[ConjugateContact],
+    energies: list[MeshEnergy],
+    carrying: Integers,
+) -> Array:
+    """Derivatives of the energy of every flank by its errors over its force, (2 meshes, 3).
+
+    Of one that does not carry, the limit at no force: the normal of the unloaded contact.
+    """
+    meshes = len(energies)
+    reactions = np.zeros((2 * meshes, 3))
+    for flank, contact in enumerate(contacts):
+        energy = energies[flank % meshes]
+        slopes = conjugate_slopes(surface.pair, poses.errors(flank % meshes, flank >= meshes), contact)
+        reactions[flank] = slopes.transmission_error
+        if flank == carrying[flank % meshes] and energy.force > 0.0:
+            by_angle = np.array([0.0, 0.0, energy.by_angle])
+            reactions[flank] -= (energy.by_path * slopes.path + by_angle) / energy.force
+    return reactions
+
+
+def _slopes(surface: PoseSurface, reactions: Array, meshes: int) -> Array:
+    """As `ForceDirections` has them: a back flank meets an offset as the opposite one."""
+    slopes = np.zeros((2 * meshes, len(PARTS)))
+    slopes[:, :3] = reactions - _ideal_slopes(surface.pair)
+    slopes[meshes:, 0] *= -1.0
+    return slopes
+
+
+def _factor(
+    machine: Machine,
+    surface: PoseSurface,
+    mesh: int,
+    at: tuple[float, float, float],
+    back: bool,
+    load: float | None,
+) -> float:
+    """On the stiffness of a mesh at its torque (N m), unloaded path (m) and error of the shaft angle (rad).
+
+    load: torque (N m) at which the stiffnesses are taken, None for its own. Forces that follow the load are
+    all multiplied by it, and then lie at another level of their law: it is the factor with which the mesh
+    is pressed in at its load as the surface says.
+    """
+    taken = at[0] if load is None else load
+    stiffness = surface.at(STIFFNESS, taken, *at[1:])
+    if machine.tables is None:
+        return stiffness / surface.reference_stiffness
+    rest, own = nominal_contact(machine, surface, mesh, back), machine.imperfections.stiffness[mesh]
+    factor = 1.0
+    for _ in range(FACTOR_STEPS):
+        level = taken / (own * factor) if load is None else load
+        level = min(level, float(surface.nodes.torques[-1]))
+        before, factor = factor, stiffness / surface.at(STIFFNESS, level, *rest)
+        if abs(factor - before) < SAME_FACTOR:
+            break
+    return factor
+
+
+def _scale(machine: Machine, surface: PoseSurface, mesh: int) -> float:
+    """Stiffness of the machine's teeth over that of the surface."""
+    own = float(machine.imperfections.stiffness[mesh])
+    return own if machine.tables is not None else own * machine.stiffness.mean / surface.reference_stiffness
 
 
 def assembled(machine: Machine, surface: PoseSurface, mesh: int, back: bool) -> AssemblyErrors:
@@ -191,15 +298,6 @@ def assembled(machine: Machine, surface: PoseSurface, mesh: int, back: bool) -> 
         offset=(-side if back else side) * nominal.offset,
         shaft_angle_error=side * nominal.shaft_angle_error,
     )
-
-
-def _nominal(machine: Machine, surface: PoseSurface, mesh: int, torque: float, back: bool) -> float:
-    """Stiffness (N/m) that the machine's own law stands for: as assembled, at the load if it follows that."""
-    if machine.tables is not None:
-        return surface.at(STIFFNESS, torque, *nominal_contact(machine, surface, mesh, back))
-    contact = contact_at(surface.pair, surface.nominal)
-    assert contact is not None
-    return surface.at(STIFFNESS, surface.reference_torque, contact.y, surface.nominal.shaft_angle_error)
 
 
 def nominal_contact(machine: Machine, surface: PoseSurface, mesh: int, back: bool) -> tuple[float, float]:

@@ -147,14 +147,45 @@ class PoseSurface:
     def at(self, quantity: str, torque: float, path: float, angle: float) -> float:
         """A quantity at a torque (N m), unloaded path (m) and error of the shaft angle (rad), within nodes.
 
-        A torque below the smallest counts as that: light loads hardly care for the pose.
+        Below the smallest torque the stiffness goes on as the power of the load that it has there, and all
+        else is what it is at that torque.
         """
         nodes = self.nodes
-        torque = max(torque, float(nodes.torques[0]))
-        over_torque = self._splines[quantity](path)
-        by_angle = scipy.interpolate.CubicSpline(np.log(nodes.torques), over_torque, axis=1)(np.log(torque))
+        light = min(float(np.log(torque / nodes.torques[0])), 0.0)
+        weights = self.torque_weights(np.log(torque) - light)
+        if quantity == STIFFNESS:
+            weights = weights + light * self.torque_weights(np.log(nodes.torques[0]), 1)
+        by_angle = self._splines[quantity](path) @ weights
         value = float(np.interp(angle, nodes.angles, by_angle))
         return value if quantity == RADIUS else float(np.exp(value))
+
+    def torque_weights(self, logs: Array | float, order: int = 0) -> Array:
+        """What values at all torques count for at logarithms (...) of torques, (..., torques), by splines.
+
+        order: 1 for the slope there.
+        """
+        return np.asarray(self._torque_spline(logs, order))
+
+    @cached_property
+    def reference_stiffness(self) -> float:
+        """Stiffness (N/m) that a machine takes which does not follow the load."""
+        contact = contact_at(self.pair, self.nominal)
+        assert contact is not None
+        return self.at(STIFFNESS, self.reference_torque, contact.y, self.nominal.shaft_angle_error)
+
+    def stiffness_logs(self, path: float, angle: float) -> Array:
+        """Logarithm of the stiffness at all torques, and its derivatives by path and angle, (3, torques)."""
+        angles, spline = self.nodes.angles, self._splines[STIFFNESS]
+        logs, by_path = spline(path), spline(path, 1)
+        if angles.size == 1:
+            return np.stack([logs[0], by_path[0], np.zeros_like(logs[0])])
+        first = int(np.clip(np.searchsorted(angles, angle) - 1, 0, angles.size - 2))
+        step = angles[first + 1] - angles[first]
+        part = (angle - angles[first]) / step
+        weights = np.array([1.0 - part, part])
+        between = slice(first, first + 2)
+        risen = (logs[first + 1] - logs[first]) / step
+        return np.stack([weights @ logs[between], weights @ by_path[between], risen])
 
     def require(self, mesh: str, torque: float, path: float, angle: float) -> None:
         """Raise InvalidInput, naming the mesh, for a pose outside the nodes."""
@@ -183,6 +214,11 @@ class PoseSurface:
     def _logs(self, quantity: str) -> Array:
         values = self.values[quantity]
         return values if quantity == RADIUS else np.log(values)
+
+    @cached_property
+    def _torque_spline(self) -> "scipy.interpolate.CubicSpline":
+        torques = self.nodes.torques
+        return scipy.interpolate.CubicSpline(np.log(torques), np.eye(torques.size))
 
     @cached_property
     def _splines(self) -> dict[str, "scipy.interpolate.CubicSpline"]:

@@ -91,6 +91,8 @@ class Machine:
         What each mesh gives in series with its teeth, m/N; nothing by default.
     drive_line
         Shafts of pinions that bend, and turning masses behind torsional springs.
+    directions
+        What turns the forces of the meshes from the normals of the ideal contact; nothing by default.
     """
 
     layout: Layout
@@ -109,6 +111,7 @@ class Machine:
     bodies: Bodies | None = None
     softening: Array | None = None
     drive_line: DriveLine | None = None
+    directions: Bodies | None = None
 
     def __post_init__(self) -> None:
         if self.imperfections is None:
@@ -134,7 +137,8 @@ class Machine:
     def linear(self) -> LinearModel:
         """Masses, bearings, loads and the directions of the contacts."""
         with_shafts = self.lumped if self.drive_line is None else self.drive_line(self.lumped)
-        return with_shafts if self.bodies is None else self.bodies(with_shafts)
+        whole = with_shafts if self.bodies is None else self.bodies(with_shafts)
+        return whole if self.directions is None else self.directions(whole)
 
     @cached_property
     def lumped(self) -> LinearModel:

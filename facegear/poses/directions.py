@@ -1,0 +1,43 @@
+"""Forces of meshes along the normals that the loaded contact has, in place of those of the ideal one."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.poses.mesh_poses import pose_rows
+from facegear.transmission.layout import TILT_LETTERS, Layout
+from facegear.transmission.linear_model import LinearModel
+
+
+@dataclass(frozen=True, eq=False)
+class ForceDirections:
+    """What flanks' deflections and forces follow of a pose beside the motion along the ideal normal.
+
+    Attributes
+    ----------
+    layout
+        Of the machine.
+    mean_radius
+        Where the middle of the pinion's face is on its axis, m.
+    slopes : (2 meshes, parts)
+        By the parts of a pose, drive flanks first; m/m and m/rad.
+    """
+
+    layout: Layout
+    mean_radius: float
+    slopes: Array
+
+    def __call__(self, lumped: LinearModel) -> LinearModel:
+        """The model with these directions."""
+        return replace(lumped, rows=lumped.rows + self.beyond(lumped))
+
+    def beyond(self, model: LinearModel) -> Array:
+        """What the directions add to the rows of a model, (2 meshes, n).
+
+        A mesh turns no pinion about a diameter: the middle of its face takes the force.
+        """
+        parts = pose_rows(model, self.layout, self.mean_radius)
+        tilts = [f"{pinion.name}:{letter}" for pinion in self.layout.pinions for letter in TILT_LETTERS]
+        parts[:, :, np.isin(model.labels, tilts)] = 0.0
+        return np.asarray(np.einsum("fp,pfn->fn", self.slopes, np.concatenate([parts, parts], axis=1)))

@@ -1,0 +1,103 @@
+"""The energy of a mesh in contact over its pose: force, law and reactions come from one function.
+
+Averaged over a mesh cycle, a mesh that is pressed in by x with its unloaded contact at y and an error g of
+the shaft angle stores
+
+    U(x, y, g) = max over F of [x F - G(F, y, g)],   G(F, y, g) = integral of F' / k(F', y, g) from 0 to F,
+
+k the average stiffness of the surface. Then F = U_x, U_y = -G_y and U_g = -G_g, the latter at constant F.
+With x = x(q) + closing(q), the exact unloaded contact gives the derivatives of x, y and g by all motions q of
+the bodies, so that the reactions are -F x_q + G_y y_q + G_g g_q: the load moves the middle of the contact
+away from y and turns the force. Below the smallest torque of the surface k goes on as the power of the load
+that it has there, as in the contact of single points.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.poses.surface import PoseSurface
+
+POINTS, WEIGHTS = np.polynomial.legendre.leggauss(12)
+"""Of Gauss's rule between two torques of the surface; the integrand is an exponential of a cubic."""
+
+
+@dataclass(frozen=True)
+class MeshEnergy:
+    """A mesh at a force (N), all averaged over the mesh cycle.
+
+    Attributes
+    ----------
+    force
+        Along the line of action, N.
+    approach
+        x, m.
+    stored
+        U, J.
+    by_path
+        G_y, J/m.
+    by_angle
+        G_g, J/rad.
+    """
+
+    force: float
+    approach: float
+    stored: float
+    by_path: float
+    by_angle: float
+
+    def scaled(self, factor: float) -> "MeshEnergy":
+        """Of teeth that are so many times as stiff, at the same force."""
+        others = (part / factor for part in (self.approach, self.stored, self.by_path, self.by_angle))
+        return MeshEnergy(self.force, *others)
+
+
+def mesh_energy(surface: PoseSurface, torque: float, path: float, angle: float) -> MeshEnergy:
+    """Under a torque (N m) on the pinion, at an unloaded path (m) and error of the shaft angle (rad)."""
+    if torque <= 0.0:
+        return MeshEnergy(0.0, 0.0, 0.0, 0.0, 0.0)
+    base, knots = surface.pair.pinion_base_radius, np.log(surface.nodes.torques)
+    known, last = surface.stiffness_logs(path, angle), float(np.log(torque))
+    lightest = min(last, float(knots[0]))
+    slope = known @ surface.torque_weights(knots[0], 1)
+    logs = known[:, 0] + (lightest - knots[0]) * slope
+    parts = _light(lightest, logs, slope)
+    if last > knots[0]:
+        parts += _above(surface, known, np.append(knots[knots < last], last))
+        logs = known @ surface.torque_weights(last)
+    complementary, by_path, by_angle = parts / base**2
+    force = torque / base
+    approach = force / float(np.exp(logs[0]))
+    return MeshEnergy(force, approach, force * approach - complementary, float(by_path), float(by_angle))
+
+
+def linear_energy(surface: PoseSurface, load: float, torque: float, path: float, angle: float) -> MeshEnergy:
+    """The same of a mesh whose stiffness is what it is at the torque `load` (N m), whatever it carries."""
+    log, by_path, by_angle = surface.stiffness_logs(path, angle) @ surface.torque_weights(float(np.log(load)))
+    force = torque / surface.pair.pinion_base_radius
+    approach = force / float(np.exp(log))
+    stored = 0.5 * force * approach
+    return MeshEnergy(force, approach, stored, float(-stored * by_path), float(-stored * by_angle))
+
+
+def _light(last: float, logs: Array, slope: Array) -> Array:
+    """G and its derivatives (3,), for a base radius of 1 m, of loads up to the logarithm `last` of a torque.
+
+    logs, slope (3,): logarithm of the stiffness there and its derivatives by path and angle, and what they
+    rise by with the logarithm of the torque.
+    """
+    whole = np.exp(2.0 * last - logs[0]) / (2.0 - slope[0])
+    return np.asarray(whole * np.array([1.0, *(slope[1:] / (2.0 - slope[0]) - logs[1:])]))
+
+
+def _above(surface: PoseSurface, known: Array, ends: Array) -> Array:
+    """The same of loads from the first to the last of logarithms `ends` of torques, between nodes.
+
+    known: as `PoseSurface.stiffness_logs` has it.
+    """
+    half = 0.5 * np.diff(ends)[:, None]
+    at = ends[:-1, None] + half * (POINTS + 1.0)
+    log, by_path, by_angle = np.moveaxis(surface.torque_weights(at) @ known.T, -1, 0)
+    given = half * WEIGHTS * np.exp(2.0 * at - log)
+    return np.array([given.sum(), -(given * by_path).sum(), -(given * by_angle).sum()])
