@@ -88,3 +88,32 @@ def smaller(a: Four, b: Four) -> Four:
 def larger(a: Four, b: Four) -> Four:
     """The larger of each two."""
     return max(a[0], b[0]), max(a[1], b[1]), max(a[2], b[2]), max(a[3], b[3])
+
+
+@njit
+def sums(a: Four, b: Four, c: Four, d: Four) -> Four:
+    """The sum of each of four."""
+    return _sum(a), _sum(b), _sum(c), _sum(d)
+
+
+@njit
+def _sum(a: Four) -> float:
+    return a[0] + a[2] + (a[1] + a[3])
+
+
+@njit
+def swap_neighbours(a: Four) -> Four:
+    """Values 1, 0, 3, 2."""
+    return a[1], a[0], a[3], a[2]
+
+
+@njit
+def swap_halves(a: Four) -> Four:
+    """Values 2, 3, 0, 1."""
+    return a[2], a[3], a[0], a[1]
+
+
+@njit
+def swap_ends(a: Four) -> Four:
+    """Values 3, 2, 1, 0."""
+    return a[3], a[2], a[1], a[0]

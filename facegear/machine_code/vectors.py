@@ -176,3 +176,52 @@ def smaller(typing_context: Any, first: Any, second: Any) -> Any:
 def larger(typing_context: Any, first: Any, second: Any) -> Any:
     """The larger of two in every lane."""
     return lanes(lanes, lanes), _vector_call("maxnum", 2)
+
+
+def _shuffled(builder: Any, first: Any, second: Any, *order: int) -> Any:
+    return builder.shuffle_vector(first, second, ir.Constant(ir.VectorType(ir.IntType(32), LANES), order))
+
+
+def _pairs(builder: Any, first: Any, second: Any) -> Any:
+    """Sums of neighbours: of the first vector in lanes 0 and 2, of the second in lanes 1 and 3."""
+    even = _shuffled(builder, first, second, 0, 4, 2, 6)
+    return builder.fadd(even, _shuffled(builder, first, second, 1, 5, 3, 7))
+
+
+def _reordered(*order: int) -> Any:
+    """The lanes of a vector in another order."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return _shuffled(builder, args[0], args[0], *order)
+
+    return lanes(lanes), code
+
+
+@intrinsic
+def swap_neighbours(typing_context: Any, value: Any) -> Any:
+    """Lanes 1, 0, 3, 2."""
+    return _reordered(1, 0, 3, 2)
+
+
+@intrinsic
+def swap_halves(typing_context: Any, value: Any) -> Any:
+    """Lanes 2, 3, 0, 1."""
+    return _reordered(2, 3, 0, 1)
+
+
+@intrinsic
+def swap_ends(typing_context: Any, value: Any) -> Any:
+    """Lanes 3, 2, 1, 0."""
+    return _reordered(3, 2, 1, 0)
+
+
+@intrinsic
+def sums(typing_context: Any, first: Any, second: Any, third: Any, fourth: Any) -> Any:
+    """The sum of the lanes of each of four vectors."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        front, back = _pairs(builder, *args[:2]), _pairs(builder, *args[2:])
+        low = _shuffled(builder, front, back, 0, 1, 4, 5)
+        return builder.fadd(low, _shuffled(builder, front, back, 2, 3, 6, 7))
+
+    return lanes(lanes, lanes, lanes, lanes), code

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from facegear.arrays import Array, Integers
+from facegear.dynamics.integrator.blocks import Blocks, Coupled, blocks_of, coupled_of, nonzero
 from facegear.dynamics.integrator.coupling import Coupling
 from facegear.dynamics.integrator.system import System
 from facegear.machine_code.memory import aligned, divided, padded, whole_lanes
@@ -13,8 +14,6 @@ from facegear.mesh_law.linear import fourier_columns
 
 TAU = 2.0 * np.pi
 MIN_CLEARANCE = 1e-12
-ROUNDING = 1e-15
-"""Entries of G below this fraction of the largest are zeros that rounding has left."""
 
 
 class Rings(NamedTuple):
@@ -110,8 +109,8 @@ class Packed(NamedTuple):
         Rows of the m that are meshes or flanks; the others belong to the rings of bearings with clearance.
     rings, rubbing
         Bearings with clearance, and friction.
-    coupled : (n, 2 n)
-        What couples coordinates beside the meshes, by velocity, then by displacement, without zeros.
+    coupled
+        What couples coordinates beside the meshes.
     """
 
     n: int
@@ -141,7 +140,7 @@ class Packed(NamedTuple):
     contacts: int
     rings: Rings | None
     rubbing: Rubbing | None
-    coupled: Sparse | None
+    coupled: Coupled | None
 
 
 def pack(system: System, frequency: float) -> Packed:
@@ -157,7 +156,7 @@ def pack(system: System, frequency: float) -> Packed:
         load=divided(at_unit_speed.load, square),
         fastest=natural / frequency + harmonics + (coupling.fastest(frequency) if coupling else 0.0),
         rings=_rings(system, frequency),
-        coupled=_coupled(coupling, frequency, at_unit_speed.omega_squared.size) if coupling else None,
+        coupled=_coupled(coupling, frequency, _blocks(system)) if coupling else None,
     )
 
 
@@ -223,7 +222,7 @@ def _rubbing(system: System) -> Rubbing | None:
 
 
 def _sparse(matrix: Array) -> Sparse:
-    kept = np.abs(matrix) > ROUNDING * np.abs(matrix).max(initial=0.0)
+    kept = nonzero(matrix)
     starts = np.append(0, np.cumsum(kept.sum(axis=1)))
     return Sparse(starts, np.ascontiguousarray(np.nonzero(kept)[1]), matrix[kept])
 
@@ -241,12 +240,16 @@ def _rings(system: System, frequency: float) -> Rings | None:
     )
 
 
-def _coupled(coupling: Coupling, frequency: float, width: int) -> Sparse:
+def _coupled(coupling: Coupling, frequency: float, blocks: Blocks) -> Coupled:
     velocity, displacement = coupling.velocity_terms(frequency), coupling.displacement_terms(frequency)
-    both = np.zeros((len(velocity), 2 * width))
-    both[:, : len(velocity)] = velocity
-    both[:, width : width + len(velocity)] = displacement
-    return _sparse(both)
+    more = whole_lanes(len(velocity)) - len(velocity)
+    return coupled_of(blocks, np.pad(velocity, (0, more)), np.pad(displacement, (0, more)))
+
+
+@lru_cache(maxsize=16)
+def _blocks(system: System) -> Blocks:
+    """Those of the mesh Jacobian; its arrays are shared and only read."""
+    return blocks_of(_packed(system).transposed)
 
 
 @lru_cache(maxsize=16)

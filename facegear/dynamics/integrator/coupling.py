@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from facegear.arrays import Array
+from facegear.arrays import Array, Mask
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +33,11 @@ class Coupling:
     def among(self, basis: Array) -> "Coupling":
         """The same in the coordinates of a basis (dof, n)."""
         return Coupling(*(basis.T @ matrix @ basis for matrix in self._matrices))
+
+    def linked(self, part: float) -> Mask:
+        """Which coordinates some matrix couples by more than a part of its largest entry, (n, n)."""
+        sizes = [np.abs(matrix) for matrix in self._matrices]
+        return np.asarray(np.any([size > part * size.max(initial=0.0) for size in sizes], axis=0))
 
     def split(self) -> tuple[Array, "Coupling | None"]:
         """The dampers' diagonal (n,), and what is left; None for nothing."""

@@ -13,8 +13,9 @@ import numpy as np
 import scipy
 from scipy.sparse.csgraph import connected_components
 
-from facegear.arrays import Array
+from facegear.arrays import Array, Integers
 from facegear.dynamics.integrator.coupling import Coupling
+from facegear.machine_code.memory import LANES
 from facegear.transmission.linear_model import LinearModel
 
 SAME_FREQUENCY = 1e-12
@@ -67,6 +68,9 @@ def reduce(linear: LinearModel, contacts: int, pushes: Array) -> Reduced:
     # What forces move belongs to the motion, though no mesh may feel it: bearings carry it.
     basis, omega_squared = _basis(linear, stiffness, np.concatenate([mesh_jacobian, pushes]), whole)
     touched = (mesh_jacobian != 0.0).any(axis=0) | (stiffness.diagonal() != 0.0) | (linear.loads != 0.0)
+    if whole is not None:
+        order = together(mesh_jacobian @ basis, whole.among(basis))
+        basis, omega_squared = basis[:, order], omega_squared[order]
     own, coupling = (np.zeros_like(omega_squared), None) if whole is None else whole.among(basis).split()
     return Reduced(
         basis=basis,
@@ -77,6 +81,17 @@ def reduce(linear: LinearModel, contacts: int, pushes: Array) -> Reduced:
         free=tuple(np.array(linear.labels)[~touched].tolist()),
         coupling=coupling,
     )
+
+
+def together(mesh_jacobian: Array, coupling: Coupling) -> Integers:
+    """An order (n,) of coupled coordinates in which those that the same meshes feel stand side by side, the
+    most first, and among them those that are coupled, first those that fill whole vectors of the kernels.
+    """
+    felt = np.abs(mesh_jacobian) > RIGID * np.abs(mesh_jacobian).max(initial=0.0)
+    _, alike, number = np.unique(felt.T, axis=0, return_inverse=True, return_counts=True)
+    _, group = connected_components(coupling.linked(RIGID), directed=False)
+    size = np.bincount(group)[group]
+    return np.lexsort((group, -size, size % LANES, alike, -number[alike]))
 
 
 def modal_damping(linear: LinearModel, omega_squared: Array) -> Array:

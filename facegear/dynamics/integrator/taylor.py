@@ -9,11 +9,13 @@ kept in several parts side by side, as a processor adds many numbers at once but
 import numpy as np
 
 from facegear.arrays import Array
-from facegear.dynamics.integrator.compiled import Packed, Sparse
+from facegear.dynamics.integrator.block_products import couple, feel, find_pressing, push
+from facegear.dynamics.integrator.blocks import Coupled
+from facegear.dynamics.integrator.compiled import Packed
 from facegear.dynamics.integrator.kernel import inlined
 from facegear.dynamics.integrator.rings import ring_push, ring_row, ring_tangent_row
 from facegear.dynamics.integrator.rubbing import keep_elastic, rub
-from facegear.dynamics.integrator.work import Work
+from facegear.dynamics.integrator.work import Pressing, Work
 from facegear.machine_code.lanes import (
     LANES,
     add,
@@ -65,6 +67,16 @@ def accumulate(matrix: Array, rows: int, factors: Array, at: int, out: Array, to
 @inlined
 def deflect(packed: Packed, y: Array, row: int, error: Array, deflection: Array) -> None:
     """One row of the mesh deflections, G y - e."""
+    _feel(packed.coupled, packed, y, row, error, deflection)
+
+
+@inlined
+def _feel(
+    coupled: Coupled | None, packed: Packed, y: Array, row: int, error: Array, deflection: Array
+) -> None:
+    if coupled is not None:
+        feel(coupled.blocks, packed.transposed, y, row, error, deflection)
+        return
     n, width = packed.mesh_jacobian.shape
     minus = splat(-1.0)
     for c in range(row * width, (row + 1) * width, LANES):
@@ -94,6 +106,7 @@ def recurrence(
     minus = splat(-1.0)
     for i in range(2):
         _ring(packed, work, i, deflection, tangent)
+    find_pressing(packed.coupled, work.pressing, packed, work)
     for i in range(order - 1):
         rate = splat(float(i + 1))
         # Forces push back; they carry the factor of the next coefficient already.
@@ -115,28 +128,22 @@ def recurrence(
             total = multiply_add(load(packed.omega_squared, c), load(y, i * n + c), total)
             total = multiply_add(minus, total, load(applied, i * n + c))
             store(y, (i + 2) * n + c, multiply(factor, total))
-        accumulate(packed.transposed, packed.m + packed.m % 2, force, 0, y, (i + 2) * n)
+        _push(packed.coupled, work.pressing, packed, work, y, i)
         rub(packed.rubbing, work.rubbing, work.side, i, 1.0 / ((i + 1) * (i + 2)), y, i + 2)
-        _couple(packed.coupled, work.coupled, y, i)
         deflect(packed, y, i + 2, error, deflection)
         _ring(packed, work, i + 2, deflection, tangent)
 
 
 @inlined
-def _couple(coupled: Sparse | None, factors: Array, y: Array, i: int) -> None:
-    """Add what couples coordinates beside the meshes to row i + 2 of y from the two rows before it."""
-    if coupled is None:
+def _push(
+    coupled: Coupled | None, pressing: Pressing | None, packed: Packed, work: Work, y: Array, i: int
+) -> None:
+    """Add what the meshes and the coupling beside them push to row i + 2 of y."""
+    if coupled is None or pressing is None:
+        accumulate(packed.transposed, packed.m + packed.m % 2, work.force, 0, y, (i + 2) * y.shape[1])
         return
-    n = y.shape[1]
-    by_rate, by_displacement = splat(-1.0 / (i + 2)), splat(-1.0 / ((i + 1) * (i + 2)))
-    for c in range(0, n, LANES):
-        store(factors, c, multiply(by_rate, load(y, (i + 1) * n + c)))
-        store(factors, n + c, multiply(by_displacement, load(y, i * n + c)))
-    for row in range(coupled.starts.size - 1):
-        total = 0.0
-        for entry in range(coupled.starts[row], coupled.starts[row + 1]):
-            total += coupled.values[entry] * factors[coupled.columns[entry]]
-        y[i + 2, row] += total
+    push(coupled.blocks, pressing, packed.transposed, work.force, y, i + 2)
+    couple(coupled.own, coupled.strips, work.coupled, y, i)
 
 
 @inlined

@@ -44,6 +44,13 @@ class RubbingSeries(NamedTuple):
     forces: Array
 
 
+class Pressing(NamedTuple):
+    """Rows of every block that may hold a force: those of block b are rows[starts[b]:starts[b + 1]]."""
+
+    starts: Integers
+    rows: Integers
+
+
 class Work(NamedTuple):
     """Scratch space for one thread and one order p: coefficient tables have one row for each power of s.
 
@@ -56,8 +63,8 @@ class Work(NamedTuple):
     over the step, lower_bound and upper_bound their extremes. block, block_deflection (rows, coordinates or
     meshes times ABREAST) and block_force: of tangents side by side. nodes: of the rule that integrates
     products of polynomials. rings: None without bearing clearance; rubbing: None without friction. coupled:
-    what the matrices of Packed.coupled are multiplied by. Tables that hang on sizes alone (conversion, nodes)
-    are shared and only read.
+    what the matrices of Packed.coupled are multiplied by; pressing: None without them. Tables that hang on
+    sizes alone (conversion, nodes) are shared and only read.
     """
 
     order: int
@@ -97,6 +104,7 @@ class Work(NamedTuple):
     rings: RingSeries | None
     rubbing: RubbingSeries | None
     coupled: Array
+    pressing: Pressing | None
 
 
 def make_work(system: System, packed: Packed, order: int) -> Work:
@@ -144,7 +152,15 @@ def make_work(system: System, packed: Packed, order: int) -> Work:
         rings=_ring_series(rows, packed.rings.clearance.size) if packed.rings else None,
         rubbing=RubbingSeries(aligned(rows, rubbing.ratios.shape[2]), aligned(rows, m)) if rubbing else None,
         coupled=aligned(2 * n),
+        pressing=_pressing(packed),
     )
+
+
+def _pressing(packed: Packed) -> Pressing | None:
+    if packed.coupled is None:
+        return None
+    blocks = packed.coupled.blocks
+    return Pressing(np.zeros_like(blocks.starts), np.zeros_like(blocks.rows))
 
 
 def _ring_series(rows: int, width: int) -> RingSeries:
