@@ -1,6 +1,7 @@
 """The bodies of face gears that bend, from the config: their sections in SI units, and what these must be."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import radians, tan
 from typing import Any, NoReturn
 
@@ -8,12 +9,13 @@ import numpy as np
 
 from facegear.arrays import Array
 from facegear.config.gear_body import BodySection
-from facegear.config.tooth_pair import ToothPair, pair
+from facegear.config.tooth_pair import ToothPair, pair, pair_design
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError, InvalidInput
 from facegear.gear_body import section as shapes
 from facegear.gear_body.mesh_limits import require_meshable
 from facegear.gear_body.patch import Patch
+from facegear.mesh.tooth_volume import tooth_fill
 
 THINNEST = "thinnest wall of the section"
 KEYS = {
@@ -76,7 +78,20 @@ def body_shape(section: BodySection, teeth: ToothPair) -> shapes.Section:
     if (own := section.material) is not None:
         material = type(material)(1e9 * own.young_modulus_gpa, own.poisson_ratio)
     layer = shapes.Layer(inner, outer, top, tip) if section.teeth else None
+    if layer is not None and section.teeth == "fitted":
+        filled, centre = tooth_fill(pair_design(teeth))
+        layer = replace(layer, density=filled, taper=6.0 * (0.5 - centre))
     return shapes.Section(corners, held, (inner, outer), material, section.density_kg_per_m3, layer)
+
+
+def fitted_shape(section: BodySection, teeth: ToothPair) -> shapes.Section:
+    """The section as `body_shape`, its teeth as stiff as `body.teeth` says. Raises NotConverged."""
+    shape = body_shape(section, teeth)
+    if section.teeth != "fitted":
+        return shape
+    from facegear.tooth_layer.fit import fitted_teeth  # loads finite elements
+
+    return fitted_teeth(shape, pair_design(teeth))
 
 
 def _polygon(section: BodySection, inner: float, outer: float, top: float) -> tuple[Array, tuple[bool, ...]]:

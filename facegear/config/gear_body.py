@@ -1,6 +1,6 @@
 """Config section `body` of a face gear: hub, web and rim that bend, or any section, and how finely."""
 
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -66,7 +66,11 @@ class BodySection(Section):
     )
     material: MaterialSection | None = Field(None, description="null: that of the face gear's teeth")
     density_kg_per_m3: float = Field(7850.0, ge=500, le=25000)
-    teeth: bool = Field(True, description="whether the teeth's mass and stiffness belong to the body")
+    teeth: Literal[True, False, "fitted"] = Field(
+        True,
+        description="whether the teeth's mass and stiffness belong to the body, as a layer of common teeth; "
+        "fitted: as one fitted to a sector of the own teeth",
+    )
     max_frequency_hz: float = Field(
         10000.0, gt=0, le=1e6, description="modes up to it are kept; what the others give counts as static"
     )

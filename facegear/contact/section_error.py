@@ -15,7 +15,7 @@ from scipy.interpolate import CubicSpline
 from skfem import Basis, ElementQuad2, MeshQuad2
 
 from facegear.arrays import Array, Integers
-from facegear.contact.bodies.assembly import element_stiffness
+from facegear.contact.bodies.element_matrices import element_stiffness
 from facegear.contact.bodies.factor import solve_sparse
 from facegear.contact.bodies.gauges import gauge_coordinates
 from facegear.geometry.design import Material, PairDesign

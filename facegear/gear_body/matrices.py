@@ -87,7 +87,7 @@ def around(order: int) -> float:
 def body_matrices(section: Section, mesh: BodyMesh) -> BodyMatrices:
     """Assemble all matrices of a section."""
     elements = elements_of(mesh)
-    elasticity, density = _materials(section, mesh)
+    elasticity, density = _materials(section, mesh, elements)
     plain, by_order = strains(elements)
     stiffness = _polynomial(elements, plain, by_order, elasticity)
     motion = displacements(elements)
@@ -109,6 +109,11 @@ def body_matrices(section: Section, mesh: BodyMesh) -> BodyMatrices:
     )
 
 
+def elastic_stiffness(section: Section, mesh: BodyMesh, elements: Elements) -> Polynomial:
+    """K of every order alone, of the elements of a mesh."""
+    return _polynomial(elements, *strains(elements), _materials(section, mesh, elements)[0])
+
+
 def _polynomial(elements: Elements, plain: Array, by_order: Array, tensor: Array) -> Polynomial:
     mixed = form(elements, plain, tensor, by_order)
     parts = (
@@ -119,11 +124,11 @@ def _polynomial(elements: Elements, plain: Array, by_order: Array, tensor: Array
     return Polynomial(parts)
 
 
-def _materials(section: Section, mesh: BodyMesh) -> tuple[Array, Array]:
-    """Elasticity (6, 6, elements, 1) and density (elements, 1) of every element."""
+def _materials(section: Section, mesh: BodyMesh, elements: Elements) -> tuple[Array, Array]:
+    """Elasticity (6, 6, elements, 1) and density (elements, points) of every element."""
     body = isotropic(section.material)
     elasticity = np.repeat(body[:, :, None], len(mesh.quads), axis=2)
-    density = np.full(len(mesh.quads), section.density)
+    density = np.full(elements.r.shape, section.density)
     if (layer := section.layer) is not None:
         modulus, shear = section.material.young_modulus, body[3, 3]
         fraction = layer.density
@@ -132,8 +137,9 @@ def _materials(section: Section, mesh: BodyMesh) -> tuple[Array, Array]:
         elasticity[:, :, mesh.in_layer] = orthotropic(moduli, section.material.poisson_ratio, shears)[
             ..., None
         ]
-        density[mesh.in_layer] *= fraction
-    return elasticity[..., None], density[:, None]
+        height = np.asarray(elements.basis.global_coordinates())[1]
+        density[mesh.in_layer] *= layer.density_at(height[mesh.in_layer])
+    return elasticity[..., None], density
 
 
 def _free(section: Section, elements: Elements) -> Integers:

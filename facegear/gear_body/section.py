@@ -59,7 +59,8 @@ class Layer:
     """Teeth as a layer on the rim between two radii, from height `back` to `front`.
 
     `density` and `hoop` are fractions of the body's density and of its Young's modulus round the axis,
-    `shear` the fraction of the shear moduli that turn the teeth about their roots.
+    `shear` the fraction of the shear moduli that turn the teeth about their roots. At the roots the layer is
+    denser than on the mean by the fraction `taper`, at the tips as much less dense.
     """
 
     inner_radius: float
@@ -69,6 +70,16 @@ class Layer:
     density: float = 0.524
     hoop: float = 0.06
     shear: float = 0.15
+    taper: float = 0.0
+
+    def density_at(self, height: Array) -> Array:
+        """Fraction of the body's density at heights (m)."""
+        return self.density * (1.0 + self.taper * (self.back + self.front - 2.0 * height) / self.depth)
+
+    @property
+    def depth(self) -> float:
+        """Distance (m) of its faces."""
+        return self.front - self.back
 
     @property
     def corners(self) -> Array:
@@ -267,5 +278,9 @@ def section_properties(section: Section) -> tuple[float, float, float]:
     """Mass and moments of inertia as `mass_properties`, teeth included."""
     own = np.array(mass_properties(section.corners, section.density))
     if section.layer is not None:
-        own += mass_properties(section.layer.corners, section.layer.density * section.density)
+        layer = section.layer
+        own += mass_properties(layer.corners, layer.density * section.density)
+        area = np.pi * (layer.outer_radius**2 - layer.inner_radius**2)
+        moved = area * layer.depth**2 * (layer.back + layer.front) / 6.0
+        own[2] -= layer.taper * layer.density * section.density * moved
     return float(own[0]), float(own[1]), float(own[2])

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from facegear.config.elastic_bodies import body_shape, contact_patch, elastic_gears
+from facegear.config.elastic_bodies import contact_patch, elastic_gears, fitted_shape
 from facegear.config.gear_body import BodySection
 from facegear.config.lumped_model import ToothNumbers, given_torques, layout
 from facegear.config.tooth_pair import ToothPair
@@ -49,7 +49,18 @@ def gear_bodies(
     ]
     content |= {"reduced": dict(reduced), "shapes": dict(shapes)}
     gives = _gives_way(content["bodies"], transmission, machine)
-    return Outcome(content, _summary(content["bodies"], content["modes"]) + gives)
+    said = _summary(content["bodies"], content["modes"]) + _fitted(sections, solved) + gives
+    return Outcome(content, said)
+
+
+def _fitted(sections: Mapping[str, BodySection], solved: Mapping[str, SolvedBody]) -> str:
+    """Layers of teeth that were fitted."""
+    parts = []
+    for gear, section in sections.items():
+        if section.teeth == "fitted" and (layer := solved[gear].section.layer) is not None:
+            fractions = f"{layer.density:.4f} of the ring, {layer.hoop:.4f} of E and {layer.shear:.4f} of G"
+            parts.append(f"; {gear}: teeth fitted, {fractions} round the axis")
+    return "".join(parts)
 
 
 def _gives_way(bodies: pd.DataFrame, transmission: Transmission, machine: Layout) -> str:
@@ -77,7 +88,7 @@ def _solved(sections: Mapping[str, BodySection], tooth_pair: ToothPair) -> dict[
     for section in sections.values():
         if section not in done:
             done[section] = solve_body(
-                body_shape(section, tooth_pair),
+                fitted_shape(section, tooth_pair),
                 section.max_frequency_hz,
                 section.nodal_diameters,
                 tooth_pair.face_gear_teeth,

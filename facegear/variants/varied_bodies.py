@@ -5,11 +5,18 @@ from dataclasses import dataclass, field, replace
 from typing import Self
 
 from facegear.arrays import Arrays
-from facegear.config.elastic_bodies import body_shape, check_bodies, contact_patch, elastic_gears
+from facegear.config.elastic_bodies import (
+    body_shape,
+    check_bodies,
+    contact_patch,
+    elastic_gears,
+    fitted_shape,
+)
 from facegear.config.gear_body import BodySection
-from facegear.config.tooth_pair import ToothPair
+from facegear.config.tooth_pair import ToothPair, pair_design
 from facegear.config.transmission import Transmission
 from facegear.gear_body.reduced import ReducedBody
+from facegear.geometry.design import Flanks, GearModifications, PairDesign
 from facegear.transmission.elastic_gears import ElasticGears
 from facegear.transmission.machine import Machine
 from facegear.variants.teeth import Values
@@ -63,7 +70,15 @@ def _key(section: BodySection, pair: ToothPair) -> Hashable:
     """All that a body depends on."""
     shape = body_shape(section, pair)
     mounting = (shape.teeth, shape.material, shape.layer, contact_patch(section, pair), pair.face_gear_teeth)
-    return (section, shape.corners.tobytes(), mounting)
+    own = _nominal_teeth(pair_design(pair)) if section.teeth == "fitted" else None
+    return (section, shape.corners.tobytes(), mounting, own)
+
+
+def _nominal_teeth(design: PairDesign) -> Hashable:
+    """All that the nominal teeth of a face gear depend on."""
+    gear = replace(design.face_gear, modifications=GearModifications(), flanks=Flanks())
+    pinion = design.pinion.teeth, design.pinion.profile_shift
+    return (design.module, design.pressure_angle, pinion, gear, design.shaper)
 
 
 def _solved(section: BodySection, pair: ToothPair) -> ReducedBody:
@@ -72,6 +87,6 @@ def _solved(section: BodySection, pair: ToothPair) -> ReducedBody:
     )
     from facegear.gear_body.reduction import reduced_body
 
-    shape, teeth = body_shape(section, pair), pair.face_gear_teeth
+    shape, teeth = fitted_shape(section, pair), pair.face_gear_teeth
     solved = solve_body(shape, section.max_frequency_hz, section.nodal_diameters, teeth)
     return reduced_body(solved, contact_patch(section, pair), section.damping_ratio)

@@ -20,6 +20,7 @@ MAY_IMPORT = {
     "mesh": {"geometry"},
     "contact": {"geometry", "mesh", "harmonics"},
     "gear_body": {"geometry"},
+    "tooth_layer": {"geometry", "mesh", "contact", "gear_body"},
     "shafts": set(),
     "stiffness": {"harmonics", "mesh_law"},
     "mesh_law": {"harmonics"},
@@ -30,7 +31,7 @@ MAY_IMPORT = {
     "config": {
         *("geometry", "mesh", "contact", "harmonics", "stiffness", "transmission", "dynamics"),
         *("load_sharing", "scenarios", "strength", "lubrication", "mesh_law", "gear_body", "poses"),
-        "shafts",
+        *("shafts", "tooth_layer"),
     },
     "plots": {
         *("config", "geometry", "contact", "stiffness", "harmonics", "transmission"),

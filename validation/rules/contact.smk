@@ -111,6 +111,16 @@ rule body_peer:
         "../scripts/body_peer.py"
 
 
+rule tooth_layer_peer:
+    "Natural frequencies of gear bodies with their real teeth"
+    output:
+        table="results/{case}/benchmarks/cyclic_teeth.csv",
+        manifest="results/{case}/benchmarks/cyclic_teeth.provenance.json",
+    threads: 2
+    script:
+        "../scripts/tooth_layer_peer.py"
+
+
 rule kratos_peer:
     "Hertz's contact by Kratos"
     output:

@@ -29,6 +29,7 @@ rule peers:
                 "calculix",
                 "calculix_stress",
                 "calculix_body",
+                "cyclic_teeth",
                 "kratos_hertz",
                 "pair_peer",
                 "shaft_peer",

@@ -1,6 +1,8 @@
 """What the stage writes of a machine whose face gears bend."""
 
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from facegear.config.load import load_config
 from facegear.errors import ConfigError
 from facegear.gear_body.reduced import ReducedBody
 from facegear.stages import gear_bodies as stage
+from facegear.variants import varied_bodies
 
 FLEXIBLE = load_config(Path(__file__).parents[3] / "config" / "flexible.yaml")
 DISC = {
@@ -53,6 +56,31 @@ def test_gears_alike_are_solved_once(monkeypatch):
     assert len(solved) == 1
     stage._solved({"lower": one, "upper": other}, FLEXIBLE.tooth_pair)
     assert len(solved) == 3
+
+
+def test_fitted_teeth_are_those_of_the_body_that_is_solved_and_the_summary_names_them(monkeypatch):
+    """In the stage and among many machines; teeth that are not fitted cost no fit."""
+    solved = []
+
+    def fit(shape, design):
+        return replace(shape, layer=replace(shape.layer, hoop=0.03, shear=0.1))
+
+    def solve(shape, *given):
+        solved.append(shape.layer.hoop)
+        return SimpleNamespace(section=shape)
+
+    monkeypatch.setattr("facegear.tooth_layer.fit.fitted_teeth", fit)
+    monkeypatch.setattr(stage, "solve_body", solve)
+    monkeypatch.setattr("facegear.gear_body.body.solve_body", solve)
+    monkeypatch.setattr("facegear.gear_body.reduction.reduced_body", lambda *given: None)
+    common = parse(BodySection, DISC)
+    fitted = common.model_copy(update={"teeth": "fitted"})
+    bodies = {"lower": common, "upper": fitted}
+    said = stage._fitted(bodies, stage._solved(bodies, FLEXIBLE.tooth_pair))
+    assert said == "; upper: teeth fitted, 0.5237 of the ring, 0.0300 of E and 0.1000 of G round the axis"
+    for section in bodies.values():
+        varied_bodies._solved(section, FLEXIBLE.tooth_pair)
+    assert solved == [0.06, 0.03, 0.06, 0.03]
 
 
 def test_what_the_modes_leave_out_between_flanks_is_less_than_at_a_flank_itself(outcome):

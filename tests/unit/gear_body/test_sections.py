@@ -54,6 +54,7 @@ def lines(**changes):
             "body.hub.outer_radius_mm = 260.0: must be below inner radius",
         ),
         ({"body__hub__bore_radius_mm": 150.0}, "body.hub.bore_radius_mm = 150.0: must be below outer radius"),
+        ({"body__teeth": "fit"}, "body.teeth = \"fit\": must be True, False or 'fitted'"),
         ({"body__web__offset_mm": 20.0}, "body.web.offset_mm = 20.0: must be such that the web"),
         ({"body__web__hub_thickness_mm": 60.0}, "body.web.offset_mm = -6.0: must be such that the web"),
         (
@@ -106,8 +107,9 @@ def test_body_that_cannot_be_is_refused_in_one_line_with_key_and_value(changes, 
         ([[120, -50], [140, -50], [140, 5], [275, 5], [275, 12], [120, 12]], "solid to height 0"),
     ],
 )
-def test_polygon_that_crosses_itself_or_carries_no_teeth_is_refused_in_one_line(corners, line):
-    said = lines(body={"corners_mm": corners})
+@pytest.mark.parametrize("teeth", [True, "fitted"])
+def test_polygon_that_crosses_itself_or_carries_no_teeth_is_refused_in_one_line(corners, line, teeth):
+    said = lines(body={"corners_mm": corners, "teeth": teeth})
     assert len(said) == 1 and "body.corners_mm = " in said[0] and line in said[0], said
 
 

@@ -13,6 +13,7 @@ from facegear.config.load import load_config
 from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
 from facegear.config.model import resolved
+from facegear.config.tooth_pair import ToothPair
 from facegear.config.transmission import Transmission
 from facegear.errors import ConfigError
 from facegear.gear_body.reduced import ReducedBody
@@ -99,6 +100,18 @@ def test_body_is_solved_once_for_every_section_and_not_for_what_it_does_not_depe
         joined = bodies.joined(wired_machine(section, numbers, K), section, given["tooth_pair"])
         assert joined.softening.size == 10
     assert solved == [10.0, 11.0]
+
+
+@pytest.mark.parametrize(("key", "value"), [("shaper", {"teeth": 25}), ("pressure_angle_deg", 24.0)])
+def test_fitted_body_is_another_where_the_teeth_are_cut_otherwise_and_not_where_they_are_relieved(key, value):
+    pair = FLEXIBLE.tooth_pair.model_dump(mode="json")
+    changed = {**pair, key: {**pair[key], **value} if isinstance(value, dict) else value}
+    relief = {"tip_relief": {"amount_um": 9.0, "start_mm": 0.5, "length_mm": 1.0}}
+    relieved = {**pair, "face_gear": {**pair["face_gear"], "modifications": relief}}
+    own, other, same = (parse(ToothPair, given) for given in (pair, changed, relieved))
+    fitted = FLEXIBLE.transmission.face_gear.body.model_copy(update={"teeth": "fitted"})
+    key_of = varied_bodies._key
+    assert key_of(fitted, own) == key_of(fitted, same) != key_of(fitted, other)
 
 
 def test_design_whose_mass_cannot_hold_its_web_is_refused_before_it_is_solved(values, solved):
