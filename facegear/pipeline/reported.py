@@ -29,6 +29,7 @@ REPORTED = {
     "rating": ["safety", "rating"],
     "dynamic_root_stress": ["dynamic_stress"],
     "stress_over_speed": ["stress_over_speed"],
+    "operating_pose": ["meshes", "loads", "leaving", "check"],
     "shafts": ["seats", "bearings", "torsion"],
 }
 """Tables of each stage that the report reads."""

@@ -8,9 +8,11 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from facegear.arrays import AnyArray, Array
+from facegear.plots.gear_waves import COLOURS, MARK_SIZE, MARKERS, PAPER, WORDS
 from facegear.plots.style import NARROW, legend_above, styled
 
 SWING = 0.08
@@ -21,7 +23,8 @@ COLUMNS = 2
 def body_shapes(modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> Figure:
     """The first mode of every order up to the last stored, drawn on the section; one gear, as most are alike.
 
-    Grey: at rest; colour: at a crest of the wave, with the motion round the axis as its shade.
+    Grey: at rest; colour: at a crest of the wave, exaggerated; the brighter, the larger the motion, that
+    round the axis included.
     """
     gear = str(modes["gear"].iloc[0]) if len(modes) else next(iter(shapes)).rpartition("_")[0]
     nodes, quads = 1e3 * shapes[f"{gear}_nodes"], shapes[f"{gear}_quads"]
@@ -39,8 +42,10 @@ def body_shapes(modes: pd.DataFrame, shapes: Mapping[str, AnyArray]) -> Figure:
             row = modes[(modes["gear"] == gear) & (modes["nodal_diameters"] == order) & (modes["mode"] == 1)]
             _draw(axis, nodes, quads, shapes[f"{gear}_shapes"][number])
             axis.set_title(f"n = {order}, {row['frequency_hz'].iloc[0]:.1f} Hz", fontsize=9, loc="left")
-        figure.supxlabel("distance from the axis (mm)", fontsize=9)
-        figure.supylabel("height (mm)", fontsize=9)
+        if first.size % COLUMNS and rows > 1:
+            axes[-2, -1].tick_params(labelbottom=True)
+        figure.supxlabel("Distance from the axis (mm)", fontsize=9)
+        figure.supylabel("Height (mm)", fontsize=9)
         figure.suptitle(f"{gear} face gear, hub held", fontsize=9)
     return figure
 
@@ -77,14 +82,14 @@ def body_waves(modes: pd.DataFrame) -> Figure:
             waves = own[own["nodal_diameters"] > 0]
             order = own["nodal_diameters"]
             axis.plot(order, 1e-3 * own["frequency_hz"], "_", color="black", ms=9, label="at rest")
-            for name, marker, colour in (("forward", "^", "tab:red"), ("backward", "v", "tab:blue")):
+            for name, marker, colour in (("forward", "^", "#D55E00"), ("backward", "v", "#0072B2")):
                 values = 1e-3 * waves[f"{name}_hz"]
                 axis.plot(waves["nodal_diameters"], values, marker, color=colour, ms=3.5, label=name)
-            axis.set_ylabel("frequency (kHz)")
+            axis.set_ylabel("Frequency (kHz)")
             axis.set_title(f"{gear} face gear", fontsize=9, loc="right")
             axis.set_ylim(bottom=0.0)
             legend_above(axis, 3)
-        axes[-1, 0].set_xlabel("nodal diameters")
+        axes[-1, 0].set_xlabel("Nodal diameters")
         axes[-1, 0].xaxis.set_major_locator(MaxNLocator(integer=True))
     return figure
 
@@ -102,26 +107,30 @@ def body_campbell(modes: pd.DataFrame, crossings: pd.DataFrame, last_rpm: float,
         figure, axis = plt.subplots(figsize=(NARROW, 5.0))
         for row in own.itertuples():
             shift = (row.forward_hz - row.backward_hz) / 2.0
-            colours = ("tab:red", "tab:blue") if row.nodal_diameters else ("0.3",)
+            colours = ("#D55E00", "#0072B2") if row.nodal_diameters else ("0.3",)
             for sign, colour in zip((1.0, -1.0), colours, strict=False):
                 bend = (row.forward_hz + row.backward_hz) / 2.0
                 curve = _wave(row.frequency_hz, bend, sign * shift, row.speed_rpm, speeds)
                 axis.plot(speeds, 1e-3 * curve, color=colour, lw=0.6, alpha=0.7)
         for number, harmonic in enumerate(sorted(set(met["harmonic"]) | {1})):
             axis.plot(speeds, 1e-3 * harmonic * teeth * speeds / 60.0, color="0.6", lw=0.8)
-            end = min(0.96 * last_rpm, 60.0 * (0.5 + 0.1 * number) * top / (harmonic * teeth))
+            end = min(0.82 * last_rpm, 60.0 * (0.5 + 0.1 * number) * top / (harmonic * teeth))
             height = 1e-3 * harmonic * teeth * end / 60.0
-            axis.annotate(f"{harmonic}x", (end, height), (3, -6), textcoords="offset points", color="0.3")
-        for wave, colour in (("standing", "0.3"), ("forward", "tab:red"), ("backward", "tab:blue")):
+            axis.annotate(
+                f"{harmonic} x mesh", (end, height), (4, -7), textcoords="offset points", bbox=PAPER
+            )
+        for wave, colour in COLOURS.items():
             marks = met[met["wave"] == wave]
-            size = 6.0 * marks["phase_factor"] ** 2
-            axis.scatter(marks["speed_rpm"], 1e-3 * marks["frequency_hz"], size, color=colour, label=wave)
+            size = MARK_SIZE * marks["phase_factor"] ** 2
+            look = {"color": colour, "marker": MARKERS[wave], "edgecolor": "white", "linewidths": 0.5}
+            axis.scatter(marks["speed_rpm"], 1e-3 * marks["frequency_hz"], size, zorder=3, **look)
+            axis.add_line(Line2D([], [], color=colour, marker=MARKERS[wave], ms=5, label=WORDS[wave]))
         axis.set_xlim(0.0, last_rpm)
         axis.set_ylim(0.0, 1e-3 * top)
-        axis.set_xlabel("input rotation speed (rpm)")
-        axis.set_ylabel("frequency (kHz)")
+        axis.set_xlabel("Speed of the inputs (rpm)")
+        axis.set_ylabel("Frequency (kHz)")
         figure.suptitle(f"{gear} face gear, hub held", fontsize=9)
-        legend_above(axis, 3)
+        legend_above(axis, 2)
     return figure
 
 

@@ -8,10 +8,15 @@ from matplotlib.lines import Line2D
 
 from facegear.plots.style import NARROW, legend_above, styled
 
+WORDS = {"standing": "standing waves", "forward": "forward waves", "backward": "backward waves"}
 IN_WAVES = 0.25
 """Part of the kinetic energy in the waves of one gear above which a mode is coloured and marked as theirs;
 two equal gears may share a mode in halves."""
-COLOURS = {"standing": "0.3", "forward": "tab:red", "backward": "tab:blue"}
+COLOURS = {"standing": "0.3", "forward": "#D55E00", "backward": "#0072B2"}
+MARKERS = {"standing": "o", "forward": "^", "backward": "v"}
+"""Of crossings: their area grows with the square of how far the phases of the meshes add up."""
+MARK_SIZE = 6.0
+PAPER = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}
 
 
 def machine_campbell(campbell: pd.DataFrame, crossings: pd.DataFrame, last_rpm: float, teeth: int) -> Figure:
@@ -31,26 +36,28 @@ def machine_campbell(campbell: pd.DataFrame, crossings: pd.DataFrame, last_rpm: 
         for number, harmonic in enumerate(sorted(set(crossings["harmonic"]) | {1})):
             mesh = harmonic * teeth / 60.0
             axis.plot([0.0, last_rpm], [0.0, 1e-3 * mesh * last_rpm], color="0.5", lw=0.8, ls="--")
-            end = min(0.94 * last_rpm, (0.6 + 0.12 * number) * top / mesh)
+            end = min(0.82 * last_rpm, (0.6 + 0.12 * number) * top / mesh)
             axis.annotate(
-                f"{harmonic}x",
+                f"{harmonic} x mesh",
                 (end, 1e-3 * mesh * end),
                 (4, -7),
                 textcoords="offset points",
-                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
+                bbox=PAPER,
             )
         for wave, colour in COLOURS.items():
             marks = waves[waves["wave"] == wave]
-            size = 5.0 * marks["phase_factor"] ** 2
-            axis.scatter(marks["speed_rpm"], 1e-3 * marks["frequency_hz"], size, color=colour, zorder=3)
+            size = MARK_SIZE * marks["phase_factor"] ** 2
+            look = {"color": colour, "marker": MARKERS[wave], "edgecolor": "white", "linewidths": 0.5}
+            axis.scatter(marks["speed_rpm"], 1e-3 * marks["frequency_hz"], size, zorder=3, **look)
         axis.set_xlim(0.0, last_rpm)
         axis.set_ylim(0.0, 1e-3 * top)
-        axis.set_xlabel("input rotation speed (rpm)")
-        axis.set_ylabel("frequency (kHz)")
-        figure.suptitle("whole machine", fontsize=9)
+        axis.set_xlabel("Speed of the inputs (rpm)")
+        axis.set_ylabel("Frequency (kHz)")
+        figure.suptitle("Modes of the whole machine", fontsize=9)
         shown = {**COLOURS, "other modes": "0.75"}
         for name, colour in shown.items():
-            axis.add_line(Line2D([], [], color=colour, label=name))
+            marker = MARKERS.get(name, "")
+            axis.add_line(Line2D([], [], color=colour, marker=marker, ms=5, label=WORDS.get(name, name)))
         legend_above(axis, 2)
     return figure
 

@@ -6,10 +6,11 @@ from typing import Any
 
 import pandas as pd
 
-from facegear.report.contents import CHAPTERS, FRICTION, SHAFTS, STUDIED_CONTACT, caption_of
+from facegear.report.contents import CHAPTERS, FRICTION, POSES, SHAFTS, STUDIED_CONTACT, caption_of
 from facegear.report.glance import glance_chapter
 from facegear.report.machine import Base, machine_chapter
 from facegear.report.page import Chapter, Picture, Table, View, render
+from facegear.report.poses import pose_tables, pose_text
 
 BY_TORQUE = (
     "One row for each torque on the pinion, over a pitch. ste peak to peak: the largest transmission error "
@@ -140,8 +141,9 @@ def case_report(
         ]
         own = _tables(title, tables, values["dynamics"]["speed_rpm"])
         seen = view if title == "Loaded contact" else None
+        said = pose_text(tables) if title == POSES else ""
         if shown_pictures or own or seen:
-            chapters.append(Chapter(title, text, shown_pictures, own, seen))
+            chapters.append(Chapter(title, f"{text}\n\n{said}", shown_pictures, own, seen))
     if "scorecard" in tables:
         chapters.append(_scorecard(tables["scorecard"]))
     chapters.append(_errors(tables))
@@ -194,6 +196,8 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
             *held,
             Table("Natural frequencies; equal ones share a row", mode_rows(tables["frequencies"]), 6),
         ]
+    if title == POSES:
+        return pose_tables(tables)
     if title == SHAFTS:
         listed = [Table(words, tables[name], 4) for name, words in SHAFT_TABLES.items() if name in tables]
         return [table for table in listed if len(table.frame)]

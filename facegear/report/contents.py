@@ -37,7 +37,8 @@ CAPTIONS = {
     "beside a row: the fraction of the time past it.",
     "law_sweeps": "RMS of mesh deflections over speed, with the mesh laws of the studies over each other.",
     "mode_shapes": "Shapes of typical modes.",
-    "body_shapes": "Sections of the face gears and their first mode shapes at a crest, hubs held.",
+    "body_shapes": "Section of the face gear and its first mode shapes at a crest, exaggerated, hub held; grey: "
+    "at rest, the brighter the larger the motion, that round the axis included.",
     "body_waves": "Frequencies of the face gears over nodal diameters, hubs held: at rest, and of waves in "
     "space at the nominal speed.",
     "shafts": "Shafts of the pinions with the radial forces on their bearings, and how they deflect under "
@@ -105,6 +106,7 @@ def caption_of(name: str, values: Mapping[str, Any]) -> str:
 
 FRICTION = "Friction and heat"
 SHAFTS = "Shafts"
+POSES = "Teeth where forces put them"
 STUDIED_CONTACT = "Studies of the contact"
 CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     (
@@ -165,6 +167,13 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "Pinions on shafts and bearings and masses behind torsional springs, at rest under the mean torques. "
         "x is tangential to the face gear, y along its axis, z along the shaft.",
         ("shafts",),
+    ),
+    (
+        POSES,
+        "Forces move pinions in their bearings and tilt bodies, and the teeth then meet elsewhere than "
+        "assembled. Poses, contact and load sharing are those that belong together, at rest under the mean "
+        "torques.",
+        ("pose_pattern", "pose_paths"),
     ),
     (
         "Load sharing at rest",

@@ -1,0 +1,100 @@
+"""What the chapter on operating poses says: where forces put the teeth, and what follows, in numbers."""
+
+from collections.abc import Mapping
+
+import pandas as pd
+
+from facegear.report.page import Table, number
+
+MESHES = (
+    "Every mesh under the mean torques. offset, axial shift, shaft angle: errors of assembly that the "
+    "motions of both bodies amount to; outward: how far they move the unloaded contact; closing: what "
+    "the flanks close beyond the deflection of the mesh; paths: along the pinion, unloaded, and loaded "
+    "where the machine puts it and as assembled; to inner and outer end: from the unloaded path to the "
+    "ends of the face; by pose: change at the mesh's own load"
+)
+LEAVING = (
+    "Loads, as a fraction of the mean torques, at which the unloaded contact of a mesh crosses an end "
+    "of the face"
+)
+CHECK = "The surface beside the contact solved directly, for the mesh that its pose changes most"
+ROOT = "face_gear_root_by_pose_percent"
+
+
+def pose_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
+    """Poses of all meshes, contacts that leave the face, and the surface's error; none without poses."""
+    if "poses_meshes" not in tables:
+        return []
+    leaving = tables["poses_leaving"]
+    return [
+        Table(MESHES, tables["poses_meshes"], 4),
+        *([Table(LEAVING, leaving, 4)] if len(leaving) else []),
+        Table(CHECK, tables["poses_check"], 5, folded=True),
+    ]
+
+
+def pose_text(tables: Mapping[str, pd.DataFrame]) -> str:
+    """A paragraph of what was computed; nothing without poses."""
+    if "poses_meshes" not in tables:
+        return ""
+    meshes = tables["poses_meshes"]
+    loaded = meshes[meshes["path_mm"].notna()]
+    parts = [*_path(loaded), _changes(loaded), _force(meshes), _ends(tables)]
+    return " ".join(part for part in parts if part)
+
+
+def _path(loaded: pd.DataFrame) -> list[str]:
+    """The contact that moves most, and the one nearest to an end of the face."""
+    if loaded.empty:
+        return ["No mesh carries load."]
+    shift = loaded["path_mm"] - loaded["path_as_assembled_mm"]
+    far = loaded.loc[shift.abs().idxmax()]
+    ends = loaded[["to_inner_end_mm", "to_outer_end_mm"]]
+    near = loaded.loc[ends.min(axis=1).idxmin()]
+    end, margin = min(
+        ("inner", near["to_inner_end_mm"]), ("outer", near["to_outer_end_mm"]), key=lambda one: one[1]
+    )
+    nearest = f"The unloaded contact of {near['mesh']}"
+    left = (
+        f"{nearest} comes nearest to an end of the face: {number(margin, 2)} mm are left to the {end} one."
+        if margin >= 0.0
+        else f"{nearest} lies {number(-margin, 2)} mm beyond the {end} end of the face."
+    )
+    before, after = number(far["path_as_assembled_mm"], 4), number(far["path_mm"], 4)
+    moved = f"The loaded contact of {far['mesh']} moves furthest, from {before} mm as assembled to {after} mm"
+    return [f"{moved} as the machine runs.", left]
+
+
+def _changes(loaded: pd.DataFrame) -> str:
+    if loaded.empty:
+        return ""
+    factor = loaded["stiffness_factor"]
+    low, high = (number(100.0 * value, 3) for value in (factor.min(), factor.max()))
+    said = f"Meshes have {low} to {high} % of their stiffness as assembled"
+    for column, words in (("pressure_by_pose_percent", "pressure"), (ROOT, "root stress of the face gear")):
+        if column in loaded:
+            changes = f"{loaded[column].min():+.1f} to {loaded[column].max():+.1f} %"
+            said += f"; the {words} changes by {changes}"
+    return f"{said}."
+
+
+def _force(meshes: pd.DataFrame) -> str:
+    before, after = meshes["force_as_assembled_n"].abs(), meshes["force_n"].abs()
+    most = (after - before).abs().idxmax()
+    return (
+        f"The force of {meshes['mesh'][most]} changes most, from {number(before[most], 4)} N to "
+        f"{number(after[most], 4)} N."
+    )
+
+
+def _ends(tables: Mapping[str, pd.DataFrame]) -> str:
+    """At which loads contacts leave the face, as far as loads were looked at."""
+    leaving, reached = tables["poses_leaving"], 100 * tables["poses_loads"]["load_fraction"].max()
+    if leaving.empty:
+        return f"Up to {reached:.0f} % of the torque no contact leaves the face."
+    said = [
+        f"at {100 * row.load_fraction:.0f} % of the torque the contact of {row.mesh} leaves the face at "
+        f"{row.face_end_mm:.4g} mm"
+        for row in leaving.itertuples()
+    ]
+    return f"{'; '.join(said).capitalize()} (loads up to {reached:.0f} % were looked at)."

@@ -1,0 +1,62 @@
+"""The chapter on operating poses says in numbers where contacts run and when one leaves the face."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from facegear.config.load import load_config
+from facegear.config.model import resolved
+from facegear.report.case import case_report
+from facegear.report.poses import pose_tables, pose_text
+
+MESHES = pd.DataFrame(
+    {
+        "mesh": ["tail/upper", "input/lower", "idler/upper"],
+        "force_n": [-5300.0, 9600.0, 0.0],
+        "force_as_assembled_n": [-5490.0, 9800.0, 0.0],
+        "path_mm": [272.2, 266.1, np.nan],
+        "path_as_assembled_mm": [268.1, 266.0, np.nan],
+        "to_inner_end_mm": [21.4, 16.0, 0.1],
+        "to_outer_end_mm": [2.6, 8.0, 23.9],
+        "stiffness_factor": [0.9, 0.999, 1.0],
+        "pressure_by_pose_percent": [8.0, 0.1, np.nan],
+    }
+)
+LEAVING = pd.DataFrame(
+    {"mesh": ["tail/upper"], "load_fraction": [1.22], "end": ["outer"], "face_end_mm": [275.0]}
+)
+LOADS = pd.DataFrame({"load_fraction": [0.5, 1.27]})
+CHECK = pd.DataFrame({"quantity": ["stiffness"], "surface": [1.0], "direct": [1.0]})
+
+
+def tables(**changed):
+    given = {"meshes": MESHES, "leaving": LEAVING, "loads": LOADS, "check": CHECK, **changed}
+    return {f"poses_{name}": table for name, table in given.items()}
+
+
+def test_the_contact_that_moves_furthest_its_margin_and_what_it_costs_are_said():
+    text = pose_text(tables())
+    assert "tail/upper moves furthest, from 268.1 mm as assembled to 272.2 mm" in text
+    assert "tail/upper comes nearest to an end of the face: 2.6 mm are left to the outer one" in text
+    assert "90 to 99.9 % of their stiffness" in text and "pressure changes by +0.1 to +8.0 %" in text
+    assert "input/lower changes most, from 9800 N to 9600 N" in text
+
+
+def test_the_load_at_which_a_contact_leaves_the_face_is_said_and_that_none_does_where_none_does():
+    assert "t 122 % of the torque the contact of tail/upper leaves the face at 275 mm" in pose_text(tables())
+    assert "Up to 127 % of the torque no contact leaves the face" in pose_text(tables(leaving=LEAVING[:0]))
+
+
+def test_a_contact_beyond_the_end_is_not_called_near_it():
+    beyond = MESHES.assign(to_outer_end_mm=[-0.4, 8.0, 23.9])
+    text = pose_text(tables(meshes=beyond))
+    assert "tail/upper lies 0.4 mm beyond the outer end of the face" in text
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_the_report_has_the_chapter_where_poses_were_computed(known):
+    values = resolved(load_config("config/harmonics_only.yaml"))
+    page = case_report(values, tables() if known else {}, {}, [])
+    assert ("Teeth where forces put them" in page) is known
+    assert (pose_text(tables()) in page) is known
+    assert len(pose_tables(tables() if known else {})) == (3 if known else 0)
