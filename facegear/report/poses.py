@@ -1,6 +1,7 @@
 """What the chapter on operating poses says: where forces put the teeth, and what follows, in numbers."""
 
 from collections.abc import Mapping
+from operator import itemgetter
 
 import pandas as pd
 
@@ -8,7 +9,7 @@ from facegear.report.page import Table, number
 
 MESHES = (
     "Every mesh under the mean torques. offset, axial shift, shaft angle: errors of assembly that the "
-    "motions of both bodies amount to; outward: how far they move the unloaded contact; closing: what "
+    "motions of both bodies amount to; outward: how shifted they move the unloaded contact; closing: what "
     "the flanks close beyond the deflection of the mesh; paths: along the pinion, unloaded, and loaded "
     "where the machine puts it and as assembled; to inner and outer end: from the unloaded path to the "
     "ends of the face; by pose: change at the mesh's own load"
@@ -48,11 +49,11 @@ def _path(loaded: pd.DataFrame) -> list[str]:
     if loaded.empty:
         return ["No mesh carries load."]
     shift = loaded["path_mm"] - loaded["path_as_assembled_mm"]
-    far = loaded.loc[shift.abs().idxmax()]
+    shifted = loaded.loc[shift.abs().idxmax()]
     ends = loaded[["to_inner_end_mm", "to_outer_end_mm"]]
     near = loaded.loc[ends.min(axis=1).idxmin()]
     end, margin = min(
-        ("inner", near["to_inner_end_mm"]), ("outer", near["to_outer_end_mm"]), key=lambda one: one[1]
+        ("inner", near["to_inner_end_mm"]), ("outer", near["to_outer_end_mm"]), key=itemgetter(1)
     )
     nearest = f"The unloaded contact of {near['mesh']}"
     left = (
@@ -60,8 +61,10 @@ def _path(loaded: pd.DataFrame) -> list[str]:
         if margin >= 0.0
         else f"{nearest} lies {number(-margin, 2)} mm beyond the {end} end of the face."
     )
-    before, after = number(far["path_as_assembled_mm"], 4), number(far["path_mm"], 4)
-    moved = f"The loaded contact of {far['mesh']} moves furthest, from {before} mm as assembled to {after} mm"
+    before, after = number(shifted["path_as_assembled_mm"], 4), number(shifted["path_mm"], 4)
+    moved = (
+        f"The loaded contact of {shifted['mesh']} moves furthest, from {before} mm as assembled to {after} mm"
+    )
     return [f"{moved} as the machine runs.", left]
 
 
@@ -80,10 +83,10 @@ def _changes(loaded: pd.DataFrame) -> str:
 
 def _force(meshes: pd.DataFrame) -> str:
     before, after = meshes["force_as_assembled_n"].abs(), meshes["force_n"].abs()
-    most = (after - before).abs().idxmax()
+    changed = (after - before).abs().idxmax()
     return (
-        f"The force of {meshes['mesh'][most]} changes most, from {number(before[most], 4)} N to "
-        f"{number(after[most], 4)} N."
+        f"The force of {meshes['mesh'][changed]} changes most, from {number(before[changed], 4)} N to "
+        f"{number(after[changed], 4)} N."
     )
 
 
