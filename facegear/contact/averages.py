@@ -1,116 +1,198 @@
 """Averages over points under hats, and the nodal loads that unit forces spread by them make; compiled."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
-import scipy.sparse as sp
 
-from facegear.arrays import AnyArray, Array, Integers, Mask
-from facegear.contact.bodies.surface import face_functions
+from facegear.arrays import Array, Integers, Mask
+from facegear.contact.bodies import surface
+from facegear.contact.bodies.surface import LINEAR_STEPS, QUADRATIC_STEPS, locate
 from facegear.contact.options import Refinement
 from facegear.machine_code.compiler import compiler
 
-compiled = compiler()
+compiled = compiler(Path(surface.__file__))
 
 ROUNDING = 1e-6
 """Of coordinates on a lattice."""
+ALIKE = 1e-12
+"""Difference of weights that count as equal."""
+
+Rows = tuple[Integers, Integers, Array]
+"""Row i takes `index` by `weight` from pointer[i] to pointer[i + 1]: pointer, index and weight."""
 
 
 @dataclass(frozen=True, eq=False)
-class Rows:
-    """Averages over points: row i takes points `index` by `weight`, from pointer[i] to pointer[i + 1].
+class NodalLoads:
+    """Forces on `nodes` nodes of a lattice by m unit forces, one a row."""
 
-    No row is empty, and the weights of a row sum to one.
+    rows: Rows
+    nodes: int
+
+    def only(self, keep: Mask) -> "NodalLoads":
+        """Those of the rows marked (m,)."""
+        return replace(self, rows=_only(*self.rows, keep))
+
+    def by(self, forces: Array) -> Array:
+        """Forces (nodes,) N on the nodes by forces (m,) N."""
+        return _by(*self.rows, forces, self.nodes)
+
+
+class HatPoints(NamedTuple):
+    """Points (q,) of one tooth that may face a tooth of the other gear, and the hats that they lie under.
+
+    gap (q,) m, lever_arm (q,) m, and refined lattice coordinates `pinion` and `gear` (q, 2) on both teeth,
+    nan or inf where nothing is opposite; `hats` and `values` (q, 4): hats that a point lies under and their
+    values there, and `area` (q,) that it stands for.
     """
 
-    pointer: Integers
-    index: Integers
-    weight: Array
-
-    def __len__(self) -> int:
-        return len(self.pointer) - 1
-
-    def mean(self, values: Array) -> Array:
-        """Averages (m,) of values (q,)."""
-        return np.add.reduceat(self.weight * values[self.index], self.pointer[:-1])
-
-    def heaviest(self) -> Integers:
-        """The point (m,) with the largest weight of each row, the first of those alike to rounding."""
-        row = np.repeat(np.arange(len(self)), np.diff(self.pointer))
-        return self.index[np.lexsort((-np.round(self.weight, 12), row))[self.pointer[:-1]]]
-
-    def only(self, keep: Mask) -> "Rows":
-        """The rows marked (m,)."""
-        counts = np.diff(self.pointer)
-        inside = np.repeat(keep, counts)
-        pointer = np.zeros(np.count_nonzero(keep) + 1, self.pointer.dtype)
-        np.cumsum(counts[keep], out=pointer[1:])
-        return Rows(pointer, self.index[inside], self.weight[inside])
-
-
-def rows_of(matrix: sp.csr_matrix, keep: Mask) -> sp.csr_matrix:
-    """Rows marked (m,), as `matrix[keep]`, which takes ten times longer."""
-    rows = Rows(matrix.indptr, matrix.indices, matrix.data).only(keep)
-    return sp.csr_matrix((rows.weight, rows.index, rows.pointer), shape=(len(rows), matrix.shape[1]))
-
-
-def stacked(parts: list[Rows], points: list[int]) -> Rows:
-    """Rows below each other, over the points of all parts one after the other, `points` each."""
-    rows = np.cumsum([0] + [part.index.size for part in parts])
-    starts = np.cumsum([0, *points])
-    return Rows(
-        np.concatenate([[0]] + [part.pointer[1:] + row for part, row in zip(parts, rows, strict=False)]),
-        np.concatenate([part.index + start for part, start in zip(parts, starts, strict=False)]),
-        np.concatenate([part.weight for part in parts]),
-    )
-
-
-def hat_averages(
-    hats: Integers,
-    values: Array,
-    area: Array,
-    min_area: Array,
-) -> tuple[Rows, Integers]:
-    """Averages by area over hats, from points (q,) of known area.
-
-    `hats`, `values` (q, h): the hats that a point lies under and their values there; `min_area` (n,): the
-    area below which a hat is left out. Returns the rows and their hats (m,).
-    """
-    pointer, index, weight, chosen = _hat_averages(hats, values, area, min_area)
-    return Rows(pointer, index, weight), chosen
+    gap: Array
+    lever_arm: Array
+    pinion: Array
+    gear: Array
+    hats: Integers
+    values: Array
+    area: Array
 
 
 @compiled
-def _hat_averages(
-    hats: Integers, values: Array, area: Array, min_area: Array
-) -> tuple[Integers, Integers, Array, Integers]:
-    covered, points = np.zeros(min_area.size), np.zeros(min_area.size, np.int64)
+def _only(pointer: Integers, index: Integers, weight: Array, keep: Mask) -> Rows:
+    chosen = np.zeros(np.count_nonzero(keep) + 1, np.int64)
+    row = 0
+    for i in range(keep.size):
+        if keep[i]:
+            chosen[row + 1] = chosen[row] + pointer[i + 1] - pointer[i]
+            row += 1
+    kept, values = np.empty(chosen[row], np.int64), np.empty(chosen[row])
+    row = 0
+    for i in range(keep.size):
+        if keep[i]:
+            for k in range(pointer[i + 1] - pointer[i]):
+                kept[chosen[row] + k] = index[pointer[i] + k]
+                values[chosen[row] + k] = weight[pointer[i] + k]
+            row += 1
+    return chosen, kept, values
+
+
+@compiled
+def _by(pointer: Integers, index: Integers, weight: Array, forces: Array, nodes: int) -> Array:
+    total = np.zeros(nodes)
+    for i in range(forces.size):
+        if forces[i] != 0.0:
+            for k in range(pointer[i], pointer[i + 1]):
+                total[index[k]] += weight[k] * forces[i]
+    return total
+
+
+@compiled
+def _facing(points: HatPoints) -> Mask:
+    on = np.empty(points.gap.size, np.bool_)
+    for q in range(on.size):
+        place = points.pinion[q, 0] + points.pinion[q, 1] + points.gear[q, 0] + points.gear[q, 1]
+        on[q] = np.isfinite(points.gap[q]) and np.isfinite(place)
+    return on
+
+
+@compiled
+def _hat_averages(points: HatPoints, min_area: Array) -> tuple[Rows, Integers]:
+    """Averages by area over the points under each hat, and the hats (m,) of which enough is covered."""
+    hats, values, area, on = points.hats, points.values, points.area, _facing(points)
+    covered, count = np.zeros(min_area.size), np.zeros(min_area.size, np.int64)
     for q in range(hats.shape[0]):
-        for h in range(hats.shape[1]):
-            covered[hats[q, h]] += values[q, h] * area[q]
-            points[hats[q, h]] += 1
+        for h in range(hats.shape[1] if on[q] else 0):
+            if values[q, h] != 0.0:
+                covered[hats[q, h]] += values[q, h] * area[q]
+                count[hats[q, h]] += 1
     chosen = np.flatnonzero(covered > min_area)
     pointer = np.zeros(chosen.size + 1, np.int64)
-    pointer[1:] = np.cumsum(points[chosen])
+    pointer[1:] = np.cumsum(count[chosen])
     slot = np.full(min_area.size, -1)
     slot[chosen] = pointer[:-1]
     index, weight = np.empty(pointer[-1], np.int64), np.empty(pointer[-1])
     for q in range(hats.shape[0]):
-        for h in range(hats.shape[1]):
+        for h in range(hats.shape[1] if on[q] else 0):
             hat = hats[q, h]
-            if slot[hat] >= 0:
+            if values[q, h] != 0.0 and slot[hat] >= 0:
                 index[slot[hat]] = q
                 weight[slot[hat]] = values[q, h] * area[q] / covered[hat]
                 slot[hat] += 1
-    return pointer, index, weight, chosen
+    return (pointer, index, weight), chosen
 
 
-def spread(rows: Rows, coordinates: Array, shape: tuple[int, int], linear: bool = False) -> sp.csr_matrix:
-    """The rows times `surface.interpolation(coordinates, shape, linear)`, (m, nu nv), in one pass."""
-    nodes, values, _ = face_functions(coordinates, shape, linear)
-    count = shape[0] * shape[1]
-    spread_to, load, pointer = _averaged(rows.pointer, rows.index, rows.weight, nodes, values, count)
-    return sp.csr_matrix((load, spread_to, pointer), shape=(len(rows), count))
+@compiled
+def _nearest_node(rows: Rows, row: int, at: Array, columns: int) -> int:
+    """The lattice node nearest to the heaviest point of a row, the first of those alike."""
+    pointer, index, weight = rows
+    best = pointer[row]
+    for k in range(pointer[row], pointer[row + 1]):
+        if weight[k] > weight[best] + ALIKE:
+            best = k
+    point = index[best]
+    return int(np.rint(at[point, 0])) * columns + int(np.rint(at[point, 1]))
+
+
+@compiled
+def closing(
+    points: HatPoints,
+    min_area: Array,
+    first: int,
+    shape: tuple[int, int],
+    flank_ends: tuple[float, float],
+    limit: float,
+) -> tuple[Rows, Integers, Array, Array, Mask]:
+    """The hats that a turn by `limit` (rad) closes: averages over points, lattice node (m,) of each, gap
+    (m,), lever arm (m,), and whether it presses on a fillet (m,).
+
+    The hats from `first` on are those of the nodes of the lattice of that shape, before and after them those
+    of edges. flank_ends: the refined rows beyond which the fillets of both gears begin.
+    """
+    rows, chosen = _hat_averages(points, min_area)
+    pointer, index, weight = rows
+    node = np.empty(chosen.size, np.int64)
+    gap, lever_arm = np.zeros(chosen.size), np.zeros(chosen.size)
+    fillet, near = np.zeros(chosen.size, np.bool_), np.zeros(chosen.size, np.bool_)
+    for i in range(chosen.size):
+        beyond = 0.0
+        for k in range(pointer[i], pointer[i + 1]):
+            q, w = index[k], weight[k]
+            gap[i] += w * points.gap[q]
+            lever_arm[i] += w * points.lever_arm[q]
+            if points.pinion[q, 0] > flank_ends[0] or points.gear[q, 0] > flank_ends[1]:
+                beyond += w
+        fillet[i] = beyond > 0.5
+        near[i] = gap[i] < limit * lever_arm[i]
+        node[i] = chosen[i] - first
+        if not 0 <= node[i] < shape[0] * shape[1]:
+            node[i] = _nearest_node(rows, i, points.pinion, shape[1])
+    kept = _only(pointer, index, weight, near)
+    return kept, node[near], gap[near], lever_arm[near], fillet[near]
+
+
+@compiled
+def _spread(rows: Rows, at: Array, scale: tuple[int, int], shape: tuple[int, int], steps: Integers) -> Rows:
+    """Rows over points at lattice coordinates (q, 2), `scale` times finer, as rows over its nodes."""
+    pointer, index, weight = rows
+    width, size, columns = steps.shape[0], steps.max(), shape[1]
+    nodes, load = np.empty(width * index.size, np.int64), np.empty(width * index.size)
+    ends, slot = np.zeros(pointer.size, np.int64), np.full(shape[0] * shape[1], -1)
+    value, slope = np.empty((2, size + 1)), np.empty((2, size + 1))
+    corner, filled = np.empty(2, np.int64), 0
+    for row in range(pointer.size - 1):
+        first = filled
+        for k in range(pointer[row], pointer[row + 1]):
+            point, w = index[k], weight[k]
+            locate(at[point, 0] / scale[0], at[point, 1] / scale[1], shape, size, corner, value, slope)
+            for a in range(width):
+                i, j = steps[a, 0], steps[a, 1]
+                node = (corner[0] + i) * columns + corner[1] + j
+                if slot[node] < first:
+                    slot[node] = filled
+                    nodes[filled], load[filled] = node, 0.0
+                    filled += 1
+                load[slot[node]] += w * value[0, i] * value[1, j]
+        ends[row + 1] = filled
+    return ends, nodes[:filled].copy(), load[:filled].copy()
 
 
 @dataclass(frozen=True)
@@ -137,39 +219,25 @@ class Lattice:
         """Refined nodes a coarse one, both ways."""
         return np.array([self.refinement.profile, self.refinement.width])
 
+    @property
+    def flank_end(self) -> float:
+        """The refined row beyond which points lie in the fillet."""
+        rows = self.coarse[0] if self.flank_rows is None else self.flank_rows
+        return (rows - 1) * self.refinement.profile + ROUNDING
+
     def in_fillet(self, at: Array) -> Mask:
         """Which points at refined coordinates (q, 2) lie beyond the flank."""
-        rows = self.coarse[0] if self.flank_rows is None else self.flank_rows
-        return at[:, 0] > (rows - 1) * self.refinement.profile + ROUNDING
+        return np.asarray(at[:, 0] > self.flank_end)
 
-    def loads(self, rows: Rows, at: Array) -> tuple[sp.csr_matrix, sp.csr_matrix]:
+    def loads(self, rows: Rows, at: Array) -> tuple[NodalLoads, NodalLoads]:
         """Nodal loads of unit forces, spread by `rows` over points at refined coordinates (q, 2).
 
-        On the refined nodes (m, n) and on the coarse ones.
+        On the refined nodes and on the coarse ones.
         """
-        fine, coarse = ((at, self.shape), (at / self.factors, self.coarse))
-        return spread(rows, *fine, self.linear), spread(rows, *coarse, self.linear)
-
-
-@compiled
-def _averaged(
-    pointer: Integers, index: Integers, weight: Array, nodes: Integers, values: Array, count: int
-) -> tuple[AnyArray, Array, AnyArray]:
-    """Columns, values and row ends of averages over points times rows of `values` at the columns `nodes`."""
-    width = nodes.shape[1]
-    columns, result = np.empty(width * index.size, np.int32), np.empty(width * index.size)
-    ends, slot = np.zeros(pointer.size, np.int32), np.full(count, -1)
-    filled = 0
-    for row in range(pointer.size - 1):
-        first = filled
-        for k in range(pointer[row], pointer[row + 1]):
-            point = index[k]
-            for a in range(width):
-                node = nodes[point, a]
-                if slot[node] < first:
-                    slot[node] = filled
-                    columns[filled], result[filled] = node, 0.0
-                    filled += 1
-                result[slot[node]] += weight[k] * values[point, a]
-        ends[row + 1] = filled
-    return columns[:filled].copy(), result[:filled].copy(), ends
+        steps = LINEAR_STEPS if self.linear else QUADRATIC_STEPS
+        scale = self.refinement.profile, self.refinement.width
+        kinds = ((1, 1), self.shape), (scale, self.coarse)
+        fine, coarse = (
+            NodalLoads(_spread(rows, at, finer, shape, steps), shape[0] * shape[1]) for finer, shape in kinds
+        )
+        return fine, coarse

@@ -1,13 +1,12 @@
 """Loads of a pair of teeth that may act: their gaps, lever arms and nodal forces on both bodies."""
 
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
-import scipy.sparse as sp
 
 from facegear.arrays import Array, Integers, Mask
-from facegear.contact.averages import Lattice, rows_of, stacked
-from facegear.contact.loads import Loads
+from facegear.contact.averages import HatPoints, Lattice, NodalLoads, closing
 
 
 @dataclass(frozen=True, eq=False)
@@ -16,8 +15,8 @@ class Candidates:
     edge.
 
     hats (m,) lattice nodes and their `column` along the width; gap (m,) m and lever_arm (m,) m averaged over
-    the hat; whether it presses on a `fillet` (m,) of either gear; loads on the lattice nodes `pinion` (m, n1)
-    and `gear` (m, n2), and on the unrefined ones `pinion_coarse`, `gear_coarse`.
+    the hat; whether it presses on a `fillet` (m,) of either gear; loads on the lattice nodes `pinion` and
+    `gear`, and on the unrefined ones `pinion_coarse`, `gear_coarse`, m rows each.
     """
 
     tooth: int
@@ -26,10 +25,10 @@ class Candidates:
     gap: Array
     lever_arm: Array
     fillet: Mask
-    pinion: sp.csr_matrix
-    gear: sp.csr_matrix
-    pinion_coarse: sp.csr_matrix
-    gear_coarse: sp.csr_matrix
+    pinion: NodalLoads
+    gear: NodalLoads
+    pinion_coarse: NodalLoads
+    gear_coarse: NodalLoads
 
     @property
     def overlap(self) -> float:
@@ -42,34 +41,40 @@ class Candidates:
         if keep.all():
             return self
         parts = {field.name: getattr(self, field.name) for field in fields(self)[1:]}
-        kept = {n: rows_of(part, keep) if sp.issparse(part) else part[keep] for n, part in parts.items()}
+        kept: dict[str, Any] = {
+            name: part.only(keep) if isinstance(part, NodalLoads) else part[keep]
+            for name, part in parts.items()
+        }
         return replace(self, **kept)
 
 
 def candidates_of(
-    pinion: Lattice, gear: Lattice, tooth: int, parts: list[Loads], limit: float
+    pinion: Lattice,
+    gear: Lattice,
+    tooth: int,
+    points: HatPoints,
+    min_area: Array,
+    limit: float,
+    first: int = 0,
 ) -> list[Candidates]:
-    """Those of the loads that a turn by `limit` (rad) would close: one entry, or none."""
-    if not parts:
+    """Those of the hats over points that a turn by `limit` (rad) would close: one entry, or none.
+
+    min_area: the covered area below which a hat is left out; those of the pinion's nodes begin at `first`,
+    the others are hats of edges.
+    """
+    ends = pinion.flank_end, gear.flank_end
+    rows, node, gap, lever_arm, fillet = closing(points, min_area, first, pinion.shape, ends, limit)
+    if node.size == 0:
         return []
-    rows = stacked([part.rows for part in parts], [part.gap.size for part in parts])
-    names = [field.name for field in fields(Loads)[1:]]
-    loads = Loads(rows=rows, **{n: np.concatenate([getattr(part, n) for part in parts]) for n in names})
-    gap, lever_arm = rows.mean(loads.gap), rows.mean(loads.lever_arm)
-    beyond = pinion.in_fillet(loads.pinion) | gear.in_fillet(loads.gear)
-    near = gap < limit * lever_arm
-    if not near.any():
-        return []
-    rows = rows.only(near)
-    on_pinion, pinion_coarse = pinion.loads(rows, loads.pinion)
-    on_gear, gear_coarse = gear.loads(rows, loads.gear)
+    on_pinion, pinion_coarse = pinion.loads(rows, points.pinion)
+    on_gear, gear_coarse = gear.loads(rows, points.gear)
     candidates = Candidates(
         tooth=tooth,
-        hats=loads.hats[near],
-        column=loads.hats[near] % pinion.shape[1],
-        gap=gap[near],
-        lever_arm=lever_arm[near],
-        fillet=rows.mean(beyond.astype(float)) > 0.5,
+        hats=node,
+        column=node % pinion.shape[1],
+        gap=gap,
+        lever_arm=lever_arm,
+        fillet=fillet,
         pinion=on_pinion,
         gear=on_gear,
         pinion_coarse=pinion_coarse,

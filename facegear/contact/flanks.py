@@ -77,6 +77,12 @@ class PinionSurface:
         return hat_values(self.pressure)
 
     @cached_property
+    def under(self) -> tuple[Integers, Array]:
+        """Hats (q, 4) that each point lies under, and their values (q, 4) there."""
+        hats = self.hats
+        return hats.indices.reshape(-1, 4).astype(np.int64), hats.data.reshape(-1, 4)
+
+    @cached_property
     def full_area(self) -> Array:
         """Area (n,) of each hat where nothing is cut off."""
         return self.hats.T @ self.area

@@ -3,17 +3,19 @@
 from collections.abc import Sequence
 
 import numpy as np
-import scipy.sparse as sp
 
-from facegear.arrays import AnyArray, Array, Integers
+from facegear.arrays import Array, Integers, Mask
+from facegear.contact.averages import NodalLoads, Rows
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.candidates import Candidates
 from facegear.machine_code.compiler import compiler
 
 compiled = compiler()
+compiled_sums = compiler(fastmath={"contract", "reassoc"})
+"""For sums of products, whose terms may be added in any order."""
 
-Sparse = tuple[AnyArray, AnyArray, AnyArray]
-"""Row ends, columns and values of a sparse matrix in rows."""
+BLOCK = 128
+"""Columns of a compliance that stay in the processor's cache while they are averaged."""
 
 
 def influence_matrix(
@@ -30,8 +32,7 @@ def influence_matrix(
     matrix = np.zeros((ends[-1], ends[-1]))
     for i, first in enumerate(pairs):
         own = slice(ends[i], ends[i + 1])
-        block = product(first.pinion, pinion.own, first.pinion) + product(first.gear, gear.own, first.gear)
-        matrix[own, own] = 0.5 * (block + block.T)
+        matrix[own, own] = _symmetric(first.pinion.rows, pinion.own) + _symmetric(first.gear.rows, gear.own)
         for j in range(i) if coupled else ():
             second = pairs[j]
             other = slice(ends[j], ends[j + 1])
@@ -76,59 +77,111 @@ def _approach(
     return total
 
 
-def _response(
-    seen: sp.csr_matrix,
-    compliance: Array | None,
-    loads: sp.csr_matrix,
-    forces: Array,
-) -> Array:
+def _response(seen: NodalLoads, compliance: Array | None, loads: NodalLoads, forces: Array) -> Array:
     if compliance is None:
-        return np.zeros((seen.shape[0], forces.shape[1]))
-    touching = (seen.indptr, seen.indices, seen.data), (loads.indptr, loads.indices, loads.data)
-    return _sparse_response(touching[0], compliance, touching[1], np.ascontiguousarray(forces))
+        return np.zeros((len(seen.rows[0]) - 1, forces.shape[1]))
+    return _moved(seen.rows, compliance, loads.rows, np.ascontiguousarray(forces.T))
 
 
-@compiled
-def _sparse_response(seen: Sparse, compliance: Array, loads: Sparse, forces: Array) -> Array:
-    loaded, slot = _used(loads[1], compliance.shape[1])
-    nodal = np.zeros((loaded.size, forces.shape[1]))
-    for i in range(forces.shape[0]):
-        for k in range(loads[0][i], loads[0][i + 1]):
-            for t in range(forces.shape[1]):
-                nodal[slot[loads[1][k]], t] += loads[2][k] * forces[i, t]
+@compiled_sums
+def _moved(seen: Rows, compliance: Array, loads: Rows, forces: Array) -> Array:
+    """Rows over the displacements by load cases (t, m) of rows of loads: (k, t)."""
+    cases = forces.shape[0]
+    pushed = np.zeros(forces.shape[1], np.bool_)
+    for t in range(cases):
+        for i in range(pushed.size):
+            pushed[i] |= forces[t, i] != 0.0
+    pointer, index, weight = loads
+    mark = np.zeros(compliance.shape[1], np.bool_)
+    for i in range(pushed.size):
+        for k in range(pointer[i], pointer[i + 1] if pushed[i] else pointer[i]):
+            mark[index[k]] = True
+    loaded, slot = _listed(mark)
+    nodal = np.zeros((cases, loaded.size))
+    for i in range(pushed.size):
+        for k in range(pointer[i], pointer[i + 1] if pushed[i] else pointer[i]):
+            for t in range(cases):
+                nodal[t, slot[index[k]]] += weight[k] * forces[t, i]
     used, slot = _used(seen[1], compliance.shape[0])
-    return _averaged(seen[0], slot[seen[1]], seen[2], _gathered(compliance, used, loaded) @ nodal)
+    moved, line = np.empty((used.size, cases)), np.empty(loaded.size)
+    for a in range(used.size):
+        for b in range(loaded.size):
+            line[b] = compliance[used[a], loaded[b]]
+        for t in range(cases):
+            total = 0.0
+            for b in range(loaded.size):
+                total += line[b] * nodal[t, b]
+            moved[a, t] = total
+    result = np.zeros((seen[0].size - 1, cases))
+    for i in range(result.shape[0]):
+        for k in range(seen[0][i], seen[0][i + 1]):
+            for t in range(cases):
+                result[i, t] += seen[2][k] * moved[slot[seen[1][k]], t]
+    return result
 
 
-def product(first: sp.csr_matrix, compliance: Array | None, second: sp.csr_matrix) -> Array:
-    """first @ compliance @ second.T, touching only what the two have entries for."""
+def product(first: NodalLoads, compliance: Array | None, second: NodalLoads) -> Array:
+    """Displacements (m, n) of rows of nodes by unit loads of others, touching only what they have entries
+    for.
+    """
     if compliance is None:
-        return np.zeros((first.shape[0], second.shape[0]))
-    return _sparse_product(
-        (first.indptr, first.indices, first.data),
-        compliance,
-        (second.indptr, second.indices, second.data),
-    )
+        return np.zeros((len(first.rows[0]) - 1, len(second.rows[0]) - 1))
+    return _product(first.rows, compliance, second.rows)
 
 
 @compiled
-def _sparse_product(first: Sparse, compliance: Array, second: Sparse) -> Array:
-    rows, row_slot = _used(first[1], compliance.shape[0])
-    columns, column_slot = _used(second[1], compliance.shape[1])
-    part = _gathered(compliance, rows, columns)
-    half = _averaged(first[0], row_slot[first[1]], first[2], part)
-    return _averaged(second[0], column_slot[second[1]], second[2], np.ascontiguousarray(half.T)).T
+def _product(first: Rows, compliance: Array, second: Rows) -> Array:
+    half, slot = _half(first, compliance, second[1])
+    pointer, index, weight = second
+    result = np.zeros((pointer.size - 1, half.shape[1]))
+    for j in range(result.shape[0]):
+        for k in range(pointer[j], pointer[j + 1]):
+            line, w = half[slot[index[k]]], weight[k]
+            for i in range(half.shape[1]):
+                result[j, i] += w * line[i]
+    return np.ascontiguousarray(result.T)
 
 
 @compiled
-def _gathered(dense: Array, rows: Integers, columns: Integers) -> Array:
-    """dense[np.ix_(rows, columns)], contiguous."""
-    part = np.empty((rows.size, columns.size))
-    for a in range(rows.size):
-        line = dense[rows[a]]
-        for b in range(columns.size):
-            part[a, b] = line[columns[b]]
-    return part
+def _symmetric(rows: Rows, compliance: Array) -> Array:
+    """`_product` of rows with themselves."""
+    half, slot = _half(rows, compliance, rows[1])
+    pointer, index, weight = rows
+    result = np.zeros((pointer.size - 1, pointer.size - 1))
+    for j in range(result.shape[0]):
+        for k in range(pointer[j], pointer[j + 1]):
+            line, w = half[slot[index[k]]], weight[k]
+            for i in range(j + 1):
+                result[j, i] += w * line[i]
+    for j in range(result.shape[0]):
+        for i in range(j):
+            result[i, j] = result[j, i]
+    return result
+
+
+@compiled
+def _half(rows: Rows, compliance: Array, columns: Integers) -> tuple[Array, Integers]:
+    """Rows times a compliance at the distinct `columns` (c, m), and the place (n,) of each column there."""
+    pointer, index, weight = rows
+    used, slot = _used(index, compliance.shape[0])
+    wanted, place = _used(columns, compliance.shape[1])
+    count = pointer.size - 1
+    half = np.empty((wanted.size, count))
+    part, line = np.empty((used.size, BLOCK)), np.empty(BLOCK)
+    for start in range(0, wanted.size, BLOCK):
+        size = min(BLOCK, wanted.size - start)
+        for a in range(used.size):
+            for b in range(size):
+                part[a, b] = compliance[used[a], wanted[start + b]]
+        for i in range(count):
+            line[:size] = 0.0
+            for k in range(pointer[i], pointer[i + 1]):
+                taken, w = part[slot[index[k]]], weight[k]
+                for b in range(size):
+                    line[b] += w * taken[b]
+            for b in range(size):
+                half[start + b, i] = line[b]
+    return half, place
 
 
 @compiled
@@ -137,20 +190,13 @@ def _used(indices: Integers, count: int) -> tuple[Integers, Integers]:
     mark = np.zeros(count, np.bool_)
     for index in indices:
         mark[index] = True
-    used = np.flatnonzero(mark)
-    slot = np.full(count, -1)
-    slot[used] = np.arange(used.size)
-    return used, slot
+    return _listed(mark)
 
 
 @compiled
-def _averaged(pointer: Integers, index: Integers, weight: Array, dense: Array) -> Array:
-    """Sparse rows times a dense matrix."""
-    result = np.zeros((pointer.size - 1, dense.shape[1]))
-    for i in range(pointer.size - 1):
-        row = result[i]
-        for k in range(pointer[i], pointer[i + 1]):
-            line, w = dense[index[k]], weight[k]
-            for c in range(dense.shape[1]):
-                row[c] += w * line[c]
-    return result
+def _listed(mark: Mask) -> tuple[Integers, Integers]:
+    """The indices that are marked (n,), rising, and the index of each among them."""
+    used = np.flatnonzero(mark)
+    slot = np.full(mark.size, -1)
+    slot[used] = np.arange(used.size)
+    return used, slot

@@ -1,7 +1,7 @@
 """Loaded tooth contact analysis: every position of a pitch at every torque."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from threadpoolctl import threadpool_limits
 
@@ -13,11 +13,16 @@ from facegear.contact.influence import displacement, influence_matrix
 from facegear.contact.options import ContactOptions
 from facegear.contact.path import pairs_to_try
 from facegear.contact.position import FIRST_GUESS, LoadedPosition, solve_position
-from facegear.contact.search import find_candidates
+from facegear.contact.search import find_all
 from facegear.geometry.design import AssemblyErrors, PairDesign
 from facegear.geometry.placement import pinion_angle
 from facegear.geometry.unloaded import unloaded_motion
 from facegear.progress import Progress
+
+AT_ONCE = 8
+"""Positions whose candidates are searched together."""
+ROOM = 1.05
+"""By how much farther they are searched than the position before needed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,16 +69,11 @@ def loaded_contact(
     phi2, unloaded = unloaded_motion(model.design, phi1)
     guess = first = FIRST_GUESS / model.design.pinion_base_radius
     progress = Progress("loaded contact", len(phi1))
+    searched = _Searched(model, options, list(zip(phi1.tolist(), phi2.tolist(), strict=True)))
     results: list[LoadedPosition] = []
     with threadpool_limits(1):
         for row, position in enumerate(positions):
-            pair = _PairAtPosition(
-                model=model,
-                options=options,
-                position=float(position),
-                placement=(float(phi1[row]), float(phi2[row])),
-                unloaded=-float(unloaded[row]),
-            )
+            pair = _PairAtPosition(searched, row, position=float(position), unloaded=-float(unloaded[row]))
             solved, turned = solve_position(pair, torques, guess)
             guess = turned if turned > 0.0 else first  # fillets in the way turn the pinion back
             results += solved
@@ -81,24 +81,51 @@ def loaded_contact(
     return results
 
 
-@dataclass(frozen=True, eq=False)
-class _PairAtPosition:
-    """`facegear.contact.position.PairAtPosition` of whole gears, at the angles `placement` (rad)."""
+@dataclass(eq=False)
+class _Searched:
+    """What may touch at all positions, searched several at once: `ahead` by row, for a turn `limit` (rad)."""
 
     model: ContactModel
     options: ContactOptions
+    placements: list[tuple[float, float]]
+    ahead: dict[int, list[Candidates]] = field(default_factory=dict)
+    limit: float = 0.0
+
+    def at(self, row: int, limit: float) -> list[Candidates]:
+        """Candidates of a position that a turn by `limit` (rad) would close, and perhaps a little more."""
+        if row not in self.ahead or limit > self.limit:
+            last = row + (AT_ONCE if row else 1)  # the first position says how far teeth give way
+            some, self.limit = self.placements[row:last], ROOM * limit
+            teeth = [pairs_to_try(self.model.design, phi1, self.options) for phi1, _ in some]
+            seen = find_all(self.model.flanks, some, teeth, self.limit, self.options)
+            self.ahead = dict(enumerate(seen, row))
+        return self.ahead[row]
+
+
+@dataclass(frozen=True, eq=False)
+class _PairAtPosition:
+    """`facegear.contact.position.PairAtPosition` of whole gears, at a row of what was searched."""
+
+    searched: _Searched
+    row: int
     position: float
-    placement: tuple[float, float]
     unloaded: float
     in_strip = True
+
+    @property
+    def model(self) -> ContactModel:
+        return self.searched.model
+
+    @property
+    def options(self) -> ContactOptions:
+        return self.searched.options
 
     @property
     def base_radius(self) -> float:
         return self.model.design.pinion_base_radius
 
     def candidates(self, limit: float) -> list[Candidates]:
-        teeth = pairs_to_try(self.model.design, self.placement[0], self.options)
-        return find_candidates(self.model.flanks, self.placement, teeth, limit, self.options)
+        return self.searched.at(self.row, limit)
 
     def influence(self, pairs: list[Candidates]) -> Array:
         return influence_matrix(pairs, self.model.pinion, self.model.gear, self.options.coupled)

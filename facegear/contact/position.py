@@ -164,8 +164,8 @@ def _result(
                     hats=loads.hats[on],
                     force=force[on],
                     fillet=loads.fillet[on],
-                    on_pinion=loads.pinion_coarse.T @ force,
-                    on_gear=loads.gear_coarse.T @ force,
+                    on_pinion=loads.pinion_coarse.by(force),
+                    on_gear=loads.gear_coarse.by(force),
                 )
             )
     approach = base * contact.rotation

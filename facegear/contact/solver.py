@@ -9,9 +9,9 @@ steps; should it cycle, a single-exchange active set, which lowers the energy at
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg as sl
 
-from facegear.arrays import Array, Integers, Mask
+from facegear.arrays import Array, Mask
+from facegear.contact.active_set import bonded, distances, newton, refined, violation
 from facegear.errors import NotConverged
 
 NEWTON_STEPS = 40
@@ -68,25 +68,15 @@ def solve_contact(
         raise ValueError(f"torque = {torque}: must be positive")
     if not (lever_arm > 0.0).any():
         raise NotConverged("contact", where, "no candidate point can carry the torque")
-    active = (
-        _first_guess(gap, lever_arm) if start is None or not (start & (lever_arm > 0)).any() else start.copy()
+    cold = start is None or not (start & (lever_arm > 0)).any()
+    compliance, gap, lever_arm = (np.ascontiguousarray(part) for part in (compliance, gap, lever_arm))
+    problem = compliance, gap, lever_arm, float(torque)
+    steps, force, rotation, slope, residual = newton(
+        *problem, _first_guess(gap, lever_arm) if cold else start, (NEWTON_STEPS, TOLERANCE)
     )
-    seen: set[bytes] = set()
-    for step in range(1, NEWTON_STEPS + 1):
-        bonded = _bonded(compliance, gap, lever_arm, torque, active)
-        distance = gap + compliance @ bonded.force - bonded.rotation * lever_arm
-        scale = np.abs(bonded.rotation * lever_arm).max() + np.abs(gap[active]).max()
-        next_active = np.where(active, bonded.force > 0.0, distance < -TOLERANCE * scale)
-        if np.array_equal(next_active, active):
-            return _checked(compliance, gap, lever_arm, torque, bonded, step, where)
-        key = np.packbits(next_active).tobytes()
-        if key in seen or not (next_active & (lever_arm > 0)).any():
-            break
-        seen.add(key)
-        active = next_active
-    return _exchange(
-        compliance, gap, lever_arm, torque, _feasible(gap, lever_arm, torque, bonded.force), where
-    )
+    if not steps:
+        return _exchange(*problem, _feasible(gap, lever_arm, torque, force), where)
+    return _checked(torque, force, rotation, slope, residual, steps, where)
 
 
 def _first_guess(gap: Array, lever_arm: Array) -> Mask:
@@ -94,68 +84,13 @@ def _first_guess(gap: Array, lever_arm: Array) -> Mask:
     return turns <= np.quantile(turns[np.isfinite(turns)], 0.25)
 
 
-@dataclass(frozen=True, eq=False)
-class _Bonded:
-    """What happens if exactly the points `active` (k,) touch, and the factor of their compliance.
-
-    `turning` (k,): their forces by a unit turn, N/rad.
-    """
-
-    active: Integers
-    compliance: Array
-    factor: tuple[Array, bool]
-    turning: Array
-    force: Array
-    rotation: float
-    slope: float
-
-
-def _bonded(compliance: Array, gap: Array, lever_arm: Array, torque: float, touching: Mask) -> _Bonded:
-    active = np.flatnonzero(touching)
-    block = compliance[np.ix_(active, active)]
-    factor = sl.cho_factor(block, lower=True, check_finite=False)
-    lever_arms, offset = lever_arm[active], gap[active]
-    both = sl.cho_solve(factor, np.stack([lever_arms, offset], axis=1), check_finite=False)
-    stiffness = lever_arms @ both[:, 0]
-    rotation = (torque + lever_arms @ both[:, 1]) / stiffness
-    force = np.zeros_like(gap)
-    force[active] = rotation * both[:, 0] - both[:, 1]
-    return _Bonded(
-        active=active,
-        compliance=block,
-        factor=factor,
-        turning=both[:, 0],
-        force=force,
-        rotation=rotation,
-        slope=1.0 / stiffness,
-    )
-
-
 def _checked(
-    compliance: Array, gap: Array, lever_arm: Array, torque: float, bonded: _Bonded, steps: int, where: str
+    torque: float, force: Array, rotation: float, slope: float, residual: float, steps: int, where: str
 ) -> ContactSolution:
-    """The result after two steps of iterative refinement, its residual tested."""
-    active, turning = bonded.active, bonded.turning
-    force, rotation = bonded.force[active], bonded.rotation
-    for _ in range(2):
-        distance = gap[active] + bonded.compliance @ force - rotation * lever_arm[active]
-        missing = torque - lever_arm[active] @ force
-        change = -sl.cho_solve(bonded.factor, distance, check_finite=False)
-        turn = (missing - lever_arm[active] @ change) / (lever_arm[active] @ turning)
-        force = force + change + turn * turning
-        rotation += turn
-    refined = np.zeros_like(gap)
-    refined[active] = force
-    residual = kkt_residual(compliance, gap, lever_arm, torque, refined, rotation)
     if not residual < TOLERANCE * 10:
         raise NotConverged("contact", where, f"KKT residual {residual:.1e} after {steps} steps")
     return ContactSolution(
-        torque=torque,
-        force=refined,
-        rotation=float(rotation),
-        slope=float(bonded.slope),
-        residual=residual,
-        steps=steps,
+        torque=torque, force=force, rotation=rotation, slope=slope, residual=residual, steps=steps
     )
 
 
@@ -168,17 +103,8 @@ def kkt_residual(
     rotation: float,
 ) -> float:
     """Largest relative violation of balance, no tension, no penetration and complementarity."""
-    active = force != 0.0
-    distance = gap + compliance @ force - rotation * lever_arm
-    scale = np.abs(rotation * lever_arm).max() + np.abs(gap[active]).max()
-    return float(
-        max(
-            abs(lever_arm @ force - torque) / torque,
-            -force.min() / force.max(),
-            -distance.min() / scale,
-            np.abs(distance[active]).max() / scale,
-        )
-    )
+    given = (np.ascontiguousarray(part) for part in (compliance, gap, lever_arm))
+    return violation(*given, float(torque), np.ascontiguousarray(force), float(rotation))
 
 
 def _feasible(gap: Array, lever_arm: Array, torque: float, force: Array) -> Array:
@@ -200,8 +126,10 @@ def _exchange(
     active = force > 0.0
     limit = 20 * gap.size + 100
     for step in range(limit):
-        bonded = _bonded(compliance, gap, lever_arm, torque, active)
-        target, rotation = bonded.force, bonded.rotation
+        touching = bonded(compliance, gap, lever_arm, torque, active)
+        index, rotation, slope = touching[0], touching[5], touching[6]
+        target = np.zeros_like(force)
+        target[index] = touching[4]
         falling = active & (target <= 0.0)
         if falling.any():
             fraction = np.min(force[falling] / (force[falling] - target[falling]))
@@ -210,10 +138,11 @@ def _exchange(
             active &= ~leaving
             continue
         force = target
-        distance = gap + compliance @ force - rotation * lever_arm
+        distance = distances(compliance, gap, lever_arm, force, rotation)
         scale = np.abs(rotation * lever_arm).max() + np.abs(gap[active]).max()
         worst = int(np.argmin(np.where(active, np.inf, distance)))
         if active.all() or distance[worst] >= -TOLERANCE * scale:
-            return _checked(compliance, gap, lever_arm, torque, bonded, NEWTON_STEPS + step, where)
+            force, rotation, residual = refined(compliance, gap, lever_arm, torque, touching)
+            return _checked(torque, force, rotation, slope, residual, NEWTON_STEPS + step, where)
         active[worst] = True
     raise NotConverged("contact", where, f"{NEWTON_STEPS} Newton and {limit} exchange steps")

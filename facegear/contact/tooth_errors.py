@@ -135,13 +135,10 @@ def _tip_edge_gaps(
     radius = np.linspace(design.face_gear.inner_radius, design.face_gear.outer_radius, count)
     edge = tip_edge_as_made(design, radius) * np.array([-1.0, 1.0, 1.0])
     top, bottom = design.pinion_tip_roll**2, pinion.junction_roll(design) ** 2
-    rows = []
-    for phi1, phi2, tooth in zip(*placement, strict=True):
-        (feet,) = tip_edge_feet(design, edge, (phi1, phi2), np.array([tooth]), None, design.module)
-        roll = np.sqrt(np.maximum(top - feet.flank * (top - bottom), 0.0))
-        rows.append((feet.gap, roll, feet.y, radius, np.zeros(count)))
-    gap, roll, y, radii, depth = (np.array(part) for part in zip(*rows, strict=True))
-    return gap, roll, y, radii, depth
+    feet = tip_edge_feet(design, edge, placement, None, design.module)
+    roll = np.sqrt(np.maximum(top - feet.flank * (top - bottom), 0.0))
+    radii = np.broadcast_to(radius, roll.shape)
+    return feet.gap, roll, feet.y, radii, np.zeros(roll.shape)
 
 
 def unloaded_errors(gaps: PairGaps, teeth: Mapping[Body, Teeth], cycles: int) -> Array:

@@ -3,21 +3,24 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from facegear.arrays import Array, Integers
 from facegear.geometry import face_gear, pinion
 from facegear.geometry.design import PairDesign
-from facegear.geometry.pinion_surface import SurfacePoints, fillet_points
+from facegear.geometry.pinion_surface import fillet_points
 from facegear.geometry.placement import to_pinion_section
-from facegear.geometry.separation import FILLET, FLANK, TIP_LAND, Separation, separation
+from facegear.geometry.separation import FILLET, FLANK, TIP_LAND, Separation
+from facegear.machine_code.compiler import compiler
+
+compiled = compiler()
 
 FILLET_SAMPLES = 2000
 
 
 @dataclass(frozen=True)
 class GearHits:
-    """Where the normals of n pinion points meet a gear tooth at p placements, all (p, n), nan where not.
+    """Where the normals of n pinion points meet a gear tooth at p placements, all (p, n), nan where not; or
+    (n,) of points in one placement each.
 
     gap (m); radius: gear radius (m). One of three says how far from the flank's tip edge: on the flank
     `flank`, 0..1 of its roll angles there, on the fillet `fillet`, 0..1 of its normal's turn from flank to
@@ -33,7 +36,7 @@ class GearHits:
 
 @dataclass(frozen=True)
 class EdgeFeet:
-    """Where pinion normals through n points of the gear's tip edge stand on a pinion tooth, all (n,).
+    """Where pinion normals through n points of the gear's tip edge stand on p pinion teeth, all (p, n).
 
     gap (m), inf where there is none; lever_arm (m) of the normal about the pinion's axis; y (m). Either
     `flank`, 0..1 in the square of the roll angle from tip to fillet, or `fillet`, the angle gamma (rad)
@@ -64,18 +67,6 @@ def fillet_curve(design: PairDesign, first: float, last: float) -> FilletCurve:
     return FilletCurve(points, normals, gamma)
 
 
-def gear_hits(
-    design: PairDesign,
-    points: SurfacePoints,
-    phi1: ArrayLike,
-    phi2: ArrayLike,
-    tooth: ArrayLike,
-    search_radius: float,
-) -> GearHits:
-    """Cut the normals of the pinion's points with the gear; arguments as in `separation`."""
-    return located(design, separation(design, points, phi1, phi2, tooth, search_radius))
-
-
 def located(design: PairDesign, seen: Separation) -> GearHits:
     """Where on the gear's tooth a separation ends."""
     radius, flank, fillet, beyond = (np.full(seen.gap.shape, np.nan) for _ in range(4))
@@ -97,45 +88,44 @@ def located(design: PairDesign, seen: Separation) -> GearHits:
 def tip_edge_feet(
     design: PairDesign,
     points: Array,
-    placement: tuple[float, float],
-    teeth: Integers,
+    placement: tuple[Array, Array, Array],
     fillet: FilletCurve | None,
     search_radius: float,
-) -> list[EdgeFeet]:
+) -> EdgeFeet:
     """Points (n, 3) of the gear's left tip edge (tooth 0, body frame) against the flanks of pinion teeth.
 
-    placement: phi1, phi2 (rad). Beside the flank the fillet is looked at, unless that is None.
+    placement: phi1, phi2 (rad) and tooth, (p,) each: all (p, n). Beside the flank the fillet is looked at,
+    unless that is None.
     """
-    phi1, phi2 = (np.array([angle]) for angle in placement)
-    all_feet = []
-    for section in to_pinion_section(design, phi1, phi2, np.asarray(teeth)).points(points)[0]:
-        feet = _flank_feet(design, section)
-        if fillet is not None:
-            beside = ~np.isfinite(feet.gap)
-            there = _fillet_feet(design, section[beside], fillet, search_radius)
-            feet.gap[beside], feet.fillet[beside], feet.lever_arm[beside] = there
-        all_feet.append(feet)
-    return all_feet
+    phi1, phi2, tooth = (np.asarray(part) for part in placement)
+    section = to_pinion_section(design, phi1, phi2, tooth[:, None]).points(points)[:, 0]
+    feet = _flank_feet(design, section)
+    if fillet is not None:
+        beside = ~np.isfinite(feet.gap)
+        there = _fillet_feet(design, section[beside], fillet, search_radius)
+        feet.gap[beside], feet.fillet[beside], feet.lever_arm[beside] = there
+    return feet
 
 
 def _flank_feet(design: PairDesign, section: Array) -> EdgeFeet:
-    """Where the involute's normals through points (q, 3) meet it.
+    """Where the involute's normals through points (..., 3) meet it.
 
     All normals touch the base circle, so that the distance along them is that of two parallel involutes.
     """
     base = design.pinion_base_radius
-    ratio = np.hypot(section[:, 0], section[:, 1]) / base
+    across, up, y = (section[..., axis] for axis in range(3))
+    ratio = np.hypot(across, up) / base
     roll = np.sqrt(np.maximum(ratio**2 - 1, 0.0))
-    start = np.arctan2(section[:, 0], section[:, 1]) + roll - np.arctan(roll)
+    start = np.arctan2(across, up) + roll - np.arctan(roll)
     turn = start - design.pinion_half_base_angle
     foot = roll - turn
     top, bottom = design.pinion_tip_roll, pinion.junction_roll(design)
     on = (ratio > 1) & (foot <= top) & (foot >= bottom) & (np.abs(turn) * base < design.module)
-    gap = base * turn + pinion.removed(design, foot, section[:, 2])
+    gap = base * turn + pinion.removed(design, foot, y)
     return EdgeFeet(
         gap=np.where(on, gap, np.inf),
         lever_arm=np.full(on.shape, base),
-        y=section[:, 2],
+        y=y,
         flank=np.where(on, (top**2 - foot**2) / (top**2 - bottom**2), np.nan),
         fillet=np.full(on.shape, np.nan),
     )
@@ -150,7 +140,7 @@ def _fillet_feet(
     low, high = curve.min(axis=0) - search_radius, curve.max(axis=0) + search_radius
     close = np.flatnonzero(((section[:, :2] > low) & (section[:, :2] < high)).all(axis=1))
     here = section[close]
-    nearest = np.argmin(np.linalg.norm(here[:, None, :2] - curve, axis=2), axis=1)
+    nearest = _nearest(np.ascontiguousarray(here), curve)
     apart = np.sum((here[:, :2] - curve[nearest]) * normal[nearest], axis=1)
     apart += pinion.removed(design, pinion.junction_roll(design), here[:, 2])
     on = (nearest > 0) & (nearest < len(curve) - 1) & (np.abs(apart) < search_radius)
@@ -158,3 +148,16 @@ def _fillet_feet(
     gap[close], gamma[close] = apart[on], fillet.gamma[nearest]
     lever_arm[close] = curve[nearest, 1] * normal[nearest, 0] - curve[nearest, 0] * normal[nearest, 1]
     return gap, gamma, lever_arm
+
+
+@compiled
+def _nearest(points: Array, curve: Array) -> Integers:
+    """The point (n,) of a curve (m, 2) nearest to each of points (n, 3) in their first two coordinates."""
+    nearest = np.zeros(points.shape[0], np.int64)
+    for i in range(points.shape[0]):
+        min_square = np.inf
+        for j in range(curve.shape[0]):
+            square = (points[i, 0] - curve[j, 0]) ** 2 + (points[i, 1] - curve[j, 1]) ** 2
+            if square < min_square:
+                min_square, nearest[i] = square, j
+    return nearest

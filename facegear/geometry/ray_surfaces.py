@@ -14,6 +14,9 @@ from facegear.machine_code.compiler import for_callers
 
 NEWTON_STEPS = 40
 LARGEST_STEP = 0.2
+NEGLIGIBLE = 1e-10
+"""Distance (m) of a ray from the point reached on the flank, whose square over the flank's radii of curvature
+is below rounding: Newton's next step is exact, and its end is known without looking."""
 PSI_STEPS = 60
 BISECTIONS = 6
 
@@ -163,6 +166,9 @@ def _newton(
         scale = min(1.0, LARGEST_STEP / max(abs(da), abs(db), LARGEST_STEP))
         a -= scale * da
         b -= scale * db
+        if not fillet and hypot(r1, r2) < NEGLIGIBLE:
+            x, y, z = x - da * ax - db * bx, y - da * ay - db * by, z - da * az - db * bz
+            return a, b, x * n[0] + y * n[1] + z * n[2], x + p[0], y + p[1], z + p[2], True
         if hypot(r1, r2) < rounding or hypot(da, db) < 2e-15:
             done = True
             break

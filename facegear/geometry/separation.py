@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from facegear.arrays import Array, Mask
+from facegear.arrays import AnyArray, Array, Integers, Mask
 from facegear.errors import NotConverged
 from facegear.geometry.design import PairDesign
 from facegear.geometry.gear_modifications import as_generated, opened
@@ -33,6 +33,7 @@ __all__ = [
     "TIP_LAND",
     "Separation",
     "separation",
+    "separation_each",
 ]
 
 RAYS_AT_ONCE = 60_000
@@ -40,7 +41,9 @@ RAYS_AT_ONCE = 60_000
 
 @dataclass(frozen=True)
 class Separation:
-    """For p placements and n pinion points, all (p, n): gap (m), gear part hit (see PARTS), where on it.
+    """For p placements and n pinion points, all (p, n), or (n,) of points in one placement each.
+
+    gap (m), the gear part hit (see PARTS), where on it.
 
     continued: distance (m) to the flank continued beyond its edges, inf if that is missed as well.
 
@@ -78,7 +81,6 @@ def separation(
     gap = np.full((len(phi1), count), np.inf)
     part = np.zeros(gap.shape, np.int8)
     u, v, continued = (np.full(gap.shape, value) for value in (np.nan, np.nan, np.inf))
-    blank, sample = gear_rays(design)
     block = max(1, RAYS_AT_ONCE // max(count, 1))
     for first in range(0, len(phi1), block):
         rows = slice(first, first + block)
@@ -87,16 +89,38 @@ def separation(
             vectors[rows] if vectors.ndim == 3 else vectors for vectors in (points.position, points.normal)
         )
         starts, ways = motion.points(position).reshape(-1, 3), motion.directions(normal).reshape(-1, 3)
-        *hit, lost = cut(blank, starts, ways, float(search_radius), *sample)
-        if lost:
-            raise NotConverged(
-                "separation", f"{lost} rays at the gear", "Newton from two starts, 40 steps each"
-            )
-        hit[0] = hit[0] + _opened(design, starts, ways, hit[0], hit[1] != ROOT_LAND)
-        hit[4] = hit[4] + _opened(design, starts, ways, hit[4], True)
+        hit = _cut(design, starts, ways, float(search_radius))
         for target, values in zip((gap, part, u, v, continued), hit, strict=True):
             target[rows] = values.reshape(-1, count)
     return Separation(gap=gap, part=part, u=u, v=v, continued=continued)
+
+
+def separation_each(
+    design: PairDesign,
+    points: SurfacePoints,
+    placement: tuple[Array, Array, Array],
+    at: Integers,
+    search_radius: float,
+) -> Separation:
+    """The same of n points (n, 3) that each stand in one of p placements only, `at` (n,): all (n,).
+
+    placement: phi1, phi2 (rad) and tooth, (p,) each. Raises NotConverged as `separation` does.
+    """
+    motion = to_left_flank(design, *placement)
+    turn = motion.matrix[at]
+    starts = np.einsum("nij,nj->ni", turn, points.position) + motion.shift[at]
+    return Separation(*_cut(design, starts, np.einsum("nij,nj->ni", turn, points.normal), search_radius))
+
+
+def _cut(design: PairDesign, starts: Array, ways: Array, search_radius: float) -> list[AnyArray]:
+    """Fields of `Separation`, (n,), of rays (n, 3) of unit length in the frame of the gear's flank."""
+    blank, sample = gear_rays(design)
+    *hit, lost = cut(blank, starts, ways, search_radius, *sample)
+    if lost:
+        raise NotConverged("separation", f"{lost} rays at the gear", "Newton from two starts, 40 steps each")
+    hit[0] = hit[0] + _opened(design, starts, ways, hit[0], hit[1] != ROOT_LAND)
+    hit[4] = hit[4] + _opened(design, starts, ways, hit[4], True)
+    return hit
 
 
 def _opened(design: PairDesign, starts: Array, ways: Array, length: Array, where: Mask | bool) -> Array:

@@ -16,7 +16,7 @@ from facegear.contact.bodies.compliance import FlankCompliance, flank_compliance
 from facegear.contact.candidates import Candidates, candidates_of
 from facegear.contact.flanks import PinionSurface
 from facegear.contact.influence import displacement, influence_matrix
-from facegear.contact.loads import facing, flank_loads
+from facegear.contact.loads import flank_cover, flank_points
 from facegear.contact.options import Ends, Refinement
 from facegear.contact.position import FIRST_GUESS, LoadedPosition, solve_position
 from facegear.contact.teeth import ContactSide, elastic_tooth
@@ -210,6 +210,7 @@ def _candidates(model: TwinModel, phi1: float, limit: float) -> list[Candidates]
         fraction = (high**2 - roll**2) / (high**2 - low**2)
         row = fraction * (side.flank_rows - 1) * lattice.refinement.profile
         near = np.where(on_flank & (gap < depth), gap, np.inf)
-        points = facing(near, surface.lever_arm, surface.at, np.stack([row, surface.at[:, 1]], axis=1))
-        candidates += candidates_of(surface.lattice, lattice, tooth, flank_loads(surface, points), limit)
+        opposite = np.stack([row, surface.at[:, 1]], axis=1)
+        points = flank_points(surface, np.arange(len(near)), near, surface.lever_arm, opposite)
+        candidates += candidates_of(surface.lattice, lattice, tooth, points, flank_cover(surface), limit)
     return candidates

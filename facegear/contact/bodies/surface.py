@@ -47,12 +47,9 @@ def _faces(coordinates: Array, rows: int, columns: int, steps: Integers) -> tupl
     nodes = np.empty((count, width), np.int64)
     values, gradients = np.empty((count, width)), np.empty((count, width, 2))
     value, slope = np.empty((2, size + 1)), np.empty((2, size + 1))
-    corner, last = np.empty(2, np.int64), (rows - 1 - size, columns - 1 - size)
+    corner = np.empty(2, np.int64)
     for point in range(count):
-        for axis in range(2):
-            at = coordinates[point, axis]
-            corner[axis] = size * min(max(int(np.floor(at / size)), 0), last[axis] // size)
-            _interval((at - corner[axis]) / size, size, value[axis], slope[axis])
+        locate(coordinates[point, 0], coordinates[point, 1], (rows, columns), size, corner, value, slope)
         for a in range(width):
             i, j = steps[a]
             nodes[point, a] = (corner[0] + i) * columns + corner[1] + j
@@ -60,6 +57,20 @@ def _faces(coordinates: Array, rows: int, columns: int, steps: Integers) -> tupl
             gradients[point, a, 0] = slope[0, i] * value[1, j] / size
             gradients[point, a, 1] = value[0, i] * slope[1, j] / size
     return nodes, values, gradients
+
+
+@compiled
+def locate(
+    row: float, column: float, shape: tuple[int, int], size: int, corner: Integers, value: Array, slope: Array
+) -> None:
+    """Fill in the first node (2,) of the face at lattice coordinates, `size` nodes an element both ways, and
+    values and slopes (2, size + 1) of the polynomials across and along it.
+    """
+    for axis in range(2):
+        at = row if axis == 0 else column
+        last = (shape[axis] - 1 - size) // size
+        corner[axis] = size * min(max(int(np.floor(at / size)), 0), last)
+        _interval((at - corner[axis]) / size, size, value[axis], slope[axis])
 
 
 @compiled

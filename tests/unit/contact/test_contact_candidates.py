@@ -7,15 +7,16 @@ from skfem import ElementQuad1, ElementQuad2
 from test_pair_contact import misaligned
 
 from facegear.contact import strip
-from facegear.contact.averages import Rows, rows_of, spread
+from facegear.contact.averages import Lattice
 from facegear.contact.bodies.surface import face_functions, interpolation
 from facegear.contact.candidates import candidates_of
 from facegear.contact.influence import displacement, influence_matrix
-from facegear.contact.loads import facing, flank_loads
+from facegear.contact.loads import flank_cover, flank_points
 from facegear.contact.ltca import loaded_contact
-from facegear.contact.options import ContactOptions
+from facegear.contact.options import ContactOptions, Refinement
 from facegear.contact.search import find_candidates
-from facegear.geometry.opposite import gear_hits
+from facegear.geometry.opposite import located
+from facegear.geometry.separation import separation
 from facegear.geometry.unloaded import PAIRS, unloaded_contact
 
 PLACES = [{}, {"offset": 3e-4}, {"shaft_angle_error": 3.5e-3}]
@@ -31,10 +32,10 @@ def placed(model, position):
 def everywhere(model, placement, tooth):
     """Candidates from the separation at every point of the flank, none screened."""
     pinion, gear = model.flanks.pinion, model.flanks.gear
-    hits = gear_hits(model.design, pinion.points, *placement, tooth, 1e-3)
+    hits = located(model.design, separation(model.design, pinion.points, *placement, tooth, 1e-3))
     on_gear = gear.coordinates(hits, True, 0.1 * model.design.module)[0]
-    points = facing(hits.gap[0], pinion.lever_arm, pinion.at, on_gear)
-    return candidates_of(pinion.lattice, gear.lattice, tooth, flank_loads(pinion, points), LIMIT)
+    points = flank_points(pinion, np.arange(len(pinion.at)), hits.gap[0], pinion.lever_arm, on_gear)
+    return candidates_of(pinion.lattice, gear.lattice, tooth, points, flank_cover(pinion), LIMIT)
 
 
 @pytest.mark.parametrize("errors", PLACES)
@@ -91,11 +92,15 @@ def test_loads_spread_in_one_pass_are_the_sparse_product(linear):
     rng = np.random.default_rng(1)
     shape, points = (9, 7), rng.uniform(0, 6, (40, 2))
     matrix = sp.random_array((12, 40), density=0.2, format="csr", rng=rng)
-    rows = Rows(matrix.indptr, matrix.indices, matrix.data)
-    expected = matrix @ interpolation(points, shape, linear)
-    np.testing.assert_allclose(spread(rows, points, shape, linear).toarray(), expected.toarray(), atol=1e-14)
-    keep = np.arange(12) % 3 == 0
-    np.testing.assert_array_equal(rows_of(matrix, keep).toarray(), matrix.toarray()[keep])
+    rows = matrix.indptr.astype(np.int64), matrix.indices.astype(np.int64), matrix.data
+    loads, _ = Lattice(shape, Refinement(), linear).loads(rows, points)
+    pointer, index, weight = loads.rows
+    spread = sp.csr_matrix((weight, index, pointer), shape=(12, 63)).toarray()
+    expected = (matrix @ interpolation(points, shape, linear)).toarray()
+    np.testing.assert_allclose(spread, expected, atol=1e-14)
+    keep, forces = np.arange(12) % 3 == 0, rng.uniform(0, 1, 12)
+    np.testing.assert_allclose(loads.by(forces), forces @ expected, atol=1e-14)
+    np.testing.assert_allclose(loads.only(keep).by(forces[keep]), forces[keep] @ expected[keep], atol=1e-14)
 
 
 @pytest.mark.parametrize(("element", "linear"), [(ElementQuad1(), True), (ElementQuad2(), False)])

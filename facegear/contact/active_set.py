@@ -1,0 +1,172 @@
+"""The active set of a contact problem, compiled: see `facegear.contact.solver` for the problem itself."""
+
+import numpy as np
+
+from facegear.arrays import AnyArray, Array, Integers, Mask
+from facegear.machine_code.compiler import compiler
+
+compiled = compiler()
+compiled_sums = compiler(fastmath={"contract", "reassoc"})
+"""For sums of products, whose terms may be added in any order."""
+
+Bonded = tuple[Integers, Array, AnyArray, Array, Array, float, float]
+"""What happens if exactly some points touch: their indices (k,), their compliance (k, k) and its Cholesky
+factor, their forces by a unit turn (k,), N/rad, their forces (k,), N, the rotation (rad) and its slope over
+the torque."""
+
+
+@compiled_sums
+def _substituted(lower: Array, first: Array, second: Array) -> None:
+    """Solve for two right-hand sides in place by a lower Cholesky factor in columns."""
+    size = first.size
+    for j in range(size):
+        first[j] /= lower[j, j]
+        second[j] /= lower[j, j]
+        a, b = first[j], second[j]
+        for i in range(j + 1, size):
+            first[i] -= lower[i, j] * a
+            second[i] -= lower[i, j] * b
+    for j in range(size - 1, -1, -1):
+        a = b = 0.0
+        for i in range(j + 1, size):
+            a += lower[i, j] * first[i]
+            b += lower[i, j] * second[i]
+        first[j] = (first[j] - a) / lower[j, j]
+        second[j] = (second[j] - b) / lower[j, j]
+
+
+@compiled_sums
+def _times(matrix: Array, vector: Array) -> Array:
+    """A matrix times a vector."""
+    result = np.empty(matrix.shape[0])
+    for i in range(matrix.shape[0]):
+        total = 0.0
+        for j in range(matrix.shape[1]):
+            total += matrix[i, j] * vector[j]
+        result[i] = total
+    return result
+
+
+@compiled
+def distances(compliance: Array, gap: Array, lever_arm: Array, force: Array, rotation: float) -> Array:
+    """Distance (n,) m of all points by forces (n,) N, of which most are zero, and a rotation (rad)."""
+    result = gap - rotation * lever_arm
+    for j in range(force.size):
+        if force[j] != 0.0:
+            pushed = force[j]
+            for i in range(result.size):
+                result[i] += pushed * compliance[j, i]
+    return result
+
+
+@compiled
+def bonded(compliance: Array, gap: Array, lever_arm: Array, torque: float, active: Mask) -> Bonded:
+    """What happens if exactly the points `active` (n,) touch."""
+    index = np.flatnonzero(active)
+    size = index.size
+    block = np.empty((size, size))
+    turning, closing = np.empty(size), np.empty(size)
+    for i in range(size):
+        turning[i], closing[i] = lever_arm[index[i]], gap[index[i]]
+        for j in range(size):
+            block[i, j] = compliance[index[i], index[j]]
+    factor = np.linalg.cholesky(block)
+    _substituted(factor, turning, closing)
+    stiffness = carried = 0.0
+    for i in range(size):
+        stiffness += lever_arm[index[i]] * turning[i]
+        carried += lever_arm[index[i]] * closing[i]
+    rotation = (torque + carried) / stiffness
+    force: Array = rotation * turning - closing
+    return index.astype(np.int64), block, factor, turning, force, rotation, 1.0 / stiffness
+
+
+@compiled
+def violation(
+    compliance: Array, gap: Array, lever_arm: Array, torque: float, force: Array, rotation: float
+) -> float:
+    """Largest relative violation of balance, no tension, no penetration and complementarity."""
+    distance = distances(compliance, gap, lever_arm, force, rotation)
+    turned = nearest = touching = balance = 0.0
+    for i in range(gap.size):
+        turned = max(turned, abs(rotation * lever_arm[i]))
+        balance += lever_arm[i] * force[i]
+        if force[i] != 0.0:
+            nearest = max(nearest, abs(gap[i]))
+            touching = max(touching, abs(distance[i]))
+    scale = turned + nearest
+    worst = max(abs(balance - torque) / torque, -force.min() / force.max())
+    return max(worst, -distance.min() / scale, touching / scale)
+
+
+@compiled
+def refined(
+    compliance: Array, gap: Array, lever_arm: Array, torque: float, touching: Bonded
+) -> tuple[Array, float, float]:
+    """Forces (n,), rotation and violation after two steps of iterative refinement."""
+    index, block, factor, turning, force, rotation, _ = touching
+    arm, apart = lever_arm[index], gap[index]
+    force, unused = force.copy(), np.zeros(index.size)
+    for _ in range(2):
+        change = _times(block, force) + apart - rotation * arm
+        missing = torque
+        for i in range(index.size):
+            missing -= arm[i] * force[i]
+        _substituted(factor, change, unused)
+        carried = stiffness = 0.0
+        for i in range(index.size):
+            carried += arm[i] * change[i]
+            stiffness += arm[i] * turning[i]
+        turn = (missing + carried) / stiffness
+        force += turn * turning - change
+        rotation += turn
+    whole = np.zeros(gap.size)
+    whole[index] = force
+    return whole, rotation, violation(compliance, gap, lever_arm, torque, whole, rotation)
+
+
+@compiled
+def newton(
+    compliance: Array,
+    gap: Array,
+    lever_arm: Array,
+    torque: float,
+    start: Mask,
+    limits: tuple[int, float],
+) -> tuple[int, Array, float, float, float]:
+    """Primal-dual active set from the points `start` (n,), in at most `limits` steps to a tolerance.
+
+    Returns steps, forces (n,), rotation, slope and violation. Where the sets repeat themselves, steps are 0
+    and the forces those of the last set, with tension in them.
+    """
+    steps, tolerance = limits
+    active, count = start.copy(), gap.size
+    seen = np.zeros((steps, count), np.bool_)
+    force = np.zeros(count)
+    for step in range(1, steps + 1):
+        touching = bonded(compliance, gap, lever_arm, torque, active)
+        rotation = touching[5]
+        force[:] = 0.0
+        force[touching[0]] = touching[4]
+        distance = distances(compliance, gap, lever_arm, force, rotation)
+        turned = nearest = 0.0
+        for i in range(count):
+            turned = max(turned, abs(rotation * lever_arm[i]))
+            if active[i]:
+                nearest = max(nearest, abs(gap[i]))
+        edge = -tolerance * (turned + nearest)
+        following, same, drives = seen[step - 1], True, False
+        for i in range(count):
+            following[i] = force[i] > 0.0 if active[i] else distance[i] < edge
+            same &= following[i] == active[i]
+            drives |= following[i] and lever_arm[i] > 0.0
+        if same:
+            force, rotation, residual = refined(compliance, gap, lever_arm, torque, touching)
+            return step, force, rotation, touching[6], residual
+        repeated = False
+        for earlier in range(step - 1):
+            repeated |= np.array_equal(seen[earlier], following)
+        if repeated or not drives:
+            break
+        active[:] = following
+    return 0, force, 0.0, 0.0, 0.0
