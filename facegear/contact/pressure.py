@@ -9,9 +9,9 @@ is left out.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from itertools import pairwise
 
 import numpy as np
-from scipy.ndimage import binary_closing, maximum_filter1d
 
 from facegear.arrays import Array, Integers, Mask
 from facegear.contact.columns import EDGES
@@ -66,6 +66,10 @@ class LineLoads:
         at = np.nanargmax(self.pressure)
         return float(self.pressure[at]), float(self.error[at])
 
+    def part(self, rows: slice) -> "LineLoads":
+        """Those of some rows."""
+        return LineLoads(*(getattr(self, field.name)[rows] for field in fields(self)))
+
     def at_tips(self) -> tuple[float, float]:
         """Largest line load (N/m) at tip edges and the length (m) that carries any; zero without."""
         on = np.isin(self.where, (PINION_TIP, GEAR_TIP))
@@ -101,13 +105,14 @@ def flank_pressure(
     row = {key: i for i, key in enumerate(zip(position.tolist(), tooth.tolist(), strict=True))}
     modulus = contact_modulus(materials)
     places = line_rows(lines.to_pinion_tip, flanks.pinion)
-    loads = []
+    spots, at = [], []
     for result in results:
-        at = [row[result.position, spot.tooth] for spot in result.spots]
-        spots = [
-            on_flank(spot, places[line], flanks.pinion) for spot, line in zip(result.spots, at, strict=True)
-        ]
-        loads.append(line_loads(spots, at, lines, modulus))
+        for spot in result.spots:
+            at.append(row[result.position, spot.tooth])
+            spots.append(on_flank(spot, places[at[-1]], flanks.pinion))
+    every, ends = _along(_by_plane(spots, lines.y.size), np.array(at), lines, modulus)
+    of_result = np.cumsum([0] + [len(result.spots) for result in results])
+    loads = [every.part(slice(ends[first], ends[last])) for first, last in pairwise(of_result)]
     points = flank_points(design, lines.roll, lines.y).position
     return FlankPressure(position=position, tooth=tooth, lines=lines, points=points, loads=tuple(loads))
 
@@ -117,80 +122,114 @@ def line_loads(spots: Sequence[Spot], rows: Sequence[int], lines: ContactLines, 
 
     `rows` numbers the line of each spot; `modulus` E* (Pa).
     """
-    planes = lines.y.size
-    parts = []
-    for spot, row in zip(spots, rows, strict=True):
-        force = np.zeros(planes)
-        np.add.at(force, spot.hats % planes, spot.force)
-        parts.append(_along(force, lines, row, modulus))
-    names = [field.name for field in fields(LineLoads)]
-    return LineLoads(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+    return _along(_by_plane(spots, lines.y.size), np.array(rows), lines, modulus)[0]
 
 
-def _along(force: Array, lines: ContactLines, row: int, modulus: float) -> LineLoads:
-    """Of the forces (n,) N that the planes of one line carry."""
-    face = lines.face[row]
+def _by_plane(spots: Sequence[Spot], planes: int) -> Array:
+    """Forces (s, n) N that n planes carry of each spot."""
+    force = np.zeros((len(spots), planes))
+    number = np.repeat(np.arange(len(spots)), [spot.hats.size for spot in spots])
+    hats = np.concatenate([spot.hats for spot in spots])
+    np.add.at(force, (number, hats % planes), np.concatenate([spot.force for spot in spots]))
+    return force
+
+
+def _along(force: Array, rows: Integers, lines: ContactLines, modulus: float) -> tuple[LineLoads, Integers]:
+    """Of the forces (s, n) N that the planes of lines `rows` (s,) carry, and where those of each spot end
+    (s + 1,), 0 first.
+    """
+    spots, face = np.arange(len(rows)), lines.face[rows]
     owner = _owners(face, lines.y[1] - lines.y[0])
     merged, widths = np.zeros_like(force), np.zeros_like(face)
-    np.add.at(merged, owner, force)
-    np.add.at(widths, owner, face)
-    load, wider = (_smoothed(merged, widths, weights)[owner] for weights in (KERNEL, WIDER))
-    carries = binary_closing(np.pad(merged > 0, 2))[2:-2][owner]
-    loaded = np.flatnonzero(carries & (face > 0))
-    slope = np.nan_to_num(lines.slope[row, loaded])
-    half = 0.5 * face[loaded].sum()
+    for target, values in ((merged, force), (widths, face)):
+        np.add.at(target, (spots[:, None], owner), values)
+    load, wider = (
+        np.take_along_axis(_smoothed(merged, widths, weights), owner, 1) for weights in (KERNEL, WIDER)
+    )
+    loaded = np.take_along_axis(_closed(merged > 0), owner, 1) & (face > 0)
+    counts = np.count_nonzero(loaded, axis=1)
+    ends = np.concatenate([[0], np.cumsum(counts)])
+    spot, plane = np.nonzero(loaded)
+    row = rows[spot]
+    slope = np.nan_to_num(lines.slope[row, plane])
+    half = 0.5 * np.where(loaded, face, 0.0).sum(axis=1)[spot]
     along = half / np.cos(slope)
     line_load = load[loaded] * half / along
-    pressure, width = strip_pressure(line_load, lines.curvature[row, loaded], modulus, along)
-    cut = owner[loaded] != loaded
-    where = _where(lines, row, loaded, width / np.cos(slope), cut)
+    pressure, width = strip_pressure(line_load, lines.curvature[row, plane], modulus, along)
+    where = _where(lines, row, plane, width / np.cos(slope), owner[loaded] != plane)
     inside = where == INSIDE
-    peak = _peak_if_short(force, lines.y)
-    apart = maximum_filter1d(np.abs(wider - load)[loaded], NEIGHBOURHOOD, mode="nearest")
+    apart = _largest_nearby(np.abs(wider - load)[loaded], ends, spot)
     # in a short ellipse both averages are too low: load and length say by how much, and p goes with the root
-    low = max(0.5 * (peak / load[loaded].max() - 1.0), 0.0) if loaded.size else 0.0
-    return LineLoads(
-        line=np.full(loaded.size, row),
-        plane=loaded,
+    most = np.where(loaded, load, 0.0).max(axis=1, initial=0.0)
+    peak = _peak_if_short(force, lines.y) / np.where(most > 0.0, most, np.inf)
+    low = np.maximum(0.5 * (peak - 1.0), 0.0)[spot]
+    loads = LineLoads(
+        line=row,
+        plane=plane,
         length=face[loaded] / np.cos(slope),
         line_load=line_load,
         where=where,
         pressure=np.where(inside, pressure, np.nan),
-        error=np.where(inside, np.hypot(0.5 * apart / load[loaded], low) * pressure, np.nan),
+        error=np.where(inside, np.hypot(0.5 * apart / most[spot], low) * pressure, np.nan),
         half_width=width,
     )
+    return loads, ends
 
 
-def _peak_if_short(force: Array, y: Array) -> float:
-    """Largest load per width (N/m) of a parabola with the load and length of forces (n,) on few planes.
+def _largest_nearby(values: Array, ends: Integers, spot: Integers) -> Array:
+    """The largest (m,) of NEIGHBOURHOOD neighbouring values of the same spot; `ends` as `_along` has them."""
+    at, reach = np.arange(values.size), NEIGHBOURHOOD // 2
+    low, high = ends[spot], ends[spot + 1] - 1
+    near = [values[np.clip(at + step, low, high)] for step in range(-reach, reach + 1)]
+    return np.asarray(np.max(near, axis=0, initial=0.0))
+
+
+def _closed(carries: Mask) -> Mask:
+    """Planes (s, n) that carry load, with those between two that do."""
+    wide = np.pad(carries, ((0, 0), (2, 2)))
+    grown = wide[:, :-2] | wide[:, 1:-1] | wide[:, 2:]
+    return np.asarray(grown[:, :-2] & grown[:, 1:-1] & grown[:, 2:])
+
+
+def _peak_if_short(force: Array, y: Array) -> Array:
+    """Largest load per width (s,) N/m of a parabola with the load and length of forces (s, n) on few planes.
 
     That is how a Hertz ellipse spreads its load along its length. 0 for more than SHORT loaded planes.
     """
-    total, step = force.sum(), y[1] - y[0]
-    if total == 0.0 or np.count_nonzero(force) > SHORT:
-        return 0.0
-    middle = force @ y / total
-    spread = force @ (y - middle) ** 2 / total - step**2 / 6.0
-    return float(0.75 * total / np.sqrt(5.0 * max(spread, MIN_SPREAD * step**2)))
+    total, step = force.sum(axis=1), y[1] - y[0]
+    short = (total > 0.0) & (np.count_nonzero(force, axis=1) <= SHORT)
+    carried = np.where(total > 0.0, total, 1.0)
+    middle = force @ y / carried
+    spread = (force * (y - middle[:, None]) ** 2).sum(axis=1) / carried - step**2 / 6.0
+    peak = 0.75 * total / np.sqrt(5.0 * np.maximum(spread, MIN_SPREAD * step**2))
+    return np.where(short, peak, 0.0)
 
 
 def _owners(face: Array, step: float) -> Integers:
-    """The plane (n,) that each one's load is counted with: itself, or the nearest that no end cuts.
+    """The plane (s, n) that each one's load is counted with: itself, or the nearest that no end cuts.
 
     How two planes share their load where an end cuts one is arbitrary: their hats almost coincide.
     """
-    whole = np.flatnonzero(face > (1 - 1e-9) * step)
-    planes = np.arange(face.size)
-    return np.clip(planes, whole[0], whole[-1]) if whole.size else planes
+    whole = face > (1 - 1e-9) * step
+    count = face.shape[1]
+    none = ~whole.any(axis=1)
+    first = np.where(none, 0, np.argmax(whole, axis=1))
+    last = np.where(none, count, count - np.argmax(whole[:, ::-1], axis=1)) - 1
+    return np.clip(np.arange(count), first[:, None], last[:, None])
 
 
 def _smoothed(force: Array, face: Array, weights: Array) -> Array:
-    """Load per width (n,) N/m over neighbouring planes."""
-    carried, width = (np.convolve(values, weights, mode="same") for values in (force, face))
-    return carried / np.where(width > 0, width, 1.0)
+    """Load per width (s, n) N/m over neighbouring planes."""
+    reach, count = weights.size // 2, force.shape[1]
+    wide = [np.pad(values, ((0, 0), (reach, reach))) for values in (force, face)]
+    carried, width = (
+        sum(weight * values[:, start : start + count] for start, weight in enumerate(weights))
+        for values in wide
+    )
+    return np.asarray(carried / np.where(width > 0, width, 1.0))
 
 
-def _where(lines: ContactLines, row: int, planes: Integers, width: Array, cut: Mask) -> Integers:
+def _where(lines: ContactLines, row: Integers, planes: Integers, width: Array, cut: Mask) -> Integers:
     to_pinion, to_gear, to_end = (
         values[row, planes] for values in (lines.to_pinion_tip, lines.to_gear_tip, lines.to_end)
     )
