@@ -170,7 +170,7 @@ def _along(force: Array, rows: Integers, lines: ContactLines, modulus: float) ->
         line_load=line_load,
         where=where,
         pressure=np.where(inside, pressure, np.nan),
-        error=np.where(inside, np.hypot(0.5 * apart / most[spot], low) * pressure, np.nan),
+        error=np.where(inside, np.hypot(0.5 * apart / load[loaded], low) * pressure, np.nan),
         half_width=width,
     )
     return loads, ends
