@@ -3,10 +3,10 @@
 import numpy as np
 
 from facegear.arrays import AnyArray, Array, Integers, Mask
-from facegear.machine_code.compiler import compiler
+from facegear.machine_code.compiler import compiler, for_callers
 
 compiled = compiler()
-compiled_sums = compiler(fastmath={"contract", "reassoc"})
+inlined_sums = for_callers(fastmath={"contract", "reassoc"})
 """For sums of products, whose terms may be added in any order."""
 
 Bonded = tuple[Integers, Array, AnyArray, Array, Array, float, float]
@@ -15,7 +15,7 @@ factor, their forces by a unit turn (k,), N/rad, their forces (k,), N, the rotat
 the torque."""
 
 
-@compiled_sums
+@inlined_sums
 def _substituted(lower: Array, first: Array, second: Array) -> None:
     """Solve for two right-hand sides in place by a lower Cholesky factor in columns."""
     size = first.size
@@ -35,7 +35,7 @@ def _substituted(lower: Array, first: Array, second: Array) -> None:
         second[j] = (second[j] - b) / lower[j, j]
 
 
-@compiled_sums
+@inlined_sums
 def _times(matrix: Array, vector: Array) -> Array:
     """A matrix times a vector."""
     result = np.empty(matrix.shape[0])

@@ -10,9 +10,9 @@ from facegear.arrays import Array, Integers, Mask
 from facegear.contact.bodies import surface
 from facegear.contact.bodies.surface import LINEAR_STEPS, QUADRATIC_STEPS, locate
 from facegear.contact.options import Refinement
-from facegear.machine_code.compiler import compiler
+from facegear.machine_code.compiler import compiler, for_callers
 
-compiled = compiler(Path(surface.__file__))
+compiled, inlined = compiler(Path(surface.__file__)), for_callers()
 
 ROUNDING = 1e-6
 """Of coordinates on a lattice."""
@@ -85,16 +85,16 @@ def _by(pointer: Integers, index: Integers, weight: Array, forces: Array, nodes:
     return total
 
 
-@compiled
+@inlined
 def _facing(points: HatPoints) -> Mask:
     on = np.empty(points.gap.size, np.bool_)
     for q in range(on.size):
-        place = points.pinion[q, 0] + points.pinion[q, 1] + points.gear[q, 0] + points.gear[q, 1]
-        on[q] = np.isfinite(points.gap[q]) and np.isfinite(place)
+        sum_of_all = points.pinion[q, 0] + points.pinion[q, 1] + points.gear[q, 0] + points.gear[q, 1]
+        on[q] = np.isfinite(points.gap[q]) and np.isfinite(sum_of_all)
     return on
 
 
-@compiled
+@inlined
 def _hat_averages(points: HatPoints, min_area: Array) -> tuple[Rows, Integers]:
     """Averages by area over the points under each hat, and the hats (m,) of which enough is covered."""
     hats, values, area, on = points.hats, points.values, points.area, _facing(points)
@@ -120,7 +120,7 @@ def _hat_averages(points: HatPoints, min_area: Array) -> tuple[Rows, Integers]:
     return (pointer, index, weight), chosen
 
 
-@compiled
+@inlined
 def _nearest_node(rows: Rows, row: int, at: Array, columns: int) -> int:
     """The lattice node nearest to the heaviest point of a row, the first of those alike."""
     pointer, index, weight = rows
@@ -236,8 +236,8 @@ class Lattice:
         """
         steps = LINEAR_STEPS if self.linear else QUADRATIC_STEPS
         scale = self.refinement.profile, self.refinement.width
-        kinds = ((1, 1), self.shape), (scale, self.coarse)
+        both = ((1, 1), self.shape), (scale, self.coarse)
         fine, coarse = (
-            NodalLoads(_spread(rows, at, finer, shape, steps), shape[0] * shape[1]) for finer, shape in kinds
+            NodalLoads(_spread(rows, at, finer, shape, steps), shape[0] * shape[1]) for finer, shape in both
         )
         return fine, coarse

@@ -8,9 +8,9 @@ from facegear.arrays import Array, Integers, Mask
 from facegear.contact.averages import NodalLoads, Rows
 from facegear.contact.bodies.compliance import FlankCompliance
 from facegear.contact.candidates import Candidates
-from facegear.machine_code.compiler import compiler
+from facegear.machine_code.compiler import compiler, for_callers
 
-compiled = compiler()
+compiled, inlined = compiler(), for_callers()
 compiled_sums = compiler(fastmath={"contract", "reassoc"})
 """For sums of products, whose terms may be added in any order."""
 
@@ -159,12 +159,12 @@ def _symmetric(rows: Rows, compliance: Array) -> Array:
     return result
 
 
-@compiled
+@inlined
 def _half(rows: Rows, compliance: Array, columns: Integers) -> tuple[Array, Integers]:
-    """Rows times a compliance at the distinct `columns` (c, m), and the place (n,) of each column there."""
+    """Rows times a compliance at the distinct `columns` (c, m), and the number (n,) of each column there."""
     pointer, index, weight = rows
     used, slot = _used(index, compliance.shape[0])
-    wanted, place = _used(columns, compliance.shape[1])
+    wanted, number = _used(columns, compliance.shape[1])
     count = pointer.size - 1
     half = np.empty((wanted.size, count))
     part, line = np.empty((used.size, BLOCK)), np.empty(BLOCK)
@@ -181,10 +181,10 @@ def _half(rows: Rows, compliance: Array, columns: Integers) -> tuple[Array, Inte
                     line[b] += w * taken[b]
             for b in range(size):
                 half[start + b, i] = line[b]
-    return half, place
+    return half, number
 
 
-@compiled
+@inlined
 def _used(indices: Integers, count: int) -> tuple[Integers, Integers]:
     """The distinct indices, rising, and the index of each among them."""
     mark = np.zeros(count, np.bool_)
@@ -193,7 +193,7 @@ def _used(indices: Integers, count: int) -> tuple[Integers, Integers]:
     return _listed(mark)
 
 
-@compiled
+@inlined
 def _listed(mark: Mask) -> tuple[Integers, Integers]:
     """The indices that are marked (n,), rising, and the index of each among them."""
     used = np.flatnonzero(mark)

@@ -160,8 +160,8 @@ def _along(force: Array, rows: Integers, lines: ContactLines, modulus: float) ->
     inside = where == INSIDE
     apart = _largest_nearby(np.abs(wider - load)[loaded], ends, spot)
     # in a short ellipse both averages are too low: load and length say by how much, and p goes with the root
-    most = np.where(loaded, load, 0.0).max(axis=1, initial=0.0)
-    peak = _peak_if_short(force, lines.y) / np.where(most > 0.0, most, np.inf)
+    top_load = np.where(loaded, load, 0.0).max(axis=1, initial=0.0)
+    peak = _peak_if_short(force, lines.y) / np.where(top_load > 0.0, top_load, np.inf)
     low = np.maximum(0.5 * (peak - 1.0), 0.0)[spot]
     loads = LineLoads(
         line=row,
@@ -186,8 +186,8 @@ def _largest_nearby(values: Array, ends: Integers, spot: Integers) -> Array:
 
 def _closed(carries: Mask) -> Mask:
     """Planes (s, n) that carry load, with those between two that do."""
-    wide = np.pad(carries, ((0, 0), (2, 2)))
-    grown = wide[:, :-2] | wide[:, 1:-1] | wide[:, 2:]
+    padded = np.pad(carries, ((0, 0), (2, 2)))
+    grown = padded[:, :-2] | padded[:, 1:-1] | padded[:, 2:]
     return np.asarray(grown[:, :-2] & grown[:, 1:-1] & grown[:, 2:])
 
 
@@ -221,10 +221,10 @@ def _owners(face: Array, step: float) -> Integers:
 def _smoothed(force: Array, face: Array, weights: Array) -> Array:
     """Load per width (s, n) N/m over neighbouring planes."""
     reach, count = weights.size // 2, force.shape[1]
-    wide = [np.pad(values, ((0, 0), (reach, reach))) for values in (force, face)]
+    padded = [np.pad(values, ((0, 0), (reach, reach))) for values in (force, face)]
     carried, width = (
         sum(weight * values[:, start : start + count] for start, weight in enumerate(weights))
-        for values in wide
+        for values in padded
     )
     return np.asarray(carried / np.where(width > 0, width, 1.0))
 

@@ -67,12 +67,14 @@ def find_all(
     all_pairs = Placements(phi1, phi2, np.concatenate(teeth))
     points = _facing_points(pair, all_pairs, limit * pair.design.pinion_base_radius + SAG, options)
     first, cover = _hats(pair, options)
-    found = []
+    candidates = []
     for tooth, part in zip(all_pairs.tooth.tolist(), points, strict=True):
         lattices = pair.pinion.lattice, pair.gear.lattice
-        found.append(candidates_of(*lattices, tooth, part, cover, limit, first) if part is not None else [])
+        candidates.append(
+            candidates_of(*lattices, tooth, part, cover, limit, first) if part is not None else []
+        )
     ends = np.cumsum([0, *counts])
-    return [list(chain(*found[start:end])) for start, end in pairwise(ends)]
+    return [list(chain(*candidates[start:end])) for start, end in pairwise(ends)]
 
 
 def _hats(pair: FlankPair, options: ContactOptions) -> tuple[int, Array]:
