@@ -81,11 +81,23 @@ def _ring_force(displacement: Array, speed: Array, stiffness: float, clearance: 
 
 def velocities(response: SteadyState) -> Array:
     """Time derivatives of the coordinates (K, n), 1/s, from cubic splines through the samples."""
-    time = np.arange(len(response.coordinates) + 1) * TAU / (response.frequency * response.per_period)
+    step = TAU / (response.frequency * response.per_period)
     if response.period > 0:
-        closed = np.concatenate([response.coordinates, response.coordinates[:1]])
-        return scipy.interpolate.CubicSpline(time, closed, bc_type="periodic")(time[:-1], 1)
-    return scipy.interpolate.CubicSpline(time[:-1], response.coordinates)(time[:-1], 1)
+        return closed_spline_slopes(response.coordinates, step)
+    time = np.arange(len(response.coordinates)) * step
+    return scipy.interpolate.CubicSpline(time, response.coordinates)(time, 1)
+
+
+def closed_spline_slopes(samples: Array, step: float) -> Array:
+    """Slopes (K, columns) at the knots of the periodic cubic spline through K even samples.
+
+    Slopes m satisfy m[i-1] + 4 m[i] + m[i+1] = 3 (f[i+1] - f[i-1]) / step, which Fourier's series solves wave
+    by wave.
+    """
+    count = len(samples)
+    angle = TAU * np.arange(count // 2 + 1) / count
+    factor = 3.0j * np.sin(angle) / ((2.0 + np.cos(angle)) * step)
+    return np.asarray(np.fft.irfft(np.fft.rfft(samples, axis=0) * factor[:, None], count, axis=0))
 
 
 def bearing_table(model: Model, response: SteadyState) -> pd.DataFrame:

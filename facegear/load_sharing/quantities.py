@@ -14,7 +14,7 @@ from facegear.load_sharing.hardest_cycles import hardest_cycles
 from facegear.load_sharing.hunting import LoadHistory, hunting_cycle, hunting_length
 from facegear.load_sharing.options import SharingOptions
 from facegear.load_sharing.quantity_names import PAST_LAW, quantity_names
-from facegear.load_sharing.run import load_sharing
+from facegear.load_sharing.run import measured_motion
 from facegear.load_sharing.statistics import defined_mean
 from facegear.transmission.flanks import carried, past_law
 from facegear.transmission.layout import Layout
@@ -65,7 +65,7 @@ def dynamic_quantities(
 ) -> Found:
     """Of the motion reached from static equilibrium. Raises NotConverged naming the speed."""
     model = build_model(machine)
-    response = load_sharing(model, speed_rpm, settings, options).response
+    response = measured_motion(model, speed_rpm, settings, options)
     forces = carried(response.forces)
     flanks = np.concatenate([np.maximum(forces, 0.0), np.maximum(-forces, 0.0)], axis=1)
     cycles = np.arange(len(flanks)) / response.per_period

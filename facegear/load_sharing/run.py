@@ -75,6 +75,14 @@ def load_sharing(
     return Sharing(response, shared, tuple(motions))
 
 
+def measured_motion(
+    model: Model, speed_rpm: float, settings: Settings, options: SharingOptions
+) -> SteadyState:
+    """The motion from static equilibrium, as load_sharing() measures it. Raises NotConverged."""
+    settings = replace(settings, window=options.cycles, samples=options.samples)
+    return densely_sampled(watched_motion(model, speed_rpm, settings, options, static_start(model)))
+
+
 def starting_states(model: Model, options: SharingOptions, count: int) -> list[State]:
     """The first `count` starting states: static equilibrium, then the same disturbed at random."""
     rest, random = static_start(model), np.random.default_rng(options.seed)

@@ -4,7 +4,7 @@ Between two levels of the amount the force is the cubic that has force and slope
 (Hermite), at every phase; so are its coefficients Fourier series. Beyond the last level it goes on straight.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
@@ -46,30 +46,17 @@ class ForceTable:
         """Of the powers 0 to 3 of the amount beyond the level at which a piece begins, (L, 4, 2, harmonics +
         1).
         """
-        spacing = np.diff(self.levels)[:, None, None]
-        rise = np.diff(self.forces, axis=0) / spacing
-        begin, end = self.slopes[:-1], self.slopes[1:]
-        values = np.zeros((self.levels.size, 4, *self.forces.shape[1:]))
-        values[:, 0], values[:, 1] = self.forces, self.slopes
-        values[:-1, 2] = (3.0 * rise - 2.0 * begin - end) / spacing
-        values[:-1, 3] = (begin + end - 2.0 * rise) / spacing**2
-        return values
+        return _hermite(self.levels, self.forces, self.slopes)
 
     @cached_property
     def bounds(self) -> Array:
-        """Series (2 L - 1, 2, harmonics + 1) between whose extremes all slopes lie, N/m.
-
-        They are the slopes at the levels, and between two of them the middle coefficient of the slope in
-        Bernstein form.
-        """
-        spacing = np.diff(self.levels)[:, None, None]
-        middle = self.slopes[:-1] + spacing * self.coefficients[:-1, 2]
-        return np.concatenate([self.slopes, middle])
+        """Series (2 L - 1, 2, harmonics + 1) between whose extremes all slopes lie, N/m."""
+        return _slope_bounds(self.levels, self.coefficients)
 
     @cached_property
     def steepest(self) -> float:
         """Bound of the slope over phase and amount, N/m."""
-        return float(np.hypot(self.bounds[:, 0], self.bounds[:, 1]).sum(axis=1).max())
+        return float(_sizes(self.bounds).sum(axis=-1).max())
 
     @cached_property
     def min_slope(self) -> float:
@@ -79,10 +66,6 @@ class ForceTable:
         first, second, third = np.moveaxis(values, 2, 0)[:, :, None]
         amounts = np.linspace(0.0, 1.0, LOOKS + 1)[:, None] * np.append(np.diff(self.levels), 0.0)
         return float((first + amounts * (2.0 * second + 3.0 * amounts * third)).min())
-
-    def shifted(self, cycles: float) -> "ForceTable":
-        """The table of a contact that comes later by some mesh periods."""
-        return ForceTable(self.levels, _lagging(self.forces, cycles), _lagging(self.slopes, cycles))
 
     def mirrored(self) -> "ForceTable":
         """The table of a contact that goes through the phases the other way round."""
@@ -124,16 +107,23 @@ class LoadDependentLaw:
     @cached_property
     def steepest(self) -> Array:
         """Bounds of the slopes, (M,)."""
-        return np.array([table.steepest for table in self.tables])[self.kind]
+        return self._steepest[self.kind]
 
     @cached_property
     def harmonic_fractions(self) -> Array:
         """Largest fraction of the slope's bound that each harmonic makes up, (H + 1,)."""
-        fractions = [
-            np.hypot(table.bounds[:, 0], table.bounds[:, 1]).max(axis=0) / max(table.steepest, 1e-300)
-            for table in self.tables
-        ]
-        return np.asarray(np.max(fractions, axis=0))
+        fractions = self._bound_sizes.max(axis=1) / np.maximum(self._steepest, 1e-300)[:, None]
+        return np.asarray(fractions.max(axis=0))
+
+    @cached_property
+    def _steepest(self) -> Array:
+        """Bounds of the slopes of each kind."""
+        return np.asarray(self._bound_sizes.sum(axis=-1).max(axis=1))
+
+    @cached_property
+    def _bound_sizes(self) -> Array:
+        """Amplitudes (kinds, 2 L - 1, harmonics + 1) of the series that bound the slopes."""
+        return _sizes(_slope_bounds(self._levels, self._coefficients))
 
     @cached_property
     def _levels(self) -> Array:
@@ -141,30 +131,41 @@ class LoadDependentLaw:
 
     @cached_property
     def _coefficients(self) -> Array:
-        return np.array([table.coefficients for table in self.tables])
+        forces, slopes = (
+            np.array([getattr(table, name) for table in self.tables]) for name in ("forces", "slopes")
+        )
+        return _hermite(self._levels, forces, slopes)
 
     def force(self, cycles: Array, beyond: Array) -> Array:
         """Forces (..., K, M)."""
-        ahead, (zeroth, first, second, third) = self._pieces(cycles, beyond)
-        return np.asarray(np.sign(beyond) * (zeroth + ahead * (first + ahead * (second + ahead * third))))
+        forces = self._by_piece(cycles, beyond, _cubic)
+        np.negative(forces, out=forces, where=beyond < 0.0)
+        return forces
 
     def slope(self, cycles: Array, beyond: Array) -> Array:
         """Slopes (..., K, M), zero where nothing is pressed in."""
-        ahead, (_, first, second, third) = self._pieces(cycles, beyond)
-        slopes = first + ahead * (2.0 * second + 3.0 * ahead * third)
-        return np.asarray(np.where(beyond != 0.0, slopes, 0.0))
+        return self._by_piece(cycles, beyond, _cubic_slope)
 
-    def _pieces(self, cycles: Array, beyond: Array) -> tuple[Array, Array]:
-        """Amounts (..., K, M) past the beginnings of their pieces, and coefficients (4, ..., K, M)."""
-        values = _values(self._coefficients, cycles)
-        ahead = np.abs(beyond)
-        coefficients = np.empty((4, *ahead.shape))
-        rows = np.arange(cycles.size)
+    def _by_piece(self, cycles: Array, beyond: Array, law: Callable[[Array, Array], Array]) -> Array:
+        """What `law` gives for amounts (..., K) past the beginning of a piece and its coefficients (4, K), at
+        every contact (..., K, M); zero where nothing is pressed in.
+
+        Only pieces that contacts are pressed into are evaluated.
+        """
+        angle = 2.0 * np.pi * np.outer(np.arange(self._coefficients.shape[-1]), cycles)
+        waves = np.stack([np.sin(angle), np.cos(angle)])
+        values = np.zeros(beyond.shape)
         for m, kind in enumerate(self.kind):
-            piece = np.searchsorted(self._levels[kind], ahead[..., m], side="right") - 1
-            ahead[..., m] -= self._levels[kind][piece]
-            coefficients[..., m] = np.moveaxis(values[rows, kind, piece], -1, 0)
-        return ahead, coefficients
+            ahead = np.abs(beyond[..., m])
+            piece = np.searchsorted(self._levels[kind], ahead, side="right") - 1
+            pressed = ahead > 0.0
+            for number, begin in enumerate(self._levels[kind]):
+                here = pressed & (piece == number)
+                if here.any():
+                    series = self._coefficients[kind, number]
+                    coefficients = series[:, 0] @ waves[0] + series[:, 1] @ waves[1]
+                    np.copyto(values[..., m], law(ahead - begin, coefficients), where=here)
+        return values
 
     def mean(self) -> "LoadDependentLaw":
         """Mean forces and slopes at every level."""
@@ -220,6 +221,46 @@ def load_dependent_law(tables: Sequence[ForceTable]) -> LoadDependentLaw:
     return LoadDependentLaw(tuple(tables), np.arange(len(tables)))
 
 
+def _hermite(levels: Array, forces: Array, slopes: Array) -> Array:
+    """Coefficients (..., L, 4, 2, harmonics + 1) of cubics with forces and slopes (..., L, 2, harmonics + 1)
+    at levels (..., L).
+    """
+    spacing = np.diff(levels)[..., None, None]
+    rise = np.diff(forces, axis=-3) / spacing
+    begin, end = slopes[..., :-1, :, :], slopes[..., 1:, :, :]
+    values = np.zeros((*forces.shape[:-2], 4, *forces.shape[-2:]))
+    values[..., 0, :, :], values[..., 1, :, :] = forces, slopes
+    values[..., :-1, 2, :, :] = (3.0 * rise - 2.0 * begin - end) / spacing
+    values[..., :-1, 3, :, :] = (begin + end - 2.0 * rise) / spacing**2
+    return values
+
+
+def _slope_bounds(levels: Array, coefficients: Array) -> Array:
+    """Series (..., 2 L - 1, 2, harmonics + 1) between whose extremes all slopes lie, N/m.
+
+    They are the slopes at the levels, and between two of them the middle coefficient of the slope in
+    Bernstein form.
+    """
+    spacing, slopes = np.diff(levels)[..., None, None], coefficients[..., 1, :, :]
+    middle = slopes[..., :-1, :, :] + spacing * coefficients[..., :-1, 2, :, :]
+    return np.concatenate([slopes, middle], axis=-3)
+
+
+def _sizes(series: Array) -> Array:
+    """Amplitudes (..., harmonics + 1) of Fourier series (..., 2, harmonics + 1)."""
+    return np.asarray(np.hypot(series[..., 0, :], series[..., 1, :]))
+
+
+def _cubic(ahead: Array, coefficients: Array) -> Array:
+    zeroth, first, second, third = coefficients
+    return np.asarray(zeroth + ahead * (first + ahead * (second + ahead * third)))
+
+
+def _cubic_slope(ahead: Array, coefficients: Array) -> Array:
+    _, first, second, third = coefficients
+    return np.asarray(first + ahead * (2.0 * second + 3.0 * ahead * third))
+
+
 def _values(series: Array, cycles: Array) -> Array:
     """Values (K, ...) of Fourier series (..., 2, harmonics + 1) at phases (K,)."""
     angle = 2.0 * np.pi * np.outer(cycles, np.arange(series.shape[-1]))
@@ -229,12 +270,14 @@ def _values(series: Array, cycles: Array) -> Array:
     )
 
 
-def _lagging(series: Array, cycles: float) -> Array:
-    """Fourier series (..., 2, harmonics + 1) of what comes later by some mesh periods."""
-    angle = 2.0 * np.pi * cycles * np.arange(series.shape[-1])
+def lagging(tables: Sequence[ForceTable], cycles: Sequence[float]) -> list[ForceTable]:
+    """The tables of contacts that come later by some mesh periods each."""
+    series = np.array([[table.forces, table.slopes] for table in tables])
+    angle = 2.0 * np.pi * np.multiply.outer(cycles, np.arange(series.shape[-1]))[:, None, None]
     cosine, sine = np.cos(angle), np.sin(angle)
     a, b = series[..., 0, :], series[..., 1, :]
-    return np.stack([a * cosine + b * sine, b * cosine - a * sine], axis=-2)
+    later = np.stack([a * cosine + b * sine, b * cosine - a * sine], axis=-2)
+    return [ForceTable(table.levels, *both) for table, both in zip(tables, later, strict=True)]
 
 
 @lru_cache(maxsize=16)

@@ -16,7 +16,7 @@ from facegear.arrays import Array
 from facegear.harmonics.series import Harmonics
 from facegear.mesh_law.law import MeshLaw
 from facegear.mesh_law.linear import linear_law
-from facegear.mesh_law.load_dependent import LoadDependentLaw, load_dependent_law
+from facegear.mesh_law.load_dependent import LoadDependentLaw, lagging, load_dependent_law
 from facegear.transmission.assembly import assembly
 from facegear.transmission.layout import Layout, Side
 from facegear.transmission.machine import Machine, OpenFlanks
@@ -87,6 +87,7 @@ def _line_contacts(machine: Machine) -> MeshContacts:
     )
 
 
+@lru_cache(maxsize=16)
 def flank_law(machine: Machine) -> MeshLaw:
     """The law of all drive flanks, then all back flanks: the machine's own, or else its mesh stiffness."""
     if machine.law is not None:
@@ -113,15 +114,16 @@ def _tables_of_flanks(machine: Machine) -> LoadDependentLaw:
     gears = [machine.tables[g] for _, g in machine.layout.meshes]
     factors = machine.imperfections.stiffness.tolist()
     lags = _lags(machine)
-    drive = [gear_tables.drive.scaled(factor) for gear_tables, factor in zip(gears, factors, strict=True)]
-    back = [
-        gear_tables.back.mirrored().scaled(factor) for gear_tables, factor in zip(gears, factors, strict=True)
+    mirrored_backs = [tables.back.mirrored() for tables in machine.tables]
+    backs = [mirrored_backs[g] for _, g in machine.layout.meshes]
+    flanks = [
+        table if factor == 1.0 else table.scaled(factor)
+        for table, factor in zip([*(both.drive for both in gears), *backs], 2 * factors, strict=True)
     ]
-    flanks = [*drive, *back]
     if machine.softening is not None:
         soft = 2 * machine.softening.tolist()
         flanks = [softened(table, compliance) for table, compliance in zip(flanks, soft, strict=True)]
-    return load_dependent_law([table.shifted(lag) for table, lag in zip(flanks, 2 * lags, strict=True)])
+    return load_dependent_law(lagging(flanks, 2 * lags))
 
 
 def _lags(machine: Machine) -> list[float]:
@@ -138,7 +140,7 @@ def line_law(machine: Machine) -> MeshLaw:
     if machine.tables is None:
         return linear_law([machine.stiffness.shifted(lag) for lag in lags])
     drive = [machine.tables[g].drive for _, g in machine.layout.meshes]
-    return load_dependent_law([table.shifted(lag) for table, lag in zip(drive, lags, strict=True)])
+    return load_dependent_law(lagging(drive, lags))
 
 
 def error_series(machine: Machine) -> list[Harmonics]:

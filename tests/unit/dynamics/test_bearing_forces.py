@@ -11,7 +11,12 @@ from references import against, agrees
 from scipy.interpolate import CubicSpline
 
 import facegear
-from facegear.dynamics.bearing_forces import bearing_history, bearing_table, velocities
+from facegear.dynamics.bearing_forces import (
+    bearing_history,
+    bearing_table,
+    closed_spline_slopes,
+    velocities,
+)
 from facegear.dynamics.integrator.compiled import TAU
 from facegear.dynamics.motion import Motion, Settings
 from facegear.dynamics.steady_state.simulate import build_model, simulate
@@ -214,3 +219,11 @@ def test_the_report_shows_the_forces_on_the_bearings_at_the_nominal_speed():
     page = case_report(values, {"bearings": bearing_table(model, found)}, {}, [])
     assert "Force of every body on its bearing" in page
     assert page.count("<td>radial</td>") == 7
+
+
+@given(st.integers(3, 40), st.integers(0, 2**32 - 1))
+def test_slopes_of_a_periodic_motion_are_those_of_the_closed_spline(count, seed):
+    samples = np.random.default_rng(seed).normal(size=(count, 3))
+    time = 0.3 * np.arange(count + 1)
+    spline = CubicSpline(time, np.concatenate([samples, samples[:1]]), bc_type="periodic")
+    np.testing.assert_allclose(closed_spline_slopes(samples, 0.3), spline(time[:-1], 1), rtol=0, atol=1e-10)

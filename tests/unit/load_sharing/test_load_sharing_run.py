@@ -8,11 +8,12 @@ from lumped_machines import make_layout, make_machine
 from references import against, agrees
 
 from facegear.dynamics.motion import Settings
+from facegear.dynamics.steady_state.simulate import build_model
 from facegear.harmonics.series import Harmonics
 from facegear.load_sharing.coefficients import sharing_coefficient
 from facegear.load_sharing.options import SharingOptions, SpeedRange
 from facegear.load_sharing.reference import reference_table, slow_forces, speed_range_table
-from facegear.load_sharing.run import load_sharing
+from facegear.load_sharing.run import load_sharing, measured_motion
 from facegear.load_sharing.sampling import between, same_orbit
 from facegear.load_sharing.statics import static_forces
 from facegear.load_sharing.tables import CURVE_COLUMNS, SUMMARY_COLUMNS, curve_table, summary_table
@@ -230,3 +231,12 @@ def test_instants_between_the_samples_of_a_band_limited_series_are_exact(waves, 
         relative=1e-7,
         absolute=1e-13,
     )
+
+
+def test_a_machine_is_judged_by_the_motion_that_its_load_sharing_is_taken_from(tight):
+    """Without what the groups make of it, which nobody asks for there."""
+    model, single = build_model(tight), replace(OPTIONS, starts=1)
+    alone = measured_motion(model, 6000.0, SETTINGS, single)
+    shared = load_sharing(model, 6000.0, SETTINGS, single).response
+    np.testing.assert_array_equal(alone.coordinates, shared.coordinates)
+    np.testing.assert_array_equal(alone.forces, shared.forces)

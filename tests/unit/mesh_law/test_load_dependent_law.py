@@ -6,11 +6,11 @@ from force_tables import power_table, two_pairs
 from hypothesis import given
 from hypothesis import strategies as st
 
-from facegear.mesh_law.load_dependent import ForceTable, load_dependent_law
+from facegear.mesh_law.load_dependent import ForceTable, lagging, load_dependent_law
 from facegear.mesh_law.terms import held_force
 
 AMOUNTS = np.append(np.linspace(0.0, 5.0, 83), [1e-6, 3e-5])
-LAW = load_dependent_law([power_table(12, 0.3), power_table(12, 0.3).shifted(0.2)])
+LAW = load_dependent_law(lagging(2 * [power_table(12, 0.3)], [0.0, 0.2]))
 
 
 def test_the_table_gives_forces_and_slopes_of_its_levels_back():
@@ -50,12 +50,14 @@ def test_compiled_statics_see_the_same_law():
 
 @given(st.floats(0.0, 1.0), st.floats(1e-9, 6.0), st.floats(-1.0, 1.0))
 def test_a_table_that_comes_later_or_runs_backwards_is_the_same_function_of_the_phase(cycle, amount, lag):
-    table = two_pairs(9, 6, 1.5).shifted(0.1)
+    (table,) = lagging([two_pairs(9, 6, 1.5)], [0.1])
+    first, later = lagging(2 * [table], [0.0, lag])
 
     def force(of: ForceTable, phase):
         return load_dependent_law([of]).force(np.array([phase]), np.array([[amount]]))[0, 0]
 
-    assert force(table.shifted(lag), cycle) == pytest.approx(force(table, cycle - lag), abs=1e-11)
+    assert force(first, cycle) == pytest.approx(force(table, cycle), abs=1e-11)
+    assert force(later, cycle) == pytest.approx(force(table, cycle - lag), abs=1e-11)
     assert force(table.mirrored(), cycle) == pytest.approx(force(table, -cycle), abs=1e-11)
 
 
@@ -90,3 +92,23 @@ def test_a_table_without_any_force_has_no_harmonics_and_no_breaks():
     law = load_dependent_law([ForceTable(np.array([0.0, 1.0, 2.0]), nothing, nothing)])
     np.testing.assert_array_equal(law.harmonic_fractions, np.zeros(4))
     assert law.breaks.size == 0
+
+
+def test_contacts_are_evaluated_as_if_each_stood_alone():
+    """Some are open throughout, some in one piece, some in many: none changes what another one gets."""
+    phases = np.linspace(0.0, 1.0, 40, endpoint=False)
+    tables = lagging(4 * [two_pairs(9, 6, 1.5)], [0.0, 0.2, 0.5, 0.7])
+    last = tables[0].levels[-1]
+    beyond = np.zeros((2, 40, 4))
+    beyond[..., 1] = 0.1 * tables[0].levels[1]
+    beyond[..., 2] = 1.2 * last * np.sin(2.0 * np.pi * phases)
+    beyond[1, :, 3] = np.linspace(0.0, 2.0 * last, 40)
+    law = load_dependent_law(tables)
+    for name in ("force", "slope"):
+        found = getattr(law, name)(phases, beyond)
+        for m, table in enumerate(tables):
+            alone = load_dependent_law([table])
+            for row, k in np.ndindex(2, 40):
+                here = getattr(alone, name)(phases[k : k + 1], beyond[row, k : k + 1, m : m + 1])
+                assert found[row, k, m] == pytest.approx(here[0, 0], rel=1e-12, abs=1e-15)
+        assert not found[:, :, 0].any()
