@@ -10,9 +10,8 @@ from matplotlib.figure import Figure
 from facegear.arrays import Arrays
 from facegear.contact.studies import StudiedContact
 from facegear.plots.contact import closed, pattern_panels
-from facegear.plots.style import NARROW, styled
+from facegear.plots.style import COLOURS, NARROW, styled
 
-COLOURS = ("black", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 LINES = ("-", "--", "-.", ":")
 
 

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from facegear.arrays import Arrays
 from facegear.plots.contact import pattern_panels
-from facegear.plots.style import NARROW, styled
+from facegear.plots.style import NARROW, mesh_looks, styled
 
 NEAR = 8.0
 """Distance (mm) of a path from an end of the face below which that is drawn."""
@@ -24,11 +24,19 @@ def pose_pattern(meshes: pd.DataFrame, as_assembled: Arrays, running: Arrays) ->
     """Two panels: as assembled, and where the machine's forces put the teeth."""
     torque = float(np.unique(running["line_torque_n_m"])[0])
     name = meshes["mesh"].iloc[int(np.argmin(np.abs(meshes["torque_n_m"] - torque)))]
+    row = meshes[meshes["mesh"] == name].iloc[0]
     panels = {
-        f"{name} at {torque:.0f} N m, as assembled": (as_assembled, torque),
-        f"{name} at {torque:.0f} N m, as the machine runs": (running, torque),
+        _title("as assembled", row["path_as_assembled_mm"], as_assembled): (as_assembled, torque),
+        _title("as the machine runs", row["path_mm"], running): (running, torque),
     }
-    return pattern_panels(panels)
+    figure = pattern_panels(panels)
+    figure.suptitle(f"{name} at {torque:.0f} N m", fontsize=9)
+    return figure
+
+
+def _title(words: str, path_mm: float, arrays: Arrays) -> str:
+    pressure = 1e-6 * float(np.nanmax(arrays["line_pressure_pa"], initial=0.0))
+    return f"{words}: path at {path_mm:.1f} mm, {pressure:.0f} MPa"
 
 
 def pose_paths(meshes: pd.DataFrame, loads: pd.DataFrame) -> Figure:
@@ -40,13 +48,14 @@ def pose_paths(meshes: pd.DataFrame, loads: pd.DataFrame) -> Figure:
     }
     with styled():
         figure, axis = plt.subplots(figsize=(NARROW, 4.6))
-        for name, rows in loads.groupby("mesh", sort=False):
-            axis.plot(100.0 * rows["load_fraction"], rows["unloaded_path_mm"], label=str(name))
+        for name, look in mesh_looks(dict.fromkeys(loads["mesh"])).items():
+            rows = loads[loads["mesh"] == name]
+            axis.plot(100.0 * rows["load_fraction"], rows["unloaded_path_mm"], label=name, **look)
         paths = loads["unloaded_path_mm"]
-        for (name, radius), style in zip(ends.items(), (":", "--"), strict=True):
+        for (name, radius), style in zip(ends.items(), (":", "-."), strict=True):
             if paths.min() - NEAR < radius < paths.max() + NEAR:
-                axis.axhline(radius, color="0.4", linestyle=style, linewidth=1.0, label=name)
+                axis.axhline(radius, color="0.5", linestyle=style, linewidth=2.0, label=name)
         axis.set_xlabel("Mean torques over the machine's own (%)")
-        axis.set_ylabel("Unloaded contact, from the gear's axis (mm)")
+        axis.set_ylabel("Unloaded contact,\nfrom the gear's axis (mm)")
         figure.legend(loc="outside lower center", ncols=2)
     return figure

@@ -7,11 +7,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from facegear.plots.contact_study import COLOURS
-from facegear.plots.style import NARROW, styled
+from facegear.plots.style import NARROW, mesh_looks, styled
 
-LINES = {"lower": "-", "upper": "--"}
-"""Look of the meshes with each gear; the colour is the pinion's."""
 MARKERS = "osD^vPX"
 WIDE = 30.0
 """Ratio of the largest number to the smallest from which the axis is logarithmic."""
@@ -28,15 +25,15 @@ def figures(forces: pd.DataFrame, titles: Mapping[str, str]) -> list[Figure]:
 def forces_figure(forces: pd.DataFrame, title: str) -> Figure:
     """Two panels for each label of the other axis: fraction of the group's load, largest force."""
     cases = list(forces.groupby("beside", sort=False))
-    pinions = list(dict.fromkeys(mesh.rpartition("/")[0] for mesh in forces["mesh"]))
+    looks = mesh_looks(dict.fromkeys(forces["mesh"]))
     with styled():
         figure, axes = plt.subplots(
             2 * len(cases), 1, figsize=(NARROW, 1.7 + 2.4 * 2 * len(cases)), sharex=True, squeeze=False
         )
         for number, (beside, rows) in enumerate(cases):
             split, largest = axes[2 * number : 2 * number + 2, 0]
-            _curves(split, rows[rows["group"] != ""], pinions, "fraction", 100.0)
-            _curves(largest, rows, pinions, "largest_n", 1e-3)
+            _curves(split, rows[rows["group"] != ""], looks, "fraction", 100.0)
+            _curves(largest, rows, looks, "largest_n", 1e-3)
             split.set(ylabel="Mean fraction of the\nload of its group (%)", title=str(beside))
             largest.set(ylabel="Largest dynamic\nforce (kN)", ylim=(0.0, None))
         numbers = forces["number"]
@@ -48,16 +45,17 @@ def forces_figure(forces: pd.DataFrame, title: str) -> Figure:
     return figure
 
 
-def _curves(axis: Axes, rows: pd.DataFrame, pinions: list[str], column: str, scale: float) -> None:
+def _curves(
+    axis: Axes, rows: pd.DataFrame, looks: Mapping[str, Mapping[str, str]], column: str, scale: float
+) -> None:
     """A curve a mesh; hollow marks where the motion does not repeat with the mesh cycle."""
-    for mesh, own in rows.groupby("mesh", sort=False):
-        pinion, _, gear = str(mesh).rpartition("/")
-        number = pinions.index(pinion)
-        colour, marker = COLOURS[number % len(COLOURS)], MARKERS[number % len(MARKERS)]
-        own = own.sort_values("number")
-        look = {"color": colour, "marker": marker, "ms": 4.5, "lw": 1.3}
-        axis.plot(own["number"], scale * own[column], ls=LINES[gear], label=str(mesh), **look)
+    colours = list(dict.fromkeys(look["color"] for look in looks.values()))
+    for mesh, every in rows.groupby("mesh", sort=False):
+        look = looks[str(mesh)]
+        mark = {"marker": MARKERS[colours.index(look["color"]) % len(MARKERS)], "ms": 4.5}
+        own = every.sort_values("number")
+        axis.plot(own["number"], scale * own[column], lw=1.3, label=str(mesh), **look, **mark)
         other = own[own["motion"] != PERIODIC]
         if len(other):
-            look = {"color": colour, "marker": marker, "ms": 4.5, "markerfacecolor": "white"}
-            axis.plot(other["number"], scale * other[column], ls="none", **look)
+            hollow = {**mark, "color": look["color"], "ls": "none", "markerfacecolor": "white"}
+            axis.plot(other["number"], scale * other[column], **hollow)

@@ -1,6 +1,6 @@
 """One look for all figures, and the one place that writes them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -26,6 +26,10 @@ STYLE = {
 }
 
 
+COLOURS = ("black", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+"""That people tell apart who see no red or no green (Okabe and Ito)."""
+GEAR_LINES = {"lower": "-", "upper": "--"}
+"""Lines of the meshes with each gear; the colour is the pinion's."""
 NARROW = 4.7
 """Width in inches of figures that a telephone shows whole: at 500 px their 9 pt text is 12 px high."""
 
@@ -54,6 +58,16 @@ def save(figure: Figure, *paths: str | Path) -> None:
                     dates = {"Date": None} if str(path).endswith(".svg") else None
                     figure.savefig(temporary, metadata=dates)
     plt.close(figure)
+
+
+def mesh_looks(meshes: Iterable[str]) -> dict[str, dict[str, str]]:
+    """Colour and line of each mesh (`pinion/gear`): a colour a pinion, a line a gear."""
+    parts = {mesh: mesh.rpartition("/")[::2] for mesh in meshes}
+    pinions = list(dict.fromkeys(pinion for pinion, _ in parts.values()))
+    return {
+        mesh: {"color": COLOURS[pinions.index(pinion) % len(COLOURS)], "ls": GEAR_LINES[gear]}
+        for mesh, (pinion, gear) in parts.items()
+    }
 
 
 def legend_above(axis: Axes, columns: int, right: bool = False) -> None:
