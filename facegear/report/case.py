@@ -115,14 +115,16 @@ def case_report(
     manifests: Sequence[Mapping[str, Any]],
     pair: Mapping[str, Any] | None = None,
     view: View | None = None,
+    bodies: View | None = None,
     base: Base | None = None,
     notes: Sequence[str] = (),
 ) -> str:
     """The HTML page of a case.
 
     values: its config; tables by file name without ending; pictures (svg) by name; manifests of all rules;
-    pair: the record of the tooth geometry, view: the pair in mesh, if they were computed; base: the config
-    file that the case's own extends; notes: what a run says of its config when it starts.
+    pair: the record of the tooth geometry, view: the pair in mesh, bodies: modes of face gears that bend, if
+    they were computed; base: the config file that the case's own extends; notes: what a run says of its
+    config when it starts.
     Chapters without a picture or table are left out.
     """
     known = {name for _, _, names in CHAPTERS for name in names}
@@ -140,7 +142,7 @@ def case_report(
             if name in pictures and name not in (drawing, "machine")
         ]
         own = _tables(title, tables, values["dynamics"]["speed_rpm"])
-        seen = view if title == "Loaded contact" else None
+        seen = {"Loaded contact": view, "Modes": bodies}.get(title)
         said = pose_text(tables) if title == POSES else ""
         if shown_pictures or own or seen:
             chapters.append(Chapter(title, f"{text}\n\n{said}", shown_pictures, own, seen))

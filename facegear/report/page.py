@@ -8,11 +8,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import floor, isfinite, log10
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pandas as pd
 
+from facegear.arrays import AnyArray
 from facegear.io import pages
 from facegear.report.stills import data_uri
 from facegear.report.units import UNITS, ending_of
@@ -141,10 +142,14 @@ class Table:
 
 @dataclass(frozen=True)
 class View:
-    """What the viewer of `pair_view.js` draws (plain values, arrays as base64), under a caption."""
+    """What the viewer of a kind draws (plain values, arrays as base64), under a caption.
+
+    Its controls stand in `<kind>_view.html.j2`, its script in `<kind>_view.js`.
+    """
 
     data: Mapping[str, Any]
     caption: str
+    kind: Literal["pair", "body"] = "pair"
 
     def packed(self) -> str:
         """The data as the page carries them."""
@@ -171,7 +176,7 @@ def render(title: str, lead: str, chapters: Sequence[Chapter]) -> str:
     """The page as HTML text that needs no other file."""
     pictures = [picture for chapter in chapters for picture in chapter.pictures]
     figures = {picture.anchor: picture.interactive for picture in pictures if picture.interactive}
-    viewed = any(chapter.view for chapter in chapters)
+    viewed = sorted({chapter.view.kind for chapter in chapters if chapter.view})
     return pages.render(
         TEMPLATE,
         title=title,
@@ -180,7 +185,9 @@ def render(title: str, lead: str, chapters: Sequence[Chapter]) -> str:
         css=_own("page.css"),
         tables=_own("tables.js"),
         packed=_own("packed.js") if viewed or figures else "",
-        viewer=_own("pair_view.js") if viewed else "",
+        viewers=[_own(name) for name in ("viewer.js", *(f"{kind}_view.js" for kind in viewed))]
+        if viewed
+        else [],
         plots=_own("plots.js"),
         figures=_packed(_json(figures)) if figures else "",
         library=_packed(LIBRARY.read_bytes()) if figures else "",
@@ -198,6 +205,11 @@ def _json(content: Any) -> bytes:
 def _packed(content: bytes) -> str:
     """Compressed, as text; the same content gives the same text."""
     return base64.b64encode(gzip.compress(content, mtime=0)).decode()
+
+
+def encoded(values: AnyArray, kind: type) -> str:
+    """An array as text for a viewer: its bytes, little endian."""
+    return base64.b64encode(values.astype(np.dtype(kind).newbyteorder("<")).tobytes()).decode()
 
 
 def words(name: str) -> str:

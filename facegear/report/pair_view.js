@@ -1,4 +1,5 @@
-// Draws every `.pair-view` of the page with WebGL 2 from the packed JSON inside it (facegear/report/pair_view.py).
+// Draws the pair in mesh with WebGL 2 from the packed JSON inside it (facegear/report/pair_view.py),
+// with what viewer.js holds.
 "use strict";
 (() => {
   const VERTEX = `#version 300 es
@@ -19,13 +20,7 @@
       float at = clamp(carried.x / carried.z, 0.0, 1.0) * 8.0;
       shown = vec4(mix(scale[int(at)], scale[min(int(at) + 1, 8)], fract(at)), 1.0);
     }`;
-  const KINDS = { f: Float32Array, H: Uint16Array, b: Int8Array, B: Uint8Array };
   const COLOURS = { pinion: [0.82, 0.6, 0.33], face_gear: [0.42, 0.56, 0.72] };
-
-  function decoded(text, kind) {
-    const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-    return new KINDS[kind](bytes.buffer);
-  }
 
   function cells([rows, columns], start = 0) {
     const found = [];
@@ -43,45 +38,17 @@
     return name === "pinion" ? [c, 0, s, 0, 1, 0, -s, 0, c] : [c, -s, 0, s, c, 0, 0, 0, 1];
   }
 
-  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-
-  // perspective looking along -back at the centre; columns first
-  function cameraMatrix(view, centre, size, aspect) {
-    const [ca, sa, ce, se] = [Math.cos(view.azimuth), Math.sin(view.azimuth), Math.cos(view.height), Math.sin(view.height)];
-    const back = [ce * ca, ce * sa, se], right = [-sa, ca, 0], up = cross(back, right);
-    const focal = 3.2, distance = (focal * size * Math.max(0.62, 0.75 / aspect)) / view.zoom;
-    const eye = centre.map((value, k) => value + distance * back[k]);
-    const near = distance / 20, far = distance + 20 * size;
-    const [p, q] = [-(far + near) / (far - near), (-2 * far * near) / (far - near)];
-    const rows = [right.map((v) => (focal * v) / aspect), up.map((v) => focal * v), back];
-    const moved = [-dot(rows[0], eye), -dot(rows[1], eye), -dot(back, eye)];
-    const matrix = [];
-    for (let k = 0; k < 3; k++) matrix.push(rows[0][k], rows[1][k], p * back[k], -back[k]);
-    matrix.push(moved[0], moved[1], p * moved[2] + q, -moved[2]);
-    return { matrix, back };
-  }
-
   async function start(root) {
     const canvas = root.querySelector("canvas");
     const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
     if (!gl || !window.DecompressionStream) { root.querySelector("p.missing").hidden = false; return; }
     const data = JSON.parse(await unpacked(root.querySelector("script")));
     const find = (name) => root.querySelector(`[name=${name}]`);
-    const program = gl.createProgram();
-    for (const [kind, text] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
-      const shader = gl.createShader(kind);
-      gl.shaderSource(shader, text);
-      gl.compileShader(shader);
-      gl.attachShader(program, shader);
-    }
-    gl.bindAttribLocation(program, 0, "point");
-    gl.bindAttribLocation(program, 1, "load");
-    gl.linkProgram(program);
+    const program = linked(gl, VERTEX, FRAGMENT, ["point", "load"]);
     gl.useProgram(program);
     const uniform = (name) => gl.getUniformLocation(program, name);
     const places = Object.fromEntries(["camera", "turn", "colour", "painted", "scale", "eye"].map((n) => [n, uniform(n)]));
-    gl.uniform3fv(places.scale, data.colours.flatMap((colour) => [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16) / 255)));
+    gl.uniform3fv(places.scale, parsed(data.colours));
 
     function shape(points, indices) {
       const array = gl.createVertexArray();
@@ -244,26 +211,8 @@
       if (!pending) { pending = true; requestAnimationFrame(draw); }
     }
 
-    const held = new Map();
-    canvas.addEventListener("pointerdown", (event) => {
-      canvas.setPointerCapture(event.pointerId);
-      held.set(event.pointerId, [event.clientX, event.clientY]);
-    });
-    canvas.addEventListener("pointermove", (event) => {
-      const before = held.get(event.pointerId);
-      if (!before) return;
-      view.azimuth -= (event.clientX - before[0]) / 150;
-      view.height = Math.max(-1.5, Math.min(1.5, view.height + (event.clientY - before[1]) / 150));
-      held.set(event.pointerId, [event.clientX, event.clientY]);
-      redraw();
-    });
-    for (const name of ["pointerup", "pointercancel"])
-      canvas.addEventListener(name, (event) => held.delete(event.pointerId));
+    steered(canvas, find, view, home, redraw);
     for (const name of ["position", "torque", "quantity", "clear"]) find(name).addEventListener("input", redraw);
-    const zoomed = (factor) => () => { view.zoom = Math.max(0.4, Math.min(12, view.zoom * factor)); redraw(); };
-    find("nearer").addEventListener("click", zoomed(1.35));
-    find("further").addEventListener("click", zoomed(1 / 1.35));
-    find("home").addEventListener("click", () => { Object.assign(view, home); redraw(); });
     find("turn").addEventListener("click", (event) => {
       clearInterval(moving);
       moving = moving ? 0 : setInterval(() => {
@@ -272,14 +221,8 @@
       }, 120);
       event.target.textContent = moving ? "Stop" : "Turn";
     });
-    new ResizeObserver(redraw).observe(canvas);
     redraw();
   }
 
-  // not before it is near: a page opens without waiting for it
-  const watcher = new IntersectionObserver((entries) => {
-    for (const { isIntersecting, target } of entries)
-      if (isIntersecting) { watcher.unobserve(target); start(target); }
-  }, { rootMargin: "600px" });
-  document.querySelectorAll(".pair-view").forEach((root) => watcher.observe(root));
+  watch("pair", start);
 })();

@@ -1,6 +1,5 @@
 """The pair in mesh in three dimensions, for the report's viewer: teeth, and what they carry."""
 
-import base64
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,7 @@ from facegear.contact.columns import EDGES, SHARES
 from facegear.geometry.bodies import BODIES, Body
 from facegear.geometry.design import PairDesign
 from facegear.geometry.solids import solid, teeth_of
-from facegear.report.page import View
+from facegear.report.page import View, encoded
 
 COLOURS = (
     *("#0d0887", "#4c02a1", "#7e03a8", "#a92395", "#cc4778"),
@@ -85,7 +84,7 @@ def pair_view(
         "size": 1e3 * (design.pinion_tip_radius + design.pinion.width),
         "lattice": {
             "shape": [int(n) for n in loads["shape"]],
-            "points": _encoded(1e3 * loads["point_m"], np.float32),
+            "points": encoded(1e3 * loads["point_m"], np.float32),
         },
         "positions": positions.tolist(),
         "colours": COLOURS,
@@ -115,7 +114,7 @@ def _body(design: PairDesign, name: Body, stress: Arrays | None) -> dict[str, An
         "shown": shown,
         "turn": -0.5 if name == "pinion" else 0.0,
         "patches": [
-            {"shape": list(patch.shape[:2]), "points": _encoded(1e3 * patch, np.float32)}
+            {"shape": list(patch.shape[:2]), "points": encoded(1e3 * patch, np.float32)}
             for patch in solid(design, name, 1, PROFILE, WIDTH)
         ],
         "fillets": None if stress is None else _fillets(stress, name),
@@ -127,7 +126,7 @@ def _fillets(stress: Arrays, name: Body) -> dict[str, Any]:
     position = stress[f"{name}_position_m"]
     return {
         "shape": list(position.shape[1:3]),
-        "points": _encoded(1e3 * position, np.float32),
+        "points": encoded(1e3 * position, np.float32),
         "first": int(np.floor(stress[f"{name}_passage"][0])),
     }
 
@@ -163,8 +162,8 @@ def _torque(
         "torque_n_m": torque,
         "largest": top,
         "start": np.searchsorted(row[order], np.arange(positions.size + 1)).tolist(),
-        "node": _encoded(loads["node"][on][order], np.uint16),
-        "tooth": _encoded(loads["tooth"][on][order], np.int8),
+        "node": encoded(loads["node"][on][order], np.uint16),
+        "tooth": encoded(loads["tooth"][on][order], np.int8),
         "values": {key: _parts(values, top[key]) for key, values in shown.items()},
         "tension": {name: _parts(arrays, top[ROOT_STRESS["key"]]) for name, arrays in tension.items()},
         "error_um": rows["ste_um"].round(3).tolist(),
@@ -210,8 +209,4 @@ def line_load(loads: Arrays, on: Mask) -> Array:
 
 def _parts(values: AnyArray, largest: float) -> str:
     """Values in 255ths of the largest, rounded up; 0 where there is none."""
-    return _encoded(np.nan_to_num(np.ceil(255 * values / (largest or 1.0))), np.uint8)
-
-
-def _encoded(values: AnyArray, kind: type) -> str:
-    return base64.b64encode(values.astype(np.dtype(kind).newbyteorder("<")).tobytes()).decode()
+    return encoded(np.nan_to_num(np.ceil(255 * values / (largest or 1.0))), np.uint8)

@@ -19,7 +19,12 @@ LEAVING = (
     "of the face"
 )
 CHECK = "The surface beside the contact solved directly, for the mesh that its pose changes most"
-ROOT = "face_gear_root_by_pose_percent"
+CHANGED = {
+    "stiffness_by_pose_percent": "stiffness",
+    "pressure_by_pose_percent": "pressure",
+    "face_gear_root_by_pose_percent": "root stress of the face gear",
+}
+"""Columns of what poses change, in words."""
 
 
 def pose_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
@@ -69,16 +74,13 @@ def _path(loaded: pd.DataFrame) -> list[str]:
 
 
 def _changes(loaded: pd.DataFrame) -> str:
-    if loaded.empty:
-        return ""
-    factor = loaded["stiffness_factor"]
-    low, high = (number(100.0 * value, 3) for value in (factor.min(), factor.max()))
-    said = f"Meshes have {low} to {high} % of their stiffness as assembled"
-    for column, words in (("pressure_by_pose_percent", "pressure"), (ROOT, "root stress of the face gear")):
-        if column in loaded:
-            changes = f"{loaded[column].min():+.1f} to {loaded[column].max():+.1f} %"
-            said += f"; the {words} changes by {changes}"
-    return f"{said}."
+    """What poses change of the contact at the meshes' own loads, where there is any load."""
+    parts = [
+        f"the {words} changes by {loaded[column].min():+.1f} to {loaded[column].max():+.1f} %"
+        for column, words in CHANGED.items()
+        if column in loaded and len(loaded)
+    ]
+    return f"{'; '.join(parts)}.".capitalize() if parts else ""
 
 
 def _force(meshes: pd.DataFrame) -> str:

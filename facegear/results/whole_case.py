@@ -103,6 +103,7 @@ class WholeCase:
             self.records,
             self._part("geometry", "pair"),
             self._view(),
+            self._bodies(),
             notes=notes(self.chain.values),
         )
 
@@ -133,6 +134,13 @@ class WholeCase:
             return None
         stress, friction = self._part("root_stress", "stress"), self._part("lubrication", "local")
         return shown_pair(self.chain.values, self.chain.part("contact", "ltca"), loads, stress, friction)
+
+    def _bodies(self) -> Any:
+        from facegear.report.body_view import body_view
+
+        if (shapes := self._part("gear_bodies", "shapes")) is None:
+            return None
+        return body_view(self.chain.part("gear_bodies", "modes"), shapes)
 
 
 def _is_reported(stage: Stage) -> bool:

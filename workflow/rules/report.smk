@@ -10,6 +10,8 @@ rule report:
         loads=where_made("contact", "pressure"),
         stress=where_made("root_stress", "stress"),
         friction=where_made("lubrication", "local"),
+        bodies=where_made("gear_bodies", "modes"),
+        shapes=where_made("gear_bodies", "shapes"),
     output:
         html="results/{case}/report.html",
         manifest="results/{case}/report.provenance.json",

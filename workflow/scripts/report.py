@@ -11,6 +11,7 @@ from facegear.io.atomic import atomic_path
 from facegear.lubrication.columns import LOCAL_ARRAYS
 from facegear.pipeline.reported import table_name
 from facegear.provenance.stage import stage
+from facegear.report.body_view import body_view
 from facegear.report.case import case_report
 from facegear.report.machine import Base
 from facegear.report.pair_view import pair_view
@@ -31,10 +32,14 @@ with stage(snakemake) as run:
         friction = arrays.read(given[0], LOCAL_ARRAYS) if given else None
         design = tooth_pair(ToothPair.of_config(snakemake.params.values["tooth_pair"])).design
         view = pair_view(design, loads, frames["ltca"], stress, friction)
+    bodies = None
+    if snakemake.input.shapes:
+        modes = tables.read(snakemake.input.bodies[0], allow_empty=True)
+        bodies = body_view(modes, arrays.read(snakemake.input.shapes[0], {}))
     values = snakemake.params.values
     base = Base(*snakemake.params.base) if snakemake.params.base else None
     said = notes({**values, "reproduction": values["reproduction"] or None})
-    page = case_report(values, frames, pictures, manifests, pair, view, base, said)
+    page = case_report(values, frames, pictures, manifests, pair, view, bodies, base, said)
     with atomic_path(snakemake.output.html) as temporary:
         temporary.write_text(page, encoding="utf-8")
     run.summary(f"{len(pictures)} pictures, {len(frames)} tables, {len(page) / 1e6:.1f} MB")
