@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from facegear.results.response import ResponseResult
     from facegear.results.root_stress import RootStressResult
     from facegear.results.search import SearchResult
+    from facegear.results.shaft_orders import ShaftOrdersResult
     from facegear.results.shafts import ShaftsResult
     from facegear.results.statics import StaticsResult
     from facegear.results.stiffness import StiffnessResult
@@ -456,6 +457,17 @@ class Gearbox:
         from facegear.results.topography import TopographyResult
 
         return self._chain.result(TopographyResult)
+
+    def shaft_orders(self, speed_rpm: float | None = None) -> "ShaftOrdersResult":
+        """Vibration at the orders of the gears' turns, from runouts, pitch deviations and single teeth.
+
+        speed_rpm: of the pinions, None for that of the config. Linear about the static load. Raises
+        ConfigErrors for a machine without geometric meshes, NotConverged.
+        """
+        from facegear.results.shaft_orders import ShaftOrdersResult
+
+        changes = _given({"dynamics.speed_rpm": speed_rpm})
+        return self._changed("shaft_orders", changes)._chain.result(ShaftOrdersResult)
 
     def tooth_errors(self) -> "ToothErrorsResult":
         """What teeth that deviate from the others of their gear add to the transmission error.

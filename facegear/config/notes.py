@@ -14,8 +14,8 @@ PRINTED = (
     "with it; lever arms, signs of the lower meshes and back flanks are not a gearbox's (docs/theory.md)"
 )
 SLOW = (
-    "transmission: runouts and cumulative pitch deviations enter the hunting cycle, at rest and running; "
-    "steady states and sweeps leave them out (docs/theory.md)"
+    "transmission: runouts and cumulative pitch deviations enter the hunting cycle, at rest and running, and "
+    "the vibration at the orders of turns; steady states and sweeps leave them out (docs/theory.md)"
 )
 EXTERNAL = (
     "transmission: external forces on {} act at rest and in motion, the same at every speed and torque of a "
@@ -26,21 +26,17 @@ WITHOUT_FRICTION = (
     "temperature and film of samples are those of the forces without it (docs/friction.md)"
 )
 
-AS_ASSEMBLED = (
-    "transmission.operating_pose = static: {} take the contact of teeth as assembled; poses/meshes.csv says "
-    "what poses change (docs/poses.md)"
-)
 SINGLE_TEETH = (
-    "{}: deviations of single teeth enter the hunting cycle, at rest and running, and duty loads; steady "
-    "states, sweeps, branches, samples and designs take the mean flank (docs/measured_flanks.md)"
+    "{}: deviations of single teeth enter the hunting cycle, at rest and running, duty loads, and the "
+    "vibration at the orders of turns (dynamics/shaft_orders.csv); steady states, sweeps, branches, samples "
+    "and designs take the mean flank (docs/measured_flanks.md)"
 )
 
 
 def notes(values: Mapping[str, Any]) -> list[str]:
     """Lines for a config of one's own that counts as the publication does, for errors that turn, for dynamics
     with a backlash other than that of the teeth, for preloads and external forces, for numbers that several
-    causes move, for friction that samples and designs leave out of their motion, for what takes teeth as
-    assembled beside an operating pose, and for single teeth.
+    causes move, for friction that samples and designs leave out of their motion, and for single teeth.
     """
     transmission = values["transmission"]
     if transmission is None:
@@ -54,7 +50,6 @@ def notes(values: Mapping[str, Any]) -> list[str]:
         + _pushes(transmission)
         + _sums(values)
         + _without_friction(values)
-        + _as_assembled(values)
         + _single_teeth(values)
     )
 
@@ -67,13 +62,6 @@ def _without_friction(values: Mapping[str, Any]) -> list[str]:
     named = {"tolerances": "samples of tolerances", "search": "designs of the search"}
     left = [words for section, words in named.items() if values.get(section)]
     return [WITHOUT_FRICTION.format(" and ".join(left))] if left else []
-
-
-def _as_assembled(values: Mapping[str, Any]) -> list[str]:
-    """What a machine leaves out of the poses that its loads give its teeth."""
-    if values["transmission"]["operating_pose"] == "none":
-        return []
-    return [AS_ASSEMBLED.format("root stress and ratings")] if values.get("strength") else []
 
 
 def _single_teeth(values: Mapping[str, Any]) -> list[str]:

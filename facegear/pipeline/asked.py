@@ -68,6 +68,16 @@ def poses(case: Case) -> bool:
     return machine(case) and case.values["transmission"]["operating_pose"] == "static"
 
 
+def posed_stress(case: Case) -> bool:
+    """Whether meshes stand where their own forces put them, and root stress or a rating is asked for."""
+    return poses(case) and (root_stress(case) or strength(case))
+
+
+def posed_rating(case: Case) -> bool:
+    """Whether meshes stand where the machine's own forces put them, and a rating is asked for."""
+    return poses(case) and strength(case)
+
+
 def tilting(case: Case) -> bool:
     """Whether a body of the machine may tilt, so that the error of the shaft angle changes."""
     section: Any = case.values["transmission"]
@@ -180,6 +190,17 @@ def following(case: Case) -> bool:
     from facegear.config.notes import turns
 
     return hunting(case) and (turns(case.values["transmission"]) or single_teeth(case))
+
+
+def turning_errors(case: Case) -> bool:
+    """Whether meshes are geometric, and something has a runout or a cumulative pitch deviation, or teeth
+    differ.
+    """
+    from facegear.config.notes import turns
+
+    if not machine(case) or case.values["transmission"]["mesh_kinematics"] != "geometric":
+        return False
+    return turns(case.values["transmission"]) or single_teeth(case)
 
 
 def tolerances(case: Case) -> bool:

@@ -1,6 +1,6 @@
 """Poses of all meshes as tables, and the load at which a contact leaves the face."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -27,6 +27,20 @@ MESH_COLUMNS = (
     *("unloaded_path_mm", "path_mm", "path_as_assembled_mm", "to_inner_end_mm", "to_outer_end_mm"),
     "stiffness_factor",
 )
+MARGINS = {
+    "pattern_to_inner_end_mm": "inner_end",
+    "pattern_to_outer_end_mm": "outer_end",
+    "pattern_to_pinion_tip_mm": "pinion_tip",
+    "pattern_to_gear_tip_mm": "gear_tip",
+    "pattern_to_undercut_mm": "undercut",
+    "pattern_to_pointing_mm": "pointing",
+}
+"""Columns of how far the contact pattern of a mesh stays from every edge, nan without load."""
+ENDS = {
+    "pattern_to_inner_end_mm": "the inner end of the face",
+    "pattern_to_outer_end_mm": "the outer end of the face",
+}
+TIPS = {"pattern_to_pinion_tip_mm": "the pinion's tip", "pattern_to_gear_tip_mm": "the gear's tip"}
 FINITE = tuple(
     name for name in MESH_COLUMNS if name not in ("path_mm", "path_as_assembled_mm", "mesh", "flank")
 )
@@ -84,6 +98,37 @@ def mesh_table(machine: Machine, surface: PoseSurface, result: OperatingPose, be
             }
         )
     return pd.DataFrame(rows)
+
+
+def with_margins(meshes: pd.DataFrame, margins: Sequence[Mapping[str, float] | None]) -> pd.DataFrame:
+    """The table of meshes with columns MARGINS, from distances (m) by name; nan for a mesh without load."""
+    loaded = (meshes["torque_n_m"] > 0.0).to_numpy()
+    return meshes.assign(
+        **{
+            column: [
+                1e3 * float(margin[name]) if on and margin is not None else np.nan
+                for on, margin in zip(loaded, margins, strict=True)
+            ]
+            for column, name in MARGINS.items()
+        }
+    )
+
+
+def margin_text(meshes: pd.DataFrame) -> str:
+    """A sentence on the edges that contact patterns reach, or the end of the face that is nearest."""
+    edges = {**ENDS, **TIPS}
+    reached = {words: meshes.loc[meshes[column] == 0.0, "mesh"].to_list() for column, words in edges.items()}
+    reached = {words: names for words, names in reached.items() if names}
+    texts = [
+        f"the pattern reaches {words} in {', '.join(names) if len(names) < len(meshes) else 'every mesh'}"
+        for words, names in reached.items()
+    ]
+    free = meshes[list(ENDS)].where(meshes[list(ENDS)] > 0.0)
+    if free.notna().to_numpy().any():
+        row, column = free.stack().idxmin()
+        distance = f"{free.loc[row, column]:.2f} mm"
+        texts.append(f"the pattern of {meshes.loc[row, 'mesh']} stays {distance} from {ENDS[column]}")
+    return "; ".join(texts)
 
 
 def scaled_load(machine: Machine, fraction: float) -> Machine:

@@ -14,6 +14,8 @@ CAPTIONS = {
     "topography_pinion": "Mean deviations of the pinion's teeth from the nominal flank.",
     "topography_face_gear": "Mean deviations of the face gear's teeth from the nominal flank.",
     "tooth_errors": "What single teeth that deviate from the others add to the transmission error.",
+    "shaft_orders": "Mesh forces at the orders of the gears' turns, at the nominal speed and over speed, "
+    "from runouts, pitch deviations and single teeth.",
     "contact_pattern": "Pressure on the flank that contact lines sweep; at edges only line loads are known.",
     "life": "Stress of every bin of the duty cycle beside the stress that is allowed for as many "
     "load cycles; of pinions and of face gears the flank nearest to its limit.",
@@ -160,6 +162,7 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         (
             *("mesh_deflections", "pinion_sweep", "gear_sweep", "mesh_sweep", "law_sweeps", "law_loads"),
             "waterfall",
+            "shaft_orders",
         ),
     ),
     (

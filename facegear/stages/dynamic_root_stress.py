@@ -11,7 +11,8 @@ from facegear.config.tooth_pair import ToothPair, pair
 from facegear.config.transmission import Transmission
 from facegear.stages.outcome import Outcome
 from facegear.strength.dynamic_stress import dynamic_stress_table
-from facegear.strength.flank_contacts import contacts_of, flank_contacts
+from facegear.strength.flank_contacts import flank_contacts
+from facegear.strength.posed_contacts import mesh_contacts, posed_of
 from facegear.transmission.flanks import flank_places
 
 
@@ -23,10 +24,15 @@ def dynamic_root_stress(
     transmission: Transmission,
     teeth: ToothNumbers,
     gears: Sequence[str],
+    posed: Arrays | None = None,
+    posed_by_torque: pd.DataFrame | None = None,
+    poses: Arrays | None = None,
 ) -> Outcome:
     """`dynamic_stress` (table) from stage dynamics_response's history and root_stress's arrays.
 
     by_flank: table of stage contact; every mesh has the stress of its own gear and flank, of `gears`.
+    posed, posed_by_torque: parts of stage posed_stress, poses: arrays of stage pose_surface, where the
+    machine's own forces put the teeth; the pose is that of its mean torques.
     """
     phases = stiffness_phases(transmission, teeth)
     forces, places = {}, {}
@@ -35,7 +41,8 @@ def dynamic_root_stress(
         drive, back = flank_places(phases[[number]], rows["mesh_cycle"].to_numpy()).T
         forces[str(mesh)], places[str(mesh)] = force, np.where(force < 0.0, back, drive)
     contacts = flank_contacts(stress, by_flank)
-    own = {mesh: contacts_of(mesh, contacts, gears) for mesh in forces}
+    at_pose = posed_of(contacts, gears, posed, posed_by_torque, poses)
+    own = mesh_contacts(forces, contacts, gears, at_pose)
     table = dynamic_stress_table(forces, places, pair(tooth_pair).design.pinion_base_radius, own)
     worst = table.loc[table["face_gear_running_mpa"].idxmax()]
     summary = f"{worst['mesh']}: face gear {worst['face_gear_running_mpa']:.0f} MPa"

@@ -1,6 +1,6 @@
 """Where the machine's own forces put the teeth of every mesh, and what contact makes of it."""
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import pandas as pd
 
@@ -11,11 +11,21 @@ from facegear.config.machines import wired_machine
 from facegear.config.tooth_pair import ToothPair, pair
 from facegear.config.transmission import Transmission
 from facegear.contact.gear_flank import from_arrays
-from facegear.contact.posed import posed_contacts
+from facegear.contact.margins import pattern_margins
+from facegear.contact.posed import met_contacts
+from facegear.poses.carrying import carrying_pairs
 from facegear.poses.fixed_point import OperatingPose, assembled
 from facegear.poses.fixed_point import operating_pose as fixed_point
 from facegear.poses.surface import STIFFNESS, PoseSurface
-from facegear.poses.tables import PERCENT, hardest_mesh, leaving_text, load_tables, mesh_table
+from facegear.poses.tables import (
+    PERCENT,
+    hardest_mesh,
+    leaving_text,
+    load_tables,
+    margin_text,
+    mesh_table,
+    with_margins,
+)
 from facegear.stages.outcome import Outcome
 from facegear.stages.pose_surface import quantities
 from facegear.transmission.static_gears import at_rest
@@ -36,7 +46,8 @@ def operating_pose(
 ) -> Outcome:
     """`meshes`, `loads`, `leaving`, `check` (tables), `as_assembled` and `running` (arrays).
 
-    The arrays are the contact of the mesh that its pose changes most, solved directly, as stage contact has
+    Contact is solved at the pose of every mesh and its load: `meshes` has how far its pattern stays from
+    every edge. The arrays are the contact of the mesh that its pose changes most, as stage contact has
     pressures; `check` compares them with the surface. Raises InvalidInput for a pose outside the surface,
     NotConverged.
     """
@@ -47,13 +58,23 @@ def operating_pose(
     meshes = mesh_table(machine, known, result, before)
     loads, leaving = load_tables(machine, known)
     worst = hardest_mesh(meshes)
-    back = bool(result.forces[worst] < 0.0)
-    assemblies = [assembled(machine, known, worst, back), result.poses.errors(worst, back)]
-    pair_here, plan = pair(tooth_pair), contact_plan(contact)
-    plan = replace(plan, torques=(float(result.torque[worst]),), root_stress=False)
+    pair_here, plan = pair(tooth_pair), replace(contact_plan(contact), root_stress=False)
+    design, pairs = pair_here.design, carrying_pairs(result, pair_here.design)
+    own = pairs.designs[pairs.numbers[worst]]
+    rest = assembled(machine, known, worst, bool(result.forces[worst] < 0.0))
+    torque, torques = float(result.torque[worst]), [torque or plan.torques[0] for torque in pairs.torques]
+    asked = [(replace(own, assembly=rest), (torque or plan.torques[0],))]
+    asked += [(met, (at,)) for met, at in zip(pairs.designs, torques, strict=True)]
     flanks = from_arrays(pinion), from_arrays(face_gear)
-    solved = list(posed_contacts(pair_here.design, pair_here.materials, flanks, plan, assemblies))
-    check = _check(known, result, worst, [quantities(pair_here.design, flanks, posed) for posed in solved])
+    assembled_there, *running = met_contacts(design, pair_here.materials, flanks, plan, asked)
+    solved = [assembled_there, running[pairs.numbers[worst]]]
+    check = _check(known, result, worst, [quantities(design, flanks, posed) for posed in solved])
+    margins = [
+        pattern_margins(posed.pressure, met, at)
+        for posed, met, at in zip(running, pairs.designs, torques, strict=True)
+    ]
+    known_margins = [None if margin is None else asdict(margin) for margin in margins]
+    meshes = with_margins(meshes, [known_margins[number] for number in pairs.numbers])
     content = {
         "meshes": meshes,
         "loads": loads,
@@ -85,4 +106,5 @@ def _summary(meshes: pd.DataFrame, leaving: pd.DataFrame, worst: int, result: Op
         f"converged in {result.steps} steps; contact of {row['mesh']} at {row['unloaded_path_mm']:.2f} mm, "
         f"its stiffness changes by {row[PERCENT[STIFFNESS]]:.1f} %"
     )
+    text = f"{text}; {margin_text(meshes)}"
     return f"{text}; {leaving_text(leaving)}" if len(leaving) else text

@@ -13,6 +13,7 @@ from facegear.geometry.analysis import section_contact_ratio
 from facegear.stages.outcome import Outcome
 from facegear.strength.flank_contacts import flank_contacts
 from facegear.strength.met_flanks import met_by, worst_pressure, worst_root
+from facegear.strength.posed_contacts import duty_stands, posed_of
 from facegear.strength.rating import Rated, rate
 from facegear.strength.rating_tables import curve_table, damage_table, rating_table, safety_table
 from facegear.strength.scuffed_flanks import with_scuffing
@@ -23,6 +24,10 @@ def rating(
     by_flank: pd.DataFrame,
     duty_spectrum: pd.DataFrame | None = None,
     mesh_losses: pd.DataFrame | None = None,
+    posed: Arrays | None = None,
+    posed_by_torque: pd.DataFrame | None = None,
+    poses: Arrays | None = None,
+    duty_poses: pd.DataFrame | None = None,
     *,
     tooth_pair: ToothPair,
     strength: Strength | None,
@@ -32,21 +37,29 @@ def rating(
 
     `by_flank`: table of stage contact; every flank is judged by the contacts that it has with the `gears` of
     the machine. `duty_spectrum`: table of stage duty_loads, where the loads are the machine's; `mesh_losses`:
-    table `meshes` of stage machine_loss, where its flanks are lubricated. Raises ConfigError without section
-    strength.
+    table `meshes` of stage machine_loss, where its flanks are lubricated. posed, posed_by_torque: parts of
+    stage posed_stress, poses: arrays of stage pose_surface, duty_poses: table of that stage, where the
+    machine's own forces put the teeth. Raises ConfigError without section strength.
     """
     if strength is None:
         raise ConfigError("strength", None, "given for safety and life")
     design = pair(tooth_pair).design
     request, bins = rating_request(strength, design, duty_spectrum), duty_bins(strength)
     contacts = flank_contacts(stress, by_flank)
+    at_pose = posed_of(contacts, gears, posed, posed_by_torque, poses)
+    stands = None if duty_poses is None else duty_stands(duty_poses)
     ratings: list[Rated] = []
     tables: dict[str, list[pd.DataFrame]] = {}
     for duty in request.duty:
-        met = [contacts[flank] for flank in met_by(duty, gears)]
+        of_loads = None
+        if at_pose is None or stands is None:
+            met = [contacts[flank] for flank in met_by(duty, gears)]
+        else:
+            met = [at_pose.contacts[mesh][flank] for mesh, flank in at_pose.met_by(duty)]
+            of_loads = at_pose.stresses(duty, stands)
         roots, pressure = {duty.gear: worst_root(duty, met)}, worst_pressure(met)
         alone = replace(request, duty=(duty,))
-        ways = rate(design, section_contact_ratio(design), roots, pressure, alone)
+        ways = rate(design, section_contact_ratio(design), roots, pressure, alone, of_loads)
         ratings += ways
         for name, table in {
             "safety": safety_table(ways, pressure),

@@ -11,7 +11,8 @@ from facegear.config.machines import wired_machine
 from facegear.config.tooth_pair import ToothPair, pair
 from facegear.config.transmission import Transmission
 from facegear.stages.outcome import Outcome
-from facegear.strength.flank_contacts import contacts_of, flank_contacts
+from facegear.strength.flank_contacts import flank_contacts
+from facegear.strength.posed_contacts import mesh_contacts, posed_of
 from facegear.strength.stress_over_speed import branch_forces, stress_table, swept_forces
 from facegear.transmission.static_gears import at_rest
 from facegear.transmission.statics import static_equilibrium
@@ -30,11 +31,14 @@ def stress_over_speed(
     law: Arrays | None = None,
     poses: Arrays | None = None,
     bodies: Arrays | None = None,
+    posed: Arrays | None = None,
+    posed_by_torque: pd.DataFrame | None = None,
 ) -> Outcome:
     """`stress_over_speed` (table) from the sweep and, where there are any, the branches.
 
     stress: arrays of stage root_stress; by_flank: table of stage contact; every mesh has the
-    stress of its own gear, of `gears`, on the flank where it is more. Raises NotConverged.
+    stress of its own gear, of `gears`, on the flank where it is more. posed, posed_by_torque: parts of stage
+    posed_stress, where the machine's own forces put the teeth. Raises NotConverged.
     """
     machine = wired_machine(transmission, teeth, harmonics, law=law, poses=poses, bodies=bodies)
     at_standstill = float(np.abs(static_equilibrium(at_rest(machine)).forces).max())
@@ -43,7 +47,9 @@ def stress_over_speed(
         followed = branch_forces(branches, np.unique(forces["speed_rpm"]))
         forces = pd.concat([forces, followed], ignore_index=True)
     contacts = flank_contacts(stress, by_flank)
-    own = {mesh: contacts_of(mesh, contacts, gears).values() for mesh in forces["mesh"].unique()}
+    at_pose = posed_of(contacts, gears, posed, posed_by_torque, poses)
+    by_mesh = mesh_contacts(forces["mesh"].unique(), contacts, gears, at_pose)
+    own = {mesh: by_flank.values() for mesh, by_flank in by_mesh.items()}
     radius = pair(tooth_pair).design.pinion_base_radius
     table = stress_table(forces, at_standstill, radius, own)
     worst = table.loc[table["largest_force_n"].idxmax()]

@@ -41,6 +41,8 @@ class FlankDuty:
         Of each load.
     opposite : (bins,)
         Largest torque of the other flank in each bin, 0 where it carries none.
+    meshes
+        Name of the mesh of each load, none where the duty cycle does not say.
     """
 
     body: str
@@ -50,6 +52,7 @@ class FlankDuty:
     torque: Array
     cycles: Array
     opposite: Array
+    meshes: tuple[str, ...] = ()
 
     @property
     def largest(self) -> float:
@@ -97,6 +100,7 @@ def machine_duty(
                 torque=arm * rows["force_n"].to_numpy(),
                 cycles=turns[str(gear)] * passes[bins] * rows["fraction"].to_numpy(),
                 opposite=arm * np.array(opposite),
+                meshes=tuple(rows["mesh"]),
             )
         )
     return tuple(sorted(flanks, key=lambda entry: entry.gear != "pinion"))

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from facegear.arrays import Array
 from facegear.geometry.flank_errors import FLANKS
 from facegear.strength.contact_pressure import ContactPressure
 from facegear.strength.duty import FlankDuty
@@ -29,8 +30,9 @@ def worst_root(duty: FlankDuty, contacts: Sequence[FlankContact]) -> RootStress:
 
 
 def worst_pressure(contacts: Sequence[FlankContact]) -> ContactPressure:
-    """The largest of all contacts at every torque."""
-    by_contact = [entry.pressure for entry in contacts]
+    """The largest of all contacts at every torque that one of them has solved."""
+    torques = np.unique([torque for contact in contacts for torque in contact.pressure.torques])
+    by_contact = [_at_torques(entry.pressure, torques) for entry in contacts]
     pressures, errors = (
         np.array([getattr(entry, name) for entry in by_contact]) for name in ("pressure", "error")
     )
@@ -40,6 +42,19 @@ def worst_pressure(contacts: Sequence[FlankContact]) -> ContactPressure:
         name: np.max([getattr(entry, name) for entry in by_contact], axis=0)
         for name in ("edge_load", "edge_length", "fillet_share")
     }
+    return ContactPressure(torques, pressures[worst, columns], errors[worst, columns], **largest)
+
+
+def _at_torques(pressure: ContactPressure, torques: Array) -> ContactPressure:
+    """At more torques (n,) N m than were solved."""
+    if np.array_equal(pressure.torques, torques):
+        return pressure
+    edges = np.array([pressure.edge_at(torque) for torque in torques])
     return ContactPressure(
-        by_contact[0].torques, pressures[worst, columns], errors[worst, columns], **largest
+        torques=torques,
+        pressure=np.array([pressure.at(torque) for torque in torques]),
+        error=np.array([pressure.error_at(torque) for torque in torques]),
+        edge_load=edges[:, 0],
+        edge_length=edges[:, 1],
+        fillet_share=pressure.fillet_at(torques),
     )

@@ -135,41 +135,57 @@ class Rated:
         return tuple(reasons)
 
 
+@dataclass(frozen=True, eq=False)
+class LoadStresses:
+    """Largest `tension` in the fillets and largest `pressure` of each load of a flank, both (n,) Pa."""
+
+    tension: Array
+    pressure: Array
+
+
 def rate(
     design: PairDesign,
     contact_ratio: float,
     roots: Mapping[str, RootStress],
     pressure: ContactPressure,
     request: RatingRequest,
+    of_loads: LoadStresses | None = None,
 ) -> list[Rated]:
     """Bending and pitting of every loaded flank, by the contact analysis and by the cylindrical standard.
 
     `contact_ratio` that of the section of the pitch point; `roots` the root stress of both bodies. The
-    standard alone judges pitting where no `pressure` away from edges is known.
+    standard alone judges pitting where no `pressure` away from edges is known. of_loads: of the only flank
+    that is asked for, where its teeth do not stand alike under all loads.
     """
     ratings = []
     form = pinion_form(design, contact_ratio)
     pitting = hertz_stress(design, contact_ratio, request)
     tension = {gear: largest_tension(root) for gear, root in roots.items()}
     for duty in request.duty:
+        known = of_loads or LoadStresses(_each(tension[duty.gear], duty), _each(pressure.at, duty))
         pitting_limits, bending_limits = request.bodies[duty.gear].limits()
         notch = form.notch_parameter if duty.gear == "pinion" else None
         ratio = reversal(roots[duty.gear], duty)
         allowed = permissible_bending(design, request.bodies[duty.gear], notch, ratio)
-        ways = {"finite elements": tension[duty.gear]}
+        ways = {"finite elements": known.tension}
         if duty.gear == "pinion":
-            ways["ISO 6336-3"] = standard_bending(design, form)
+            ways["ISO 6336-3"] = _each(standard_bending(design, form), duty)
         for method, stress in ways.items():
             ratings.append(
                 _rated(request, duty, "bending", method, stress, allowed, bending_limits, pressure)
             )
-        ways = {"contact analysis": pressure.at} if pressure.known else {}
+        ways = {"contact analysis": known.pressure} if pressure.known else {}
         allowed = pitting_limits.limit
-        for method, stress in (ways | {"ISO 6336-2": pitting[duty.gear]}).items():
+        for method, stress in (ways | {"ISO 6336-2": _each(pitting[duty.gear], duty)}).items():
             ratings.append(
                 _rated(request, duty, "pitting", method, stress, allowed, pitting_limits, pressure)
             )
     return ratings
+
+
+def _each(stress: Stress, duty: FlankDuty) -> Array:
+    """At every load, (n,)."""
+    return np.array([stress(torque) for torque in duty.torque])
 
 
 def _rated(
@@ -177,12 +193,11 @@ def _rated(
     duty: FlankDuty,
     failure: str,
     method: str,
-    stress: Stress,
+    by_load: Array,
     allowed: float,
     limits: PittingLimits | BendingLimits,
     pressure: ContactPressure,
 ) -> Rated:
-    by_load = np.array([stress(torque) for torque in duty.torque])
     harm = damage(by_load, duty.cycles, allowed, limits.life)
     total = float(harm.sum())
     loaded = duty.torque[(duty.cycles > 0.0) & (duty.torque > 0.0)]

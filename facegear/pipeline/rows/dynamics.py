@@ -1,7 +1,16 @@
 """The machine in motion: response at one speed, and the speed sweep."""
 
 from facegear.pipeline import asked, studies
-from facegear.pipeline.rows.shared import ACCURACY, MACHINE, MOVING, SPEED, SWEEP
+from facegear.pipeline.rows.shared import (
+    ACCURACY,
+    BODIES,
+    HARMONICS,
+    MACHINE,
+    MOVING,
+    SPEED,
+    SWEEP,
+    TOOTH_ERRORS,
+)
 from facegear.pipeline.stage import NUMBER, Computed, Figures, File, From, Stage, from_stage
 
 ROWS = (
@@ -28,6 +37,40 @@ ROWS = (
             "bearings": File("dynamics/bearings.csv", ("body", "direction", "static_n", "mean_n", "peak_n")),
         },
         asked=asked.machine,
+    ),
+    Stage(
+        name="shaft_orders",
+        title="Vibration at the orders of the gears' turns",
+        needs={
+            **MACHINE,
+            **SPEED,
+            "first_rpm": "dynamics.sweep.from_rpm",
+            "last_rpm": "dynamics.sweep.to_rpm",
+        },
+        upstream={**HARMONICS, **BODIES, **TOOTH_ERRORS},
+        files={
+            "orders": File(
+                "dynamics/shaft_orders.csv",
+                "facegear.stages.shaft_orders:COLUMNS",
+                may_be_empty=True,
+                text=("turning", "mesh"),
+            ),
+            "over_speed": File(
+                "dynamics/shaft_orders_over_speed.csv",
+                "facegear.stages.shaft_orders:OVER_SPEED",
+                may_be_empty=True,
+                text=("turning", "mesh"),
+            ),
+        },
+        figures=Figures(
+            draw="facegear.plots.shaft_orders:figures",
+            names=("shaft_orders",),
+            chapter="dynamics",
+            upstream=from_stage("shaft_orders", "orders", "over_speed"),
+            needs=SPEED,
+        ),
+        asked=asked.turning_errors,
+        local=True,
     ),
     Stage(
         name="dynamics_sweep_chunk",

@@ -7,8 +7,10 @@ from facegear.pipeline.rows.shared import (
     FLANKS,
     HARMONICS,
     MACHINE,
+    MESHES,
     MOVING,
     PAIR,
+    POSES,
     SPEED,
     TOOTH_ERRORS,
 )
@@ -16,6 +18,12 @@ from facegear.pipeline.stage import Computed, Figures, File, From, Stage, from_s
 
 GEARS = {"gears": Computed(asked.gears_met, ("transmission",))}
 STRESS = {"stress": From("root_stress", "stress"), "by_flank": From("contact", "by_flank")}
+
+POSED = {
+    "posed": From("posed_stress", "contacts", when=asked.poses),
+    "posed_by_torque": From("posed_stress", "by_torque", when=asked.poses),
+}
+"""Contact solved at the pose of every mesh."""
 
 LOAD_ROWS = (
     Stage(
@@ -45,6 +53,36 @@ LOAD_ROWS = (
         asked=asked.root_stress,
     ),
     Stage(
+        name="posed_stress",
+        title="Pressure and root stress of every mesh where its teeth stand",
+        needs={**MACHINE, **PAIR, "contact": "contact", **GEARS},
+        upstream={"surface": From("pose_surface", "surface"), **FLANKS, **STRESS, **MESHES, **BODIES},
+        files={
+            "by_mesh": File("strength/posed_stress.csv", ("torque_n_m",), text=("mesh", "flank")),
+            "by_torque": File(
+                "strength/posed_contacts.csv", ("contact", "torque_n_m"), text=("mesh", "flank")
+            ),
+            "contacts": File("strength/posed_contacts.npz"),
+        },
+        asked=asked.posed_stress,
+        memory_mb=4000,
+        minutes=30,
+    ),
+    Stage(
+        name="duty_poses",
+        title="Where the load of every bin of the duty cycle puts the teeth",
+        needs={**MACHINE, "strength": "strength"},
+        section="strength",
+        upstream={"surface": From("pose_surface", "surface"), **MESHES, **BODIES},
+        files={
+            "duty_poses": File(
+                "strength/duty_poses.csv", "facegear.stages.duty_poses:COLUMNS", text=("mesh", "flank")
+            )
+        },
+        asked=asked.posed_rating,
+        local=True,
+    ),
+    Stage(
         name="duty_loads",
         title="Loads of the running machine in every bin of the duty cycle",
         needs={**MACHINE, **ACCURACY, "strength": "strength"},
@@ -69,6 +107,9 @@ ROWS = (
             **STRESS,
             "duty_spectrum": From("duty_loads", "duty_spectrum", when=asked.machine_loads),
             "mesh_losses": From("machine_loss", "meshes", when=asked.scuffed_loads),
+            **POSED,
+            **POSES,
+            "duty_poses": From("duty_poses", "duty_poses", when=asked.poses),
         },
         files={
             "safety": File("strength/safety.csv", "facegear.strength.columns:SAFETY_FINITE"),
@@ -88,7 +129,7 @@ ROWS = (
         name="dynamic_root_stress",
         title="Root stress of the running machine",
         needs={**MACHINE, **PAIR, **GEARS},
-        upstream={"response": From("dynamics_response", "response"), **STRESS},
+        upstream={"response": From("dynamics_response", "response"), **STRESS, **POSED, **POSES},
         files={
             "dynamic_stress": File(
                 "strength/dynamic_stress.csv", "facegear.strength.columns:DYNAMIC_STRESS_FINITE"
@@ -106,6 +147,7 @@ ROWS = (
             **STRESS,
             **HARMONICS,
             **BODIES,
+            **POSED,
         },
         files={
             "stress_over_speed": File(

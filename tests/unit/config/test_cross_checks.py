@@ -133,16 +133,6 @@ def test_another_backlash_than_that_of_the_teeth_is_reported_when_a_run_starts()
         assert notes(parse(Config, values).model_dump(mode="json")) == []
 
 
-def test_what_takes_teeth_as_assembled_beside_an_operating_pose_is_reported_when_a_run_starts():
-    """Samples of tolerances stand where their own forces put them, and are not named."""
-    for name, named in (("tolerances", []), ("concentric", ["root stress and ratings"])):
-        machine = load_config(ROOT / "config" / f"{name}.yaml").model_dump(mode="json")
-        before = notes(machine)
-        lines = notes(changed(machine, transmission__operating_pose="static"))
-        added = [line for line in lines if line not in before]
-        assert [line.split(": ")[1].split(" take")[0] for line in added] == named
-
-
 def test_single_teeth_that_deviate_are_reported_when_a_run_starts():
     grid = {
         "flank": "right",

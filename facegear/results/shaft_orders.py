@@ -1,0 +1,31 @@
+"""Vibration of the machine at the orders of its gears' turns."""
+
+from typing import TYPE_CHECKING, ClassVar
+
+import pandas as pd
+
+from facegear.results.base import Result
+
+if TYPE_CHECKING:
+    from facegear.plots.style import Figure
+
+
+class ShaftOrdersResult(Result):
+    """What runouts, pitch deviations and single teeth do at the orders of turns, linearised."""
+
+    STAGE: ClassVar = "shaft_orders"
+
+    def table(self) -> pd.DataFrame:
+        """One row an order of a gear's turns and mesh: frequency, error, force running and turned slowly."""
+        return self.content["orders"].copy()
+
+    def over_speed(self) -> pd.DataFrame:
+        """One row a speed and one of the largest orders: the mesh with the largest force."""
+        return self.content["over_speed"].copy()
+
+    def plot(self) -> "Figure":
+        """Forces at all orders at the nominal speed, and the largest orders over speed."""
+        from facegear.plots.shaft_orders import shaft_order_figure
+
+        speed = self.values["dynamics"]["speed_rpm"]
+        return shaft_order_figure(self.content["orders"], self.content["over_speed"], speed)

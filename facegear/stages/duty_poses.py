@@ -1,0 +1,61 @@
+"""Where the load of every bin of the duty cycle puts the teeth of every mesh."""
+
+import numpy as np
+import pandas as pd
+
+from facegear.arrays import Arrays
+from facegear.config.lumped_model import ToothNumbers
+from facegear.config.machines import wired_machine
+from facegear.config.strength import Strength
+from facegear.config.transmission import Transmission
+from facegear.errors import ConfigError
+from facegear.geometry.conjugate import contact_at
+from facegear.geometry.flank_errors import FLANKS
+from facegear.poses.fixed_point import operating_pose
+from facegear.poses.surface import PoseSurface
+from facegear.stages.outcome import Outcome
+from facegear.variants.loads import at_mesh_torque
+
+COLUMNS = (
+    *("bin", "torque_n_m", "mesh", "flank"),
+    *("force_n", "unloaded_path_mm", "shaft_angle_error_deg", "stiffness_factor"),
+)
+
+
+def duty_poses(
+    surface: Arrays,
+    harmonics: pd.DataFrame,
+    transmission: Transmission,
+    teeth: ToothNumbers,
+    strength: Strength | None,
+    law: Arrays | None = None,
+    bodies: Arrays | None = None,
+) -> Outcome:
+    """`duty_poses` (table), a row a bin, mesh and flank, COLUMNS.
+
+    Raises ConfigError without section strength, InvalidInput for a pose outside the surface, NotConverged.
+    """
+    if strength is None:
+        raise ConfigError("strength", None, "given for the loads of its duty cycle")
+    known, rows = PoseSurface.of_arrays(surface), []
+    for number, load in enumerate(strength.duty, start=1):
+        loaded = at_mesh_torque(transmission, load.torque_n_m)
+        machine = wired_machine(loaded, teeth, harmonics, law=law, bodies=bodies)
+        result = operating_pose(machine, known)
+        for mesh, name in enumerate(machine.layout.mesh_names):
+            for back, flank in enumerate(FLANKS):
+                contact = contact_at(known.pair, result.poses.errors(mesh, bool(back)))
+                carries = bool(back) == (result.forces[mesh] < 0.0)
+                rows.append(
+                    (
+                        *(number, load.torque_n_m, name, flank),
+                        abs(result.forces[mesh]) if carries else 0.0,
+                        np.nan if contact is None else 1e3 * contact.y,
+                        np.degrees(result.angle[mesh]),
+                        result.factor[mesh],
+                    )
+                )
+    table = pd.DataFrame(rows, columns=list(COLUMNS))
+    loaded_paths = table.loc[table["force_n"] > 0.0, "unloaded_path_mm"]
+    between = f"{loaded_paths.min():.1f} to {loaded_paths.max():.1f} mm" if len(loaded_paths) else "no load"
+    return Outcome({"duty_poses": table}, f"{len(strength.duty)} bins, contact at {between}")

@@ -1,0 +1,94 @@
+"""Vibration of the machine at the orders of its gears' turns."""
+
+import numpy as np
+import pandas as pd
+
+from facegear.arrays import Arrays
+from facegear.config.lumped_model import ToothNumbers
+from facegear.config.machines import wired_machine
+from facegear.config.transmission import Transmission
+from facegear.stages.outcome import Outcome
+from facegear.transmission.machine import mesh_frequency
+from facegear.transmission.shaft_orders import TurnOrders, loaded_machine, mesh_amplitudes, turn_orders
+
+SPEEDS = 61
+"""At which the largest orders are followed over speed."""
+FOLLOWED = 4
+"""Orders of each gear with the largest errors, and as many about the mesh frequency."""
+COLUMNS = (
+    *("turning", "order", "of_mesh", "frequency_hz", "mesh"),
+    *("error_um", "force_n", "force_at_rest_n"),
+)
+OVER_SPEED = ("speed_rpm", "turning", "order", "of_mesh", "frequency_hz", "mesh", "force_n")
+
+
+def shaft_orders(
+    harmonics: pd.DataFrame,
+    transmission: Transmission,
+    teeth: ToothNumbers,
+    speed_rpm: float,
+    first_rpm: float,
+    last_rpm: float,
+    law: Arrays | None = None,
+    poses: Arrays | None = None,
+    bodies: Arrays | None = None,
+    tooth_errors: Arrays | None = None,
+) -> Outcome:
+    """`orders` (table at the nominal speed), `over_speed` (table, the mesh with the largest force of each of
+    the largest orders). Raises NotConverged.
+    """
+    machine = wired_machine(
+        transmission, teeth, harmonics, law=law, poses=poses, bodies=bodies, tooth_errors=tooth_errors
+    )
+    layout, names = machine.layout, machine.layout.mesh_names
+    orders, loaded = turn_orders(machine), loaded_machine(machine)
+
+    def amplitudes(some: TurnOrders, speed: float) -> np.ndarray:
+        return mesh_amplitudes(loaded.forces(some, speed, layout.pinion_teeth), loaded.springs)
+
+    running, still = amplitudes(orders, speed_rpm), mesh_amplitudes(loaded.at_rest(orders), loaded.springs)
+    error = 1e6 * mesh_amplitudes(orders.error, loaded.springs)
+    nominal = mesh_frequency(layout, speed_rpm)
+    rows = [
+        (*_key(orders, row, nominal), name, error[row, mesh], running[row, mesh], still[row, mesh])
+        for row in range(orders.order.size)
+        for mesh, name in enumerate(names)
+    ]
+    largest, over_speed = orders.kept(_largest(orders)), []
+    for speed in np.linspace(first_rpm, last_rpm, SPEEDS).tolist():
+        for row, forces in enumerate(amplitudes(largest, speed)):
+            key = _key(largest, row, mesh_frequency(layout, speed))
+            over_speed.append((speed, *key, names[int(forces.argmax())], float(forces.max())))
+    table = pd.DataFrame(rows, columns=list(COLUMNS))
+    content = {"orders": table, "over_speed": pd.DataFrame(over_speed, columns=list(OVER_SPEED))}
+    return Outcome(content, _summary(table, speed_rpm))
+
+
+def _key(orders: TurnOrders, row: int, frequency: float) -> tuple[str, int, float, float]:
+    of_mesh = float(orders.of_mesh[row])
+    return orders.turning[row], int(orders.order[row]), of_mesh, of_mesh * frequency
+
+
+def _largest(orders: TurnOrders) -> list[int]:
+    """Rows of the FOLLOWED largest errors of each gear: those of few turns, and those about the mesh's own
+    frequency.
+    """
+    size, rows = np.abs(orders.error).max(axis=1), []
+    about = np.abs(orders.of_mesh - 1.0) < 0.5
+    for gear in dict.fromkeys(orders.turning):
+        own = np.array([name == gear for name in orders.turning])
+        for part in (own & ~about, own & about):
+            there = np.flatnonzero(part)
+            rows += sorted(there[np.argsort(-size[there], kind="stable")][:FOLLOWED].tolist())
+    return rows
+
+
+def _summary(table: pd.DataFrame, speed_rpm: float) -> str:
+    if table.empty:
+        return "nothing differs from tooth to tooth"
+    row = table.loc[table["force_n"].idxmax()]
+    gear = row["turning"].replace("_", " ")
+    return (
+        f"{row['mesh']}: {row['force_n']:.0f} N at order {row['order']} of a turn of the {gear} "
+        f"({row['frequency_hz']:.0f} Hz) at {speed_rpm:g} rpm, {row['force_at_rest_n']:.0f} N turned slowly"
+    )

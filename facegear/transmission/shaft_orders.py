@@ -1,0 +1,156 @@
+"""Vibration at the orders of the gears' turns: runouts, pitch deviations and single teeth, linearised.
+
+What differs from tooth to tooth repeats with a turn of the pinions or of the face gears. About the place
+where the torques hold the machine, with the flanks that carry at their mean stiffness k, an error e of the
+flanks at one frequency w gives
+
+    (K + rows^T k rows + i w (D + rows^T c rows) - w^2 M) q = rows^T (k + i w c) e
+    F = k (rows q - e)
+
+with W N, W^2 P and W G of bodies that turn. Flanks that part and the mesh stiffness' own variation, which
+spreads each order to its sidebands about the mesh frequency, are left out; sidebands that the errors have by
+themselves, as their curves differ within a mesh cycle, are in.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from facegear.arrays import Array, ComplexArray, Integers
+from facegear.transmission.flanks import slow_errors
+from facegear.transmission.linear_model import LinearModel
+from facegear.transmission.loaded_modes import pressed_springs
+from facegear.transmission.machine import Machine, OpenFlanks
+
+SAMPLES = 32
+"""Of a mesh cycle."""
+LAST = 1.5
+"""Frequency over that of the mesh up to which orders are kept."""
+NOTHING = 1e-9
+"""Part of the largest error below which an order is rounding."""
+GEARS = ("pinion", "face_gear")
+
+
+@dataclass(frozen=True, eq=False)
+class TurnOrders:
+    """Errors of the flanks at n orders of turns.
+
+    Attributes
+    ----------
+    turning
+        Whose turns each order counts, of GEARS.
+    order : (n,)
+        Vibrations in one of its turns.
+    teeth : (n,)
+        Of that gear: the frequency is `order` over `teeth` times the mesh frequency.
+    error : (n, 2 meshes)
+        Complex amplitudes, m, drive flanks first; a positive error keeps a flank from touching.
+    """
+
+    turning: list[str]
+    order: Integers
+    teeth: Integers
+    error: ComplexArray
+
+    def kept(self, rows: Sequence[int]) -> "TurnOrders":
+        """Some of them."""
+        numbers = np.array(rows, dtype=np.int64)
+        turning = [self.turning[row] for row in rows]
+        return TurnOrders(turning, self.order[numbers], self.teeth[numbers], self.error[numbers])
+
+    @property
+    def of_mesh(self) -> Array:
+        """Frequency over that of the mesh (n,)."""
+        return np.asarray(self.order / self.teeth)
+
+
+def turn_orders(machine: Machine, last: float = LAST) -> TurnOrders:
+    """Orders of runouts, pitch deviations and single teeth, up to `last` times the mesh frequency."""
+    layout = machine.layout
+    turning: list[str] = []
+    order: list[int] = []
+    teeth: list[int] = []
+    error = []
+    for gear, count in zip(GEARS, (layout.pinion_teeth, layout.gear_teeth), strict=True):
+        cycles = np.arange(count * SAMPLES) / SAMPLES
+        curves = slow_errors(_errors_of(machine, gear), cycles)
+        amplitudes = 2.0 * np.fft.rfft(curves, axis=0) / cycles.size
+        for number in range(1, int(last * count) + 1):
+            turning.append(gear)
+            order.append(number)
+            teeth.append(count)
+            error.append(amplitudes[number])
+    stacked = np.array(error)
+    largest = np.abs(stacked).max(axis=1)
+    kept = largest > NOTHING * largest.max(initial=0.0)
+    every = TurnOrders(turning, np.array(order), np.array(teeth), stacked)
+    return every.kept(np.flatnonzero(kept).tolist())
+
+
+def _errors_of(machine: Machine, gear: str) -> Machine:
+    """The machine whose pinions alone, or face gears alone, are uneven."""
+    flaws = machine.imperfections
+    even, teeth = flaws.standing, flaws.teeth
+    if gear == "pinion":
+        own = replace(even, pinion_runout=flaws.pinion_runout, pinion_pitch=flaws.pinion_pitch)
+        curves = None if teeth is None else replace(teeth, gear=_flat(teeth.gear))
+    else:
+        own = replace(even, gear_runout=flaws.gear_runout, gear_pitch=flaws.gear_pitch)
+        curves = None if teeth is None else replace(teeth, pinion=_flat(teeth.pinion))
+    return replace(machine, imperfections=replace(own, teeth=curves))
+
+
+def _flat(curves: tuple[Array, Array]) -> tuple[Array, Array]:
+    return np.zeros_like(curves[0]), np.zeros_like(curves[1])
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedMachine:
+    """Its linear model about its static load, with the stiffness and damping of its flanks (2 meshes,)."""
+
+    linear: LinearModel
+    springs: Array
+    dampers: Array
+
+    def forces(self, orders: TurnOrders, speed_rpm: float, pinion_teeth: int) -> ComplexArray:
+        """Elastic forces (n, 2 meshes) N of the flanks that carry, at a speed of the pinions."""
+        linear, rows, speed = self.linear, self.linear.rows, speed_rpm * np.pi / 30.0
+        stiffness = linear.stiffness + (self.springs * rows.T) @ rows
+        damping = linear.damping + (self.dampers * rows.T) @ rows
+        if linear.spin is not None:
+            stiffness = stiffness + speed * linear.spin.circulatory + speed**2 * linear.spin.centrifugal
+            damping = damping + speed * linear.spin.gyroscopic
+        forces = np.zeros_like(orders.error)
+        for row, of_mesh in enumerate(orders.of_mesh):
+            omega = speed * pinion_teeth * of_mesh
+            flank = self.springs + 1j * omega * self.dampers
+            dynamic = stiffness + 1j * omega * damping - omega**2 * linear.mass
+            moved = np.linalg.solve(dynamic, rows.T @ (flank * orders.error[row]))
+            forces[row] = self.springs * (rows @ moved - orders.error[row])
+        return forces
+
+    def at_rest(self, orders: TurnOrders) -> ComplexArray:
+        """The same turned slowly."""
+        rows = self.linear.rows
+        stiffness = self.linear.stiffness + (self.springs * rows.T) @ rows
+        pushed = rows.T @ (self.springs[:, None] * orders.error.T)
+        moved = np.linalg.lstsq(stiffness, pushed, rcond=1e-13)[0]
+        return np.asarray((self.springs[:, None] * (rows @ moved - orders.error.T)).T)
+
+
+def loaded_machine(machine: Machine) -> LoadedMachine:
+    """Of geometric meshes about the machine's mean torques. Raises NotConverged."""
+    linear, springs = pressed_springs(machine)
+    if machine.damping.open_flanks is OpenFlanks.ALWAYS:
+        dampers = np.full(springs.size, 0.5 * machine.damping.mesh)
+    else:
+        dampers = np.where(springs > 0.0, machine.damping.mesh, 0.0)
+    return LoadedMachine(linear, springs, dampers)
+
+
+def mesh_amplitudes(forces: ComplexArray, springs: Array) -> Array:
+    """Amplitude (..., meshes) of the flank of each mesh that carries."""
+    drive, back = np.split(np.abs(forces), 2, axis=-1)
+    first, second = np.split(springs > 0.0, 2)
+    return np.asarray(np.where(first, drive, np.where(second, back, 0.0)))
