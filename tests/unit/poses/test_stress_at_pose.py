@@ -55,7 +55,7 @@ def surface(gearbox):
     module="facegear.poses.fixed_point",
 )
 def test_in_a_bin_with_the_machine_s_own_load_its_meshes_carry_the_published_forces():
-    """Published without the second order of the closing, which moves forces by up to 0.3 %."""
+    """Published without the second order of the closing, and along the ideal normal."""
     values = facegear.load("config/concentric.yaml", results=None).values
     numbers = {"order": 0, "a_n_per_m": 0.0, "b_n_per_m": 4.1e8, "amplitude_n_per_m": 4.1e8}
     harmonics = pd.DataFrame([{**numbers, "e_a_um": 0.0, "e_b_um": 0.0}])
