@@ -88,7 +88,7 @@ def pattern_panels(panels: Mapping[str, tuple[Arrays, float]]) -> Figure:
             height = np.hypot(nodes[:, 0], nodes[:, 2])
             axis.set(xlim=(nodes[:, 1].min(), nodes[:, 1].max()), ylim=(height.min(), height.max()))
             axis.set_title(title)
-            axis.set_ylabel("Pinion radius (mm)")
+            axis.set_ylabel("Pinion\nradius (mm)")
         axes[-1, 0].set_xlabel("Along the pinion's axis, from the gear's (mm)")
         figure.colorbar(drawn, ax=axes, location="top", aspect=40, label="Pressure (MPa)")
         figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=2)

@@ -8,11 +8,19 @@ import pandas as pd
 from facegear.report.page import Table, number
 
 MESHES = (
-    "Every mesh under the mean torques. offset, axial shift, shaft angle: errors of assembly that the "
-    "motions of both bodies amount to; outward: how shifted they move the unloaded contact; closing: what "
-    "the flanks close beyond the deflection of the mesh; paths: along the pinion, unloaded, and loaded "
-    "where the machine puts it and as assembled; to inner and outer end: from the unloaded path to the "
-    "ends of the face; by pose: change at the mesh's own load"
+    "Where contacts run under the mean torques: paths along the pinion, unloaded, and loaded where the "
+    "machine puts it and as assembled; to inner and outer end: from the unloaded path to the ends of the "
+    "face; by pose: change at the mesh's own load"
+)
+SHOWN = (
+    *("mesh", "force_n", "unloaded_path_mm", "path_mm", "path_as_assembled_mm"),
+    *("to_inner_end_mm", "to_outer_end_mm"),
+    *("stiffness_by_pose_percent", "pressure_by_pose_percent", "face_gear_root_by_pose_percent"),
+)
+POSE = (
+    "Every mesh in full. offset, axial shift, shaft angle: errors of assembly that the motions of both "
+    "bodies amount to; outward: how far they move the unloaded contact; closing: what the flanks close "
+    "beyond the deflection of the mesh"
 )
 LEAVING = (
     "Loads, as a fraction of the mean torques, at which the unloaded contact of a mesh crosses an end "
@@ -31,10 +39,11 @@ def pose_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     """Poses of all meshes, contacts that leave the face, and the surface's error; none without poses."""
     if "poses_meshes" not in tables:
         return []
-    leaving = tables["poses_leaving"]
+    meshes, leaving = tables["poses_meshes"], tables["poses_leaving"]
     return [
-        Table(MESHES, tables["poses_meshes"], 4),
+        Table(MESHES, meshes[[name for name in SHOWN if name in meshes]], 4),
         *([Table(LEAVING, leaving, 4)] if len(leaving) else []),
+        Table(POSE, meshes, 4, folded=True),
         Table(CHECK, tables["poses_check"], 5, folded=True),
     ]
 

@@ -59,4 +59,4 @@ def test_the_report_has_the_chapter_where_poses_were_computed(known):
     page = case_report(values, tables() if known else {}, {}, [])
     assert ("Teeth where forces put them" in page) is known
     assert (pose_text(tables()) in page) is known
-    assert len(pose_tables(tables() if known else {})) == (3 if known else 0)
+    assert len(pose_tables(tables() if known else {})) == (4 if known else 0)
