@@ -173,26 +173,43 @@ def closing(
 def _spread(rows: Rows, at: Array, scale: tuple[int, int], shape: tuple[int, int], steps: Integers) -> Rows:
     """Rows over points at lattice coordinates (q, 2), `scale` times finer, as rows over its nodes."""
     pointer, index, weight = rows
-    width, size, columns = steps.shape[0], steps.max(), shape[1]
+    width, columns = steps.shape[0], shape[1]
+    base, values = _functions(index, at, scale, shape, steps)
     nodes, load = np.empty(width * index.size, np.int64), np.empty(width * index.size)
-    ends, slot = np.zeros(pointer.size, np.int64), np.full(shape[0] * shape[1], -1)
-    value, slope = np.empty((2, size + 1)), np.empty((2, size + 1))
-    corner, filled = np.empty(2, np.int64), 0
+    ends, slot = np.zeros(pointer.size, np.int64), np.full(shape[0] * columns, -1)
+    offset, filled = steps[:, 0] * columns + steps[:, 1], 0
     for row in range(pointer.size - 1):
         first = filled
         for k in range(pointer[row], pointer[row + 1]):
             point, w = index[k], weight[k]
-            locate(at[point, 0] / scale[0], at[point, 1] / scale[1], shape, size, corner, value, slope)
             for a in range(width):
-                i, j = steps[a, 0], steps[a, 1]
-                node = (corner[0] + i) * columns + corner[1] + j
-                if slot[node] < first:
-                    slot[node] = filled
+                node = base[point] + offset[a]
+                at_node = slot[node]
+                if at_node < first:
+                    at_node = slot[node] = filled
                     nodes[filled], load[filled] = node, 0.0
                     filled += 1
-                load[slot[node]] += w * value[0, i] * value[1, j]
+                load[at_node] += w * values[point, a]
         ends[row + 1] = filled
     return ends, nodes[:filled].copy(), load[:filled].copy()
+
+
+@inlined
+def _functions(
+    index: Integers, at: Array, scale: tuple[int, int], shape: tuple[int, int], steps: Integers
+) -> tuple[Integers, Array]:
+    """First node (q,) of the face that each point in `index` lies on, and its functions (q, a) there."""
+    size = steps.max()
+    base, values = np.full(at.shape[0], -1), np.empty((at.shape[0], steps.shape[0]))
+    value, slope = np.empty((2, size + 1)), np.empty((2, size + 1))
+    corner = np.empty(2, np.int64)
+    for point in index:
+        if base[point] < 0:
+            locate(at[point, 0] / scale[0], at[point, 1] / scale[1], shape, size, corner, value, slope)
+            base[point] = corner[0] * shape[1] + corner[1]
+            for a in range(steps.shape[0]):
+                values[point, a] = value[0, steps[a, 0]] * value[1, steps[a, 1]]
+    return base, values
 
 
 @dataclass(frozen=True)

@@ -136,9 +136,9 @@ def _product(first: Rows, compliance: Array, second: Rows) -> Array:
     result = np.zeros((pointer.size - 1, half.shape[1]))
     for j in range(result.shape[0]):
         for k in range(pointer[j], pointer[j + 1]):
-            line, w = half[slot[index[k]]], weight[k]
+            row, w = slot[index[k]], weight[k]
             for i in range(half.shape[1]):
-                result[j, i] += w * line[i]
+                result[j, i] += w * half[row, i]
     return np.ascontiguousarray(result.T)
 
 
@@ -150,9 +150,9 @@ def _symmetric(rows: Rows, compliance: Array) -> Array:
     result = np.zeros((pointer.size - 1, pointer.size - 1))
     for j in range(result.shape[0]):
         for k in range(pointer[j], pointer[j + 1]):
-            line, w = half[slot[index[k]]], weight[k]
+            row, w = slot[index[k]], weight[k]
             for i in range(j + 1):
-                result[j, i] += w * line[i]
+                result[j, i] += w * half[row, i]
     for j in range(result.shape[0]):
         for i in range(j):
             result[i, j] = result[j, i]
@@ -176,9 +176,9 @@ def _half(rows: Rows, compliance: Array, columns: Integers) -> tuple[Array, Inte
         for i in range(count):
             line[:size] = 0.0
             for k in range(pointer[i], pointer[i + 1]):
-                taken, w = part[slot[index[k]]], weight[k]
+                row, w = slot[index[k]], weight[k]
                 for b in range(size):
-                    line[b] += w * taken[b]
+                    line[b] += w * part[row, b]
             for b in range(size):
                 half[start + b, i] = line[b]
     return half, number
