@@ -15,9 +15,12 @@ from facegear.arrays import Array, Mask
 from facegear.contact.candidates import Candidates
 from facegear.contact.solver import TOLERANCE, ContactSolution, solve_contact
 
-GAP, BAND = 0.8, 0.2
+GAP, BAND = 0.8, 0.15
 """Parts of the rigid approach within which contact is sought: the least gap of a column of hats (the bodies
 give way by the rest) and, above that, the gap of the others in it (the strip's half-width)."""
+
+WIDER = 1.6
+"""Factor on the second part where contact is missed beside the strip."""
 
 START_GAP, START_WIDTH = 0.6, 0.09
 """The same parts for the first guess of what touches."""
@@ -83,7 +86,8 @@ def solve_torques(
         np.concatenate([getattr(pair, name) for pair in pairs]) for name in ("gap", "lever_arm")
     )
     turns = _turns(pairs)
-    keep = turns.within(GAP * limit, BAND * limit) if bodies.in_strip else np.ones(len(gap), dtype=bool)
+    band = BAND * limit
+    keep = turns.within(GAP * limit, band) if bodies.in_strip else np.ones(len(gap), dtype=bool)
     if not (keep & (lever_arm > 0)).any():
         keep[:] = True
     while True:
@@ -105,9 +109,12 @@ def solve_torques(
             turned = np.array([contact.rotation for contact in contacts])
             moved = bodies.approach(only(pairs, left), chosen, forces)
             distance = gap[left, None] + moved - lever_arm[left, None] * turned
-            worst = -distance.min(axis=0) / (turned * np.abs(lever_arm).max())
+            inside = -distance / (turned * np.abs(lever_arm).max())
+            worst = inside.max(axis=0)
             if worst.max() > TOLERANCE:
-                keep |= left
+                band *= WIDER
+                keep |= left & turns.within(GAP * limit, band)
+                keep[left] |= inside.max(axis=1) > TOLERANCE
                 continue
         return [_whole(contact, keep, value) for contact, value in zip(contacts, worst, strict=True)]
 

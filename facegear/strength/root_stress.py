@@ -82,36 +82,23 @@ def root_stress(
     """
     shape, count = angle.shape, len(positions)
     teeth = np.arange(min(loads) - 1, max(loads) + 2) if teeth is None else teeth
-    stress = np.zeros((len(torques), len(teeth), count, readings.shape[1]))
-    for index in range(count):
-        here = {tooth: force[index::count] for tooth, force in loads.items()}
-        stress[:, :, index] = _felt(readings, here, teeth)
+    stress = np.zeros((len(teeth), len(torques) * count, readings.shape[1]))
+    reach = len(readings) // 2
+    for tooth, force in loads.items():
+        cases, nodes = np.flatnonzero(np.diff(force.indptr)), np.unique(force.indices)
+        pressed = force[cases][:, nodes].toarray()
+        for row in np.flatnonzero(np.abs(teeth - tooth) <= reach):
+            stress[row, cases] -= pressed @ readings[teeth[row] - tooth + reach][:, nodes].T
+    by_torque = stress.reshape(len(teeth), len(torques), count, -1).swapaxes(0, 1)
     passage = (teeth[:, None] + np.asarray(positions, dtype=float)).ravel()
     return RootStress(
         torques=np.asarray(torques, dtype=float),
         passage=passage,
-        stress=stress.reshape(len(torques), passage.size, *shape),
+        stress=by_torque.reshape(len(torques), passage.size, *shape),
         along=along,
         angle=angle,
         error=np.full(len(along), np.nan) if error is None else error,
     )
-
-
-def _felt(readings: Array, loads: Mapping[int, "sp.csr_matrix"], teeth: Integers) -> Array:
-    """What the gauges of `teeth` (n,) read at one position under the loads {tooth: (t, c)}, (t, n, g).
-
-    At one position the same nodes are loaded whatever the torque, so that one small dense product does.
-    """
-    reach, gauges = len(readings) // 2, readings.shape[1]
-    nodes = {tooth: np.unique(force.indices) for tooth, force in loads.items()}
-    forces = np.hstack([force[:, nodes[tooth]].toarray() for tooth, force in loads.items()])
-    seen = np.zeros((teeth.size, gauges, forces.shape[1]))
-    start = 0
-    for tooth, here in nodes.items():
-        for row in np.flatnonzero(np.abs(teeth - tooth) <= reach):
-            seen[row, :, start : start + here.size] = readings[teeth[row] - tooth + reach][:, here]
-        start += here.size
-    return -(forces @ seen.reshape(-1, start).T).reshape(len(forces), teeth.size, gauges)
 
 
 def down_the_fillet(values: Array) -> Array:
