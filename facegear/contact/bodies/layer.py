@@ -28,7 +28,9 @@ class TiedSystem:
     `stiffness` (3n, 3n) in N/m on the masters at `points` (n, 3), of which `held` (n, 3) stay at zero;
     `coarse` maps a node of the body to its master, -1 if it was refined away. The refined surface has nodes
     `surface` (nu, nv, 3) with normals `normals` of that shape; its normal displacement is `spread` (nu nv, k)
-    times that of the master nodes `loaded` (k,), whose normals are `loaded_normals` (k, 3).
+    times that of the master nodes `loaded` (k,), whose normals are `loaded_normals` (k, 3). Row i of `cells`
+    (m, n) has an entry for each master that an element of the body around `centres` (m, 3), whole or cut,
+    depends on.
     """
 
     stiffness: sp.csr_matrix
@@ -40,6 +42,8 @@ class TiedSystem:
     loaded: Integers
     loaded_normals: Array
     spread: sp.csr_matrix
+    cells: sp.csr_matrix
+    centres: Array
 
     def followed(self, body: ElasticBody, refinement: Refinement) -> sp.csr_matrix:
         """Displacements (m, n) of the body's m nodes by those of the n masters, for nodes on its surfaces.
@@ -203,7 +207,40 @@ def tied_system(body: ElasticBody, refinement: Refinement, element: Element = "h
         loaded=loaded,
         loaded_normals=loaded_normals[loaded],
         spread=follow[top][:, loaded].tocsr(),
+        cells=_cells(body, under, np.flatnonzero(stays), coarse, layer, follow, refinement),
+        centres=_centres(body)[np.concatenate([np.flatnonzero(stays), under.elements.ravel()])],
     )
+
+
+def _cells(
+    body: ElasticBody,
+    under: FlankElements,
+    stays: Integers,
+    coarse: Integers,
+    layer: Layer,
+    follow: sp.csr_matrix,
+    refinement: Refinement,
+) -> sp.csr_matrix:
+    """Masters of the elements that stay, then of those under the flank, row by row."""
+    nodes = coarse[body.mesh.dofs.element_dofs[:, stays].T]
+    whole = _incidence(np.arange(len(stays)), nodes, follow.shape[1], len(stays))
+    members = layer.mesh.dofs.element_dofs.T
+    cuts = 2 * np.array([refinement.profile, refinement.width])
+    row, column = (layer.lattice[members, :2].min(axis=1) // cuts).T
+    rows, columns = under.elements.shape
+    cut = _incidence(row * columns + column, members, len(layer.points), rows * columns)
+    return sp.vstack([whole, cut @ abs(follow)], format="csr")
+
+
+def _incidence(cells: Integers, nodes: Integers, count: int, number: int) -> sp.csr_matrix:
+    """Matrix (number, count) with an entry for the nodes (e, a) of each of e elements, in its cell (e,)."""
+    at = np.repeat(cells, nodes.shape[1]), nodes.ravel()
+    return sp.csr_matrix((np.ones(nodes.size), at), shape=(number, count))
+
+
+def _centres(body: ElasticBody) -> Array:
+    """Of the body's elements (m, 3)."""
+    return body.points[body.mesh.dofs.element_dofs].mean(axis=0)
 
 
 def _tied_nodes(layer: Layer, used: Mask) -> Mask:
@@ -225,11 +262,16 @@ def _stiffness(
     members = layer.mesh.dofs.element_dofs
     touches = (fine[members] < 0).any(axis=0)
     plain = Part(layer.mesh, np.flatnonzero(~touches), fine)
-    matrix = stiffness_matrix([rest, plain], follow.shape[1], body.material, element).tocsr()
+    matrix = stiffness_matrix([rest, plain], follow.shape[1], body.material, element)
     nodes = np.unique(members[:, touches])
     compact = np.full(len(fine), -1)
     compact[nodes] = np.arange(len(nodes))
     tied = Part(layer.mesh, np.flatnonzero(touches), compact)
-    partial = stiffness_matrix([tied], len(nodes), body.material, element).tocsr()
-    ties = sp.kron(follow[nodes], np.eye(3), format="csr")
-    return (matrix + ties.T @ partial @ ties).tocsr()
+    partial = stiffness_matrix([tied], len(nodes), body.material, element)
+    weights = follow[nodes]
+    blocks = weights.data[:, None, None] * np.eye(3)
+    shape = 3 * len(nodes), 3 * follow.shape[1]
+    ties = sp.bsr_matrix((blocks, weights.indices, weights.indptr), shape=shape)
+    added = ties.T @ partial @ ties
+    added.sort_indices()
+    return (matrix + added).tocsr()

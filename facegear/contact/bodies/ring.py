@@ -1,6 +1,6 @@
 """Teeth coupled through their cut faces: a full ring, or a sector with free or clamped ends.
 
-All teeth are copies, so that only one is ever factorised. The teeth that carry no load are joined by doubling
+All teeth are copies, so that only one is ever condensed. The teeth that carry no load are joined by doubling
 (two equal chains in series make one). Cost: a few dense operations on the cut face dof, whatever the number
 of teeth. Matrices (2s, 2s) hold the left face first, then the right one.
 """

@@ -9,7 +9,7 @@ from scipy.linalg import solve_triangular
 from facegear.arrays import Array, Integers, Mask
 from facegear.contact.bodies.body import ElasticBody
 from facegear.contact.bodies.dense import cholesky, inverse
-from facegear.contact.bodies.factor import schur_complement
+from facegear.contact.bodies.elimination import schur_complement
 from facegear.contact.bodies.layer import TiedSystem
 
 
@@ -40,10 +40,14 @@ def condense(body: ElasticBody, system: TiedSystem, gauges: sp.csr_matrix | None
     """
     stiffness, turn, flank, faces = _turned(body, system)
     kept = np.concatenate([flank, faces])
+    cells, centres = _coupled(system.cells, turn), system.centres
     if gauges is not None:
         kept = np.concatenate([kept, len(stiffness.indptr) - 1 + np.arange(gauges.shape[0])])
-        stiffness = _with_gauges(stiffness, (gauges @ turn.T).tocsr())
-    schur = schur_complement(stiffness, kept)
+        gauges = (gauges @ turn.T).tocsr()
+        stiffness = _with_gauges(stiffness, gauges)
+        at = system.points[turn.indices[turn.indptr[:-1]] // 3]
+        cells, centres = _with_gauge_cells(cells, centres, gauges, at)
+    schur = schur_complement(stiffness, kept, cells, centres)
     k, ends = flank.size, flank.size + faces.size
     readings, schur = schur[ends:, :ends], schur[:ends, :ends]
     lower = cholesky(schur[:k, :k])
@@ -64,6 +68,23 @@ def condense(body: ElasticBody, system: TiedSystem, gauges: sp.csr_matrix | None
 def _with_gauges(stiffness: sp.csr_matrix, gauges: sp.csr_matrix) -> sp.csr_matrix:
     """The stiffness bordered by gauges, whose own part of a Schur complement has no meaning."""
     return sp.bmat([[stiffness, gauges.T], [gauges, sp.eye(gauges.shape[0])]], format="csr")
+
+
+def _coupled(cells: sp.csr_matrix, turn: sp.csr_matrix) -> sp.csr_matrix:
+    """Free dof of each cell, from its nodes (m, n)."""
+    return (sp.kron(cells, np.ones((1, 3)), format="csr") @ abs(turn).T).tocsr()
+
+
+def _with_gauge_cells(
+    cells: sp.csr_matrix, centres: Array, gauges: sp.csr_matrix, points: Array
+) -> tuple[sp.csr_matrix, Array]:
+    """A cell more for each gauge (g, n), of it and the dof at `points` (n, 3) that it reads."""
+    reads = (gauges != 0.0).astype(float)
+    number = np.maximum(reads.sum(axis=1), 1.0)
+    return (
+        sp.bmat([[cells, None], [reads, sp.eye(gauges.shape[0])]], format="csr"),
+        np.concatenate([centres, reads @ points / np.asarray(number).reshape(-1, 1)]),
+    )
 
 
 def held_by(tooth: Superelement, rest: Array) -> Array:
@@ -101,12 +122,10 @@ def _turned(body: ElasticBody, system: TiedSystem) -> tuple[sp.csr_matrix, sp.cs
     held[system.loaded] = held[system.loaded].sum(axis=1)[:, None] > np.array([3, 0, 1])
     left, right = system.coarse[body.left], system.coarse[body.right]
     frames[right] = body.turn.T
-    turn = sp.bsr_matrix(
-        (frames, np.arange(count), np.arange(count + 1)), shape=(3 * count, 3 * count)
-    ).tocsr()
+    turn = sp.bsr_matrix((frames, np.arange(count), np.arange(count + 1)), shape=(3 * count, 3 * count))
     free = ~held.ravel()
-    turn = turn[free]
-    stiffness = (turn @ system.stiffness @ turn.T).tocsr()
+    stiffness = (turn @ system.stiffness.tobsr((3, 3)) @ turn.T).tocsr()[free][:, free]
+    turn = turn.tocsr()[free]
     position = np.cumsum(free) - 1
     faces = np.concatenate([(3 * face[:, None] + np.arange(3)).ravel() for face in (left, right)])
     if np.intersect1d(3 * system.loaded, faces).size:

@@ -5,16 +5,18 @@ from math import radians
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 import scipy.sparse.linalg as spl
 from contact_bodies import STEEL, block, half_disc
 from references import against, agrees
 from skfem import Basis, ElementHex1, ElementHex2, ElementTetP1, ElementVector, MeshHex1, MeshHex2
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
-from facegear.contact.bodies import factor
+from facegear.contact.bodies import dissection, factor
 from facegear.contact.bodies.assembly import Part, stiffness_matrix
 from facegear.contact.bodies.compliance import flank_compliance
 from facegear.contact.bodies.elements import mesh_of
+from facegear.contact.bodies.elimination import schur_complement
 from facegear.contact.bodies.layer import tied_system
 from facegear.contact.gear_flank import GearFlank, from_arrays, to_arrays
 from facegear.contact.options import Refinement
@@ -177,28 +179,53 @@ def test_influence_matrix_is_symmetric():
 
 @against(
     "other program",
-    "SciPy's SuperLU beside PARDISO, and spsolve",
+    "SciPy's SuperLU",
+    capability="compliance",
+    module="facegear.contact.bodies.elimination",
+)
+@pytest.mark.parametrize("leaf", [20, 300, 10**6])
+def test_complement_of_a_body_is_the_same_however_finely_it_is_dissected(leaf, monkeypatch):
+    monkeypatch.setattr(dissection, "LEAF", leaf)
+    system = tied_system(DISC, CUTS)
+    free = ~system.held.ravel()
+    matrix = system.stiffness[free][:, free].tocsr()
+    cells = sp.kron(system.cells, np.ones((1, 3)), format="csr")[:, free]
+    kept = np.arange(90, 0, -3)
+    rest = np.setdiff1d(np.arange(matrix.shape[0]), kept)
+    across = matrix[rest][:, kept].toarray()
+    expected = matrix[kept][:, kept] - across.T @ spl.splu(matrix[rest][:, rest].tocsc()).solve(across)
+    computed = schur_complement(matrix, kept, cells, system.centres)
+    agrees(
+        "Schur complement, N/m",
+        computed,
+        expected,
+        relative=1e-7,
+        absolute=1e-11 * np.abs(expected).max(),
+    )
+    assert (len(dissection.dissection(cells, system.centres, kept)) > 1) == (leaf < 10**6)
+
+
+@against(
+    "other program",
+    "SciPy's SuperLU beside PARDISO",
     capability="compliance",
     module="facegear.contact.bodies.factor",
 )
-def test_both_sparse_solvers_give_the_same_complement(monkeypatch):
+def test_both_sparse_solvers_give_the_same_displacements(monkeypatch):
     system = tied_system(DISC, CUTS)
-    held = system.held.ravel()
-    matrix = system.stiffness[~held][:, ~held]
-    kept = np.arange(0, 90, 3)
-    first = factor.schur_complement(matrix, kept)
-    monkeypatch.setattr(factor, "PyPardisoSolver", None)
-    second = factor.schur_complement(matrix, kept)
-    agrees("Schur complement, N/m", second, first, relative=1e-7, absolute=1e-11 * np.abs(first).max())
+    free = ~system.held.ravel()
+    matrix = system.stiffness[free][:, free].tocsr()
     unit = np.zeros((matrix.shape[0], 1))
-    unit[kept[0]] = 1.0
-    direct = spl.spsolve(matrix.tocsc(), unit)[kept]
+    unit[0] = 1.0
+    first = factor.solve_sparse(matrix, unit)
+    monkeypatch.setattr(factor, "_pardiso", lambda: None)
+    second = factor.solve_sparse(matrix, unit)
     agrees(
         "displacement of a unit force, m",
-        np.linalg.inv(first)[:, 0],
-        direct,
+        second.ravel(),
+        first.ravel(),
         relative=1e-7,
-        absolute=1e-10 * np.abs(direct).max(),
+        absolute=1e-10 * np.abs(first).max(),
     )
 
 
