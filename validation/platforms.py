@@ -34,7 +34,7 @@ PLATFORMS: dict[str, tuple[bool, int, dict[str, str]]] = {
     "MKL, one thread, old kernels": (True, 1, OLD_KERNELS),
     "without MKL, one thread, old kernels": (False, 1, OLD_KERNELS),
 }
-"""Whether MKL's PARDISO solves sparse systems, threads, further environment; the others are compared with the first."""
+"""Whether PARDISO solves sparse systems, threads, further environment; all are compared with the first."""
 CASES = (
     "tests/unit/geometry/test_separation.py",
     "tests/unit/contact/test_manufactured_solutions.py",
