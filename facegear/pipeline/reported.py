@@ -30,6 +30,7 @@ REPORTED = {
     "dynamic_root_stress": ["dynamic_stress"],
     "stress_over_speed": ["stress_over_speed"],
     "operating_pose": ["meshes", "loads", "leaving", "check"],
+    "posed_stress": ["by_mesh"],
     "shafts": ["seats", "bearings", "torsion"],
 }
 """Tables of each stage that the report reads."""

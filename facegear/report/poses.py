@@ -26,6 +26,15 @@ LEAVING = (
     "Loads, as a fraction of the mean torques, at which the unloaded contact of a mesh crosses an end "
     "of the face"
 )
+EDGES = (
+    "Distance of the contact pattern of every mesh, as it runs, to both ends of the face, to the tips of "
+    "pinion and gear, and to the radii where undercut begins and tips are pointed"
+)
+STRESS = (
+    "Pressure and root stress of every mesh at its own torque, from contact solved where the machine's own "
+    "forces put its teeth, and as assembled"
+)
+PATTERN = "pattern_to_"
 CHECK = "The surface beside the contact solved directly, for the mesh that its pose changes most"
 CHANGED = {
     "stiffness_by_pose_percent": "stiffness",
@@ -40,10 +49,13 @@ def pose_tables(tables: Mapping[str, pd.DataFrame]) -> list[Table]:
     if "poses_meshes" not in tables:
         return []
     meshes, leaving = tables["poses_meshes"], tables["poses_leaving"]
+    edges = [name for name in meshes.columns if name.startswith(PATTERN)]
     return [
         Table(MESHES, meshes[[name for name in SHOWN if name in meshes]], 4),
+        *([Table(EDGES, meshes[["mesh", *edges]], 4)] if edges else []),
+        *([Table(STRESS, tables["posed_stress"], 4)] if "posed_stress" in tables else []),
         *([Table(LEAVING, leaving, 4)] if len(leaving) else []),
-        Table(POSE, meshes, 4, folded=True),
+        Table(POSE, meshes.drop(columns=edges), 4, folded=True),
         Table(CHECK, tables["poses_check"], 5, folded=True),
     ]
 
@@ -54,7 +66,7 @@ def pose_text(tables: Mapping[str, pd.DataFrame]) -> str:
         return ""
     meshes = tables["poses_meshes"]
     loaded = meshes[meshes["path_mm"].notna()]
-    parts = [*_path(loaded), _changes(loaded), _force(meshes), _ends(tables)]
+    parts = [*_path(loaded), _pattern(loaded), _changes(loaded), _force(meshes), _ends(tables)]
     return " ".join(part for part in parts if part)
 
 
@@ -80,6 +92,27 @@ def _path(loaded: pd.DataFrame) -> list[str]:
         f"The loaded contact of {shifted['mesh']} moves furthest, from {before} mm as assembled to {after} mm"
     )
     return [f"{moved} as the machine runs.", left]
+
+
+def _pattern(loaded: pd.DataFrame) -> str:
+    """At which ends of the face the loaded pattern ends, and which tips carry none of it."""
+    if f"{PATTERN}inner_end_mm" not in loaded or loaded.empty:
+        return ""
+    said = []
+    for end in ("inner", "outer"):
+        left = loaded[f"{PATTERN}{end}_end_mm"]
+        reached = loaded.loc[left <= 0.0, "mesh"].to_list()
+        if reached:
+            names = "every mesh" if len(reached) == len(loaded) else ", ".join(reached)
+            said.append(f"the loaded pattern of {names} reaches the {end} end of the face")
+        else:
+            said.append(f"{number(left.min(), 2)} mm of the face stay free at its {end} end")
+    for tip in ("pinion", "gear"):
+        left = loaded[f"{PATTERN}{tip}_tip_mm"]
+        if left.min() > 0.0:
+            said.append(f"the pattern stays {number(left.min(), 2)} mm from the tip of the {tip}")
+    text = "; ".join(said)
+    return f"{text[0].upper()}{text[1:]}."
 
 
 def _changes(loaded: pd.DataFrame) -> str:

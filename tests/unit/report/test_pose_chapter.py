@@ -53,6 +53,25 @@ def test_a_contact_beyond_the_end_is_not_called_near_it():
     assert "tail/upper lies 0.4 mm beyond the outer end of the face" in text
 
 
+def test_the_edges_that_loaded_patterns_reach_and_those_that_stay_free_are_said():
+    distances = {
+        "pattern_to_inner_end_mm": [8.2, 3.1, np.nan],
+        "pattern_to_outer_end_mm": [0.0, 1.0, np.nan],
+        "pattern_to_pinion_tip_mm": [0.0, 0.4, np.nan],
+        "pattern_to_gear_tip_mm": [0.2, 0.4, np.nan],
+    }
+    given = tables(meshes=MESHES.assign(**distances))
+    text = pose_text(given)
+    assert "3.1 mm of the face stay free at its inner end" in text
+    assert "pattern of tail/upper reaches the outer end of the face" in text
+    assert "stays 0.2 mm from the tip of the gear" in text and "tip of the pinion" not in text
+    whole, edges, *_ = pose_tables(given)
+    assert list(edges.frame.columns) == ["mesh", *distances]
+    assert not set(distances) & set(whole.frame.columns)
+    stress = pd.DataFrame({"mesh": ["tail/upper"], "pressure_mpa": [900.0]})
+    assert len(pose_tables({**given, "posed_stress": stress})) == len(pose_tables(given)) + 1
+
+
 @pytest.mark.parametrize("known", [True, False])
 def test_the_report_has_the_chapter_where_poses_were_computed(known):
     values = resolved(load_config("config/harmonics_only.yaml"))
