@@ -26,6 +26,10 @@ WITHOUT_FRICTION = (
     "temperature and film of samples are those of the forces without it (docs/friction.md)"
 )
 
+AS_ASSEMBLED = (
+    "transmission.operating_pose = static: friction, loss, temperature and film take the contact of teeth as "
+    "assembled (docs/poses.md)"
+)
 SINGLE_TEETH = (
     "{}: deviations of single teeth enter the hunting cycle, at rest and running, duty loads, and the "
     "vibration at the orders of turns (dynamics/shaft_orders.csv); steady states, sweeps, branches, samples "
@@ -36,7 +40,8 @@ SINGLE_TEETH = (
 def notes(values: Mapping[str, Any]) -> list[str]:
     """Lines for a config of one's own that counts as the publication does, for errors that turn, for dynamics
     with a backlash other than that of the teeth, for preloads and external forces, for numbers that several
-    causes move, for friction that samples and designs leave out of their motion, and for single teeth.
+    causes move, for friction that samples and designs leave out of their motion, for friction of teeth as
+    assembled beside an operating pose, and for single teeth.
     """
     transmission = values["transmission"]
     if transmission is None:
@@ -50,6 +55,7 @@ def notes(values: Mapping[str, Any]) -> list[str]:
         + _pushes(transmission)
         + _sums(values)
         + _without_friction(values)
+        + [AS_ASSEMBLED] * (transmission["operating_pose"] == "static" and bool(values.get("lubrication")))
         + _single_teeth(values)
     )
 

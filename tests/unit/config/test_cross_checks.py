@@ -133,6 +133,17 @@ def test_another_backlash_than_that_of_the_teeth_is_reported_when_a_run_starts()
         assert notes(parse(Config, values).model_dump(mode="json")) == []
 
 
+def test_friction_of_teeth_as_assembled_beside_an_operating_pose_is_reported_when_a_run_starts():
+    """Stress, rating, samples and designs stand where their own forces put them, and are not named."""
+    for name, count in (("concentric", 0), ("friction", 1)):
+        machine = load_config(ROOT / "config" / f"{name}.yaml").model_dump(mode="json")
+        before = notes(machine)
+        lines = notes(changed(machine, transmission__operating_pose="static"))
+        added = [line for line in lines if line not in before]
+        assert len(added) == count
+        assert all("friction, loss, temperature and film take" in line for line in added)
+
+
 def test_single_teeth_that_deviate_are_reported_when_a_run_starts():
     grid = {
         "flank": "right",
