@@ -104,6 +104,8 @@ JUMPS = (
 )
 DRAWINGS = ("layout", "machine", "tooth_pair")
 """Figures that show the machine; the first that exists stands on the first screen."""
+LONG_TABLE = 40
+"""Rows of natural frequencies above which their table is folded."""
 LARGEST_SVG = 1_500_000
 """Bytes; a larger drawing is shown as its png."""
 
@@ -194,10 +196,9 @@ def _tables(title: str, tables: Mapping[str, pd.DataFrame], speed_rpm: float) ->
         return [Table("Harmonics kept", tables["harmonics"].iloc[:, :4], 5)]
     if title == "Modes" and "frequencies" in tables:
         held = [Table(MODE_CONTACTS, tables["contacts"], 4)] if "contacts" in tables else []
-        return [
-            *held,
-            Table("Natural frequencies; equal ones share a row", mode_rows(tables["frequencies"]), 6),
-        ]
+        rows = mode_rows(tables["frequencies"])
+        words = "Natural frequencies; equal ones share a row"
+        return [*held, Table(words, rows, 6, folded=len(rows) > LONG_TABLE)]
     if title == POSES:
         return pose_tables(tables)
     if title == SHAFTS:

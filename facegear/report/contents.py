@@ -153,7 +153,10 @@ CHAPTERS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "Modes",
         "Modes of the machine with constant mean mesh stiffness and without backlash. T: "
         "translation, R: rotation, A: axial motion.",
-        ("mode_shapes", "campbell"),
+        (
+            *("mode_shapes", "campbell"),
+            *("machine_campbell", "body_shapes", "body_waves", "body_campbell"),
+        ),
     ),
     (
         "Nominal response and speed sweeps",
