@@ -118,6 +118,11 @@ class GearBody(Section):
         None, gt=0, le=1e4, description="required by mesh_kinematics printed, refused by geometric"
     )
     tilt: TiltSection | None = Field(None, description="null: the gears stay square to their axis")
+    hub_tilt: TiltSection | None = Field(
+        None,
+        description="beside a body: of its hub on the bearings, with the inertia of the whole gear; null: "
+        "the hub stays square to its axis",
+    )
     body: Bending = Field(None, description="hub, web and rim that bend; null or rigid: they do not")
     runout: RunoutSection | None = None
 
@@ -185,6 +190,7 @@ class SingleGear(Section):
     inertia_kg_m2: float | None = Field(None, ge=SMALLEST_KG_M2, le=1e6)
     bearing_stiffness_n_per_m: BearingStiffness | None = None
     tilt: TiltSection | None = None
+    hub_tilt: TiltSection | None = None
     body: BodySection | None = Field(None, description="hub, web and rim that bend")
     runout: RunoutSection | None = None
     cumulative_pitch_um: tuple[float, ...] = Field((), description="of every tooth, ahead as it turns")

@@ -136,6 +136,7 @@ def bore(corners: Array) -> tuple[bool, ...]:
 
 def check_bodies(teeth: ToothPair, section: Transmission) -> None:
     """The bodies of a machine can be and fit its teeth and masses. Raises ConfigError."""
+    _refuse_hubs_alone(section)
     for side in section.face_gears:
         if (body := body_of(section, side)) is None:
             continue
@@ -145,6 +146,32 @@ def check_bodies(teeth: ToothPair, section: Transmission) -> None:
         _check_body(key, side, body, teeth, section)
 
 
+def _refuse_hubs_alone(section: Transmission) -> None:
+    """Raises ConfigError for the tilt of a hub where no web bends."""
+    single = section.single_gears.items()
+    rigid = [f"single_gears.{side}" for side, own in single if own.hub_tilt and not body_of(section, side)]
+    if section.face_gear.hub_tilt is not None and not elastic_gears(section):
+        rigid.append("face_gear")
+    if rigid:
+        allowed = "left out where the gear has no body that bends, whose tilt is given by tilt"
+        raise ConfigError(f"transmission.{rigid[0]}.hub_tilt", "given", allowed)
+
+
+def _check_hub(side: str, shape: shapes.Section, teeth: ToothPair, section: Transmission) -> None:
+    """The hub's tilt carries at least the section. Raises ConfigError."""
+    own = section.single_gears.get(side)
+    alone = own is not None and own.hub_tilt is not None
+    tilt = own.hub_tilt if own is not None and own.hub_tilt is not None else section.face_gear.hub_tilt
+    if tilt is None:
+        return
+    centre = pitch_height(teeth) - 1e-3 * tilt.centre_below_pitch_plane_mm
+    needed = shapes.inertia_about(shape, centre)
+    if tilt.inertia_kg_m2 < needed * (1.0 - ROUNDED):
+        where = f"transmission.single_gears.{side}" if alone else "transmission.face_gear"
+        allowed = f"at least {needed:.6g} kg m2, which the section of the body has about that point"
+        raise ConfigError(f"{where}.hub_tilt.inertia_kg_m2", tilt.inertia_kg_m2, allowed)
+
+
 def _check_body(key: str, side: str, body: BodySection, teeth: ToothPair, section: Transmission) -> None:
     if section.mesh_kinematics == "printed":
         raise ConfigError(f"{key}.body", "a section", "rigid where mesh_kinematics is printed")
@@ -152,14 +179,18 @@ def _check_body(key: str, side: str, body: BodySection, teeth: ToothPair, sectio
         raise ConfigError("tooth_pair.face_gear", None, f"given, as required by {key}.body")
     own = section.single_gears.get(side)
     if section.face_gear.tilt is not None or (own is not None and own.tilt is not None):
-        raise ConfigError(f"{key}.tilt", "given", "left out beside a body: its web is what tilts the rim")
+        raise ConfigError(
+            f"{key}.tilt",
+            "given",
+            "left out beside a body, whose web tilts the rim; hub_tilt is that of its bearings",
+        )
     try:
         shape = body_shape(body, teeth)
         require_teeth_on_rim(shape, 1e-3 * teeth.face_gear.rim_thickness_mm)
         require_meshable(shape.corners)
     except InvalidInput as error:
         _refuse_shape(f"{key}.body", body, error)
-    mass, polar, _ = shapes.section_properties(shape)
+    mass, polar, *_ = shapes.section_properties(shape)
     for name, needed, unit in (("mass_kg", mass, "kg"), ("inertia_kg_m2", polar, "kg m2")):
         single = getattr(own, name) if own is not None else None
         value = getattr(section.face_gear, name) if single is None else single
@@ -167,6 +198,7 @@ def _check_body(key: str, side: str, body: BodySection, teeth: ToothPair, sectio
             where = key if single is None else f"transmission.single_gears.{side}"
             allowed = f"at least {needed:.6g} {unit}, which the section of the body has; more is the hub's"
             raise ConfigError(f"{where}.{name}", value, allowed)
+    _check_hub(side, shape, teeth, section)
 
 
 def _refuse_shape(key: str, body: BodySection, error: InvalidInput) -> NoReturn:

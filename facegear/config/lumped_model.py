@@ -236,7 +236,9 @@ def _body(section: PinionBody | GearBody, own: SinglePinion | SingleGear | None)
     """A body from what all have and what it has of its own."""
     stiffness = (own and own.bearing_stiffness_n_per_m) or section.bearing_stiffness_n_per_m
     assert stiffness is not None
-    tilt = getattr(own, "tilt", None) or getattr(section, "tilt", None)
+    bends = (getattr(own, "body", None) or getattr(section, "body", None)) is not None
+    key = "hub_tilt" if bends else "tilt"
+    tilt = getattr(own, key, None) or getattr(section, key, None)
     return Body(
         *_inertias(section, own),
         (stiffness.x, stiffness.y, stiffness.z),

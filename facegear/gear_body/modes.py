@@ -38,7 +38,7 @@ class OrderModes:
     hub : (2, m)
         Coupling of masses Q with the rigid motions of `rigid_motions`; none above order 1, where it is zero.
     hub_spin : (m,)
-        Coupling g with a rotation of the hub about its axis; none above order 0.
+        Coupling g with a rotation of the hub about its axis in order 0, with its tilt in order 1; none above.
     """
 
     order: int
@@ -156,7 +156,7 @@ def _reduced(body: BodyMatrices, order: int, frequencies: Array, shapes: Array) 
         centrifugal=factor * shapes.T @ (body.centrifugal @ shapes),
         teeth=np.stack(body.on_teeth) @ shapes,
         hub=factor * rigid.T @ (body.mass @ shapes),
-        hub_spin=(1.0 if order == 0 else 0.0) * factor * rigid[:, 1] @ (body.coriolis @ shapes),
+        hub_spin=factor * rigid[:, 1] @ (body.coriolis @ shapes),
     )
 
 

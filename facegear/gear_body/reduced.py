@@ -1,7 +1,7 @@
 """A gear body by its modes alone: what a machine takes of it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import Self
 
 import numpy as np
@@ -25,13 +25,17 @@ class ReducedBody:
         Coupling of masses Q with motions of the hub: along and round the axis in order 0, sideways (and tilt)
         in order 1.
     hub_spin : (m,)
-        Coupling g of the hub's rotation with modes of order 0.
+        Coupling g of the hub's rotation with modes of order 0, and of its tilt with those of order 1.
     round : (m,)
         1 for modes of order 0 that move round the axis, 0 for all others.
     static : (orders, 2, 2)
         Compliance H_n below a mesh of W_p and V_p with all modes there are, m/N, from order 0.
     damping_ratio : ()
         Of every mode, in the steel.
+    pitch_height : ()
+        Of the pitch plane over height 0, m.
+    mass, moment : ()
+        Of the section, kg, and that times the height of its centre, kg m.
     """
 
     order: Integers
@@ -44,6 +48,9 @@ class ReducedBody:
     round: Array
     static: Array
     damping_ratio: Array
+    pitch_height: Array = field(default_factory=lambda: np.zeros(()))
+    mass: Array = field(default_factory=lambda: np.zeros(()))
+    moment: Array = field(default_factory=lambda: np.zeros(()))
 
     @property
     def damping(self) -> Array:
@@ -66,11 +73,11 @@ class ReducedBody:
     @classmethod
     def of_arrays(cls, arrays: Mapping[str, AnyArray], gear: str) -> Self:
         """From what `arrays` gave for a gear."""
-        return cls(**{field.name: arrays[f"{gear}_{field.name}"] for field in fields(cls)})
+        return cls(**{own.name: arrays[f"{gear}_{own.name}"] for own in fields(cls)})
 
     def arrays(self, gear: str) -> dict[str, AnyArray]:
         """All of it by names that begin with the gear's."""
-        return {f"{gear}_{field.name}": getattr(self, field.name) for field in fields(self)}
+        return {f"{gear}_{own.name}": getattr(self, own.name) for own in fields(self)}
 
     def own_residual(self, direction: Array) -> float:
         """What a flank gives way under its own force beyond the modes, m/N; direction (2,) of the force.

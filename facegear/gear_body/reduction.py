@@ -7,6 +7,7 @@ from facegear.arrays import Array
 from facegear.gear_body.body import SolvedBody
 from facegear.gear_body.patch import Patch
 from facegear.gear_body.reduced import ReducedBody
+from facegear.gear_body.section import section_properties
 
 
 def reduced_body(body: SolvedBody, patch: Patch, damping_ratio: float) -> ReducedBody:
@@ -14,6 +15,7 @@ def reduced_body(body: SolvedBody, patch: Patch, damping_ratio: float) -> Reduce
     orders = body.orders
     order = np.concatenate([np.full(modes.frequencies.size, modes.order) for modes in orders])
     zero = orders[0]
+    mass, _, _, moment = section_properties(body.section)
     return ReducedBody(
         order=order,
         frequency=np.concatenate([modes.frequencies for modes in orders]),
@@ -25,6 +27,9 @@ def reduced_body(body: SolvedBody, patch: Patch, damping_ratio: float) -> Reduce
         round=np.concatenate([np.round(zero.torsional), np.zeros(order.size - zero.frequencies.size)]),
         static=body.static(patch),
         damping_ratio=np.array(damping_ratio),
+        pitch_height=np.array(patch.height),
+        mass=np.array(mass),
+        moment=np.array(moment),
     )
 
 

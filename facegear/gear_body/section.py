@@ -255,8 +255,9 @@ def thinnest(corners: Array) -> float:
     return min([*walls, float(lengths.max())])
 
 
-def mass_properties(corners: Array, density: float) -> tuple[float, float, float]:
-    """Mass (kg), moments of inertia (kg m2) about the axis and about a diameter at height 0, of a full turn.
+def mass_properties(corners: Array, density: float) -> tuple[float, float, float, float]:
+    """Mass (kg), moments of inertia (kg m2) about the axis and about a diameter at height 0, and the static
+    moment, mass times the height of its centre (kg m), of a full turn.
 
     Exact: each edge makes a triangle with the origin, over which a form of degree d is 1 / (d + 2) of its
     integral along the edge times twice the area.
@@ -271,11 +272,12 @@ def mass_properties(corners: Array, density: float) -> tuple[float, float, float
 
     mass = 2.0 * np.pi * density * integral(r, 1)
     polar = 2.0 * np.pi * density * integral(r**3, 3)
-    return mass, polar, 0.5 * polar + 2.0 * np.pi * density * integral(r * height**2, 3)
+    across = 0.5 * polar + 2.0 * np.pi * density * integral(r * height**2, 3)
+    return mass, polar, across, 2.0 * np.pi * density * integral(r * height, 2)
 
 
-def section_properties(section: Section) -> tuple[float, float, float]:
-    """Mass and moments of inertia as `mass_properties`, teeth included."""
+def section_properties(section: Section) -> tuple[float, float, float, float]:
+    """Mass, moments of inertia and static moment as `mass_properties`, teeth included."""
     own = np.array(mass_properties(section.corners, section.density))
     if section.layer is not None:
         layer = section.layer
@@ -283,4 +285,11 @@ def section_properties(section: Section) -> tuple[float, float, float]:
         area = np.pi * (layer.outer_radius**2 - layer.inner_radius**2)
         moved = area * layer.depth**2 * (layer.back + layer.front) / 6.0
         own[2] -= layer.taper * layer.density * section.density * moved
-    return float(own[0]), float(own[1]), float(own[2])
+        own[3] -= layer.taper * layer.density * section.density * area * layer.depth**2 / 6.0
+    return float(own[0]), float(own[1]), float(own[2]), float(own[3])
+
+
+def inertia_about(section: Section, height: float) -> float:
+    """Moment of inertia (kg m2) about a diameter at a height (m)."""
+    mass, _, across, moment = section_properties(section)
+    return across - 2.0 * height * moment + mass * height**2

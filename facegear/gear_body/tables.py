@@ -27,7 +27,7 @@ def body_table(
     flanks at angles (n,) rad that they do not hold (m/N), and the largest relative change of a frequency from
     a coarser mesh.
     """
-    mass, polar, diametral = section_properties(body.section)
+    mass, polar, diametral, _ = section_properties(body.section)
     drive = flank_direction(pressure_angle)
     whole = influence(body.static(patch), 0.0, drive, drive)
     changes = np.concatenate([*body.changes, np.zeros(1)])

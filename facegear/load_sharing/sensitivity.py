@@ -16,6 +16,7 @@ from facegear.load_sharing.hunting import (
     hunting_length,
     largest,
 )
+from facegear.transmission.elastic_gears import ElasticGears
 from facegear.transmission.flanks import flank_law
 from facegear.transmission.imperfections import Imperfections, Runout, perfect
 from facegear.transmission.kinematics import KINEMATICS
@@ -167,7 +168,11 @@ def _with_kinematics(machine: Machine, kinematics: Kinematics) -> Machine:
     torques = balanced_torques(other, machine.torques[:pinions], float(lower))
     # At rest a drive line is what the layout has in its place.
     changed = replace(machine, layout=other, torques=torques, imperfections=errors, drive_line=None)
-    return changed if kinematics is layout.kinematics else replace(changed, bodies=None, softening=None)
+    if kinematics is not layout.kinematics:
+        return replace(changed, bodies=None, softening=None)
+    if isinstance(machine.bodies, ElasticGears):
+        return replace(changed, bodies=replace(machine.bodies, layout=other))
+    return changed
 
 
 def _with_bearings(machine: Machine, roles: tuple[Role, ...], stiffness: float) -> Machine:

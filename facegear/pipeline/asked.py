@@ -82,7 +82,7 @@ def tilting(case: Case) -> bool:
     """Whether a body of the machine may tilt, so that the error of the shaft angle changes."""
     section: Any = case.values["transmission"]
     gears = [section["face_gear"], *section["single_gears"].values()]
-    return bool(section["shafts"]) or any(gear.get("tilt") for gear in gears)
+    return bool(section["shafts"]) or any(gear.get("tilt") or gear.get("hub_tilt") for gear in gears)
 
 
 def modes_from_contact(case: Case) -> bool:

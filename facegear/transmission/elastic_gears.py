@@ -9,6 +9,8 @@ lower gear is negative), as two real coordinates q_c + i q_s. With J = ((0, 1), 
 (Kronecker products). The last term is circulatory: damping sits in the steel and turns with it. Modes of
 order 0 are single coordinates, along the axis or round it, which the Coriolis force couples. The hub's own
 motions couple with orders 0 and 1 by masses alone, and its rotation with order 0 by the Coriolis force.
+A hub that tilts about a point of its axis moves the whole body in order 1, with gyroscopic moments on itself
+and on the modes.
 """
 
 from collections.abc import Mapping
@@ -22,7 +24,7 @@ from facegear.transmission.layout import DOF_PER_BODY, Layout
 from facegear.transmission.linear_model import LinearModel, Spin
 
 TURN = np.array([[0.0, 1.0], [-1.0, 0.0]])
-X, Y, Z, THETA = range(4)
+X, Y, Z, THETA, TILT_X, TILT_Y = range(6)
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,13 +37,13 @@ class Coordinates:
         `n2 1c`: nodal diameters, number of the mode, cosine or sine; `n0 1` has no such pair.
     mode : (k,)
         Which mode of the body each belongs to.
-    mass_hub : (4, k)
-        Masses between the hub's x, y, z, theta and them.
+    mass_hub : (6, k)
+        Masses between the hub's x, y, z, theta, tilt_x, tilt_y and them; tilts about height 0.
     stiffness, damping : (k,)
         Of each at rest.
     gyroscopic, circulatory, centrifugal : (k, k)
         For a body's speed of 1 rad/s, the last for its square.
-    gyroscopic_hub : (4, k)
+    gyroscopic_hub : (6, k)
         Velocity terms on the hub's coordinates by theirs; those on theirs are the negative.
     rows : (2 meshes of the gear, k)
         Derivative of the deflections of its flanks, drive flanks first.
@@ -83,7 +85,7 @@ def coordinates(body: ReducedBody, sign: float, angles: Array, pressure_angle: f
         gyroscopic=coriolis,
         circulatory=turned,
         centrifugal=same * slowed[np.ix_(mode, mode)],
-        gyroscopic_hub=_hub_coriolis(body, mode, sign),
+        gyroscopic_hub=_hub_coriolis(body, mode, cosine, sign),
         rows=flank_rows(order, part, axial, around, body.round[mode], sign, angles, pressure_angle),
         lengths=np.maximum(np.hypot(axial, around), 1e-9 * np.hypot(axial, around).max(initial=1.0)),
     )
@@ -110,19 +112,27 @@ def _order_zero(body: ReducedBody, mode: Integers) -> Array:
 
 
 def _hub_masses(hub: Array, order: Integers, cosine: Mask, turning: Array, sign: float) -> Array:
-    """Heights count towards the teeth, against z of the upper gear; X = -y and Y = x of the hub."""
-    masses = np.zeros((4, order.size))
+    """Heights count towards the teeth, against z of the upper gear; X = -y and Y = x of the hub. Tilts raise
+    the teeth of the upper gear as those of a wave do, and lower those of the lower gear.
+    """
+    masses = np.zeros((6, order.size))
     zero, single = order == 0, order == 1
     masses[Z, zero] = -sign * (hub[0] * (1.0 - turning))[zero]
     masses[THETA, zero] = sign * (hub[1] * turning)[zero]
     masses[Y, single & cosine] = -hub[0, single & cosine]
     masses[X, single & ~cosine] = hub[0, single & ~cosine]
+    masses[TILT_X, single & cosine] = sign * hub[1, single & cosine]
+    masses[TILT_Y, single & ~cosine] = sign * hub[1, single & ~cosine]
     return masses
 
 
-def _hub_coriolis(body: ReducedBody, mode: Integers, sign: float) -> Array:
-    terms = np.zeros((4, mode.size))
-    terms[THETA] = 2.0 * sign * (body.hub_spin * (1.0 - body.round))[mode]
+def _hub_coriolis(body: ReducedBody, mode: Integers, cosine: Mask, sign: float) -> Array:
+    """2 (n M + g) between hub and modes. For a tilt that is 2 int rho r W, about whatever point it turns."""
+    terms, order = np.zeros((6, mode.size)), body.order[mode]
+    terms[THETA] = np.where(order == 0, 2.0 * sign * (body.hub_spin * (1.0 - body.round))[mode], 0.0)
+    tilt = np.where(order == 1, 2.0 * sign * (body.hub[1] + body.hub_spin)[mode], 0.0)
+    terms[TILT_X] = np.where(cosine, 0.0, tilt)
+    terms[TILT_Y] = np.where(cosine, -tilt, 0.0)
     return terms
 
 
@@ -178,19 +188,21 @@ class ElasticGears:
         layout, own = self.layout, self.layout.gears[gear]
         added = coordinates(body, own.sign, layout.angles, layout.pressure_angle)
         old, new = model.size, len(added.letters)
-        hub = DOF_PER_BODY * (len(layout.pinions) + gear) + np.arange(DOF_PER_BODY)
         speed = own.sign * layout.pinion_teeth / layout.gear_teeth
-        mass = bordered(model.mass, np.eye(new), hub, added.mass_hub)
+        hub, mass_hub, gyroscopic_hub = _hub_terms(layout, gear, body, added)
+        rigid, moments = _hub_tilts(layout, gear, body, old)
+        mass = bordered(model.mass + rigid, np.eye(new), hub, mass_hub)
         stiffness = bordered(model.stiffness, np.diag(added.stiffness))
         lumped = model.mass_damping * mass + model.bearing_damping * stiffness
-        lumped[:old, :old] = 0.0
+        lumped[:old, :old] = model.mass_damping * rigid
         dampers = bordered(model.dampers, np.diag(added.damping)) - lumped
         meshes = np.array([g == gear for _, g in layout.meshes] * 2)
         rows = np.zeros((len(model.rows), new))
         rows[meshes] = added.rows
         none = Spin(*(np.zeros((old, old)) for _ in range(3)))
         before = none if model.spin is None else model.spin
-        gyroscopic = bordered(before.gyroscopic, speed * added.gyroscopic, hub, speed * added.gyroscopic_hub)
+        turning = before.gyroscopic + speed * moments
+        gyroscopic = bordered(turning, speed * added.gyroscopic, hub, speed * gyroscopic_hub)
         gyroscopic[old:, :old] *= -1.0
         return replace(
             model,
@@ -208,6 +220,43 @@ class ElasticGears:
                 bordered(before.centrifugal, speed**2 * added.centrifugal),
             ),
         )
+
+
+def _hub_terms(
+    layout: Layout, gear: int, body: ReducedBody, added: Coordinates
+) -> tuple[Integers, Array, Array]:
+    """Coordinates (h,) of a gear's hub, and its masses and velocity terms (h, k) with those of the body.
+
+    A tilt about a height h is that about height 0 and a motion sideways: it moves (-(zeta - h), zeta - h, r).
+    """
+    hub = DOF_PER_BODY * (len(layout.pinions) + gear) + np.arange(DOF_PER_BODY)
+    if layout.gears[gear].body.tilt is None:
+        return hub, added.mass_hub[:DOF_PER_BODY], added.gyroscopic_hub[:DOF_PER_BODY]
+    height = layout.gears[gear].sign * _centre(layout, gear, body)
+    masses = added.mass_hub.copy()
+    masses[TILT_X] -= height * masses[Y]
+    masses[TILT_Y] += height * masses[X]
+    return np.append(hub, layout.first_tilts[gear] + np.arange(2)), masses, added.gyroscopic_hub
+
+
+def _hub_tilts(layout: Layout, gear: int, body: ReducedBody, size: int) -> tuple[Array, Array]:
+    """Masses between motion sideways and tilt of a hub, and its gyroscopic moments; each (size, size)."""
+    masses, moments = np.zeros((2, size, size))
+    own = layout.gears[gear]
+    if own.body.tilt is not None:
+        x, y = DOF_PER_BODY * (len(layout.pinions) + gear) + np.arange(2)
+        tilt_x, tilt_y = layout.first_tilts[gear] + np.arange(2)
+        off = own.sign * float(body.moment - body.mass * _centre(layout, gear, body))
+        masses[[y, tilt_x], [tilt_x, y]] = off
+        masses[[x, tilt_y], [tilt_y, x]] = -off
+        moments[[tilt_x, tilt_y], [tilt_y, tilt_x]] = own.body.inertia, -own.body.inertia
+    return masses, moments
+
+
+def _centre(layout: Layout, gear: int, body: ReducedBody) -> float:
+    """Height (m) in the section of the point about which a hub tilts."""
+    tilt = layout.gears[gear].body.tilt
+    return float(body.pitch_height) - (0.0 if tilt is None else tilt.below)
 
 
 def bordered(matrix: Array, corner: Array, at: Integers | None = None, border: Array | None = None) -> Array:

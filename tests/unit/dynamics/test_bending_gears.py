@@ -18,7 +18,7 @@ from facegear.dynamics.steady_state.simulate import build_model, simulate
 from facegear.harmonics.series import Harmonics
 from facegear.transmission.elastic_gears import ElasticGears
 from facegear.transmission.flanks import error_series
-from facegear.transmission.layout import Role
+from facegear.transmission.layout import Role, Tilt
 from facegear.transmission.machine import OpenFlanks, balanced_torques
 from facegear.transmission.teeth import GEOMETRIC
 
@@ -29,15 +29,19 @@ TURNING, OMEGA = SPEED * np.pi / 30.0, 23 * SPEED * np.pi / 30.0
 
 def machine(open_flanks=OpenFlanks.CONTACT_ONLY, error=2e-6, torque=800.0):
     """Two pinions between two gears that bend and share the load: modes of 0 to 3 nodal diameters between 0.8
-    and 2.4 kHz.
+    and 2.4 kHz. The hub of the upper one tilts on its bearings.
     """
     layout = make_layout(PLACES, kinematics=GEOMETRIC)
-    gears = tuple(replace(gear, body=replace(gear.body, mass=31.0, inertia=1.3)) for gear in layout.gears)
+    held = [replace(gear.body, mass=31.0, inertia=1.3) for gear in layout.gears]
+    held[1] = replace(held[1], tilt=Tilt(3.0, 5e7, 0.01))
+    gears = tuple(replace(gear, body=body) for gear, body in zip(layout.gears, held, strict=True))
     layout = replace(layout, gears=gears)
     bodies = {}
     for gear in range(2):
         body = gear_bodies.small_body(gear + 1)
-        bodies[gear] = replace(body, frequency=40.0 * body.frequency, static=body.static / 1600.0)
+        body = replace(body, frequency=40.0 * body.frequency, static=body.static / 1600.0)
+        placed = {"mass": 20.0, "moment": 0.3, "pitch_height": 0.02}
+        bodies[gear] = replace(body, **{name: np.array(value) for name, value in placed.items()})
     elastic = ElasticGears(layout, bodies)
     rigid = make_machine(
         layout,

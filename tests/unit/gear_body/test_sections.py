@@ -1,18 +1,22 @@
 """Sections as a config gives them: what they become, and what is refused in one line before any work."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from gear_bodies import STEEL
 
 from facegear.config.base import parse
 from facegear.config.elastic_bodies import body_shape, crosses_rectangle
 from facegear.config.gear_body import BodySection
 from facegear.config.load import load_config
+from facegear.config.lumped_model import ToothNumbers, layout
 from facegear.config.model import Config
 from facegear.errors import ConfigErrors
 from facegear.gear_body.mesh import body_mesh, reentrant
-from facegear.gear_body.section import rectangle, section_properties, thinnest
+from facegear.gear_body.section import Layer, Section, inertia_about, rectangle, section_properties, thinnest
+from facegear.transmission.layout import Tilt
 
 FLEXIBLE = load_config(Path(__file__).parents[3] / "config" / "flexible.yaml")
 PAIR = FLEXIBLE.tooth_pair
@@ -85,6 +89,14 @@ def lines(**changes):
             {"tilt": {"inertia_kg_m2": 0.7, "stiffness_n_m_per_rad": 1e7}},
             'face_gear.tilt = "given": must be left out',
         ),
+        (
+            {"hub_tilt": {"inertia_kg_m2": 0.5, "stiffness_n_m_per_rad": 1e7}},
+            "face_gear.hub_tilt.inertia_kg_m2 = 0.5: must be at least 0.7",
+        ),
+        (
+            {"body": None, "hub_tilt": {"inertia_kg_m2": 2.0, "stiffness_n_m_per_rad": 1e7}},
+            'face_gear.hub_tilt = "given": must be left out where the gear has no body',
+        ),
         ({"body__corners_mm": POLYGON}, 'body.hub = "given": must be left out beside corners_mm'),
         ({"body": {"held_edges": [1], "rim": {"back_mm": -5.0}}}, "body.held_edges = [1]: must be left out"),
     ],
@@ -146,7 +158,7 @@ def test_rim_alone_is_a_disc_or_ring_held_at_its_bore():
     disc = body_shape(
         parse(BodySection, {"rim": {"inner_radius_mm": 100.0, "back_mm": 0.0}, "teeth": False}), PAIR
     )
-    mass, polar, _ = section_properties(disc)
+    mass, polar, *_ = section_properties(disc)
     assert mass == pytest.approx(7850 * np.pi * (0.275**2 - 0.1**2) * 0.012, rel=1e-12)
     assert polar == pytest.approx(0.5 * mass * (0.275**2 + 0.1**2), rel=1e-12)
     assert disc.edges[np.array(disc.held)][0, :, 0] == pytest.approx(0.1)
@@ -183,3 +195,28 @@ def test_only_edges_through_the_inside_cross_a_rectangle():
     assert not crosses_rectangle(edges, 1, 2, 0, 1)
     assert crosses_rectangle(edges, 1.5, 3, 0.2, 0.8)
     assert crosses_rectangle(np.array([[[0.0, 0.5], [3.0, 0.6]]]), 1, 2, 0, 1)
+
+
+def test_hub_on_bearings_tilts_as_the_config_says_and_only_where_the_gear_bends():
+    tilt = {"inertia_kg_m2": 2.0, "stiffness_n_m_per_rad": 1e7, "centre_below_pitch_plane_mm": 40.0}
+    values = FLEXIBLE.model_dump(mode="json")
+    gear, single = values["transmission"]["face_gear"], values["transmission"]["single_gears"]
+    single["upper"] = {"body": gear["body"]}
+    gear |= {"body": None, "hub_tilt": tilt}
+    section = parse(Config, values).transmission
+    lower, upper = layout(section, ToothNumbers.of_config(PAIR.model_dump())).gears
+    assert lower.body.tilt is None and upper.body.tilt == Tilt(2.0, 1e7, 0.04)
+
+
+def test_inertia_about_a_diameter_of_another_height_is_that_of_the_mass_moved_there():
+    """Of a disc by its closed form, with teeth that are heavier at their roots than at their tips."""
+    disc = Section(rectangle(0.1, 0.2, -0.02, 0.01), (False,) * 4, (0.1, 0.2), STEEL, 7850.0)
+    mass = 7850.0 * np.pi * (0.2**2 - 0.1**2) * 0.03
+    across = mass * ((0.2**2 + 0.1**2) / 4.0 + 0.03**2 / 12.0)
+    assert inertia_about(disc, -0.005) == pytest.approx(across, rel=1e-12)
+    assert inertia_about(disc, 0.045) == pytest.approx(across + mass * 0.05**2, rel=1e-12)
+    toothed = replace(disc, layer=Layer(0.1, 0.2, 0.01, 0.04, taper=0.5))
+    heights = 0.01 + 0.03 * (np.arange(4000) + 0.5) / 4000
+    slices = toothed.layer.density_at(heights) * mass / 4000
+    added = (slices * ((0.2**2 + 0.1**2) / 4.0 + (heights - 0.045) ** 2)).sum()
+    assert inertia_about(toothed, 0.045) - inertia_about(disc, 0.045) == pytest.approx(added, rel=1e-6)
