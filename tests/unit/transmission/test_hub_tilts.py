@@ -20,6 +20,7 @@ from facegear.gear_body.modes import order_modes
 from facegear.gear_body.reduced import ReducedBody
 from facegear.gear_body.reduction import reduced_body
 from facegear.gear_body.section import inertia_about, section_properties
+from facegear.load_sharing import sensitivity
 from facegear.transmission.elastic_gears import ElasticGears
 from facegear.transmission.layout import Tilt
 from facegear.transmission.static_gears import at_rest
@@ -208,3 +209,10 @@ def test_load_at_rest_leaves_that_of_hubs_that_do_not_tilt_in_proportion_to_what
     away = [forces_at_rest(stiffness) - square for stiffness in (1e9, 1e10)]
     assert np.abs(away[0]).max() > 1.0
     assert away[0] == pytest.approx(10.0 * away[1], rel=1e-2, abs=1e-2 * np.abs(away[0]).max())
+
+
+def test_comparison_of_kinematics_takes_a_gear_that_bends_without_the_tilt_of_its_hub():
+    """The printed kinematics know no tilts; a body that still counted them joined the wrong coordinates."""
+    compared = sensitivity._with_kinematics(machine(), GEOMETRIC).linear
+    assert np.array_equal(compared.mass, machine(tilt=None).linear.mass)
+    assert compared.labels == machine(tilt=None).linear.labels
