@@ -13,6 +13,7 @@ from facegear.contact.nodal_loads import load_arrays
 from facegear.contact.options import ContactPlan
 from facegear.contact.pair import contact_model
 from facegear.contact.pressure import flank_pressure
+from facegear.contact.reactions import touching_reactions
 from facegear.contact.summary import by_torque
 from facegear.contact.tables import ltca_table, pressure_arrays
 from facegear.geometry.design import AssemblyErrors, Material, PairDesign
@@ -22,13 +23,17 @@ ONE_FLANK = np.zeros((2, 2), dtype=int)
 
 @dataclass(frozen=True, eq=False)
 class PosedContact:
-    """Drive flanks in one assembly: tables and arrays as stage contact has them."""
+    """Drive flanks in one assembly: tables and arrays as stage contact has them.
+
+    reactions: as `touching_reactions` has them.
+    """
 
     errors: AssemblyErrors
     ltca: pd.DataFrame
     by_torque: pd.DataFrame
     pressure: dict[str, AnyArray]
     loads: dict[str, AnyArray]
+    reactions: pd.DataFrame
 
 
 def posed_contacts(
@@ -71,4 +76,5 @@ def _solved(
     table = ltca_table(results, pressures)
     arrays = pressure_arrays(results, model.flanks.pinion, pressures)
     loads = load_arrays([results], ONE_FLANK)
-    return PosedContact(errors, table, by_torque(table, arrays), arrays, loads)
+    reactions = touching_reactions(model.flanks.pinion, results)
+    return PosedContact(errors, table, by_torque(table, arrays), arrays, loads, reactions)

@@ -21,8 +21,12 @@ PERCENT = {
     name: f"{short}_by_pose_percent" for name, short in zip(QUANTITIES, SHORT, strict=True) if name != RADIUS
 }
 """Columns of what the pose alone changes at the mesh's own load."""
+REACTIONS = ("tangential_force_n", "axial_force_n", "overturning_moment_n_m")
+"""Of a mesh on its face gear: along the tangent, along the axis, and about the line through the gear's centre
+that is parallel to the tangent."""
 MESH_COLUMNS = (
     *("mesh", "flank", "force_n", "force_as_assembled_n", "torque_n_m"),
+    *REACTIONS,
     *("offset_um", "axial_shift_um", "shaft_angle_error_deg", "outward_um", "closing_um"),
     *("unloaded_path_mm", "path_mm", "path_as_assembled_mm", "to_inner_end_mm", "to_outer_end_mm"),
     "stiffness_factor",
@@ -79,6 +83,7 @@ def mesh_table(machine: Machine, surface: PoseSurface, result: OperatingPose, be
                 "force_n": result.forces[mesh],
                 "force_as_assembled_n": before[mesh],
                 "torque_n_m": at[0],
+                **dict(zip(REACTIONS, pressing(result, surface)[mesh].tolist(), strict=True)),
                 "offset_um": 1e6 * result.poses.offset[mesh],
                 "axial_shift_um": 1e6 * result.poses.axial_shift[mesh],
                 "shaft_angle_error_deg": np.degrees(angle),
@@ -98,6 +103,12 @@ def mesh_table(machine: Machine, surface: PoseSurface, result: OperatingPose, be
             }
         )
     return pd.DataFrame(rows)
+
+
+def pressing(result: OperatingPose, surface: PoseSurface) -> Array:
+    """REACTIONS of every mesh, (meshes, 3), N and N m."""
+    tangential, shifting, turning = result.reactions.T
+    return np.stack([tangential, -shifting, -turning - surface.pair.mean_radius * shifting], axis=1)
 
 
 def with_margins(meshes: pd.DataFrame, margins: Sequence[Mapping[str, float] | None]) -> pd.DataFrame:

@@ -10,20 +10,24 @@ from facegear.config.lumped_model import ToothNumbers
 from facegear.config.machines import wired_machine
 from facegear.config.tooth_pair import ToothPair, pair
 from facegear.config.transmission import Transmission
-from facegear.contact.gear_flank import from_arrays
+from facegear.contact.gear_flank import GearFlank, from_arrays
 from facegear.contact.margins import pattern_margins
-from facegear.contact.posed import met_contacts
+from facegear.contact.posed import PosedContact, met_contacts
+from facegear.contact.reactions import REACTION_COLUMNS
+from facegear.geometry.design import PairDesign
 from facegear.poses.carrying import carrying_pairs
 from facegear.poses.fixed_point import OperatingPose, assembled
 from facegear.poses.fixed_point import operating_pose as fixed_point
 from facegear.poses.surface import STIFFNESS, PoseSurface
 from facegear.poses.tables import (
     PERCENT,
+    REACTIONS,
     hardest_mesh,
     leaving_text,
     load_tables,
     margin_text,
     mesh_table,
+    pressing,
     with_margins,
 )
 from facegear.stages.outcome import Outcome
@@ -68,7 +72,7 @@ def operating_pose(
     flanks = from_arrays(pinion), from_arrays(face_gear)
     assembled_there, *running = met_contacts(design, pair_here.materials, flanks, plan, asked)
     solved = [assembled_there, running[pairs.numbers[worst]]]
-    check = _check(known, result, worst, [quantities(design, flanks, posed) for posed in solved])
+    check = _check(known, result, worst, [_direct(design, flanks, posed) for posed in solved])
     margins = [
         pattern_margins(posed.pressure, met, at)
         for posed, met, at in zip(running, pairs.designs, torques, strict=True)
@@ -86,15 +90,26 @@ def operating_pose(
     return Outcome(content, _summary(meshes, leaving, worst, result))
 
 
+def _direct(
+    design: PairDesign, flanks: tuple[GearFlank, GearFlank], posed: PosedContact
+) -> dict[str, AnyArray]:
+    """Quantities of a surface, and REACTIONS of the touching loads."""
+    table = posed.reactions[list(REACTION_COLUMNS[1:])].to_numpy()
+    return {**quantities(design, flanks, posed), **dict(zip(REACTIONS, table.T, strict=True))}
+
+
 def _check(
     surface: PoseSurface, result: OperatingPose, mesh: int, direct: list[dict[str, AnyArray]]
 ) -> pd.DataFrame:
-    """The surface at the pose of a mesh beside the contact that was solved there, a row a quantity."""
+    """The surface at the pose of a mesh beside the contact that was solved there, a row a quantity.
+
+    Of reactions it is what the energy has, beside what the touching loads press with.
+    """
     at = float(result.torque[mesh]), float(result.path[mesh]), float(result.angle[mesh])
+    known = {name: surface.at(name, *at) for name in surface.values if name in direct[1]}
+    known |= dict(zip(REACTIONS, pressing(result, surface)[mesh].tolist(), strict=True))
     rows = [
-        (name, surface.at(name, *at), float(direct[1][name][0]), float(direct[0][name][0]))
-        for name in surface.values
-        if name in direct[1]
+        (name, value, float(direct[1][name][0]), float(direct[0][name][0])) for name, value in known.items()
     ]
     table = pd.DataFrame(rows, columns=["quantity", "surface", "direct", "direct_as_assembled"])
     return table.assign(surface_error_percent=100.0 * (table["surface"] / table["direct"] - 1.0))

@@ -1,7 +1,10 @@
 """Contact over pose at default accuracy: minutes of work, stored beside this file.
 
 `python -m validation.poses.measure` renews `concentric_surface.npz`, the surface of stage pose_surface for
-config/concentric.yaml, and `loaded.csv`, contact at 550 N m solved directly in three assemblies.
+config/concentric.yaml, and `loaded.csv`, contact at 550 N m solved directly in three assemblies. It also
+renews what reactions are held against: `tilting_surface.npz`, the contact of the same pair with two errors of
+the shaft angle, `touching.csv`, forces and moment of the touching loads in the assemblies, and `frozen.csv`,
+derivatives of the contact energy with the loads held.
 """
 
 from dataclasses import replace
@@ -14,14 +17,19 @@ import facegear
 from facegear.config.contact import contact_plan
 from facegear.config.tooth_pair import pair
 from facegear.contact.gear_flank import from_arrays
+from facegear.contact.pair import contact_model
 from facegear.contact.posed import posed_contacts
 from facegear.geometry.bodies import BODIES
 from facegear.geometry.design import AssemblyErrors
-from facegear.stages.pose_surface import quantities
+from facegear.poses.surface import SURFACE_ARRAYS
+from facegear.stages.pose_surface import pose_surface, quantities
+from validation.poses.frozen import STEPS, frozen_reactions
 
 HERE = Path(__file__).parent
 SURFACE, LOADED = HERE / "concentric_surface.npz", HERE / "loaded.csv"
+TILTING, TOUCHING, FROZEN = HERE / "tilting_surface.npz", HERE / "touching.csv", HERE / "frozen.csv"
 TORQUE = 550.0
+TORQUES = (80.0, 420.0, TORQUE, 930.0)
 ASSEMBLIES = {
     "nominal": AssemblyErrors(),
     "offset 120 um, shaft angle 0.03 deg": AssemblyErrors(120e-6, float(np.radians(0.03))),
@@ -36,6 +44,31 @@ def main() -> None:
     np.savez_compressed(SURFACE, **chain.part("pose_surface", "surface"))
     arrays = [chain.part("compliance", "arrays", {"body": body}) for body in BODIES]
     store_loaded((from_arrays(arrays[0]), from_arrays(arrays[1])))
+    store_reactions(arrays)
+
+
+def store_reactions(arrays) -> None:  # type: ignore[no-untyped-def]
+    """What the energy's derivatives are held against, from the arrays of both bodies."""
+    config = facegear.load("config/concentric.yaml", results=None).config
+    teeth, flanks = pair(config.tooth_pair), (from_arrays(arrays[0]), from_arrays(arrays[1]))
+    plan = replace(contact_plan(config.contact), torques=TORQUES, root_stress=False)
+    frozen = []
+    for torque in (420.0, 930.0):
+        model = contact_model(teeth.design, *flanks)
+        along, giving = frozen_reactions(model, torque, plan.positions, plan.options)
+        rows = zip(STEPS, along, giving, strict=True)
+        frozen += [(torque, name, first, second) for name, first, second in rows]
+    columns = ["torque_n_m", "error", "along_normals", "giving_way"]
+    pd.DataFrame(frozen, columns=columns).to_csv(FROZEN, index=False)
+    posed = posed_contacts(teeth.design, teeth.materials, flanks, plan, list(ASSEMBLIES.values()))
+    touching = [
+        contact.reactions.assign(assembly=name) for name, contact in zip(ASSEMBLIES, posed, strict=True)
+    ]
+    pd.concat(touching).to_csv(TOUCHING, index=False)
+    contact = config.contact.model_copy(update={"root_stress": False})
+    made = pose_surface(arrays[0], arrays[1], config.tooth_pair, contact, 663.8, tilting=True)
+    kept = {name: part for name, part in made.content["surface"].items() if name in SURFACE_ARRAYS}
+    np.savez_compressed(TILTING, **kept)
 
 
 def store_loaded(flanks) -> None:  # type: ignore[no-untyped-def]

@@ -1,0 +1,109 @@
+"""Reactions of loaded contact by moving the pinion while every load stays as it is.
+
+At rest the energy F x - gap . f - f . C f / 2 is stationary in the loads f, so that its derivative by a pose
+at constant force is that of gap . f + f . C f / 2 with f held: the loads press along their normals, and other
+parts of the teeth give way differently. Nothing here comes from the surface over pose.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from facegear.arrays import Array
+from facegear.contact.candidates import Candidates
+from facegear.contact.influence import influence_matrix
+from facegear.contact.ltca import ContactModel, even_positions, loaded_contact
+from facegear.contact.options import ContactOptions
+from facegear.contact.position import LoadedPosition
+from facegear.contact.search import find_candidates
+from facegear.geometry.design import AssemblyErrors
+from facegear.geometry.placement import pinion_angle
+from facegear.geometry.unloaded import unloaded_motion
+
+STEPS = {"offset": 2e-7, "axial_shift": 2e-7, "shaft_angle_error": 1e-6}
+FARTHER = 1.3
+
+
+def frozen_reactions(
+    model: ContactModel, torque: float, positions: int, options: ContactOptions
+) -> tuple[Array, Array]:
+    """Means over a pitch of gap_p . f and of f . C_p f / 2, (3,) each, by offset, axial shift, shaft angle.
+
+    N and N m, of a pair under a torque (N m) on its pinion.
+    """
+    results = loaded_contact(model, even_positions(positions), [torque], options)
+    phi1 = pinion_angle(model.design, [result.position for result in results])
+    phi2, _ = unloaded_motion(model.design, phi1)
+    parts = np.zeros((len(results), 2, len(STEPS)))
+    for row, result in enumerate(results):
+        placement = float(phi1[row]), float(phi2[row])
+        for number, (name, step) in enumerate(STEPS.items()):
+            models = [_moved(model, name, sign * step) for sign in (1.0, -1.0)]
+            seen = [_candidates(moved, result, placement, options) for moved in models]
+            after, before = (
+                _energies(moved, result, own, [_numbered(pair) for pair in other], options)
+                for moved, own, other in zip(models, seen, seen[::-1], strict=True)
+            )
+            parts[row, :, number] = (after - before) / (2.0 * step)
+    along, giving = parts.mean(axis=0)
+    return along, giving
+
+
+def _moved(model: ContactModel, name: str, step: float) -> ContactModel:
+    errors: AssemblyErrors = model.design.assembly
+    return model.assembled(replace(errors, **{name: getattr(errors, name) + step}))
+
+
+def _candidates(
+    model: ContactModel, result: LoadedPosition, placement: tuple[float, float], options: ContactOptions
+) -> list[Candidates]:
+    """Those of the teeth that are loaded at a position, one for each of its spots."""
+    teeth = np.array([spot.tooth for spot in result.spots])
+    limit = FARTHER * (result.ste - result.unloaded) / model.design.pinion_base_radius
+    pairs = find_candidates(model.flanks, placement, teeth, limit, options)
+    seen = {pair.tooth: pair for pair in pairs}
+    return [seen[spot.tooth] for spot in result.spots]
+
+
+def _energies(
+    model: ContactModel,
+    result: LoadedPosition,
+    seen: list[Candidates],
+    also: list[dict[tuple[int, int], int]],
+    options: ContactOptions,
+) -> Array:
+    """gap . f and f . C f / 2, (2,) J, with the loads of a position on its candidates.
+
+    Loads on hats that the placement on the other side does not have, at the end of a tooth, are left out.
+    """
+    pairs, forces = [], []
+    for spot, pair, others in zip(result.spots, seen, also, strict=True):
+        there = _numbered(pair)
+        kept = {
+            there[key]: force
+            for key, force in zip(_counted(spot.hats.tolist()), spot.force, strict=True)
+            if key in there and key in others
+        }
+        keep = np.zeros(len(pair.hats), bool)
+        keep[list(kept)] = True
+        pairs.append(pair.only(keep))
+        forces.append(np.array([kept[row] for row in sorted(kept)]))
+    force = np.concatenate(forces)
+    assert force.sum() > 0.99 * sum(spot.force.sum() for spot in result.spots)
+    gap = np.concatenate([pair.gap for pair in pairs])
+    matrix = influence_matrix(pairs, model.pinion, model.gear, options.coupled)
+    return np.array([gap @ force, 0.5 * force @ matrix @ force])
+
+
+def _numbered(pair: Candidates) -> dict[tuple[int, int], int]:
+    return {key: row for row, key in enumerate(_counted(pair.hats.tolist()))}
+
+
+def _counted(hats: list[int]) -> list[tuple[int, int]]:
+    """Each hat with how often it came before: hats of a flank and of an edge may share a node."""
+    seen: dict[int, int] = {}
+    keys = []
+    for hat in hats:
+        keys.append((hat, seen.get(hat, 0)))
+        seen[hat] = seen.get(hat, 0) + 1
+    return keys
