@@ -1,6 +1,6 @@
 """Flank compliance of a whole gear from one of its teeth."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -75,7 +75,8 @@ def flank_compliance(
     progress.step(SHARES[0])
     if gauges is not None:
         gauges = gauges @ sp.kron(system.followed(body, refinement), sp.eye(3), format="csr")
-    tooth = condense(body, system, gauges)
+    waiting, system = [system], replace(system, stiffness=sp.csr_matrix((0, 0)))
+    tooth = condense(body, waiting.pop(), gauges)  # nothing else holds the stiffness, which is freed there
     progress.step(SHARES[1])
     coupled = coupled_compliance(body, system, tooth, refinement, teeth, neighbours, ends, element)
     progress.step(SHARES[2])

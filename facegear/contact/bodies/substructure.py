@@ -47,6 +47,7 @@ def condense(body: ElasticBody, system: TiedSystem, gauges: sp.csr_matrix | None
         stiffness = _with_gauges(stiffness, gauges)
         at = system.points[turn.indices[turn.indptr[:-1]] // 3]
         cells, centres = _with_gauge_cells(cells, centres, gauges, at)
+    del system
     schur = schur_complement(stiffness, kept, cells, centres)
     k, ends = flank.size, flank.size + faces.size
     readings, schur = schur[ends:, :ends], schur[:ends, :ends]
