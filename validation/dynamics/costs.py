@@ -1,4 +1,4 @@
-"""What a sweep costs: against settings, against the number of pinions and of harmonics."""
+"""What a sweep costs against its settings."""
 
 import itertools
 import time
@@ -10,15 +10,11 @@ import pandas as pd
 
 from facegear.arrays import Array
 from facegear.dynamics.integrator.compiled import TAU
-from facegear.dynamics.integrator.integrator import Integrator
 from facegear.dynamics.motion import Settings
-from facegear.dynamics.steady_state.simulate import Model, build_model, simulate, static_start
+from facegear.dynamics.steady_state.simulate import Model, build_model, simulate
 from facegear.dynamics.sweeps.plan import SweepPlan
 from facegear.dynamics.sweeps.sweep import Piece, collect, run_speeds
-from facegear.harmonics.series import Harmonics
-from facegear.transmission.imperfections import perfect
-from facegear.transmission.layout import Layout, Role
-from facegear.transmission.machine import Machine, balanced_torques, mesh_frequency
+from facegear.transmission.machine import Machine, mesh_frequency
 from validation.dynamics.methods import scipy_method
 from validation.dynamics.problems import Compared, Problem
 
@@ -26,7 +22,6 @@ SPEEDS = 40
 TOLERANCES = (1e-3, 1e-4, 3e-5, 1e-6, 1e-8)
 DWELLS = (32, 128)
 PLAIN_PERIODS = 20
-COST_PERIODS = 1000
 
 
 def sweep_costs(machine: Machine, plan: SweepPlan, step: Callable[[], None] = lambda: None) -> pd.DataFrame:
@@ -92,60 +87,3 @@ def plain_seconds_per_period(machine: Machine, speeds: Array) -> float:
         run()
         times.append((time.process_time() - begin) / PLAIN_PERIODS)
     return float(np.mean(times))
-
-
-def scaling_costs(machine: Machine, speed_rpm: float) -> pd.DataFrame:
-    """Time of a mesh period against pinions (evenly spread copies) and harmonics of k.
-
-    Columns pinions, harmonics, coordinates, seconds_per_period (least of three long runs), steps_per_period.
-    """
-    order = machine.stiffness.order
-    sizes = [(pinions, order) for pinions in (1, 2, 5, 8, 12)] + [(5, harmonics) for harmonics in (1, 20, 40)]
-    rows = []
-    for pinions, harmonics in sizes:
-        model = build_model(resized(machine, pinions, harmonics))
-        seconds, steps = _period_cost(model, TAU * mesh_frequency(machine.layout, speed_rpm))
-        rows.append((pinions, harmonics, model.system.size, seconds, steps))
-    names = ["pinions", "harmonics", "coordinates", "seconds_per_period", "steps_per_period"]
-    return pd.DataFrame(rows, columns=names)
-
-
-def _period_cost(model: Model, frequency: float) -> tuple[float, float]:
-    """CPU seconds and steps of a mesh period at the sweep's tolerance, once the start is forgotten."""
-    settings = Settings(tolerance=3e-5)
-    integrator = Integrator(model.system, frequency, settings.tolerance)
-    state = integrator.by_phase(static_start(model))
-    times = []
-    for periods in (100, COST_PERIODS, COST_PERIODS, COST_PERIODS):
-        begin = time.process_time()
-        result = integrator.run(state, periods)
-        times.append((time.process_time() - begin) / periods)
-        state = result.state
-    return min(times[1:]), result.steps / COST_PERIODS
-
-
-def resized(machine: Machine, count: int, harmonics: int) -> Machine:
-    """The machine with `count` pinions evenly spread, half of them driving, and as many harmonics of k."""
-    old = machine.layout
-    pinions = tuple(
-        replace(
-            old.pinions[0],
-            name=f"pinion {i}",
-            role=Role.INPUT if i % 2 == 0 else Role.IDLER,
-            pitches=round(2.0 * i * old.gear_teeth / count) / 2.0,
-        )
-        for i in range(count)
-    )
-    layout: Layout = replace(old, pinions=pinions)
-    torque = np.where(np.arange(count) % 2 == 0, np.abs(machine.torques).max() / 20.0, 0.0)
-    size = np.r_[0.0, machine.stiffness.amplitudes[1:].max() / np.arange(1, harmonics + 1) ** 2]
-    series = Harmonics(size, np.r_[machine.stiffness.mean, np.zeros(harmonics)])
-    return replace(
-        machine,
-        layout=layout,
-        torques=balanced_torques(layout, torque),
-        stiffness=series,
-        error_lags=None if machine.error_lags is None else np.zeros(len(layout.meshes)),
-        imperfections=perfect(layout),
-        forces=np.zeros((len(layout.bodies), 3)),
-    )

@@ -24,14 +24,13 @@ rule dynamics_costs:
         harmonics=shared("stiffness", "harmonics"),
     output:
         sweep="results/{case}/benchmarks/dynamics_sweep.csv",
-        scaling="results/{case}/benchmarks/dynamics_scaling.csv",
         manifest="results/{case}/benchmarks/dynamics_costs.provenance.json",
     threads: 2
     resources:
         mem_mb=1300,
         runtime=30,
     params:
-        **values_of(speed_rpm="dynamics.speed_rpm", sweep="dynamics.sweep"),
+        **values_of(sweep="dynamics.sweep"),
         machine=needed(MACHINE),
     script:
         "../scripts/dynamics_costs.py"

@@ -15,6 +15,7 @@ rule benchmarks:
                 "dynamics_labels",
                 "load_sharing_costs",
                 "branches",
+                "growth",
                 *(["scenarios"] if CASES[CASE]["tolerances"] else []),
             ],
         ),

@@ -1,4 +1,4 @@
-"""Cost and error of sweeps against settings, pinions and harmonics."""
+"""Cost and error of sweeps against settings."""
 
 from facegear.config.dynamics import Sweep, sweep_plan
 from facegear.config.lumped_model import lumped_sections
@@ -7,7 +7,7 @@ from facegear.io import tables
 from facegear.progress import Progress
 from facegear.provenance.stage import stage
 from facegear.stiffness.tables import HARMONICS_COLUMNS
-from validation.dynamics.costs import scaling_costs, sweep_costs
+from validation.dynamics.costs import sweep_costs
 
 with stage(snakemake) as run:
     params = snakemake.params
@@ -15,7 +15,6 @@ with stage(snakemake) as run:
     built = wired_machine(*lumped_sections(**params.machine), harmonics)
     costs = sweep_costs(built, sweep_plan(Sweep.of_config(params.sweep)), Progress("settings", 20).step)
     tables.write(snakemake.output.sweep, costs)
-    tables.write(snakemake.output.scaling, scaling_costs(built, params.speed_rpm))
     ratio = (costs["plain_seconds_per_speed"] / costs["seconds_per_speed"]).max()
     run.summary(
         f"a speed costs down to {1e3 * costs['seconds_per_speed'].min():.1f} ms, 1/{ratio:.0f} of plain SciPy"

@@ -7,7 +7,7 @@ import pytest
 from lumped_machines import make_machine
 
 from facegear.dynamics.steady_state.simulate import build_model
-from validation.dynamics.costs import resized
+from validation.growth.machines import resized
 
 
 @pytest.mark.parametrize("count", [1, 5, 12])

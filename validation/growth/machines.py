@@ -1,0 +1,90 @@
+"""Machines of any number of pinions, harmonics and coordinates of bodies, and what their motion costs."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from facegear.config.load import load_config
+from facegear.config.machines import case_machine
+from facegear.dynamics.integrator.compiled import TAU
+from facegear.dynamics.integrator.integrator import Integrator
+from facegear.dynamics.steady_state.simulate import Model, build_model, static_start
+from facegear.gear_body.reduced import ReducedBody
+from facegear.harmonics.series import Harmonics
+from facegear.transmission.elastic_gears import ElasticGears
+from facegear.transmission.imperfections import perfect
+from facegear.transmission.layout import Layout, Role
+from facegear.transmission.machine import Machine, OpenFlanks, balanced_torques, mesh_frequency
+
+SPEED_RPM = 7500.0
+PERIODS = 400
+
+
+def resized(machine: Machine, count: int, harmonics: int) -> Machine:
+    """The machine with `count` pinions evenly spread, half of them driving, and as many harmonics of k."""
+    old = machine.layout
+    pinions = tuple(
+        replace(
+            old.pinions[0],
+            name=f"pinion {i}",
+            role=Role.INPUT if i % 2 == 0 else Role.IDLER,
+            pitches=round(2.0 * i * old.gear_teeth / count) / 2.0,
+        )
+        for i in range(count)
+    )
+    layout: Layout = replace(old, pinions=pinions)
+    torque = np.where(np.arange(count) % 2 == 0, np.abs(machine.torques).max() / 20.0, 0.0)
+    return replace(
+        machine,
+        layout=layout,
+        torques=balanced_torques(layout, torque),
+        stiffness=falling(machine.stiffness, harmonics),
+        error_lags=None if machine.error_lags is None else np.zeros(len(layout.meshes)),
+        imperfections=perfect(layout),
+        forces=np.zeros((len(layout.bodies), 3)),
+    )
+
+
+def falling(stiffness: Harmonics, harmonics: int) -> Harmonics:
+    """Mean and first amplitude of a series, and so many harmonics that fall with their number's square."""
+    size = np.r_[0.0, stiffness.amplitudes[1:].max() / np.arange(1, harmonics + 1) ** 2]
+    return Harmonics(size, np.r_[stiffness.mean, np.zeros(harmonics)])
+
+
+def shipped(config: str, changes: Mapping[str, Any] | None = None) -> Machine:
+    """The machine of a config with changes, rigid, with five harmonics of mesh stiffness."""
+    values = load_config("config/harmonics_only.yaml").model_dump(mode="json")
+    given = Harmonics(np.r_[0.0, 2e7], np.r_[values["mesh_stiffness"]["mean_n_per_m"], 0.0])
+    return case_machine(load_config(config, changes).model_dump(mode="json"), falling(given, 5))
+
+
+def bending(body: ReducedBody | None) -> Machine:
+    """The machine of config/flexible.yaml with both gears of one body, or rigid, and 20 harmonics of k."""
+    machine = shipped("config/flexible.yaml", {"transmission": {"transmission_error": {"amplitude_um": 2.0}}})
+    machine = replace(
+        machine,
+        stiffness=falling(machine.stiffness, 20),
+        imperfections=perfect(machine.layout),
+        damping=replace(machine.damping, open_flanks=OpenFlanks.CONTACT_ONLY),
+    )
+    if body is None:
+        return machine
+    elastic = ElasticGears(machine.layout, dict.fromkeys(range(len(machine.layout.gears)), body))
+    return replace(machine, bodies=elastic, softening=elastic.softening())
+
+
+class Running:
+    """A machine that runs at SPEED_RPM from rest at its static load."""
+
+    def __init__(self, machine: Machine, tolerance: float) -> None:
+        self.model: Model = build_model(machine)
+        frequency = TAU * mesh_frequency(machine.layout, SPEED_RPM)
+        self.integrator = Integrator(self.model.system, frequency, tolerance)
+        start = self.integrator.by_phase(static_start(self.model))
+        self.state = self.integrator.run(start, 50).state
+
+    def __call__(self) -> None:
+        """Run PERIODS mesh periods."""
+        self.integrator.run(self.state, PERIODS)

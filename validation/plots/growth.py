@@ -1,0 +1,50 @@
+"""Time and memory against size."""
+
+from collections.abc import Mapping
+
+import matplotlib.pyplot as plt
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
+
+from facegear.plots.style import styled
+from validation.growth.measure import exponents
+
+COLUMNS = 4
+
+
+def growth_figure(table: pd.DataFrame, texts: Mapping[str, tuple[str, str]]) -> Figure:
+    """One panel for each curve of a growth table: CPU time (left scale), memory of the process (right scale).
+
+    texts: what the sizes of each curve are, and what is timed. The dashed line is the fitted power law.
+    """
+    fitted = exponents(table).set_index("curve")
+    curves = list(fitted.index)
+    rows = -(-len(curves) // COLUMNS)
+    with styled():
+        figure, axes = plt.subplots(rows, COLUMNS, figsize=(14, 3.1 * rows), squeeze=False)
+        for axis, name in zip(axes.flat, curves, strict=False):
+            curve, (size, timed) = table[table["curve"] == name], texts[name]
+            exponent = fitted.loc[name, "exponent"]
+            axis.loglog(curve["size"], curve["seconds"], "o-", color="C0")
+            middle = curve["seconds"].prod() ** (1 / len(curve))
+            centre = curve["size"].prod() ** (1 / len(curve))
+            axis.loglog(
+                curve["size"], middle * (curve["size"] / centre) ** exponent, "--", color="C0", lw=0.8
+            )
+            axis.set(xlabel=size, title=f"{timed}: exponent {exponent:.2f}")
+            axis.set_ylabel("CPU time (s)", color="C0")
+            axis.xaxis.set(
+                major_locator=LogLocator(subs=(1, 2, 5)),
+                major_formatter=ScalarFormatter(),
+                minor_formatter=NullFormatter(),
+            )
+            memory = axis.twinx()
+            memory.plot(curve["size"], curve["peak_mb"] / 1e3, "s-", color="C1", ms=4)
+            memory.set(ylim=(0, 1.15e-3 * curve["peak_mb"].max()))
+            memory.set_ylabel("peak memory (GB)", color="C1")
+            memory.grid(visible=False)
+            memory.spines["right"].set_visible(True)
+        for axis in axes.flat[len(curves) :]:
+            axis.set_axis_off()
+    return figure

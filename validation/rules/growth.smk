@@ -1,0 +1,14 @@
+rule growth:
+    "Time and memory against sizes"
+    output:
+        table="results/{case}/benchmarks/growth.csv",
+        exponents="results/{case}/benchmarks/growth_exponents.csv",
+        svg="results/{case}/figures/growth.svg",
+        png="results/{case}/figures/growth.png",
+        manifest="results/{case}/benchmarks/growth.provenance.json",
+    threads: 2
+    resources:
+        mem_mb=3000,
+        runtime=60,
+    script:
+        "../scripts/growth.py"
