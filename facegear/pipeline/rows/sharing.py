@@ -24,6 +24,7 @@ ROWS = (
         files={
             "curve": File("load_sharing/nominal.csv", ("cycle_fraction",), may_be_empty=True),
             "summary": File("load_sharing/nominal_summary.csv", ("group", "kind"), may_be_empty=True),
+            "forces": File("load_sharing/forces.csv", ("mean_n", "largest_n"), text=("mesh", "group")),
         },
         asked=asked.shares_load,
     ),
@@ -60,8 +61,8 @@ ROWS = (
     Stage(
         name="study_forces",
         title="Forces of meshes over the numbers of studies",
-        needs={"points": Computed(studies.numbered_points, ("studies",)), **MACHINE},
-        upstream={"summaries": From("dynamics_response", "summary", each=studies.numbered_cases)},
+        needs={"points": Computed(studies.numbered_points, ("studies",))},
+        upstream={"tables": From("load_sharing", "forces", each=studies.numbered_cases)},
         files={
             "forces": File(
                 "load_sharing/study_forces.csv",

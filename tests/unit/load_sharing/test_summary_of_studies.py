@@ -8,10 +8,10 @@ from references import against, agrees
 
 from facegear.config.base import parse
 from facegear.config.load import load_config
-from facegear.config.lumped_model import ToothNumbers
+from facegear.config.lumped_model import ToothNumbers, layout
 from facegear.config.transmission import Transmission
-from facegear.dynamics.sweeps.sweep_tables import PER_MESH
 from facegear.io.files import write_part
+from facegear.load_sharing.study_forces import force_table
 from facegear.pipeline.table import STAGES
 from facegear.plots.study_forces import figures
 from facegear.stages.load_sharing_summary import load_sharing_summary
@@ -47,21 +47,6 @@ PATHS = ("right input/lower", "right input/upper", "idler/lower", "tail/lower", 
 MEAN = (3000.0, 1000.0, 2000.0, 500.0, 700.0, 600.0)
 
 
-def response_of(scale):
-    """What stage dynamics_response says of forces, in another order than that of the meshes."""
-    rows = [
-        (path, quantity, value)
-        for path, mean in reversed(list(zip(PATHS, MEAN, strict=True)))
-        for quantity, value in (
-            ("mean_elastic_force_magnitude_n", mean),
-            ("largest_elastic_force_n", scale * mean),
-        )
-    ]
-    assert {quantity for _, quantity, _ in rows} <= set(PER_MESH)
-    frame = pd.DataFrame(rows, columns=["body_or_mesh", "quantity", "value"])
-    return frame.assign(**{"class": "period-1"})
-
-
 @against(
     "manufactured",
     "forces of two cases",
@@ -77,7 +62,10 @@ def test_each_path_has_its_mean_part_of_what_its_group_carries_and_its_largest_f
     teeth = ToothNumbers.of_config(
         {"pinion_teeth": 23, "face_gear_teeth": 143, "module_mm": 3.75, "pressure_angle_deg": 25}
     )
-    forces = study_forces(points, section, teeth, [response_of(2.0), response_of(1.5)]).content["forces"]
+    machine = layout(section, teeth)
+    mean = np.array([dict(zip(PATHS, MEAN, strict=True))[path] for path in machine.mesh_names])
+    tables = [force_table(machine, mean, scale * mean, "period-1") for scale in (2.0, 1.5)]
+    forces = study_forces(points, tables).content["forces"]
     by_mesh = forces.set_index(["number", "mesh"])
     expected = {"right input/lower": 0.75, "right input/upper": 0.25, "idler/lower": 0.8, "tail/lower": 0.2}
     for number, scale in ((8.0, 2.0), (10.0, 1.5)):
