@@ -32,7 +32,7 @@ def growth_figure(table: pd.DataFrame, texts: Mapping[str, tuple[str, str]]) -> 
             axis.loglog(
                 curve["size"], middle * (curve["size"] / centre) ** exponent, "--", color="C0", lw=0.8
             )
-            axis.set(xlabel=size, title=f"{timed}: exponent {exponent:.2f}")
+            axis.set(xlabel=size, title=f"{timed}\nexponent {exponent:.2f}")
             axis.set_ylabel("CPU time (s)", color="C0")
             axis.xaxis.set(
                 major_locator=LogLocator(subs=(1, 2, 5)),
