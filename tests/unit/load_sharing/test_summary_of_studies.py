@@ -50,7 +50,7 @@ MEAN = (3000.0, 1000.0, 2000.0, 500.0, 700.0, 600.0)
 @against(
     "manufactured",
     "forces of two cases",
-    capability="study_forces",
+    capability="load_sharing",
     module="facegear.load_sharing.study_forces",
 )
 def test_each_path_has_its_mean_part_of_what_its_group_carries_and_its_largest_force_beside_the_number():
