@@ -77,6 +77,25 @@ def test_each_path_has_its_mean_part_of_what_its_group_carries_and_its_largest_f
         assert rows["fraction"][["idler/upper", "tail/upper"]].isna().all()
 
 
+@against(
+    "manufactured",
+    "forces of two cases",
+    capability="study_forces",
+    module="facegear.stages.study_forces",
+)
+def test_the_forces_of_every_case_stand_beside_the_number_that_is_its_own():
+    cases = [("web", name, "web (mm)", "", "key", value) for name, value in (("a", 8.0), ("b", 10.0))]
+    tables = [pd.DataFrame({"mesh": ["m", "n"], "largest_n": [force, 2.0 * force]}) for force in (5.0, 7.0)]
+    outcome = study_forces(cases, tables)
+    forces = outcome.content["forces"].set_index(["number", "mesh"])["largest_n"]
+    agrees(
+        "largest force of a case",
+        [forces[8.0, "m"], forces[8.0, "n"], forces[10.0, "m"], forces[10.0, "n"]],
+        [5.0, 10.0, 7.0, 14.0],
+    )
+    assert outcome.summary == "largest force 14 N, on n at web (mm) = 10"
+
+
 def test_the_stored_forces_of_a_study_are_drawn_over_its_numbers(tmp_path):
     table = pd.DataFrame(
         {
